@@ -1,0 +1,28 @@
+# Release flags: -O3 without the errno and trap bookkeeping that keeps loops with sqrt() from vectorising.
+# Not -ffast-math: the watchdogs must see NaN and Inf, and sums must keep their order on every rank count.
+option(FSI_NATIVE "Compile for this machine's own instruction set (-march=native)" OFF)
+option(FSI_COVERAGE "Instrument for line coverage (gcov)" OFF)
+set(FSI_SANITIZE "" CACHE STRING "Sanitizers to build with, e.g. address,undefined")
+
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+  set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG -fno-math-errno -fno-trapping-math" CACHE STRING "" FORCE)
+  # liblammps is shared (Python, plugin): let calls inside it be inlined all the same
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    string(APPEND CMAKE_CXX_FLAGS_RELEASE " -fno-semantic-interposition")
+  endif()
+  if(FSI_NATIVE)
+    string(APPEND CMAKE_CXX_FLAGS_RELEASE " -march=native")
+  endif()
+  if(FSI_COVERAGE)
+    set(FSI_INSTRUMENT -O1 -g --coverage)
+  endif()
+  if(FSI_SANITIZE)
+    add_compile_options(-g -fsanitize=${FSI_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    add_link_options(-fsanitize=${FSI_SANITIZE})
+  endif()
+endif()
+
+find_program(FSI_CCACHE ccache)
+if(FSI_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${FSI_CCACHE}" CACHE STRING "")
+endif()

@@ -1,0 +1,31 @@
+# Adds LAMMPS as a subproject with the styles of src/FSI in its style headers. No patch: LAMMPS' own
+# RegisterStyles() collects our headers before its CMakeLists writes style_*.h.
+set(FSI_SOURCE_DIR "${CMAKE_CURRENT_SOURCE_DIR}/src/FSI")
+
+# What the bundled decks need. More: -DPKG_<NAME>=ON.
+foreach(pkg RIGID PLUGIN)
+  option(PKG_${pkg} "LAMMPS package ${pkg}" ON)
+endforeach()
+option(BUILD_SHARED_LIBS "Build liblammps as a shared library (Python, plugins)" ON)
+option(BUILD_OMP "Build with OpenMP" OFF)
+option(BUILD_TOOLS "Build LAMMPS' tools" OFF)
+
+include("${LAMMPS_SOURCE_DIR}/cmake/Modules/StyleHeaderUtils.cmake")
+RegisterStyles("${FSI_SOURCE_DIR}")
+
+# Our targets land beside lmp, whatever LAMMPS' own CMakeLists makes of its binary folder
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
+add_subdirectory("${LAMMPS_SOURCE_DIR}/cmake" lammps)
+
+file(GLOB FSI_SOURCES CONFIGURE_DEPENDS "${FSI_SOURCE_DIR}/*.cpp")
+target_sources(lammps PRIVATE ${FSI_SOURCES})
+target_include_directories(lammps PRIVATE "${FSI_SOURCE_DIR}")
+if(FSI_INSTRUMENT)
+  set_source_files_properties(${FSI_SOURCES} TARGET_DIRECTORY lammps PROPERTIES COMPILE_OPTIONS "${FSI_INSTRUMENT}")
+  target_link_options(lammps PUBLIC --coverage)
+endif()
+
+include(GNUInstallDirs)
+install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/potentials/" DESTINATION ${CMAKE_INSTALL_DATADIR}/lammps/potentials
+        FILES_MATCHING PATTERN "*.fsi")

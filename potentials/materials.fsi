@@ -1,0 +1,19 @@
+# DATE: 2026-11-21 UNITS: si CONTRIBUTOR: FSI package CITATION: Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879
+# One material per line: name, fluid or solid, then keyword and value.
+#   fluid: rho [kg/m^3], viscosity [Pa s] (default 0)
+#   solid: rho [kg/m^3], young [Pa], poisson [-]
+# The speed of sound of a fluid is a numerical choice and belongs to the input script.
+
+# water at 20 C
+water            fluid rho 1000.0 viscosity 1.0e-3
+# water without viscosity, as the benchmarks treat it
+water_inviscid   fluid rho 1000.0
+
+# Rubber gate of Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879: 12 MPa as the
+# stiffness used there, 10 MPa as in later papers on the same experiment
+gate_12MPa       solid rho 1100.0 young 12.0e6 poisson 0.4
+gate_10MPa       solid rho 1100.0 young 10.0e6 poisson 0.4
+
+# Oscillating plate of Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641:
+# bulk modulus 3.25 MPa and shear modulus 0.715 MPa
+plate            solid rho 1000.0 young 1.9984472e6 poisson 0.39751553

@@ -1,0 +1,89 @@
+"""Reads the text files of LAMMPS' `dump custom`, plain or gzipped."""
+
+import gzip
+import warnings
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+
+_INTEGERS = ("id", "type", "mol")
+
+
+@dataclass
+class Frame:
+    """One snapshot, sorted by id."""
+
+    step: int
+    time: float  # [s]
+    box: np.ndarray  # (3, 2) lower and upper bounds
+    columns: dict  # name -> array (particles,)
+
+    def __len__(self):
+        return len(next(iter(self.columns.values())))
+
+    def __getitem__(self, name):
+        return self.columns[name]
+
+    def __contains__(self, name):
+        return name in self.columns
+
+    def select(self, mask):
+        """The frame's particles for which `mask` (particles,) holds."""
+        return Frame(self.step, self.time, self.box, {name: values[mask] for name, values in self.columns.items()})
+
+    def of_types(self, *types):
+        """The frame's particles of the given atom types."""
+        return self.select(np.isin(self["type"], types))
+
+    def vector(self, names="xyz"):
+        """(particles, d) array of those of the named columns that the dump has: positions, or ("vx", "vy", "vz")."""
+        return np.column_stack([self[name] for name in names if name in self])
+
+
+def frames(path):
+    """Yields the frames of a dump one by one, so that a long one need not fit in memory."""
+    with (gzip.open if str(path).endswith(".gz") else open)(path, "rt") as file:
+        step, time, count, box = None, None, None, None
+        for line in file:
+            if line.startswith("ITEM: TIMESTEP"):
+                step = int(next(file))
+            elif line.startswith("ITEM: TIME"):
+                time = float(next(file))
+            elif line.startswith("ITEM: NUMBER"):
+                count = int(next(file))
+            elif line.startswith("ITEM: BOX"):
+                box = np.array([[float(word) for word in next(file).split()[:2]] for _ in range(3)])
+            elif line.startswith("ITEM: ATOMS"):
+                if time is None:
+                    raise ValueError(f"{path} has no times: the deck needs `dump_modify ... time yes`")
+                names = line.split()[2:]
+                values = np.fromstring("".join(islice(file, count)), sep=" ")
+                if values.size != count * len(names):
+                    warnings.warn(f"{path}: the frame of step {step} is incomplete and left out", stacklevel=2)
+                    return
+                yield _frame(step, time, box, names, values.reshape(count, len(names)))
+
+
+def read(path):
+    """All frames of a dump, as a list."""
+    return list(frames(path))
+
+
+def nearest(found, times, tolerance):
+    """The frames nearest to each of `times`, at most `tolerance` away from it; in order, none twice."""
+    chosen = {}
+    for time in times:
+        frame = min(found, key=lambda f: abs(f.time - time), default=None)
+        if frame is not None and abs(frame.time - time) <= tolerance:
+            chosen[frame.step] = frame
+    return [chosen[step] for step in sorted(chosen)]
+
+
+def _frame(step, time, box, names, table):
+    if "id" in names:
+        table = table[np.argsort(table[:, names.index("id")], kind="stable")]
+    columns = {}
+    for k, name in enumerate(names):
+        columns[name] = table[:, k].astype(np.int64) if name in _INTEGERS else np.ascontiguousarray(table[:, k])
+    return Frame(step, time, box, columns)

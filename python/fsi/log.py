@@ -1,0 +1,103 @@
+"""Reads log.lammps."""
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+_LOOP = re.compile(r"Loop time of (\S+) on (\d+) procs for (\d+) steps with (\d+) atoms")
+_MEMORY = re.compile(r"Per MPI rank memory allocation \(min/avg/max\) = (\S+) \| (\S+) \| (\S+) Mbytes")
+_VALUE = re.compile(r"^FSI (\w+) (\S+)\s*$")
+
+
+@dataclass
+class Run:
+    """One `run` command: its thermo table and what LAMMPS reports after it (None: it did not get there)."""
+
+    thermo: dict = field(default_factory=dict)  # column name -> array (rows,)
+    loop_seconds: float = None
+    ranks: int = None
+    steps: int = None
+    atoms: int = None
+    bytes_per_rank: float = None  # average over ranks
+
+
+@dataclass
+class Log:
+    """A whole log file."""
+
+    runs: list
+    values: dict  # what the deck printed as "FSI <name> <value>": numbers where they are numbers
+    warnings: list
+    errors: list
+
+    @property
+    def finished(self):
+        """Runs that came to their end."""
+        return [run for run in self.runs if run.loop_seconds is not None]
+
+    def column(self, *names):
+        """A thermo column over all runs, by the first of the names that exists; None if none does."""
+        for name in names:
+            parts = [run.thermo[name] for run in self.runs if name in run.thermo]
+            if parts:
+                return np.concatenate(parts)
+        return None
+
+
+def read(path):
+    """Reads a log file in thermo style `one` (or `custom`)."""
+    log = Log(runs=[], values={}, warnings=[], errors=[])
+    header, rows = None, []
+
+    def close_table():
+        if header and log.runs:
+            table = np.array(rows, dtype=float).reshape(-1, len(header))
+            log.runs[-1].thermo = {name: table[:, k] for k, name in enumerate(header)}
+
+    expect_header = False
+    for line in Path(path).read_text(errors="replace").splitlines():
+        if line.startswith("WARNING"):
+            log.warnings.append(line)
+        elif line.startswith("ERROR"):
+            log.errors.append(line)
+        elif match := _MEMORY.match(line):
+            close_table()
+            log.runs.append(Run(bytes_per_rank=float(match[2]) * 2**20))
+            header, rows, expect_header = None, [], True
+        elif match := _LOOP.match(line):
+            close_table()
+            header, rows = None, []
+            if log.runs:
+                run = log.runs[-1]
+                run.loop_seconds, run.ranks = float(match[1]), int(match[2])
+                run.steps, run.atoms = int(match[3]), int(match[4])
+        elif match := _VALUE.match(line):
+            log.values[match[1]] = _number(match[2])
+        elif expect_header and line.strip():
+            header, expect_header = line.split(), False
+        elif header:
+            row = _row(line, len(header))
+            if row:
+                rows.append(row)
+    close_table()
+    return log
+
+
+def _number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _row(line, width):
+    """The numbers of a table's line; None for anything that a fix may have printed in between."""
+    words = line.split()
+    if len(words) != width:
+        return None
+    try:
+        return [float(word) for word in words]
+    except ValueError:
+        return None

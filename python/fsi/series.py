@@ -1,0 +1,64 @@
+"""Reads tables of numbers over time: comma separated, one header line, `#` starts a comment.
+
+A deck writes one with `fix print ... file tip.csv title "time,tip_x" screen no`.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+
+@dataclass
+class Series:
+    """Columns by name, each an array (rows,); the first one is the time [s]."""
+
+    columns: dict
+
+    def __getitem__(self, name):
+        return self.columns[name]
+
+    def __contains__(self, name):
+        return name in self.columns
+
+    @property
+    def time(self):
+        """The first column, [s]."""
+        return next(iter(self.columns.values()))
+
+    def at(self, name, times):
+        """Column `name` at `times`, interpolated linearly; NaN outside of the series."""
+        return np.interp(times, self.time, self[name], left=np.nan, right=np.nan)
+
+    def peak(self, name):
+        """(value, time) of the largest entry of a column."""
+        k = int(np.argmax(self[name]))
+        return float(self[name][k]), float(self.time[k])
+
+
+def read(path):
+    """Reads a series; a last line that was cut off is left out."""
+    lines = [line.strip() for line in Path(path).read_text().splitlines()]
+    lines = [line for line in lines if line and not line.startswith("#")]
+    if len(lines) < 2:
+        raise ValueError(f"{path} has no rows")
+    names = [name.strip() for name in lines[0].split(",")]
+    rows = [line.split(",") for line in lines[1:]]
+    if len(rows[-1]) != len(names):
+        rows.pop()
+    table = np.array(rows, dtype=float)
+    return Series({name: table[:, k] for k, name in enumerate(names)})
+
+
+def rms_distance(series, name, reference, reference_name, tolerance=1e-3):
+    """Root mean square distance of a series to reference points, those beyond the series' end left out.
+
+    A point at most `tolerance` [s] outside of the series is compared with its end, since the last line of a
+    `fix print` may lie one interval before the end of the run.
+    """
+    times = reference.time
+    inside = (times >= series.time[0] - tolerance) & (times <= series.time[-1] + tolerance)
+    if not inside.any():
+        return None
+    clipped = np.clip(times[inside], series.time[0], series.time[-1])
+    return float(np.sqrt(np.mean((series.at(name, clipped) - reference[reference_name][inside]) ** 2)))

@@ -1,0 +1,62 @@
+"""Runs all tests and adds them up. The command line of tools/test."""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from xml.etree import ElementTree
+
+from . import launch, paths
+
+
+def googletest():
+    """(passed, failed) of the GoogleTest cases that the build registered with ctest; (0, 0) if it has none."""
+    if not (paths.BUILD / "CTestTestfile.cmake").exists():
+        return 0, 0
+    command = ["ctest", "--test-dir", str(paths.BUILD), "--output-on-failure", "--progress", "-j", str(launch.cores())]
+    lines = []
+    with subprocess.Popen(command, env=launch.environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, errors="replace") as process:
+        for line in process.stdout:
+            lines.append(line)
+            print(line, end="", flush=True)
+    for line in lines:
+        match = re.search(r"(\d+) tests? failed out of (\d+)", line)
+        if match:
+            failed, total = int(match[1]), int(match[2])
+            return total - failed, failed
+    return 0, int(process.returncode != 0)
+
+
+def pytest(arguments):
+    """(passed, failed) of the tests in unittest/; an error in collecting or setting up counts as a failure."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.xml"
+        command = [sys.executable, "-m", "pytest", "-q", f"--junitxml={report}", *arguments,
+                   str(paths.ROOT / "unittest")]
+        status = subprocess.run(command, cwd=paths.ROOT, env=launch.environment(), check=False).returncode
+        passed = failed = 0
+        if report.exists():
+            for case in ElementTree.parse(report).iter("testcase"):
+                outcome = {child.tag for child in case}
+                failed += bool(outcome & {"failure", "error"})
+                passed += not outcome & {"failure", "error", "skipped"}
+    # 5: nothing was collected; anything else without a failed test is a fault of the runner
+    if status not in (0, 5) and failed == 0:
+        failed = 1
+    return passed, failed
+
+
+def main(arguments):
+    """Runs both runners; the last line is the sum."""
+    results = [googletest(), pytest(arguments)]
+    passed, failed = (sum(column) for column in zip(*results))
+    print(f"{passed} passed, {failed} failed", flush=True)
+    return 0 if passed and not failed else 1
+
+
+if __name__ == "__main__":
+    os.chdir(paths.ROOT)
+    sys.exit(main(sys.argv[1:]))

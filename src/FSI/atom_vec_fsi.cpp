@@ -1,0 +1,112 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "atom_vec_fsi.h"
+
+#include "atom.h"
+#include "error.h"
+
+using namespace LAMMPS_NS;
+
+/* ---------------------------------------------------------------------- */
+
+AtomVecFSI::AtomVecFSI(LAMMPS *lmp) : AtomVec(lmp), rmass(nullptr), rho(nullptr)
+{
+  molecular = Atom::ATOMIC;
+  mass_type = PER_ATOM;
+
+  atom->molecule_flag = 1;
+  atom->rmass_flag = 1;
+  atom->rho_flag = 1;
+
+  // strings with peratom variables to include in each AtomVec method
+  // strings cannot contain fields in corresponding AtomVec default strings
+  // order of fields in a string does not matter
+  // except: fields_data_atom & fields_data_vel must match data file
+  // mass and body never change on a ghost; its density is refreshed by fix fsi, after the density step
+
+  fields_grow = {"molecule", "rmass", "rho"};
+  fields_copy = {"molecule", "rmass", "rho"};
+  fields_border = {"molecule", "rmass", "rho"};
+  fields_border_vel = {"molecule", "rmass", "rho"};
+  fields_exchange = {"molecule", "rmass", "rho"};
+  fields_restart = {"molecule", "rmass", "rho"};
+  fields_create = {"molecule", "rmass", "rho"};
+  fields_data_atom = {"id", "molecule", "type", "rho", "rmass", "x"};
+  fields_data_vel = {"id", "v"};
+
+  setup_fields();
+}
+
+/* ----------------------------------------------------------------------
+   set local copies of all grow ptrs used by this class, except defaults
+   needed in replicate when 2 atom classes exist and it calls pack_restart()
+------------------------------------------------------------------------- */
+
+void AtomVecFSI::grow_pointers()
+{
+  rmass = atom->rmass;
+  rho = atom->rho;
+}
+
+/* ----------------------------------------------------------------------
+   zero mass and density mean "not set yet": fix fsi gives such a particle
+   the mass that makes its bulk lattice stress-free and the density of its material
+------------------------------------------------------------------------- */
+
+void AtomVecFSI::create_atom_post(int ilocal)
+{
+  rmass[ilocal] = 0.0;
+  rho[ilocal] = 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   check what AtomVec::data_atom() just unpacked
+------------------------------------------------------------------------- */
+
+void AtomVecFSI::data_atom_post(int ilocal)
+{
+  if (rho[ilocal] < 0.0)
+    error->one(FLERR, "Invalid density {} in Atoms section of data file: expected >= 0 (0 = of the material)",
+               rho[ilocal]);
+  if (rmass[ilocal] < 0.0)
+    error->one(FLERR, "Invalid mass {} in Atoms section of data file: expected >= 0 (0 = of the lattice)",
+               rmass[ilocal]);
+}
+
+/* ----------------------------------------------------------------------
+   assign an index to named atom property and return index
+   return -1 if name is unknown to this atom style
+------------------------------------------------------------------------- */
+
+int AtomVecFSI::property_atom(const std::string &name)
+{
+  if (name == "rho") return 0;
+  return -1;
+}
+
+/* ----------------------------------------------------------------------
+   pack per-atom data into buf for ComputePropertyAtom
+   index maps to data specific to this atom style
+------------------------------------------------------------------------- */
+
+void AtomVecFSI::pack_property_atom(int /*index*/, double *buf, int nvalues, int groupbit)
+{
+  const int *const mask = atom->mask;
+  const int nlocal = atom->nlocal;
+  int n = 0;
+  for (int i = 0; i < nlocal; i++) {
+    buf[n] = (mask[i] & groupbit) ? rho[i] : 0.0;
+    n += nvalues;
+  }
+}

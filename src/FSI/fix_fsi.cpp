@@ -1,0 +1,554 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fix_fsi.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi_stress.h"
+#include "fix_fsi_wall_mirror.h"
+#include "force.h"
+#include "fsi_kernel.h"
+#include "fsi_tensor.h"
+#include "memory.h"
+#include "modify.h"
+#include "pair_fsi_fluid.h"
+#include "pair_fsi_solid.h"
+#include "update.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
+    grad(nullptr), wmask(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
+    comm_stage(RATES), ratio(nullptr), nmax(0), need_psi(false), need_grad(false), need_ratio(false)
+{
+  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
+  if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
+
+  dx = utils::numeric(FLERR, arg[3], false, lmp);
+  if (dx <= 0.0) error->all(FLERR, "Fix fsi particle spacing {} must be > 0", arg[3]);
+
+  if (strcmp(arg[4], "cubic") == 0) kernel = CUBIC;
+  else if (strcmp(arg[4], "quintic") == 0) kernel = QUINTIC;
+  else if (strcmp(arg[4], "wendland") == 0) kernel = WENDLAND;
+  else error->all(FLERR, "Unknown fix fsi kernel {}: expected cubic, quintic or wendland", arg[4]);
+
+  const double hdx = utils::numeric(FLERR, arg[5], false, lmp);
+  if (hdx < 0.9 || hdx > 4.0)
+    error->all(FLERR, "Fix fsi smoothing length over spacing {} must be between 0.9 and 4", arg[5]);
+
+  int iarg = 6;
+  while (iarg < narg) {
+    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi {}", arg[iarg]), error);
+    int mode;
+    if (strcmp(arg[iarg + 1], "continuity") == 0) mode = CONTINUITY;
+    else if (strcmp(arg[iarg + 1], "summation") == 0) mode = SUMMATION;
+    else if (strcmp(arg[iarg + 1], "ratio") == 0) mode = RATIO;
+    else
+      error->all(FLERR, "Unknown fix fsi {} density {}: expected continuity, summation or ratio", arg[iarg],
+                 arg[iarg + 1]);
+    if (strcmp(arg[iarg], "fluid") == 0) density_fluid = mode;
+    else if (strcmp(arg[iarg], "solid") == 0) density_solid = mode;
+    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid or solid", arg[iarg]);
+    iarg += 2;
+  }
+
+  dim = domain->dimension;
+  h = hdx * dx;
+  with_kernel(kernel, dim, h, [&](const auto &k) {
+    cut = k.cut;
+    psi_bulk = lattice_number_density(k, dx);
+    wdx = k.W(dx);
+  });
+  state.resize(atom->ntypes + 1);
+
+  time_integrate = 1;
+  need_ratio = density_fluid == RATIO || density_solid == RATIO;
+  if (need_ratio) {
+    restart_peratom = 1;
+    grow_arrays(atom->nmax);
+    for (int i = 0; i < atom->nlocal; i++) ratio[i] = 0.0;
+    atom->add_callback(Atom::GROW);
+    atom->add_callback(Atom::RESTART);
+  }
+  // most that is sent for one atom: number density, density and stress; rates of a solid atom
+  comm_forward = 2 + (dim == 2 ? 3 : 6);
+  comm_reverse = ngrad();
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixFSI::~FixFSI()
+{
+  if (need_ratio && modify->get_fix_by_id(id)) {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+  }
+  memory->destroy(ratio);
+  memory->destroy(psi);
+  memory->destroy(rate);
+  memory->destroy(grad);
+  memory->destroy(wmask);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSI::setmask()
+{
+  return INITIAL_INTEGRATE | PRE_FORCE | FINAL_INTEGRATE;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::init()
+{
+  if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "Fix fsi does not support run_style respa");
+  if (comm->cutghostuser > 0.0 && comm->cutghostuser < cut)
+    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", cut, comm->cutghostuser);
+  if (domain->dimension != dim)
+    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", dim, domain->dimension);
+  if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
+
+  fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
+  solid = dynamic_cast<PairFSISolid *>(force->pair_match("fsi/solid", 1));
+  if (!fluid && !solid) error->all(FLERR, "Fix fsi requires pair_style fsi/fluid or fsi/solid");
+
+  auto stress = modify->get_fix_by_style("^fsi/stress$");
+  if (stress.size() > 1) error->all(FLERR, "There can be only one fix fsi/stress");
+  fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);
+  if (solid && !fix_stress)
+    error->all(FLERR, "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
+  if (!solid && fix_stress && comm->me == 0)
+    error->warning(FLERR, "Fix fsi/stress has nothing to act on: there is no pair_style fsi/solid");
+
+  wall_fixes.clear();
+  for (auto &fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
+    wall_fixes.push_back(dynamic_cast<FixFSIWallMirror *>(fix));
+  if (!fluid && !wall_fixes.empty() && comm->me == 0)
+    error->warning(FLERR, "Fix fsi/wall/mirror has nothing to act on: walls mirror fluids, and there is no pair_style fsi/fluid");
+  gather_walls();
+
+  need_psi = density_fluid != CONTINUITY || (fluid && fluid->surface_ratio > 0.0) ||
+      (solid && density_solid != CONTINUITY);
+  need_grad = solid != nullptr;
+
+  // pairs are not of unit time order with velocities that ghosts do not have
+  comm->ghost_velocity = 1;
+
+  // atoms that were never given a mass or a density get those of the stress-free lattice
+  double *rmass = atom->rmass, *rho = atom->rho;
+  const int *const type = atom->type;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const State &s = state[type[i]];
+    if (s.species == NONE)
+      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i], type[i]);
+    if (rmass[i] == 0.0) rmass[i] = s.rho0 / psi_bulk;
+    if (rho[i] == 0.0) rho[i] = s.rho0;
+  }
+  find_gravity();
+}
+
+/* ----------------------------------------------------------------------
+   what a pair style knows of an atom type
+------------------------------------------------------------------------- */
+
+void FixFSI::enter_state(int type, const State &s)
+{
+  state[type] = s;
+}
+
+/* ----------------------------------------------------------------------
+   body force per mass: the sum of all fix gravity commands
+------------------------------------------------------------------------- */
+
+void FixFSI::find_gravity()
+{
+  gravity[0] = gravity[1] = gravity[2] = 0.0;
+  for (auto &fix : modify->get_fix_by_style("^gravity")) {
+    int d;
+    const auto *g = static_cast<double *>(fix->extract("gvec", d));
+    if (g)
+      for (int k = 0; k < 3; k++) gravity[k] += g[k];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   one list of walls from all fixes fsi/wall/mirror
+------------------------------------------------------------------------- */
+
+void FixFSI::gather_walls()
+{
+  walls.wall.clear();
+  for (auto *fix : wall_fixes) {
+    fix->first = walls.wall.size();
+    for (const auto &w : fix->walls) walls.wall.push_back(w);
+  }
+  if (walls.wall.size() > Walls::MAXWALL)
+    error->all(FLERR, "There are {} mirror walls, more than the {} supported", walls.wall.size(), Walls::MAXWALL);
+  walls.find_reflections();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::add_wall_force(int wall, int axis, double f)
+{
+  for (auto *fix : wall_fixes)
+    if (wall >= fix->first && wall < fix->first + (int) fix->walls.size()) fix->force[wall - fix->first][axis] -= f;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::setup_pre_force(int)
+{
+  update_state(false);
+}
+
+/* ----------------------------------------------------------------------
+   paper eq. 15: drift to the middle of the step
+------------------------------------------------------------------------- */
+
+void FixFSI::initial_integrate(int)
+{
+  double **x = atom->x;
+  double **v = atom->v;
+  const int *const mask = atom->mask;
+  const double dth = 0.5 * update->dt;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (mask[i] & groupbit)
+      for (int d = 0; d < dim; d++) x[i][d] += dth * v[i][d];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::pre_force(int)
+{
+  update_state(true);
+}
+
+/* ----------------------------------------------------------------------
+   paper eqs. 17 and 18: kick, and drift to the end of the step
+------------------------------------------------------------------------- */
+
+void FixFSI::final_integrate()
+{
+  double **x = atom->x;
+  double **v = atom->v;
+  double **f = atom->f;
+  const double *const rmass = atom->rmass;
+  const int *const mask = atom->mask;
+  const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(mask[i] & groupbit)) continue;
+    const double dtfm = dtf / rmass[i];
+    for (int d = 0; d < dim; d++) {
+      v[i][d] += dtfm * f[i][d];
+      x[i][d] += dth * v[i][d];
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::reset_dt() {}
+
+/* ----------------------------------------------------------------------
+   bring density and stress to the time of the positions, on local and ghost atoms
+   advance = false in setup: a function of the state only, nothing evolves
+------------------------------------------------------------------------- */
+
+void FixFSI::update_state(bool advance)
+{
+  const int nall = atom->nlocal + atom->nghost;
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    if (need_psi) memory->grow(psi, nmax, "fsi:psi");
+    if (fluid && density_fluid == CONTINUITY) memory->grow(rate, nmax, "fsi:rate");
+    if (need_grad) memory->grow(grad, nmax, ngrad(), "fsi:grad");
+    if (!wall_fixes.empty()) memory->grow(wmask, nmax, "fsi:wmask");
+  }
+
+  if (!wall_fixes.empty()) {
+    for (auto *fix : wall_fixes) fix->clear_force();
+    gather_walls();
+    double **x = atom->x;
+    for (int i = 0; i < nall; i++) wmask[i] = walls.near(x[i], cut);
+  }
+
+  if (advance && (rate || grad)) {
+    if (rate) memset(rate, 0, nall * sizeof(double));
+    if (grad && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
+    if (rate) fluid->density_rate(update->dt);
+    if (grad) solid->velocity_gradient(update->dt);
+    comm_stage = RATES;
+    if (force->newton_pair) comm->reverse_comm(this);
+    advance_density();
+    if (grad) {
+      if (dim == 2) advance_solids<2>();
+      else advance_solids<3>();
+    }
+  }
+  if (need_psi) {
+    number_density();
+    density_from_psi();
+  }
+  comm->forward_comm(this);
+}
+
+/* ----------------------------------------------------------------------
+   number density psi_i = sum_j W_ij, self included (paper eq. 8): over all neighbours for a fluid; for a solid over
+   its own body, and over all neighbours in density mode summation, the paper's
+------------------------------------------------------------------------- */
+
+void FixFSI::number_density()
+{
+  const int nall = atom->nlocal + atom->nghost;
+  memset(psi, 0, nall * sizeof(double));
+  double w0 = 0.0;
+  with_kernel(kernel, dim, h, [&](const auto &k) { w0 = k.W(0.0); });
+  for (int i = 0; i < atom->nlocal; i++) psi[i] = w0;
+  if (fluid) fluid->number_density(psi, density_solid == SUMMATION);
+  if (solid) solid->number_density(psi, density_solid == SUMMATION);
+  comm_stage = NUMBER_DENSITY;
+  if (force->newton_pair) comm->reverse_comm(this);
+
+  psi_reference = psi_bulk;
+  if (fluid && fluid->surface_max) {
+    double mine = 0.0;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (state[atom->type[i]].species == FLUID && psi[i] > mine) mine = psi[i];
+    MPI_Allreduce(&mine, &psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSI::pressure(int i) const
+{
+  const State &s = state[atom->type[i]];
+  if (s.species == FLUID && fluid->surface_ratio > 0.0 && psi[i] <= fluid->surface_ratio * psi_reference) return 0.0;
+  return s.pressure(atom->rho[i]);
+}
+
+/* ----------------------------------------------------------------------
+   summation: rho_i = m_i psi_i (paper eq. 12)
+   ratio: rho_i = rho_i^0 psi_i/psi_i^0 with the reference taken when the mode starts
+------------------------------------------------------------------------- */
+
+void FixFSI::density_from_psi()
+{
+  double *rho = atom->rho;
+  const double *const rmass = atom->rmass;
+  const int *const type = atom->type;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int mode = state[type[i]].species == FLUID ? density_fluid : density_solid;
+    if (mode == SUMMATION) rho[i] = rmass[i] * psi[i];
+    else if (mode == RATIO) {
+      if (ratio[i] == 0.0) ratio[i] = rho[i] / psi[i];
+      rho[i] = ratio[i] * psi[i];
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   fluids, continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n
+------------------------------------------------------------------------- */
+
+void FixFSI::advance_density()
+{
+  if (!rate) return;
+  double *rho = atom->rho;
+  const int *const type = atom->type;
+  const double dt = update->dt;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (state[type[i]].species == FLUID) rho[i] += dt * rate[i];
+}
+
+/* ----------------------------------------------------------------------
+   solids: velocity gradient L from its sums; stress and, in continuity mode, density from L
+------------------------------------------------------------------------- */
+
+template <int D> void FixFSI::advance_solids()
+{
+  double *rho = atom->rho;
+  const int *const type = atom->type;
+  const double dt = update->dt;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const State &s = state[type[i]];
+    if (s.species != SOLID) continue;
+    double *L = grad[i];
+    if (solid->corrected) right_divide<D>(L, Sym<D>::load(L + D * D), 1.0e-3);
+    fix_stress->advance<D>(i, L, dt, s.shear);
+    if (density_solid == CONTINUITY) {
+      double div = 0.0;
+      for (int a = 0; a < D; a++) div += L[a * D + a];
+      // d rho/dt = -rho div v, centred: second order, and positive for any step
+      rho[i] *= (1.0 - 0.5 * dt * div) / (1.0 + 0.5 * dt * div);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   ghosts get density, number density where in use, and stress where they are solid
+------------------------------------------------------------------------- */
+
+int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  const double *const rho = atom->rho;
+  const int *const type = atom->type;
+  const int ns = (dim == 2) ? 3 : 6;
+  int m = 0;
+  for (int ii = 0; ii < n; ii++) {
+    const int i = list[ii];
+    buf[m++] = rho[i];
+    if (need_psi) buf[m++] = psi[i];
+    if (solid && state[type[i]].species == SOLID)
+      for (int k = 0; k < ns; k++) buf[m++] = fix_stress->stress[i][k];
+  }
+  return m;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::unpack_forward_comm(int n, int first, double *buf)
+{
+  double *rho = atom->rho;
+  const int *const type = atom->type;
+  const int ns = (dim == 2) ? 3 : 6;
+  int m = 0;
+  for (int i = first; i < first + n; i++) {
+    rho[i] = buf[m++];
+    if (need_psi) psi[i] = buf[m++];
+    if (solid && state[type[i]].species == SOLID)
+      for (int k = 0; k < ns; k++) fix_stress->stress[i][k] = buf[m++];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   sums that pairs left on ghosts: one value for a fluid atom, the gradient sums for a solid one
+------------------------------------------------------------------------- */
+
+int FixFSI::pack_reverse_comm(int n, int first, double *buf)
+{
+  const int *const type = atom->type;
+  const int ng = ngrad();
+  int m = 0;
+  for (int i = first; i < first + n; i++) {
+    if (comm_stage == NUMBER_DENSITY) buf[m++] = psi[i];
+    else if (state[type[i]].species == SOLID) {
+      if (grad)
+        for (int k = 0; k < ng; k++) buf[m++] = grad[i][k];
+    } else if (rate)
+      buf[m++] = rate[i];
+  }
+  return m;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  const int *const type = atom->type;
+  const int ng = ngrad();
+  int m = 0;
+  for (int ii = 0; ii < n; ii++) {
+    const int i = list[ii];
+    if (comm_stage == NUMBER_DENSITY) psi[i] += buf[m++];
+    else if (state[type[i]].species == SOLID) {
+      if (grad)
+        for (int k = 0; k < ng; k++) grad[i][k] += buf[m++];
+    } else if (rate)
+      rate[i] += buf[m++];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   density mode ratio: its reference travels with the atom and through restarts
+------------------------------------------------------------------------- */
+
+void FixFSI::grow_arrays(int n)
+{
+  memory->grow(ratio, n, "fsi:ratio");
+}
+
+void FixFSI::copy_arrays(int i, int j, int)
+{
+  ratio[j] = ratio[i];
+}
+
+void FixFSI::set_arrays(int i)
+{
+  ratio[i] = 0.0;
+}
+
+int FixFSI::pack_exchange(int i, double *buf)
+{
+  buf[0] = ratio[i];
+  return 1;
+}
+
+int FixFSI::unpack_exchange(int i, double *buf)
+{
+  ratio[i] = buf[0];
+  return 1;
+}
+
+int FixFSI::pack_restart(int i, double *buf)
+{
+  buf[0] = 2;
+  buf[1] = ratio[i];
+  return 2;
+}
+
+void FixFSI::unpack_restart(int i, int nth)
+{
+  // values of this fix are the nth set of atom->extra, each preceded by its length
+  double *extra = atom->extra[i];
+  int m = 0;
+  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
+  ratio[i] = extra[m + 1];
+}
+
+int FixFSI::size_restart(int)
+{
+  return 2;
+}
+
+int FixFSI::maxsize_restart()
+{
+  return 2;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSI::memory_usage()
+{
+  double bytes = 0.0;
+  if (psi) bytes += (double) nmax * sizeof(double);
+  if (rate) bytes += (double) nmax * sizeof(double);
+  if (grad) bytes += (double) nmax * ngrad() * sizeof(double);
+  if (wmask) bytes += (double) nmax * sizeof(int);
+  if (ratio) bytes += (double) atom->nmax * sizeof(double);
+  return bytes;
+}

@@ -1,0 +1,113 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(fsi,FixFSI);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_FSI_H
+#define LMP_FIX_FSI_H
+
+#include "fix.h"
+#include "fsi_material.h"
+#include "fsi_walls.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// The centre of the package: holds the discretisation (spacing, kernel), integrates in time (position Verlet) and
+// brings density and stress of every particle to the middle of the step before forces are computed.
+
+class FixFSI : public Fix {
+ public:
+  enum Density { CONTINUITY, SUMMATION, RATIO };
+
+  FixFSI(class LAMMPS *, int, char **);
+  ~FixFSI() override;
+  int setmask() override;
+  void init() override;
+  void setup_pre_force(int) override;
+  void initial_integrate(int) override;
+  void pre_force(int) override;
+  void final_integrate() override;
+  void reset_dt() override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+  double memory_usage() override;
+
+  // discretisation
+  int dim;
+  int kernel;          // FSI::KernelKind
+  double dx, h;        // spacing of the initial lattice, smoothing length
+  double cut;          // support radius of the kernel
+  double psi_bulk;     // number density inside the lattice: the volume of a particle is 1/psi_bulk
+  double wdx;          // W(dx)
+  int density_fluid, density_solid;    // Density
+
+  // state per atom type; pair styles enter theirs in init_style()
+  std::vector<FSI::State> state;
+  void enter_state(int type, const FSI::State &);
+
+  // per atom, local and ghost; valid from pre_force on
+  double *psi;      // number density, if any mode or rule needs it
+  double *rate;     // density rate of fluids (continuity), local after the reverse communication
+  double **grad;    // solids: sum V_j (v_j-v_i)(x)g_ij, then the symmetric sum V_j x_ji(x)g_ij; afterwards L
+  int *wmask;       // bits of the mirror walls that an atom is near
+
+  FSI::Walls walls;     // at the time of the positions in atom->x
+  double gravity[3];
+  class FixFSIStress *fix_stress;
+  std::vector<class FixFSIWallMirror *> wall_fixes;
+  class PairFSIFluid *fluid;
+  class PairFSISolid *solid;
+
+  // pressure of a local or ghost atom from its density (paper eq. 16), 0 at a free surface if that rule is on
+  double pressure(int i) const;
+  double psi_reference;    // of the free-surface rule
+
+  int ngrad() const { return dim * dim + (dim == 2 ? 3 : 6); }
+  void find_gravity();
+  void add_wall_force(int wall, int axis, double f);    // f on the fluid; counted by the wall's fix
+
+ private:
+  enum { RATES, NUMBER_DENSITY } comm_stage;
+  double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
+  int nmax;
+  bool need_psi, need_grad, need_ratio;
+
+  template <int D> void advance_solids();
+  void advance_density();
+  void density_from_psi();
+  void number_density();
+  void update_state(bool);
+  void gather_walls();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,147 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fix_fsi_stress.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "memory.h"
+#include "modify.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), stress(nullptr), plane_stress(false), n(domain->dimension == 2 ? 3 : 6)
+{
+  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
+
+  int iarg = 3;
+  while (iarg < narg) {
+    if (strcmp(arg[iarg], "plane") == 0) {
+      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/stress plane", error);
+      if (strcmp(arg[iarg + 1], "stress") == 0) plane_stress = true;
+      else if (strcmp(arg[iarg + 1], "strain") == 0) plane_stress = false;
+      else error->all(FLERR, "Unknown fix fsi/stress plane value {}: expected strain or stress", arg[iarg + 1]);
+      if (domain->dimension == 3) error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
+      iarg += 2;
+    } else
+      error->all(FLERR, "Unknown fix fsi/stress keyword {}: expected plane", arg[iarg]);
+  }
+
+  restart_peratom = 1;
+  grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIStress::~FixFSIStress()
+{
+  if (modify->get_fix_by_id(id)) {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+  }
+  memory->destroy(stress);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIStress::init()
+{
+  if (modify->get_fix_by_style("^fsi$").empty()) error->all(FLERR, "Fix fsi/stress requires fix fsi");
+}
+
+/* ----------------------------------------------------------------------
+   sigma_zz of plane strain is -p - (S_xx + S_yy), of plane stress 0
+------------------------------------------------------------------------- */
+
+double FixFSIStress::von_mises(int i, double p) const
+{
+  const double *s = stress[i];
+  if (n == 6) return sqrt(1.5 * FSI::Sym<3>::load(s).squared());
+  double szz = -(s[0] + s[1]), mean = 0.0;
+  if (plane_stress) {
+    szz = p;    // deviator about the in-plane mean -p
+    mean = p / 3.0;
+  }
+  const double a = s[0] - mean, b = s[1] - mean, c = szz - mean;
+  return sqrt(1.5 * (a * a + b * b + c * c + 2.0 * s[2] * s[2]));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIStress::grow_arrays(int nmax)
+{
+  memory->grow(stress, nmax, n, "fsi/stress:stress");
+}
+
+void FixFSIStress::copy_arrays(int i, int j, int)
+{
+  memcpy(stress[j], stress[i], n * sizeof(double));
+}
+
+void FixFSIStress::set_arrays(int i)
+{
+  memset(stress[i], 0, n * sizeof(double));
+}
+
+int FixFSIStress::pack_exchange(int i, double *buf)
+{
+  memcpy(buf, stress[i], n * sizeof(double));
+  return n;
+}
+
+int FixFSIStress::unpack_exchange(int i, double *buf)
+{
+  memcpy(stress[i], buf, n * sizeof(double));
+  return n;
+}
+
+int FixFSIStress::pack_restart(int i, double *buf)
+{
+  buf[0] = n + 1;
+  memcpy(buf + 1, stress[i], n * sizeof(double));
+  return n + 1;
+}
+
+void FixFSIStress::unpack_restart(int i, int nth)
+{
+  // values of this fix are the nth set of atom->extra, each preceded by its length
+  double *extra = atom->extra[i];
+  int m = 0;
+  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
+  memcpy(stress[i], extra + m + 1, n * sizeof(double));
+}
+
+int FixFSIStress::size_restart(int)
+{
+  return n + 1;
+}
+
+int FixFSIStress::maxsize_restart()
+{
+  return n + 1;
+}
+
+double FixFSIStress::memory_usage()
+{
+  return (double) atom->nmax * n * sizeof(double);
+}

@@ -1,0 +1,229 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fix_fsi_wall_mirror.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "modify.h"
+#include "update.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace FSI;
+
+static constexpr double BIG = 1.0e300;
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), first(0), guard(0.1), reflected(0), hub(nullptr)
+{
+  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/mirror requires atom_style fsi");
+
+  int iarg = 3;
+  while (iarg < narg) {
+    const std::string key = arg[iarg];
+    if (key.size() == 3 && strchr("xyz", key[0]) && (key.substr(1) == "lo" || key.substr(1) == "hi")) {
+      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror " + key, error);
+      Wall w = {};
+      w.axis = key[0] - 'x';
+      w.side = key[1] == 'l' ? 1.0 : -1.0;
+      if (w.axis == 2 && domain->dimension == 2)
+        error->all(FLERR, "Fix fsi/wall/mirror {} is not possible for dimension 2", key);
+      if (strcmp(arg[iarg + 1], "EDGE") == 0) {
+        w.position = key[1] == 'l' ? domain->boxlo[w.axis] : domain->boxhi[w.axis];
+      } else
+        w.position = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (domain->periodicity[w.axis])
+        error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", key, "xyz"[w.axis]);
+      for (int b = 0; b < 3; b++) {
+        w.lo[b] = -BIG;
+        w.hi[b] = BIG;
+      }
+      walls.push_back(w);
+      iarg += 2;
+    } else if (key == "range") {
+      if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror range", error);
+      if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror range must follow the wall that it belongs to");
+      Wall &w = walls.back();
+      const char *axes = "xyz", *a = strchr(axes, arg[iarg + 1][0]);
+      if (strlen(arg[iarg + 1]) != 1 || !a)
+        error->all(FLERR, "Unknown fix fsi/wall/mirror range axis {}: expected x, y or z", arg[iarg + 1]);
+      const int b = a - axes;
+      if (b == w.axis) error->all(FLERR, "Fix fsi/wall/mirror range axis {} is the normal of its wall", arg[iarg + 1]);
+      if (strcmp(arg[iarg + 2], "INF") != 0) w.lo[b] = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
+      if (strcmp(arg[iarg + 3], "INF") != 0) w.hi[b] = utils::numeric(FLERR, arg[iarg + 3], false, lmp);
+      if (w.lo[b] >= w.hi[b])
+        error->all(FLERR, "Fix fsi/wall/mirror range {} {} is empty", arg[iarg + 2], arg[iarg + 3]);
+      w.finite = true;
+      iarg += 4;
+    } else if (key == "velocity") {
+      if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror velocity", error);
+      if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror velocity must follow the wall that it belongs to");
+      for (int b = 0; b < 3; b++) walls.back().velocity[b] = utils::numeric(FLERR, arg[iarg + 1 + b], false, lmp);
+      iarg += 4;
+    } else if (key == "slip") {
+      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror slip", error);
+      if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror slip must follow the wall that it belongs to");
+      walls.back().noslip = !utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      iarg += 2;
+    } else if (key == "guard") {
+      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror guard", error);
+      guard = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (guard < 0.0 || guard > 0.45)
+        error->all(FLERR, "Fix fsi/wall/mirror guard {} must be between 0 and 0.45 spacings", arg[iarg + 1]);
+      iarg += 2;
+    } else
+      error->all(FLERR, "Unknown fix fsi/wall/mirror keyword {}: expected xlo, xhi, ylo, yhi, zlo, zhi, range, "
+                        "velocity, slip or guard", key);
+  }
+  if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror needs at least one of xlo, xhi, ylo, yhi, zlo, zhi");
+
+  force.resize(walls.size());
+  clear_force();
+  dynamic_group_allow = 1;
+  scalar_flag = array_flag = 1;
+  size_array_rows = walls.size();
+  size_array_cols = 3;
+  extscalar = extarray = 1;
+  global_freq = 1;
+  restart_global = 1;
+  nevery = 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSIWallMirror::setmask()
+{
+  return POST_INTEGRATE | END_OF_STEP;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWallMirror::init()
+{
+  auto fixes = modify->get_fix_by_style("^fsi$");
+  if (fixes.empty()) error->all(FLERR, "Fix fsi/wall/mirror requires fix fsi");
+  hub = dynamic_cast<FixFSI *>(fixes[0]);
+}
+
+/* ----------------------------------------------------------------------
+   a fluid particle that starts behind a wall is a mistake in the script
+------------------------------------------------------------------------- */
+
+void FixFSIWallMirror::setup(int)
+{
+  double **x = atom->x;
+  const int *const mask = atom->mask, *const type = atom->type;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(mask[i] & groupbit) || hub->state[type[i]].species != FLUID) continue;
+    for (const auto &w : walls)
+      if (!w.finite && w.distance(x[i]) < -hub->dx)
+        error->one(FLERR, "Fluid atom {} at {} {} {} is behind the {}{} wall of fix {}", atom->tag[i], x[i][0],
+                   x[i][1], x[i][2], "xyz"[w.axis], w.side > 0.0 ? "lo" : "hi", id);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   after the first drift: walls move along, and a fluid particle nearer than the guard distance, or behind the wall, is
+   reflected. A segment acts on what has just come through it (within one spacing), not on what flows behind it.
+------------------------------------------------------------------------- */
+
+void FixFSIWallMirror::post_integrate()
+{
+  double **x = atom->x;
+  double **v = atom->v;
+  const int *const mask = atom->mask, *const type = atom->type;
+  const double dth = 0.5 * update->dt, near = guard * hub->dx;
+
+  for (auto &w : walls) w.position += dth * w.velocity[w.axis];
+
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(mask[i] & groupbit) || hub->state[type[i]].species != FLUID) continue;
+    for (const auto &w : walls) {
+      const double a = w.distance(x[i]);
+      if (a >= near || (w.finite && (a < -hub->dx || !w.spans(x[i], 0.0)))) continue;
+      x[i][w.axis] += w.side * 2.0 * (near - a);
+      const double vn = v[i][w.axis] - w.velocity[w.axis];
+      if (vn * w.side < 0.0) v[i][w.axis] -= 2.0 * vn;
+      reflected++;
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWallMirror::end_of_step()
+{
+  for (auto &w : walls) w.position += 0.5 * update->dt * w.velocity[w.axis];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWallMirror::clear_force()
+{
+  for (auto &f : force) f = {0.0, 0.0, 0.0};
+}
+
+/* ----------------------------------------------------------------------
+   number of reflections since the fix was defined
+------------------------------------------------------------------------- */
+
+double FixFSIWallMirror::compute_scalar()
+{
+  bigint all;
+  MPI_Allreduce(&reflected, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  return static_cast<double>(all);
+}
+
+/* ----------------------------------------------------------------------
+   force of the fluid on wall i
+------------------------------------------------------------------------- */
+
+double FixFSIWallMirror::compute_array(int i, int j)
+{
+  double all;
+  MPI_Allreduce(&force[i][j], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/* ----------------------------------------------------------------------
+   restart: count of reflections and where the walls are
+------------------------------------------------------------------------- */
+
+void FixFSIWallMirror::write_restart(FILE *fp)
+{
+  const double count = compute_scalar();
+  if (comm->me) return;
+  const int n = walls.size() + 1, size = n * sizeof(double);
+  std::vector<double> list = {count};
+  for (const auto &w : walls) list.push_back(w.position);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list.data(), sizeof(double), n, fp);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWallMirror::restart(char *buf)
+{
+  const auto *list = (double *) buf;
+  reflected = (comm->me == 0) ? static_cast<bigint>(list[0]) : 0;
+  for (size_t k = 0; k < walls.size(); k++) walls[k].position = list[k + 1];
+}

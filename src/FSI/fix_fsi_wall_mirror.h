@@ -1,0 +1,61 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(fsi/wall/mirror,FixFSIWallMirror);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_FSI_WALL_MIRROR_H
+#define LMP_FIX_FSI_WALL_MIRROR_H
+
+#include "fix.h"
+#include "fsi_walls.h"
+
+#include <array>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Planar walls and wall segments by image particles. The images act inside the pair loops (fsi_walls.h); this fix holds
+// the walls, moves them, sums the force on them, and turns back a fluid particle that gets too close.
+
+class FixFSIWallMirror : public Fix {
+ public:
+  FixFSIWallMirror(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void post_integrate() override;
+  void end_of_step() override;
+  double compute_scalar() override;
+  double compute_array(int, int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  std::vector<FSI::Wall> walls;
+  std::vector<std::array<double, 3>> force;    // on each wall, this rank's part
+  int first;                                   // index of walls[0] among all mirror walls; set by fix fsi
+  void clear_force();
+
+ private:
+  double guard;    // smallest distance to a wall, in spacings
+  bigint reflected;
+  class FixFSI *hub;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

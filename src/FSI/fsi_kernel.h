@@ -1,0 +1,152 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Smoothing kernels, the only place where they are written down.
+//
+// A kernel is W(r) = norm * w(q), q = r/h, zero from q = support on. Its gradient with respect to x_i is
+//   grad_i W_ij = norm/h^2 * dwq(q) * x_ij,   dwq(q) = (dw/dq)/q,  x_ij = x_i - x_j,
+// so that loops never divide by a distance that may vanish. All are finite at q = 0.
+// No LAMMPS types here: the header is also compiled alone by unittest/ and can be used on accelerators.
+
+#ifndef LMP_FSI_KERNEL_H
+#define LMP_FSI_KERNEL_H
+
+#include <cmath>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  enum KernelKind { CUBIC, QUINTIC, WENDLAND };
+  constexpr double PI = 3.14159265358979323846;
+
+  // base: normalisation and scaling shared by all shapes
+  template <int D, class Shape> struct Kernel : Shape {
+    static constexpr int DIM = D;
+    double h, hinv, cut, cutsq;
+    double norm;      // W(r) = norm w(q)            [1/length^D]
+    double gnorm;     // grad_i W = gnorm dwq(q) x_ij
+
+    explicit Kernel(double h_in) :
+        h(h_in), hinv(1.0 / h_in), cut(Shape::support * h_in), cutsq(cut * cut),
+        norm(Shape::sigma(D) / (D == 2 ? h_in * h_in : h_in * h_in * h_in)), gnorm(norm * hinv * hinv)
+    {
+    }
+    double W(double r) const { return norm * Shape::w(r * hinv); }
+    // factor g with grad_i W_ij = g x_ij
+    double gradient(double r) const { return gnorm * Shape::dwq(r * hinv); }
+  };
+
+  // paper, eq. 10: cubic spline with sigma = 15/(7 pi) in 2D, 3/(2 pi) in 3D
+  struct CubicShape {
+    static constexpr double support = 2.0;
+    static double sigma(int dim) { return dim == 2 ? 15.0 / (7.0 * PI) : 3.0 / (2.0 * PI); }
+    static double w(double q)
+    {
+      const double t = 2.0 - q;
+      if (q < 1.0) return 2.0 / 3.0 - q * q + 0.5 * q * q * q;
+      return q < 2.0 ? t * t * t * (1.0 / 6.0) : 0.0;
+    }
+    static double dwq(double q)
+    {
+      const double t = 2.0 - q;
+      if (q < 1.0) return -2.0 + 1.5 * q;
+      return q < 2.0 ? -0.5 * t * t / q : 0.0;
+    }
+  };
+
+  // paper, eq. 11: quintic spline with sigma = 7/(478 pi) in 2D, 1/(120 pi) in 3D
+  struct QuinticShape {
+    static constexpr double support = 3.0;
+    static double sigma(int dim) { return dim == 2 ? 7.0 / (478.0 * PI) : 1.0 / (120.0 * PI); }
+    static double pow5(double t)
+    {
+      const double t2 = t * t;
+      return t2 * t2 * t;
+    }
+    static double pow4(double t)
+    {
+      const double t2 = t * t;
+      return t2 * t2;
+    }
+    static double w(double q)
+    {
+      if (q >= 3.0) return 0.0;
+      double s = pow5(3.0 - q);
+      if (q < 2.0) s -= 6.0 * pow5(2.0 - q);
+      if (q < 1.0) s += 15.0 * pow5(1.0 - q);
+      return s;
+    }
+    static double dwq(double q)
+    {
+      if (q >= 3.0) return 0.0;
+      // the innermost piece in powers of q: the sum of the three has no 1/q left
+      if (q < 1.0) return -120.0 + q * q * (120.0 - 50.0 * q);
+      double s = pow4(3.0 - q);
+      if (q < 2.0) s -= 6.0 * pow4(2.0 - q);
+      return -5.0 * s / q;
+    }
+  };
+
+  // Wendland (1995) C2 with support 2h, sigma = 7/(4 pi) in 2D, 21/(16 pi) in 3D; does not pair under load
+  struct WendlandShape {
+    static constexpr double support = 2.0;
+    static double sigma(int dim) { return dim == 2 ? 7.0 / (4.0 * PI) : 21.0 / (16.0 * PI); }
+    static double w(double q)
+    {
+      if (q >= 2.0) return 0.0;
+      const double t = 1.0 - 0.5 * q, t2 = t * t;
+      return t2 * t2 * (2.0 * q + 1.0);
+    }
+    static double dwq(double q)
+    {
+      if (q >= 2.0) return 0.0;
+      const double t = 1.0 - 0.5 * q;
+      return -5.0 * t * t * t;
+    }
+  };
+
+  template <int D> using Cubic = Kernel<D, CubicShape>;
+  template <int D> using Quintic = Kernel<D, QuinticShape>;
+  template <int D> using Wendland = Kernel<D, WendlandShape>;
+
+  // Calls f with the kernel object that kind and dim name: the one run-time choice between kernels.
+  template <class F> void with_kernel(int kind, int dim, double h, F &&f)
+  {
+    if (dim == 2) {
+      if (kind == CUBIC) f(Cubic<2>(h));
+      else if (kind == QUINTIC) f(Quintic<2>(h));
+      else f(Wendland<2>(h));
+    } else {
+      if (kind == CUBIC) f(Cubic<3>(h));
+      else if (kind == QUINTIC) f(Quintic<3>(h));
+      else f(Wendland<3>(h));
+    }
+  }
+
+  inline double kernel_support(int kind) { return kind == QUINTIC ? QuinticShape::support : 2.0; }
+
+  // sum_j W_ij of a particle inside an infinite square (2D) or simple cubic (3D) lattice of spacing dx, self included
+  template <class K> double lattice_number_density(const K &kernel, double dx)
+  {
+    const int n = static_cast<int>(kernel.cut / dx) + 1;
+    double psi = 0.0;
+    for (int k = (K::DIM == 3 ? -n : 0); k <= (K::DIM == 3 ? n : 0); k++)
+      for (int j = -n; j <= n; j++)
+        for (int i = -n; i <= n; i++) psi += kernel.W(dx * std::sqrt(double(i * i + j * j + k * k)));
+    return psi;
+  }
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

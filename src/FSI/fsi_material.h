@@ -1,0 +1,76 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Materials: what a *.fsi file says about a fluid or a solid, and the equations of state.
+
+#ifndef LMP_FSI_MATERIAL_H
+#define LMP_FSI_MATERIAL_H
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class LAMMPS;
+
+namespace FSI {
+
+  enum Species { NONE, FLUID, SOLID };
+
+  // Trivially copyable: pair styles write it to restart files as it is.
+  struct Material {
+    char name[64];
+    int species;         // FLUID or SOLID
+    double rho0;         // reference density
+    double viscosity;    // fluid: dynamic viscosity
+    double young;        // solid: Young's modulus
+    double poisson;      // solid: Poisson's ratio
+
+    // solid, 3D and plane strain: shear and bulk modulus
+    double shear_modulus() const { return 0.5 * young / (1.0 + poisson); }
+    double bulk_modulus() const { return young / (3.0 * (1.0 - 2.0 * poisson)); }
+    // solid, plane stress: E/(2(1-nu)), the in-plane bulk modulus that goes with a trace over two axes
+    double plane_stress_modulus() const { return young / (2.0 * (1.0 - poisson)); }
+  };
+
+  // Equation of state of one atom type, and what loops need of its material.
+  // Linear, paper eq. 16: p = p0 + c^2 (rho - rho0). Tait: p = p0 + rho0 c^2/7 ((rho/rho0)^7 - 1), the same slope at rho0.
+  struct State {
+    int species = NONE;
+    int tait = 0;
+    double rho0 = 0.0, c = 0.0, csq = 0.0, p0 = 0.0;
+    double floor = -1.0e300;    // lowest pressure; 0 where the material carries no tension
+    double shear = 0.0;         // shear modulus G
+    double viscosity = 0.0;     // dynamic viscosity
+
+    double pressure(double rho) const
+    {
+      double p;
+      if (tait) {
+        const double s = rho / rho0, s2 = s * s;
+        p = p0 + rho0 * csq * (1.0 / 7.0) * (s2 * s2 * s2 * s - 1.0);
+      } else
+        p = p0 + csq * (rho - rho0);
+      return p > floor ? p : floor;
+    }
+    double density(double p) const;    // the inverse of pressure(), for initial states
+  };
+
+  // Reads the materials called names from a *.fsi file (LAMMPS potential file: header with DATE and UNITS, then one
+  // material per line: name, fluid or solid, keyword-value pairs). Every rank gets the result. "NULL" gives species NONE.
+  // Errors name the file, the material and the keyword.
+  std::vector<Material> read_materials(LAMMPS *lmp, const std::string &file, const std::vector<std::string> &names);
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

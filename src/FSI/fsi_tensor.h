@@ -1,0 +1,219 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Symmetric tensors and rotations in 2D and 3D, the only place where tensor algebra is written down.
+//
+// A symmetric tensor of dimension D keeps its in-plane part in Voigt order {xx, yy, xy} (2D) or
+// {xx, yy, zz, xy, xz, yz} (3D). A full D x D matrix is row-major. No LAMMPS types except MathEigen.
+
+#ifndef LMP_FSI_TENSOR_H
+#define LMP_FSI_TENSOR_H
+
+#include "math_eigen.h"
+
+#include <cmath>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  template <int D> struct Sym {
+    static constexpr int N = (D == 2) ? 3 : 6;
+    double c[N] = {};
+
+    // index of component (a,b) in c
+    static constexpr int id(int a, int b)
+    {
+      if (a == b) return a;
+      return (D == 2) ? 2 : a + b + 2;
+    }
+    double &operator()(int a, int b) { return c[id(a, b)]; }
+    double operator()(int a, int b) const { return c[id(a, b)]; }
+
+    static Sym identity(double s)
+    {
+      Sym t;
+      for (int a = 0; a < D; a++) t.c[a] = s;
+      return t;
+    }
+    static Sym load(const double *p)
+    {
+      Sym t;
+      for (int k = 0; k < N; k++) t.c[k] = p[k];
+      return t;
+    }
+    void store(double *p) const
+    {
+      for (int k = 0; k < N; k++) p[k] = c[k];
+    }
+    Sym &operator+=(const Sym &b)
+    {
+      for (int k = 0; k < N; k++) c[k] += b.c[k];
+      return *this;
+    }
+    Sym &operator*=(double s)
+    {
+      for (int k = 0; k < N; k++) c[k] *= s;
+      return *this;
+    }
+    double trace() const
+    {
+      double t = 0.0;
+      for (int a = 0; a < D; a++) t += c[a];
+      return t;
+    }
+    // in-plane double contraction c:c
+    double squared() const
+    {
+      double t = 0.0;
+      for (int a = 0; a < D; a++) t += c[a] * c[a];
+      for (int k = D; k < N; k++) t += 2.0 * c[k] * c[k];
+      return t;
+    }
+  };
+
+  // out = t . x
+  template <int D> inline void dot(const Sym<D> &t, const double *x, double *out)
+  {
+    if constexpr (D == 2) {
+      out[0] = t.c[0] * x[0] + t.c[2] * x[1];
+      out[1] = t.c[2] * x[0] + t.c[1] * x[1];
+    } else {
+      out[0] = t.c[0] * x[0] + t.c[3] * x[1] + t.c[4] * x[2];
+      out[1] = t.c[3] * x[0] + t.c[1] * x[1] + t.c[5] * x[2];
+      out[2] = t.c[4] * x[0] + t.c[5] * x[1] + t.c[2] * x[2];
+    }
+  }
+
+  // symmetric part of the matrix L
+  template <int D> inline Sym<D> symmetric(const double *L)
+  {
+    Sym<D> e;
+    for (int a = 0; a < D; a++)
+      for (int b = a; b < D; b++) e(a, b) = 0.5 * (L[a * D + b] + L[b * D + a]);
+    return e;
+  }
+
+  // Rotation Q = exp(dt w) for the spin w = antisym(L), L_ab = dv_a/dx_b (Rodrigues' formula; exact, so that a rigid
+  // spin keeps every invariant of a rotated tensor to round-off whatever the step).
+  template <int D> inline void rotation(const double *L, double dt, double *Q)
+  {
+    if constexpr (D == 2) {
+      const double angle = 0.5 * dt * (L[2] - L[1]);    // w_yx
+      const double c = std::cos(angle), s = std::sin(angle);
+      Q[0] = c;
+      Q[1] = -s;
+      Q[2] = s;
+      Q[3] = c;
+    } else {
+      const double wx = 0.5 * dt * (L[7] - L[5]), wy = 0.5 * dt * (L[2] - L[6]), wz = 0.5 * dt * (L[3] - L[1]);
+      const double t2 = wx * wx + wy * wy + wz * wz, t = std::sqrt(t2);
+      // sin(t)/t and (1-cos t)/t^2, with their limits
+      const double a = t > 1.0e-4 ? std::sin(t) / t : 1.0 - t2 / 6.0;
+      const double sh = t > 1.0e-4 ? std::sin(0.5 * t) / (0.5 * t) : 1.0 - t2 / 24.0;
+      const double b = 0.5 * sh * sh;
+      Q[0] = 1.0 - b * (wy * wy + wz * wz);
+      Q[1] = b * wx * wy - a * wz;
+      Q[2] = b * wx * wz + a * wy;
+      Q[3] = b * wx * wy + a * wz;
+      Q[4] = 1.0 - b * (wx * wx + wz * wz);
+      Q[5] = b * wy * wz - a * wx;
+      Q[6] = b * wx * wz - a * wy;
+      Q[7] = b * wy * wz + a * wx;
+      Q[8] = 1.0 - b * (wx * wx + wy * wy);
+    }
+  }
+
+  // Q t Q^T
+  template <int D> inline Sym<D> rotate(const Sym<D> &t, const double *Q)
+  {
+    double qt[D * D];
+    for (int a = 0; a < D; a++)
+      for (int b = 0; b < D; b++) {
+        double s = 0.0;
+        for (int k = 0; k < D; k++) s += Q[a * D + k] * t(k, b);
+        qt[a * D + b] = s;
+      }
+    Sym<D> r;
+    for (int a = 0; a < D; a++)
+      for (int b = a; b < D; b++) {
+        double s = 0.0;
+        for (int k = 0; k < D; k++) s += qt[a * D + k] * Q[b * D + k];
+        r(a, b) = s;
+      }
+    return r;
+  }
+
+  // A := A M^-1 for a full A and a symmetric M; false (and A as it was) if M is close to singular, i.e. its
+  // determinant is below tol times that of the isotropic tensor of equal trace.
+  template <int D> inline bool right_divide(double *A, const Sym<D> &M, double tol)
+  {
+    Sym<D> inv;
+    double det, mean = M.trace() / D;
+    if constexpr (D == 2) {
+      det = M.c[0] * M.c[1] - M.c[2] * M.c[2];
+      inv.c[0] = M.c[1];
+      inv.c[1] = M.c[0];
+      inv.c[2] = -M.c[2];
+      if (!(det > tol * mean * mean)) return false;
+    } else {
+      const double xx = M.c[0], yy = M.c[1], zz = M.c[2], xy = M.c[3], xz = M.c[4], yz = M.c[5];
+      inv.c[0] = yy * zz - yz * yz;
+      inv.c[1] = xx * zz - xz * xz;
+      inv.c[2] = xx * yy - xy * xy;
+      inv.c[3] = xz * yz - xy * zz;
+      inv.c[4] = xy * yz - xz * yy;
+      inv.c[5] = xy * xz - yz * xx;
+      det = xx * inv.c[0] + xy * inv.c[3] + xz * inv.c[4];
+      if (!(det > tol * std::fabs(mean * mean * mean))) return false;
+    }
+    inv *= 1.0 / det;
+    double row[D];
+    for (int a = 0; a < D; a++) {
+      dot<D>(inv, A + a * D, row);
+      for (int b = 0; b < D; b++) A[a * D + b] = row[b];
+    }
+    return true;
+  }
+
+  // sum over the principal values s_k > 0 of t of s_k n_k n_k^T (the tensile part of t)
+  template <int D> inline Sym<D> tensile_part(const Sym<D> &t)
+  {
+    Sym<D> r;
+    if constexpr (D == 2) {
+      const double mean = 0.5 * (t.c[0] + t.c[1]), half = 0.5 * (t.c[0] - t.c[1]);
+      const double radius = std::sqrt(half * half + t.c[2] * t.c[2]);
+      const double s1 = mean + radius, s2 = mean - radius;
+      if (s1 <= 0.0) return r;
+      if (s2 >= 0.0) return t;
+      // s1 n1 n1^T with n1 n1^T = (I + (t - mean I)/radius)/2
+      const double f = 0.5 * s1 / radius;
+      r.c[0] = f * (radius + half);
+      r.c[1] = f * (radius - half);
+      r.c[2] = f * t.c[2];
+    } else {
+      const double m[3][3] = {{t.c[0], t.c[3], t.c[4]}, {t.c[3], t.c[1], t.c[5]}, {t.c[4], t.c[5], t.c[2]}};
+      double s[3], n[3][3];    // columns of n are the principal directions
+      MathEigen::jacobi3(m, s, n);
+      for (int k = 0; k < 3; k++) {
+        if (s[k] <= 0.0) continue;
+        for (int a = 0; a < 3; a++)
+          for (int b = a; b < 3; b++) r(a, b) += s[k] * n[a][k] * n[b][k];
+      }
+    }
+    return r;
+  }
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,164 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Mirror walls: planar walls and wall segments that act through images of the particles near them.
+//
+// The images that matter to particle i are images of i itself and of its own neighbours, because an image is never
+// nearer to i than its original while both are on the wall's fluid side. So walls are treated inside the pair loops:
+// no ghost atoms, no communication. With a_i the distance of i to the plane, |x_i - M x_j|^2 = r_ij^2 + 4 a_i a_j.
+// Corners need the image of the image: every set of mutually perpendicular walls that both particles can see is a
+// reflection of its own. A wall segment reflects i onto j if the straight line from i to the image of j passes
+// through the segment; the rule is symmetric in i and j.
+
+#ifndef LMP_FSI_WALLS_H
+#define LMP_FSI_WALLS_H
+
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  struct Wall {
+    int axis;              // normal direction 0,1,2
+    double side;           // +1: fluid above the plane (xlo), -1: below (xhi)
+    double position;       // of the plane along axis
+    double velocity[3];    // of the wall; the component along axis moves the plane
+    bool noslip;           // image velocity for viscous forces
+    bool finite;           // has an extent
+    double lo[3], hi[3];   // extent along the other two axes
+
+    double distance(const double *x) const { return side * (x[axis] - position); }
+    // inside the extent, widened by margin
+    bool spans(const double *x, double margin) const
+    {
+      if (!finite) return true;
+      for (int b = 0; b < 3; b++)
+        if (b != axis && (x[b] < lo[b] - margin || x[b] > hi[b] + margin)) return false;
+      return true;
+    }
+  };
+
+  struct Walls {
+    static constexpr int MAXWALL = 31;
+    std::vector<Wall> wall;
+
+    struct Reflection {    // a set of up to three mutually perpendicular walls
+      int mask, n, w[3];
+    };
+    std::vector<Reflection> reflections;
+
+    bool any() const { return !wall.empty(); }
+
+    void find_reflections()
+    {
+      reflections.clear();
+      const int n = wall.size();
+      for (int a = 0; a < n; a++) {
+        reflections.push_back({1 << a, 1, {a, 0, 0}});
+        for (int b = a + 1; b < n; b++) {
+          if (wall[b].axis == wall[a].axis) continue;
+          reflections.push_back({1 << a | 1 << b, 2, {a, b, 0}});
+          for (int c = b + 1; c < n; c++)
+            if (wall[c].axis != wall[a].axis && wall[c].axis != wall[b].axis)
+              reflections.push_back({1 << a | 1 << b | 1 << c, 3, {a, b, c}});
+        }
+      }
+    }
+
+    // bits of the walls that x is near enough to have images in
+    int near(const double *x, double cut) const
+    {
+      int mask = 0;
+      const int n = wall.size();
+      for (int k = 0; k < n; k++) {
+        const double a = wall[k].distance(x);
+        if (a >= 0.0 && a < cut && wall[k].spans(x, cut)) mask |= 1 << k;
+      }
+      return mask;
+    }
+
+    // Calls f(reflection, rsq, dx) for every image M x_j of x_j that x_i sees within the cutoff: rsq = |x_i - M x_j|^2,
+    // dx[3] = x_i - M x_j. mask: walls near both; rsq0 = |x_i - x_j|^2 (0 and x_j = x_i for the images of i itself).
+    template <class F>
+    void images(int mask, double rsq0, const double *xi, const double *xj, double cutsq, F &&f) const
+    {
+      for (const auto &s : reflections) {
+        if ((s.mask & mask) != s.mask) continue;
+        double rsq = rsq0, dx[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+        double ai[3], aj[3];
+        for (int k = 0; k < s.n; k++) {
+          const Wall &w = wall[s.w[k]];
+          ai[k] = w.distance(xi);
+          aj[k] = w.distance(xj);
+          rsq += 4.0 * ai[k] * aj[k];
+          dx[w.axis] += 2.0 * w.side * aj[k];
+        }
+        if (rsq < cutsq && passes(s, xi, dx, ai, aj)) f(s, rsq, dx);
+      }
+    }
+
+    // velocity of the image of a particle with velocity v; no-slip walls turn it around (viscous forces only)
+    void reflect_velocity(const Reflection &s, const double *v, bool viscous, double *image) const
+    {
+      image[0] = v[0];
+      image[1] = v[1];
+      image[2] = v[2];
+      for (int k = 0; k < s.n; k++) {
+        const Wall &w = wall[s.w[k]];
+        if (viscous && w.noslip)
+          for (int b = 0; b < 3; b++) image[b] = 2.0 * w.velocity[b] - image[b];
+        else
+          image[w.axis] = 2.0 * w.velocity[w.axis] - image[w.axis];
+      }
+    }
+
+    // mirror a vector (a force, or a difference of velocities of non-moving walls)
+    void reflect_vector(const Reflection &s, double *f) const
+    {
+      for (int k = 0; k < s.n; k++) f[wall[s.w[k]].axis] = -f[wall[s.w[k]].axis];
+    }
+
+    // the same walls a time dt later
+    Walls moved(double dt) const
+    {
+      Walls m = *this;
+      for (auto &w : m.wall) w.position += dt * w.velocity[w.axis];
+      return m;
+    }
+
+   private:
+    // does the line from x_i to the image cross every wall of the set inside its extent?
+    bool passes(const Reflection &s, const double *xi, const double *dx, const double *ai, const double *aj) const
+    {
+      for (int k = 0; k < s.n; k++) {
+        const Wall &w = wall[s.w[k]];
+        if (!w.finite) continue;
+        const double sum = ai[k] + aj[k], t = sum > 0.0 ? ai[k] / sum : 0.5;
+        double cross[3] = {xi[0] - t * dx[0], xi[1] - t * dx[1], xi[2] - t * dx[2]};
+        // behind another wall of the set the crossing point is itself an image: fold it back
+        for (int m = 0; m < s.n; m++) {
+          const Wall &u = wall[s.w[m]];
+          if (m == k) continue;
+          const double a = u.distance(cross);
+          if (a < 0.0) cross[u.axis] -= 2.0 * u.side * a;
+        }
+        if (!w.spans(cross, 0.0)) return false;
+      }
+      return true;
+    }
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,170 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "pair_fsi.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "memory.h"
+#include "modify.h"
+#include "neighbor.h"
+
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+PairFSI::PairFSI(LAMMPS *lmp) : Pair(lmp), hub(nullptr)
+{
+  restartinfo = 1;
+  one_coeff = 1;
+  manybody_flag = 1;    // forces depend on the densities of both particles: no pairwise energy
+  single_enable = 0;
+  no_virial_fdotr_compute = 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+PairFSI::~PairFSI()
+{
+  if (allocated) {
+    memory->destroy(setflag);
+    memory->destroy(cutsq);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSI::allocate()
+{
+  allocated = 1;
+  const int n = atom->ntypes + 1;
+  memory->create(setflag, n, n, "pair:setflag");
+  memory->create(cutsq, n, n, "pair:cutsq");
+  material.assign(n, Material{});
+}
+
+/* ----------------------------------------------------------------------
+   pair_coeff * * file name_1 ... name_ntypes
+------------------------------------------------------------------------- */
+
+void PairFSI::coeff(int narg, char **arg)
+{
+  if (!allocated) allocate();
+  if (narg < 2 || strcmp(arg[0], "*") != 0 || strcmp(arg[1], "*") != 0)
+    error->all(FLERR, "Pair style fsi needs pair_coeff * * followed by a material file and one material per atom type");
+  if (narg != 3 + atom->ntypes)
+    error->all(FLERR, "Pair_coeff of pair style fsi has {} materials, expected one for each of {} atom types",
+               narg > 3 ? narg - 3 : 0, atom->ntypes);
+
+  const std::vector<std::string> names(arg + 3, arg + narg);
+  auto found = read_materials(lmp, arg[2], names);
+  for (int t = 1; t <= atom->ntypes; t++) material[t] = found[t - 1];
+  set_flags();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSI::set_flags()
+{
+  int count = 0;
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = 1; j <= atom->ntypes; j++) {
+      const int a = material[i].species, b = material[j].species;
+      setflag[i][j] = (a != NONE && b != NONE && handles(a, b)) ? 1 : 0;
+      count += setflag[i][j];
+    }
+  if (count == 0)
+    error->all(FLERR, "Pair_coeff gives pair style fsi no pair to act on: none of its materials is a {}",
+               handles(FLUID, FLUID) ? "fluid" : "solid");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSI::init_style()
+{
+  if (!atom->style_match("fsi")) error->all(FLERR, "Pair style fsi requires atom_style fsi");
+  auto fixes = modify->get_fix_by_style("^fsi$");
+  if (fixes.empty()) error->all(FLERR, "Pair style fsi requires fix fsi, which holds particle spacing and kernel");
+  hub = dynamic_cast<FixFSI *>(fixes[0]);
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (defines(material[t].species)) hub->enter_state(t, make_state(material[t]));
+  neighbor->add_request(this);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double PairFSI::init_one(int i, int j)
+{
+  if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set: types {} and {}", i, j);
+  return hub->cut;
+}
+
+/* ----------------------------------------------------------------------
+   the solid's speed of sound is that of its bulk modulus (paper eq. 21)
+------------------------------------------------------------------------- */
+
+State PairFSI::solid_state(const Material &m, bool plane_stress) const
+{
+  State s;
+  s.species = SOLID;
+  s.rho0 = m.rho0;
+  s.csq = (plane_stress ? m.plane_stress_modulus() : m.bulk_modulus()) / m.rho0;
+  s.c = std::sqrt(s.csq);
+  s.shear = m.shear_modulus();
+  return s;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSI::check_tally()
+{
+  if (vflag_atom || eflag_atom)
+    error->all(FLERR, "Pair style fsi has no per-atom virial or energy: use compute fsi/atom for stress and pressure");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSI::write_restart(FILE *fp)
+{
+  write_restart_settings(fp);
+  for (int t = 1; t <= atom->ntypes; t++) restart_value(fp, material[t], true);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSI::read_restart(FILE *fp)
+{
+  read_restart_settings(fp);
+  allocate();
+  for (int t = 1; t <= atom->ntypes; t++) restart_value(fp, material[t], false);
+  set_flags();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSI::restart_bytes(FILE *fp, void *value, size_t size, bool write)
+{
+  if (write) {
+    fwrite(value, size, 1, fp);
+    return;
+  }
+  if (comm->me == 0) utils::sfread(FLERR, value, size, 1, fp, nullptr, error);
+  MPI_Bcast(value, static_cast<int>(size), MPI_BYTE, 0, world);
+}

@@ -1,0 +1,63 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// What the pair styles fsi/fluid and fsi/solid share: materials per atom type, link to fix fsi, restart.
+
+#ifndef LMP_PAIR_FSI_H
+#define LMP_PAIR_FSI_H
+
+#include "fsi_material.h"
+#include "pair.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class PairFSI : public Pair {
+ public:
+  PairFSI(class LAMMPS *);
+  ~PairFSI() override;
+  void coeff(int, char **) override;
+  void init_style() override;
+  double init_one(int, int) override;
+  void write_restart(FILE *) override;
+  void read_restart(FILE *) override;
+
+ protected:
+  class FixFSI *hub;
+  std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
+
+  // does this style handle pairs of these species?
+  virtual bool handles(int, int) const = 0;
+  // equation of state and constants of a type
+  virtual FSI::State make_state(const FSI::Material &) const = 0;
+  // does this style tell fix fsi the state of a type of this species?
+  virtual bool defines(int) const = 0;
+
+  FSI::State solid_state(const FSI::Material &, bool plane_stress) const;
+  void set_flags();
+  void allocate();
+  void check_tally();
+
+  template <class T> void restart_value(FILE *fp, T &value, bool write)
+  {
+    restart_bytes(fp, &value, sizeof(T), write);
+  }
+
+ private:
+  void restart_bytes(FILE *, void *, size_t, bool);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,552 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "pair_fsi_fluid.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fix_fsi_stress.h"
+#include "force.h"
+#include "fsi_density_diffusion.h"
+#include "fsi_kernel.h"
+#include "fsi_tensor.h"
+#include "fsi_viscosity_artificial.h"
+#include "fsi_viscosity_laminar.h"
+#include "modify.h"
+#include "neigh_list.h"
+#include "update.h"
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
+    PairFSI(lmp), surface_ratio(0.0), surface_max(0), sound(0.0), background(0.0), alpha(0.0), beta(0.0), delta(0.0),
+    tait(0), laminar(0), couple(WALL), extrapolate(0), tension(0), force_loop(nullptr), rate_loop(nullptr)
+{
+}
+
+/* ----------------------------------------------------------------------
+   pair_style fsi/fluid keyword value ...
+------------------------------------------------------------------------- */
+
+void PairFSIFluid::settings(int narg, char **arg)
+{
+  auto need = [&](int iarg, int n) {
+    if (iarg + n >= narg) utils::missing_cmd_args(FLERR, fmt::format("pair_style fsi/fluid {}", arg[iarg]), error);
+  };
+  auto number = [&](int iarg, double low, const char *what) {
+    const double value = utils::numeric(FLERR, arg[iarg], false, lmp);
+    if (!(value >= low)) error->all(FLERR, "Pair style fsi/fluid {} {} must be >= {}", what, arg[iarg], low);
+    return value;
+  };
+
+  int iarg = 0;
+  while (iarg < narg) {
+    if (strcmp(arg[iarg], "sound") == 0) {
+      need(iarg, 1);
+      sound = number(iarg + 1, 0.0, "sound speed");
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "eos") == 0) {
+      need(iarg, 1);
+      if (strcmp(arg[iarg + 1], "linear") == 0) tait = 0;
+      else if (strcmp(arg[iarg + 1], "tait") == 0) tait = 1;
+      else error->all(FLERR, "Unknown pair_style fsi/fluid eos {}: expected linear or tait", arg[iarg + 1]);
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "background") == 0) {
+      need(iarg, 1);
+      background = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "tension") == 0) {
+      need(iarg, 1);
+      tension = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "artificial/visc") == 0) {
+      need(iarg, 2);
+      alpha = number(iarg + 1, 0.0, "artificial/visc alpha");
+      beta = number(iarg + 2, 0.0, "artificial/visc beta");
+      iarg += 3;
+    } else if (strcmp(arg[iarg], "laminar/visc") == 0) {
+      laminar = 1;
+      iarg += 1;
+    } else if (strcmp(arg[iarg], "density/diffusion") == 0) {
+      need(iarg, 1);
+      delta = number(iarg + 1, 0.0, "density/diffusion");
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "couple") == 0) {
+      need(iarg, 1);
+      if (strcmp(arg[iarg + 1], "wall") == 0) couple = WALL;
+      else if (strcmp(arg[iarg + 1], "pressure") == 0) couple = PRESSURE;
+      else if (strcmp(arg[iarg + 1], "full") == 0) couple = FULL;
+      else error->all(FLERR, "Unknown pair_style fsi/fluid couple {}: expected wall, pressure or full", arg[iarg + 1]);
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "extrapolate") == 0) {
+      need(iarg, 1);
+      extrapolate = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "surface") == 0) {
+      need(iarg, 2);
+      surface_ratio = number(iarg + 1, 0.0, "surface ratio");
+      if (surface_ratio >= 1.0)
+        error->all(FLERR, "Pair style fsi/fluid surface ratio {} must be below 1", arg[iarg + 1]);
+      if (strcmp(arg[iarg + 2], "bulk") == 0) surface_max = 0;
+      else if (strcmp(arg[iarg + 2], "max") == 0) surface_max = 1;
+      else error->all(FLERR, "Unknown pair_style fsi/fluid surface reference {}: expected bulk or max", arg[iarg + 2]);
+      iarg += 3;
+    } else
+      error->all(FLERR, "Unknown pair_style fsi/fluid keyword {}: expected sound, eos, background, tension, artificial/visc, "
+                        "laminar/visc, density/diffusion, couple, extrapolate or surface", arg[iarg]);
+  }
+  if (sound <= 0.0) error->all(FLERR, "Pair style fsi/fluid needs keyword sound with a speed of sound > 0");
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool PairFSIFluid::handles(int a, int b) const
+{
+  return a == FLUID || b == FLUID;
+}
+
+/* ---------------------------------------------------------------------- */
+
+State PairFSIFluid::make_state(const Material &m) const
+{
+  // a solid's state is that of pair_style fsi/solid, if there is one: it enters its own afterwards
+  if (m.species == SOLID) return solid_state(m, false);
+  State s;
+  s.species = FLUID;
+  s.tait = tait;
+  s.rho0 = m.rho0;
+  s.c = sound;
+  s.csq = sound * sound;
+  s.p0 = background;
+  if (!tension) s.floor = 0.0;
+  s.viscosity = m.viscosity;
+  return s;
+}
+
+/* ----------------------------------------------------------------------
+   choose the loops for kernel, dimension and the effects that the script names
+------------------------------------------------------------------------- */
+
+void PairFSIFluid::init_style()
+{
+  PairFSI::init_style();
+  if (delta > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
+    error->all(FLERR, "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
+  if (laminar) {
+    bool any = false;
+    for (const auto &m : material) any = any || m.viscosity > 0.0;
+    if (!any && comm->me == 0)
+      error->warning(FLERR, "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
+  }
+  with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &k) { select<std::decay_t<decltype(k)>>(); });
+}
+
+/* ---------------------------------------------------------------------- */
+
+template <class K> void PairFSIFluid::select()
+{
+  bool walls = !modify->get_fix_by_style("^fsi/wall/mirror$").empty(), solids = false, mixed = false;
+  int fluids = 0;
+  for (const auto &m : material) {
+    if (m.species == SOLID) solids = true;
+    if (m.species == FLUID) fluids++;
+  }
+  mixed = solids || fluids > 1;
+
+  const int flags = (alpha > 0.0 || beta > 0.0 ? ARTIFICIAL : 0) | (laminar ? LAMINAR : 0) | (walls ? MIRROR : 0) |
+      (solids ? SOLIDS : 0);
+  const int rflags = (delta > 0.0 ? DIFFUSION : 0) | (walls ? IMAGES : 0) | (mixed ? MIXED : 0);
+
+  pick_force<K>(flags, std::make_integer_sequence<int, NFORCE>());
+  pick_rate<K>(rflags, std::make_integer_sequence<int, NRATE>());
+}
+
+template <class K, int... F> void PairFSIFluid::pick_force(int flags, std::integer_sequence<int, F...>)
+{
+  using Loop = void (PairFSIFluid::*)();
+  static constexpr Loop table[] = {&PairFSIFluid::force_pairs<K, F>...};
+  force_loop = table[flags];
+}
+
+template <class K, int... F> void PairFSIFluid::pick_rate(int flags, std::integer_sequence<int, F...>)
+{
+  using Loop = void (PairFSIFluid::*)(double);
+  static constexpr Loop table[] = {&PairFSIFluid::rate_pairs<K, F>...};
+  rate_loop = table[flags];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::density_rate(double dt)
+{
+  (this->*rate_loop)(dt);
+}
+
+/* ----------------------------------------------------------------------
+   continuity: d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which makes the work of
+   the pair force -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures. Positions are those of time n, half a step
+   before atom->x, where the velocities belong: the density leapfrogs from n-1/2 to n+1/2, second order in time.
+------------------------------------------------------------------------- */
+
+template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
+{
+  constexpr int D = K::DIM;
+  const K kernel(hub->h);
+  const double dth = 0.5 * dt;
+  double **x = atom->x;
+  double **v = atom->v;
+  const double *const rho = atom->rho;
+  const double *const rmass = atom->rmass;
+  const int *const type = atom->type;
+  const int nlocal = atom->nlocal;
+  double *const rate = hub->rate;
+  const State *const state = hub->state.data();
+  const int *const wmask = hub->wmask;
+  const Walls walls = (FLAGS & IMAGES) ? hub->walls.moved(-dth) : Walls();
+  const DensityDiffusion diffusion(delta, hub->h, hub->gravity);
+
+  const auto pair = [&](int i, int j, const double *xij, const double *vij, double rsq, const double *real_xij) {
+    const double g = kernel.gradient(std::sqrt(rsq));
+    const double s = g * (vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0));
+    double ri = rmass[i] * s, rj = rmass[j] * s;
+    if ((FLAGS & DIFFUSION) && (!(FLAGS & MIXED) || (type[i] == type[j]))) {
+      const State &a = state[type[i]];
+      const double k = diffusion(rho[i], rho[j], real_xij, a.rho0, a.c, a.csq, g);
+      ri += k * rmass[j] / rho[j];
+      rj -= k * rmass[i] / rho[i];
+    }
+    rate[i] += ri;
+    return rj;
+  };
+
+  const int inum = list->inum;
+  for (int ii = 0; ii < inum; ii++) {
+    const int i = list->ilist[ii];
+    const int *const jlist = list->firstneigh[i];
+    const int jnum = list->numneigh[i];
+    const double xi[3] = {x[i][0] - dth * v[i][0], x[i][1] - dth * v[i][1], D == 3 ? x[i][2] - dth * v[i][2] : x[i][2]};
+    for (int jj = 0; jj < jnum; jj++) {
+      const int j = jlist[jj] & NEIGHMASK;
+      const double xj[3] = {x[j][0] - dth * v[j][0], x[j][1] - dth * v[j][1],
+                            D == 3 ? x[j][2] - dth * v[j][2] : x[j][2]};
+      const double xij[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+      const double rsq = xij[0] * xij[0] + xij[1] * xij[1] + (D == 3 ? xij[2] * xij[2] : 0.0);
+      if (rsq >= kernel.cutsq) continue;
+      const double vij[3] = {v[i][0] - v[j][0], v[i][1] - v[j][1], v[i][2] - v[j][2]};
+      rate[j] += pair(i, j, xij, vij, rsq, xij);
+      if ((FLAGS & IMAGES) && (wmask[i] & wmask[j]))
+        walls.images(wmask[i] & wmask[j], rsq, xi, xj, kernel.cutsq,
+                     [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
+                       double vi[3];
+                       walls.reflect_velocity(s, v[j], false, vi);
+                       for (int d = 0; d < 3; d++) vi[d] = v[i][d] - vi[d];
+                       rate[j] += pair(i, j, x_image, vi, rsq_image, xij);
+                     });
+    }
+  }
+
+  // own images
+  if (FLAGS & IMAGES)
+    for (int i = 0; i < nlocal; i++) {
+      if (!wmask[i] || state[type[i]].species != FLUID) continue;
+      const double xi[3] = {x[i][0] - dth * v[i][0], x[i][1] - dth * v[i][1],
+                            D == 3 ? x[i][2] - dth * v[i][2] : x[i][2]};
+      walls.images(wmask[i], 0.0, xi, xi, kernel.cutsq,
+                   [&](const Walls::Reflection &s, double rsq, const double *x_image) {
+                     double vi[3];
+                     walls.reflect_velocity(s, v[i], false, vi);
+                     double sum = 0.0;
+                     for (int d = 0; d < D; d++) sum += (v[i][d] - vi[d]) * x_image[d];
+                     rate[i] += rmass[i] * kernel.gradient(std::sqrt(rsq)) * sum;
+                   });
+    }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::number_density(double *psi, bool solids_too)
+{
+  double **x = atom->x;
+  const int *const type = atom->type;
+  const State *const state = hub->state.data();
+  const int *const wmask = hub->wmask;
+  const Walls &walls = hub->walls;
+  with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
+    for (int ii = 0; ii < list->inum; ii++) {
+      const int i = list->ilist[ii];
+      const bool add_i = solids_too || state[type[i]].species == FLUID;
+      for (int jj = 0; jj < list->numneigh[i]; jj++) {
+        const int j = list->firstneigh[i][jj] & NEIGHMASK;
+        double rsq = 0.0;
+        for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+        if (rsq >= kernel.cutsq) continue;
+        double w = kernel.W(std::sqrt(rsq));
+        if (wmask && (wmask[i] & wmask[j]))
+          walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
+                       [&](const Walls::Reflection &, double r2, const double *) { w += kernel.W(std::sqrt(r2)); });
+        if (add_i) psi[i] += w;
+        if (solids_too || state[type[j]].species == FLUID) psi[j] += w;
+      }
+    }
+    if (wmask)
+      for (int i = 0; i < atom->nlocal; i++)
+        if (wmask[i] && state[type[i]].species == FLUID)
+          walls.images(wmask[i], 0.0, x[i], x[i], kernel.cutsq,
+                       [&](const Walls::Reflection &, double r2, const double *) { psi[i] += kernel.W(std::sqrt(r2)); });
+  });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::position_divergence(double *div)
+{
+  double **x = atom->x;
+  const double *const rho = atom->rho;
+  const double *const rmass = atom->rmass;
+  const int *const type = atom->type;
+  const State *const state = hub->state.data();
+  const int *const wmask = hub->wmask;
+  const Walls &walls = hub->walls;
+  with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
+    const auto term = [&](double rsq) { return -rsq * kernel.gradient(std::sqrt(rsq)); };
+    for (int ii = 0; ii < list->inum; ii++) {
+      const int i = list->ilist[ii];
+      for (int jj = 0; jj < list->numneigh[i]; jj++) {
+        const int j = list->firstneigh[i][jj] & NEIGHMASK;
+        double rsq = 0.0;
+        for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+        if (rsq >= kernel.cutsq) continue;
+        double s = term(rsq);
+        if (wmask && (wmask[i] & wmask[j]))
+          walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
+                       [&](const Walls::Reflection &, double r2, const double *) { s += term(r2); });
+        div[i] += s * rmass[j] / rho[j];
+        div[j] += s * rmass[i] / rho[i];
+      }
+    }
+    if (wmask)
+      for (int i = 0; i < atom->nlocal; i++)
+        if (wmask[i] && state[type[i]].species == FLUID)
+          walls.images(wmask[i], 0.0, x[i], x[i], kernel.cutsq, [&](const Walls::Reflection &, double r2, const double *) {
+            div[i] += term(r2) * rmass[i] / rho[i];
+          });
+  });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::compute(int eflag, int vflag)
+{
+  ev_init(eflag, vflag);
+  check_tally();
+
+  const int nall = atom->nlocal + atom->nghost;
+  const double *const rho = atom->rho;
+  const double *const rmass = atom->rmass;
+  if ((int) aux.size() < nall) aux.resize(atom->nmax);
+  for (int i = 0; i < nall; i++) {
+    const double vol = rmass[i] / rho[i], p = hub->pressure(i);
+    aux[i] = {p * vol * vol, vol, rho[i], p};
+  }
+  (this->*force_loop)();
+
+  if (vflag_fdotr) virial_fdotr_compute();
+}
+
+/* ----------------------------------------------------------------------
+   F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14), antisymmetric
+   between fluid and solid:
+     couple wall      both pressures are the fluid's: the solid is a moving wall to the fluid and takes the reaction
+     couple pressure  pressures of both, no suction
+     couple full      the whole stress of the solid crosses, as in the paper
+------------------------------------------------------------------------- */
+
+template <class K, int FLAGS> void PairFSIFluid::force_pairs()
+{
+  constexpr int D = K::DIM;
+  const K kernel(hub->h);
+  double **x = atom->x;
+  double **v = atom->v;
+  double **f = atom->f;
+  const int *const type = atom->type;
+  const int nlocal = atom->nlocal;
+  const bool newton = force->newton_pair;
+  const State *const state = hub->state.data();
+  const int *const wmask = hub->wmask;
+  const Walls &walls = hub->walls;
+  const Aux *const a = aux.data();
+  const ArtificialViscosity artificial(alpha, beta, hub->h);
+  const LaminarViscosity viscous(hub->h);
+  const double *const gravity = hub->gravity;
+
+  // force of j on i without laminar viscosity; xij, vij may be those of an image of j
+  const auto force_on_i = [&](int i, int j, double g, double rsq, const double *xij, const double *vij, double *fij) {
+    const State &si = state[type[i]], &sj = state[type[j]];
+    double p = a[i].pv2 + a[j].pv2, c = 0.5 * (si.c + sj.c);
+    double shear[3] = {0.0, 0.0, 0.0};
+    if ((FLAGS & SOLIDS) && si.species != sj.species) {
+      const bool fluid_i = si.species == FLUID;
+      const int nf = fluid_i ? i : j, ns = fluid_i ? j : i;
+      c = si.c < sj.c ? si.c : sj.c;
+      if (couple == WALL) {
+        double pw = a[nf].p;
+        if (extrapolate) {
+          // hydrostatic difference from the fluid to the solid particle
+          const double dot = gravity[0] * xij[0] + gravity[1] * xij[1] + gravity[2] * xij[2];
+          pw += a[nf].rho * (fluid_i ? -dot : dot);
+          const double low = state[type[nf]].floor;
+          if (pw < low) pw = low;
+        }
+        p = a[nf].pv2 + pw * a[ns].vol * a[ns].vol;
+      } else if (couple == PRESSURE) {
+        if (p < 0.0) p = 0.0;
+      } else if (hub->fix_stress) {
+        const auto s = Sym<D>::load(hub->fix_stress->stress[ns]);
+        dot<D>(s, xij, shear);
+        for (int d = 0; d < D; d++) shear[d] *= a[ns].vol * a[ns].vol * g;
+      }
+    }
+    if (FLAGS & ARTIFICIAL) {
+      const double vdotx = vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0);
+      p += artificial(vdotx, rsq, 0.5 * (a[i].rho + a[j].rho), c, a[i].vol * a[j].vol);
+    }
+    for (int d = 0; d < D; d++) fij[d] = -p * g * xij[d] + ((FLAGS & SOLIDS) ? shear[d] : 0.0);
+  };
+
+  // force on i and on j by each other's image; also adds to the force on the walls of the reflection
+  const auto image_forces = [&](int i, int j, const Walls::Reflection &s, double rsq, const double *xij, double share,
+                                double *fi, double *fj) {
+    const double g = kernel.gradient(std::sqrt(rsq));
+    double vimage[3], vij[3];
+    walls.reflect_velocity(s, v[j], false, vimage);
+    for (int d = 0; d < 3; d++) vij[d] = v[i][d] - vimage[d];
+    double fij[3] = {0.0, 0.0, 0.0}, fji[3];
+    force_on_i(i, j, g, rsq, xij, vij, fij);
+    for (int d = 0; d < 3; d++) fji[d] = -fij[d];
+    walls.reflect_vector(s, fji);
+    if (FLAGS & LAMINAR) {
+      const double k =
+          viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol);
+      walls.reflect_velocity(s, v[j], true, vimage);
+      for (int d = 0; d < D; d++) fij[d] += k * (v[i][d] - vimage[d]);
+      walls.reflect_velocity(s, v[i], true, vimage);
+      for (int d = 0; d < D; d++) fji[d] += k * (v[j][d] - vimage[d]);
+    }
+    for (int d = 0; d < D; d++) {
+      fi[d] += fij[d];
+      if (fj) fj[d] += fji[d];
+      int w = s.w[0];
+      for (int k = 1; k < s.n; k++)
+        if (walls.wall[s.w[k]].axis == d) w = s.w[k];
+      hub->add_wall_force(w, d, share * (fij[d] + (fj ? fji[d] : 0.0)));
+    }
+  };
+
+  const int inum = list->inum;
+  for (int ii = 0; ii < inum; ii++) {
+    const int i = list->ilist[ii];
+    const int *const jlist = list->firstneigh[i];
+    const int jnum = list->numneigh[i];
+    double fi[3] = {0.0, 0.0, 0.0};
+    for (int jj = 0; jj < jnum; jj++) {
+      const int j = jlist[jj] & NEIGHMASK;
+      const double xij[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
+      const double rsq = xij[0] * xij[0] + xij[1] * xij[1] + (D == 3 ? xij[2] * xij[2] : 0.0);
+      if (rsq >= kernel.cutsq) continue;
+      const double g = kernel.gradient(std::sqrt(rsq));
+      const double vij[3] = {v[i][0] - v[j][0], v[i][1] - v[j][1], v[i][2] - v[j][2]};
+      double fij[3];
+      force_on_i(i, j, g, rsq, xij, vij, fij);
+      if (FLAGS & LAMINAR) {
+        const double k =
+            viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol);
+        for (int d = 0; d < D; d++) fij[d] += k * vij[d];
+      }
+      double fj[3] = {0.0, 0.0, 0.0};
+      for (int d = 0; d < D; d++) {
+        fi[d] += fij[d];
+        fj[d] -= fij[d];
+      }
+      if ((FLAGS & MIRROR) && (wmask[i] & wmask[j])) {
+        // without newton a pair across ranks is computed on both: each counts half of the force on the wall
+        const double share = (newton || j < nlocal) ? 1.0 : 0.5;
+        walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
+                     [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
+                       image_forces(i, j, s, rsq_image, x_image, share, fi, fj);
+                     });
+      }
+      if (newton || j < nlocal)
+        for (int d = 0; d < D; d++) f[j][d] += fj[d];
+    }
+    for (int d = 0; d < D; d++) f[i][d] += fi[d];
+  }
+
+  // own images
+  if (FLAGS & MIRROR)
+    for (int i = 0; i < nlocal; i++) {
+      if (!wmask[i] || state[type[i]].species != FLUID) continue;
+      walls.images(wmask[i], 0.0, x[i], x[i], kernel.cutsq,
+                   [&](const Walls::Reflection &s, double rsq, const double *x_image) {
+                     image_forces(i, i, s, rsq, x_image, 1.0, f[i], nullptr);
+                   });
+    }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::write_restart_settings(FILE *fp)
+{
+  double d[] = {sound, background, alpha, beta, delta, surface_ratio};
+  int n[] = {tait, laminar, couple, extrapolate, tension, surface_max};
+  restart_value(fp, d, true);
+  restart_value(fp, n, true);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::read_restart_settings(FILE *fp)
+{
+  double d[6];
+  int n[6];
+  restart_value(fp, d, false);
+  restart_value(fp, n, false);
+  sound = d[0];
+  background = d[1];
+  alpha = d[2];
+  beta = d[3];
+  delta = d[4];
+  surface_ratio = d[5];
+  tait = n[0];
+  laminar = n[1];
+  couple = n[2];
+  extrapolate = n[3];
+  tension = n[4];
+  surface_max = n[5];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double PairFSIFluid::memory_usage()
+{
+  return (double) aux.capacity() * sizeof(Aux);
+}

@@ -1,0 +1,85 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef PAIR_CLASS
+// clang-format off
+PairStyle(fsi/fluid,PairFSIFluid);
+// clang-format on
+#else
+
+#ifndef LMP_PAIR_FSI_FLUID_H
+#define LMP_PAIR_FSI_FLUID_H
+
+#include "pair_fsi.h"
+
+#include <utility>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Fluid-fluid and fluid-solid pairs: pressure, viscosity, density rate and diffusion, mirror images.
+
+class PairFSIFluid : public PairFSI {
+ public:
+  enum Couple { WALL, PRESSURE, FULL };
+
+  PairFSIFluid(class LAMMPS *);
+  void settings(int, char **) override;
+  void init_style() override;
+  void compute(int, int) override;
+  void write_restart_settings(FILE *) override;
+  void read_restart_settings(FILE *) override;
+  double memory_usage() override;
+
+  // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi
+  // of all fluid particles); 0 = off
+  double surface_ratio;
+  int surface_max;
+
+  // adds the density rate (continuity) of fluids to fix fsi's rate, at the positions dt/2 ago, to which the velocities belong
+  void density_rate(double dt);
+  // adds sum_j W_ij of fluid-fluid and fluid-solid pairs to psi; to that of the solid only if solids_too
+  void number_density(double *psi, bool solids_too);
+  // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
+  void position_divergence(double *div);
+
+ protected:
+  bool handles(int, int) const override;
+  bool defines(int species) const override { return species == FSI::FLUID || species == FSI::SOLID; }
+  FSI::State make_state(const FSI::Material &) const override;
+
+ private:
+  // settings
+  double sound, background, alpha, beta, delta;
+  int tait, laminar, couple, extrapolate, tension;
+
+  struct Aux {
+    double pv2, vol, rho, p;    // p V^2, V = m/rho, rho, p
+  };
+  std::vector<Aux> aux;         // local and ghost, filled at the start of compute()
+
+  enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, NFORCE = 16 };
+  enum { DIFFUSION = 1, IMAGES = 2, MIXED = 4, NRATE = 8 };
+  void (PairFSIFluid::*force_loop)();
+  void (PairFSIFluid::*rate_loop)(double);
+  template <class K, int FLAGS> void force_pairs();
+  template <class K, int FLAGS> void rate_pairs(double);
+  template <class K> void select();
+  template <class K, int... F> void pick_force(int, std::integer_sequence<int, F...>);
+  template <class K, int... F> void pick_rate(int, std::integer_sequence<int, F...>);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,81 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef PAIR_CLASS
+// clang-format off
+PairStyle(fsi/solid,PairFSISolid);
+// clang-format on
+#else
+
+#ifndef LMP_PAIR_FSI_SOLID_H
+#define LMP_PAIR_FSI_SOLID_H
+
+#include "fsi_tensor.h"
+#include "pair_fsi.h"
+
+#include <utility>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Solid-solid pairs, updated Lagrangian: full Cauchy stress, artificial viscosity, artificial stress; and the sums that
+// the velocity gradient is made of. Pairs of different bodies (molecule IDs) only push.
+
+class PairFSISolid : public PairFSI {
+ public:
+  PairFSISolid(class LAMMPS *);
+  void settings(int, char **) override;
+  void init_style() override;
+  void compute(int, int) override;
+  void write_restart_settings(FILE *) override;
+  void read_restart_settings(FILE *) override;
+  double memory_usage() override;
+
+  int corrected;    // velocity gradient exact for linear fields (Bonet and Lok 1999)
+
+  // adds to fix fsi's grad: sum_j V_j (v_j - v_i)(x)grad_i W_ij and sum_j V_j x_ji(x)grad_i W_ij over the own body, at the
+  // positions dt/2 ago, to which the velocities belong
+  void velocity_gradient(double dt);
+  // adds sum_j W_ij over the own body, or over all solids (density mode summation), to psi
+  void number_density(double *psi, bool all_bodies);
+
+ protected:
+  bool handles(int, int) const override;
+  bool defines(int species) const override { return species == FSI::SOLID; }
+  FSI::State make_state(const FSI::Material &) const override;
+
+ private:
+  double alpha, beta, epsilon;
+
+  // local and ghost, filled at the start of compute(): stress and artificial stress, both times V^2
+  template <int D> struct Aux {
+    FSI::Sym<D> stress, artificial;
+    double pv2, vol, rho;
+  };
+  std::vector<Aux<2>> aux2;
+  std::vector<Aux<3>> aux3;
+  template <int D> std::vector<Aux<D>> &get_aux();
+
+  enum { ARTIFICIAL_VISCOSITY = 1, ARTIFICIAL_STRESS = 2, BODIES = 4, NFORCE = 8 };
+  void (PairFSISolid::*force_loop)();
+  void (PairFSISolid::*gradient_loop)(double);
+  bool several_bodies() const;
+  template <class K, int FLAGS> void force_pairs();
+  template <class K, int FLAGS> void gradient_pairs(double);
+  template <class K, int... F> void pick_force(int, std::integer_sequence<int, F...>);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif
