@@ -40,7 +40,7 @@ using namespace FSI;
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
     grad(nullptr), wmask(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
-    comm_stage(RATES), ratio(nullptr), nmax(0), need_psi(false), need_grad(false), need_ratio(false)
+    summed(nullptr), ratio(nullptr), nmax(0), need_psi(false), need_grad(false), need_ratio(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
@@ -154,7 +154,7 @@ void FixFSI::init()
       (solid && density_solid != CONTINUITY);
   need_grad = solid != nullptr;
 
-  // pairs are not of unit time order with velocities that ghosts do not have
+  // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
   // atoms that were never given a mass or a density get those of the stress-free lattice
@@ -269,10 +269,6 @@ void FixFSI::final_integrate()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
-void FixFSI::reset_dt() {}
-
 /* ----------------------------------------------------------------------
    bring density and stress to the time of the positions, on local and ghost atoms
    advance = false in setup: a function of the state only, nothing evolves
@@ -301,7 +297,6 @@ void FixFSI::update_state(bool advance)
     if (grad && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
     if (rate) fluid->density_rate(update->dt);
     if (grad) solid->velocity_gradient(update->dt);
-    comm_stage = RATES;
     if (force->newton_pair) comm->reverse_comm(this);
     advance_density();
     if (grad) {
@@ -310,7 +305,14 @@ void FixFSI::update_state(bool advance)
     }
   }
   if (need_psi) {
-    number_density();
+    number_density(psi);
+    psi_reference = psi_bulk;
+    if (fluid && fluid->surface_max) {
+      double mine = 0.0;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (state[atom->type[i]].species == FLUID && psi[i] > mine) mine = psi[i];
+      MPI_Allreduce(&mine, &psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
+    }
     density_from_psi();
   }
   comm->forward_comm(this);
@@ -321,25 +323,28 @@ void FixFSI::update_state(bool advance)
    its own body, and over all neighbours in density mode summation, the paper's
 ------------------------------------------------------------------------- */
 
-void FixFSI::number_density()
+void FixFSI::number_density(double *n)
 {
-  const int nall = atom->nlocal + atom->nghost;
-  memset(psi, 0, nall * sizeof(double));
+  memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
   double w0 = 0.0;
   with_kernel(kernel, dim, h, [&](const auto &k) { w0 = k.W(0.0); });
-  for (int i = 0; i < atom->nlocal; i++) psi[i] = w0;
-  if (fluid) fluid->number_density(psi, density_solid == SUMMATION);
-  if (solid) solid->number_density(psi, density_solid == SUMMATION);
-  comm_stage = NUMBER_DENSITY;
+  for (int i = 0; i < atom->nlocal; i++) n[i] = w0;
+  if (fluid) fluid->number_density(n, density_solid == SUMMATION);
+  if (solid) solid->number_density(n, density_solid == SUMMATION);
+  summed = n;
   if (force->newton_pair) comm->reverse_comm(this);
+  summed = nullptr;
+}
 
-  psi_reference = psi_bulk;
-  if (fluid && fluid->surface_max) {
-    double mine = 0.0;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (state[atom->type[i]].species == FLUID && psi[i] > mine) mine = psi[i];
-    MPI_Allreduce(&mine, &psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
-  }
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::position_divergence(double *n)
+{
+  memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
+  fluid->position_divergence(n);
+  summed = n;
+  if (force->newton_pair) comm->reverse_comm(this);
+  summed = nullptr;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -455,7 +460,7 @@ int FixFSI::pack_reverse_comm(int n, int first, double *buf)
   const int ng = ngrad();
   int m = 0;
   for (int i = first; i < first + n; i++) {
-    if (comm_stage == NUMBER_DENSITY) buf[m++] = psi[i];
+    if (summed) buf[m++] = summed[i];
     else if (state[type[i]].species == SOLID) {
       if (grad)
         for (int k = 0; k < ng; k++) buf[m++] = grad[i][k];
@@ -474,7 +479,7 @@ void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
   int m = 0;
   for (int ii = 0; ii < n; ii++) {
     const int i = list[ii];
-    if (comm_stage == NUMBER_DENSITY) psi[i] += buf[m++];
+    if (summed) summed[i] += buf[m++];
     else if (state[type[i]].species == SOLID) {
       if (grad)
         for (int k = 0; k < ng; k++) grad[i][k] += buf[m++];

@@ -20,6 +20,7 @@ FixStyle(fsi,FixFSI);
 #ifndef LMP_FIX_FSI_H
 #define LMP_FIX_FSI_H
 
+#include "atom.h"
 #include "fix.h"
 #include "fsi_material.h"
 #include "fsi_walls.h"
@@ -43,7 +44,6 @@ class FixFSI : public Fix {
   void initial_integrate(int) override;
   void pre_force(int) override;
   void final_integrate() override;
-  void reset_dt() override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;
@@ -89,12 +89,19 @@ class FixFSI : public Fix {
   double pressure(int i) const;
   double psi_reference;    // of the free-surface rule
 
+  // does atom i have a deviatoric stress?
+  bool has_stress(int i) const { return solid && state[atom->type[i]].species == FSI::SOLID; }
+
   int ngrad() const { return dim * dim + (dim == 2 ? 3 : 6); }
   void find_gravity();
+  // number density of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
+  void number_density(double *n);
+  // sum of position_divergence() of pair_style fsi/fluid, likewise
+  void position_divergence(double *n);
   void add_wall_force(int wall, int axis, double f);    // f on the fluid; counted by the wall's fix
 
  private:
-  enum { RATES, NUMBER_DENSITY } comm_stage;
+  double *summed;    // per-atom scalar whose ghost parts a reverse communication adds up; null: rate and grad
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
   int nmax;
   bool need_psi, need_grad, need_ratio;
@@ -102,7 +109,6 @@ class FixFSI : public Fix {
   template <int D> void advance_solids();
   void advance_density();
   void density_from_psi();
-  void number_density();
   void update_state(bool);
   void gather_walls();
 };

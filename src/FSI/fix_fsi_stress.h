@@ -21,7 +21,7 @@ FixStyle(fsi/stress,FixFSIStress);
 #define LMP_FIX_FSI_STRESS_H
 
 #include "fix.h"
-#include "fsi_tensor.h"
+#include "fsi_jaumann.h"
 
 namespace LAMMPS_NS {
 
@@ -49,20 +49,11 @@ class FixFSIStress : public Fix {
   double **stress;
   bool plane_stress;
 
-  // S^{n-1/2} -> S^{n+1/2} with the velocity gradient L (row-major) at time n:
-  // dS/dt = 2G dev(e) + w S - S w, integrated as S' = Q S Q^T + Qh (2G dt dev(e)) Qh^T with Q = exp(dt w), Qh = exp(dt w/2):
-  // second order, and exact for rigid rotation
+  // half a step back to half a step ahead, with the velocity gradient L of the time between (fsi_jaumann.h)
   template <int D> void advance(int i, const double *L, double dt, double shear)
   {
-    double Q[D * D], Qh[D * D];
-    FSI::rotation<D>(L, dt, Q);
-    FSI::rotation<D>(L, 0.5 * dt, Qh);
-    FSI::Sym<D> de = FSI::symmetric<D>(L);
-    const double mean = de.trace() / (plane_stress ? 2.0 : 3.0);
-    for (int a = 0; a < D; a++) de.c[a] -= mean;
-    de *= 2.0 * shear * dt;
-    FSI::Sym<D> s = FSI::rotate<D>(FSI::Sym<D>::load(stress[i]), Q);
-    s += FSI::rotate<D>(de, Qh);
+    auto s = FSI::Sym<D>::load(stress[i]);
+    FSI::jaumann_update<D>(s, L, dt, shear, plane_stress);
     s.store(stress[i]);
   }
 

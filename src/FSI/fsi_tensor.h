@@ -153,7 +153,7 @@ namespace FSI {
     return r;
   }
 
-  // A := A M^-1 for a full A and a symmetric M; false (and A as it was) if M is close to singular, i.e. its
+  // A := A M^-1 for a full A and a symmetric, positive semidefinite M; false (and A as it was) if M is close to singular, i.e. its
   // determinant is below tol times that of the isotropic tensor of equal trace.
   template <int D> inline bool right_divide(double *A, const Sym<D> &M, double tol)
   {

@@ -108,6 +108,8 @@ namespace FSI {
     }
 
     // velocity of the image of a particle with velocity v; no-slip walls turn it around (viscous forces only)
+    // (where no-slip walls of different velocity meet, the image depends on the order of the walls: the corner's flow is
+    // singular there, and the walls are taken in the order of the script)
     void reflect_velocity(const Reflection &s, const double *v, bool viscous, double *image) const
     {
       image[0] = v[0];

@@ -1,0 +1,52 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef COMPUTE_CLASS
+// clang-format off
+ComputeStyle(fsi/atom,ComputeFSIAtom);
+// clang-format on
+#else
+
+#ifndef LMP_COMPUTE_FSI_ATOM_H
+#define LMP_COMPUTE_FSI_ATOM_H
+
+#include "compute.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Per-particle quantities of fluids and solids: pressure, density, number density, stress.
+
+class ComputeFSIAtom : public Compute {
+ public:
+  ComputeFSIAtom(class LAMMPS *, int, char **);
+  ~ComputeFSIAtom() override;
+  void init() override;
+  void compute_peratom() override;
+  double memory_usage() override;
+
+ private:
+  enum Quantity { PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ };
+  std::vector<int> quantity;
+  std::vector<double> psi;
+  int nmax;
+  class FixFSI *hub;
+
+  double cauchy(int i, int component) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

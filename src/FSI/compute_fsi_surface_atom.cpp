@@ -1,0 +1,102 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "compute_fsi_surface_atom.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "memory.h"
+#include "modify.h"
+#include "pair_fsi_fluid.h"
+#include "update.h"
+
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+ComputeFSISurfaceAtom::ComputeFSISurfaceAtom(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg), rule(DIVERGENCE), threshold(0.75), nmax(0), hub(nullptr)
+{
+  int iarg = 3;
+  while (iarg < narg) {
+    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("compute fsi/surface/atom {}", arg[iarg]), error);
+    if (strcmp(arg[iarg], "number/density") == 0) rule = NUMBER_DENSITY;
+    else if (strcmp(arg[iarg], "divergence") == 0) rule = DIVERGENCE;
+    else
+      error->all(FLERR, "Unknown compute fsi/surface/atom rule {}: expected number/density or divergence", arg[iarg]);
+    threshold = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+    if (threshold <= 0.0 || threshold >= 1.0)
+      error->all(FLERR, "Compute fsi/surface/atom threshold {} must be between 0 and 1", arg[iarg + 1]);
+    iarg += 2;
+  }
+  peratom_flag = 1;
+  size_peratom_cols = 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+ComputeFSISurfaceAtom::~ComputeFSISurfaceAtom()
+{
+  memory->destroy(vector_atom);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeFSISurfaceAtom::init()
+{
+  auto fixes = modify->get_fix_by_style("^fsi$");
+  if (fixes.empty()) error->all(FLERR, "Compute fsi/surface/atom requires fix fsi");
+  hub = dynamic_cast<FixFSI *>(fixes[0]);
+  if (!hub->fluid) error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
+}
+
+/* ----------------------------------------------------------------------
+   number/density: psi_i <= threshold * psi of the bulk lattice (the paper's rule)
+   divergence: sum_j V_j x_ji.grad_i W_ij <= threshold * dim (Lee et al. 2008, J. Comput. Phys. 227, 8417); it does not
+     depend on how dense the fluid is packed
+------------------------------------------------------------------------- */
+
+void ComputeFSISurfaceAtom::compute_peratom()
+{
+  invoked_peratom = update->ntimestep;
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    memory->destroy(vector_atom);
+    memory->create(vector_atom, nmax, "fsi/surface/atom:vector_atom");
+    sum.resize(nmax);
+  }
+  comm->forward_comm();    // ghosts still stand where they were in the middle of the step
+  double limit;
+  if (rule == NUMBER_DENSITY) {
+    hub->number_density(sum.data());
+    limit = threshold * hub->psi_bulk;
+  } else {
+    hub->position_divergence(sum.data());
+    limit = threshold * hub->dim;
+  }
+  const int *const mask = atom->mask, *const type = atom->type;
+  for (int i = 0; i < atom->nlocal; i++)
+    vector_atom[i] = (mask[i] & groupbit) && hub->state[type[i]].species == FLUID && sum[i] <= limit ? 1.0 : 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double ComputeFSISurfaceAtom::memory_usage()
+{
+  return (double) nmax * sizeof(double) + (double) sum.capacity() * sizeof(double);
+}

@@ -1,0 +1,50 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef COMPUTE_CLASS
+// clang-format off
+ComputeStyle(fsi/surface/atom,ComputeFSISurfaceAtom);
+// clang-format on
+#else
+
+#ifndef LMP_COMPUTE_FSI_SURFACE_ATOM_H
+#define LMP_COMPUTE_FSI_SURFACE_ATOM_H
+
+#include "compute.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// 1 for fluid particles at a free surface, else 0. A solid or a wall next to the fluid is not a free surface.
+
+class ComputeFSISurfaceAtom : public Compute {
+ public:
+  ComputeFSISurfaceAtom(class LAMMPS *, int, char **);
+  ~ComputeFSISurfaceAtom() override;
+  void init() override;
+  void compute_peratom() override;
+  double memory_usage() override;
+
+ private:
+  enum Rule { NUMBER_DENSITY, DIVERGENCE } rule;
+  double threshold;
+  int nmax;
+  std::vector<double> sum;
+  class FixFSI *hub;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,203 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   This software is distributed under the GNU General Public License.
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Viscosities, density diffusion, artificial stress: values by hand, signs, and, where the continuum operator is known,
+// the lattice sum against it.
+
+#include "fsi_density_diffusion.h"
+#include "fsi_kernel.h"
+#include "fsi_stress_artificial.h"
+#include "fsi_viscosity_artificial.h"
+#include "fsi_viscosity_laminar.h"
+#include "reference.h"
+
+using namespace LAMMPS_NS::FSI;
+
+namespace {
+
+// Sums f(x_ij, rsq, gradient factor) over the neighbours of the origin of a fine lattice (h = 3 dx: the sum is then
+// within 1e-3 of the integral), times V = dx^d.
+constexpr double SPACING = 0.01, H = 3 * SPACING;
+
+template <int D, class F> double lattice_sum(F &&f)
+{
+  const Quintic<D> kernel(H);
+  const int n = 9, nz = D == 3 ? n : 0;
+  double sum = 0.0;
+  for (int i = -n; i <= n; i++)
+    for (int j = -n; j <= n; j++)
+      for (int k = -nz; k <= nz; k++) {
+        const double x[3] = {-i * SPACING, -j * SPACING, -k * SPACING}, rsq = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+        if (rsq > 0.0 && rsq < kernel.cutsq) sum += f(x, rsq, kernel.gradient(std::sqrt(rsq)));
+      }
+  return sum * std::pow(SPACING, D);
+}
+
+}    // namespace
+
+template <class T> class Continuum : public ::testing::Test {};
+TYPED_TEST_SUITE(Continuum, Dimensions, DimensionName);
+
+/* ---------------------------------------------------------------------- */
+
+// paper eq. 14 and Monaghan (1992) by hand: h = 0.1, x = 0.08, v.x = -0.004 gives mu = -4e-4/(0.0064 + 0.0001)
+TEST(ArtificialViscosity, Value)
+{
+  const double mu = -4e-4 / 0.0065, rho = 1000, c = 20, vv = 1e-4 * 1.2e-4;
+  const ArtificialViscosity q(0.3, 0.7, 0.1);
+  EXPECT_DOUBLE_EQ(q(-0.004, 0.0064, rho, c, vv), rho * vv * (-0.3 * c * mu + 0.7 * mu * mu));
+  // each coefficient by itself
+  EXPECT_DOUBLE_EQ(ArtificialViscosity(0.3, 0.0, 0.1)(-0.004, 0.0064, rho, c, vv), -rho * vv * 0.3 * c * mu);
+  EXPECT_DOUBLE_EQ(ArtificialViscosity(0.0, 0.7, 0.1)(-0.004, 0.0064, rho, c, vv), rho * vv * 0.7 * mu * mu);
+}
+
+TEST(ArtificialViscosity, OnApproachOnly)
+{
+  const ArtificialViscosity q(0.3, 0.7, 0.1);
+  for (double vdotx : {0.0, 1e-300, 0.004, 1e3}) EXPECT_EQ(q(vdotx, 0.0064, 1000, 20, 1e-8), 0.0);
+  // repels on approach: with the kernel's negative gradient factor, F.v = -Q g x.v < 0
+  for (double vdotx : {-1e-300, -0.004, -1e3}) EXPECT_GT(q(vdotx, 0.0064, 1000, 20, 1e-8), 0.0);
+  EXPECT_TRUE(std::isfinite(q(-1e-12, 0.0, 1000, 20, 1e-8)));    // particles in one place
+}
+
+// Shear flow v_x = y^2/2, alpha only: all pairs would give the kinematic viscosity alpha c h/8 in 2D, alpha c h/10
+// in 3D (Monaghan 2005, without eta), approaching pairs alone give half of it by symmetry.
+TYPED_TEST(Continuum, ArtificialViscosityInShear)
+{
+  constexpr int D = TypeParam::value;
+  const double alpha = 0.2, c = 15, rho = 900;
+  const ArtificialViscosity q(alpha, 0.0, H);
+  const double force = lattice_sum<D>([&](const double *x, double rsq, double g) {
+    const double v = -0.5 * x[1] * x[1];    // v_i - v_j, along x
+    return -q(v * x[0], rsq, rho, c, 1.0) * g * x[0];
+  });
+  const double nu = 0.5 * alpha * c * H / (D == 2 ? 8 : 10);
+  // eta = 0.01 h^2 takes 1 % (mean r^2 is h^2), the lattice 0.1 %
+  EXPECT_NEAR(force / (rho * nu), 1.0, 0.02);
+}
+
+/* ---------------------------------------------------------------------- */
+
+// Morris et al. (1997), eq. 22: (mu_i + mu_j) x.gradW/(r^2 + 0.01 h^2) v_ij, times V_i V_j
+TEST(LaminarViscosity, Value)
+{
+  const LaminarViscosity visc(0.1);
+  const double x[2] = {0.06, -0.04}, g = -25.0, vv = 2e-8, mu = 1.5e-3 + 0.5e-3;
+  const double rsq = x[0] * x[0] + x[1] * x[1], xgrad = x[0] * (g * x[0]) + x[1] * (g * x[1]);
+  const double k = vv * mu * xgrad / (rsq + 0.01 * 0.1 * 0.1);
+  EXPECT_NEAR(visc(g, rsq, mu, vv), k, 1e-15 * std::fabs(k));
+  EXPECT_LT(visc(g, rsq, mu, vv), 0.0);    // opposes v_ij
+  EXPECT_EQ(visc(g, 0.0, mu, vv), 0.0);
+}
+
+// force per volume = mu laplacian(v), here of v_x = y^2/2
+TYPED_TEST(Continuum, LaminarViscosityInShear)
+{
+  const double mu = 0.7;
+  const LaminarViscosity visc(H);
+  const double force = lattice_sum<TypeParam::value>(
+      [&](const double *x, double rsq, double g) { return visc(g, rsq, 2 * mu, 1.0) * (-0.5 * x[1] * x[1]); });
+  EXPECT_NEAR(force / mu, 1.0, 0.02);    // eta 1 %, lattice 0.1 %, as above
+}
+
+/* ---------------------------------------------------------------------- */
+
+TEST(DensityDiffusion, ExchangesMass)
+{
+  Random random(5);
+  for (int trial = 0; trial < 100; trial++) {
+    double g[3], x[3], back[3];
+    for (int d = 0; d < 3; d++) {
+      g[d] = random(-10, 10);
+      back[d] = -(x[d] = random(-0.01, 0.01));
+    }
+    const DensityDiffusion flux(0.1, 0.01, g);
+    const double ri = random(990, 1010), rj = random(990, 1010), w = -random(1e6, 1e7);
+    const double ij = flux(ri, rj, x, 1000, 20, 400, w), ji = flux(rj, ri, back, 1000, 20, 400, w);
+    EXPECT_NE(ij, 0.0);
+    EXPECT_DOUBLE_EQ(ij, -ji);    // the same sums with opposite signs, perhaps in another order
+  }
+}
+
+// rho = rho0 (1 + b.x/c^2) with p = c^2 (rho - rho0) is at rest under the body force b
+TEST(DensityDiffusion, NoneInHydrostaticEquilibrium)
+{
+  Random random(6);
+  const double b[3] = {1.5, -9.81, 0.7}, zero[3] = {0, 0, 0}, rho0 = 1000, c = 20;
+  const DensityDiffusion flux(0.1, 0.01, b), without(0.1, 0.01, zero);
+  for (int trial = 0; trial < 100; trial++) {
+    double xi[3], xj[3], x[3], ri = rho0, rj = rho0;
+    for (int d = 0; d < 3; d++) {
+      xi[d] = random(0, 1);
+      xj[d] = random(0, 1);
+      x[d] = xi[d] - xj[d];
+      ri += rho0 * b[d] * xi[d] / (c * c);
+      rj += rho0 * b[d] * xj[d] / (c * c);
+    }
+    const double scale = 2 * 0.1 * 0.01 * c * 1e6;
+    // round-off of densities of 1000
+    EXPECT_NEAR(flux(ri, rj, x, rho0, c, c * c, -1e6) / scale, 0.0, 1e-12);
+    EXPECT_NEAR(without(ri, rj, x, rho0, c, c * c, -1e6) / scale, rj - ri, 1e-11);
+  }
+}
+
+// d rho/dt = delta h c laplacian(rho), here of rho = rho0 + x^2 + 2 y^2 (laplacian 6): spreads, does not steepen
+TYPED_TEST(Continuum, DensityDiffusionOfParabola)
+{
+  const double b[3] = {0, -9.81, 0}, delta = 0.1, c = 20, rho0 = 1000;
+  const DensityDiffusion flux(delta, H, b);
+  const double rate = lattice_sum<TypeParam::value>([&](const double *x, double, double g) {
+    return flux(rho0, rho0 + x[0] * x[0] + 2 * x[1] * x[1], x, rho0, c, c * c, g);
+  });
+  EXPECT_NEAR(rate / (delta * H * c * 6), 1.0, 0.002);    // no eta here: the lattice only
+}
+
+/* ---------------------------------------------------------------------- */
+
+template <class T> class Artificial : public ::testing::Test {};
+TYPED_TEST_SUITE(Artificial, Dimensions, DimensionName);
+
+TYPED_TEST(Artificial, StressFollowsPrincipalDirections)
+{
+  constexpr int D = TypeParam::value;
+  Random random(9);
+  const ArtificialStress artificial(0.3, 1.0);
+  const double s[3] = {2.0, -1.0, -0.5}, expected[3] = {-0.3 * 2.0, 0.0, 0.0};
+  for (int trial = 0; trial < 50; trial++) {
+    const auto R = random_rotation<D>(random);
+    const auto r = artificial(voigt<D>(R * diagonal<D>(s) * R.transposed()));
+    EXPECT_LT(difference(full<D>(r), R * diagonal<D>(expected) * R.transposed()), 1e-14);    // eps |s| of Jacobi
+  }
+}
+
+TYPED_TEST(Artificial, StressNoneInCompression)
+{
+  constexpr int D = TypeParam::value;
+  Random random(10);
+  const ArtificialStress artificial(0.3, 1.0);
+  for (int trial = 0; trial < 50; trial++) {
+    const double s[3] = {-random(0.1, 2), -random(0.1, 2), -random(0.1, 2)};
+    const auto R = random_rotation<D>(random);
+    const auto r = artificial(voigt<D>(R * diagonal<D>(s) * R.transposed()));
+    EXPECT_EQ(difference(full<D>(r), Matrix<D>()), 0.0);
+  }
+}
+
+// (W/W(dx))^4: 1 one spacing away, decays beyond it, large for a pair that clumps
+TYPED_TEST(Artificial, StressWeight)
+{
+  const Cubic<TypeParam::value> kernel(1.3 * SPACING);
+  const ArtificialStress artificial(0.3, kernel.W(SPACING));
+  EXPECT_DOUBLE_EQ(artificial.weight(kernel.W(SPACING)), 1.0);
+  for (double r : {0.0, 0.5, 0.9, 1.5, 2.0, 2.59, 2.7})
+    EXPECT_NEAR(artificial.weight(kernel.W(r * SPACING)), std::pow(kernel.W(r * SPACING) / kernel.W(SPACING), 4),
+                1e-14 * artificial.weight(kernel.W(r * SPACING)));    // a few multiplications
+  EXPECT_GT(artificial.weight(kernel.W(0.5 * SPACING)), 1.0);
+  EXPECT_EQ(artificial.weight(kernel.W(2.7 * SPACING)), 0.0);
+}
