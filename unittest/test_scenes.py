@@ -10,7 +10,8 @@ from fsi import scene, series
 
 def run(tmp_path, name, **variables):
     """Runs a scene as tools/run does (without building) and returns {figure name: value} and the folder."""
-    scene.run(name, tmp_path, variables.pop("ranks", 1), {k: str(v) for k, v in variables.items()})
+    status = scene.run(name, tmp_path, variables.pop("ranks", 1), {k: str(v) for k, v in variables.items()})
+    assert status == 0
     figures = json.loads((tmp_path / "summary.json").read_text())["figures"]
     return {f["name"]: f["value"] for f in figures}, tmp_path
 

@@ -14,6 +14,7 @@
 #include "fix_fsi.h"
 
 #include "atom.h"
+#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -24,10 +25,13 @@
 #include "fsi_tensor.h"
 #include "memory.h"
 #include "modify.h"
+#include "neighbor.h"
+#include "output.h"
 #include "pair_fsi_fluid.h"
 #include "pair_fsi_solid.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -83,6 +87,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   state.resize(atom->ntypes + 1);
 
   time_integrate = 1;
+  force_reneighbor = 1;
   need_ratio = density_fluid == RATIO || density_solid == RATIO;
   if (need_ratio) {
     restart_peratom = 1;
@@ -115,7 +120,7 @@ FixFSI::~FixFSI()
 
 int FixFSI::setmask()
 {
-  return INITIAL_INTEGRATE | PRE_FORCE | FINAL_INTEGRATE;
+  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -226,11 +231,67 @@ void FixFSI::setup_pre_force(int)
 }
 
 /* ----------------------------------------------------------------------
+   A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must keep their order, which is
+   that of atoms and neighbour lists. So the first step of a run, and the one after a restart was written, do the same: wrap
+   positions, rebuild, and put the atoms of each rank in the order of their IDs.
+------------------------------------------------------------------------- */
+
+bool FixFSI::fresh_start() const
+{
+  const bigint before = update->ntimestep - 1;
+  return before == update->firststep || (output->restart_flag && before == output->last_restart);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::pre_exchange()
+{
+  if (!fresh_start()) return;
+  domain->pbc();
+  if (domain->box_change) {
+    domain->reset_box();
+    comm->setup();
+    if (neighbor->style) neighbor->setup_bins();
+  }
+  comm->exchange();
+  sort_by_tag();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::sort_by_tag()
+{
+  const int n = atom->nlocal;
+  if (n == atom->nmax) atom->avec->grow(0);    // room for the atom in hand
+  const tagint *const tag = atom->tag;
+  std::vector<int> order(n);    // new place i gets the atom that is now at order[i]
+  for (int i = 0; i < n; i++) order[i] = i;
+  std::sort(order.begin(), order.end(), [tag](int i, int j) { return tag[i] < tag[j]; });
+  for (int start = 0; start < n; start++) {
+    if (order[start] == start) continue;
+    atom->avec->copy(start, n, 0);
+    int i = start;
+    while (order[i] != start) {
+      atom->avec->copy(order[i], i, 0);
+      const int next = order[i];
+      order[i] = i;
+      i = next;
+    }
+    atom->avec->copy(n, i, 0);
+    order[i] = i;
+  }
+}
+
+/* ----------------------------------------------------------------------
    paper eq. 15: drift to the middle of the step
 ------------------------------------------------------------------------- */
 
 void FixFSI::initial_integrate(int)
 {
+  if (fresh_start()) {
+    next_reneighbor = update->ntimestep;
+    domain->pbc();
+  }
   double **x = atom->x;
   double **v = atom->v;
   const int *const mask = atom->mask;

@@ -42,6 +42,7 @@ class FixFSI : public Fix {
   void init() override;
   void setup_pre_force(int) override;
   void initial_integrate(int) override;
+  void pre_exchange() override;
   void pre_force(int) override;
   void final_integrate() override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
@@ -111,6 +112,8 @@ class FixFSI : public Fix {
   void density_from_psi();
   void update_state(bool);
   void gather_walls();
+  bool fresh_start() const;
+  void sort_by_tag();
 };
 
 }    // namespace LAMMPS_NS
