@@ -135,7 +135,7 @@ def _lattice(*counts):
     return points
 
 
-def _scene(dim, water, plate, box, walls, seed=7, **options):
+def _scene(dim, water, plate, walls, seed=7, **options):
     """Perturbs positions (a tenth of the spacing), velocities (0.1 m/s) and densities (0.5 %): every term is active."""
     random = np.random.default_rng(seed)
     x = np.concatenate([water, plate]) if len(plate) else water
@@ -144,18 +144,20 @@ def _scene(dim, water, plate, box, walls, seed=7, **options):
     if dim == 2:
         shift[:, 2] = v[:, 2] = 0.0
     rho = 1000.0 * (1.0 + random.uniform(-0.005, 0.005, len(x)))
-    return Scene(dim, x + shift, v, kind, rho, np.array(box), walls, **options)
+    # tight: any grid of processors cuts through the particles
+    box = np.stack([x.min(axis=0) - 2.5 * DX, x.max(axis=0) + 2.5 * DX], axis=1)
+    if dim == 2:
+        box[2] = -0.5 * DX, 0.5 * DX
+    return Scene(dim, x + shift, v, kind, rho, box, walls, **options)
 
 
 def fluid_box(dim, **options):
     """Water on a no-slip floor between mirror walls, one of them moving; free surface on top."""
     n = (20, 14) if dim == 2 else (8, 8, 7)
-    flat = [-0.5 * DX, 0.5 * DX]
-    box = [[-0.05, 0.4], [-0.05, 0.4], flat if dim == 2 else [-0.05, 0.15]]
     walls = [(0, 1, 0.0, "velocity 0.1 0 0"), (0, -1, n[0] * DX, ""), (1, 1, 0.0, "slip no")]
     if dim == 3:
         walls += [(2, 1, 0.0, ""), (2, -1, n[2] * DX, "slip no")]
-    return _scene(dim, _lattice(*n), [], box, walls, **options)
+    return _scene(dim, _lattice(*n), [], walls, **options)
 
 
 def dam_gate(dim, **options):
@@ -163,31 +165,39 @@ def dam_gate(dim, **options):
     n, across = ((14, 14), 5) if dim == 2 else ((7, 7, 7), 3)
     plate = _lattice(across, *n[1:])
     plate[:, 0] += n[0] * DX
-    flat = [-0.5 * DX, 0.5 * DX]
-    box = [[-0.05, 0.4], [-0.05, 0.4], flat if dim == 2 else [-0.05, 0.15]]
     walls = [(0, 1, 0.0, "velocity 0.1 0 0"), (1, 1, 0.0, f"slip no range x INF {(n[0] + across) * DX!r}"),
              (0, -1, n[0] * DX, f"range y {n[1] * DX!r} INF")]
     if dim == 3:
         walls += [(2, 1, 0.0, ""), (2, -1, n[2] * DX, "")]
-    return _scene(dim, _lattice(*n), plate, box, walls, **options)
+    return _scene(dim, _lattice(*n), plate, walls, **options)
 
 
-# everything that a restart must carry, and everything that forces follow from
-FIELDS = "id type mol x y z vx vy vz fx fy fz c_rho c_mass c_p[1] c_p[2]"
-STRESS = " ".join(f"c_p[{k}]" for k in range(3, 9))
-
-
-def dump_text(file="atoms.dump", every=100, name="atoms"):
-    """Input that dumps all state of the scenes' particles in full precision."""
+def watch(file="atoms.dump", every=100, name="atoms"):
+    """Input that dumps the state of all particles in full precision."""
     return f"""
-compute rho all property/atom i_none
-""".replace("compute rho all property/atom i_none\n", "") + f"""
-dump {name} all custom {every} {file} id type mol x y z vx vy vz fx fy fz mass c_state[*]
-dump_modify {name} sort id format float %.17g
+compute {name} all fsi/atom rho p sxx syy szz sxy sxz syz
+dump {name} all custom {every} {file} id type mol mass x y z vx vy vz fx fy fz c_{name}[*]
+dump_modify {name} sort id time yes format float %.17g colname c_{name}[1] rho colname c_{name}[2] p
+dump_modify {name} colname c_{name}[3] sxx colname c_{name}[4] syy colname c_{name}[5] szz
+dump_modify {name} colname c_{name}[6] sxy colname c_{name}[7] sxz colname c_{name}[8] syz
 """
 
 
-STATE = "compute state all fsi/atom rho p sxx syy szz sxy sxz syz\n"
+QUANTITIES = {  # columns of a dumped frame by what they are
+    "x": ("x", "y", "z"), "v": ("vx", "vy", "vz"), "f": ("fx", "fy", "fz"), "rho": ("rho",),
+    "stress": ("sxx", "syy", "szz", "sxy", "sxz", "syz")}
+
+
+def difference(a, b, quantity, size=None):
+    """Largest difference of a quantity between two frames, relative to its largest size (or the size given)."""
+    assert np.array_equal(a["id"], b["id"])
+    p, q = (frame.vector(QUANTITIES[quantity]) for frame in (a, b))
+    return np.abs(p - q).max() / (np.abs(p).max() if size is None else size)
+
+
+def identical(a, b):
+    """Names of the columns in which two frames differ in any bit."""
+    return [name for name in a.columns if not np.array_equal(a[name], b[name])]
 
 
 @dataclass

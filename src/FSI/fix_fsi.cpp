@@ -43,8 +43,8 @@ using namespace FSI;
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
-    grad(nullptr), wmask(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
-    summed(nullptr), ratio(nullptr), nmax(0), need_psi(false), need_grad(false), need_ratio(false)
+    grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
+    summed(nullptr), ratio(nullptr), nmax(0), tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
@@ -158,6 +158,8 @@ void FixFSI::init()
   need_psi = density_fluid != CONTINUITY || (fluid && fluid->surface_ratio > 0.0) ||
       (solid && density_solid != CONTINUITY);
   need_grad = solid != nullptr;
+
+  ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
 
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
@@ -346,6 +348,7 @@ void FixFSI::update_state(bool advance)
     if (!wall_fixes.empty()) memory->grow(wmask, nmax, "fsi:wmask");
   }
 
+  tally_dt = (ledger && advance) ? update->dt : 0.0;
   if (!wall_fixes.empty()) {
     for (auto *fix : wall_fixes) fix->clear_force();
     gather_walls();
@@ -452,6 +455,35 @@ void FixFSI::advance_density()
 }
 
 /* ----------------------------------------------------------------------
+   energies of the ledger
+------------------------------------------------------------------------- */
+
+double FixFSI::potential(int i) const
+{
+  const double *x = atom->x[i];
+  return -atom->rmass[i] * (gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
+}
+
+double FixFSI::stored(int i) const
+{
+  return atom->rmass[i] * state[atom->type[i]].energy(atom->rho[i]);
+}
+
+// V S:S/(4G), with S_zz of plane strain
+double FixFSI::shear_energy(int i) const
+{
+  if (!has_stress(i)) return 0.0;
+  const double *s = fix_stress->stress[i];
+  double ss;
+  if (dim == 2) {
+    ss = Sym<2>::load(s).squared();
+    if (!fix_stress->plane_stress) ss += (s[0] + s[1]) * (s[0] + s[1]);
+  } else
+    ss = Sym<3>::load(s).squared();
+  return atom->rmass[i] / atom->rho[i] * ss / (4.0 * state[atom->type[i]].shear);
+}
+
+/* ----------------------------------------------------------------------
    solids: velocity gradient L from its sums; stress and, in continuity mode, density from L
 ------------------------------------------------------------------------- */
 
@@ -471,6 +503,16 @@ template <int D> void FixFSI::advance_solids()
       for (int a = 0; a < D; a++) div += L[a * D + a];
       // d rho/dt = -rho div v, centred: second order, and positive for any step
       rho[i] *= (1.0 - 0.5 * dt * div) / (1.0 + 0.5 * dt * div);
+    }
+    if (ledger) {
+      // what the strain stores; what the pair forces deliver, with the same stress and velocity, is taken off in
+      // pair_style fsi/solid: their difference is what the gradient's correction costs
+      auto sigma = Sym<D>::load(fix_stress->stress[i]);
+      sigma += Sym<D>::identity(-s.pressure(rho[i]));
+      double power = 0.0;
+      for (int a = 0; a < D; a++)
+        for (int b = 0; b < D; b++) power += sigma(a, b) * L[a * D + b];
+      tally(GRADIENT, -power * atom->rmass[i] / rho[i]);
     }
   }
 }

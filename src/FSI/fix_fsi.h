@@ -79,6 +79,17 @@ class FixFSI : public Fix {
   double **grad;    // solids: sum V_j (v_j-v_i)(x)g_ij, then the symmetric sum V_j x_ji(x)g_ij; afterwards L
   int *wmask;       // bits of the mirror walls that an atom is near
 
+  // energy ledger (compute fsi/energy): what each term took from the particles' energy since the fix was defined, this
+  // rank's part; kept only while such a compute exists
+  enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, NTERM };
+  bool ledger;
+  double taken[NTERM];
+  // adds a power of the pair loops, which counts only in steps, not in setup
+  void tally(Term term, double power) { taken[term] += tally_dt * power; }
+  double potential(int i) const;    // gravitational energy of atom i at the positions in atom->x
+  double stored(int i) const;       // compressive energy of atom i
+  double shear_energy(int i) const;
+
   FSI::Walls walls;     // at the time of the positions in atom->x
   double gravity[3];
   class FixFSIStress *fix_stress;
@@ -105,6 +116,7 @@ class FixFSI : public Fix {
   double *summed;    // per-atom scalar whose ghost parts a reverse communication adds up; null: rate and grad
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
   int nmax;
+  double tally_dt;
   bool need_psi, need_grad, need_ratio;
 
   template <int D> void advance_solids();

@@ -160,7 +160,9 @@ void FixFSIWallMirror::post_integrate()
     for (const auto &w : walls) {
       const double a = w.distance(x[i]);
       if (a >= near || (w.finite && (a < -hub->dx || !w.spans(x[i], 0.0)))) continue;
+      const double before = hub->ledger ? hub->potential(i) : 0.0;
       x[i][w.axis] += w.side * 2.0 * (near - a);
+      if (hub->ledger) hub->taken[FixFSI::WALLS] += before - hub->potential(i);
       const double vn = v[i][w.axis] - w.velocity[w.axis];
       if (vn * w.side < 0.0) v[i][w.axis] -= 2.0 * vn;
       reflected++;
@@ -172,7 +174,12 @@ void FixFSIWallMirror::post_integrate()
 
 void FixFSIWallMirror::end_of_step()
 {
-  for (auto &w : walls) w.position += 0.5 * update->dt * w.velocity[w.axis];
+  for (size_t k = 0; k < walls.size(); k++) {
+    Wall &w = walls[k];
+    w.position += 0.5 * update->dt * w.velocity[w.axis];
+    if (hub->ledger)
+      for (int d = 0; d < 3; d++) hub->taken[FixFSI::WALLS] += update->dt * force[k][d] * w.velocity[d];
+  }
 }
 
 /* ---------------------------------------------------------------------- */

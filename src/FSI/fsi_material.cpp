@@ -34,6 +34,27 @@ double State::density(double p) const
   return rho0 + (p - p0) / csq;
 }
 
+/* ----------------------------------------------------------------------
+   below the density at which the floor is reached p stays at the floor
+------------------------------------------------------------------------- */
+
+double State::energy(double rho) const
+{
+  const auto integral = [this](double r) {
+    const double s = r / rho0;
+    if (tait) {
+      const double b = rho0 * csq / 7.0;
+      return b / rho0 * ((std::pow(s, 6) - 1.0) / 6.0 + 1.0 / s - 1.0) + p0 / rho0 * (1.0 - 1.0 / s);
+    }
+    return csq * (std::log(s) + 1.0 / s - 1.0) + p0 / rho0 * (1.0 - 1.0 / s);
+  };
+  if (floor > -1.0e299) {
+    const double low = density(floor);
+    if (rho < low) return integral(low) + floor * (1.0 / low - 1.0 / rho);
+  }
+  return integral(rho);
+}
+
 namespace {
 
 // gives free functions the LAMMPS pointers that error->one() and friends need

@@ -62,6 +62,8 @@ namespace FSI {
         p = p0 + csq * (rho - rho0);
       return p > floor ? p : floor;
     }
+    // energy per mass that pressure() stores from rho0 on: the integral of p/rho^2 (linear or Tait, floor included)
+    double energy(double rho) const;
     double density(double p) const;    // the inverse of pressure(), for initial states
   };
 

@@ -166,6 +166,7 @@ void PairFSIFluid::init_style()
 template <class K> void PairFSIFluid::select()
 {
   bool walls = !modify->get_fix_by_style("^fsi/wall/mirror$").empty(), solids = false, mixed = false;
+  const bool ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
   int fluids = 0;
   for (const auto &m : material) {
     if (m.species == SOLID) solids = true;
@@ -174,8 +175,9 @@ template <class K> void PairFSIFluid::select()
   mixed = solids || fluids > 1;
 
   const int flags = (alpha > 0.0 || beta > 0.0 ? ARTIFICIAL : 0) | (laminar ? LAMINAR : 0) | (walls ? MIRROR : 0) |
-      (solids ? SOLIDS : 0);
-  const int rflags = (delta > 0.0 ? DIFFUSION : 0) | (walls ? IMAGES : 0) | (mixed ? MIXED : 0);
+      (solids ? SOLIDS : 0) | (ledger ? LEDGER : 0);
+  const int rflags = (delta > 0.0 ? DIFFUSION : 0) | (walls ? IMAGES : 0) | (mixed ? MIXED : 0) |
+      (ledger ? TALLY : 0);
 
   pick_force<K>(flags, std::make_integer_sequence<int, NFORCE>());
   pick_rate<K>(rflags, std::make_integer_sequence<int, NRATE>());
@@ -219,13 +221,15 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   const double *const rmass = atom->rmass;
   const int *const type = atom->type;
   const int nlocal = atom->nlocal;
+  const bool newton = force->newton_pair;
   double *const rate = hub->rate;
   const State *const state = hub->state.data();
   const int *const wmask = hub->wmask;
   const Walls walls = (FLAGS & IMAGES) ? hub->walls.moved(-dth) : Walls();
   const DensityDiffusion diffusion(delta, hub->h, hub->gravity);
 
-  const auto pair = [&](int i, int j, const double *xij, const double *vij, double rsq, const double *real_xij) {
+  const auto pair = [&](int i, int j, const double *xij, const double *vij, double rsq, const double *real_xij,
+                        double share) {
     const double g = kernel.gradient(std::sqrt(rsq));
     const double s = g * (vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0));
     double ri = rmass[i] * s, rj = rmass[j] * s;
@@ -234,6 +238,12 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
       const double k = diffusion(rho[i], rho[j], real_xij, a.rho0, a.c, a.csq, g);
       ri += k * rmass[j] / rho[j];
       rj -= k * rmass[i] / rho[i];
+      if (FLAGS & TALLY) {
+        // m p/rho^2 of what diffusion adds to rho
+        const double vi = rmass[i] / rho[i], vj = rmass[j] / rho[j];
+        hub->tally(FixFSI::DIFFUSION, -share * k * vi * vj *
+                       (hub->pressure(i) * vi / rmass[i] - hub->pressure(j) * vj / rmass[j]));
+      }
     }
     rate[i] += ri;
     return rj;
@@ -253,14 +263,16 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
       const double rsq = xij[0] * xij[0] + xij[1] * xij[1] + (D == 3 ? xij[2] * xij[2] : 0.0);
       if (rsq >= kernel.cutsq) continue;
       const double vij[3] = {v[i][0] - v[j][0], v[i][1] - v[j][1], v[i][2] - v[j][2]};
-      rate[j] += pair(i, j, xij, vij, rsq, xij);
+      // without newton a pair across ranks is computed on both: each counts half of its energy
+      const double share = (newton || j < nlocal) ? 1.0 : 0.5;
+      rate[j] += pair(i, j, xij, vij, rsq, xij, share);
       if ((FLAGS & IMAGES) && (wmask[i] & wmask[j]))
         walls.images(wmask[i] & wmask[j], rsq, xi, xj, kernel.cutsq,
                      [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
                        double vi[3];
                        walls.reflect_velocity(s, v[j], false, vi);
                        for (int d = 0; d < 3; d++) vi[d] = v[i][d] - vi[d];
-                       rate[j] += pair(i, j, x_image, vi, rsq_image, xij);
+                       rate[j] += pair(i, j, x_image, vi, rsq_image, xij, share);
                      });
     }
   }
@@ -398,9 +410,12 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const ArtificialViscosity artificial(alpha, beta, hub->h);
   const LaminarViscosity viscous(hub->h);
   const double *const gravity = hub->gravity;
+  const bool all_bodies = hub->density_solid == FixFSI::SUMMATION;
 
   // force of j on i without laminar viscosity; xij, vij may be those of an image of j
-  const auto force_on_i = [&](int i, int j, double g, double rsq, const double *xij, const double *vij, double *fij) {
+  const auto force_on_i = [&](int i, int j, double g, double rsq, const double *xij, const double *vij, double share,
+                              double *fij) {
+    const double vdotx = vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0);
     const State &si = state[type[i]], &sj = state[type[j]];
     double p = a[i].pv2 + a[j].pv2, c = 0.5 * (si.c + sj.c);
     double shear[3] = {0.0, 0.0, 0.0};
@@ -425,10 +440,17 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
         dot<D>(s, xij, shear);
         for (int d = 0; d < D; d++) shear[d] *= a[ns].vol * a[ns].vol * g;
       }
+      if (FLAGS & LEDGER) {
+        // beyond the compression of the fluid and, in density mode summation, of the solid
+        double power = (p - a[nf].pv2 - (all_bodies ? a[ns].pv2 : 0.0)) * g * vdotx;
+        for (int d = 0; d < D; d++) power -= shear[d] * vij[d];
+        hub->tally(FixFSI::COUPLING, share * power);
+      }
     }
     if (FLAGS & ARTIFICIAL) {
-      const double vdotx = vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0);
-      p += artificial(vdotx, rsq, 0.5 * (a[i].rho + a[j].rho), c, a[i].vol * a[j].vol);
+      const double q = artificial(vdotx, rsq, 0.5 * (a[i].rho + a[j].rho), c, a[i].vol * a[j].vol);
+      p += q;
+      if (FLAGS & LEDGER) hub->tally(FixFSI::ARTIFICIAL, share * q * g * vdotx);
     }
     for (int d = 0; d < D; d++) fij[d] = -p * g * xij[d] + ((FLAGS & SOLIDS) ? shear[d] : 0.0);
   };
@@ -441,16 +463,24 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     walls.reflect_velocity(s, v[j], false, vimage);
     for (int d = 0; d < 3; d++) vij[d] = v[i][d] - vimage[d];
     double fij[3] = {0.0, 0.0, 0.0}, fji[3];
-    force_on_i(i, j, g, rsq, xij, vij, fij);
+    force_on_i(i, j, g, rsq, xij, vij, fj ? share : 0.5 * share, fij);
     for (int d = 0; d < 3; d++) fji[d] = -fij[d];
     walls.reflect_vector(s, fji);
     if (FLAGS & LAMINAR) {
       const double k =
           viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol);
       walls.reflect_velocity(s, v[j], true, vimage);
-      for (int d = 0; d < D; d++) fij[d] += k * (v[i][d] - vimage[d]);
+      double loss = 0.0;    // of both, each relative to the other's image
+      for (int d = 0; d < D; d++) {
+        fij[d] += k * (v[i][d] - vimage[d]);
+        loss -= 0.5 * k * (v[i][d] - vimage[d]) * (v[i][d] - vimage[d]);
+      }
       walls.reflect_velocity(s, v[i], true, vimage);
-      for (int d = 0; d < D; d++) fji[d] += k * (v[j][d] - vimage[d]);
+      for (int d = 0; d < D; d++) {
+        fji[d] += k * (v[j][d] - vimage[d]);
+        loss -= 0.5 * k * (v[j][d] - vimage[d]) * (v[j][d] - vimage[d]);
+      }
+      if (FLAGS & LEDGER) hub->tally(FixFSI::LAMINAR, (fj ? 1.0 : 0.5) * share * loss);
     }
     for (int d = 0; d < D; d++) {
       fi[d] += fij[d];
@@ -475,26 +505,28 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       if (rsq >= kernel.cutsq) continue;
       const double g = kernel.gradient(std::sqrt(rsq));
       const double vij[3] = {v[i][0] - v[j][0], v[i][1] - v[j][1], v[i][2] - v[j][2]};
+      // without newton a pair across ranks is computed on both: each counts half of wall forces and energies
+      const double share = (newton || j < nlocal) ? 1.0 : 0.5;
       double fij[3];
-      force_on_i(i, j, g, rsq, xij, vij, fij);
+      force_on_i(i, j, g, rsq, xij, vij, share, fij);
       if (FLAGS & LAMINAR) {
         const double k =
             viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol);
-        for (int d = 0; d < D; d++) fij[d] += k * vij[d];
+        for (int d = 0; d < D; d++) {
+          fij[d] += k * vij[d];
+          if (FLAGS & LEDGER) hub->tally(FixFSI::LAMINAR, -share * k * vij[d] * vij[d]);
+        }
       }
       double fj[3] = {0.0, 0.0, 0.0};
       for (int d = 0; d < D; d++) {
         fi[d] += fij[d];
         fj[d] -= fij[d];
       }
-      if ((FLAGS & MIRROR) && (wmask[i] & wmask[j])) {
-        // without newton a pair across ranks is computed on both: each counts half of the force on the wall
-        const double share = (newton || j < nlocal) ? 1.0 : 0.5;
+      if ((FLAGS & MIRROR) && (wmask[i] & wmask[j]))
         walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
                      [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
                        image_forces(i, j, s, rsq_image, x_image, share, fi, fj);
                      });
-      }
       if (newton || j < nlocal)
         for (int d = 0; d < D; d++) f[j][d] += fj[d];
     }

@@ -68,8 +68,8 @@ class PairFSIFluid : public PairFSI {
   };
   std::vector<Aux> aux;         // local and ghost, filled at the start of compute()
 
-  enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, NFORCE = 16 };
-  enum { DIFFUSION = 1, IMAGES = 2, MIXED = 4, NRATE = 8 };
+  enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, LEDGER = 16, NFORCE = 32 };
+  enum { DIFFUSION = 1, IMAGES = 2, MIXED = 4, TALLY = 8, NRATE = 16 };
   void (PairFSIFluid::*force_loop)();
   void (PairFSIFluid::*rate_loop)(double);
   template <class K, int FLAGS> void force_pairs();

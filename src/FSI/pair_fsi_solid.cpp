@@ -129,7 +129,7 @@ void PairFSISolid::init_style()
   PairFSI::init_style();
   const bool bodies = several_bodies();
   const int flags = (alpha > 0.0 || beta > 0.0 ? ARTIFICIAL_VISCOSITY : 0) | (epsilon > 0.0 ? ARTIFICIAL_STRESS : 0) |
-      (bodies ? BODIES : 0);
+      (bodies ? BODIES : 0) | (modify->get_compute_by_style("^fsi/energy$").empty() ? 0 : LEDGER);
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &k) {
     using K = std::decay_t<decltype(k)>;
     pick_force<K>(flags, std::make_integer_sequence<int, NFORCE>());
@@ -270,6 +270,15 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
     if (FLAGS & ARTIFICIAL_STRESS) a.artificial = artificial(a.stress);
   }
 
+  // energies: without newton a pair across ranks is computed on both
+  const auto share = [&](int j) { return (newton || j < nlocal) ? 1.0 : 0.5; };
+  const auto contract = [](const Sym<D> &s, const double *x_ij, const double *vi, const double *vj) {
+    double sx[D], sum = 0.0;
+    dot<D>(s, x_ij, sx);
+    for (int d = 0; d < D; d++) sum += sx[d] * (vi[d] - vj[d]);
+    return sum;
+  };
+
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
     const Aux<D> &ai = aux[i];
@@ -295,8 +304,14 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
           R += aj.artificial;
           R *= artificial.weight(kernel.W(r));
           t += R;
+          if (FLAGS & LEDGER) {
+            const double power = contract(R, xij, v[i], v[j]);
+            hub->tally(FixFSI::STRESS, -share(j) * g * power);
+            hub->tally(FixFSI::GRADIENT, share(j) * g * power);
+          }
         }
       }
+      if (FLAGS & LEDGER) hub->tally(FixFSI::GRADIENT, -share(j) * g * contract(t, xij, v[i], v[j]));
       double tx[D];
       dot<D>(t, xij, tx);
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
@@ -307,6 +322,7 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
         const double q = viscosity(vdotx, rsq, 0.5 * (ai.rho + aj.rho), 0.5 * (state[type[i]].c + state[type[j]].c),
                                    ai.vol * aj.vol);
         for (int d = 0; d < D; d++) tx[d] -= q * xij[d];
+        if (FLAGS & LEDGER) hub->tally(FixFSI::ARTIFICIAL, share(j) * q * g * vdotx);
       }
       for (int d = 0; d < D; d++) fi[d] += g * tx[d];
       if (newton || j < nlocal)

