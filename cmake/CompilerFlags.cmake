@@ -2,6 +2,7 @@
 # Not -ffast-math: the watchdogs must see NaN and Inf, and sums must keep their order on every rank count.
 option(FSI_NATIVE "Compile for this machine's own instruction set (-march=native)" OFF)
 option(FSI_COVERAGE "Instrument for line coverage (gcov)" OFF)
+set(FSI_INSTRUMENT "" CACHE STRING "Extra compile options for src/FSI alone, e.g. -O0")
 set(FSI_SANITIZE "" CACHE STRING "Sanitizers to build with, e.g. address,undefined")
 
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")

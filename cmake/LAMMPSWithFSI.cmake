@@ -16,6 +16,11 @@ RegisterStyles("${FSI_SOURCE_DIR}")
 # Our targets land beside lmp, whatever LAMMPS' own CMakeLists makes of its binary folder
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
+# an installed lmp finds its liblammps beside it
+include(GNUInstallDirs)
+if(NOT CMAKE_INSTALL_RPATH)
+  set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+endif()
 add_subdirectory("${LAMMPS_SOURCE_DIR}/cmake" lammps)
 
 file(GLOB FSI_SOURCES CONFIGURE_DEPENDS "${FSI_SOURCE_DIR}/*.cpp")
@@ -23,9 +28,10 @@ target_sources(lammps PRIVATE ${FSI_SOURCES})
 target_include_directories(lammps PRIVATE "${FSI_SOURCE_DIR}")
 if(FSI_INSTRUMENT)
   set_source_files_properties(${FSI_SOURCES} TARGET_DIRECTORY lammps PROPERTIES COMPILE_OPTIONS "${FSI_INSTRUMENT}")
+endif()
+if(FSI_COVERAGE)
   target_link_options(lammps PUBLIC --coverage)
 endif()
 
-include(GNUInstallDirs)
 install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/potentials/" DESTINATION ${CMAKE_INSTALL_DATADIR}/lammps/potentials
         FILES_MATCHING PATTERN "*.fsi")

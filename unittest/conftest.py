@@ -70,16 +70,19 @@ processors {processors}
 
     def physics(self, coeff=True):
         """Pair styles and fixes; coeff=False after read_restart, which knows the pair styles already."""
-        plate = "plate" if self.has_solid else ""
-        pair = f"pair_style hybrid fsi/fluid {self.fluid} fsi/solid {self.solid}\n" \
-            f"pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid materials.fsi NULL plate\n"
-        if not plate:
-            pair = f"pair_style fsi/fluid {self.fluid}\npair_coeff * * materials.fsi water\n"
+        plate = self.has_solid
+        if plate:
+            style = f"pair_style hybrid fsi/fluid {self.fluid} fsi/solid {self.solid}\n" * coeff
+            # restart files do not hold the coefficients of a hybrid style, whatever its parts
+            pair = style + "pair_coeff * * fsi/fluid materials.fsi water plate\n" \
+                "pair_coeff * * fsi/solid materials.fsi NULL plate\n"
+        else:
+            pair = f"pair_style fsi/fluid {self.fluid}\npair_coeff * * materials.fsi water\n" * coeff
         walls = "".join(f" {'xyz'[a]}{'lo' if s > 0 else 'hi'} {p!r} {rest}" for a, s, p, rest in self.walls)
         g = self.gravity.tolist()
         size = float(np.sqrt(self.gravity @ self.gravity))
         density = self.density if plate else " ".join(self.density.split()[:2])
-        return (pair if coeff else "") + f"""
+        return pair + f"""
 fix sph all fsi {DX} {self.kernel} {density}
 {'fix stress all fsi/stress' if plate else ''}
 fix gravity all gravity {size!r} vector {g[0]!r} {g[1]!r} {g[2]!r}

@@ -110,7 +110,7 @@ def test_pair_law(dim, couple, more):
         if couple == "wall":
             ps = np.where(solid[j], p[i], ps)
             if "extrapolate" in more:
-                ps = np.where(solid[j], np.maximum(p[i] - rho[i] * d @ g, 0), ps)
+                ps = np.where(solid[j], np.maximum(p[i] - rho[i] * (d @ g), 0), ps)
         both = p[i] * V[i]**2 + ps * V[j]**2
         if couple == "pressure":
             both = np.maximum(both, 0)

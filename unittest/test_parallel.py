@@ -20,14 +20,18 @@ GRIDS = [(1, "1 1 1", "off"), (2, "2 1 1", "on"), (2, "1 2 1", "off"), (4, "4 1 
          (4, "1 4 1", "off")]
 GRIDS_3D = [*GRIDS, (2, "1 1 2", "on"), (4, "1 2 2", "off")]
 CASES = [(name, dim, *grid) for name in SCENES for dim in (2, 3) for grid in (GRIDS if dim == 2 else GRIDS_3D)]
-ALTERNATIVES = {  # what else crosses ranks
-    "summation": {"density": "fluid summation solid summation", "surface": True},
-    "ratio": {"density": "fluid ratio solid ratio"},
+NO_DIFFUSION = "sound 10 couple wall artificial/visc 0.05 0.1"
+ALTERNATIVES = {  # what else crosses ranks: options of the scene, in 2D and 3D
+    "summation": {"density": "fluid summation solid continuity", "fluid": NO_DIFFUSION + " surface 0.9 max"},
+    "solid summation": {"density": "fluid summation solid summation", "fluid": NO_DIFFUSION},
+    "ratio": {"density": "fluid ratio solid ratio", "fluid": NO_DIFFUSION + " surface 0.7 bulk"},
     "plain": {"kernel": "cubic 1.3", "fluid": "sound 10 eos tait couple pressure artificial/visc 0.1 0",
               "solid": "artificial/visc 0.5 0"},
     "full": {"kernel": "quintic 1.0", "fluid": "sound 10 couple full tension yes artificial/visc 0.1 0"},
-    "extrapolate": {"fluid": "sound 10 couple wall extrapolate yes artificial/visc 0.1 0"},
+    "extrapolate": {"fluid": NO_DIFFUSION + " extrapolate yes"},
 }
+# a thin plate of the paper's raw density is in such tension at its corners that it tears itself apart in 3D
+OTHERS = [(name, dim) for name in ALTERNATIVES for dim in (2, 3) if (name, dim) != ("solid summation", 3)]
 
 
 @pytest.fixture(scope="module")
@@ -78,14 +82,9 @@ def test_decomposition(tmp_path, reference, name, dim, ranks, grid, newton):
     agree(want, frames(tmp_path, replace(scene, newton=newton), ranks, grid))
 
 
-@pytest.mark.parametrize("dim", (2, 3))
-@pytest.mark.parametrize("name", ALTERNATIVES)
+@pytest.mark.parametrize("name, dim", OTHERS)
 def test_decomposition_of_other_effects(tmp_path, name, dim):
-    options = dict(ALTERNATIVES[name])
-    scene = dam_gate(dim, **{key: value for key, value in options.items() if key != "surface"})
-    if options.get("surface"):
-        # by the plain rule half of a perturbed scene is surface; the maximum asks all ranks
-        scene.fluid = "sound 10 artificial/visc 0.1 0 surface 0.9 max"
+    scene = dam_gate(dim, **ALTERNATIVES[name])
     want = frames(tmp_path / "one", scene)
     agree(want, frames(tmp_path / "four", replace(scene, newton="off"), 4, "2 2 1"))
     agree(want, frames(tmp_path / "on", scene, 4, "2 2 1"))

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Do the tests notice wrong numerics? Flips operators and constants of src/FSI one by one and runs the tests on each.
+
+usage: mutation.py [first [last]]     (numbers of the mutations to try; default: all; about a minute each)
+
+Works on a copy of the project in a temporary folder; a mutation that no test fails for has survived, and is printed with
+the reason, where there is one, why it may.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# file, what is there, what is put there instead, tests that look at it (pytest files, or a ctest name)
+FLUID, SOLID, HUB = "pair_fsi_fluid.cpp", "pair_fsi_solid.cpp", "fix_fsi.cpp"
+MUTATIONS = [
+    (HUB, "const double dth = 0.5 * update->dt;\n  for", "const double dth = 0.51 * update->dt;\n  for", "integrator"),
+    (HUB, "dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt", "dt = update->dt, dtf = dt * force->ftm2v, dth = 0.49 * dt", "integrator"),
+    (HUB, "v[i][d] += dtfm * f[i][d];", "v[i][d] -= dtfm * f[i][d];", "integrator"),
+    (HUB, "rho[i] += dt * rate[i]", "rho[i] += 0.99 * dt * rate[i]", "density integrator"),
+    (HUB, "rho[i] *= (1.0 - 0.5 * dt * div) / (1.0 + 0.5 * dt * div);", "rho[i] *= (1.0 + 0.5 * dt * div) / (1.0 - 0.5 * dt * div);", "solid integrator"),
+    (HUB, "rho[i] = rmass[i] * psi[i]", "rho[i] = rmass[i] * (psi[i] - 1.0)", "density"),
+    (HUB, "rho[i] = ratio[i] * psi[i]", "rho[i] = ratio[i] + psi[i]", "density"),
+    (HUB, "rmass[i] = s.rho0 / psi_bulk", "rmass[i] = s.rho0 * dx * dx", "density"),
+    (HUB, "psi[i] <= fluid->surface_ratio * psi_reference", "psi[i] > fluid->surface_ratio * psi_reference", "surface density"),
+    (HUB, "gravity[k] += g[k]", "gravity[k] -= g[k]", "density energy"),
+    (HUB, "if (solid->corrected) right", "if (!solid->corrected) right", "solid"),
+    (FLUID, "const double dth = 0.5 * dt;", "const double dth = 0.0;", "density integrator"),
+    (FLUID, "double ri = rmass[i] * s, rj = rmass[j] * s;", "double ri = rmass[i] * s, rj = -rmass[j] * s;", "density"),
+    (FLUID, "rj -= k * rmass[i] / rho[i];", "rj += k * rmass[i] / rho[i];", "density"),
+    (FLUID, "rate[i] += rmass[i] * kernel.gradient(std::sqrt(rsq)) * sum;", "rate[i] -= rmass[i] * kernel.gradient(std::sqrt(rsq)) * sum;", "walls"),
+    (FLUID, "double p = a[i].pv2 + a[j].pv2,", "double p = a[i].pv2 - a[j].pv2,", "walls momentum density"),
+    (FLUID, "c = si.c < sj.c ? si.c : sj.c;", "c = si.c > sj.c ? si.c : sj.c;", "interface momentum"),
+    (FLUID, "p = a[nf].pv2 + pw * a[ns].vol * a[ns].vol;", "p = a[nf].pv2 - pw * a[ns].vol * a[ns].vol;", "interface"),
+    (FLUID, "if (p < 0.0) p = 0.0;", "if (p < 0.0) p = -p;", "interface"),
+    (FLUID, "shear[d] *= a[ns].vol * a[ns].vol * g;", "shear[d] *= -a[ns].vol * a[ns].vol * g;", "interface"),
+    (FLUID, "p += q;", "p -= q;", "viscosity"),
+    (FLUID, "fij[d] += k * vij[d];", "fij[d] -= k * vij[d];", "viscosity"),
+    (FLUID, "fj[d] -= fij[d];", "fj[d] -= 0.999999 * fij[d];", "momentum"),
+    (FLUID, "walls.reflect_vector(s, fji);", "", "walls"),
+    (FLUID, "const double share = (newton || j < nlocal) ? 1.0 : 0.5;\n      double fij[3];", "const double share = 1.0;\n      double fij[3];", "walls parallel"),
+    (FLUID, "div[j] += s * rmass[i] / rho[i];", "div[j] -= s * rmass[i] / rho[i];", "surface"),
+    (SOLID, "const double t = -g * vij[a] * xij[b];", "const double t = g * vij[a] * xij[b];", "solid"),
+    (SOLID, "xij[d] = x[i][d] - x[j][d] - dth * vij[d];", "xij[d] = x[i][d] - x[j][d];", "solid integrator"),
+    (SOLID, "a.stress += Sym<D>::identity(-a.pv2);", "a.stress += Sym<D>::identity(a.pv2);", "solid integrator"),
+    (SOLID, "Sym<D>::identity(-std::max(ai.pv2 + aj.pv2, 0.0))", "Sym<D>::identity(-(ai.pv2 + aj.pv2))", "solid"),
+    (SOLID, "R *= artificial.weight(kernel.W(r));", "", "solid"),
+    (SOLID, "if (!all_bodies && molecule[i] != molecule[j]) continue;", "", "density"),
+    (SOLID, "f[j][d] -= g * tx[d];", "f[j][d] += g * tx[d];", "momentum"),
+    (SOLID, "for (int d = 0; d < D; d++) tx[d] -= q * xij[d];", "for (int d = 0; d < D; d++) tx[d] += q * xij[d];", "solid energy"),
+    ("pair_fsi.cpp", "s.csq = (plane_stress ? m.plane_stress_modulus() : m.bulk_modulus()) / m.rho0;", "s.csq = m.bulk_modulus() / m.rho0;", "solid"),
+    ("fix_fsi_wall_mirror.cpp", "x[i][w.axis] += w.side * 2.0 * (near - a);", "x[i][w.axis] += w.side * (near - a);", "walls"),
+    ("fix_fsi_wall_mirror.cpp", "if (vn * w.side < 0.0) v[i]", "if (vn * w.side > 0.0) v[i]", "walls"),
+    ("fsi_set.cpp", "atom->rmass[i] *= rho / atom->rho[i];", "", "density"),
+    ("fsi_set.cpp", "s.rho0 * size * (value - height) + s.p0", "s.rho0 * size * (value + height) + s.p0", "density"),
+    ("compute_fsi_surface_atom.cpp", "limit = threshold * hub->dim;", "limit = threshold * 3;", "surface"),
+    ("compute_fsi_energy.cpp", "mine[1] += m * hub->gravity[d] * dth * v[i][d];", "", "energy"),
+    ("fsi_kernel.h", "2.0 / 3.0 - q * q + 0.5", "2.0 / 3.0 - q * q + 0.6", "ctest"),
+    ("fsi_kernel.h", "-120.0 + q * q * (120.0", "-120.0 + q * q * (121.0", "ctest"),
+    ("fsi_tensor.h", "const double angle = 0.5 * dt", "const double angle = -0.5 * dt", "ctest"),
+    ("fsi_jaumann.h", "plane_stress ? 2.0 : 3.0", "plane_stress ? 3.0 : 2.0", "ctest"),
+    ("fsi_walls.h", "rsq += 4.0 * ai[k] * aj[k];", "rsq += 2.0 * ai[k] * aj[k];", "ctest"),
+]
+
+# number of a mutation: why the tests cannot, or need not, notice it
+EXPLAINED = {}
+
+
+def run(command, folder, environment):
+    return subprocess.run(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def main(arguments):
+    first = int(arguments[0]) if arguments else 0
+    last = int(arguments[1]) if len(arguments) > 1 else len(MUTATIONS) - 1
+    with tempfile.TemporaryDirectory() as scratch:
+        copy = Path(scratch) / "project"
+        shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns("build*", "results", ".git"))
+        environment = {**os.environ, "FSI_CMAKE_OPTIONS": "-DFSI_INSTRUMENT=-O0"}
+        if run(["tools/setup", "--tests"], copy, environment).returncode:
+            sys.exit("the unchanged copy does not build")
+        survivors = []
+        for number, (name, old, new, tests) in list(enumerate(MUTATIONS))[first:last + 1]:
+            source = copy / "src" / "FSI" / name
+            text = source.read_text()
+            if text.count(old) < 1:
+                sys.exit(f"mutation {number}: {name} has no '{old}'")
+            source.write_text(text.replace(old, new, 1))
+            built = run(["tools/setup", "--tests"], copy, environment)
+            if built.returncode:
+                verdict = "does not build"
+            elif tests == "ctest":
+                verdict = "caught" if run(["ctest", "--test-dir", "build"], copy, environment).returncode else "SURVIVED"
+            else:
+                files = [f"unittest/test_{t}.py" for t in tests.split()]
+                verdict = "caught" if run(["tools/pytest", "-x", "-q", *files], copy, environment).returncode else "SURVIVED"
+            source.write_text(text)
+            if verdict != "caught":
+                survivors.append(number)
+            print(f"{number:3d} {verdict:9s} {name}: {old.strip()[:60]!r} -> {new.strip()[:60]!r} {EXPLAINED.get(number, '')}", flush=True)
+        total = last + 1 - first
+        print(f"{total - len(survivors)} of {total} caught")
+        return 0 if len(survivors) <= 0.1 * total else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
