@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from fsi import dump, launch
 
@@ -198,7 +197,7 @@ def difference(a, b, quantity, size=None):
     return np.abs(p - q).max() / (np.abs(p).max() if size is None else size)
 
 
-def identical(a, b):
+def differing(a, b):
     """Names of the columns in which two frames differ in any bit."""
     return [name for name in a.columns if not np.array_equal(a[name], b[name])]
 
@@ -237,9 +236,3 @@ def run(folder, text, ranks=1, **options):
     result = lammps(folder, text, ranks, **options)
     assert result.status == 0, "\n".join(result.output.splitlines()[-15:])
     return result
-
-
-@pytest.fixture(scope="session")
-def cache():
-    """Results that several tests compare with, by key."""
-    return {}

@@ -105,8 +105,9 @@ class Scene:
                 newton on
                 region box block {lo[0]} {hi[0]} {lo[1]} {hi[1]} {lo[2]} {hi[2]}
                 create_box {len(materials)} box""")
-            self.lmp.create_atoms(self.n, list(range(1, self.n + 1)), np.broadcast_to(type, self.n).astype(int).tolist(),
-                                  x.ravel().tolist(), None if v is None else np.asarray(v, float).ravel().tolist())
+            types = np.broadcast_to(type, self.n).astype(int).tolist()
+            self.lmp.create_atoms(self.n, list(range(1, self.n + 1)), types, x.ravel().tolist(),
+                                  None if v is None else np.asarray(v, float).ravel().tolist())
             assert self.lmp.get_natoms() == self.n, "particles outside the box"
             self.put("molecule", np.broadcast_to(mol, self.n))
             if len(has) == 2:

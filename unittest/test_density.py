@@ -121,7 +121,8 @@ def test_lattice_is_stress_free(dim, kernel):
 @pytest.mark.parametrize("eos", ["linear", "tait"])
 def test_fsi_set(eos):
     x = lattice((6, 10), 0.1)
-    with Scene(x, fluid=f"sound 20 eos {eos} tension yes", dx=0.1, commands=["fix g all gravity 9.81 vector 0 -1 0"]) as s:
+    with Scene(x, fluid=f"sound 20 eos {eos} tension yes", dx=0.1,
+               commands=["fix g all gravity 9.81 vector 0 -1 0"]) as s:
         s.run()
         m = s.get("rmass")
         s.run_lines("fsi_set all hydrostatic 0.8")

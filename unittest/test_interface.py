@@ -140,7 +140,7 @@ def test_no_tension(dim, couple):
             s.put("rho", np.where(solid, 950, rho_f))
             f = s.run().get("f")[~solid, 0].sum()
             assert f > 1 if couple == "full" else abs(f) < 1e-12
-        # and a solid under pressure pushes at a fluid without any, but not in mode wall, where the fluid's pressure counts
+        # and a solid under pressure pushes at a fluid without any, but not in mode wall
         s.put("rho", np.where(solid, 1050, 1000))
         f = s.run().get("f")[~solid, 0].sum()
         assert abs(f) < 1e-12 if couple == "wall" else f < -1

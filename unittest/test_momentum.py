@@ -35,8 +35,8 @@ def test_kept(dim, couple):
         spin = np.abs(angular(s) - l0).max() / spin_scale
         print(f"momentum, {dim}D couple {couple}: linear drift {drift:.1e}, angular drift {spin:.1e} in 1000 steps")
         assert np.abs(s.get("v") - v0).max() > 0.1            # things did happen
-        # round-off: 1000 steps x 1e-16, added up at random over particles
-        assert drift < 1e-12
+        # round-off: 1e-16 per step and particle, of both signs; measured 1e-16 to 3e-16
+        assert drift < 1e-14
         # forces along the line between particles keep it; the shear stress of the solid is not of that kind
         assert spin < 0.1
 
@@ -47,4 +47,4 @@ def test_laminar_and_extrapolation_too(dim):
         s.run()
         scale, p0 = np.abs(s.get("rmass")[:, None] * s.get("v")).sum(), s.momentum()
         s.run(300)
-        assert np.abs(s.momentum() - p0).max() < 1e-12 * scale
+        assert np.abs(s.momentum() - p0).max() < 1e-14 * scale

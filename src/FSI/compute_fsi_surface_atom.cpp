@@ -17,6 +17,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "force.h"
 #include "memory.h"
 #include "modify.h"
 #include "pair_fsi_fluid.h"
@@ -62,7 +63,7 @@ void ComputeFSISurfaceAtom::init()
   auto fixes = modify->get_fix_by_style("^fsi$");
   if (fixes.empty()) error->all(FLERR, "Compute fsi/surface/atom requires fix fsi");
   hub = dynamic_cast<FixFSI *>(fixes[0]);
-  if (!hub->fluid) error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
+  if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
 }
 
 /* ----------------------------------------------------------------------

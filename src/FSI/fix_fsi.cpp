@@ -88,6 +88,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
   time_integrate = 1;
   force_reneighbor = 1;
+  create_attribute = 1;
   need_ratio = density_fluid == RATIO || density_solid == RATIO;
   if (need_ratio) {
     restart_peratom = 1;
@@ -164,17 +165,25 @@ void FixFSI::init()
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
-  // atoms that were never given a mass or a density get those of the stress-free lattice
-  double *rmass = atom->rmass, *rho = atom->rho;
-  const int *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = state[type[i]];
-    if (s.species == NONE)
-      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i], type[i]);
-    if (rmass[i] == 0.0) rmass[i] = s.rho0 / psi_bulk;
-    if (rho[i] == 0.0) rho[i] = s.rho0;
+    if (state[atom->type[i]].species == NONE)
+      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i],
+                 atom->type[i]);
+    give_defaults(i);
   }
   find_gravity();
+}
+
+/* ----------------------------------------------------------------------
+   an atom that was never given a mass or a density gets those of the stress-free lattice
+------------------------------------------------------------------------- */
+
+void FixFSI::give_defaults(int i)
+{
+  const State &s = state[atom->type[i]];
+  if (s.species == NONE) return;    // before init()
+  if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / psi_bulk;
+  if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
 }
 
 /* ----------------------------------------------------------------------
@@ -607,7 +616,8 @@ void FixFSI::copy_arrays(int i, int j, int)
 
 void FixFSI::set_arrays(int i)
 {
-  ratio[i] = 0.0;
+  if (need_ratio) ratio[i] = 0.0;
+  give_defaults(i);
 }
 
 int FixFSI::pack_exchange(int i, double *buf)

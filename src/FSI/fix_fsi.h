@@ -125,6 +125,7 @@ class FixFSI : public Fix {
   void update_state(bool);
   void gather_walls();
   bool fresh_start() const;
+  void give_defaults(int);
   void sort_by_tag();
 };
 

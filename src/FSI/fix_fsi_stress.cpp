@@ -45,6 +45,7 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
   }
 
   restart_peratom = 1;
+  create_attribute = 1;
   grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);

@@ -143,7 +143,7 @@ void FixFSIWallMirror::setup(int)
 
 /* ----------------------------------------------------------------------
    after the first drift: walls move along, and a fluid particle nearer than the guard distance, or behind the wall, is
-   reflected. A segment acts on what has just come through it (within one spacing), not on what flows behind it.
+   reflected. A segment acts on what has come through it in this step, not on what flows behind it.
 ------------------------------------------------------------------------- */
 
 void FixFSIWallMirror::post_integrate()
@@ -159,7 +159,10 @@ void FixFSIWallMirror::post_integrate()
     if (!(mask[i] & groupbit) || hub->state[type[i]].species != FLUID) continue;
     for (const auto &w : walls) {
       const double a = w.distance(x[i]);
-      if (a >= near || (w.finite && (a < -hub->dx || !w.spans(x[i], 0.0)))) continue;
+      if (a >= near || (w.finite && !w.spans(x[i], 0.0))) continue;
+      // behind a segment already at the last step: it flows there by right
+      const double ahead = update->dt * w.side * (v[i][w.axis] - w.velocity[w.axis]);
+      if (w.finite && a < 0.0 && a < ahead) continue;
       const double before = hub->ledger ? hub->potential(i) : 0.0;
       x[i][w.axis] += w.side * 2.0 * (near - a);
       if (hub->ledger) hub->taken[FixFSI::WALLS] += before - hub->potential(i);

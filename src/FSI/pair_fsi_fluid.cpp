@@ -403,6 +403,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const int *const type = atom->type;
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
+  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off
   const State *const state = hub->state.data();
   const int *const wmask = hub->wmask;
   const Walls &walls = hub->walls;
@@ -426,9 +427,8 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       if (couple == WALL) {
         double pw = a[nf].p;
         if (extrapolate) {
-          // hydrostatic difference from the fluid to the solid particle
-          const double dot = gravity[0] * xij[0] + gravity[1] * xij[1] + gravity[2] * xij[2];
-          pw += a[nf].rho * (fluid_i ? -dot : dot);
+          // hydrostatic difference from the fluid to the solid particle, also for images
+          for (int d = 0; d < D; d++) pw += a[nf].rho * gravity[d] * (x[ns][d] - x[nf][d]);
           const double low = state[type[nf]].floor;
           if (pw < low) pw = low;
         }
@@ -525,10 +525,18 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       if ((FLAGS & MIRROR) && (wmask[i] & wmask[j]))
         walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
                      [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
-                       image_forces(i, j, s, rsq_image, x_image, share, fi, fj);
+                       // a solid's stress is that of the particle, not of its image: look from the solid
+                       if ((FLAGS & SOLIDS) && state[type[j]].species == SOLID) {
+                         double from_j[3] = {-x_image[0], -x_image[1], -x_image[2]};
+                         walls.reflect_vector(s, from_j);
+                         image_forces(j, i, s, rsq_image, from_j, share, fj, fi);
+                       } else
+                         image_forces(i, j, s, rsq_image, x_image, share, fi, fj);
                      });
       if (newton || j < nlocal)
         for (int d = 0; d < D; d++) f[j][d] += fj[d];
+      if (tally_pairs)
+        ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, fij[0], fij[1], D == 3 ? fij[2] : 0.0, xij[0], xij[1], xij[2]);
     }
     for (int d = 0; d < D; d++) f[i][d] += fi[d];
   }

@@ -153,6 +153,8 @@ void PairFSISolid::velocity_gradient(double dt)
 
 /* ----------------------------------------------------------------------
    L_i = [sum_j V_j (v_j - v_i)(x)grad_i W_ij] [sum_j V_j x_ji(x)grad_i W_ij]^-1, the second factor if corrected
+   V_j = m_j/rho0: the density at hand is half a step older than positions and velocities, and would make the solid first
+   order in time and irreversible; what it would change is its compression, below the error of the plain gradient
 ------------------------------------------------------------------------- */
 
 template <class K, int FLAGS> void PairFSISolid::gradient_pairs(double dt)
@@ -162,14 +164,15 @@ template <class K, int FLAGS> void PairFSISolid::gradient_pairs(double dt)
   const double dth = 0.5 * dt;
   double **x = atom->x;
   double **v = atom->v;
-  const double *const rho = atom->rho;
   const double *const rmass = atom->rmass;
+  const int *const type = atom->type;
+  const State *const state = hub->state.data();
   const tagint *const molecule = atom->molecule;
   double **grad = hub->grad;
 
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
-    const double vol_i = rmass[i] / rho[i];
+    const double vol_i = rmass[i] / state[type[i]].rho0;
     for (int jj = 0; jj < list->numneigh[i]; jj++) {
       const int j = list->firstneigh[i][jj] & NEIGHMASK;
       if ((FLAGS & BODIES) && molecule[i] != molecule[j]) continue;
@@ -180,7 +183,7 @@ template <class K, int FLAGS> void PairFSISolid::gradient_pairs(double dt)
         rsq += xij[d] * xij[d];
       }
       if (rsq >= kernel.cutsq) continue;
-      const double g = kernel.gradient(std::sqrt(rsq)), vol_j = rmass[j] / rho[j];
+      const double g = kernel.gradient(std::sqrt(rsq)), vol_j = rmass[j] / state[type[j]].rho0;
       // v_ji (x) g_ij is the same seen from i and from j; only the volumes differ
       double *gi = grad[i], *gj = grad[j];
       for (int a = 0; a < D; a++)
@@ -250,6 +253,7 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
   const tagint *const molecule = atom->molecule;
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
   const bool newton = force->newton_pair;
+  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off
   const State *const state = hub->state.data();
   double **S = hub->fix_stress->stress;
   const ArtificialViscosity viscosity(alpha, beta, hub->h);
@@ -327,6 +331,9 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
       for (int d = 0; d < D; d++) fi[d] += g * tx[d];
       if (newton || j < nlocal)
         for (int d = 0; d < D; d++) f[j][d] -= g * tx[d];
+      if (tally_pairs)
+        ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, g * tx[0], g * tx[1], D == 3 ? g * tx[D - 1] : 0.0, xij[0], xij[1],
+                     D == 3 ? xij[D - 1] : 0.0);
     }
     for (int d = 0; d < D; d++) f[i][d] += fi[d];
   }
