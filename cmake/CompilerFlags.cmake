@@ -17,9 +17,9 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   if(FSI_COVERAGE)
     set(FSI_INSTRUMENT -O1 -g --coverage)
   endif()
+  # of the package alone: LAMMPS' own objects come from the compiler cache
   if(FSI_SANITIZE)
-    add_compile_options(-g -fsanitize=${FSI_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-    add_link_options(-fsanitize=${FSI_SANITIZE})
+    set(FSI_INSTRUMENT -O1 -g -fsanitize=${FSI_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   endif()
 endif()
 

@@ -32,6 +32,9 @@ endif()
 if(FSI_COVERAGE)
   target_link_options(lammps PUBLIC --coverage)
 endif()
+if(FSI_SANITIZE)
+  target_link_options(lammps PUBLIC -fsanitize=${FSI_SANITIZE})
+endif()
 
 install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/potentials/" DESTINATION ${CMAKE_INSTALL_DATADIR}/lammps/potentials
         FILES_MATCHING PATTERN "*.fsi")

@@ -34,8 +34,7 @@ def main(arguments):
     """Runs pytest with `arguments` on an instrumented build and prints coverage per file; 0 if above the bound."""
     for path in paths.BUILD.rglob("*.gcda"):
         path.unlink()
-    suite.googletest()
-    suite.pytest(arguments)
+    results = [suite.googletest(), suite.pytest(arguments)]
     covered = collect()
     total = hit = 0
     for name, lines in sorted(covered.items()):
@@ -45,7 +44,7 @@ def main(arguments):
         print(f"{name:32s} {100 * (1 - len(missed) / len(lines)):6.1f} %  not executed: {missed[:12] or '-'}")
     share = 100.0 * hit / total if total else 0.0
     print(f"line coverage of src/FSI: {share:.1f} % of {total} lines")
-    return 0 if share > BOUND else 1
+    return 0 if share > BOUND and not any(failed for _, failed in results) else 1
 
 
 if __name__ == "__main__":

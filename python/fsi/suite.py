@@ -1,4 +1,7 @@
-"""Runs all tests and adds them up. The command line of tools/test."""
+"""Runs all tests and adds them up. The command line of tools/test.
+
+GoogleTest for the mathematics, pytest for the rest, the same scenes under other builds, and line coverage.
+"""
 
 import os
 import re
@@ -49,9 +52,25 @@ def pytest(arguments):
     return passed, failed
 
 
+def other_builds():
+    """(passed, failed) of the small scenes under other builds of LAMMPS (unittest/variants.py)."""
+    sys.path.insert(0, str(paths.ROOT / "unittest"))
+    import variants
+    return variants.main([])
+
+
+def coverage():
+    """(1, 0) if the tests execute enough of src/FSI (tools/coverage); without the scenes, which take the longest."""
+    command = [str(paths.ROOT / "tools" / "coverage"), "--ignore", str(paths.ROOT / "unittest" / "test_scenes.py")]
+    good = subprocess.run(command, check=False).returncode == 0
+    return int(good), int(not good)
+
+
 def main(arguments):
-    """Runs both runners; the last line is the sum."""
+    """Runs everything, or with pytest's options only GoogleTest and pytest; the last line is the sum."""
     results = [googletest(), pytest(arguments)]
+    if not arguments:
+        results += [other_builds(), coverage()]
     passed, failed = (sum(column) for column in zip(*results))
     print(f"{passed} passed, {failed} failed", flush=True)
     return 0 if passed and not failed else 1
