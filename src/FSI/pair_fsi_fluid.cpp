@@ -165,14 +165,14 @@ void PairFSIFluid::init_style()
 
 template <class K> void PairFSIFluid::select()
 {
-  bool walls = !modify->get_fix_by_style("^fsi/wall/mirror$").empty(), solids = false, mixed = false;
+  const bool walls = !modify->get_fix_by_style("^fsi/wall/mirror$").empty();
   const bool ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
-  int fluids = 0;
+  int fluids = 0, solids = 0;
   for (const auto &m : material) {
-    if (m.species == SOLID) solids = true;
     if (m.species == FLUID) fluids++;
+    if (m.species == SOLID) solids++;
   }
-  mixed = solids || fluids > 1;
+  const bool mixed = solids > 0 || fluids > 1;
 
   const int flags = (alpha > 0.0 || beta > 0.0 ? ARTIFICIAL : 0) | (laminar ? LAMINAR : 0) | (walls ? MIRROR : 0) |
       (solids ? SOLIDS : 0) | (ledger ? LEDGER : 0);
