@@ -89,3 +89,24 @@ def test_solid_in_the_fluid(rule, dim):
 def test_defined_before_the_first_run():
     with Scene(lattice((4, 4), 0.1), dx=0.1, commands=["compute surface all fsi/surface/atom"]) as s:
         assert s.run().compute("surface", columns=False).sum() == 12
+
+
+@pytest.mark.parametrize("reference", ["bulk", "max"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_no_pressure_at_the_surface(reference, dim):
+    """The paper's rule in the equation of state: p = 0 where psi <= 0.9 of the reference, c^2 (rho - rho0) elsewhere.
+    In a block (cubic, h = 1.2 dx) that is the first layer for either reference, since its inside is the bulk lattice."""
+    x = lattice([8] * dim, 0.1)
+    with Scene(x, dim=dim, dx=0.1, kernel="cubic", hdx=1.2, fluid=f"surface 0.9 {reference}") as s:
+        s.run()
+        s.put("rho", 1001.0)
+        s.run()
+        expected = np.where(outermost(x, dim), 0.0, 10.0**2 * 1.0)
+        np.testing.assert_allclose(s.p, expected, rtol=1e-12)
+    # packed 20 % denser, layer 1 is bulk to the lattice's psi, and surface still to the largest one
+    with Scene(0.8 ** (1 / dim) * x, dim=dim, dx=0.1, kernel="cubic", hdx=1.2, fluid=f"surface 0.9 {reference}") as s:
+        s.run()
+        s.put("rho", 1001.0)
+        s.run()
+        face = outermost(x, dim) & (np.sum([(x[:, d] < 0.06) | (x[:, d] > 0.74) for d in range(dim)], axis=0) == 1)
+        assert np.all((s.p[face] == 0.0) == (reference == "max"))
