@@ -20,7 +20,6 @@
 #include "fix_fsi_stress.h"
 #include "fsi_tensor.h"
 #include "memory.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -60,9 +59,7 @@ ComputeFSIAtom::~ComputeFSIAtom()
 
 void ComputeFSIAtom::init()
 {
-  auto fixes = modify->get_fix_by_style("^fsi$");
-  if (fixes.empty()) error->all(FLERR, "Compute fsi/atom requires fix fsi");
-  hub = dynamic_cast<FixFSI *>(fixes[0]);
+  hub = FixFSI::find(lmp, "Compute fsi/atom");
 }
 
 /* ---------------------------------------------------------------------- */

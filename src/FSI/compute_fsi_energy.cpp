@@ -17,7 +17,6 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
-#include "modify.h"
 #include "update.h"
 
 using namespace LAMMPS_NS;
@@ -47,9 +46,7 @@ ComputeFSIEnergy::~ComputeFSIEnergy()
 
 void ComputeFSIEnergy::init()
 {
-  auto fixes = modify->get_fix_by_style("^fsi$");
-  if (fixes.empty()) error->all(FLERR, "Compute fsi/energy requires fix fsi");
-  hub = dynamic_cast<FixFSI *>(fixes[0]);
+  hub = FixFSI::find(lmp, "Compute fsi/energy");
 }
 
 /* ----------------------------------------------------------------------

@@ -19,7 +19,6 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "memory.h"
-#include "modify.h"
 #include "pair_fsi_fluid.h"
 #include "update.h"
 
@@ -60,9 +59,7 @@ ComputeFSISurfaceAtom::~ComputeFSISurfaceAtom()
 
 void ComputeFSISurfaceAtom::init()
 {
-  auto fixes = modify->get_fix_by_style("^fsi$");
-  if (fixes.empty()) error->all(FLERR, "Compute fsi/surface/atom requires fix fsi");
-  hub = dynamic_cast<FixFSI *>(fixes[0]);
+  hub = FixFSI::find(lmp, "Compute fsi/surface/atom");
   if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
 }
 

@@ -119,6 +119,15 @@ FixFSI::~FixFSI()
 
 /* ---------------------------------------------------------------------- */
 
+FixFSI *FixFSI::find(LAMMPS *lmp, const std::string &who)
+{
+  auto fixes = lmp->modify->get_fix_by_style("^fsi$");
+  if (fixes.empty()) lmp->error->all(FLERR, "{} requires fix fsi, which holds particle spacing and kernel", who);
+  return dynamic_cast<FixFSI *>(fixes[0]);
+}
+
+/* ---------------------------------------------------------------------- */
+
 int FixFSI::setmask()
 {
   return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE;

@@ -37,6 +37,8 @@ class FixFSI : public Fix {
   enum Density { CONTINUITY, SUMMATION, RATIO };
 
   FixFSI(class LAMMPS *, int, char **);
+  // the fix fsi of this LAMMPS; an error that names who needs it if there is none
+  static FixFSI *find(class LAMMPS *, const std::string &who);
   ~FixFSI() override;
   int setmask() override;
   void init() override;

@@ -16,6 +16,7 @@
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_fsi.h"
 #include "memory.h"
 #include "modify.h"
 
@@ -67,7 +68,7 @@ FixFSIStress::~FixFSIStress()
 
 void FixFSIStress::init()
 {
-  if (modify->get_fix_by_style("^fsi$").empty()) error->all(FLERR, "Fix fsi/stress requires fix fsi");
+  FixFSI::find(lmp, "Fix fsi/stress");
 }
 
 /* ----------------------------------------------------------------------

@@ -18,7 +18,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "modify.h"
 #include "update.h"
 
 #include <cmath>
@@ -119,9 +118,7 @@ int FixFSIWallMirror::setmask()
 
 void FixFSIWallMirror::init()
 {
-  auto fixes = modify->get_fix_by_style("^fsi$");
-  if (fixes.empty()) error->all(FLERR, "Fix fsi/wall/mirror requires fix fsi");
-  hub = dynamic_cast<FixFSI *>(fixes[0]);
+  hub = FixFSI::find(lmp, "Fix fsi/wall/mirror");
 }
 
 /* ----------------------------------------------------------------------

@@ -19,7 +19,6 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "group.h"
-#include "modify.h"
 
 #include <cmath>
 #include <cstring>
@@ -49,9 +48,7 @@ void FSISet::command(int narg, char **arg)
   const double value = utils::numeric(FLERR, arg[2], false, lmp);
   if (!hydrostatic && value <= 0.0) error->all(FLERR, "Fsi_set density {} must be > 0", arg[2]);
 
-  auto fixes = modify->get_fix_by_style("^fsi$");
-  if (fixes.empty()) error->all(FLERR, "Fsi_set requires fix fsi");
-  auto *hub = dynamic_cast<FixFSI *>(fixes[0]);
+  const FixFSI *hub = FixFSI::find(lmp, "Fsi_set");
 
   // materials, masses and gravity are entered in init()
   lmp->init();

@@ -17,9 +17,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "force.h"
 #include "memory.h"
-#include "modify.h"
 #include "neighbor.h"
 
 #include <cmath>
@@ -30,7 +28,7 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-PairFSI::PairFSI(LAMMPS *lmp) : Pair(lmp), hub(nullptr)
+PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) : Pair(lmp), style(style_in), hub(nullptr)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -68,9 +66,9 @@ void PairFSI::coeff(int narg, char **arg)
 {
   if (!allocated) allocate();
   if (narg < 2 || strcmp(arg[0], "*") != 0 || strcmp(arg[1], "*") != 0)
-    error->all(FLERR, "Pair style fsi needs pair_coeff * * followed by a material file and one material per atom type");
+    error->all(FLERR, "Pair style {} needs pair_coeff * * followed by a material file and one material per atom type", style);
   if (narg != 3 + atom->ntypes)
-    error->all(FLERR, "Pair_coeff of pair style fsi has {} materials, expected one for each of {} atom types",
+    error->all(FLERR, "Pair_coeff of pair style {} has {} materials, expected one for each of {} atom types", style,
                narg > 3 ? narg - 3 : 0, atom->ntypes);
 
   const std::vector<std::string> names(arg + 3, arg + narg);
@@ -91,7 +89,7 @@ void PairFSI::set_flags()
       count += setflag[i][j];
     }
   if (count == 0)
-    error->all(FLERR, "Pair_coeff gives pair style fsi no pair to act on: none of its materials is a {}",
+    error->all(FLERR, "Pair_coeff gives pair style {} no pair to act on: none of its materials is a {}", style,
                handles(FLUID, FLUID) ? "fluid" : "solid");
 }
 
@@ -99,10 +97,8 @@ void PairFSI::set_flags()
 
 void PairFSI::init_style()
 {
-  if (!atom->style_match("fsi")) error->all(FLERR, "Pair style fsi requires atom_style fsi");
-  auto fixes = modify->get_fix_by_style("^fsi$");
-  if (fixes.empty()) error->all(FLERR, "Pair style fsi requires fix fsi, which holds particle spacing and kernel");
-  hub = dynamic_cast<FixFSI *>(fixes[0]);
+  if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
+  hub = FixFSI::find(lmp, "Pair style " + style);
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) hub->enter_state(t, make_state(material[t]));
   neighbor->add_request(this);
@@ -114,6 +110,22 @@ double PairFSI::init_one(int i, int j)
 {
   if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set: types {} and {}", i, j);
   return hub->cut;
+}
+
+/* ----------------------------------------------------------------------
+   arguments of settings(): n values must follow keyword iarg; a value must be a number >= 0
+------------------------------------------------------------------------- */
+
+void PairFSI::need(int narg, char **arg, int iarg, int n)
+{
+  if (iarg + n >= narg) utils::missing_cmd_args(FLERR, fmt::format("pair_style {} {}", style, arg[iarg]), error);
+}
+
+double PairFSI::number(const char *value, const char *what)
+{
+  const double x = utils::numeric(FLERR, value, false, lmp);
+  if (!(x >= 0.0)) error->all(FLERR, "Pair style {} {} {} must be >= 0", style, what, value);
+  return x;
 }
 
 /* ----------------------------------------------------------------------
@@ -136,7 +148,7 @@ State PairFSI::solid_state(const Material &m, bool plane_stress) const
 void PairFSI::check_tally()
 {
   if (vflag_atom || eflag_atom)
-    error->all(FLERR, "Pair style fsi has no per-atom virial or energy: use compute fsi/atom for stress and pressure");
+    error->all(FLERR, "Pair style {} has no per-atom virial or energy: use compute fsi/atom for stress and pressure", style);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -19,13 +19,14 @@
 #include "fsi_material.h"
 #include "pair.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 
 class PairFSI : public Pair {
  public:
-  PairFSI(class LAMMPS *);
+  PairFSI(class LAMMPS *, const char *style);
   ~PairFSI() override;
   void coeff(int, char **) override;
   void init_style() override;
@@ -34,6 +35,7 @@ class PairFSI : public Pair {
   void read_restart(FILE *) override;
 
  protected:
+  const std::string style;    // for messages
   class FixFSI *hub;
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
 
@@ -45,6 +47,8 @@ class PairFSI : public Pair {
   virtual bool defines(int) const = 0;
 
   FSI::State solid_state(const FSI::Material &, bool plane_stress) const;
+  void need(int narg, char **arg, int iarg, int n);
+  double number(const char *value, const char *what);
   void set_flags();
   void allocate();
   void check_tally();

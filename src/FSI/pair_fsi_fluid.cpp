@@ -39,7 +39,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp), surface_ratio(0.0), surface_max(0), sound(0.0), background(0.0), alpha(0.0), beta(0.0), delta(0.0),
+    PairFSI(lmp, "fsi/fluid"), surface_ratio(0.0), surface_max(0), sound(0.0), background(0.0), alpha(0.0), beta(0.0), delta(0.0),
     tait(0), laminar(0), couple(WALL), extrapolate(0), tension(0), force_loop(nullptr), rate_loop(nullptr)
 {
 }
@@ -50,61 +50,52 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
 
 void PairFSIFluid::settings(int narg, char **arg)
 {
-  auto need = [&](int iarg, int n) {
-    if (iarg + n >= narg) utils::missing_cmd_args(FLERR, fmt::format("pair_style fsi/fluid {}", arg[iarg]), error);
-  };
-  auto number = [&](int iarg, double low, const char *what) {
-    const double value = utils::numeric(FLERR, arg[iarg], false, lmp);
-    if (!(value >= low)) error->all(FLERR, "Pair style fsi/fluid {} {} must be >= {}", what, arg[iarg], low);
-    return value;
-  };
-
   int iarg = 0;
   while (iarg < narg) {
     if (strcmp(arg[iarg], "sound") == 0) {
-      need(iarg, 1);
-      sound = number(iarg + 1, 0.0, "sound speed");
+      need(narg, arg, iarg, 1);
+      sound = number(arg[iarg + 1], "sound speed");
       iarg += 2;
     } else if (strcmp(arg[iarg], "eos") == 0) {
-      need(iarg, 1);
+      need(narg, arg, iarg, 1);
       if (strcmp(arg[iarg + 1], "linear") == 0) tait = 0;
       else if (strcmp(arg[iarg + 1], "tait") == 0) tait = 1;
       else error->all(FLERR, "Unknown pair_style fsi/fluid eos {}: expected linear or tait", arg[iarg + 1]);
       iarg += 2;
     } else if (strcmp(arg[iarg], "background") == 0) {
-      need(iarg, 1);
+      need(narg, arg, iarg, 1);
       background = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
       iarg += 2;
     } else if (strcmp(arg[iarg], "tension") == 0) {
-      need(iarg, 1);
+      need(narg, arg, iarg, 1);
       tension = utils::logical(FLERR, arg[iarg + 1], false, lmp);
       iarg += 2;
     } else if (strcmp(arg[iarg], "artificial/visc") == 0) {
-      need(iarg, 2);
-      alpha = number(iarg + 1, 0.0, "artificial/visc alpha");
-      beta = number(iarg + 2, 0.0, "artificial/visc beta");
+      need(narg, arg, iarg, 2);
+      alpha = number(arg[iarg + 1], "artificial/visc alpha");
+      beta = number(arg[iarg + 2], "artificial/visc beta");
       iarg += 3;
     } else if (strcmp(arg[iarg], "laminar/visc") == 0) {
       laminar = 1;
       iarg += 1;
     } else if (strcmp(arg[iarg], "density/diffusion") == 0) {
-      need(iarg, 1);
-      delta = number(iarg + 1, 0.0, "density/diffusion");
+      need(narg, arg, iarg, 1);
+      delta = number(arg[iarg + 1], "density/diffusion");
       iarg += 2;
     } else if (strcmp(arg[iarg], "couple") == 0) {
-      need(iarg, 1);
+      need(narg, arg, iarg, 1);
       if (strcmp(arg[iarg + 1], "wall") == 0) couple = WALL;
       else if (strcmp(arg[iarg + 1], "pressure") == 0) couple = PRESSURE;
       else if (strcmp(arg[iarg + 1], "full") == 0) couple = FULL;
       else error->all(FLERR, "Unknown pair_style fsi/fluid couple {}: expected wall, pressure or full", arg[iarg + 1]);
       iarg += 2;
     } else if (strcmp(arg[iarg], "extrapolate") == 0) {
-      need(iarg, 1);
+      need(narg, arg, iarg, 1);
       extrapolate = utils::logical(FLERR, arg[iarg + 1], false, lmp);
       iarg += 2;
     } else if (strcmp(arg[iarg], "surface") == 0) {
-      need(iarg, 2);
-      surface_ratio = number(iarg + 1, 0.0, "surface ratio");
+      need(narg, arg, iarg, 2);
+      surface_ratio = number(arg[iarg + 1], "surface ratio");
       if (surface_ratio >= 1.0)
         error->all(FLERR, "Pair style fsi/fluid surface ratio {} must be below 1", arg[iarg + 1]);
       if (strcmp(arg[iarg + 2], "bulk") == 0) surface_max = 0;

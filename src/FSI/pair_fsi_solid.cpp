@@ -36,7 +36,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp), corrected(0), alpha(0.0), beta(0.0), epsilon(0.0), force_loop(nullptr), gradient_loop(nullptr)
+    PairFSI(lmp, "fsi/solid"), corrected(0), alpha(0.0), beta(0.0), epsilon(0.0), force_loop(nullptr), gradient_loop(nullptr)
 {
 }
 
@@ -55,28 +55,19 @@ template <> std::vector<PairFSISolid::Aux<3>> &PairFSISolid::get_aux<3>()
 
 void PairFSISolid::settings(int narg, char **arg)
 {
-  auto need = [&](int iarg, int n) {
-    if (iarg + n >= narg) utils::missing_cmd_args(FLERR, fmt::format("pair_style fsi/solid {}", arg[iarg]), error);
-  };
-  auto number = [&](int iarg, const char *what) {
-    const double value = utils::numeric(FLERR, arg[iarg], false, lmp);
-    if (!(value >= 0.0)) error->all(FLERR, "Pair style fsi/solid {} {} must be >= 0", what, arg[iarg]);
-    return value;
-  };
-
   int iarg = 0;
   while (iarg < narg) {
     if (strcmp(arg[iarg], "artificial/visc") == 0) {
-      need(iarg, 2);
-      alpha = number(iarg + 1, "artificial/visc alpha");
-      beta = number(iarg + 2, "artificial/visc beta");
+      need(narg, arg, iarg, 2);
+      alpha = number(arg[iarg + 1], "artificial/visc alpha");
+      beta = number(arg[iarg + 2], "artificial/visc beta");
       iarg += 3;
     } else if (strcmp(arg[iarg], "artificial/stress") == 0) {
-      need(iarg, 1);
-      epsilon = number(iarg + 1, "artificial/stress");
+      need(narg, arg, iarg, 1);
+      epsilon = number(arg[iarg + 1], "artificial/stress");
       iarg += 2;
     } else if (strcmp(arg[iarg], "gradient") == 0) {
-      need(iarg, 1);
+      need(narg, arg, iarg, 1);
       if (strcmp(arg[iarg + 1], "plain") == 0) corrected = 0;
       else if (strcmp(arg[iarg + 1], "corrected") == 0) corrected = 1;
       else error->all(FLERR, "Unknown pair_style fsi/solid gradient {}: expected plain or corrected", arg[iarg + 1]);
