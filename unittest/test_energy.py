@@ -73,11 +73,14 @@ def imbalance(text, dt, time):
         lmp.close()
 
 
-@pytest.mark.parametrize("text, dt, time", [(PLATE, 1.0e-5, 0.05), (DAM, 3.0e-4, 0.4)], ids=["plate", "dam break"])
-def test_ledger_closes_and_its_error_falls_with_the_time_step(text, dt, time):
+@pytest.mark.parametrize("text, dt, time, bound", [(PLATE, 1.0e-5, 0.05, 5.0e-3), (DAM, 3.0e-4, 0.4, 2.0e-4)],
+                         ids=["plate", "dam break"])
+def test_ledger_closes_and_its_error_falls_with_the_time_step(text, dt, time, bound):
     # works of dissipative terms are taken with the velocity at the start of the kick: first order in dt, so a quarter of
-    # the step leaves well under half of the error; 1e-3 is the bound that the package sets itself
+    # the step leaves well under half of the error; 1e-3 is the bound that the package sets itself. Measured: 1.5e-3 and
+    # 2.7e-4 on the plate, 5.6e-5 and 1.4e-5 on the dam break, where kinetic and gravitational energy of different instants
+    # would show as 1e-3.
     coarse, fine = imbalance(text, dt, time), imbalance(text, dt / 4, time)
     assert fine < 1.0e-3
-    assert coarse < 5.0e-3
+    assert coarse < bound
     assert fine < 0.5 * coarse
