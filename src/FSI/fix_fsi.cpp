@@ -29,6 +29,7 @@
 #include "output.h"
 #include "pair_fsi_fluid.h"
 #include "pair_fsi_solid.h"
+#include "pair_fsi_solid_tl.h"
 #include "update.h"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ using namespace FSI;
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
     grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
-    summed(nullptr), ratio(nullptr), nmax(0), tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false)
+    solid_tl(nullptr), substeps(1), summed(nullptr), ratio(nullptr), nmax(0), tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
@@ -64,6 +65,12 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   int iarg = 6;
   while (iarg < narg) {
     if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi {}", arg[iarg]), error);
+    if (strcmp(arg[iarg], "substeps") == 0) {
+      substeps = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      if (substeps < 1) error->all(FLERR, "Fix fsi substeps {} must be >= 1", arg[iarg + 1]);
+      iarg += 2;
+      continue;
+    }
     int mode;
     if (strcmp(arg[iarg + 1], "continuity") == 0) mode = CONTINUITY;
     else if (strcmp(arg[iarg + 1], "summation") == 0) mode = SUMMATION;
@@ -73,7 +80,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
                  arg[iarg + 1]);
     if (strcmp(arg[iarg], "fluid") == 0) density_fluid = mode;
     else if (strcmp(arg[iarg], "solid") == 0) density_solid = mode;
-    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid or solid", arg[iarg]);
+    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid, solid or substeps", arg[iarg]);
     iarg += 2;
   }
 
@@ -148,7 +155,10 @@ void FixFSI::init()
 
   fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
   solid = dynamic_cast<PairFSISolid *>(force->pair_match("fsi/solid", 1));
-  if (!fluid && !solid) error->all(FLERR, "Fix fsi requires pair_style fsi/fluid or fsi/solid");
+  solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1));
+  if (!fluid && !solid && !solid_tl)
+    error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
+  if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
 
   auto stress = modify->get_fix_by_style("^fsi/stress$");
   if (stress.size() > 1) error->all(FLERR, "There can be only one fix fsi/stress");
@@ -339,15 +349,58 @@ void FixFSI::final_integrate()
   double **f = atom->f;
   const double *const rmass = atom->rmass;
   const int *const mask = atom->mask;
+  const int *const type = atom->type;
   const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
+  if (substeps > 1) substep_solids();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
+    if (substeps > 1 && state[type[i]].species == SOLID) continue;
     const double dtfm = dtf / rmass[i];
     for (int d = 0; d < dim; d++) {
       v[i][d] += dtfm * f[i][d];
       x[i][d] += dth * v[i][d];
     }
   }
+}
+
+/* ----------------------------------------------------------------------
+   Stiff solids: from the state at the start of the step on, position Verlet with a step that many times shorter. What acts on
+   them from outside (f: fluid, gravity, ...), taken at the middle of the step, is held: what the fluid has lost in momentum, the
+   solid gains, to round-off.
+------------------------------------------------------------------------- */
+
+void FixFSI::substep_solids()
+{
+  double **x = atom->x;
+  double **v = atom->v;
+  double **f = atom->f;
+  double **fs = nullptr;
+  const double *const rmass = atom->rmass;
+  const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
+  std::vector<int> moving;
+  for (const int i : solid_tl->solids())
+    if (atom->mask[i] & groupbit) moving.push_back(i);
+
+  const auto drift = [&](double t) {
+    for (const int i : moving)
+      for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
+  };
+  tally_dt = ledger ? dt : 0.0;
+  drift(back);
+  for (int n = 0; n < substeps; n++) {
+    drift(dth);
+    solid_tl->forward_positions();
+    solid_tl->internal_forces();
+    fs = solid_tl->force_of_solids();
+    for (const int i : moving) {
+      const double dtfm = dt * force->ftm2v / rmass[i];
+      for (int d = 0; d < dim; d++) v[i][d] += dtfm * (f[i][d] + fs[i][d]);
+    }
+    drift(dth);
+  }
+  // what is seen from outside: the whole force
+  for (const int i : solid_tl->solids())
+    for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
 }
 
 /* ----------------------------------------------------------------------

@@ -98,6 +98,8 @@ class FixFSI : public Fix {
   std::vector<class FixFSIWallMirror *> wall_fixes;
   class PairFSIFluid *fluid;
   class PairFSISolid *solid;
+  class PairFSISolidTL *solid_tl;
+  int substeps;    // of total-Lagrangian solids in each step
 
   // pressure of a local or ghost atom from its density (paper eq. 16), 0 at a free surface if that rule is on
   double pressure(int i) const;
@@ -121,6 +123,7 @@ class FixFSI : public Fix {
   double tally_dt;
   bool need_psi, need_grad, need_ratio;
 
+  void substep_solids();
   template <int D> void advance_solids();
   void advance_density();
   void density_from_psi();

@@ -18,6 +18,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_contact.h"
 #include "fsi_kernel.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_tensor.h"
@@ -93,24 +94,6 @@ State PairFSISolid::make_state(const Material &m) const
   for (auto &fix : modify->get_fix_by_style("^fsi/stress$"))
     plane_stress = dynamic_cast<FixFSIStress *>(fix)->plane_stress;
   return solid_state(m, plane_stress);
-}
-
-/* ----------------------------------------------------------------------
-   is there more than one solid body? pairs need not ask if there is not
-------------------------------------------------------------------------- */
-
-bool PairFSISolid::several_bodies() const
-{
-  tagint low = MAXTAGINT, high = 0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (material[atom->type[i]].species == SOLID) {
-      low = std::min(low, atom->molecule[i]);
-      high = std::max(high, atom->molecule[i]);
-    }
-  tagint all_low, all_high;
-  MPI_Allreduce(&low, &all_low, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  MPI_Allreduce(&high, &all_high, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  return all_low < all_high;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -228,7 +211,7 @@ void PairFSISolid::compute(int eflag, int vflag)
 
 /* ----------------------------------------------------------------------
    F_ij = [sigma_i V_i^2 + sigma_j V_j^2 + (R_i + R_j) (W_ij/W(dx))^4 - Q_ij I] . grad_i W_ij (paper eq. 14), sigma = -p I + S
-   between bodies only pressure and Q, and pressure only pushes: bodies do not stick, nor share their stress
+   between bodies only contact (fsi_contact.h) and Q: bodies do not stick, nor share their stress
 ------------------------------------------------------------------------- */
 
 template <class K, int FLAGS> void PairFSISolid::force_pairs()
@@ -249,6 +232,7 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
   double **S = hub->fix_stress->stress;
   const ArtificialViscosity viscosity(alpha, beta, hub->h);
   const ArtificialStress artificial(epsilon, hub->wdx);
+  const Contact contact(D, hub->dx);
 
   auto &aux = get_aux<D>();
   if ((int) aux.size() < nall) aux.resize(atom->nmax);
@@ -290,7 +274,8 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
       const Aux<D> &aj = aux[j];
       Sym<D> t;
       if ((FLAGS & BODIES) && molecule[i] != molecule[j]) {
-        t = Sym<D>::identity(-std::max(ai.pv2 + aj.pv2, 0.0));
+        const State &si = state[type[i]], &sj = state[type[j]];
+        t = Sym<D>::identity(contact(rsq, si.csq * si.rho0, sj.csq * sj.rho0) / g);
       } else {
         t = ai.stress;
         t += aj.stress;

@@ -69,7 +69,6 @@ class PairFSISolid : public PairFSI {
   enum { ARTIFICIAL_VISCOSITY = 1, ARTIFICIAL_STRESS = 2, BODIES = 4, LEDGER = 8, NFORCE = 16 };
   void (PairFSISolid::*force_loop)();
   void (PairFSISolid::*gradient_loop)(double);
-  bool several_bodies() const;
   template <class K, int FLAGS> void force_pairs();
   template <class K, int FLAGS> void gradient_pairs(double);
   template <class K, int... F> void pick_force(int, std::integer_sequence<int, F...>);
