@@ -21,6 +21,7 @@
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
+#include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_tensor.h"
 #include "memory.h"
@@ -104,9 +105,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
   }
-  // most that is sent for one atom: number density, density and stress; rates of a solid atom
-  comm_forward = 2 + (dim == 2 ? 3 : 6);
-  comm_reverse = ngrad();
+  comm_reverse = 1;    // more with solids, see init()
 }
 
 /* ---------------------------------------------------------------------- */
@@ -178,6 +177,9 @@ void FixFSI::init()
   need_psi = density_fluid != CONTINUITY || (fluid && fluid->surface_ratio > 0.0) ||
       (solid && density_solid != CONTINUITY);
   need_grad = solid != nullptr;
+  // most that is sent for one atom: number density, density, stress and the gradient's coefficients; sums of the gradient back
+  comm_forward = 2 + (solid ? (dim == 2 ? 3 : 6) + dim * solid->terms() : 0);
+  comm_reverse = solid ? ngrad() : 1;
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
 
@@ -243,6 +245,15 @@ void FixFSI::gather_walls()
   if (walls.wall.size() > Walls::MAXWALL)
     error->all(FLERR, "There are {} mirror walls, more than the {} supported", walls.wall.size(), Walls::MAXWALL);
   walls.find_reflections();
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSI::ngrad() const
+{
+  const int terms = solid->terms();
+  if (terms == 0) return dim * dim;
+  return std::max(dim * terms + packed_size(terms), dim * dim + dim * terms);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -427,16 +438,19 @@ void FixFSI::update_state(bool advance)
     for (int i = 0; i < nall; i++) wmask[i] = walls.near(x[i], cut);
   }
 
-  if (advance && (rate || grad)) {
+  // the gradient's coefficients are needed by forces, so in setup too
+  const bool gradient = need_grad && (advance || solid->terms());
+  if ((advance && rate) || gradient) {
     if (rate) memset(rate, 0, nall * sizeof(double));
-    if (grad && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
-    if (rate) fluid->density_rate(update->dt);
-    if (grad) solid->velocity_gradient(update->dt);
+    if (gradient && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
+    if (rate && advance) fluid->density_rate(update->dt);
+    if (gradient) solid->velocity_gradient(advance ? update->dt : 0.0);
     if (force->newton_pair) comm->reverse_comm(this);
-    advance_density();
-    if (grad) {
-      if (dim == 2) advance_solids<2>();
-      else advance_solids<3>();
+    if (advance) advance_density();
+    if (gradient) {
+      if (solid->terms() == 0) dim == 2 ? advance_solids<2, 0>(advance) : advance_solids<3, 0>(advance);
+      else if (solid->terms() == dim) dim == 2 ? advance_solids<2, 2>(advance) : advance_solids<3, 3>(advance);
+      else dim == 2 ? advance_solids<2, 5>(advance) : advance_solids<3, 9>(advance);
     }
   }
   if (need_psi) {
@@ -558,7 +572,7 @@ double FixFSI::shear_energy(int i) const
    solids: velocity gradient L from its sums; stress and, in continuity mode, density from L
 ------------------------------------------------------------------------- */
 
-template <int D> void FixFSI::advance_solids()
+template <int D, int TERMS> void FixFSI::advance_solids(bool advance)
 {
   double *rho = atom->rho;
   const int *const type = atom->type;
@@ -567,7 +581,21 @@ template <int D> void FixFSI::advance_solids()
     const State &s = state[type[i]];
     if (s.species != SOLID) continue;
     double *L = grad[i];
-    if (solid->corrected) right_divide<D>(L, Sym<D>::load(L + D * D), 1.0e-3);
+    if constexpr (TERMS > 0) {
+      // L = [sum_j w_ij (v_j - v_i)(x)phi_j] C^T
+      double C[D * TERMS], full[D * D] = {};
+      if (gradient_coefficients<D, TERMS>(L + D * TERMS, C) == Gradient<D>::DEFICIENT) {
+        // hardly any neighbours: torn off, no strain, no stress to share
+        std::fill_n(C, D * TERMS, 0.0);
+      }
+      for (int a = 0; a < D; a++)
+        for (int b = 0; b < D; b++)
+          for (int k = 0; k < TERMS; k++) full[a * D + b] += L[a * TERMS + k] * C[b * TERMS + k];
+      const double inv = 1.0 / h;
+      for (int k = 0; k < D * D; k++) L[k] = full[k] * inv;
+      for (int k = 0; k < D * TERMS; k++) L[D * D + k] = C[k] * inv;
+    }
+    if (!advance) continue;
     fix_stress->advance<D>(i, L, dt, s.shear);
     if (density_solid == CONTINUITY) {
       double div = 0.0;
@@ -602,8 +630,10 @@ int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
     const int i = list[ii];
     buf[m++] = rho[i];
     if (need_psi) buf[m++] = psi[i];
-    if (solid && state[type[i]].species == SOLID)
+    if (solid && state[type[i]].species == SOLID) {
       for (int k = 0; k < ns; k++) buf[m++] = fix_stress->stress[i][k];
+      for (int k = 0; k < dim * solid->terms(); k++) buf[m++] = grad[i][dim * dim + k];
+    }
   }
   return m;
 }
@@ -619,8 +649,10 @@ void FixFSI::unpack_forward_comm(int n, int first, double *buf)
   for (int i = first; i < first + n; i++) {
     rho[i] = buf[m++];
     if (need_psi) psi[i] = buf[m++];
-    if (solid && state[type[i]].species == SOLID)
+    if (solid && state[type[i]].species == SOLID) {
       for (int k = 0; k < ns; k++) fix_stress->stress[i][k] = buf[m++];
+      for (int k = 0; k < dim * solid->terms(); k++) grad[i][dim * dim + k] = buf[m++];
+    }
   }
 }
 

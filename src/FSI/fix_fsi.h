@@ -78,7 +78,7 @@ class FixFSI : public Fix {
   // per atom, local and ghost; valid from pre_force on
   double *psi;      // number density, if any mode or rule needs it
   double *rate;     // density rate of fluids (continuity), local after the reverse communication
-  double **grad;    // solids: sum V_j (v_j-v_i)(x)g_ij, then the symmetric sum V_j x_ji(x)g_ij; afterwards L
+  double **grad;    // solids: the sums of pair_style fsi/solid's velocity_gradient(); afterwards L and coefficients (fsi_gradient.h)
   int *wmask;       // bits of the mirror walls that an atom is near
 
   // energy ledger (compute fsi/energy): what each term took from the particles' energy since the fix was defined, this
@@ -108,7 +108,8 @@ class FixFSI : public Fix {
   // does atom i have a deviatoric stress?
   bool has_stress(int i) const { return solid && state[atom->type[i]].species == FSI::SOLID; }
 
-  int ngrad() const { return dim * dim + (dim == 2 ? 3 : 6); }
+  // sums of the velocity gradient per solid particle, and what replaces them: L, then the coefficients of its weights
+  int ngrad() const;
   void find_gravity();
   // number density of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
   void number_density(double *n);
@@ -124,7 +125,7 @@ class FixFSI : public Fix {
   bool need_psi, need_grad, need_ratio;
 
   void substep_solids();
-  template <int D> void advance_solids();
+  template <int D, int TERMS> void advance_solids(bool advance);
   void advance_density();
   void density_from_psi();
   void update_state(bool);

@@ -28,77 +28,103 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  template <int D> class GradientWeights {
-   public:
+  template <int D> struct Gradient {
     static constexpr int NLINEAR = D, NQUADRATIC = D * (D + 3) / 2;
     enum Order { DEFICIENT, LINEAR, PARTIAL, QUADRATIC };
+  };
+  constexpr int packed_size(int n) { return n * (n + 1) / 2; }
+
+  // basis about a particle, x = offset times 1/length: x, y, (z), then, for quadratic exactness, their products
+  template <int D, int TERMS> inline void gradient_basis(const double *x, double *phi)
+  {
+    int k = 0;
+    for (; k < D; k++) phi[k] = x[k];
+    if constexpr (TERMS > D)
+      for (int a = 0; a < D; a++)
+        for (int b = a; b < D; b++) phi[k++] = x[a] * x[b];
+  }
+
+  // The first D rows C (D x TERMS) of the inverse of A = sum_j w_j phi_j phi_j^T (packed lower triangle, by rows):
+  // G_ij = w_ij C phi_j/length. Terms that the neighbours cannot tell from lower ones are left out (PARTIAL; LINEAR if all
+  // quadratic ones are, as in a body two particles thick); DEFICIENT, with C not set, where neighbours lie in a line (2D)
+  // or plane (3D) or are too few.
+  template <int D, int TERMS> inline typename Gradient<D>::Order gradient_coefficients(const double *A, double *C)
+  {
+    // part of a term's own square that must be independent of earlier terms. Round-off would allow 1e-12; nearly dependent
+    // terms give large weights of both signs, which cost time step and amplify particle noise.
+    constexpr double TOLERANCE = 1.0e-4;
+    const auto at = [](int a, int b) { return packed_size(a) + b; };
+
+    // A = L d L^T
+    double L[TERMS][TERMS] = {}, d[TERMS];
+    int dropped = 0;
+    for (int a = 0; a < TERMS; a++) {
+      for (int b = 0; b < a; b++) {
+        if (d[b] == 0.0) continue;
+        double s = A[at(a, b)];
+        for (int k = 0; k < b; k++) s -= L[a][k] * d[k] * L[b][k];
+        L[a][b] = s / d[b];
+      }
+      d[a] = A[at(a, a)];
+      for (int k = 0; k < a; k++) d[a] -= L[a][k] * L[a][k] * d[k];
+      if (!(d[a] > TOLERANCE * A[at(a, a)])) {
+        if (a < D) return Gradient<D>::DEFICIENT;
+        d[a] = 0.0;
+        for (int k = 0; k < a; k++) L[a][k] = 0.0;
+        dropped++;
+      }
+    }
+    for (int a = 0; a < D; a++) {
+      double *const c = C + a * TERMS;
+      for (int k = 0; k < TERMS; k++) {
+        c[k] = (k == a) ? 1.0 : 0.0;
+        for (int b = a; b < k; b++) c[k] -= L[k][b] * c[b];
+      }
+      for (int k = 0; k < TERMS; k++) c[k] = d[k] > 0.0 ? c[k] / d[k] : 0.0;
+      for (int k = TERMS - 1; k >= 0; k--)
+        for (int b = k + 1; b < TERMS; b++) c[k] -= L[b][k] * c[b];
+    }
+    if (dropped == TERMS - D) return Gradient<D>::LINEAR;
+    return dropped ? Gradient<D>::PARTIAL : Gradient<D>::QUADRATIC;
+  }
+
+  // the weights of one particle, from all its neighbours at once
+  template <int D> class GradientWeights : public Gradient<D> {
+   public:
+    using Order = typename Gradient<D>::Order;
 
     // G (n x D, 1/length) for n neighbours at X_j - X_i = dX (n x D) with weights w > 0; scale = length of the order of |dX|;
-    // quadratic = false asks for linear exactness only. Returns what was reached: quadratic terms that the neighbours cannot
-    // tell from lower ones are left out (PARTIAL; LINEAR if all of them are, as in a body two particles thick);
-    // DEFICIENT, with G not set, where neighbours lie in a line (2D) or plane (3D) or are too few.
+    // quadratic = false asks for linear exactness only. Returns what was reached.
     Order operator()(int n, const double *dX, const double *w, double scale, bool quadratic, double *G)
     {
-      const int terms = quadratic ? NQUADRATIC : NLINEAR;
-      const double inv = 1.0 / scale;
-      basis.resize((size_t) n * terms);
-      double A[NQUADRATIC][NQUADRATIC] = {};
-      for (int j = 0; j < n; j++) {
-        double *phi = basis.data() + (size_t) j * terms;
-        int k = 0;
-        for (int a = 0; a < D; a++) phi[k++] = dX[j * D + a] * inv;
-        if (quadratic)
-          for (int a = 0; a < D; a++)
-            for (int b = a; b < D; b++) phi[k++] = phi[a] * phi[b];
-        for (int a = 0; a < terms; a++)
-          for (int b = 0; b <= a; b++) A[a][b] += w[j] * phi[a] * phi[b];
-      }
-
-      // A = L d L^T; a term whose pivot says that it depends on those before is left out
-      double L[NQUADRATIC][NQUADRATIC] = {}, d[NQUADRATIC];
-      int dropped = 0;
-      for (int a = 0; a < terms; a++) {
-        for (int b = 0; b < a; b++) {
-          if (d[b] == 0.0) continue;
-          double s = A[a][b];
-          for (int k = 0; k < b; k++) s -= L[a][k] * d[k] * L[b][k];
-          L[a][b] = s / d[b];
-        }
-        d[a] = A[a][a];
-        for (int k = 0; k < a; k++) d[a] -= L[a][k] * L[a][k] * d[k];
-        if (!(d[a] > TOLERANCE * A[a][a])) {
-          if (a < D) return DEFICIENT;
-          d[a] = 0.0;
-          for (int k = 0; k < a; k++) L[a][k] = 0.0;
-          dropped++;
-        }
-      }
-
-      // rows 0 .. D-1 of the inverse, times the basis
-      for (int a = 0; a < D; a++) {
-        double c[NQUADRATIC] = {};
-        c[a] = 1.0;
-        for (int k = a + 1; k < terms; k++)
-          for (int b = a; b < k; b++) c[k] -= L[k][b] * c[b];
-        for (int k = 0; k < terms; k++) c[k] = d[k] > 0.0 ? c[k] / d[k] : 0.0;
-        for (int k = terms - 1; k >= 0; k--)
-          for (int b = k + 1; b < terms; b++) c[k] -= L[b][k] * c[b];
-        for (int j = 0; j < n; j++) {
-          const double *phi = basis.data() + (size_t) j * terms;
-          double s = 0.0;
-          for (int k = 0; k < terms; k++) s += c[k] * phi[k];
-          G[j * D + a] = w[j] * s * inv;
-        }
-      }
-      if (!quadratic || dropped == NQUADRATIC - NLINEAR) return LINEAR;
-      return dropped ? PARTIAL : QUADRATIC;
+      return quadratic ? solve<Gradient<D>::NQUADRATIC>(n, dX, w, 1.0 / scale, G)
+                       : solve<Gradient<D>::NLINEAR>(n, dX, w, 1.0 / scale, G);
     }
 
    private:
-    // part of a term's own square that must be independent of earlier terms. Round-off would allow 1e-12; nearly dependent
-    // terms give large weights of both signs, which cost time step and amplify particle noise.
-    static constexpr double TOLERANCE = 1.0e-4;
     std::vector<double> basis;
+
+    template <int TERMS> Order solve(int n, const double *dX, const double *w, double inv, double *G)
+    {
+      basis.resize((size_t) n * TERMS);
+      double A[packed_size(TERMS)] = {}, C[D * TERMS];
+      for (int j = 0; j < n; j++) {
+        double x[D], *phi = &basis[(size_t) j * TERMS];
+        for (int a = 0; a < D; a++) x[a] = dX[j * D + a] * inv;
+        gradient_basis<D, TERMS>(x, phi);
+        for (int a = 0, m = 0; a < TERMS; a++)
+          for (int b = 0; b <= a; b++) A[m++] += w[j] * phi[a] * phi[b];
+      }
+      const Order order = gradient_coefficients<D, TERMS>(A, C);
+      if (order == Gradient<D>::DEFICIENT) return order;
+      for (int j = 0; j < n; j++)
+        for (int a = 0; a < D; a++) {
+          double s = 0.0;
+          for (int k = 0; k < TERMS; k++) s += C[a * TERMS + k] * basis[(size_t) j * TERMS + k];
+          G[j * D + a] = w[j] * s * inv;
+        }
+      return order;
+    }
   };
 
 }    // namespace FSI
