@@ -164,8 +164,10 @@ void FixFSI::init()
   fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);
   if (solid && !fix_stress)
     error->all(FLERR, "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
-  if (!solid && fix_stress && comm->me == 0)
-    error->warning(FLERR, "Fix fsi/stress has nothing to act on: there is no pair_style fsi/solid");
+  const bool hypo = solid_tl && solid_tl->hypoelastic();
+  if (hypo && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
+  if (!solid && !hypo && fix_stress && comm->me == 0)
+    error->warning(FLERR, "Fix fsi/stress has nothing to act on: no solid is hypoelastic");
 
   wall_fixes.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
@@ -401,6 +403,7 @@ void FixFSI::substep_solids()
   for (int n = 0; n < substeps; n++) {
     drift(dth);
     solid_tl->forward_positions();
+    solid_tl->advance_stress(dt);
     solid_tl->internal_forces();
     fs = solid_tl->force_of_solids();
     for (const int i : moving) {
@@ -463,6 +466,10 @@ void FixFSI::update_state(bool advance)
       MPI_Allreduce(&mine, &psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
     }
     density_from_psi();
+  }
+  if (solid_tl && advance) {
+    solid_tl->break_bonds();
+    if (substeps == 1) solid_tl->advance_stress(update->dt);
   }
   comm->forward_comm(this);
 }
@@ -596,7 +603,7 @@ template <int D, int TERMS> void FixFSI::advance_solids(bool advance)
       for (int k = 0; k < D * TERMS; k++) L[D * D + k] = C[k] * inv;
     }
     if (!advance) continue;
-    fix_stress->advance<D>(i, L, dt, s.shear);
+    const double work = fix_stress->advance<D>(i, L, dt, s);
     if (density_solid == CONTINUITY) {
       double div = 0.0;
       for (int a = 0; a < D; a++) div += L[a * D + a];
@@ -612,6 +619,7 @@ template <int D, int TERMS> void FixFSI::advance_solids(bool advance)
       for (int a = 0; a < D; a++)
         for (int b = 0; b < D; b++) power += sigma(a, b) * L[a * D + b];
       tally(GRADIENT, -power * atom->rmass[i] / rho[i]);
+      taken[PLASTIC] += work * atom->rmass[i] / rho[i];
     }
   }
 }

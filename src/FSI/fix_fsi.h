@@ -83,7 +83,7 @@ class FixFSI : public Fix {
 
   // energy ledger (compute fsi/energy): what each term took from the particles' energy since the fix was defined, this
   // rank's part; kept only while such a compute exists
-  enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, NTERM };
+  enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, NTERM };
   bool ledger;
   double taken[NTERM];
   // adds a power of the pair loops, which counts only in steps, not in setup

@@ -37,7 +37,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), hub(nullptr), list(nullptr), slot(nullptr),
+    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), broken(0), hub(nullptr), list(nullptr), slot(nullptr),
     maxbond(0), layer(nullptr)
 {
   restart_peratom = 1;
@@ -261,6 +261,66 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
   }
 }
 
+/* ---------------------------------------------------------------------- */
+
+void FixFSIReference::break_bonds(double stretch)
+{
+  if (domain->dimension == 2) break_bonds_of_all<2>(stretch);
+  else break_bonds_of_all<3>(stretch);
+}
+
+template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
+{
+  double **x = atom->x;
+  const double limit = stretch * stretch;
+  GradientWeights<D> weights;
+  std::vector<double> dX, w, G;
+  for (const int i : solids) {
+    const size_t first = (size_t) slot[i] * maxbond;
+    int &n = nbond[slot[i]];
+    const auto longer = [&](int k) {
+      const double *const X = &data[(first + k) * nvalue + D], *const xj = x[local[first + k]];
+      double rsq = 0.0, Rsq = 0.0;
+      for (int a = 0; a < D; a++) {
+        rsq += (xj[a] - x[i][a]) * (xj[a] - x[i][a]);
+        Rsq += X[a] * X[a];
+      }
+      return rsq > limit * Rsq;
+    };
+    int kept = 0;
+    for (int k = 0; k < n; k++) {
+      if (longer(k)) continue;
+      if (kept < k) {
+        local[first + kept] = local[first + k];
+        partner[first + kept] = partner[first + k];
+        std::copy_n(&data[(first + k) * nvalue], nvalue, &data[(first + kept) * nvalue]);
+      }
+      kept++;
+    }
+    if (kept == n) continue;
+    broken += n - kept;
+    n = kept;
+    dX.resize((size_t) n * D);
+    w.resize(n);
+    G.resize((size_t) n * D);
+    for (int k = 0; k < n; k++) {
+      const double *const value = &data[(first + k) * nvalue];
+      double Rsq = 0.0;
+      for (int a = 0; a < D; a++) {
+        dX[k * D + a] = value[D + a];
+        Rsq += value[D + a] * value[D + a];
+      }
+      w[k] = value[2 * D] * Rsq;    // V_i V_j W: the factor V_i does not matter
+    }
+    if (weights(n, dX.data(), w.data(), hub->h, quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
+      n = 0;
+      continue;
+    }
+    for (int k = 0; k < n; k++)
+      for (int a = 0; a < D; a++) data[(first + k) * nvalue + a] = G[k * D + a];
+  }
+}
+
 /* ----------------------------------------------------------------------
    where the partners of each bond are: after atoms or ghosts have changed
 ------------------------------------------------------------------------- */
@@ -278,7 +338,7 @@ void FixFSIReference::resolve()
     const size_t first = (size_t) slot[i] * maxbond;
     for (int k = 0; k < nbond[slot[i]]; k++) {
       const tagint t = partner[first + k];
-      int j = atom->map(t);
+      const int j = atom->map(t);
       if (j < 0)
         error->one(FLERR, "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {}: one of them was lost, or the solid is "
                           "stretched so far that comm_modify cutoff must be larger", tag[i], t,

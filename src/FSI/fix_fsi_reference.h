@@ -64,6 +64,11 @@ class FixFSIReference : public Fix {
   double weight(int i) const { return quadrature[slot[i]]; }    // of i in the energy's integral, times its volume
   const double *values(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }
 
+  // removes bonds longer than stretch times their reference length, and makes the gradient anew from those left; a particle
+  // whose bonds no longer suffice loses them all
+  void break_bonds(double stretch);
+  bigint broken;    // bonds removed by this rank; each is counted from both ends
+
   // local solid atoms, and ghosts of solid atoms
   std::vector<int> solids, ghosts;
 
@@ -82,6 +87,7 @@ class FixFSIReference : public Fix {
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
   bool is_solid(int i) const;
+  template <int D> void break_bonds_of_all(double stretch);
   void reserve(int n);
   int new_slot(int n);
   int pack(int, double *) const;

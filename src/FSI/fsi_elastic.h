@@ -12,7 +12,7 @@
 ------------------------------------------------------------------------- */
 
 
-// Hyperelastic laws of the total-Lagrangian solid: from the deformation gradient F (D x D, row-major, F_aB = dx_a/dX_B) the
+// Laws of the total-Lagrangian solid: from the deformation gradient F (D x D, row-major, F_aB = dx_a/dX_B) the
 // first Piola-Kirchhoff stress P = d(psi)/dF, the energy density psi per reference volume, and P_zz of plane strain.
 // Lame's constants: lambda = K - 2G/3, mu = G.
 
@@ -69,7 +69,7 @@ namespace FSI {
     {
       if (plane_stress) lambda = 2.0 * lambda * mu / (lambda + 2.0 * mu);
     }
-    template <int D> PiolaStress<D> operator()(const double *F) const
+    template <int D> PiolaStress<D> operator()(const double *F, const double *) const
     {
       Sym<D> E;
       for (int a = 0; a < D; a++)
@@ -97,7 +97,7 @@ namespace FSI {
   struct NeoHookean {
     double lambda, mu;
     NeoHookean(double bulk, double shear, bool) : lambda(bulk - 2.0 / 3.0 * shear), mu(shear) {}
-    template <int D> PiolaStress<D> operator()(const double *F) const
+    template <int D> PiolaStress<D> operator()(const double *F, const double *) const
     {
       PiolaStress<D> r;
       double C[D * D], trace = 0.0;
@@ -109,6 +109,39 @@ namespace FSI {
       }
       r.zz = D == 2 ? lambda * lnJ : 0.0;
       r.energy = 0.5 * mu * (trace - D) - mu * lnJ + 0.5 * lambda * lnJ * lnJ;
+      return r;
+    }
+  };
+
+  // hypoelastic, as the updated-Lagrangian solid: sigma = -p I + S with S from fix fsi/stress and p = K (1/J - 1), P = J sigma F^-T
+  struct HypoElastic {
+    double bulk, shear;
+    bool plane_stress;
+    HypoElastic(double bulk_in, double shear_in, bool plane_stress_in) :
+        bulk(bulk_in), shear(shear_in), plane_stress(plane_stress_in)
+    {
+    }
+    template <int D> PiolaStress<D> operator()(const double *F, const double *deviator) const
+    {
+      PiolaStress<D> r;
+      double C[D * D];
+      cofactor<D>(F, C);
+      const double J = determinant<D>(F), p = bulk * (1.0 / J - 1.0);
+      auto sigma = Sym<D>::load(deviator);
+      double ss = sigma.squared();
+      if (D == 2 && !plane_stress) {
+        const double zz = -(deviator[0] + deviator[1]);
+        ss += zz * zz;
+        r.zz = J * (zz - p);
+      }
+      r.energy = bulk * (J - 1.0 - std::log(J)) + J * ss / (4.0 * shear);
+      sigma += Sym<D>::identity(-p);
+      for (int b = 0; b < D; b++) {
+        double column[D], out[D];
+        for (int a = 0; a < D; a++) column[a] = C[a * D + b];
+        dot<D>(sigma, column, out);
+        for (int a = 0; a < D; a++) r.P[a * D + b] = out[a];
+      }
       return r;
     }
   };

@@ -159,6 +159,8 @@ State PairFSI::solid_state(const Material &m, bool plane_stress) const
   s.csq = (plane_stress ? m.plane_stress_modulus() : m.bulk_modulus()) / m.rho0;
   s.c = std::sqrt(s.csq);
   s.shear = m.shear_modulus();
+  s.yield = m.yield;
+  s.hardening = m.hardening;
   return s;
 }
 

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_reference.h"
+#include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_contact.h"
 #include "fsi_viscosity_artificial.h"
@@ -38,7 +39,7 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), alpha(0.0), beta(0.0), zeta(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), alpha(0.0), beta(0.0), zeta(0.0), damage(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
     reference(nullptr), fsolid(nullptr), nmax(0), bond_loop{nullptr, nullptr}
 {
   no_virial_fdotr_compute = 1;
@@ -57,6 +58,10 @@ template <> const StVenantKirchhoff *PairFSISolidTL::laws<StVenantKirchhoff>() c
 template <> const NeoHookean *PairFSISolidTL::laws<NeoHookean>() const
 {
   return neohookean.data();
+}
+template <> const HypoElastic *PairFSISolidTL::laws<HypoElastic>() const
+{
+  return hypo.data();
 }
 
 /* ----------------------------------------------------------------------
@@ -90,8 +95,12 @@ void PairFSISolidTL::settings(int narg, char **arg)
       need(narg, arg, iarg, 1);
       zeta = number(arg[iarg + 1], "hourglass");
       iarg += 2;
+    } else if (strcmp(arg[iarg], "damage") == 0) {
+      need(narg, arg, iarg, 1);
+      damage = number(arg[iarg + 1], "damage strain");
+      iarg += 2;
     } else if (strcmp(arg[iarg], "law") == 0) {
-      law = choice(iarg, {"svk", "neohookean"});
+      law = choice(iarg, {"svk", "neohookean", "hypo"});
       iarg += 2;
     } else if (strcmp(arg[iarg], "plane") == 0) {
       plane_stress = choice(iarg, {"strain", "stress"});
@@ -100,10 +109,11 @@ void PairFSISolidTL::settings(int narg, char **arg)
       linear = choice(iarg, {"quadratic", "linear"});
       iarg += 2;
     } else
-      error->all(FLERR, "Unknown pair_style fsi/solid/tl keyword {}: expected artificial/visc, hourglass, law, plane, gradient or volumes",
+      error->all(FLERR, "Unknown pair_style fsi/solid/tl keyword {}: expected artificial/visc, hourglass, law, plane, gradient, "
+                        "volumes or damage",
                  arg[iarg]);
   }
-  if (plane_stress && law != SVK) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk");
+  if (plane_stress && law == NEOHOOKEAN) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -139,22 +149,25 @@ void PairFSISolidTL::init_style()
     reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", REFERENCE)));
   reference->quadratic = !linear;
   reference->end_corrected = !plain;
-  comm_forward = alpha > 0.0 || beta > 0.0 ? 2 * dim : dim;
+  comm_forward = alpha > 0.0 || beta > 0.0 || law == HYPO ? 2 * dim : dim;
   comm_reverse = dim;
 
   svk.clear();
   neohookean.clear();
+  hypo.clear();
   for (const auto &m : material) {
     const bool is = m.species == SOLID;
     const double K = is ? m.bulk_modulus() : 1.0, G = is ? m.shear_modulus() : 1.0;
     svk.emplace_back(K, G, plane_stress);
     neohookean.emplace_back(K, G, false);
+    hypo.emplace_back(is && plane_stress ? m.plane_stress_modulus() : K, G, plane_stress);
   }
 
   const int flags = (zeta > 0.0 ? HOURGLASS : 0) | (alpha > 0.0 || beta > 0.0 ? VISCOSITY : 0) |
       (modify->get_compute_by_style("^fsi/energy$").empty() ? 0 : LEDGER);
   if (law == SVK) dim == 2 ? select<StVenantKirchhoff, 2>(flags) : select<StVenantKirchhoff, 3>(flags);
-  else dim == 2 ? select<NeoHookean, 2>(flags) : select<NeoHookean, 3>(flags);
+  else if (law == NEOHOOKEAN) dim == 2 ? select<NeoHookean, 2>(flags) : select<NeoHookean, 3>(flags);
+  else dim == 2 ? select<HypoElastic, 2>(flags) : select<HypoElastic, 3>(flags);
 }
 
 template <class L, int D> void PairFSISolidTL::select(int flags)
@@ -228,11 +241,13 @@ template <class L, int D, int FLAGS> void PairFSISolidTL::bond_forces()
   const double *const rmass = atom->rmass;
   const State *const state = hub->state.data();
   const L *const law_of = laws<L>();
+  double **stress_of = hypoelastic() ? hub->fix_stress->stress : nullptr;
   const ArtificialViscosity viscosity(alpha, beta, hub->h);
   strain_energy = 0.0;
 
   for (const int i : reference->solids) {
     const int n = reference->count(i), *const partner = reference->partners(i);
+    if (n == 0) continue;    // torn off by damage
     const double *const values = reference->values(i);
     const State &si = state[type[i]];
     const double vol = rmass[i] / si.rho0 * reference->weight(i);
@@ -246,7 +261,7 @@ template <class L, int D, int FLAGS> void PairFSISolidTL::bond_forces()
         for (int c = 0; c < D; c++) F[a * D + c] += d * b[c];
       }
     }
-    const auto piola = law_of[type[i]].template operator()<D>(F);
+    const auto piola = law_of[type[i]].template operator()<D>(F, stress_of ? stress_of[i] : nullptr);
     if (FLAGS & LEDGER) strain_energy += vol * piola.energy;
     double t[D * D];    // derivative of the energy of i with respect to F_i
     for (int a = 0; a < D * D; a++) t[a] = vol * piola.P[a];
@@ -394,6 +409,55 @@ template <int D> void PairFSISolidTL::deformation(int i, double *F) const
 }
 
 /* ----------------------------------------------------------------------
+   L = F' F^-1 at the time of the velocities, half a step before the positions
+------------------------------------------------------------------------- */
+
+void PairFSISolidTL::advance_stress(double dt)
+{
+  if (law != HYPO) return;
+  if (hub->dim == 2) advance_stress_of_all<2>(dt);
+  else advance_stress_of_all<3>(dt);
+}
+
+template <int D> void PairFSISolidTL::advance_stress_of_all(double dt)
+{
+  double **x = atom->x;
+  double **v = atom->v;
+  const double dth = 0.5 * dt;
+  for (const int i : reference->solids) {
+    const int n = reference->count(i), *const partner = reference->partners(i);
+    const double *b = reference->values(i);
+    double F[D * D] = {}, Fdot[D * D] = {}, C[D * D], L[D * D] = {};
+    for (int k = 0; k < n; k++, b += reference->nvalue) {
+      const int j = partner[k];
+      for (int a = 0; a < D; a++) {
+        const double dv = v[j][a] - v[i][a], dx = x[j][a] - x[i][a] - dth * dv;
+        for (int c = 0; c < D; c++) {
+          F[a * D + c] += dx * b[c];
+          Fdot[a * D + c] += dv * b[c];
+        }
+      }
+    }
+    if (n == 0) continue;    // torn off
+    cofactor<D>(F, C);
+    const double inv = 1.0 / determinant<D>(F);
+    for (int a = 0; a < D; a++)
+      for (int c = 0; c < D; c++)
+        for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
+    const State &s = hub->state[atom->type[i]];
+    const double work = hub->fix_stress->advance<D>(i, L, dt, s);
+    if (hub->ledger) hub->taken[FixFSI::PLASTIC] += work * atom->rmass[i] / s.rho0;
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSISolidTL::break_bonds()
+{
+  if (damage > 0.0) reference->break_bonds(1.0 + damage);
+}
+
+/* ----------------------------------------------------------------------
    Cauchy stress: P F^T/J
 ------------------------------------------------------------------------- */
 
@@ -402,11 +466,16 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
   const auto evaluate = [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     static constexpr int voigt[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    Stress s = {};
+    s.J = 1.0;
+    if (reference->count(i) == 0) return s;
     double F[D * D];
     deformation<D>(i, F);
     const int t = atom->type[i];
-    const auto piola = law == SVK ? svk[t].template operator()<D>(F) : neohookean[t].template operator()<D>(F);
-    Stress s = {};
+    PiolaStress<D> piola;
+    if (law == SVK) piola = svk[t].template operator()<D>(F, nullptr);
+    else if (law == NEOHOOKEAN) piola = neohookean[t].template operator()<D>(F, nullptr);
+    else piola = hypo[t].template operator()<D>(F, hub->fix_stress->stress[i]);
     s.J = determinant<D>(F);
     for (int a = 0; a < D; a++)
       for (int c = a; c < D; c++) {
@@ -493,7 +562,7 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *list_, double *buf)
 
 void PairFSISolidTL::write_restart_settings(FILE *fp)
 {
-  double d[] = {alpha, beta, zeta};
+  double d[] = {alpha, beta, zeta, damage};
   int n[] = {law, plane_stress, linear, plain};
   restart_value(fp, d, true);
   restart_value(fp, n, true);
@@ -503,13 +572,14 @@ void PairFSISolidTL::write_restart_settings(FILE *fp)
 
 void PairFSISolidTL::read_restart_settings(FILE *fp)
 {
-  double d[3];
+  double d[4];
   int n[4];
   restart_value(fp, d, false);
   restart_value(fp, n, false);
   alpha = d[0];
   beta = d[1];
   zeta = d[2];
+  damage = d[3];
   law = n[0];
   plane_stress = n[1];
   linear = n[2];

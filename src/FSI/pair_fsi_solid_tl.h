@@ -56,6 +56,10 @@ class PairFSISolidTL : public PairFSI {
   // positions, and velocities where a force needs them, of ghost solids from their owners
   void forward_positions();
   double **force_of_solids() { return fsolid; }
+  // law hypo: deviatoric stress from half a step back to half a step ahead, at positions dt/2 ahead of the velocities' time
+  bool hypoelastic() const { return law == HYPO; }
+  void advance_stress(double dt);
+  void break_bonds();    // keyword damage
   const std::vector<int> &solids() const;
   double strain_energy;    // of this rank's particles at the last forces; kept for compute fsi/energy
 
@@ -74,12 +78,13 @@ class PairFSISolidTL : public PairFSI {
   FSI::State make_state(const FSI::Material &) const override;
 
  private:
-  enum Law { SVK, NEOHOOKEAN };
-  double alpha, beta, zeta;
+  enum Law { SVK, NEOHOOKEAN, HYPO };
+  double alpha, beta, zeta, damage;
   int law, plane_stress, linear, plain;
   class FixFSIReference *reference;
   std::vector<FSI::StVenantKirchhoff> svk;    // per type
   std::vector<FSI::NeoHookean> neohookean;
+  std::vector<FSI::HypoElastic> hypo;
   double **fsolid;
   int nmax;
 
@@ -91,6 +96,7 @@ class PairFSISolidTL : public PairFSI {
   template <class L, int D, int... F> void pick(int flags, std::integer_sequence<int, F...>);
   template <int D> void contact_forces();
   template <int D> void deformation(int i, double *F) const;
+  template <int D> void advance_stress_of_all(double dt);
 };
 
 }    // namespace LAMMPS_NS
