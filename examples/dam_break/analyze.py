@@ -93,42 +93,49 @@ def tall_reference(number):
     return table.time[of_set], table["front"][of_set]
 
 
-def judge_classical(folder, summary, run):
-    """Column 2H x H: front against a converged code, wall pressure against the experiment."""
-    code = series.read(HERE / "front_code.csv")
+def add_classical(summary, run, suffix=""):
+    """Figures of the column 2H x H: front against a converged code, wall pressure against the experiment."""
+    code, measured = (series.read(HERE / f"{name}.csv") for name in ("front_code", "gauge_experiment"))
     deviation = run.deviation(code.time, code["wcsph"])
-    summary.add("front_error_code", largest(deviation), "", 0.0, CODE)
-    summary.add("front_error_code_rms", float(np.sqrt(np.mean(deviation**2))), "", 0.0, CODE)
-    shown = run.t_front <= UNTIL
-    plot.lines(folder / "front.png", TIME_LABEL, FRONT_LABEL,
-               [(run.t_front[shown], run.front[shown], f"H/dx = {run.resolution}", plot.BLUE)],
-               [(code.time, code["wcsph"], CODE, plot.ORANGE)])
-
-    measured = series.read(HERE / "gauge_experiment.csv")
-    summary.add("pressure_plateau", plateau(run.t, run.gauge), "rho g H", plateau(measured.time, measured["pressure"]),
-                BUCHNER)
-    plot.lines(folder / "gauge.png", "t sqrt(g/H)", "p/(rho g H) at the wall, 0.2 H",
-               [(run.t[run.t > 2.0], run.gauge[run.t > 2.0], f"H/dx = {run.resolution}", plot.BLUE)],
-               [(measured.time, measured["pressure"], BUCHNER, plot.ORANGE)])
+    summary.add(f"front_error_code{suffix}", largest(deviation), "", 0.0, CODE)
+    summary.add(f"front_error_code_rms{suffix}", float(np.sqrt(np.mean(deviation**2))), "", 0.0, CODE)
+    summary.add(f"pressure_plateau{suffix}", plateau(run.t, run.gauge), "rho g H",
+                plateau(measured.time, measured["pressure"]), BUCHNER)
 
 
-def judge_tall(folder, summary, run):
-    """Column L x 2L: front against the experiments, as they are and delayed."""
-    points = []
-    for number, (name, label, colour) in MEASURED.items():
+def add_tall(summary, run):
+    """Figures of the column L x 2L: front against the experiments, as they are and delayed, and against a code."""
+    for number, (name, label, _) in MEASURED.items():
         times, fronts = tall_reference(number)
         lag = run.lag(times, fronts)
         source = f"experiment, {label}"
         summary.add(f"front_error_experiment_{name}", largest(run.deviation(times, fronts)), "", 0.0, source)
         summary.add(f"front_lag_{name}", float(lag), "sqrt(L/2g)", 0.0, source)
         summary.add(f"front_error_lagged_{name}", largest(run.deviation(times, fronts, lag)), "", 0.0, source)
-        points.append((times, fronts, label, colour))
-    times, fronts = tall_reference(CODE_SET)
-    summary.add("front_error_mps", largest(run.deviation(times, fronts)), "", 0.0, MPS)
+    summary.add("front_error_mps", largest(run.deviation(*tall_reference(CODE_SET))), "", 0.0, MPS)
+
+
+def plot_classical(folder, run):
+    """Front and wall pressure."""
+    code, measured = (series.read(HERE / f"{name}.csv") for name in ("front_code", "gauge_experiment"))
+    label = f"H/dx = {run.resolution}"
+    shown = run.t_front <= UNTIL
+    plot.lines(folder / "front.png", TIME_LABEL, FRONT_LABEL, [(run.t_front[shown], run.front[shown], label, plot.BLUE)],
+               [(code.time, code["wcsph"], CODE, plot.ORANGE)])
+    shown = run.t > 2.0
+    if shown.any():
+        plot.lines(folder / "gauge.png", "t sqrt(g/H)", "p/(rho g H) at the wall, 0.2 H",
+                   [(run.t[shown], run.gauge[shown], label, plot.BLUE)],
+                   [(measured.time, measured["pressure"], BUCHNER, plot.ORANGE)])
+
+
+def plot_tall(folder, run):
+    """Front."""
     shown = run.t_front <= 3.4
     plot.lines(folder / "front.png", TIME_LABEL, FRONT_LABEL,
                [(run.t_front[shown], run.front[shown], f"H/dx = {run.resolution}", plot.BLUE),
-                (times, fronts, MPS, "#999999")], points)
+                (*tall_reference(CODE_SET), f"{MPS} (MPS)", "#999999")],
+               [(*tall_reference(number), label, colour) for number, (_, label, colour) in MEASURED.items()])
 
 
 def main(folder):
@@ -137,9 +144,11 @@ def main(folder):
     summary = Summary(folder)
     run = Run(folder)
     if run.classical:
-        judge_classical(folder, summary, run)
+        add_classical(summary, run)
+        plot_classical(folder, run)
     if run.tall:
-        judge_tall(folder, summary, run)
+        add_tall(summary, run)
+        plot_tall(folder, run)
     summary.add("arrival_time", run.arrival(), "sqrt(H/g)")
 
     leaks = Leaks(0.5 * run.dx)
@@ -166,25 +175,27 @@ def study(folder, cases):
     colours = ("#9dbfd9", "#5990bd", plot.BLUE, "#0c3050")
     curves = []
     for run, colour in zip({run.resolution: run for run in best}.values(), colours):
-        summary.add(f"front_error_code_{run.resolution}", largest(run.deviation(code.time, code["wcsph"])), "", 0.0, CODE)
-        summary.add(f"pressure_plateau_{run.resolution}", plateau(run.t, run.gauge), "rho g H")
+        add_classical(summary, run, f"_{run.resolution}")
         curves.append((code.time, 100.0 * (run.front_at(code.time) / code["wcsph"] - 1.0), f"H/dx = {run.resolution}", colour))
     curves.append((code.time, 100.0 * (code["edac"] / code["wcsph"] - 1.0), "the other code's EDAC form", plot.ORANGE))
     plot.lines(folder / "front_convergence.png", TIME_LABEL, "front, deviation from the converged code [%]", curves)
 
+    if "experiment" in runs:
+        add_tall(summary, runs["experiment"])
     if "best_40" in runs and "best_40_serial" in runs:
         serial, parallel = runs["best_40_serial"], runs["best_40"]
-        before = serial.t_front <= UNTIL
-        summary.add("front_error_ranks", largest(parallel.front[before] / serial.front[before] - 1.0), "", 0.0,
-                    "1 against 2 ranks, H/dx = 40")
+        summary.add("front_difference_ranks", largest(parallel.deviation(serial.t_front, serial.front)), "", 0.0,
+                    "2 ranks against 1, H/dx = 40")
 
+    if "paper_classical" in runs:
+        add_classical(summary, runs["paper_classical"], "_paper")
     if "wide" in runs:
         ours = runs["wide"]
         curves = [(ours.t_front, ours.front, "this package's scheme", plot.BLUE)]
         for name, label, colour in (("paper", "paper's scheme, p0 = 17.4 rho g h", plot.ORANGE),
                                     ("paper_H", "paper's scheme, p0 = 17.4 rho g H", plot.GREY)):
             if name in runs:
-                summary.add(f"front_error_{name}", largest(runs[name].deviation(ours.t_front, ours.front)), "", 0.0,
+                summary.add(f"front_difference_{name}", largest(runs[name].deviation(ours.t_front, ours.front)), "", 0.0,
                             "the recommended scheme in the same geometry")
                 curves.append((runs[name].t_front, runs[name].front, label, colour))
         plot.lines(folder / "front_paper.png", TIME_LABEL, FRONT_LABEL, [

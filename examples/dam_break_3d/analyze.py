@@ -19,7 +19,7 @@ from fsi import dump, plot, series  # noqa: E402
 from fsi.leaks import Leaks  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
-SNAPSHOT_TIMES = (0.0, 0.4, 0.6, 0.9, 1.4, 2.0)  # [s]
+SNAPSHOT_TIMES = (0.0, 0.4, 0.6, 0.9, 1.3, 1.8)  # [s]
 STEADY = (3.0, 7.0)  # t sqrt(g/H): after the impact, before the wave comes back from the far wall
 EXPERIMENT = "experiment, Kleefsman et al. 2005"
 GAUGES = {1: plot.BLUE, 3: plot.ORANGE}
@@ -71,11 +71,11 @@ def picture(path, frames, tank):
     w, length = tank["half"], tank["length"]
     floor = np.array([(0, -w, 0), (length, -w, 0), (length, w, 0), (0, w, 0), (0, -w, 0)])
     side = 1.2 * tank["dx"] * 3.0 * 72.0 / 4.0  # points: the panels are 3 inch and 4 m wide
-    with plot.picture(path, 9.9, 0.55 + 1.42 * rows) as figure:
+    with plot.picture(path, 9.9, 0.55 + 1.3 * rows) as figure:
         axes = np.atleast_1d(figure.subplots(rows, columns)).ravel()
         for k, panel in enumerate(axes):
             panel.axis("off")
-            panel.set(xlim=(-0.25, length + 0.25), ylim=(-0.25, 1.15), aspect="equal")
+            panel.set(xlim=(-0.25, length + 0.25), ylim=(-0.2, 1.0), aspect="equal")
             if k >= len(frames):
                 continue
             frame, speed = frames[k], speeds[k]
