@@ -48,6 +48,7 @@ def examples(tmp_path, monkeypatch):
     """A folder of examples with one scene, `toy`, of two cases; LAMMPS is replaced by something that writes a log."""
     monkeypatch.setattr(paths, "EXAMPLES", tmp_path / "examples")
     monkeypatch.setattr(paths, "RESULTS", tmp_path / "results")
+    monkeypatch.setattr(paths, "PAGE", tmp_path / "page")
     monkeypatch.setattr(scene, "build", lambda: True)
     monkeypatch.setattr(scene, "_simulate", simulate)
     make_scene(paths.EXAMPLES / "toy")
@@ -157,6 +158,13 @@ def test_all_goes_on_after_a_failure(examples, capsys):
     assert scene.main(["all"]) == 1
     assert figure(summary_of("toy"), "change") and summary_of("single")
     assert "2 scenes ran, 1 failed bad" in capsys.readouterr().out
+    page = (paths.PAGE / "README.md").read_text()
+    assert "bad has no results" in page and "| toy | `change` |" in page
+
+
+def test_all_with_own_variables_leaves_the_page_alone(examples):
+    assert scene.main(["all", "tend=2"]) == 0
+    assert not paths.PAGE.exists()
 
 
 @pytest.mark.parametrize("arguments, message", [

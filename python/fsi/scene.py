@@ -16,7 +16,8 @@ import traceback
 from contextlib import contextmanager
 from pathlib import Path
 
-from . import launch, paths
+from . import launch, paths, results
+from .paths import scenes
 from .summary import RUN_FILE
 
 OPTIONS = ("ranks", "out", "case")
@@ -28,11 +29,6 @@ SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools")  # what 
 
 class Refusal(Exception):
     """Something to tell the user, without a traceback."""
-
-
-def scenes():
-    """Names of the scenes, sorted."""
-    return sorted(f.name for f in paths.EXAMPLES.iterdir() if (f / f"in.{f.name}").is_file())
 
 
 def deck(scene):
@@ -169,7 +165,7 @@ def _calls(function, *arguments):
     try:
         function(*arguments)
     except (Exception, SystemExit):  # pylint: disable=broad-exception-caught
-        print(f"\nrun: the analysis of {arguments[0]} failed", file=sys.stderr)
+        print(f"\nrun: what was to be made of {arguments[0]} failed", file=sys.stderr)
         traceback.print_exc()
         return False
     return True
@@ -275,6 +271,11 @@ def main(arguments):
     failed = [scene for scene, status in statuses.items() if status != 0]
     if len(jobs) > 1:
         print(f"run: {len(jobs) - len(failed)} scenes ran, {len(failed)} failed", *failed)
+    if every and not variables:
+        out = Path(options["out"]).resolve() if "out" in options else None
+        # with a folder of the user's own, the page in doc/ stays as it is
+        if not _calls(results.write, *((out, out / "page") if out else (paths.RESULTS, paths.PAGE))):
+            return 1
     return 1 if failed else 0
 
 

@@ -114,9 +114,9 @@ def table(summary):
     """A summary as text for the terminal."""
     rows = [("figure", "value", "unit", "reference", "error", "target", "source")]
     for figure in summary["figures"]:
-        error = figure["relative_error"]
-        rows.append((figure["name"], _text(figure["value"]), figure["unit"], _text(figure["reference"], ""),
-                     "" if error is None else f"{100 * error:+.1f} %", verdict(figure), figure["source"] or ""))
+        met = {None: "", True: " met", False: " MISSED"}[figure["met"]]
+        rows.append((figure["name"], number(figure["value"]), figure["unit"], number(figure["reference"], ""),
+                     deviation(figure), bound(figure) + met, figure["source"] or ""))
     widths = [max(len(row[k]) for row in rows) for k in range(7)]
     lines = []
     for row in rows:
@@ -127,16 +127,20 @@ def table(summary):
     lines.append("")
     size = f"{len(summary['cases'])} cases of up to {summary['particles']}" if "cases" in summary else summary["particles"]
     lines.append(f"{size} particles, {summary['steps']} steps, {summary['ranks']} ranks, "
-                 f"{_text(summary['particle_steps_per_second_per_rank'])} particle-steps per second and rank")
+                 f"{number(summary['particle_steps_per_second_per_rank'])} particle-steps per second and rank")
     return "\n".join(lines)
 
 
-def verdict(figure):
-    """What was set out for and whether that is met, as text; empty where nothing was."""
-    bound = figure.get("target")
-    if bound is None:
+def deviation(figure):
+    """A figure's relative error as text; empty if it has none."""
+    return "" if figure["relative_error"] is None else f"{100 * figure['relative_error']:+.1f} %"
+
+
+def bound(figure):
+    """A figure's target as text; empty if it has none."""
+    if figure["target"] is None:
         return ""
-    return (f"{100 * bound:g} %" if figure["reference"] else f"{bound:g}") + (" met" if figure["met"] else " MISSED")
+    return f"{100 * figure['target']:g} %" if figure["reference"] else f"{figure['target']:g} {figure['unit']}".strip()
 
 
 def _finite(value):
@@ -147,7 +151,8 @@ def _finite(value):
     return value if math.isfinite(value) else None
 
 
-def _text(value, nothing="-"):
+def number(value, nothing="-"):
+    """A figure's value as text, to four digits."""
     if value is None:
         return nothing
     if isinstance(value, float):
