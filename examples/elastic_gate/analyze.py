@@ -102,6 +102,8 @@ def mass_error(log, first, last):
 
 def rms(tip, name, experiment, column):
     """Distance [mm] to the experiment's points, those after the series' end left out; None if that leaves none."""
+    there = np.isfinite(tip[name])
+    tip = series.Series({key: tip[key][there] for key in ("time", name)})
     distance = series.rms_distance(tip, name, experiment, column)
     return None if distance is None else 1e3 * distance
 
