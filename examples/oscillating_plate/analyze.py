@@ -29,7 +29,7 @@ FRACTURE = 1.5  # a pair of first neighbours this many spacings apart
 def oscillation(tip):
     """(upward zero crossings [s], highest points of the swings [m]): one of each per period, parabolic and linear fits.
 
-    The start counts as the first crossing. Only whole upper half swings have a highest point.
+    The start counts as the first crossing.
     """
     t, y = tip.time, tip["tip_y"]
     up = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0))
@@ -38,10 +38,10 @@ def oscillation(tip):
     peaks = []
     for start in crossings:
         later = down[t[down] > start]
-        if not later.size:
-            break
-        k = np.searchsorted(t, start)
-        k += int(np.argmax(y[k:later[0] + 1]))
+        k, end = np.searchsorted(t, start), later[0] + 1 if later.size else len(t) - 1
+        k += int(np.argmax(y[k:end + 1]))
+        if k in (0, len(t) - 1):
+            break  # cut off before its highest point
         a, b, c = np.polyfit(t[k - 1:k + 2] - t[k], y[k - 1:k + 2], 2)
         peaks.append(c - b * b / (4.0 * a))
     return crossings, np.array(peaks)
@@ -184,7 +184,7 @@ def main(folder):
     picture_tip(folder / "tip.png", [(tip, "this run", plot.BLUE)])
     if frames:
         swing = period(crossings) or PERIOD
-        shown = dump.nearest(frames, [0.25 * swing, 0.75 * swing, tip.time[-1]], 0.1 * swing)
+        shown = dump.nearest(frames, [0.25 * swing, 0.75 * swing], 0.1 * swing)
         plot.snapshots(folder / "snapshots.png", shown, values["dx"], (), (PLATE, CLAMP), columns=1, panel_width=4.0,
                        limits=((-0.02, 0.21), (-0.04, 0.04)))
     return summary.write()

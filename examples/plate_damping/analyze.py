@@ -90,20 +90,17 @@ def picture_damping(path, table):
 
 
 def picture_reason(path, table):
-    """What viscosity takes, what artificial stress gives, and how disordered the particles are."""
-    kinds = ("cubic_1.3", "nostress_1.3")
-    labels = {"cubic_1.3": "artificial stress 0.3", "nostress_1.3": "none"}
-    with plot.picture(path, 8.0, 2.9) as figure:
-        panels = figure.subplots(1, 3)
-        for axes, name, sign, title in (
-                (panels[0], "taken_by_viscosity", 1.0, "taken by artificial viscosity"),
-                (panels[1], "taken_by_stress", -1.0, "given by artificial stress"),
-                (panels[2], "disorder", 1.0, "zigzag of positions over Δx")):
-            _curves(axes, table, kinds, name, labels, sign)
+    """How disordered the particles are, and what viscosity takes."""
+    labels = {"cubic_1.2": "h/Δx = 1.2", "cubic_1.3": "h/Δx = 1.3", "cubic_1.5": "h/Δx = 1.5",
+              "corrected_1.3": "1.3, corrected gradient", "nostress_1.3": "1.3, no artificial stress"}
+    with plot.picture(path, 8.0, 3.6) as figure:
+        panels = figure.subplots(1, 2)
+        for axes, name, title in ((panels[0], "disorder", "zigzag of positions over Δx after four periods"),
+                                  (panels[1], "taken_by_viscosity", "energy taken by viscosity in that time over the start's")):
+            _curves(axes, table, labels, name, labels)
             axes.set_title(title, loc="left")
-            axes.set_ylim(bottom=0.0)
-            _alpha_axis(axes, [table[kind] for kind in kinds if kind in table])
-        panels[0].set_ylabel("share of the start's energy")
+            axes.set_yscale("log")
+            _alpha_axis(axes, [table[kind] for kind in labels if kind in table])
         panels[0].legend()
         figure.tight_layout()
 
