@@ -136,7 +136,7 @@ def picture_tip(path, curves):
     """Displacement of the free end; curves: list of (Series, label, colour)."""
     with plot.picture(path, 7.2, 3.4) as figure:
         axes = figure.add_subplot()
-        end = max(tip.time[-1] for tip, _, _ in curves)
+        end = min(tip.time[-1] for tip, _, _ in curves)
         t = np.linspace(0.0, end, 2000)
         axes.plot(t, AMPLITUDE * np.sin(2.0 * np.pi * t / PERIOD), color=plot.GREY, linewidth=1.0, linestyle="--",
                   label="period and amplitude of finite elements")
