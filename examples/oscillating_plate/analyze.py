@@ -190,9 +190,9 @@ def main(folder):
     return summary.write()
 
 
-def figures(folder):
-    """{figure: value} of a run's summary."""
-    return {f["name"]: f["value"] for f in json.loads((folder / "summary.json").read_text())["figures"]}
+def figures(folder, what="value"):
+    """{figure: value} of a run's summary, or what else it says about a figure."""
+    return {f["name"]: f[what] for f in json.loads((folder / "summary.json").read_text())["figures"]}
 
 
 def order(n, error):
@@ -208,7 +208,7 @@ def study(folder, cases):
     table = {}
     for name, values in found.items():
         kind, _, n = name.rpartition("_")
-        if n.isdecimal() and values.get("period"):
+        if n.isdecimal() and values.get("period") and values.get("stopped_at") is None:
             table.setdefault(kind, []).append((int(n), values))
     for kind, rows in table.items():
         rows.sort(key=lambda row: row[0])
@@ -216,7 +216,8 @@ def study(folder, cases):
         for n, values in rows:
             summary.add(f"{prefix}period_{n}", values["period"], "s", PERIOD, SOURCE)
         for n, values in rows:
-            summary.add(f"{prefix}amplitude_{n}", values["amplitude"], "mm", AMPLITUDE, SOURCE)
+            reference = figures(cases[f"{kind}_{n}"], "reference")["amplitude"]
+            summary.add(f"{prefix}amplitude_{n}", values["amplitude"], "mm", reference, SOURCE)
         for n, values in rows:
             for name in ("a5_a1", "a100_a1"):
                 if values.get(name) is not None:
@@ -224,13 +225,13 @@ def study(folder, cases):
         if len(rows) > 2:
             ns = np.array([n for n, _ in rows], float)
             errors = np.array([v["period"] for _, v in rows]) / PERIOD - 1.0
-            summary.add(f"{prefix}order_of_convergence", order(ns, errors), "", )
+            summary.add(f"{prefix}order_of_convergence", order(ns, errors))
     for name, values in found.items():
         if values.get("stopped_at") is not None:
             summary.add(f"stopped_{name}", values["stopped_at"], "s")
-        for figure in ("mechanical_energy", "ledger_error"):
-            if values.get(figure) is not None:
-                summary.add(f"{figure}_{name}", values[figure], "")
+        for figure in ("fractured_at", "disorder", "mechanical_energy", "ledger_error"):
+            if values.get(figure) is not None and values.get("stopped_at") is None:
+                summary.add(f"{figure}_{name}", values[figure])
 
     picture_convergence(folder / "convergence.png", {k: r for k, r in table.items() if len(r) > 1})
     best = table.get("best", [])
