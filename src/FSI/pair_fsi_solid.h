@@ -40,6 +40,7 @@ class PairFSISolid : public PairFSI {
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
   double memory_usage() override;
+  double artificial_alpha() const { return alpha; }
 
   int corrected;    // velocity gradient exact for linear fields (Bonet and Lok 1999)
 
