@@ -241,8 +241,8 @@ void FixFSIDt::find_limits()
   }
   MPI_Allreduce(&who[0][0], &culprit[0][0], 4, MPI_LMP_TAGINT, MPI_MAX, world);
   for (int k = 0; k < NLIMIT; k++) {
-    step[k] = std::min(BIG, cfl * all[0][k]);
-    sub[k] = std::min(BIG, cfl * all[1][k]);
+    step[k] = all[0][k] < BIG ? cfl * all[0][k] : BIG;
+    sub[k] = all[1][k] < BIG ? cfl * all[1][k] : BIG;
   }
 }
 

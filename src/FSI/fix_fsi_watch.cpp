@@ -46,7 +46,7 @@ static constexpr About about[] = {
     {"", "force, velocity or density", "a shorter time step (fix fsi/dt), or look at what pushes this particle"},
     {"mach", "Mach number", "a shorter time step (fix fsi/dt); if the flow is that fast, a higher speed of sound"},
     {"distance", "distance over particle spacing", "kernel wendland, artificial viscosity, background pressure; look for overlapping particles at the start"},
-    {"density", "density error |rho/rho0-1|", "a higher speed of sound, a shorter time step, density/diffusion; tension no at free surfaces"},
+    {"density", "density error |rho/rho0-1|", "a shorter time step, a higher speed of sound, density/diffusion; tension no at free surfaces"},
     {"courant", "Courant number", "a shorter time step (fix fsi/dt; timestep 0.25 h/(c+v)), more sub-steps for stiff solids"},
     {"energy", "growth of the kinetic energy", "a shorter time step (fix fsi/dt), artificial viscosity; look at this, the fastest particle"},
     {"lost", "number of lost particles", "walls where particles escape, or a larger box; lost off if they are meant to"},
@@ -73,7 +73,7 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
   limit[MACH] = 0.5;
   limit[DISTANCE] = 0.1;
   limit[DENSITY] = 0.3;
-  limit[COURANT] = 0.7;
+  limit[COURANT] = 1.0;
   limit[ENERGY] = 10.0;
   limit[LOST] = 0.0;
   limit[REFLECTED] = BIG;
@@ -369,7 +369,10 @@ std::string FixFSIWatch::describe(Quantity q, Finding &all)
   text += fmt::format(" on step {}", update->ntimestep);
   if (all.tag) text += fmt::format(", atom {} (type {}) at {:.6g} {:.6g} {:.6g}", all.tag, all.type, all.x[0], all.x[1], all.x[2]);
   if (all.other) text += fmt::format(", and atom {}", all.other);
-  return text + fmt::format(". Try {}", about[q].hint);
+  text += fmt::format(". Try {}", about[q].hint);
+  // twice what is usual
+  if (q != COURANT && seen[COURANT] > 0.5) text += fmt::format(". At the last check the Courant number was {:.3g}", seen[COURANT]);
+  return text;
 }
 
 /* ----------------------------------------------------------------------
