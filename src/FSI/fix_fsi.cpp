@@ -18,6 +18,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_fsi_dt.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
@@ -46,7 +47,7 @@ using namespace FSI;
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
     grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
-    solid_tl(nullptr), substeps(1), summed(nullptr), ratio(nullptr), nmax(0), tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false)
+    solid_tl(nullptr), substeps(1), fix_dt(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0), tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
@@ -168,6 +169,10 @@ void FixFSI::init()
   if (hypo && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
   if (!solid && !hypo && fix_stress && comm->me == 0)
     error->warning(FLERR, "Fix fsi/stress has nothing to act on: no solid is hypoelastic");
+
+  auto dt = modify->get_fix_by_style("^fsi/dt$");
+  fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
+  stagger = 0.0;
 
   wall_fixes.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
@@ -331,6 +336,7 @@ void FixFSI::sort_by_tag()
 
 void FixFSI::initial_integrate(int)
 {
+  if (fix_dt) fix_dt->start_of_step();
   if (fresh_start()) {
     next_reneighbor = update->ntimestep;
     domain->pbc();
@@ -541,7 +547,7 @@ void FixFSI::advance_density()
   if (!rate) return;
   double *rho = atom->rho;
   const int *const type = atom->type;
-  const double dt = update->dt;
+  const double dt = update->dt + stagger;
   for (int i = 0; i < atom->nlocal; i++)
     if (state[type[i]].species == FLUID) rho[i] += dt * rate[i];
 }
@@ -583,7 +589,7 @@ template <int D, int TERMS> void FixFSI::advance_solids(bool advance)
 {
   double *rho = atom->rho;
   const int *const type = atom->type;
-  const double dt = update->dt;
+  const double dt = update->dt + stagger;
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = state[type[i]];
     if (s.species != SOLID) continue;

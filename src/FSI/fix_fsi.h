@@ -100,6 +100,9 @@ class FixFSI : public Fix {
   class PairFSISolid *solid;
   class PairFSISolidTL *solid_tl;
   int substeps;    // of total-Lagrangian solids in each step
+  class FixFSIDt *fix_dt;    // changes the time step; null: nothing does
+  // what moves by rates between the middles of two steps takes update->dt + stagger: their distance, if dt changes
+  double stagger;
 
   // pressure of a local or ghost atom from its density (paper eq. 16), 0 at a free surface if that rule is on
   double pressure(int i) const;

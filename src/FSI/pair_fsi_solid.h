@@ -40,6 +40,7 @@ class PairFSISolid : public PairFSI {
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
   double memory_usage() override;
+  double artificial_alpha() const { return alpha; }
 
   // gradients: 0 = plain, else the number of terms for which they are exact (fsi_gradient.h): dim linear ones (Bonet and
   // Lok 1999), or the quadratic ones too

@@ -50,6 +50,7 @@ class PairFSISolidTL : public PairFSI {
   int pack_reverse_comm(int, int, double *) override;
   void unpack_reverse_comm(int, int *, double *) override;
   double memory_usage() override;
+  double artificial_alpha() const { return alpha; }
 
   // all forces of this style, on local atoms, at the positions in atom->x of local and ghost atoms
   void internal_forces();
