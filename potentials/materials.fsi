@@ -8,6 +8,8 @@
 water            fluid rho 1000.0 viscosity 1.0e-3
 # water without viscosity, as the benchmarks treat it
 water_inviscid   fluid rho 1000.0
+# Taylor-Green vortices with U = L = 1 at Re = 100
+vortex_Re100     fluid rho 1000.0 viscosity 10.0
 
 # Rubber gate of Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879: 12 MPa as the
 # stiffness used there, 10 MPa as in later papers on the same experiment

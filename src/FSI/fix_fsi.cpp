@@ -43,8 +43,8 @@ using namespace FSI;
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
-    grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
-    summed(nullptr), ratio(nullptr), nmax(0), tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false)
+    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
+    summed(nullptr), ratio(nullptr), nmax(0), tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
@@ -99,7 +99,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   }
   // most that is sent for one atom: number density, density and stress; rates of a solid atom
   comm_forward = 2 + (dim == 2 ? 3 : 6);
-  comm_reverse = ngrad();
+  comm_reverse = std::max(ngrad(), 1 + nshift());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -113,6 +113,7 @@ FixFSI::~FixFSI()
   memory->destroy(ratio);
   memory->destroy(psi);
   memory->destroy(rate);
+  memory->destroy(shift);
   memory->destroy(grad);
   memory->destroy(wmask);
 }
@@ -168,6 +169,7 @@ void FixFSI::init()
   need_psi = density_fluid != CONTINUITY || (fluid && fluid->surface_ratio > 0.0) ||
       (solid && density_solid != CONTINUITY);
   need_grad = solid != nullptr;
+  need_shift = fluid && fluid->shifting > 0.0;
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
 
@@ -338,7 +340,7 @@ void FixFSI::final_integrate()
   double **v = atom->v;
   double **f = atom->f;
   const double *const rmass = atom->rmass;
-  const int *const mask = atom->mask;
+  const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
@@ -347,6 +349,8 @@ void FixFSI::final_integrate()
       v[i][d] += dtfm * f[i][d];
       x[i][d] += dth * v[i][d];
     }
+    if (need_shift && state[type[i]].species == FLUID)
+      for (int d = 0; d < dim; d++) x[i][d] += shift[i][d];
   }
 }
 
@@ -362,6 +366,7 @@ void FixFSI::update_state(bool advance)
     nmax = atom->nmax;
     if (need_psi) memory->grow(psi, nmax, "fsi:psi");
     if (fluid && density_fluid == CONTINUITY) memory->grow(rate, nmax, "fsi:rate");
+    if (need_shift) memory->grow(shift, nmax, nshift(), "fsi:shift");
     if (need_grad) memory->grow(grad, nmax, ngrad(), "fsi:grad");
     if (!wall_fixes.empty()) memory->grow(wmask, nmax, "fsi:wmask");
   }
@@ -376,11 +381,13 @@ void FixFSI::update_state(bool advance)
 
   if (advance && (rate || grad)) {
     if (rate) memset(rate, 0, nall * sizeof(double));
+    if (need_shift && nall) memset(shift[0], 0, (size_t) nall * nshift() * sizeof(double));
     if (grad && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
     if (rate) fluid->density_rate(update->dt);
     if (grad) solid->velocity_gradient(update->dt);
     if (force->newton_pair) comm->reverse_comm(this);
     advance_density();
+    if (need_shift) fluid->displacements(update->dt);
     if (grad) {
       if (dim == 2) advance_solids<2>();
       else advance_solids<3>();
@@ -578,15 +585,18 @@ void FixFSI::unpack_forward_comm(int n, int first, double *buf)
 int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 {
   const int *const type = atom->type;
-  const int ng = ngrad();
+  const int ng = ngrad(), ns = nshift();
   int m = 0;
   for (int i = first; i < first + n; i++) {
     if (summed) buf[m++] = summed[i];
     else if (state[type[i]].species == SOLID) {
       if (grad)
         for (int k = 0; k < ng; k++) buf[m++] = grad[i][k];
-    } else if (rate)
+    } else if (rate) {
       buf[m++] = rate[i];
+      if (need_shift)
+        for (int k = 0; k < ns; k++) buf[m++] = shift[i][k];
+    }
   }
   return m;
 }
@@ -596,7 +606,7 @@ int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
 {
   const int *const type = atom->type;
-  const int ng = ngrad();
+  const int ng = ngrad(), ns = nshift();
   int m = 0;
   for (int ii = 0; ii < n; ii++) {
     const int i = list[ii];
@@ -604,8 +614,11 @@ void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
     else if (state[type[i]].species == SOLID) {
       if (grad)
         for (int k = 0; k < ng; k++) grad[i][k] += buf[m++];
-    } else if (rate)
+    } else if (rate) {
       rate[i] += buf[m++];
+      if (need_shift)
+        for (int k = 0; k < ns; k++) shift[i][k] += buf[m++];
+    }
   }
 }
 
@@ -674,6 +687,7 @@ double FixFSI::memory_usage()
   double bytes = 0.0;
   if (psi) bytes += (double) nmax * sizeof(double);
   if (rate) bytes += (double) nmax * sizeof(double);
+  if (shift) bytes += (double) nmax * nshift() * sizeof(double);
   if (grad) bytes += (double) nmax * ngrad() * sizeof(double);
   if (wmask) bytes += (double) nmax * sizeof(int);
   if (ratio) bytes += (double) atom->nmax * sizeof(double);

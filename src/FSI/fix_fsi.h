@@ -78,6 +78,7 @@ class FixFSI : public Fix {
   // per atom, local and ghost; valid from pre_force on
   double *psi;      // number density, if any mode or rule needs it
   double *rate;     // density rate of fluids (continuity), local after the reverse communication
+  double **shift;   // fluids, pair_style fsi/fluid shift: its sums; afterwards the displacement at the end of the step
   double **grad;    // solids: sum V_j (v_j-v_i)(x)g_ij, then the symmetric sum V_j x_ji(x)g_ij; afterwards L
   int *wmask;       // bits of the mirror walls that an atom is near
 
@@ -106,6 +107,7 @@ class FixFSI : public Fix {
   // does atom i have a deviatoric stress?
   bool has_stress(int i) const { return solid && state[atom->type[i]].species == FSI::SOLID; }
 
+  int nshift() const { return 2 * dim + 1; }
   int ngrad() const { return dim * dim + (dim == 2 ? 3 : 6); }
   void find_gravity();
   // number density of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
@@ -119,7 +121,7 @@ class FixFSI : public Fix {
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
   int nmax;
   double tally_dt;
-  bool need_psi, need_grad, need_ratio;
+  bool need_psi, need_grad, need_ratio, need_shift;
 
   template <int D> void advance_solids();
   void advance_density();
