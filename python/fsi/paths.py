@@ -8,6 +8,12 @@ BUILD = Path(os.environ.get("FSI_BUILD_DIR") or ROOT / "build").resolve()
 EXAMPLES = ROOT / "examples"
 POTENTIALS = ROOT / "potentials"
 RESULTS = ROOT / "results"
+PAGE = ROOT / "doc" / "results"
+
+
+def scenes():
+    """Names of the bundled scenes, sorted."""
+    return sorted(f.name for f in EXAMPLES.iterdir() if (f / f"in.{f.name}").is_file())
 
 
 def lammps_source():
