@@ -17,9 +17,13 @@
 // expected speed U over c; the bound is then their U/2. The sum vanishes on a lattice.
 //
 // Where kernels are cut off by a free surface the sum points out of the fluid. There the part along the normal
-// n ~ sum_j V_j grad_i W_ij is taken out, and nothing is left on edges, in jets and drops. What tells is the divergence of
-// position lambda = 1/d sum_j V_j x_ji.grad_i W_ij: 1 inside, 0.6 on a plane surface, 0.4 in a corner. Walls (images) and
-// solids count as full.
+// n ~ sum_j V_j grad_i W_ij is taken out, and nothing is left on edges, in jets and drops. What tells is how much of the
+// divergence of position is missing, d - sum_j V_j x_ji.grad_i W_ij: 0 inside, 0.7 to 0.8 in the first row of a plane surface
+// and 0.1 to 0.4 in the second, 1.3 on a straight edge, in 2D and 3D. Walls (images) and solids count as full.
+//
+// Velocity and density go along unchanged: what is neglected, delta r.grad v and delta r.grad rho, is what Sun et al. neglect.
+// With C doubled the error of Taylor-Green vortices changes by less than 0.001 (doc/theory.md), which bounds it. Linear momentum
+// is kept exactly; angular momentum and potential energy are not, and the energy ledger knows nothing of shifting.
 
 #ifndef LMP_FSI_SHIFT_H
 #define LMP_FSI_SHIFT_H
@@ -30,7 +34,7 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   template <int D> struct Shift {
-    static constexpr int N = 2 * D + 1;    // sums of a particle: weighted and plain sum of V_j grad_i W_ij, d lambda
+    static constexpr int N = 2 * D + 1;    // sums of a particle: weighted and plain sum of V_j grad_i W_ij, divergence
     double wdx;                            // W(dx)
     explicit Shift(double w) : wdx(w) {}
 
@@ -48,11 +52,11 @@ namespace FSI {
     // the sums become the displacement, in their first D places; scale = C c h dt, most = C c dt/4
     static void displacement(double *sum, double scale, double most)
     {
-      const double lambda = sum[2 * D] / D;
+      const double missing = D - sum[2 * D];
       const double *const n = sum + D;
       const double nn = dot(n, n);
       // shares of the tangential and of the normal part: the latter from the second or third row on
-      const double along = ramp(lambda, 0.5, 0.55), across = ramp(lambda, 0.92, 0.98);
+      const double along = share(missing, 0.9, 1.0), across = share(missing, 0.04, 0.16);
       const double normal = nn > 0.0 ? (1.0 - across) * dot(sum, n) / nn : 0.0;
       for (int d = 0; d < D; d++) sum[d] = -scale * along * (sum[d] - normal * n[d]);
       const double size = std::sqrt(dot(sum, sum));
@@ -67,7 +71,11 @@ namespace FSI {
       for (int d = 0; d < D; d++) s += a[d] * b[d];
       return s;
     }
-    static double ramp(double x, double from, double to) { return x <= from ? 0.0 : x >= to ? 1.0 : (x - from) / (to - from); }
+    // 1 up to all, 0 from none on
+    static double share(double x, double all, double none)
+    {
+      return x <= all ? 1.0 : x >= none ? 0.0 : (none - x) / (none - all);
+    }
   };
 
 }    // namespace FSI
