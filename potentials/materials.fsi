@@ -19,3 +19,6 @@ gate_10MPa       solid rho 1100.0 young 10.0e6 poisson 0.4
 # Oscillating plate of Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641:
 # bulk modulus 3.25 MPa and shear modulus 0.715 MPa
 plate            solid rho 1000.0 young 1.9984472e6 poisson 0.39751553
+
+# fluid of nu = 0.002 m^2/s, for the decay of a standing wave a metre or two long
+wave_viscous     fluid rho 1000.0 viscosity 2.0

@@ -76,8 +76,8 @@ void PairFSIFluid::settings(int narg, char **arg)
       alpha = number(arg[iarg + 1], "artificial/visc alpha");
       beta = number(arg[iarg + 2], "artificial/visc beta");
       iarg += 3;
-    } else if (strcmp(arg[iarg], "laminar/visc") == 0) {
-      laminar = 1;
+    } else if (strcmp(arg[iarg], "laminar/visc") == 0 || strcmp(arg[iarg], "laminar/visc/central") == 0) {
+      laminar = strcmp(arg[iarg], "laminar/visc") == 0 ? PLAIN : CENTRAL;
       iarg += 1;
     } else if (strcmp(arg[iarg], "density/diffusion") == 0) {
       need(narg, arg, iarg, 1);
@@ -110,7 +110,7 @@ void PairFSIFluid::settings(int narg, char **arg)
       iarg += 3;
     } else
       error->all(FLERR, "Unknown pair_style fsi/fluid keyword {}: expected sound, eos, background, tension, artificial/visc, "
-                        "laminar/visc, density/diffusion, shift, couple, extrapolate or surface", arg[iarg]);
+                        "laminar/visc, laminar/visc/central, density/diffusion, shift, couple, extrapolate or surface", arg[iarg]);
   }
   if (sound <= 0.0) error->all(FLERR, "Pair style fsi/fluid needs keyword sound with a speed of sound > 0");
 }
@@ -442,7 +442,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const Walls &walls = hub->walls;
   const Aux *const a = aux.data();
   const ArtificialViscosity artificial(alpha, beta, hub->h);
-  const LaminarViscosity viscous(hub->h);
+  const LaminarViscosity<D> viscous(hub->h, laminar == CENTRAL);
   const double *const gravity = hub->gravity;
   const bool all_bodies = hub->density_solid == FixFSI::SUMMATION;
 
@@ -500,19 +500,15 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     for (int d = 0; d < 3; d++) fji[d] = -fij[d];
     walls.reflect_vector(s, fji);
     if (FLAGS & LAMINAR) {
-      const double k =
-          viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol);
+      const double visc = state[type[i]].viscosity + state[type[j]].viscosity, vv = a[i].vol * a[j].vol;
       walls.reflect_velocity(s, v[j], true, vimage);
-      double loss = 0.0;    // of both, each relative to the other's image
-      for (int d = 0; d < D; d++) {
-        fij[d] += k * (v[i][d] - vimage[d]);
-        loss -= 0.5 * k * (v[i][d] - vimage[d]) * (v[i][d] - vimage[d]);
-      }
+      for (int d = 0; d < 3; d++) vij[d] = v[i][d] - vimage[d];
+      double loss = 0.5 * viscous(g, rsq, visc, vv, xij, vij, fij);    // of both, each relative to the other's image
+      double xji[3] = {-xij[0], -xij[1], -xij[2]};
+      walls.reflect_vector(s, xji);
       walls.reflect_velocity(s, v[i], true, vimage);
-      for (int d = 0; d < D; d++) {
-        fji[d] += k * (v[j][d] - vimage[d]);
-        loss -= 0.5 * k * (v[j][d] - vimage[d]) * (v[j][d] - vimage[d]);
-      }
+      for (int d = 0; d < 3; d++) vij[d] = v[j][d] - vimage[d];
+      loss += 0.5 * viscous(g, rsq, visc, vv, xji, vij, fji);
       if (FLAGS & LEDGER) hub->tally(FixFSI::LAMINAR, (fj ? 1.0 : 0.5) * share * loss);
     }
     for (int d = 0; d < D; d++) {
@@ -543,12 +539,9 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       double fij[3];
       force_on_i(i, j, g, rsq, xij, vij, share, fij);
       if (FLAGS & LAMINAR) {
-        const double k =
-            viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol);
-        for (int d = 0; d < D; d++) {
-          fij[d] += k * vij[d];
-          if (FLAGS & LEDGER) hub->tally(FixFSI::LAMINAR, -share * k * vij[d] * vij[d]);
-        }
+        const double loss = viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol, xij,
+                                    vij, fij);
+        if (FLAGS & LEDGER) hub->tally(FixFSI::LAMINAR, share * loss);
       }
       double fj[3] = {0.0, 0.0, 0.0};
       for (int d = 0; d < D; d++) {

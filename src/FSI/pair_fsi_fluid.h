@@ -32,6 +32,7 @@ namespace LAMMPS_NS {
 class PairFSIFluid : public PairFSI {
  public:
   enum Couple { WALL, PRESSURE, FULL };
+  enum Laminar { INVISCID, PLAIN, CENTRAL };
 
   PairFSIFluid(class LAMMPS *);
   void settings(int, char **) override;
