@@ -8,6 +8,8 @@
 water            fluid rho 1000.0 viscosity 1.0e-3
 # water without viscosity, as the benchmarks treat it
 water_inviscid   fluid rho 1000.0
+# Taylor-Green vortices with U = L = 1 at Re = 100
+vortex_Re100     fluid rho 1000.0 viscosity 10.0
 
 # Rubber gate of Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879: 12 MPa as the
 # stiffness used there, 10 MPa as in later papers on the same experiment
@@ -17,3 +19,6 @@ gate_10MPa       solid rho 1100.0 young 10.0e6 poisson 0.4
 # Oscillating plate of Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641:
 # bulk modulus 3.25 MPa and shear modulus 0.715 MPa
 plate            solid rho 1000.0 young 1.9984472e6 poisson 0.39751553
+
+# fluid of nu = 0.002 m^2/s, for the decay of a standing wave a metre or two long
+wave_viscous     fluid rho 1000.0 viscosity 2.0

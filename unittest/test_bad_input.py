@@ -127,8 +127,13 @@ CASES = [
     ("surface ratio large", *fluid("", "sound 10 surface 1.5 bulk "), r"surface ratio 1\.5 must be below 1"),
     ("surface reference unknown", *fluid("", "sound 10 surface 0.9 mean "), r"surface reference mean"),
     ("diffusion with summation", "fluid continuity", "fluid summation", r"density/diffusion requires .*fluid continuity"),
+    ("shift negative", "density/diffusion 0.1", "shift -0.1", r"shift -0\.1 must be >= 0"),
+    ("shift large", "density/diffusion 0.1", "shift 2", r"shift 2 must be at most 1"),
+    ("shift with ratio", re.compile("density/diffusion 0.1(.*)fluid continuity", re.S), r"shift 0.5\1fluid ratio",
+     r"shift requires .*fluid continuity"),
     *[(f"{key} without value", "density/diffusion 0.1", key, rf"fsi/fluid {key.split()[0]} command: missing")
-      for key in ("eos", "background", "tension", "artificial/visc 0.1", "couple", "extrapolate", "surface 0.9")],
+      for key in ("eos", "background", "tension", "artificial/visc 0.1", "couple", "extrapolate", "surface 0.9",
+                  "shift")],
     # pair_style fsi/solid
     ("solid keyword unknown", "gradient corrected", "slope corrected", r"keyword slope"),
     ("gradient unknown", "gradient corrected", "gradient exact", r"gradient exact"),
@@ -163,10 +168,13 @@ CASES = [
     # fsi_set
     ("fsi_set without box", START, "fsi_set all density 1000\n" + START, r"Fsi_set command before simulation box"),
     ("fsi_set group unknown", RUN, "fsi_set foam density 1000", r"group-ID foam"),
-    ("fsi_set keyword unknown", RUN, "fsi_set all pressure 1000", r"keyword pressure"),
+    ("fsi_set keyword unknown", RUN, "fsi_set all mass 1000", r"keyword mass"),
     ("fsi_set value missing", RUN, "fsi_set all density", r"Fsi_set expects"),
     ("fsi_set value no number", RUN, "fsi_set all density high", r"high"),
     ("fsi_set density negative", RUN, "fsi_set all density -1", r"density -1 must be > 0"),
+    ("fsi_set pressure too low", RUN, "fsi_set all pressure -1e9", r"pressure: density -\S+ must be > 0"),
+    ("fsi_set variable unknown", RUN, "fsi_set all density v_r", r"density v_r is not an atom-style variable"),
+    ("fsi_set variable of one value", RUN, "variable r equal 1\nfsi_set all pressure v_r", r"v_r is not an atom-style"),
     ("fsi_set without gravity", RUN, "unfix gravity\nfsi_set all hydrostatic 0.1", r"hydrostatic requires fix gravity"),
     ("fsi_set without fix fsi", RUN, "unfix sph\nfsi_set all density 1000", r"requires fix fsi"),
     # computes

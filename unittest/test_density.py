@@ -134,3 +134,17 @@ def test_fsi_set(eos):
         close(s.get("rmass") / rho, m / 1000, 1e-14)     # the volume stays that of the lattice
         s.run_lines("group part id 1:5", "fsi_set part density 1234")
         assert np.all(s.get("rho")[:5] == 1234) and np.all(s.get("rho")[5:] == rho[5:])
+
+
+@pytest.mark.parametrize("eos", ("linear", "tait"))
+def test_fsi_set_pressure(eos):
+    """A pressure that varies, by an atom-style variable; and one number for all."""
+    x = lattice((6, 10), 0.1)
+    with Scene(x, fluid=f"sound 20 eos {eos} tension yes background 50", dx=0.1) as s:
+        s.run_lines("variable p atom 1000*x-200*y", "fsi_set all pressure v_p")
+        want = 1000 * x[:, 0] - 200 * x[:, 1]
+        assert np.abs(s.run().p - want).max() < 1e-8     # p from rho - rho0: 7 of 16 digits are lost
+        s.run_lines("variable r atom 1000+x", "fsi_set all density v_r")
+        close(s.run().get("rho"), 1000 + x[:, 0], 1e-14)
+        s.run_lines("fsi_set all pressure 70")
+        assert np.abs(s.run().p - 70).max() < 1e-8

@@ -48,3 +48,19 @@ def test_laminar_and_extrapolation_too(dim):
         scale, p0 = np.abs(s.get("rmass")[:, None] * s.get("v")).sum(), s.momentum()
         s.run(300)
         assert np.abs(s.momentum() - p0).max() < 1e-14 * scale
+
+
+@pytest.mark.parametrize("form, kept", [("laminar/visc/central", True), ("laminar/visc", False)])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_angular_momentum_of_a_viscous_fluid(dim, form, kept):
+    """Of the two forms of laminar viscosity only the central one keeps it."""
+    x, v = cloud([10, 10] if dim == 2 else [6, 6, 6], 0.1, jitter=0.1, vmax=0.5)
+    with Scene(x, v, dim=dim, dx=0.1, hdx=1.3, dt=5e-4, box=((-20,) * 3, (20,) * 3),
+               materials=("fluid rho 1000 viscosity 20",), fluid=f"sound 10 tension yes {form}") as s:
+        s.run()
+        scale = (s.get("rmass") * np.linalg.norm(np.cross(s.get("x"), s.get("v")), axis=1)).sum()
+        start = angular(s)
+        s.run(300)
+        drift = np.abs(angular(s) - start).max() / scale
+    print(f"angular momentum, {dim}D {form}: drift {drift:.1e} in 300 steps")
+    assert drift < 1e-13 if kept else drift > 1e-4

@@ -28,6 +28,7 @@ ALTERNATIVES = {  # what else crosses ranks: options of the scene, in 2D and 3D
     "plain": {"kernel": "cubic 1.3", "fluid": "sound 10 eos tait couple pressure artificial/visc 0.1 0",
               "solid": "artificial/visc 0.5 0"},
     "full": {"kernel": "quintic 1.0", "fluid": "sound 10 couple full tension yes artificial/visc 0.1 0"},
+    "shift": {"fluid": "sound 10 laminar/visc/central shift 0.5"},
     "extrapolate": {"fluid": NO_DIFFUSION + " extrapolate yes"},
 }
 # a thin plate of the paper's raw density is in such tension at its corners that it tears itself apart in 3D

@@ -20,6 +20,7 @@ MODES = {
                               fluid="sound 10 artificial/visc 0.05 0 surface 0.9 bulk"),
     "summation": lambda: dam_gate(2, density="fluid summation solid ratio", fluid="sound 10 artificial/visc 0.05 0"),
     "fluid": lambda: fluid_box(2),
+    "shift": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5"),
 }
 
 

@@ -77,27 +77,29 @@ def test_artificial_viscosity_of_a_shear_wave(dim):
     assert abs(nu / on_lattice - 1) < 0.04
 
 
+@pytest.mark.parametrize("form", ["laminar/visc", "laminar/visc/central"])
 @DIMS
-def test_laminar_shear_wave(dim):
+def test_laminar_shear_wave(dim, form):
     """v_y = U sin kx decays with nu k^2: Morris' form has the viscosity it is given, in 2D and 3D."""
     eta, U, n, dx = 50.0, 0.02, 40, 0.1
     x, k = lattice((n, *[6] * (dim - 1)), dx), 2 * np.pi / 4.0
     v = np.zeros_like(x)
     v[:, 1] = U * np.sin(k * x[:, 0])
     with Scene(x, v, dim=dim, dx=dx, hdx=1.5, boundary="p p p", box=((0, 0, 0), (4, 0.6, 0.6)), dt=0.002,
-               materials=(f"fluid rho 1000 viscosity {eta}",), fluid="sound 10 tension yes laminar/visc") as s:
+               materials=(f"fluid rho 1000 viscosity {eta}",), fluid=f"sound 10 tension yes {form}") as s:
         s.run()
         nu = decay_rate(s, lambda x: np.sin(k * x[:, 0]), 1, 0.002, 8, 25) / k**2
-    print(f"laminar viscosity of a shear wave, {dim}D: {nu / (eta / 1000):.4f} of the one given")
-    # 0.01 h^2 in the denominator takes about 1 %, the kernel's width (k h)^2/10 likewise
-    assert abs(nu / (eta / 1000) - 1) < 0.05
+    print(f"{form} of a shear wave, {dim}D: {nu / (eta / 1000):.4f} of the one given")
+    # 0.01 h^2 in the denominator takes about 1 %, the kernel's width (k h)^2/10 likewise; the central form has the lattice sum of
+    # the artificial viscosity, 7 to 12 % below the integral
+    assert abs(nu / (eta / 1000) - 1) < (0.15 if form.endswith("central") else 0.05)
 
 
 def test_taylor_green():
     """Kinetic energy of vortices at Re = 100 falls as exp(-4 nu k^2 t), k = 2 pi/L.
 
-    Until t = 0.1 L/U: later the lattice, stretched by a third where streams part, breaks up, and the noise dissipates
-    (particle shifting would help; this package has none).
+    Until t = 0.1 L/U: later the lattice, stretched by a third where streams part, breaks up without particle shifting (scene
+    taylor_green).
     """
     error, t_end = {}, 0.1
     for n in (20, 40):

@@ -72,7 +72,7 @@ def with_images(x, v, walls):
                     continue
                 yield s, i, j, x[i] - y[j], v[i] - u[j], v[i] - uv[j]
 
-def reference(scene, x, v, rho, walls, artificial, viscosity, rates_only=False):
+def reference(scene, x, v, rho, walls, artificial, viscosity, central=False):
     """forces, density rates, and the force on the walls (sum) by brute force"""
     k, n = scene.kernel, len(x)
     items = list(with_images(x, v, walls))
@@ -86,7 +86,8 @@ def reference(scene, x, v, rho, walls, artificial, viscosity, rates_only=False):
     mu = np.minimum((u * d).sum(1), 0) * k.h / (r**2 + 0.01 * k.h**2) * artificial
     Q = (rho[i] + rho[j]) / 2 * V[i] * V[j] * (-ALPHA * C * mu + BETA * mu**2)
     pair = -((p * V**2)[i] + (p * V**2)[j] + Q)[:, None] * g[:, None] * d
-    pair += (V[i] * V[j] * 2 * viscosity * g * r**2 / (r**2 + 0.01 * k.h**2))[:, None] * uv
+    along = (scene.dim + 2) * (uv * d).sum(1)[:, None] * d if central else r[:, None]**2 * uv
+    pair += (V[i] * V[j] * 2 * viscosity * g / (r**2 + 0.01 * k.h**2))[:, None] * along
     force, rate = np.zeros((n, 3)), np.zeros(n)
     np.add.at(force, i, pair)
     np.add.at(rate, i, m[i] * g * (u * d).sum(1))
@@ -112,7 +113,7 @@ PLACES = {
                                Wall("zlo")]),
 }
 
-def build(place, slip, artificial, viscosity, kernel, dt):
+def build(place, slip, artificial, viscosity, kernel, dt, central=False):
     dim, walls = PLACES[place]
     for w in walls:
         w.slip = slip
@@ -121,20 +122,21 @@ def build(place, slip, artificial, viscosity, kernel, dt):
     x[:, :dim] += 0.02
     scene = Scene(x, v, dim=dim, dx=DX, hdx=H / DX, kernel=kernel, dt=dt, materials=(VISCOUS if viscosity else WATER,),
                   fluid="tension yes" + f" artificial/visc {ALPHA} {BETA}" * artificial
-                  + " laminar/visc" * bool(viscosity), box=((-3, -3, -3), (3, 3, 3)),
+                  + (" laminar/visc" + "/central" * central) * bool(viscosity), box=((-3, -3, -3), (3, 3, 3)),
                   commands=["fix walls all fsi/wall/mirror " + " ".join(w.command() for w in walls) + " guard 0"])
     return scene, x, v, walls
 
 @pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("slip,artificial,viscosity", [(True, 0, 0), (True, 1, 20), (False, 0, 20), (False, 1, 20)])
-def test_forces(place, slip, artificial, viscosity):
-    scene, x, v, walls = build(place, slip, artificial, viscosity, "wendland", 1e-3)
+@pytest.mark.parametrize("slip,artificial,viscosity,central", [(True, 0, 0, False), (True, 1, 20, False), (False, 0, 20, False),
+                                                               (False, 1, 20, False), (True, 0, 20, True), (False, 0, 20, True)])
+def test_forces(place, slip, artificial, viscosity, central):
+    scene, x, v, walls = build(place, slip, artificial, viscosity, "wendland", 1e-3, central)
     rho = np.random.default_rng(8).uniform(950, 1050, len(x))
     with scene as s:
         s.run()
         s.put("rho", rho)
         s.run()
-        force, _, on_walls = reference(s, x, v, rho, walls, artificial, viscosity)
+        force, _, on_walls = reference(s, x, v, rho, walls, artificial, viscosity, central)
         # the distance of an image is formed from that of its original plus 4 a_i a_j; sums of 20 to 60 terms
         close(s.get("f"), force, 1e-12)
         close(s.fix_array("walls", len(walls)).sum(0), on_walls, 1e-12)

@@ -133,3 +133,34 @@ def _scales(frames, fluid, solid):
         unit, scale = ("MPa", 1e6) if top >= 1e6 else ("kPa", 1e3) if top >= 100.0 else ("Pa", 1.0)
         scales.append((types, name, colours, Normalize(0.0, max(top / scale, 1e-30)), scale, f"{title} [{unit}]"))
     return scales
+
+
+def clouds(path, panels, spacing, limits, label, extent=None, axis_labels=("x [m]", "y [m]"), panel_width=2.6, colours=FLUID_COLOURS):
+    """Particles side by side, coloured by any value: panels lists (title, x, y, value), limits as for snapshots.
+
+    extent (lowest, highest): the range of colours, by default that of the values. Particles are discs as wide as `spacing`, so
+    that gaps and clumps show.
+    """
+    (xlo, xhi), (ylo, yhi) = limits
+    low, high = extent or (min(p[3].min() for p in panels), max(p[3].max() for p in panels))
+    norm = Normalize(low, high)
+    left, bottom, gap, title, bar = 0.62, 0.44, 0.16, 0.26, 0.85
+    panel_height = panel_width * (yhi - ylo) / (xhi - xlo)
+    width, height = left + len(panels) * (panel_width + gap) + bar, bottom + panel_height + title
+    with picture(path, width, height) as figure:
+        for k, (name, x, y, value) in enumerate(panels):
+            axes = figure.add_axes(((left + k * (panel_width + gap)) / width, bottom / height, panel_width / width,
+                                    panel_height / height))
+            axes.scatter(x, y, s=(0.9 * spacing * panel_width * 72.0 / (xhi - xlo))**2, c=value, linewidths=0, cmap=colours,
+                         norm=norm, rasterized=True)
+            axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal", xlabel=axis_labels[0])
+            axes.set_title(name, loc="left", pad=3)
+            axes.grid(False)
+            axes.xaxis.set_major_locator(MaxNLocator(4, prune="upper"))
+            axes.yaxis.set_major_locator(MaxNLocator(4))
+            axes.tick_params(labelleft=k == 0)
+            if k == 0:
+                axes.set_ylabel(axis_labels[1])
+        axes = figure.add_axes(((left + len(panels) * (panel_width + gap)) / width, bottom / height, 0.12 / width,
+                                panel_height / height))
+        figure.colorbar(ScalarMappable(norm, colours), cax=axes, label=label)

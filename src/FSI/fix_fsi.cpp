@@ -46,8 +46,9 @@ using namespace FSI;
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
-    grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
-    solid_tl(nullptr), substeps(1), fix_dt(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0), tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false)
+    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
+    solid(nullptr), solid_tl(nullptr), substeps(1), fix_dt(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
+    tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
@@ -120,6 +121,7 @@ FixFSI::~FixFSI()
   memory->destroy(ratio);
   memory->destroy(psi);
   memory->destroy(rate);
+  memory->destroy(shift);
   memory->destroy(grad);
   memory->destroy(wmask);
 }
@@ -184,9 +186,10 @@ void FixFSI::init()
   need_psi = density_fluid != CONTINUITY || (fluid && fluid->surface_ratio > 0.0) ||
       (solid && density_solid != CONTINUITY);
   need_grad = solid != nullptr;
-  // most that is sent for one atom: number density, density, stress and the gradient's coefficients; sums of the gradient back
+  need_shift = fluid && fluid->shifting > 0.0;
+  // most that is sent for one atom: number density, density, stress and the gradient's coefficients; sums of gradient and shift back
   comm_forward = 2 + (solid ? (dim == 2 ? 3 : 6) + dim * solid->terms() : 0);
-  comm_reverse = solid ? ngrad() : 1;
+  comm_reverse = std::max(solid ? ngrad() : 1, 1 + (need_shift ? nshift() : 0));
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
 
@@ -367,8 +370,7 @@ void FixFSI::final_integrate()
   double **v = atom->v;
   double **f = atom->f;
   const double *const rmass = atom->rmass;
-  const int *const mask = atom->mask;
-  const int *const type = atom->type;
+  const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
   if (substeps > 1) substep_solids();
   for (int i = 0; i < atom->nlocal; i++) {
@@ -379,6 +381,8 @@ void FixFSI::final_integrate()
       v[i][d] += dtfm * f[i][d];
       x[i][d] += dth * v[i][d];
     }
+    if (need_shift && state[type[i]].species == FLUID)
+      for (int d = 0; d < dim; d++) x[i][d] += shift[i][d];
   }
 }
 
@@ -435,6 +439,7 @@ void FixFSI::update_state(bool advance)
     nmax = atom->nmax;
     if (need_psi) memory->grow(psi, nmax, "fsi:psi");
     if (fluid && density_fluid == CONTINUITY) memory->grow(rate, nmax, "fsi:rate");
+    if (need_shift) memory->grow(shift, nmax, nshift(), "fsi:shift");
     if (need_grad) memory->grow(grad, nmax, ngrad(), "fsi:grad");
     if (!wall_fixes.empty()) memory->grow(wmask, nmax, "fsi:wmask");
   }
@@ -451,11 +456,13 @@ void FixFSI::update_state(bool advance)
   const bool gradient = need_grad && (advance || solid->terms());
   if ((advance && rate) || gradient) {
     if (rate) memset(rate, 0, nall * sizeof(double));
+    if (need_shift && nall) memset(shift[0], 0, (size_t) nall * nshift() * sizeof(double));
     if (gradient && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
     if (rate && advance) fluid->density_rate(update->dt);
     if (gradient) solid->velocity_gradient(advance ? update->dt : 0.0);
     if (force->newton_pair) comm->reverse_comm(this);
     if (advance) advance_density();
+    if (need_shift && advance) fluid->displacements(update->dt);
     if (gradient) {
       if (solid->terms() == 0) dim == 2 ? advance_solids<2, 0>(advance) : advance_solids<3, 0>(advance);
       else if (solid->terms() == dim) dim == 2 ? advance_solids<2, 2>(advance) : advance_solids<3, 3>(advance);
@@ -677,15 +684,18 @@ void FixFSI::unpack_forward_comm(int n, int first, double *buf)
 int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 {
   const int *const type = atom->type;
-  const int ng = ngrad();
+  const int ng = ngrad(), ns = nshift();
   int m = 0;
   for (int i = first; i < first + n; i++) {
     if (summed) buf[m++] = summed[i];
     else if (state[type[i]].species == SOLID) {
       if (grad)
         for (int k = 0; k < ng; k++) buf[m++] = grad[i][k];
-    } else if (rate)
+    } else if (rate) {
       buf[m++] = rate[i];
+      if (need_shift)
+        for (int k = 0; k < ns; k++) buf[m++] = shift[i][k];
+    }
   }
   return m;
 }
@@ -695,7 +705,7 @@ int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
 {
   const int *const type = atom->type;
-  const int ng = ngrad();
+  const int ng = ngrad(), ns = nshift();
   int m = 0;
   for (int ii = 0; ii < n; ii++) {
     const int i = list[ii];
@@ -703,8 +713,11 @@ void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
     else if (state[type[i]].species == SOLID) {
       if (grad)
         for (int k = 0; k < ng; k++) grad[i][k] += buf[m++];
-    } else if (rate)
+    } else if (rate) {
       rate[i] += buf[m++];
+      if (need_shift)
+        for (int k = 0; k < ns; k++) shift[i][k] += buf[m++];
+    }
   }
 }
 
@@ -773,6 +786,7 @@ double FixFSI::memory_usage()
   double bytes = 0.0;
   if (psi) bytes += (double) nmax * sizeof(double);
   if (rate) bytes += (double) nmax * sizeof(double);
+  if (shift) bytes += (double) nmax * nshift() * sizeof(double);
   if (grad) bytes += (double) nmax * ngrad() * sizeof(double);
   if (wmask) bytes += (double) nmax * sizeof(int);
   if (ratio) bytes += (double) atom->nmax * sizeof(double);

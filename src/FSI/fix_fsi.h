@@ -78,6 +78,7 @@ class FixFSI : public Fix {
   // per atom, local and ghost; valid from pre_force on
   double *psi;      // number density, if any mode or rule needs it
   double *rate;     // density rate of fluids (continuity), local after the reverse communication
+  double **shift;   // fluids, pair_style fsi/fluid shift: its sums; afterwards the displacement at the end of the step
   double **grad;    // solids: the sums of pair_style fsi/solid's velocity_gradient(); afterwards L and coefficients (fsi_gradient.h)
   int *wmask;       // bits of the mirror walls that an atom is near
 
@@ -113,6 +114,7 @@ class FixFSI : public Fix {
 
   // sums of the velocity gradient per solid particle, and what replaces them: L, then the coefficients of its weights
   int ngrad() const;
+  int nshift() const { return 2 * dim + 1; }
   void find_gravity();
   // number density of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
   void number_density(double *n);
@@ -125,7 +127,7 @@ class FixFSI : public Fix {
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
   int nmax;
   double tally_dt;
-  bool need_psi, need_grad, need_ratio;
+  bool need_psi, need_grad, need_ratio, need_shift;
 
   void substep_solids();
   template <int D, int TERMS> void advance_solids(bool advance);

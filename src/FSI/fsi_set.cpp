@@ -19,17 +19,22 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "group.h"
+#include "input.h"
+#include "variable.h"
 
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
 /* ----------------------------------------------------------------------
    fsi_set group-ID density value
+   fsi_set group-ID pressure value      density that gives this pressure
    fsi_set group-ID hydrostatic level
-     density that gives p = rho0 |g| (level - height), height along -g; nothing above the level
+     the same for p = rho0 |g| (level - height), height along -g; nothing above the level
+   value: a number or, of density and pressure, an atom-style variable
    The mass follows: a particle keeps the volume of its place in the lattice. (With the mass of the uncompressed lattice
    volumes would say "compressed" where distances do not, and still water would settle 2 % off at c = 10 sqrt(2 g H).)
 ------------------------------------------------------------------------- */
@@ -37,16 +42,22 @@ using namespace FSI;
 void FSISet::command(int narg, char **arg)
 {
   if (domain->box_exist == 0) error->all(FLERR, "Fsi_set command before simulation box is defined");
-  if (narg != 3) error->all(FLERR, "Fsi_set expects group-ID, density or hydrostatic, and a value");
+  if (narg != 3) error->all(FLERR, "Fsi_set expects group-ID, density, pressure or hydrostatic, and a value");
 
   const int igroup = group->find(arg[0]);
   if (igroup == -1) error->all(FLERR, "Fsi_set group-ID {} does not exist", arg[0]);
   const int groupbit = group->bitmask[igroup];
   const bool hydrostatic = strcmp(arg[1], "hydrostatic") == 0;
-  if (!hydrostatic && strcmp(arg[1], "density") != 0)
-    error->all(FLERR, "Unknown fsi_set keyword {}: expected density or hydrostatic", arg[1]);
-  const double value = utils::numeric(FLERR, arg[2], false, lmp);
-  if (!hydrostatic && value <= 0.0) error->all(FLERR, "Fsi_set density {} must be > 0", arg[2]);
+  const bool pressure = strcmp(arg[1], "pressure") == 0;
+  if (!hydrostatic && !pressure && strcmp(arg[1], "density") != 0)
+    error->all(FLERR, "Unknown fsi_set keyword {}: expected density, pressure or hydrostatic", arg[1]);
+  int variable = -1;
+  if (utils::strmatch(arg[2], "^v_") && !hydrostatic) {
+    variable = input->variable->find(arg[2] + 2);
+    if (variable < 0 || !input->variable->atomstyle(variable))
+      error->all(FLERR, "Fsi_set {} {} is not an atom-style variable", arg[1], arg[2]);
+  }
+  const double number = variable < 0 ? utils::numeric(FLERR, arg[2], false, lmp) : 0.0;
 
   const FixFSI *hub = FixFSI::find(lmp, "Fsi_set");
 
@@ -55,16 +66,22 @@ void FSISet::command(int narg, char **arg)
   const double *g = hub->gravity, size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
   if (hydrostatic && size == 0.0) error->all(FLERR, "Fsi_set hydrostatic requires fix gravity");
 
+  std::vector<double> each(atom->nlocal, number);
+  if (variable >= 0) input->variable->compute_atom(variable, igroup, each.data(), 1, 0);
+
   bigint count = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     const State &s = hub->state[atom->type[i]];
+    const double value = each[i];
     double rho = value;
     if (hydrostatic) {
       const double *x = atom->x[i], height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
       if (height > value) continue;
       rho = s.density(s.rho0 * size * (value - height) + s.p0);
-    }
+    } else if (pressure)
+      rho = s.density(value);
+    if (!(rho > 0.0)) error->one(FLERR, "Fsi_set {} {} must be > 0", pressure ? "pressure: density" : "density", rho);
     atom->rmass[i] *= rho / atom->rho[i];
     atom->rho[i] = rho;
     count++;

@@ -11,8 +11,14 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Laminar viscosity (Morris, Fox and Zhu 1997, eq. 22, with V = m/rho):
-//   F_ij = V_i V_j (eta_i + eta_j) (x_ij.grad_i W_ij)/(r^2 + 0.01 h^2) v_ij
+// Laminar viscosity, with V = m/rho and in both forms the mean viscosity of two fluids:
+//   plain (Morris, Fox and Zhu 1997, eq. 22):
+//     F_ij = V_i V_j (eta_i + eta_j) (x_ij.grad_i W_ij)/(r^2 + 0.01 h^2) v_ij
+//   central (Monaghan and Gingold 1983, with Monaghan's 2005 factor 2(d+2)), along the line of centres:
+//     F_ij = V_i V_j (d + 2)(eta_i + eta_j) (v_ij.x_ij)/(r^2 + 0.01 h^2) grad_i W_ij
+// Both are the Laplacian of an incompressible flow. The plain one takes eta |grad v|^2 from the flow, the central one
+// 2 eta e:e, e the rate of strain: only that is right at a free surface (Colagrossi, Antuono, Souto-Iglesias and Le Touze
+// 2011), and only that keeps angular momentum; the plain one is quieter in shear.
 
 #ifndef LMP_FSI_VISCOSITY_LAMINAR_H
 #define LMP_FSI_VISCOSITY_LAMINAR_H
@@ -20,11 +26,27 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  struct LaminarViscosity {
+  template <int D> struct LaminarViscosity {
     double eta;    // 0.01 h^2
-    explicit LaminarViscosity(double h) : eta(0.01 * h * h) {}
-    // factor k with F_ij = k v_ij; g: grad_i W_ij = g x_ij; visc: eta_i + eta_j; vv = V_i V_j
-    double operator()(double g, double rsq, double visc, double vv) const { return vv * visc * g * rsq / (rsq + eta); }
+    bool central;
+    LaminarViscosity(double h, bool c) : eta(0.01 * h * h), central(c) {}
+    // adds F_ij to f and returns the power it takes; g: grad_i W_ij = g x_ij; visc: eta_i + eta_j; vv = V_i V_j
+    double operator()(double g, double rsq, double visc, double vv, const double *x_ij, const double *v_ij, double *f) const
+    {
+      const double k = vv * visc * g / (rsq + eta);
+      double power = 0.0;
+      if (central) {
+        double vx = 0.0;
+        for (int d = 0; d < D; d++) vx += v_ij[d] * x_ij[d];
+        for (int d = 0; d < D; d++) f[d] += (D + 2) * k * vx * x_ij[d];
+        power = (D + 2) * k * vx * vx;
+      } else
+        for (int d = 0; d < D; d++) {
+          f[d] += k * rsq * v_ij[d];
+          power += k * rsq * v_ij[d] * v_ij[d];
+        }
+      return -power;
+    }
   };
 
 }    // namespace FSI

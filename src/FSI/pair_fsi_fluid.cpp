@@ -21,6 +21,7 @@
 #include "force.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_kernel.h"
+#include "fsi_shift.h"
 #include "fsi_tensor.h"
 #include "fsi_viscosity_artificial.h"
 #include "fsi_viscosity_laminar.h"
@@ -39,7 +40,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), surface_ratio(0.0), surface_max(0), sound(0.0), background(0.0), alpha(0.0), beta(0.0), delta(0.0),
+    PairFSI(lmp, "fsi/fluid"), surface_ratio(0.0), surface_max(0), shifting(0.0), sound(0.0), background(0.0), alpha(0.0), beta(0.0), delta(0.0),
     tait(0), laminar(0), couple(WALL), extrapolate(0), tension(0), force_loop(nullptr), rate_loop(nullptr)
 {
 }
@@ -75,12 +76,17 @@ void PairFSIFluid::settings(int narg, char **arg)
       alpha = number(arg[iarg + 1], "artificial/visc alpha");
       beta = number(arg[iarg + 2], "artificial/visc beta");
       iarg += 3;
-    } else if (strcmp(arg[iarg], "laminar/visc") == 0) {
-      laminar = 1;
+    } else if (strcmp(arg[iarg], "laminar/visc") == 0 || strcmp(arg[iarg], "laminar/visc/central") == 0) {
+      laminar = strcmp(arg[iarg], "laminar/visc") == 0 ? PLAIN : CENTRAL;
       iarg += 1;
     } else if (strcmp(arg[iarg], "density/diffusion") == 0) {
       need(narg, arg, iarg, 1);
       delta = number(arg[iarg + 1], "density/diffusion");
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "shift") == 0) {
+      need(narg, arg, iarg, 1);
+      shifting = number(arg[iarg + 1], "shift");
+      if (shifting > 1.0) error->all(FLERR, "Pair style fsi/fluid shift {} must be at most 1", arg[iarg + 1]);
       iarg += 2;
     } else if (strcmp(arg[iarg], "couple") == 0) {
       need(narg, arg, iarg, 1);
@@ -104,7 +110,7 @@ void PairFSIFluid::settings(int narg, char **arg)
       iarg += 3;
     } else
       error->all(FLERR, "Unknown pair_style fsi/fluid keyword {}: expected sound, eos, background, tension, artificial/visc, "
-                        "laminar/visc, density/diffusion, couple, extrapolate or surface", arg[iarg]);
+                        "laminar/visc, laminar/visc/central, density/diffusion, shift, couple, extrapolate or surface", arg[iarg]);
   }
   if (sound <= 0.0) error->all(FLERR, "Pair style fsi/fluid needs keyword sound with a speed of sound > 0");
 }
@@ -143,6 +149,8 @@ void PairFSIFluid::init_style()
   PairFSI::init_style();
   if (delta > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
+  if (shifting > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
+    error->all(FLERR, "Pair style fsi/fluid shift requires fix fsi with fluid continuity");
   if (laminar) {
     bool any = false;
     for (const auto &m : material) any = any || m.viscosity > 0.0;
@@ -168,7 +176,7 @@ template <class K> void PairFSIFluid::select()
   const int flags = (alpha > 0.0 || beta > 0.0 ? ARTIFICIAL : 0) | (laminar ? LAMINAR : 0) | (walls ? MIRROR : 0) |
       (solids ? SOLIDS : 0) | (ledger ? LEDGER : 0);
   const int rflags = (delta > 0.0 ? DIFFUSION : 0) | (walls ? IMAGES : 0) | (mixed ? MIXED : 0) |
-      (ledger ? TALLY : 0);
+      (ledger ? TALLY : 0) | (shifting > 0.0 ? SHIFT : 0);
 
   pick_force<K>(flags, std::make_integer_sequence<int, NFORCE>());
   pick_rate<K>(rflags, std::make_integer_sequence<int, NRATE>());
@@ -199,6 +207,7 @@ void PairFSIFluid::density_rate(double dt)
    continuity: d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which makes the work of
    the pair force -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures. Positions are those of time n, half a step
    before atom->x, where the velocities belong: the density leapfrogs from n-1/2 to n+1/2, second order in time.
+   Solids count in the sums of shifting, but are not shifted.
 ------------------------------------------------------------------------- */
 
 template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
@@ -218,6 +227,8 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   const int *const wmask = hub->wmask;
   const Walls walls = (FLAGS & IMAGES) ? hub->walls.moved(-dth) : Walls();
   const DensityDiffusion diffusion(delta, hub->h, hub->gravity);
+  const Shift<D> shift(hub->wdx);
+  double *const *const sums = hub->shift;
 
   const auto pair = [&](int i, int j, const double *xij, const double *vij, double rsq, const double *real_xij,
                         double share) {
@@ -239,6 +250,11 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
     rate[i] += ri;
     return rj;
   };
+  const auto shift_pair = [&](int i, int j, double rsq, const double *xij, const double *xji) {
+    const double r = std::sqrt(rsq), g = kernel.gradient(r), w = kernel.W(r);
+    shift.add(sums[i], rmass[j] / rho[j], g, w, rsq, xij);
+    shift.add(sums[j], rmass[i] / rho[i], g, w, rsq, xji);
+  };
 
   const int inum = list->inum;
   for (int ii = 0; ii < inum; ii++) {
@@ -257,6 +273,10 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
       // without newton a pair across ranks is computed on both: each counts half of its energy
       const double share = (newton || j < nlocal) ? 1.0 : 0.5;
       rate[j] += pair(i, j, xij, vij, rsq, xij, share);
+      if (FLAGS & SHIFT) {
+        const double xji[3] = {-xij[0], -xij[1], -xij[2]};
+        shift_pair(i, j, rsq, xij, xji);
+      }
       if ((FLAGS & IMAGES) && (wmask[i] & wmask[j]))
         walls.images(wmask[i] & wmask[j], rsq, xi, xj, kernel.cutsq,
                      [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
@@ -264,6 +284,11 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
                        walls.reflect_velocity(s, v[j], false, vi);
                        for (int d = 0; d < 3; d++) vi[d] = v[i][d] - vi[d];
                        rate[j] += pair(i, j, x_image, vi, rsq_image, xij, share);
+                       if (FLAGS & SHIFT) {
+                         double xji[3] = {-x_image[0], -x_image[1], -x_image[2]};
+                         walls.reflect_vector(s, xji);
+                         shift_pair(i, j, rsq_image, x_image, xji);
+                       }
                      });
     }
   }
@@ -280,9 +305,26 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
                      walls.reflect_velocity(s, v[i], false, vi);
                      double sum = 0.0;
                      for (int d = 0; d < D; d++) sum += (v[i][d] - vi[d]) * x_image[d];
-                     rate[i] += rmass[i] * kernel.gradient(std::sqrt(rsq)) * sum;
+                     const double r = std::sqrt(rsq), g = kernel.gradient(r);
+                     rate[i] += rmass[i] * g * sum;
+                     if (FLAGS & SHIFT) shift.add(sums[i], rmass[i] / rho[i], g, kernel.W(r), rsq, x_image);
                    });
     }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::displacements(double dt)
+{
+  const int *const type = atom->type;
+  double *const *const sums = hub->shift;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const State &s = hub->state[type[i]];
+    if (s.species != FLUID) continue;
+    const double reach = shifting * s.c * dt;
+    if (hub->dim == 2) Shift<2>::displacement(sums[i], reach * hub->h, 0.25 * reach);
+    else Shift<3>::displacement(sums[i], reach * hub->h, 0.25 * reach);
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -400,7 +442,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const Walls &walls = hub->walls;
   const Aux *const a = aux.data();
   const ArtificialViscosity artificial(alpha, beta, hub->h);
-  const LaminarViscosity viscous(hub->h);
+  const LaminarViscosity<D> viscous(hub->h, laminar == CENTRAL);
   const double *const gravity = hub->gravity;
   const bool all_bodies = hub->density_solid == FixFSI::SUMMATION;
 
@@ -458,19 +500,15 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     for (int d = 0; d < 3; d++) fji[d] = -fij[d];
     walls.reflect_vector(s, fji);
     if (FLAGS & LAMINAR) {
-      const double k =
-          viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol);
+      const double visc = state[type[i]].viscosity + state[type[j]].viscosity, vv = a[i].vol * a[j].vol;
       walls.reflect_velocity(s, v[j], true, vimage);
-      double loss = 0.0;    // of both, each relative to the other's image
-      for (int d = 0; d < D; d++) {
-        fij[d] += k * (v[i][d] - vimage[d]);
-        loss -= 0.5 * k * (v[i][d] - vimage[d]) * (v[i][d] - vimage[d]);
-      }
+      for (int d = 0; d < 3; d++) vij[d] = v[i][d] - vimage[d];
+      double loss = 0.5 * viscous(g, rsq, visc, vv, xij, vij, fij);    // of both, each relative to the other's image
+      double xji[3] = {-xij[0], -xij[1], -xij[2]};
+      walls.reflect_vector(s, xji);
       walls.reflect_velocity(s, v[i], true, vimage);
-      for (int d = 0; d < D; d++) {
-        fji[d] += k * (v[j][d] - vimage[d]);
-        loss -= 0.5 * k * (v[j][d] - vimage[d]) * (v[j][d] - vimage[d]);
-      }
+      for (int d = 0; d < 3; d++) vij[d] = v[j][d] - vimage[d];
+      loss += 0.5 * viscous(g, rsq, visc, vv, xji, vij, fji);
       if (FLAGS & LEDGER) hub->tally(FixFSI::LAMINAR, (fj ? 1.0 : 0.5) * share * loss);
     }
     for (int d = 0; d < D; d++) {
@@ -501,12 +539,9 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       double fij[3];
       force_on_i(i, j, g, rsq, xij, vij, share, fij);
       if (FLAGS & LAMINAR) {
-        const double k =
-            viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol);
-        for (int d = 0; d < D; d++) {
-          fij[d] += k * vij[d];
-          if (FLAGS & LEDGER) hub->tally(FixFSI::LAMINAR, -share * k * vij[d] * vij[d]);
-        }
+        const double loss = viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, a[i].vol * a[j].vol, xij,
+                                    vij, fij);
+        if (FLAGS & LEDGER) hub->tally(FixFSI::LAMINAR, share * loss);
       }
       double fj[3] = {0.0, 0.0, 0.0};
       for (int d = 0; d < D; d++) {
@@ -547,7 +582,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
 
 void PairFSIFluid::write_restart_settings(FILE *fp)
 {
-  double d[] = {sound, background, alpha, beta, delta, surface_ratio};
+  double d[] = {sound, background, alpha, beta, delta, surface_ratio, shifting};
   int n[] = {tait, laminar, couple, extrapolate, tension, surface_max};
   restart_value(fp, d, true);
   restart_value(fp, n, true);
@@ -557,7 +592,7 @@ void PairFSIFluid::write_restart_settings(FILE *fp)
 
 void PairFSIFluid::read_restart_settings(FILE *fp)
 {
-  double d[6];
+  double d[7];
   int n[6];
   restart_value(fp, d, false);
   restart_value(fp, n, false);
@@ -567,6 +602,7 @@ void PairFSIFluid::read_restart_settings(FILE *fp)
   beta = d[3];
   delta = d[4];
   surface_ratio = d[5];
+  shifting = d[6];
   tait = n[0];
   laminar = n[1];
   couple = n[2];

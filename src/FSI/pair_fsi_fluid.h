@@ -32,6 +32,7 @@ namespace LAMMPS_NS {
 class PairFSIFluid : public PairFSI {
  public:
   enum Couple { WALL, PRESSURE, FULL };
+  enum Laminar { INVISCID, PLAIN, CENTRAL };
 
   PairFSIFluid(class LAMMPS *);
   void settings(int, char **) override;
@@ -48,8 +49,13 @@ class PairFSIFluid : public PairFSI {
   double surface_ratio;
   int surface_max;
 
-  // adds the density rate (continuity) of fluids to fix fsi's rate, at the positions dt/2 ago, to which the velocities belong
+  double shifting;    // coefficient C of particle shifting; 0 = off
+
+  // adds the density rate (continuity) of fluids to fix fsi's rate, and the sums of particle shifting to its shift, at the
+  // positions dt/2 ago, to which the velocities belong
   void density_rate(double dt);
+  // turns the sums of particle shifting of local fluid atoms into displacements
+  void displacements(double dt);
   // adds sum_j W_ij of fluid-fluid and fluid-solid pairs to psi; to that of the solid only if solids_too
   void number_density(double *psi, bool solids_too);
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
@@ -71,7 +77,7 @@ class PairFSIFluid : public PairFSI {
   std::vector<Aux> aux;         // local and ghost, filled at the start of compute()
 
   enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, LEDGER = 16, NFORCE = 32 };
-  enum { DIFFUSION = 1, IMAGES = 2, MIXED = 4, TALLY = 8, NRATE = 16 };
+  enum { DIFFUSION = 1, IMAGES = 2, MIXED = 4, TALLY = 8, SHIFT = 16, NRATE = 32 };
   void (PairFSIFluid::*force_loop)();
   void (PairFSIFluid::*rate_loop)(double);
   template <class K, int FLAGS> void force_pairs();
