@@ -1,6 +1,6 @@
 # Adds LAMMPS as a subproject with the styles of src/FSI in its style headers. No patch: LAMMPS' own
 # RegisterStyles() collects our headers before its CMakeLists writes style_*.h.
-set(FSI_SOURCE_DIR "${CMAKE_CURRENT_SOURCE_DIR}/src/FSI")
+option(FSI_COMPILED_IN "The package is part of LAMMPS (OFF: of the plugin only)" ON)
 
 # What the bundled decks need. More: -DPKG_<NAME>=ON.
 foreach(pkg RIGID PLUGIN)
@@ -11,23 +11,23 @@ option(BUILD_OMP "Build with OpenMP" OFF)
 option(BUILD_TOOLS "Build LAMMPS' tools" OFF)
 
 include("${LAMMPS_SOURCE_DIR}/cmake/Modules/StyleHeaderUtils.cmake")
-RegisterStyles("${FSI_SOURCE_DIR}")
+if(FSI_COMPILED_IN)
+  RegisterStyles("${FSI_SOURCE_DIR}")
+endif()
 
 # Our targets land beside lmp, whatever LAMMPS' own CMakeLists makes of its binary folder
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
 # an installed lmp finds its liblammps beside it
-include(GNUInstallDirs)
 if(NOT CMAKE_INSTALL_RPATH)
   set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
 endif()
 add_subdirectory("${LAMMPS_SOURCE_DIR}/cmake" lammps)
 
-file(GLOB FSI_SOURCES CONFIGURE_DEPENDS "${FSI_SOURCE_DIR}/*.cpp")
-target_sources(lammps PRIVATE ${FSI_SOURCES})
-target_include_directories(lammps PRIVATE "${FSI_SOURCE_DIR}")
-if(FSI_INSTRUMENT)
-  set_source_files_properties(${FSI_SOURCES} TARGET_DIRECTORY lammps PROPERTIES COMPILE_OPTIONS "${FSI_INSTRUMENT}")
+fsi_compile_as_lammps(fsi)
+if(FSI_COMPILED_IN)
+  target_sources(lammps PRIVATE $<TARGET_OBJECTS:fsi>)
+  target_include_directories(lammps PRIVATE "${FSI_SOURCE_DIR}")
 endif()
 if(FSI_COVERAGE)
   target_link_options(lammps PUBLIC --coverage)
@@ -35,6 +35,3 @@ endif()
 if(FSI_SANITIZE)
   target_link_options(lammps PUBLIC -fsanitize=${FSI_SANITIZE})
 endif()
-
-install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/potentials/" DESTINATION ${CMAKE_INSTALL_DATADIR}/lammps/potentials
-        FILES_MATCHING PATTERN "*.fsi")

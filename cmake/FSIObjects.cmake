@@ -1,0 +1,20 @@
+# The package's sources, compiled once, with the definitions and include folders of target lammps: for liblammps and the plugin.
+set(FSI_SOURCE_DIR "${CMAKE_CURRENT_SOURCE_DIR}/src/FSI")
+file(GLOB FSI_SOURCES CONFIGURE_DEPENDS "${FSI_SOURCE_DIR}/*.cpp")
+add_library(fsi OBJECT ${FSI_SOURCES})
+set_target_properties(fsi PROPERTIES POSITION_INDEPENDENT_CODE ON)
+target_compile_features(fsi PRIVATE cxx_std_17)
+target_compile_options(fsi PRIVATE ${FSI_INSTRUMENT})
+
+# Compiles a target as a part of LAMMPS, without linking it: linking would be a cycle for what goes into liblammps, and a
+# plugin finds LAMMPS' symbols in the process that loads it.
+function(fsi_compile_as_lammps target)
+  if(FSI_BUILD_LAMMPS)
+    target_include_directories(${target} PRIVATE "${FSI_SOURCE_DIR}" $<TARGET_PROPERTY:lammps,INCLUDE_DIRECTORIES>)
+    target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:lammps,COMPILE_DEFINITIONS>)
+    target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:lammps,COMPILE_OPTIONS>)
+  else()
+    target_include_directories(${target} PRIVATE "${FSI_SOURCE_DIR}")
+    target_link_libraries(${target} PRIVATE lammps)    # headers only
+  endif()
+endfunction()
