@@ -2,7 +2,8 @@
 set(FSI_SOURCE_DIR "${CMAKE_CURRENT_SOURCE_DIR}/src/FSI")
 file(GLOB FSI_SOURCES CONFIGURE_DEPENDS "${FSI_SOURCE_DIR}/*.cpp")
 add_library(fsi OBJECT ${FSI_SOURCES})
-set_target_properties(fsi PROPERTIES POSITION_INDEPENDENT_CODE ON)
+# include folders of imported targets by -I, as in LAMMPS: then the compiler cache knows the objects of either way to build
+set_target_properties(fsi PROPERTIES POSITION_INDEPENDENT_CODE ON NO_SYSTEM_FROM_IMPORTED ON)
 target_compile_features(fsi PRIVATE cxx_std_17)
 target_compile_options(fsi PRIVATE ${FSI_INSTRUMENT})
 
