@@ -21,9 +21,11 @@ _spec.loader.exec_module(plate)
 main = plate.main
 
 COLOURS = {"cubic_1.2": "#5aa0d8", "cubic_1.3": "#1b5e96", "cubic_1.5": "#0b2c47", "quintic_1.0": "#d1611a",
-           "quintic_1.3": "#efa36b", "corrected_1.3": "#2a8c57", "nostress_1.3": "#8a4fa0"}
+           "quintic_1.3": "#efa36b", "corrected_1.3": "#2a8c57", "nostress_1.3": "#8a4fa0",
+           "coarse_1.3": "#c98bd8"}
 RECIPE = [kind for kind in COLOURS if kind.startswith(("cubic", "quintic"))]
-OTHER = {"cubic_1.3": "the paper's recipe", "corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress"}
+OTHER = {"cubic_1.3": "the paper's recipe", "corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress",
+         "coarse_1.3": "the same, 5 across"}
 COLUMNS = ("a5_a1", "period", "stopped_at", "fractured_at", "disorder", "neighbour_distance_deviation", "stress_zigzag",
            "mechanical_energy", "taken_by_viscosity", "taken_by_stress")
 
@@ -85,7 +87,7 @@ def picture_damping(path, table):
             axes.set_title(title, loc="left")
             axes.set_ylim(0.0, 1.05)
             _alpha_axis(axes, [table[kind] for kind in kinds if kind in table])
-            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.15))
+            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.15), fontsize=8)
         panels[0].set_ylabel("A5/A1")
         figure.tight_layout()
 
@@ -93,7 +95,8 @@ def picture_damping(path, table):
 def picture_reason(path, table):
     """How disordered the particles are, and what viscosity takes."""
     labels = {"cubic_1.2": "h/Δx = 1.2", "cubic_1.3": "h/Δx = 1.3", "cubic_1.5": "h/Δx = 1.5",
-              "corrected_1.3": "1.3, corrected gradient", "nostress_1.3": "1.3, no artificial stress"}
+              "corrected_1.3": "1.3, corrected gradient", "nostress_1.3": "1.3, no artificial stress",
+              "coarse_1.3": "the same, 5 across"}
     with plot.picture(path, 8.0, 3.6) as figure:
         panels = figure.subplots(1, 2)
         for axes, name, title in ((panels[0], "disorder", "zigzag of positions over Δx after four periods"),
@@ -102,7 +105,8 @@ def picture_reason(path, table):
             axes.set_title(title, loc="left")
             axes.set_yscale("log")
             _alpha_axis(axes, [table[kind] for kind in labels if kind in table])
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="lower center", ncols=len(labels), fontsize=8)
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="lower center", ncols=len(labels), fontsize=7.5,
+                      columnspacing=1.2, handlelength=1.5)
         figure.tight_layout(rect=(0.0, 0.07, 1.0, 1.0))
 
 
