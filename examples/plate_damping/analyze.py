@@ -74,7 +74,7 @@ def _curves(axes, table, kinds, name, labels):
 
 def picture_damping(path, table):
     """A5/A1 against alpha by kernel and h; runs that blew up as crosses at the bottom."""
-    with plot.picture(path, 8.0, 3.7) as figure:
+    with plot.picture(path, 8.0, 4.3) as figure:
         panels = figure.subplots(1, 2, sharey=True)
         for axes, kinds, labels, title in (
                 (panels[0], RECIPE, {}, "the paper's recipe"),
@@ -87,7 +87,7 @@ def picture_damping(path, table):
             axes.set_title(title, loc="left")
             axes.set_ylim(0.0, 1.05)
             _alpha_axis(axes, [table[kind] for kind in kinds if kind in table])
-            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.15), fontsize=8)
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=2, fontsize=8)
         panels[0].set_ylabel("A5/A1")
         figure.tight_layout()
 
