@@ -92,7 +92,8 @@ def test_table(tree):
 def test_gallery_shows_what_the_readme_shows_else_everything(tree):
     page = page_of(tree)
     folder = tree / "doc" / "results"
-    assert "### [Falling stone](../../examples/stone)\n\nA stone falls.\n\n![the fall](stone_fall.png)" in page
+    assert '<a href="../../examples/stone">Falling stone</a></b><br>\nA stone falls.\n' in page
+    assert '<img src="stone_fall.png" alt="the fall">' in page
     assert (folder / "stone_fall.png").read_text() == "stone/fall.png"
     assert "stone_other.png" not in page
     # a case's picture where the study has none of that name: the largest case's

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Figures and pictures of the elastic gate.   usage: analyze.py FOLDER
 
-Reads tip.csv, particles.dump and log.lammps in FOLDER, which tools/run makes; writes summary.json, tip.png and
-snapshots.png there.
+main reads tip.csv, particles.dump and log.lammps in FOLDER, which tools/run makes; writes summary.json, tip.png and
+snapshots.png there. study compares runs of several resolutions and moduli with experiment and other codes: summary.json, tip.png,
+convergence.png.
 """
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -13,10 +15,10 @@ sys.path.insert(0, str(HERE.parents[1] / "python"))
 
 import numpy as np  # noqa: E402
 
-from fsi import dump, plot, series  # noqa: E402
+from fsi import dump, log, plot, series  # noqa: E402
 from fsi.geometry import project_on_polyline  # noqa: E402
 from fsi.leaks import Leaks  # noqa: E402
-from fsi.summary import Summary  # noqa: E402
+from fsi.summary import LOG_FILE, Summary  # noqa: E402
 
 WATER, RUBBER, CLAMPED = 1, 2, 3
 WATER_AREA = 0.1 * 0.14  # [m^2]
@@ -24,6 +26,9 @@ GATE_FACE, GATE_LENGTH, GATE_THICKNESS = 0.1, 0.079, 0.005  # [m]; held above GA
 WALL_FROM = 0.085  # [m] above this the wall that holds the gate must be tight; below, the gate's bend moves it
 SNAPSHOT_TIMES = (0.0, 0.08, 0.16, 0.24, 0.32, 0.4)  # [s]
 SOURCE = "experiment, Antoci, Gallati & Sibilla 2007"
+CODES = {"khayyer2018": ("Khayyer et al. 2018", "--"), "yang2012": ("Yang et al. 2012", "-."), "ng2020": ("Ng et al. 2020", ":")}
+COMPONENTS = {"x": "horizontal", "y": "vertical"}
+PEAK_TARGET, CONVERGED = 0.10, 0.03  # of the peak: away from the experiment; change between the two finest resolutions
 
 
 class Midline:
@@ -95,14 +100,31 @@ def mass_error(log, first, last):
     return abs(end - start) / start
 
 
-def picture_tip(path, tip, experiment):
-    """Both displacements of the free end against the experiment."""
-    plot.lines(
-        path, "time [s]", "displacement of the free end [mm]",
-        [(tip.time, 1e3 * tip["tip_x"], "horizontal", plot.BLUE),
-         (tip.time, 1e3 * tip["tip_y"], "vertical", plot.ORANGE)],
-        [(experiment.time, 1e3 * experiment["horizontal"], "horizontal, experiment", plot.BLUE),
-         (experiment.time, 1e3 * experiment["vertical"], "vertical, experiment", plot.ORANGE)])
+def rms(tip, name, experiment, column):
+    """Distance [mm] to the experiment's points, those after the series' end left out; None if that leaves none."""
+    there = np.isfinite(tip[name])
+    tip = series.Series({key: tip[key][there] for key in ("time", name)})
+    distance = series.rms_distance(tip, name, experiment, column)
+    return None if distance is None else 1e3 * distance
+
+
+def picture_tip(path, curves, experiment, codes=None):
+    """Both displacements of the free end. curves: [(label, tip, colour, line style)]; codes: those of CODES, in grey."""
+    with plot.picture(path, 6.4, 6.0) as figure:
+        both = figure.subplots(2, 1, sharex=True)
+        for axes, (name, column) in zip(both, COMPONENTS.items()):
+            for code, (label, style) in CODES.items() if codes else ():
+                axes.plot(codes.time, 1e3 * codes[f"{code}_{column}"], style, color=plot.GREY, linewidth=1.0,
+                          label=f"code: {label}")
+            for label, tip, colour, style in curves:
+                axes.plot(tip.time, 1e3 * tip[f"tip_{name}"], style, color=colour, label=label)
+            axes.plot(experiment.time, 1e3 * experiment[column], "o", markersize=5, markerfacecolor="white",
+                      markeredgewidth=1.3, color="black", label="experiment, Antoci et al. 2007")
+            axes.set_ylabel(f"{column} displacement [mm]")
+        both[0].legend(fontsize=8, ncols=2, loc="lower center")
+        both[1].set_xlabel("time [s]")
+        both[1].set_xlim(0.0, None)
+        figure.tight_layout()
 
 
 def main(folder):
@@ -118,9 +140,8 @@ def main(folder):
         measured, measured_time = experiment.peak(column)
         summary.add(f"{name}_peak", 1e3 * peak, "mm", 1e3 * measured, SOURCE)
         summary.add(f"{name}_peak_time", time, "s", measured_time, SOURCE)
-    for name, column in (("x", "horizontal"), ("y", "vertical")):
-        rms = series.rms_distance(tip, f"tip_{name}", experiment, column)
-        summary.add(f"rms_{name}_experiment", None if rms is None else 1e3 * rms, "mm")
+    for name, column in COMPONENTS.items():
+        summary.add(f"rms_{name}_experiment", rms(tip, f"tip_{name}", experiment, column), "mm")
 
     # one pass over a file that may be large; only the frames for the pictures are kept
     kept, ends = {}, {}
@@ -139,11 +160,66 @@ def main(folder):
     summary.add("particles_leaked", count_leaks(passing(), spacing, summary.log))
     summary.add("mass_error", mass_error(summary.log, ends["first"], ends["last"]))
 
-    picture_tip(folder / "tip.png", tip, experiment)
+    picture_tip(folder / "tip.png", [(_label(summary.log.values), tip, plot.BLUE, "-")], experiment)
     shown = dump.nearest(list(kept.values()), SNAPSHOT_TIMES, tolerance=0.02)
     plot.snapshots(folder / "snapshots.png", shown, spacing, (WATER,), (RUBBER, CLAMPED),
                    limits=((-0.005, 0.3), (-0.005, 0.15)))
     return summary.write()
+
+
+def study(folder, runs):
+    """Compares the runs {case: folder}: per modulus the resolutions with each other, the finest with the experiment."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    experiment, codes = series.read(HERE / "experiment.csv"), series.read(HERE / "codes.csv")
+    found = {}  # modulus -> [(values of the log, tip, folder)], the finest last
+    for run in map(Path, runs.values()):
+        values = log.read(run / LOG_FILE).values
+        found.setdefault(_modulus(values), []).append((values, series.read(run / "tip.csv"), run))
+
+    for modulus, tried in sorted(found.items()):
+        tried.sort(key=lambda run: run[0]["across"])
+        tip = tried[-1][1]
+        for name, column in COMPONENTS.items():
+            # no farther from the experiment than the nearest of the codes
+            distances = {label: rms(codes, f"{code}_{column}", experiment, column) for code, (label, _) in CODES.items()}
+            summary.add(f"{modulus}_rms_{name}", rms(tip, f"tip_{name}", experiment, column), "mm", None,
+                        SOURCE + "; codes: " + ", ".join(f"{label} {mm:.1f}" for label, mm in distances.items()),
+                        min(distances.values()))
+        for name, column in COMPONENTS.items():
+            peak, time = tip.peak(f"tip_{name}")
+            measured, measured_time = experiment.peak(column)
+            summary.add(f"{modulus}_tip_{name}_peak", 1e3 * peak, "mm", 1e3 * measured, SOURCE, PEAK_TARGET)
+            summary.add(f"{modulus}_tip_{name}_peak_time", time, "s", measured_time, SOURCE)
+            peaks = [run[1].peak(f"tip_{name}")[0] for run in tried]
+            for (coarse, _, _), (fine, _, _), a, b in zip(tried, tried[1:], peaks, peaks[1:]):
+                summary.add(f"{modulus}_tip_{name}_peak_change_{coarse['across']:.0f}_to_{fine['across']:.0f}_across",
+                            b / a - 1.0, target=CONVERGED if fine is tried[-1][0] else None)
+    summary.add("particles_leaked", sum(_figure(case, "particles_leaked") for case in summary.cases.values()), target=0)
+    summary.add("mass_error", max(_figure(case, "mass_error") for case in summary.cases.values()), target=0)
+
+    colours = dict(zip(sorted(found), (plot.BLUE, plot.ORANGE)))
+    picture_tip(folder / "tip.png", [(_label(tried[-1][0]), tried[-1][1], colours[modulus], "-")
+                                     for modulus, tried in sorted(found.items())], experiment, codes)
+    picture_tip(folder / "convergence.png",
+                [(_label(values), tip, colours[modulus], style) for modulus, tried in sorted(found.items())
+                 for (values, tip, _), style in zip(reversed(tried), ("-", "--", "-.", ":"))], experiment)
+    finest = min((run for tried in found.values() for run in tried), key=lambda run: (run[0]["dx"], _modulus(run[0])))
+    shutil.copyfile(finest[2] / "snapshots.png", folder / "snapshots.png")
+    return summary.write()
+
+
+def _modulus(values):
+    """A run's modulus, as the material's name ends: 12MPa."""
+    return values["rubber"].split("_")[-1]
+
+
+def _label(values):
+    return f"{_modulus(values).replace('MPa', ' MPa')}, {values['across']:.0f} particles across"
+
+
+def _figure(summary, name):
+    return next(figure["value"] for figure in summary["figures"] if figure["name"] == name)
 
 
 if __name__ == "__main__":

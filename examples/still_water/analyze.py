@@ -57,11 +57,11 @@ def main(folder):
         leaks.beyond_walls(frame, walls)
     errors = [pressure_error(frame, tank) for frame in frames]
 
-    summary.add("pressure_l2", errors[-1])
+    summary.add("pressure_l2", errors[-1], target=0.015)
     summary.add("pressure_l2_worst", max(errors[len(errors) // 2:]))
-    summary.add("ke_over_pe", ke_over_pe(last, tank))
+    summary.add("ke_over_pe", ke_over_pe(last, tank), target=1e-5)
     summary.add("min_pair_distance", min_pair_distance(last.vector(), spacing) / spacing, "dx")
-    summary.add("particles_leaked", leaks.count(summary.log))
+    summary.add("particles_leaked", leaks.count(summary.log), target=0)
 
     depth = np.array([0.0, tank["depth"]])
     plot.scatter_against_line(

@@ -80,7 +80,7 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
     columns = min(columns, len(frames))
     rows = -(-len(frames) // columns)
     panel_height = panel_width * (yhi - ylo) / (xhi - xlo)
-    left, bottom, gap, title = 0.62, 0.42, 0.14, 0.24
+    left, bottom, gap, title = 0.74, 0.42, 0.14, 0.24
     scales = _scales(frames, fluid, solid)
     bar_distance = 0.92
     width = left + columns * (panel_width + gap) + bar_distance * len(scales)

@@ -10,6 +10,7 @@ import os
 import re
 import shutil
 import sys
+from html import escape
 from pathlib import Path
 
 from . import paths
@@ -17,6 +18,7 @@ from .summary import bound, deviation, number
 
 REMARKS = "Where it is off"  # section of a scene's README that the page quotes
 COST = ("wall_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; columns of their own
+SHOWN = 2  # pictures per scene
 _IMAGE = re.compile(r"!\[([^\]]*)\]\(([^)\s]+)\)")
 _RELATIVE_LINK = re.compile(r"(\]\()(?![a-z]+:|[#/])([^)\s]+\))")
 
@@ -56,7 +58,7 @@ def _pictures(name, folder, summary):
         path = next((place / target for place in places if (place / target).is_file()), None)
         if path:
             found.setdefault(str(path.relative_to(folder)), alt)
-    return [{"file": file, "alt": alt or f"{name}: {Path(file).stem}"} for file, alt in found.items()]
+    return [{"file": file, "alt": alt or f"{name}: {Path(file).stem}"} for file, alt in found.items()][:SHOWN]
 
 
 def copied(name, picture):
@@ -67,8 +69,7 @@ def copied(name, picture):
 def render(found, examples="../../examples"):
     """The page as Markdown; `examples` leads from it to the scenes."""
     scenes = {name: entry for name, entry in found["scenes"].items() if entry["summary"]}
-    parts = [_head(found["scenes"], scenes), "## Gallery", *(_panel(*item, examples) for item in scenes.items()),
-             "## Figures", _explanation(scenes), _table(scenes, judged=True)]
+    parts = [_head(found["scenes"], scenes), "## Gallery", _gallery(scenes, examples), "## Figures", _explanation(scenes), _table(scenes, judged=True)]
     rest = _table(scenes, judged=False)
     if rest:
         parts += ["<details><summary>Further figures, which there is nothing to judge by</summary>", rest, "</details>"]
@@ -105,9 +106,17 @@ def _head(every, scenes):
     return "\n".join(lines)
 
 
-def _panel(name, entry, examples):
-    lines = [f"### [{entry['title']}]({examples}/{name})", "", entry["description"], ""]
-    return "\n".join(lines + [f"![{p['alt']}]({copied(name, p)})" for p in entry["pictures"]]).strip()
+def _gallery(scenes, examples):
+    """Two scenes side by side, each with its title, what it is, and at most two pictures."""
+    cells = []
+    for name, entry in scenes.items():
+        lines = [f'<td valign="top" width="50%"><b><a href="{examples}/{name}">{escape(entry["title"])}</a></b><br>',
+                 escape(entry["description"])]
+        lines += [f'<br><a href="{copied(name, p)}"><img src="{copied(name, p)}" alt="{escape(p["alt"])}"></a>'
+                  for p in entry["pictures"]]
+        cells.append("\n".join(lines) + "</td>")
+    rows = ["<tr>\n" + "\n".join(cells[k:k + 2]) + "\n</tr>" for k in range(0, len(cells), 2)]
+    return "<table>\n" + "\n".join(rows) + "\n</table>"
 
 
 def _explanation(scenes):
@@ -139,7 +148,8 @@ def _table(scenes, judged):
         head, rows = head[:3], [row[:3] for row in rows]
     if not rows:
         return ""
-    lines = [head, ["---"] * 2 + ["---:"] * (len(head) - 2), *rows]
+    numbers = ("ours", "reference", "error", "particles", "wall seconds", "ranks")
+    lines = [head, ["---:" if title in numbers else "---" for title in head], *rows]
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
 
 

@@ -20,6 +20,7 @@
 #include "fix_fsi_stress.h"
 #include "fsi_tensor.h"
 #include "memory.h"
+#include "pair_fsi_solid_tl.h"
 #include "update.h"
 
 #include <algorithm>
@@ -83,12 +84,25 @@ void ComputeFSIAtom::compute_peratom()
     comm->forward_comm();    // ghosts still stand where they were in the middle of the step
     hub->number_density(psi.data());
   }
+  if (hub->solid_tl) hub->solid_tl->forward_positions();    // likewise
 
   const int *const mask = atom->mask;
-  for (int i = 0; i < atom->nlocal; i++)
+  PairFSISolidTL::Stress tl;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool lagrangian = (mask[i] & groupbit) && hub->solid_tl && hub->state[atom->type[i]].species == SOLID;
+    if (lagrangian) tl = hub->solid_tl->stress(i);
     for (int k = 0; k < n; k++) {
       double value = 0.0;
-      if (mask[i] & groupbit) {
+      if (lagrangian) {
+        switch (quantity[k]) {
+          case PRESSURE: value = tl.pressure(); break;
+          case DENSITY: value = hub->state[atom->type[i]].rho0 / tl.J; break;
+          case PSI: value = psi[i]; break;
+          case VOLUME: value = atom->rmass[i] * tl.J / hub->state[atom->type[i]].rho0; break;
+          case VONMISES: value = tl.von_mises(); break;
+          default: value = tl.sigma[quantity[k] - SXX];
+        }
+      } else if (mask[i] & groupbit) {
         switch (quantity[k]) {
           case PRESSURE: value = hub->pressure(i); break;
           case DENSITY: value = atom->rho[i]; break;
@@ -103,6 +117,7 @@ void ComputeFSIAtom::compute_peratom()
       if (n == 1) vector_atom[i] = value;
       else array_atom[i][k] = value;
     }
+  }
 }
 
 /* ----------------------------------------------------------------------

@@ -17,6 +17,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "pair_fsi_solid_tl.h"
 #include "update.h"
 
 using namespace LAMMPS_NS;
@@ -73,18 +74,22 @@ void ComputeFSIEnergy::compute_vector()
   double **v = atom->v;
   double **f = atom->f;
   // in the setup of a run positions and velocities are of one time
-  const double dth = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
+  const double half = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++) {
     const double m = atom->rmass[i];
+    const bool tl = hub->solid_tl && hub->state[atom->type[i]].species == FSI::SOLID;
+    const double dth = tl ? half / hub->substeps : half;
     for (int d = 0; d < hub->dim; d++) {
       const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;
       mine[0] += 0.5 * m * vmid * vmid;
       mine[1] += m * hub->gravity[d] * dth * v[i][d];    // back from the end of the step
     }
     mine[1] += hub->potential(i);
+    if (tl) continue;
     mine[2] += hub->stored(i);
     mine[3] += hub->shear_energy(i);
   }
+  if (hub->solid_tl) mine[3] += hub->solid_tl->strain_energy;
   for (int k = 0; k < FixFSI::NTERM; k++) mine[NHAVE + k] = hub->taken[k];
   MPI_Allreduce(mine, vector, size_vector, MPI_DOUBLE, MPI_SUM, world);
 }

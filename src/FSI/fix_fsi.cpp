@@ -18,9 +18,11 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_fsi_dt.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
+#include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_tensor.h"
 #include "memory.h"
@@ -29,6 +31,7 @@
 #include "output.h"
 #include "pair_fsi_fluid.h"
 #include "pair_fsi_solid.h"
+#include "pair_fsi_solid_tl.h"
 #include "update.h"
 
 #include <algorithm>
@@ -43,8 +46,9 @@ using namespace FSI;
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
-    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr), solid(nullptr),
-    summed(nullptr), ratio(nullptr), nmax(0), tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false)
+    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
+    solid(nullptr), solid_tl(nullptr), substeps(1), fix_dt(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
+    tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
@@ -64,6 +68,12 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   int iarg = 6;
   while (iarg < narg) {
     if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi {}", arg[iarg]), error);
+    if (strcmp(arg[iarg], "substeps") == 0) {
+      substeps = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      if (substeps < 1) error->all(FLERR, "Fix fsi substeps {} must be >= 1", arg[iarg + 1]);
+      iarg += 2;
+      continue;
+    }
     int mode;
     if (strcmp(arg[iarg + 1], "continuity") == 0) mode = CONTINUITY;
     else if (strcmp(arg[iarg + 1], "summation") == 0) mode = SUMMATION;
@@ -73,7 +83,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
                  arg[iarg + 1]);
     if (strcmp(arg[iarg], "fluid") == 0) density_fluid = mode;
     else if (strcmp(arg[iarg], "solid") == 0) density_solid = mode;
-    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid or solid", arg[iarg]);
+    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid, solid or substeps", arg[iarg]);
     iarg += 2;
   }
 
@@ -97,9 +107,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
   }
-  // most that is sent for one atom: number density, density and stress; rates of a solid atom
-  comm_forward = 2 + (dim == 2 ? 3 : 6);
-  comm_reverse = std::max(ngrad(), 1 + nshift());
+  comm_reverse = 1;    // more with solids, see init()
 }
 
 /* ---------------------------------------------------------------------- */
@@ -149,15 +157,24 @@ void FixFSI::init()
 
   fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
   solid = dynamic_cast<PairFSISolid *>(force->pair_match("fsi/solid", 1));
-  if (!fluid && !solid) error->all(FLERR, "Fix fsi requires pair_style fsi/fluid or fsi/solid");
+  solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1));
+  if (!fluid && !solid && !solid_tl)
+    error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
+  if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
 
   auto stress = modify->get_fix_by_style("^fsi/stress$");
   if (stress.size() > 1) error->all(FLERR, "There can be only one fix fsi/stress");
   fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);
   if (solid && !fix_stress)
     error->all(FLERR, "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
-  if (!solid && fix_stress && comm->me == 0)
-    error->warning(FLERR, "Fix fsi/stress has nothing to act on: there is no pair_style fsi/solid");
+  const bool hypo = solid_tl && solid_tl->hypoelastic();
+  if (hypo && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
+  if (!solid && !hypo && fix_stress && comm->me == 0)
+    error->warning(FLERR, "Fix fsi/stress has nothing to act on: no solid is hypoelastic");
+
+  auto dt = modify->get_fix_by_style("^fsi/dt$");
+  fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
+  stagger = 0.0;
 
   wall_fixes.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
@@ -170,6 +187,9 @@ void FixFSI::init()
       (solid && density_solid != CONTINUITY);
   need_grad = solid != nullptr;
   need_shift = fluid && fluid->shifting > 0.0;
+  // most that is sent for one atom: number density, density, stress and the gradient's coefficients; sums of gradient and shift back
+  comm_forward = 2 + (solid ? (dim == 2 ? 3 : 6) + dim * solid->terms() : 0);
+  comm_reverse = std::max(solid ? ngrad() : 1, 1 + (need_shift ? nshift() : 0));
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
 
@@ -235,6 +255,15 @@ void FixFSI::gather_walls()
   if (walls.wall.size() > Walls::MAXWALL)
     error->all(FLERR, "There are {} mirror walls, more than the {} supported", walls.wall.size(), Walls::MAXWALL);
   walls.find_reflections();
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSI::ngrad() const
+{
+  const int terms = solid->terms();
+  if (terms == 0) return dim * dim;
+  return std::max(dim * terms + packed_size(terms), dim * dim + dim * terms);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -310,6 +339,7 @@ void FixFSI::sort_by_tag()
 
 void FixFSI::initial_integrate(int)
 {
+  if (fix_dt) fix_dt->start_of_step();
   if (fresh_start()) {
     next_reneighbor = update->ntimestep;
     domain->pbc();
@@ -342,8 +372,10 @@ void FixFSI::final_integrate()
   const double *const rmass = atom->rmass;
   const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
+  if (substeps > 1) substep_solids();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
+    if (substeps > 1 && state[type[i]].species == SOLID) continue;
     const double dtfm = dtf / rmass[i];
     for (int d = 0; d < dim; d++) {
       v[i][d] += dtfm * f[i][d];
@@ -352,6 +384,47 @@ void FixFSI::final_integrate()
     if (need_shift && state[type[i]].species == FLUID)
       for (int d = 0; d < dim; d++) x[i][d] += shift[i][d];
   }
+}
+
+/* ----------------------------------------------------------------------
+   Stiff solids: from the state at the start of the step on, position Verlet with a step that many times shorter. What acts on
+   them from outside (f: fluid, gravity, ...), taken at the middle of the step, is held: what the fluid has lost in momentum, the
+   solid gains, to round-off.
+------------------------------------------------------------------------- */
+
+void FixFSI::substep_solids()
+{
+  double **x = atom->x;
+  double **v = atom->v;
+  double **f = atom->f;
+  double **fs = nullptr;
+  const double *const rmass = atom->rmass;
+  const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
+  std::vector<int> moving;
+  for (const int i : solid_tl->solids())
+    if (atom->mask[i] & groupbit) moving.push_back(i);
+
+  const auto drift = [&](double t) {
+    for (const int i : moving)
+      for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
+  };
+  tally_dt = ledger ? dt : 0.0;
+  drift(back);
+  for (int n = 0; n < substeps; n++) {
+    drift(dth);
+    solid_tl->forward_positions();
+    solid_tl->advance_stress(dt);
+    solid_tl->internal_forces();
+    fs = solid_tl->force_of_solids();
+    for (const int i : moving) {
+      const double dtfm = dt * force->ftm2v / rmass[i];
+      for (int d = 0; d < dim; d++) v[i][d] += dtfm * (f[i][d] + fs[i][d]);
+    }
+    drift(dth);
+  }
+  // what is seen from outside: the whole force
+  for (const int i : solid_tl->solids())
+    for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
 }
 
 /* ----------------------------------------------------------------------
@@ -379,18 +452,21 @@ void FixFSI::update_state(bool advance)
     for (int i = 0; i < nall; i++) wmask[i] = walls.near(x[i], cut);
   }
 
-  if (advance && (rate || grad)) {
+  // the gradient's coefficients are needed by forces, so in setup too
+  const bool gradient = need_grad && (advance || solid->terms());
+  if ((advance && rate) || gradient) {
     if (rate) memset(rate, 0, nall * sizeof(double));
     if (need_shift && nall) memset(shift[0], 0, (size_t) nall * nshift() * sizeof(double));
-    if (grad && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
-    if (rate) fluid->density_rate(update->dt);
-    if (grad) solid->velocity_gradient(update->dt);
+    if (gradient && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
+    if (rate && advance) fluid->density_rate(update->dt);
+    if (gradient) solid->velocity_gradient(advance ? update->dt : 0.0);
     if (force->newton_pair) comm->reverse_comm(this);
-    advance_density();
-    if (need_shift) fluid->displacements(update->dt);
-    if (grad) {
-      if (dim == 2) advance_solids<2>();
-      else advance_solids<3>();
+    if (advance) advance_density();
+    if (need_shift && advance) fluid->displacements(update->dt);
+    if (gradient) {
+      if (solid->terms() == 0) dim == 2 ? advance_solids<2, 0>(advance) : advance_solids<3, 0>(advance);
+      else if (solid->terms() == dim) dim == 2 ? advance_solids<2, 2>(advance) : advance_solids<3, 3>(advance);
+      else dim == 2 ? advance_solids<2, 5>(advance) : advance_solids<3, 9>(advance);
     }
   }
   if (need_psi) {
@@ -403,6 +479,10 @@ void FixFSI::update_state(bool advance)
       MPI_Allreduce(&mine, &psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
     }
     density_from_psi();
+  }
+  if (solid_tl && advance) {
+    solid_tl->break_bonds();
+    if (substeps == 1) solid_tl->advance_stress(update->dt);
   }
   comm->forward_comm(this);
 }
@@ -474,7 +554,7 @@ void FixFSI::advance_density()
   if (!rate) return;
   double *rho = atom->rho;
   const int *const type = atom->type;
-  const double dt = update->dt;
+  const double dt = update->dt + stagger;
   for (int i = 0; i < atom->nlocal; i++)
     if (state[type[i]].species == FLUID) rho[i] += dt * rate[i];
 }
@@ -512,17 +592,31 @@ double FixFSI::shear_energy(int i) const
    solids: velocity gradient L from its sums; stress and, in continuity mode, density from L
 ------------------------------------------------------------------------- */
 
-template <int D> void FixFSI::advance_solids()
+template <int D, int TERMS> void FixFSI::advance_solids(bool advance)
 {
   double *rho = atom->rho;
   const int *const type = atom->type;
-  const double dt = update->dt;
+  const double dt = update->dt + stagger;
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = state[type[i]];
     if (s.species != SOLID) continue;
     double *L = grad[i];
-    if (solid->corrected) right_divide<D>(L, Sym<D>::load(L + D * D), 1.0e-3);
-    fix_stress->advance<D>(i, L, dt, s.shear);
+    if constexpr (TERMS > 0) {
+      // L = [sum_j w_ij (v_j - v_i)(x)phi_j] C^T
+      double C[D * TERMS], full[D * D] = {};
+      if (gradient_coefficients<D, TERMS>(L + D * TERMS, C) == Gradient<D>::DEFICIENT) {
+        // hardly any neighbours: torn off, no strain, no stress to share
+        std::fill_n(C, D * TERMS, 0.0);
+      }
+      for (int a = 0; a < D; a++)
+        for (int b = 0; b < D; b++)
+          for (int k = 0; k < TERMS; k++) full[a * D + b] += L[a * TERMS + k] * C[b * TERMS + k];
+      const double inv = 1.0 / h;
+      for (int k = 0; k < D * D; k++) L[k] = full[k] * inv;
+      for (int k = 0; k < D * TERMS; k++) L[D * D + k] = C[k] * inv;
+    }
+    if (!advance) continue;
+    const double work = fix_stress->advance<D>(i, L, dt, s);
     if (density_solid == CONTINUITY) {
       double div = 0.0;
       for (int a = 0; a < D; a++) div += L[a * D + a];
@@ -538,6 +632,7 @@ template <int D> void FixFSI::advance_solids()
       for (int a = 0; a < D; a++)
         for (int b = 0; b < D; b++) power += sigma(a, b) * L[a * D + b];
       tally(GRADIENT, -power * atom->rmass[i] / rho[i]);
+      taken[PLASTIC] += work * atom->rmass[i] / rho[i];
     }
   }
 }
@@ -556,8 +651,10 @@ int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
     const int i = list[ii];
     buf[m++] = rho[i];
     if (need_psi) buf[m++] = psi[i];
-    if (solid && state[type[i]].species == SOLID)
+    if (solid && state[type[i]].species == SOLID) {
       for (int k = 0; k < ns; k++) buf[m++] = fix_stress->stress[i][k];
+      for (int k = 0; k < dim * solid->terms(); k++) buf[m++] = grad[i][dim * dim + k];
+    }
   }
   return m;
 }
@@ -573,8 +670,10 @@ void FixFSI::unpack_forward_comm(int n, int first, double *buf)
   for (int i = first; i < first + n; i++) {
     rho[i] = buf[m++];
     if (need_psi) psi[i] = buf[m++];
-    if (solid && state[type[i]].species == SOLID)
+    if (solid && state[type[i]].species == SOLID) {
       for (int k = 0; k < ns; k++) fix_stress->stress[i][k] = buf[m++];
+      for (int k = 0; k < dim * solid->terms(); k++) grad[i][dim * dim + k] = buf[m++];
+    }
   }
 }
 

@@ -79,12 +79,12 @@ class FixFSI : public Fix {
   double *psi;      // number density, if any mode or rule needs it
   double *rate;     // density rate of fluids (continuity), local after the reverse communication
   double **shift;   // fluids, pair_style fsi/fluid shift: its sums; afterwards the displacement at the end of the step
-  double **grad;    // solids: sum V_j (v_j-v_i)(x)g_ij, then the symmetric sum V_j x_ji(x)g_ij; afterwards L
+  double **grad;    // solids: the sums of pair_style fsi/solid's velocity_gradient(); afterwards L and coefficients (fsi_gradient.h)
   int *wmask;       // bits of the mirror walls that an atom is near
 
   // energy ledger (compute fsi/energy): what each term took from the particles' energy since the fix was defined, this
   // rank's part; kept only while such a compute exists
-  enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, NTERM };
+  enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, NTERM };
   bool ledger;
   double taken[NTERM];
   // adds a power of the pair loops, which counts only in steps, not in setup
@@ -99,6 +99,11 @@ class FixFSI : public Fix {
   std::vector<class FixFSIWallMirror *> wall_fixes;
   class PairFSIFluid *fluid;
   class PairFSISolid *solid;
+  class PairFSISolidTL *solid_tl;
+  int substeps;    // of total-Lagrangian solids in each step
+  class FixFSIDt *fix_dt;    // changes the time step; null: nothing does
+  // what moves by rates between the middles of two steps takes update->dt + stagger: their distance, if dt changes
+  double stagger;
 
   // pressure of a local or ghost atom from its density (paper eq. 16), 0 at a free surface if that rule is on
   double pressure(int i) const;
@@ -107,8 +112,9 @@ class FixFSI : public Fix {
   // does atom i have a deviatoric stress?
   bool has_stress(int i) const { return solid && state[atom->type[i]].species == FSI::SOLID; }
 
+  // sums of the velocity gradient per solid particle, and what replaces them: L, then the coefficients of its weights
+  int ngrad() const;
   int nshift() const { return 2 * dim + 1; }
-  int ngrad() const { return dim * dim + (dim == 2 ? 3 : 6); }
   void find_gravity();
   // number density of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
   void number_density(double *n);
@@ -123,7 +129,8 @@ class FixFSI : public Fix {
   double tally_dt;
   bool need_psi, need_grad, need_ratio, need_shift;
 
-  template <int D> void advance_solids();
+  void substep_solids();
+  template <int D, int TERMS> void advance_solids(bool advance);
   void advance_density();
   void density_from_psi();
   void update_state(bool);

@@ -14,6 +14,7 @@
 #include "fix_fsi_stress.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
@@ -28,7 +29,7 @@ using namespace LAMMPS_NS;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), stress(nullptr), plane_stress(false), n(domain->dimension == 2 ? 3 : 6)
+    Fix(lmp, narg, arg), stress(nullptr), plane_stress(false), plastic(false), ns(domain->dimension == 2 ? 3 : 6), n(ns)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
@@ -41,9 +42,14 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
       else error->all(FLERR, "Unknown fix fsi/stress plane value {}: expected strain or stress", arg[iarg + 1]);
       if (domain->dimension == 3) error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
       iarg += 2;
+    } else if (strcmp(arg[iarg], "plastic") == 0) {
+      plastic = true;
+      iarg += 1;
     } else
-      error->all(FLERR, "Unknown fix fsi/stress keyword {}: expected plane", arg[iarg]);
+      error->all(FLERR, "Unknown fix fsi/stress keyword {}: expected plane or plastic", arg[iarg]);
   }
+  if (plastic && plane_stress) error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
+  n = ns + (plastic ? 1 : 0);
 
   restart_peratom = 1;
   create_attribute = 1;
@@ -68,7 +74,13 @@ FixFSIStress::~FixFSIStress()
 
 void FixFSIStress::init()
 {
-  FixFSI::find(lmp, "Fix fsi/stress");
+  const FixFSI *hub = FixFSI::find(lmp, "Fix fsi/stress");
+  bool yields = false;
+  for (const auto &s : hub->state) yields = yields || s.yield > 0.0;
+  if (comm->me == 0 && plastic && !yields)
+    error->warning(FLERR, "Fix fsi/stress plastic has nothing to act on: no material has a yield stress");
+  if (comm->me == 0 && yields && !plastic)
+    error->warning(FLERR, "A material has a yield stress, but stays elastic: fix fsi/stress lacks keyword plastic");
 }
 
 /* ----------------------------------------------------------------------
@@ -78,7 +90,7 @@ void FixFSIStress::init()
 double FixFSIStress::von_mises(int i, double p) const
 {
   const double *s = stress[i];
-  if (n == 6) return sqrt(1.5 * FSI::Sym<3>::load(s).squared());
+  if (ns == 6) return sqrt(1.5 * FSI::Sym<3>::load(s).squared());
   double szz = -(s[0] + s[1]), mean = 0.0;
   if (plane_stress) {
     szz = p;    // deviator about the in-plane mean -p

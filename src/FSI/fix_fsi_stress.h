@@ -22,6 +22,8 @@ FixStyle(fsi/stress,FixFSIStress);
 
 #include "fix.h"
 #include "fsi_jaumann.h"
+#include "fsi_material.h"
+#include "fsi_plasticity.h"
 
 namespace LAMMPS_NS {
 
@@ -48,20 +50,28 @@ class FixFSIStress : public Fix {
   // deviatoric stress per atom, in-plane in 2D; see fsi_tensor.h for the order
   double **stress;
   bool plane_stress;
+  bool plastic;    // materials yield; stress[i] is followed by the equivalent plastic strain
+  double plastic_strain(int i) const { return plastic ? stress[i][ns] : 0.0; }
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between (fsi_jaumann.h)
-  template <int D> void advance(int i, const double *L, double dt, double shear)
+  // returns the plastic work per volume
+  template <int D> double advance(int i, const double *L, double dt, const FSI::State &material)
   {
     auto s = FSI::Sym<D>::load(stress[i]);
-    FSI::jaumann_update<D>(s, L, dt, shear, plane_stress);
+    double work = 0.0;
+    FSI::jaumann_update<D>(s, L, dt, material.shear, plane_stress);
+    if (plastic && material.yield > 0.0)
+      work = FSI::radial_return<D>(s, stress[i][ns], material.shear, material.yield, material.hardening);
     s.store(stress[i]);
+    return work;
   }
 
   // von Mises stress of atom i with pressure p
   double von_mises(int i, double p) const;
 
  private:
-  int n;    // components per atom
+  int ns;    // components of the deviator
+  int n;     // values per atom
 };
 
 }    // namespace LAMMPS_NS

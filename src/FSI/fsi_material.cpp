@@ -119,9 +119,11 @@ class MaterialReader : protected Pointers {
         } else if (key == "poisson" && m.species == SOLID) {
           m.poisson = value;
           has_poisson = true;
-        } else
+        } else if (key == "yield" && m.species == SOLID) m.yield = value;
+        else if (key == "hardening" && m.species == SOLID) m.hardening = value;
+        else
           error->one(FLERR, "Unknown keyword {} of {} {} in file {}: expected {}", key, species, name, file,
-                     m.species == FLUID ? "rho, viscosity" : "rho, young, poisson");
+                     m.species == FLUID ? "rho, viscosity" : "rho, young, poisson, yield, hardening");
         if (!std::isfinite(value)) error->one(FLERR, "Value of {} of material {} in file {} is not finite", key, name, file);
       }
       if (m.rho0 <= 0.0) error->one(FLERR, "Material {} in file {} needs rho > 0", name, file);
@@ -130,6 +132,8 @@ class MaterialReader : protected Pointers {
         if (!has_young || m.young <= 0.0) error->one(FLERR, "Material {} in file {} needs young > 0", name, file);
         if (!has_poisson || m.poisson <= -1.0 || m.poisson >= 0.5)
           error->one(FLERR, "Material {} in file {} needs poisson between -1 and 0.5", name, file);
+        if (m.yield < 0.0 || m.hardening < 0.0)
+          error->one(FLERR, "Material {} in file {} needs yield and hardening >= 0", name, file);
       }
     } catch (TokenizerException &e) {
       error->one(FLERR, "Cannot read a line of material file {}: {}", file, e.what());

@@ -34,6 +34,8 @@ namespace FSI {
     double viscosity;    // fluid: dynamic viscosity
     double young;        // solid: Young's modulus
     double poisson;      // solid: Poisson's ratio
+    double yield;        // solid: yield stress, 0 = elastic
+    double hardening;    // solid: slope of the yield stress over equivalent plastic strain
 
     // solid, 3D and plane strain: shear and bulk modulus
     double shear_modulus() const { return 0.5 * young / (1.0 + poisson); }
@@ -51,6 +53,7 @@ namespace FSI {
     double floor = -1.0e300;    // lowest pressure; 0 where the material carries no tension
     double shear = 0.0;         // shear modulus G
     double viscosity = 0.0;     // dynamic viscosity
+    double yield = 0.0, hardening = 0.0;
 
     double pressure(double rho) const
     {

@@ -153,38 +153,6 @@ namespace FSI {
     return r;
   }
 
-  // A := A M^-1 for a full A and a symmetric, positive semidefinite M; false (and A as it was) if M is close to singular, i.e. its
-  // determinant is below tol times that of the isotropic tensor of equal trace.
-  template <int D> inline bool right_divide(double *A, const Sym<D> &M, double tol)
-  {
-    Sym<D> inv;
-    double det, mean = M.trace() / D;
-    if constexpr (D == 2) {
-      det = M.c[0] * M.c[1] - M.c[2] * M.c[2];
-      inv.c[0] = M.c[1];
-      inv.c[1] = M.c[0];
-      inv.c[2] = -M.c[2];
-      if (!(det > tol * mean * mean)) return false;
-    } else {
-      const double xx = M.c[0], yy = M.c[1], zz = M.c[2], xy = M.c[3], xz = M.c[4], yz = M.c[5];
-      inv.c[0] = yy * zz - yz * yz;
-      inv.c[1] = xx * zz - xz * xz;
-      inv.c[2] = xx * yy - xy * xy;
-      inv.c[3] = xz * yz - xy * zz;
-      inv.c[4] = xy * yz - xz * yy;
-      inv.c[5] = xy * xz - yz * xx;
-      det = xx * inv.c[0] + xy * inv.c[3] + xz * inv.c[4];
-      if (!(det > tol * std::fabs(mean * mean * mean))) return false;
-    }
-    inv *= 1.0 / det;
-    double row[D];
-    for (int a = 0; a < D; a++) {
-      dot<D>(inv, A + a * D, row);
-      for (int b = 0; b < D; b++) A[a * D + b] = row[b];
-    }
-    return true;
-  }
-
   // sum over the principal values s_k > 0 of t of s_k n_k n_k^T (the tensile part of t)
   template <int D> inline Sym<D> tensile_part(const Sym<D> &t)
   {

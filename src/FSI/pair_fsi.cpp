@@ -20,6 +20,7 @@
 #include "memory.h"
 #include "neighbor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -101,7 +102,25 @@ void PairFSI::init_style()
   hub = FixFSI::find(lmp, "Pair style " + style);
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) hub->enter_state(t, make_state(material[t]));
-  neighbor->add_request(this);
+  if (needs_neighbors()) neighbor->add_request(this);
+}
+
+/* ----------------------------------------------------------------------
+   is there more than one solid body? pairs need not ask if there is not
+------------------------------------------------------------------------- */
+
+bool PairFSI::several_bodies() const
+{
+  tagint low = MAXTAGINT, high = 0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (material[atom->type[i]].species == SOLID) {
+      low = std::min(low, atom->molecule[i]);
+      high = std::max(high, atom->molecule[i]);
+    }
+  tagint all_low, all_high;
+  MPI_Allreduce(&low, &all_low, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  MPI_Allreduce(&high, &all_high, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  return all_low < all_high;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -140,6 +159,8 @@ State PairFSI::solid_state(const Material &m, bool plane_stress) const
   s.csq = (plane_stress ? m.plane_stress_modulus() : m.bulk_modulus()) / m.rho0;
   s.c = std::sqrt(s.csq);
   s.shear = m.shear_modulus();
+  s.yield = m.yield;
+  s.hardening = m.hardening;
   return s;
 }
 

@@ -45,8 +45,11 @@ class PairFSI : public Pair {
   virtual FSI::State make_state(const FSI::Material &) const = 0;
   // does this style tell fix fsi the state of a type of this species?
   virtual bool defines(int) const = 0;
+  // does this style visit neighbors that move?
+  virtual bool needs_neighbors() { return true; }
 
   FSI::State solid_state(const FSI::Material &, bool plane_stress) const;
+  bool several_bodies() const;
   void need(int narg, char **arg, int iarg, int n);
   double number(const char *value, const char *what);
   void set_flags();

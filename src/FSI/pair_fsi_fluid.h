@@ -41,6 +41,8 @@ class PairFSIFluid : public PairFSI {
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
   double memory_usage() override;
+  double artificial_alpha() const { return alpha; }
+  bool has_laminar() const { return laminar; }
 
   // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi
   // of all fluid particles); 0 = off

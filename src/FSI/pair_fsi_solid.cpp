@@ -14,10 +14,13 @@
 #include "pair_fsi_solid.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_contact.h"
+#include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_tensor.h"
@@ -36,7 +39,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), corrected(0), alpha(0.0), beta(0.0), epsilon(0.0), force_loop(nullptr), gradient_loop(nullptr)
+    PairFSI(lmp, "fsi/solid"), alpha(0.0), beta(0.0), epsilon(0.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
 {
 }
 
@@ -68,9 +71,10 @@ void PairFSISolid::settings(int narg, char **arg)
       iarg += 2;
     } else if (strcmp(arg[iarg], "gradient") == 0) {
       need(narg, arg, iarg, 1);
-      if (strcmp(arg[iarg + 1], "plain") == 0) corrected = 0;
-      else if (strcmp(arg[iarg + 1], "corrected") == 0) corrected = 1;
-      else error->all(FLERR, "Unknown pair_style fsi/solid gradient {}: expected plain or corrected", arg[iarg + 1]);
+      if (strcmp(arg[iarg + 1], "plain") == 0) gradient = PLAIN;
+      else if (strcmp(arg[iarg + 1], "corrected") == 0) gradient = CORRECTED_LINEAR;
+      else if (strcmp(arg[iarg + 1], "quadratic") == 0) gradient = CORRECTED_QUADRATIC;
+      else error->all(FLERR, "Unknown pair_style fsi/solid gradient {}: expected plain, corrected or quadratic", arg[iarg + 1]);
       iarg += 2;
     } else
       error->all(FLERR, "Unknown pair_style fsi/solid keyword {}: expected artificial/visc, artificial/stress or gradient",
@@ -95,24 +99,6 @@ State PairFSISolid::make_state(const Material &m) const
   return solid_state(m, plane_stress);
 }
 
-/* ----------------------------------------------------------------------
-   is there more than one solid body? pairs need not ask if there is not
-------------------------------------------------------------------------- */
-
-bool PairFSISolid::several_bodies() const
-{
-  tagint low = MAXTAGINT, high = 0;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (material[atom->type[i]].species == SOLID) {
-      low = std::min(low, atom->molecule[i]);
-      high = std::max(high, atom->molecule[i]);
-    }
-  tagint all_low, all_high;
-  MPI_Allreduce(&low, &all_low, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  MPI_Allreduce(&high, &all_high, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  return all_low < all_high;
-}
-
 /* ---------------------------------------------------------------------- */
 
 void PairFSISolid::init_style()
@@ -123,15 +109,31 @@ void PairFSISolid::init_style()
       (bodies ? BODIES : 0) | (modify->get_compute_by_style("^fsi/energy$").empty() ? 0 : LEDGER);
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &k) {
     using K = std::decay_t<decltype(k)>;
-    pick_force<K>(flags, std::make_integer_sequence<int, NFORCE>());
-    gradient_loop = bodies ? &PairFSISolid::gradient_pairs<K, BODIES> : &PairFSISolid::gradient_pairs<K, 0>;
+    if (gradient == PLAIN) select<K, 0>(flags);
+    else if (gradient == CORRECTED_LINEAR) select<K, K::DIM>(flags);
+    else select<K, Gradient<K::DIM>::NQUADRATIC>(flags);
   });
 }
 
-template <class K, int... F> void PairFSISolid::pick_force(int flags, std::integer_sequence<int, F...>)
+template <class K, int TERMS> void PairFSISolid::select(int flags)
+{
+  pick_force<K, TERMS>(flags, std::make_integer_sequence<int, NFORCE>());
+  gradient_loop =
+      (flags & BODIES) ? &PairFSISolid::gradient_pairs<K, TERMS, BODIES> : &PairFSISolid::gradient_pairs<K, TERMS, 0>;
+}
+
+int PairFSISolid::terms() const
+{
+  const int dim = domain->dimension;
+  return gradient == PLAIN ? 0 : gradient == CORRECTED_LINEAR ? dim : dim * (dim + 3) / 2;
+}
+
+/* ---------------------------------------------------------------------- */
+
+template <class K, int TERMS, int... F> void PairFSISolid::pick_force(int flags, std::integer_sequence<int, F...>)
 {
   using Loop = void (PairFSISolid::*)();
-  static constexpr Loop table[] = {&PairFSISolid::force_pairs<K, F>...};
+  static constexpr Loop table[] = {&PairFSISolid::force_pairs<K, TERMS, F>...};
   force_loop = table[flags];
 }
 
@@ -143,16 +145,16 @@ void PairFSISolid::velocity_gradient(double dt)
 }
 
 /* ----------------------------------------------------------------------
-   L_i = [sum_j V_j (v_j - v_i)(x)grad_i W_ij] [sum_j V_j x_ji(x)grad_i W_ij]^-1, the second factor if corrected
+   sums of the velocity gradient
    V_j = m_j/rho0: the density at hand is half a step older than positions and velocities, and would make the solid first
    order in time and irreversible; what it would change is its compression, below the error of the plain gradient
 ------------------------------------------------------------------------- */
 
-template <class K, int FLAGS> void PairFSISolid::gradient_pairs(double dt)
+template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(double dt)
 {
   constexpr int D = K::DIM;
   const K kernel(hub->h);
-  const double dth = 0.5 * dt;
+  const double dth = 0.5 * dt, hinv = kernel.hinv;
   double **x = atom->x;
   double **v = atom->v;
   const double *const rmass = atom->rmass;
@@ -175,20 +177,36 @@ template <class K, int FLAGS> void PairFSISolid::gradient_pairs(double dt)
       }
       if (rsq >= kernel.cutsq) continue;
       const double g = kernel.gradient(std::sqrt(rsq)), vol_j = rmass[j] / state[type[j]].rho0;
-      // v_ji (x) g_ij is the same seen from i and from j; only the volumes differ
       double *gi = grad[i], *gj = grad[j];
-      for (int a = 0; a < D; a++)
-        for (int b = 0; b < D; b++) {
-          const double t = -g * vij[a] * xij[b];
-          gi[a * D + b] += vol_j * t;
-          gj[a * D + b] += vol_i * t;
-        }
-      for (int a = 0; a < D; a++)
-        for (int b = a; b < D; b++) {
-          const double t = -g * xij[a] * xij[b];
-          gi[D * D + Sym<D>::id(a, b)] += vol_j * t;
-          gj[D * D + Sym<D>::id(a, b)] += vol_i * t;
-        }
+      if constexpr (TERMS == 0) {
+        // v_ji (x) g_ij is the same seen from i and from j; only the volumes differ
+        for (int a = 0; a < D; a++)
+          for (int b = 0; b < D; b++) {
+            const double t = -g * vij[a] * xij[b];
+            gi[a * D + b] += vol_j * t;
+            gj[a * D + b] += vol_i * t;
+          }
+      } else {
+        // seen from j the linear terms change sign, and with them all products of a linear and a quadratic one
+        const double wi = -g * vol_j, wj = -g * vol_i;
+        double xji[D], phi[TERMS];
+        for (int d = 0; d < D; d++) xji[d] = -xij[d] * hinv;
+        gradient_basis<D, TERMS>(xji, phi);
+        for (int a = 0; a < D; a++)
+          for (int k = 0; k < TERMS; k++) {
+            const double t = -vij[a] * phi[k];
+            gi[a * TERMS + k] += wi * t;
+            gj[a * TERMS + k] += (k < D ? wj : -wj) * t;
+          }
+        gi += D * TERMS;
+        gj += D * TERMS;
+        for (int a = 0, m = 0; a < TERMS; a++)
+          for (int b = 0; b <= a; b++, m++) {
+            const double t = phi[a] * phi[b];
+            gi[m] += wi * t;
+            gj[m] += ((a < D) == (b < D) ? wj : -wj) * t;
+          }
+      }
     }
   }
 }
@@ -227,11 +245,13 @@ void PairFSISolid::compute(int eflag, int vflag)
 }
 
 /* ----------------------------------------------------------------------
-   F_ij = [sigma_i V_i^2 + sigma_j V_j^2 + (R_i + R_j) (W_ij/W(dx))^4 - Q_ij I] . grad_i W_ij (paper eq. 14), sigma = -p I + S
-   between bodies only pressure and Q, and pressure only pushes: bodies do not stick, nor share their stress
+   with the weights G_ij = -V_j g C phi of the gradient (gradient corrected, quadratic): F_ij = V_i sigma_i G_ij - V_j sigma_j G_ji
+   instead of the first two terms below. What deforms the solid is what resists: energy and angular momentum are kept
+   gradient plain: F_ij = [sigma_i V_i^2 + sigma_j V_j^2 + (R_i + R_j) (W_ij/W(dx))^4 - Q_ij I] . grad_i W_ij (paper eq. 14), sigma = -p I + S
+   between bodies only contact (fsi_contact.h) and Q: bodies do not stick, nor share their stress
 ------------------------------------------------------------------------- */
 
-template <class K, int FLAGS> void PairFSISolid::force_pairs()
+template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
 {
   constexpr int D = K::DIM;
   const K kernel(hub->h);
@@ -249,6 +269,7 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
   double **S = hub->fix_stress->stress;
   const ArtificialViscosity viscosity(alpha, beta, hub->h);
   const ArtificialStress artificial(epsilon, hub->wdx);
+  const Contact contact(D, hub->dx);
 
   auto &aux = get_aux<D>();
   if ((int) aux.size() < nall) aux.resize(atom->nmax);
@@ -263,6 +284,11 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
     a.stress *= v2;
     a.stress += Sym<D>::identity(-a.pv2);
     if (FLAGS & ARTIFICIAL_STRESS) a.artificial = artificial(a.stress);
+    if constexpr (TERMS > 0) {
+      a.C = hub->grad[i] + D * D;
+      a.vstress = a.stress;
+      a.vstress *= 1.0 / a.vol;
+    }
   }
 
   // energies: without newton a pair across ranks is computed on both
@@ -290,10 +316,13 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
       const Aux<D> &aj = aux[j];
       Sym<D> t;
       if ((FLAGS & BODIES) && molecule[i] != molecule[j]) {
-        t = Sym<D>::identity(-std::max(ai.pv2 + aj.pv2, 0.0));
+        const State &si = state[type[i]], &sj = state[type[j]];
+        t = Sym<D>::identity(contact(rsq, si.csq * si.rho0, sj.csq * sj.rho0) / g);
       } else {
-        t = ai.stress;
-        t += aj.stress;
+        if constexpr (TERMS == 0) {
+          t = ai.stress;
+          t += aj.stress;
+        }
         if (FLAGS & ARTIFICIAL_STRESS) {
           Sym<D> R = ai.artificial;
           R += aj.artificial;
@@ -306,9 +335,29 @@ template <class K, int FLAGS> void PairFSISolid::force_pairs()
           }
         }
       }
-      if (FLAGS & LEDGER) hub->tally(FixFSI::GRADIENT, -share(j) * g * contract(t, xij, v[i], v[j]));
       double tx[D];
       dot<D>(t, xij, tx);
+      if constexpr (TERMS > 0) {
+        if (!(FLAGS & BODIES) || molecule[i] == molecule[j]) {
+          const double wi = rmass[j] / state[type[j]].rho0, wj = rmass[i] / state[type[i]].rho0;    // times -g
+          double xji[D], phi[TERMS], Gi[D] = {}, Gj[D] = {}, si[D], sj[D];
+          for (int d = 0; d < D; d++) xji[d] = -xij[d] * kernel.hinv;
+          gradient_basis<D, TERMS>(xji, phi);
+          for (int a = 0; a < D; a++)
+            for (int k = 0; k < TERMS; k++) {
+              Gi[a] += ai.C[a * TERMS + k] * phi[k];
+              Gj[a] += aj.C[a * TERMS + k] * (k < D ? -phi[k] : phi[k]);
+            }
+          dot<D>(ai.vstress, Gi, si);
+          dot<D>(aj.vstress, Gj, sj);
+          for (int d = 0; d < D; d++) tx[d] -= wi * si[d] - wj * sj[d];
+        }
+      }
+      if (FLAGS & LEDGER) {
+        double power = 0.0;
+        for (int d = 0; d < D; d++) power += tx[d] * (v[i][d] - v[j][d]);
+        hub->tally(FixFSI::GRADIENT, -share(j) * g * power);
+      }
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
         for (int d = 0; d < D; d++) {
           vij[d] = v[i][d] - v[j][d];
@@ -336,7 +385,7 @@ void PairFSISolid::write_restart_settings(FILE *fp)
 {
   double d[] = {alpha, beta, epsilon};
   restart_value(fp, d, true);
-  restart_value(fp, corrected, true);
+  restart_value(fp, gradient, true);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -345,7 +394,7 @@ void PairFSISolid::read_restart_settings(FILE *fp)
 {
   double d[3];
   restart_value(fp, d, false);
-  restart_value(fp, corrected, false);
+  restart_value(fp, gradient, false);
   alpha = d[0];
   beta = d[1];
   epsilon = d[2];

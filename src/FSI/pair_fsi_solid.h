@@ -40,11 +40,15 @@ class PairFSISolid : public PairFSI {
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
   double memory_usage() override;
+  double artificial_alpha() const { return alpha; }
 
-  int corrected;    // velocity gradient exact for linear fields (Bonet and Lok 1999)
+  // gradients: 0 = plain, else the number of terms for which they are exact (fsi_gradient.h): dim linear ones (Bonet and
+  // Lok 1999), or the quadratic ones too
+  int terms() const;
 
-  // adds to fix fsi's grad: sum_j V_j (v_j - v_i)(x)grad_i W_ij and sum_j V_j x_ji(x)grad_i W_ij over the own body, at the
-  // positions dt/2 ago, to which the velocities belong
+  // adds to fix fsi's grad, over the own body, at the positions dt/2 ago, to which the velocities belong: plain,
+  // sum_j V_j (v_j - v_i)(x)grad_i W_ij; else sum_j w (v_j - v_i)(x)phi and, packed, sum_j w phi (x) phi, with
+  // grad_i W_ij = -w x_ij/V_j and the basis phi of x_ji/h
   void velocity_gradient(double dt);
   // adds sum_j W_ij over the own body, or over all solids (density mode summation), to psi
   void number_density(double *psi, bool all_bodies);
@@ -55,11 +59,15 @@ class PairFSISolid : public PairFSI {
   FSI::State make_state(const FSI::Material &) const override;
 
  private:
+  enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };
   double alpha, beta, epsilon;
+  int gradient;
 
   // local and ghost, filled at the start of compute(): stress and artificial stress, both times V^2
   template <int D> struct Aux {
     FSI::Sym<D> stress, artificial;
+    const double *C;    // coefficients of the gradient
+    FSI::Sym<D> vstress;    // V sigma
     double pv2, vol, rho;
   };
   std::vector<Aux<2>> aux2;
@@ -69,10 +77,10 @@ class PairFSISolid : public PairFSI {
   enum { ARTIFICIAL_VISCOSITY = 1, ARTIFICIAL_STRESS = 2, BODIES = 4, LEDGER = 8, NFORCE = 16 };
   void (PairFSISolid::*force_loop)();
   void (PairFSISolid::*gradient_loop)(double);
-  bool several_bodies() const;
-  template <class K, int FLAGS> void force_pairs();
-  template <class K, int FLAGS> void gradient_pairs(double);
-  template <class K, int... F> void pick_force(int, std::integer_sequence<int, F...>);
+  template <class K, int TERMS, int FLAGS> void force_pairs();
+  template <class K, int TERMS, int FLAGS> void gradient_pairs(double);
+  template <class K, int TERMS> void select(int flags);
+  template <class K, int TERMS, int... F> void pick_force(int, std::integer_sequence<int, F...>);
 };
 
 }    // namespace LAMMPS_NS

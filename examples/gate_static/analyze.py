@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Figures and pictures of the gate under a static load.   usage: analyze.py FOLDER
+
+main reads tip.csv, particles.dump and log.lammps of one run and writes summary.json, tip.png and bent.png beside them; study
+compares runs of several spacings: summary.json, convergence.png.
+"""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+
+import numpy as np  # noqa: E402
+from matplotlib.cm import ScalarMappable  # noqa: E402
+from matplotlib.colors import Normalize  # noqa: E402
+
+from fsi import dump, log, plot, series  # noqa: E402
+from fsi.summary import LOG_FILE, Summary  # noqa: E402
+
+# displacement [mm] of the middle of the free end
+REFERENCE = {"tip_x": 34.81, "tip_y": 9.50}
+SOURCE = "finite elements, 9-node quadrilaterals, 12 MPa"
+TARGET = 0.05  # of the displacement
+AT_REST = 1e-3  # largest share of the displacement that the last tenth of a run may add
+FREE_END = (0.1025, 0.0)  # [m] where its middle is before
+
+
+def add_tip(summary, tip, rubber):
+    """The free end at the end of the run, against finite elements where these are of the same rubber."""
+    for name, reference in REFERENCE.items():
+        same = rubber == "gate_12MPa"
+        summary.add(name, 1e3 * tip[name][-1], "mm", reference if same else None, SOURCE if same else None,
+                    TARGET if same else None)
+
+
+def still_moving(tip):
+    """Share of the horizontal displacement that the last tenth of the time has added."""
+    return abs(tip["tip_x"][-1] / tip.at("tip_x", 0.9 * tip.time[-1]) - 1.0)
+
+
+def picture_bent(path, frame, spacing, rubber):
+    """The bent gate, coloured by von Mises stress, its free end by finite elements."""
+    stress = 1e-3 * frame["vonmises"]
+    norm = Normalize(0.0, float(np.percentile(stress, 99.5)))
+    with plot.picture(path, 4.8, 4.4) as figure:
+        axes = figure.add_subplot()
+        axes.set(xlim=(0.095, 0.145 if frame["x"].max() < 0.143 else 0.165), ylim=(-0.004, 0.088), aspect="equal",
+                 xlabel="x [m]", ylabel="y [m]")
+        figure.tight_layout()
+        figure.colorbar(ScalarMappable(norm, plot.SOLID_COLOURS), ax=axes, label="von Mises stress [kPa]", extend="max")
+        figure.canvas.draw()
+        width = axes.get_window_extent().width / figure.dpi * 72.0
+        side = 1.15 * spacing / np.ptp(axes.get_xlim()) * width
+        axes.scatter(frame["x"], frame["y"], s=side**2, c=stress, marker="s", linewidths=0, cmap=plot.SOLID_COLOURS,
+                     norm=norm)
+        if rubber == "gate_12MPa":
+            axes.plot(FREE_END[0] + 1e-3 * REFERENCE["tip_x"], FREE_END[1] + 1e-3 * REFERENCE["tip_y"], "+", color=plot.BLUE,
+                      markersize=12, markeredgewidth=1.8, label="free end, finite elements")
+            axes.legend(loc="lower left")
+
+
+def picture_convergence(path, runs):
+    """Displacement of the free end against the spacing over the thickness. runs: [(across, tip)]."""
+    with plot.picture(path, 5.2, 3.8) as figure:
+        axes = figure.add_subplot()
+        share = [1.0 / across for across, _ in runs]
+        for name, label, colour in (("tip_x", "horizontal", plot.BLUE), ("tip_y", "vertical", plot.ORANGE)):
+            axes.plot(share, [1e3 * tip[name][-1] for _, tip in runs], "o-", color=colour, label=label)
+            axes.axhline(REFERENCE[name], color=colour, linestyle="--", linewidth=1.0, label=f"{label}, finite elements")
+        axes.set_xticks(share, [f"1/{across:.0f}" for across, _ in runs])
+        axes.set(xlim=(0.0, None), ylim=(0.0, None), xlabel="spacing over thickness",
+                 ylabel="displacement of the free end [mm]")
+        axes.legend()
+        figure.tight_layout()
+
+
+def read(folder):
+    """What a run left: the free end over time and the values of the log."""
+    return series.read(Path(folder) / "tip.csv"), log.read(Path(folder) / LOG_FILE).values
+
+
+def main(folder):
+    """Analyses the run in `folder`; returns the summary."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    tip, values = read(folder)
+    add_tip(summary, tip, values["rubber"])
+    summary.add("still_moving", still_moving(tip), target=AT_REST)
+    summary.add("length", 1e3 * values["length"], "mm")
+    plot.lines(folder / "tip.png", "time [s]", "displacement of the free end [mm]",
+               [(tip.time, 1e3 * tip["tip_x"], "horizontal", plot.BLUE),
+                (tip.time, 1e3 * tip["tip_y"], "vertical", plot.ORANGE)])
+    picture_bent(folder / "bent.png", dump.read(folder / "particles.dump")[-1], values["dx"], values["rubber"])
+    return summary.write()
+
+
+def study(folder, runs):
+    """Compares the runs {case: folder} of the same rubber; returns the summary."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    found = sorted((read(run) for run in runs.values()), key=lambda run: run[1]["across"])
+    for tip, values in found[:-1]:
+        summary.add(f"tip_x_{values['across']:.0f}_across", 1e3 * tip["tip_x"][-1], "mm", REFERENCE["tip_x"], SOURCE)
+    tip, values = found[-1]
+    add_tip(summary, tip, values["rubber"])
+    summary.add("still_moving", max(still_moving(tip) for tip, _ in found), target=AT_REST)
+    picture_convergence(folder / "convergence.png", [(values["across"], tip) for tip, values in found])
+    return summary.write()
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Damping of the oscillating plate against artificial viscosity.   usage: analyze.py FOLDER
+
+main() is that of examples/oscillating_plate, whose deck this scene runs; study() makes the table and the pictures.
+"""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "python"))
+
+from fsi import plot  # noqa: E402
+from fsi.summary import Summary  # noqa: E402
+
+_spec = importlib.util.spec_from_file_location("fsi_analyze_oscillating_plate",
+                                               HERE.parent / "oscillating_plate" / "analyze.py")
+plate = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(plate)
+main = plate.main
+
+COLOURS = ("#1b5e96", "#5aa0d8", "#0b2c47", "#d1611a", "#efa36b")
+RAW = ("cubic_1.2", "cubic_1.3", "cubic_1.5", "quintic_1.0", "quintic_1.3")
+OTHER = {"corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress"}
+COLUMNS = ("a5_a1", "period", "stopped_at", "fractured_at", "disorder", "neighbour_distance_deviation", "stress_zigzag",
+           "mechanical_energy", "taken_by_viscosity", "taken_by_stress")
+
+
+def study(folder, cases):
+    """A5/A1, disorder and where the energy went, by series and artificial viscosity: cases are called SERIES_aALPHA."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    table = {}
+    for case, path in cases.items():
+        kind, _, alpha = case.rpartition("_a")
+        table.setdefault(kind, []).append((float(alpha), plate.figures(path)))
+    with open(folder / "damping.csv", "w") as file:
+        file.write("series,alpha," + ",".join(COLUMNS) + "\n")
+        for kind, rows in table.items():
+            rows.sort(key=lambda row: row[0])
+            for alpha, values in rows:
+                file.write(f"{kind},{alpha:g}," + ",".join(_text(values.get(name)) for name in COLUMNS) + "\n")
+                summary.add(f"a5_a1_{kind}_a{alpha:g}", values.get("a5_a1"))
+    picture_damping(folder / "damping.png", table)
+    picture_reason(folder / "reason.png", table)
+    return summary.write()
+
+
+def _text(value):
+    return "" if value is None else f"{value:.4g}"
+
+
+def _alpha_axis(axes, rows):
+    """Logarithmic from the first value above 0; 0 has its own place."""
+    alphas = sorted({alpha for series in rows for alpha, _ in series})
+    axes.set_xscale("symlog", linthresh=min(a for a in alphas if a > 0.0), linscale=0.5)
+    axes.set_xticks(alphas, [f"{a:g}" for a in alphas], rotation=45)
+    axes.minorticks_off()
+    axes.set_xlim(-0.1 * min(a for a in alphas if a > 0.0), 1.3 * alphas[-1])
+    axes.set_xlabel("artificial viscosity α")
+
+
+def _curves(axes, table, kinds, name, labels=None, sign=1.0, colours=COLOURS, **style):
+    for kind, colour in zip(kinds, colours):
+        rows = [(a, v) for a, v in table.get(kind, []) if v.get(name) is not None and v.get("stopped_at") is None]
+        if rows:
+            axes.plot([a for a, _ in rows], [sign * v[name] for _, v in rows], "o-", markersize=4, color=colour,
+                      label=(labels or {}).get(kind, kind.replace("_", ", h/Δx = ")), **style)
+
+
+def picture_damping(path, table):
+    """A5/A1 against alpha by kernel and h; runs that blew up as crosses at the bottom."""
+    with plot.picture(path, 8.0, 3.7) as figure:
+        panels = figure.subplots(1, 2, sharey=True)
+        for axes, kinds, labels, title in (
+                (panels[0], RAW, None, "the paper's recipe"),
+                (panels[1], ("cubic_1.3", *OTHER), {"cubic_1.3": "the paper's recipe", **OTHER}, "cubic, h/Δx = 1.3")):
+            _curves(axes, table, kinds, "a5_a1", labels)
+            for k, (kind, colour) in enumerate(zip(kinds, COLOURS)):
+                blown = [a for a, v in table.get(kind, []) if v.get("stopped_at") is not None]
+                axes.plot(blown, [0.02 + 0.03 * k] * len(blown), "x", markersize=5, color=colour)
+            axes.plot([], [], "x", color=plot.GREY, label="blew up")
+            axes.set_title(title, loc="left")
+            axes.set_ylim(0.0, 1.05)
+            _alpha_axis(axes, [table[kind] for kind in kinds if kind in table])
+            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.12))
+        panels[0].set_ylabel("A5/A1")
+        figure.tight_layout()
+
+
+def picture_reason(path, table):
+    """How disordered the particles are, and what viscosity takes."""
+    labels = {"cubic_1.2": "h/Δx = 1.2", "cubic_1.3": "h/Δx = 1.3", "cubic_1.5": "h/Δx = 1.5",
+              "corrected_1.3": "1.3, corrected gradient", "nostress_1.3": "1.3, no artificial stress"}
+    with plot.picture(path, 8.0, 3.6) as figure:
+        panels = figure.subplots(1, 2)
+        for axes, name, title in ((panels[0], "disorder", "zigzag of positions over Δx after four periods"),
+                                  (panels[1], "taken_by_viscosity", "energy taken by viscosity in that time over the start's")):
+            _curves(axes, table, labels, name, labels)
+            axes.set_title(title, loc="left")
+            axes.set_yscale("log")
+            _alpha_axis(axes, [table[kind] for kind in labels if kind in table])
+        panels[0].legend()
+        figure.tight_layout()
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])

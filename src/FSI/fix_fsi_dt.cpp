@@ -1,0 +1,367 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fix_fsi_dt.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "modify.h"
+#include "output.h"
+#include "pair.h"
+#include "pair_fsi_fluid.h"
+#include "pair_fsi_solid.h"
+#include "pair_fsi_solid_tl.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace FSI;
+
+static constexpr double BIG = 1.0e20;
+static constexpr int MAXSUBSTEPS = 1000;
+static constexpr double PRINT = 0.95;    // causes whose limits differ by less than this are not worth a line each
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), hub(nullptr), cfl(1.0), low(0.0), high(BIG), growth(1.1), automatic(false), check(NO), target(BIG),
+    cause(MAXIMUM), ruling(-1), culprit{}, dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false)
+{
+  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
+  if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/dt", error);
+  nevery = utils::inumeric(FLERR, arg[3], false, lmp);
+  if (nevery <= 0) error->all(FLERR, "Fix fsi/dt interval {} must be > 0", arg[3]);
+
+  for (int iarg = 4; iarg < narg; iarg += 2) {
+    const std::string key = arg[iarg];
+    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/dt " + key, error);
+    const char *const value = arg[iarg + 1];
+    const auto positive = [&]() {
+      const double x = utils::numeric(FLERR, value, false, lmp);
+      if (!(x > 0.0 && x < BIG)) error->all(FLERR, "Fix fsi/dt {} {} must be > 0", key, value);
+      return x;
+    };
+    if (key == "cfl") cfl = positive();
+    else if (key == "min") low = positive();
+    else if (key == "max") high = positive();
+    else if (key == "growth") {
+      growth = positive();
+      if (growth <= 1.0) error->all(FLERR, "Fix fsi/dt growth {} must be > 1", value);
+    } else if (key == "substeps") {
+      if (strcmp(value, "auto") == 0) automatic = true;
+      else if (strcmp(value, "keep") == 0) automatic = false;
+      else error->all(FLERR, "Unknown fix fsi/dt substeps {}: expected keep or auto", value);
+    } else if (key == "check") {
+      if (strcmp(value, "no") == 0) check = NO;
+      else if (strcmp(value, "warn") == 0) check = WARN;
+      else if (strcmp(value, "error") == 0) check = STOP;
+      else error->all(FLERR, "Unknown fix fsi/dt check {}: expected no, warn or error", value);
+    } else
+      error->all(FLERR, "Unknown fix fsi/dt keyword {}: expected cfl, min, max, growth, substeps or check", key);
+  }
+  if (low >= high) error->all(FLERR, "Fix fsi/dt min {} must be below max {}", low, high);
+  if (automatic && check) error->all(FLERR, "Fix fsi/dt substeps auto cannot be combined with check: a check changes nothing");
+
+  for (int k = 0; k < NLIMIT; k++) step[k] = sub[k] = limit[k] = BIG;
+  scalar_flag = vector_flag = 1;
+  size_vector = NLIMIT + 2;
+  extscalar = extvector = 0;
+  global_freq = 1;
+  dynamic_group_allow = 1;
+  time_depend = restart_global = check == NO;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSIDt::setmask()
+{
+  return END_OF_STEP;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIDt::init()
+{
+  hub = FixFSI::find(lmp, "Fix fsi/dt");
+  if (modify->get_fix_by_style("^fsi/dt$").size() > 1) error->all(FLERR, "There can be only one fix fsi/dt");
+  if (check) return;
+  if (!modify->get_fix_by_style("^dt/reset$").empty())
+    error->all(FLERR, "Fix fsi/dt and fix dt/reset cannot both set the time step");
+  if (automatic && !force->pair_match("fsi/solid/tl", 1))
+    error->all(FLERR, "Fix fsi/dt substeps auto requires pair_style fsi/solid/tl");
+  // the time step changes when fix fsi begins its step: what moves earlier would still take the old one
+  for (auto &fix : modify->get_fix_list()) {
+    if (fix == hub) break;
+    if (modify->get_fix_mask(fix) & INITIAL_INTEGRATE)
+      error->all(FLERR, "Fix fsi/dt: fix {} (style {}) must be defined after fix {}, with which the time step changes", fix->id,
+                 fix->style, hub->id);
+  }
+  if (restored) {
+    // whatever a timestep command between read_restart and here has said
+    update->update_time();
+    update->dt = dt;
+    update->dt_default = 0;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   The first run, or one for which the script gave another time step, begins with the limits. Other runs go on with what was
+   chosen before: two runs are one, and a restarted run is the uninterrupted one.
+------------------------------------------------------------------------- */
+
+void FixFSIDt::setup(int)
+{
+  const bool go_on = restored || (dt > 0.0 && update->dt == dt);
+  restored = false;
+  if (go_on) return;
+  find_limits();
+  // down at once; up only where no time step was given
+  if (check) report();
+  else choose(update->dt_default ? BIG : update->dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIDt::end_of_step()
+{
+  find_limits();
+  if (check) report();
+  else choose(growth * update->dt);
+}
+
+/* ----------------------------------------------------------------------
+   A new time step begins with a step, between two of position Verlet, each of which is second order on its own: positions and
+   velocities need no more care. What lives at the middle of steps, the density of continuity and the stress of fsi/solid, goes
+   from t^n - dt_old/2 to t^n + dt_new/2 with the rate of t^n: by the mean of the two, or every change would add an error of
+   first order, (dt_new - dt_old)/2 times the rate. Fix fsi takes the difference from stagger. (The rates' positions, dt/2 v
+   before those in atom->x, are of the new step, as they should.)
+   Other styles hear of it as from fix dt/reset; the clock and the dumps by time count from the end of the last step.
+------------------------------------------------------------------------- */
+
+void FixFSIDt::start_of_step()
+{
+  if (check) return;
+  if (next_substeps) hub->substeps = next_substeps;
+  if (next_dt > 0.0 && next_dt != update->dt) {
+    update->ntimestep--;
+    update->update_time();
+    update->dt = next_dt;
+    update->dt_default = 0;
+    if (force->pair) force->pair->reset_dt();
+    for (auto &fix : modify->get_fix_list()) fix->reset_dt();
+    output->reset_dt();
+    update->ntimestep++;
+  }
+  hub->stagger = dt > 0.0 ? 0.5 * (dt - update->dt) : 0.0;
+  dt = update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6 alpha); laminar: h^2/8nu;
+   acceleration: sqrt(h/|a|)/4
+------------------------------------------------------------------------- */
+
+void FixFSIDt::find_limits()
+{
+  const int *const mask = atom->mask, *const type = atom->type;
+  double **v = atom->v;
+  double **f = atom->f;
+  const double *const rmass = atom->rmass, *const rho = atom->rho;
+  const double h = hub->h;
+  const bool substeps = hub->solid_tl && (automatic || hub->substeps > 1);
+
+  double mine[2][NLIMIT], all[2][NLIMIT], fastest = 0.0, asq_max[2] = {0.0, 0.0};
+  tagint who[2][2] = {};
+  std::vector<char> present(atom->ntypes + 1, 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(mask[i] & groupbit)) continue;
+    const State &s = hub->state[type[i]];
+    present[type[i]] = 1;
+    if (s.species == FLUID) {
+      double c = s.c;
+      if (s.tait) c *= std::max(1.0, std::pow(rho[i] / s.rho0, 3));
+      c += std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+      if (c > fastest) {
+        fastest = c;
+        who[0][0] = atom->tag[i];
+      }
+    }
+    // what is held does not follow its force
+    if (!(mask[i] & hub->groupbit)) continue;
+    const double w = force->ftm2v / rmass[i];
+    const double asq = w * w * (f[i][0] * f[i][0] + f[i][1] * f[i][1] + f[i][2] * f[i][2]);
+    const int in_sub = substeps && s.species == SOLID;
+    if (asq > asq_max[in_sub]) {
+      asq_max[in_sub] = asq;
+      who[in_sub][1] = atom->tag[i];
+    }
+  }
+
+  for (auto &row : mine) std::fill(row, row + NLIMIT, BIG);
+  if (fastest > 0.0) mine[0][SOUND] = 0.25 * h / fastest;
+  for (int k = 0; k < 2; k++)
+    if (asq_max[k] > 0.0) mine[k][ACCELERATION] = 0.25 * std::sqrt(h / std::sqrt(asq_max[k]));
+  for (int t = 1; t <= atom->ntypes; t++) {
+    if (!present[t]) continue;
+    const State &s = hub->state[t];
+    const bool fluid = s.species == FLUID;
+    double *const m = mine[substeps && !fluid];
+    double alpha = 0.0;
+    if (fluid) alpha = hub->fluid->artificial_alpha();
+    else if (hub->solid) alpha = hub->solid->artificial_alpha();
+    else if (hub->solid_tl) alpha = hub->solid_tl->artificial_alpha();
+    if (!fluid) m[ELASTIC] = std::min(m[ELASTIC], 0.25 * h / std::sqrt(s.csq + 4.0 / 3.0 * s.shear / s.rho0));
+    if (alpha > 0.0) m[ARTIFICIAL] = std::min(m[ARTIFICIAL], 0.4 * h / (s.c * (1.0 + 0.6 * alpha)));
+    if (fluid && hub->fluid->has_laminar() && s.viscosity > 0.0)
+      m[LAMINAR] = std::min(m[LAMINAR], 0.125 * h * h * s.rho0 / s.viscosity);
+  }
+  MPI_Allreduce(&mine[0][0], &all[0][0], 2 * NLIMIT, MPI_DOUBLE, MPI_MIN, world);
+
+  for (int k = 0; k < 2; k++) {
+    if (mine[k][SOUND] != all[k][SOUND]) who[k][0] = 0;
+    if (mine[k][ACCELERATION] != all[k][ACCELERATION]) who[k][1] = 0;
+  }
+  MPI_Allreduce(&who[0][0], &culprit[0][0], 4, MPI_LMP_TAGINT, MPI_MAX, world);
+  for (int k = 0; k < NLIMIT; k++) {
+    step[k] = all[0][k] < BIG ? cfl * all[0][k] : BIG;
+    sub[k] = all[1][k] < BIG ? cfl * all[1][k] : BIG;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the next time step, at most that much; with a given number of sub-steps the solid limits the step, else the step gives
+   the number
+------------------------------------------------------------------------- */
+
+void FixFSIDt::choose(double most)
+{
+  const double shortest = *std::min_element(sub, sub + NLIMIT);
+  int n = hub->substeps;
+  const bool free = automatic && *std::min_element(step, step + NLIMIT) < BIG;
+  target = high;
+  cause = MAXIMUM;
+  const auto combine = [&]() {
+    for (int k = 0; k < NLIMIT; k++) limit[k] = std::min(step[k], n * sub[k]);
+  };
+  if (automatic && !free) n = 1;    // nothing but sub-stepped solids
+  combine();
+  const double *const ruled = free ? step : limit;
+  for (int k = 0; k < NLIMIT; k++)
+    if (ruled[k] < target) {
+      target = ruled[k];
+      cause = k;
+    }
+  if (target >= BIG) {    // no particles
+    next_dt = update->dt;
+    return;
+  }
+  if (!check && target < low)
+    error->all(FLERR, "Fix fsi/dt: on step {} the limit {:.4g} of {} is below the smallest time step {}", update->ntimestep, target,
+               name(cause), low);
+
+  const bool fell_behind = ruling < 0 || (cause != ruling && target < PRINT * (ruling == MAXIMUM ? high : ruled[ruling]));
+  if (!check && fell_behind) {
+    if (comm->me == 0)
+      utils::logmesg(lmp, "Fix fsi/dt: from step {} on {} limits the time step, to {:.4g}\n", update->ntimestep, name(cause), target);
+    ruling = cause;
+  }
+  next_dt = std::min(target, most);
+  if (next_dt < target) cause = GROWTH;
+  if (automatic) {
+    const double count = std::ceil(next_dt / shortest * (1.0 - 1.0e-12));
+    if (count > MAXSUBSTEPS)
+      error->all(FLERR, "Fix fsi/dt: on step {} the solid needs {:.0f} sub-steps of {:.4g}, more than {}", update->ntimestep, count,
+                 shortest, MAXSUBSTEPS);
+    n = next_substeps = std::max(1, static_cast<int>(count));
+    combine();
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string FixFSIDt::name(int k) const
+{
+  static constexpr const char *names[] = {"sound in the fluid", "elastic waves in the solid", "artificial viscosity",
+                                          "laminar viscosity",  "acceleration",               "the upper bound"};
+  std::string text = names[k];
+  if (k == SOUND) text += fmt::format(" (atom {})", culprit[0][0]);
+  if (k == ACCELERATION) text += fmt::format(" (atom {})", culprit[step[k] > limit[k]][1]);
+  return text;
+}
+
+/* ----------------------------------------------------------------------
+   check: the time step is not touched
+------------------------------------------------------------------------- */
+
+void FixFSIDt::report()
+{
+  choose(BIG);
+  next_dt = 0.0;
+  if (update->dt <= target * (1.0 + 1.0e-12) || warned & 1 << cause) return;
+  warned |= 1 << cause;
+  const auto text = fmt::format("Fix fsi/dt: on step {} the time step {:.4g} is above {:.4g}, the limit of {}", update->ntimestep,
+                                update->dt, target, name(cause));
+  if (check == STOP) error->all(FLERR, text);
+  if (comm->me == 0) error->warning(FLERR, text);
+}
+
+/* ----------------------------------------------------------------------
+   time step that the next step takes
+------------------------------------------------------------------------- */
+
+double FixFSIDt::compute_scalar()
+{
+  return next_dt > 0.0 ? next_dt : update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   the limits; number of what sets the time step, from 1; sub-steps
+------------------------------------------------------------------------- */
+
+double FixFSIDt::compute_vector(int k)
+{
+  if (k < NLIMIT) return limit[k];
+  if (k == NLIMIT) return cause + 1;
+  return next_substeps ? next_substeps : hub->substeps;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIDt::write_restart(FILE *fp)
+{
+  if (comm->me) return;
+  const double list[] = {dt, next_dt, (double) next_substeps, (double) ruling};
+  const int size = sizeof(list);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list, size, 1, fp);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIDt::restart(char *buf)
+{
+  const auto *const list = (double *) buf;
+  dt = list[0];
+  next_dt = list[1];
+  if (automatic) next_substeps = static_cast<int>(list[2]);
+  ruling = static_cast<int>(list[3]);
+  restored = dt > 0.0;
+}

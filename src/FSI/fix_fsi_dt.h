@@ -1,0 +1,74 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(fsi/dt,FixFSIDt);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_FSI_DT_H
+#define LMP_FIX_FSI_DT_H
+
+#include "fix.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+// Time step, and number of sub-steps of total-Lagrangian solids, from what the particles do.
+
+class FixFSIDt : public Fix {
+ public:
+  FixFSIDt(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void end_of_step() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  void start_of_step();    // called by fix fsi before anything moves
+
+ private:
+  enum Limit { SOUND, ELASTIC, ARTIFICIAL, LAMINAR, ACCELERATION, NLIMIT };
+  enum Cause { MAXIMUM = NLIMIT, GROWTH };
+  enum Check { NO, WARN, STOP };
+  class FixFSI *hub;
+
+  double cfl, low, high, growth;
+  bool automatic;    // number of sub-steps
+  int check;
+
+  double step[NLIMIT], sub[NLIMIT];    // limits of the step, and of a sub-step of what takes sub-steps, with the factor cfl
+  double limit[NLIMIT];                // both together
+  double target;                       // smallest of these and of the bound
+  int cause, ruling;                   // what sets the next step; last one that was printed
+  tagint culprit[2][2];                // particle behind sound and acceleration, of step and sub-step
+  double dt, next_dt;                  // of the last step taken, 0 = none; from the next step on
+  int next_substeps;
+  int warned;    // bits of causes
+  bool restored;
+
+  void find_limits();
+  void choose(double most);
+  void report();
+  std::string name(int) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,487 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fix_fsi_reference.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fsi_gradient.h"
+#include "fsi_kernel.h"
+#include "memory.h"
+#include "modify.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), broken(0), hub(nullptr), list(nullptr), slot(nullptr),
+    maxbond(0), layer(nullptr)
+{
+  restart_peratom = 1;
+  create_attribute = 1;
+  maxexchange = 1;
+  maxexchange_dynamic = 1;
+  comm_forward = 2 * domain->dimension;
+  grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIReference::~FixFSIReference()
+{
+  if (modify->get_fix_by_id(id)) {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+  }
+  memory->destroy(slot);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSIReference::setmask()
+{
+  return POST_NEIGHBOR;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIReference::init()
+{
+  hub = FixFSI::find(lmp, "Fix fsi/reference");
+  neighbor->add_request(this, NeighConst::REQ_FULL | NeighConst::REQ_OCCASIONAL);
+}
+
+void FixFSIReference::init_list(int, NeighList *ptr)
+{
+  list = ptr;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIReference::setup_post_neighbor()
+{
+  take();
+  // a restart file, which rank 0 describes, needs the same largest size everywhere
+  int all;
+  MPI_Allreduce(&maxbond, &all, 1, MPI_INT, MPI_MAX, world);
+  reserve(all);
+  resolve();
+}
+
+void FixFSIReference::post_neighbor()
+{
+  resolve();
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixFSIReference::is_solid(int i) const
+{
+  return hub->state[atom->type[i]].species == SOLID;
+}
+
+/* ----------------------------------------------------------------------
+   solids without a reference take the positions of now
+------------------------------------------------------------------------- */
+
+void FixFSIReference::take()
+{
+  std::vector<int> bare;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (slot[i] < 0 && is_solid(i)) bare.push_back(i);
+  const bigint mine = bare.size();
+  bigint all;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all == 0) return;
+  neighbor->build_one(list);
+  if (domain->dimension == 2) take_reference<2>(bare);
+  else take_reference<3>(bare);
+  if (end_corrected) {
+    if (domain->dimension == 2) find_quadrature<2>(bare);
+    else find_quadrature<3>(bare);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   The energy is an integral over particles in the middle of their cells: the midpoint rule, which lacks 1/n^2 of the bending
+   stiffness of a plate n particles across. With its end corrections, 13/12, 7/8, 25/24 for the first three layers from a face
+   (Press et al., Numerical Recipes, eq. 4.1.18), quadratic integrands are exact. They apply along each axis of a lattice that is
+   aligned with the axes; a body thinner than three layers, or not on such a lattice, keeps plain volumes there. Masses do not
+   change.
+------------------------------------------------------------------------- */
+
+template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &bare)
+{
+  static constexpr double correction[4] = {0.0, 1.0 / 12.0, -1.0 / 8.0, 1.0 / 24.0};
+  const double dx = hub->dx, near = 0.05 * dx;
+  resolve();
+  std::vector<double> layers((size_t) atom->nmax * 2 * D, 0.0);
+  layer = layers.data();
+
+  // partner one spacing away along direction k = 2 axis + (positive side), or -1
+  const auto next = [&](int i, int k) {
+    const double *value = values(i) + D;
+    for (int b = 0; b < count(i); b++, value += nvalue) {
+      bool found = true;
+      for (int a = 0; a < D; a++)
+        if (std::fabs(value[a] - (a == k / 2 ? (k % 2 ? dx : -dx) : 0.0)) > near) found = false;
+      if (found) return partners(i)[b];
+    }
+    return -1;
+  };
+  // layer 1 has nobody ahead, layer m has layer m-1 ahead; 0 = deeper than what has been found so far
+  for (int m = 1; m <= 3; m++) {
+    for (const int i : bare)
+      for (int k = 0; k < 2 * D; k++) {
+        const int j = next(i, k);
+        if (m == 1 ? j < 0 : (j >= 0 && layer[j * 2 * D + k] == m - 1)) layer[i * 2 * D + k] = m;
+      }
+    comm->forward_comm(this);
+  }
+  for (const int i : bare) {
+    double w = 1.0;
+    for (int a = 0; a < D; a++) {
+      const int lo = (int) layer[i * 2 * D + 2 * a], hi = (int) layer[i * 2 * D + 2 * a + 1];
+      // fewer than three layers: no correction along this axis
+      if ((lo && hi && lo + hi < 4)) continue;
+      w *= 1.0 + correction[lo] + correction[hi];
+    }
+    quadrature[slot[i]] = w;
+  }
+  layer = nullptr;
+}
+
+int FixFSIReference::pack_forward_comm(int n, int *list_, double *buf, int, int *)
+{
+  int m = 0;
+  for (int ii = 0; ii < n; ii++)
+    for (int k = 0; k < comm_forward; k++) buf[m++] = layer[list_[ii] * comm_forward + k];
+  return m;
+}
+
+void FixFSIReference::unpack_forward_comm(int n, int first, double *buf)
+{
+  memcpy(layer + (size_t) first * comm_forward, buf, (size_t) n * comm_forward * sizeof(double));
+}
+
+template <int D> void FixFSIReference::take_reference(const std::vector<int> &bare)
+{
+  double **x = atom->x;
+  const tagint *const tag = atom->tag, *const molecule = atom->molecule;
+  const int *const type = atom->type;
+  const auto volume = [&](int i) { return atom->rmass[i] / hub->state[type[i]].rho0; };
+  GradientWeights<D> weights;
+  std::vector<int> near;
+  std::vector<double> dX, w, G;
+  bigint mine[6] = {};    // particles, bonds, particles by order reached
+
+  with_kernel(hub->kernel, D, hub->h, [&](const auto &kernel) {
+    if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
+      for (const int i : bare) {
+        near.clear();
+        dX.clear();
+        w.clear();
+        for (int jj = 0; jj < list->numneigh[i]; jj++) {
+          const int j = list->firstneigh[i][jj] & NEIGHMASK;
+          if (molecule[j] != molecule[i] || !is_solid(j)) continue;
+          double rsq = 0.0, d[D];
+          for (int a = 0; a < D; a++) {
+            d[a] = x[j][a] - x[i][a];
+            rsq += d[a] * d[a];
+          }
+          if (rsq >= kernel.cutsq) continue;
+          near.push_back(j);
+          dX.insert(dX.end(), d, d + D);
+          w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
+        }
+        const int n = near.size();
+        G.resize((size_t) n * D);
+        const auto order = weights(n, dX.data(), w.data(), hub->h, quadratic, G.data());
+        if (order == GradientWeights<D>::DEFICIENT)
+          error->one(FLERR, "Solid atom {} of body {} has {} neighbors of its own body within {}: too few, or all in one {}, for a "
+                            "deformation gradient. A body must be at least two particles thick, and one body one molecule ID",
+                     tag[i], molecule[i], n, kernel.cut, D == 2 ? "line" : "plane");
+        mine[0]++;
+        mine[1] += n;
+        mine[2 + order]++;
+
+        slot[i] = new_slot(n);
+        const size_t first = (size_t) slot[i] * maxbond;
+        double *value = &data[first * nvalue];
+        for (int k = 0; k < n; k++, value += nvalue) {
+          const double *d = &dX[k * D];
+          double rsq = 0.0;
+          for (int a = 0; a < D; a++) {
+            value[a] = G[k * D + a];
+            value[D + a] = d[a];
+            rsq += d[a] * d[a];
+          }
+          const double r = std::sqrt(rsq), vv = volume(i) * volume(near[k]);
+          value[2 * D] = vv * kernel.W(r) / rsq;
+          value[2 * D + 1] = vv * kernel.gradient(r);
+          partner[first + k] = tag[near[k]];
+        }
+      }
+  });
+
+  bigint all[6];
+  MPI_Allreduce(mine, all, 6, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (comm->me == 0) {
+    utils::logmesg(lmp, "  fsi/solid/tl: reference of {} particles taken, {:.1f} bonds each\n", all[0], double(all[1]) / all[0]);
+    if (quadratic)
+      utils::logmesg(lmp, "    gradients: {} exact for quadratic fields, {} for part of their terms, {} for linear fields only\n",
+                     all[2 + GradientWeights<D>::QUADRATIC], all[2 + GradientWeights<D>::PARTIAL],
+                     all[2 + GradientWeights<D>::LINEAR]);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIReference::break_bonds(double stretch)
+{
+  if (domain->dimension == 2) break_bonds_of_all<2>(stretch);
+  else break_bonds_of_all<3>(stretch);
+}
+
+template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
+{
+  double **x = atom->x;
+  const double limit = stretch * stretch;
+  GradientWeights<D> weights;
+  std::vector<double> dX, w, G;
+  for (const int i : solids) {
+    const size_t first = (size_t) slot[i] * maxbond;
+    int &n = nbond[slot[i]];
+    const auto longer = [&](int k) {
+      const double *const X = &data[(first + k) * nvalue + D], *const xj = x[local[first + k]];
+      double rsq = 0.0, Rsq = 0.0;
+      for (int a = 0; a < D; a++) {
+        rsq += (xj[a] - x[i][a]) * (xj[a] - x[i][a]);
+        Rsq += X[a] * X[a];
+      }
+      return rsq > limit * Rsq;
+    };
+    int kept = 0;
+    for (int k = 0; k < n; k++) {
+      if (longer(k)) continue;
+      if (kept < k) {
+        local[first + kept] = local[first + k];
+        partner[first + kept] = partner[first + k];
+        std::copy_n(&data[(first + k) * nvalue], nvalue, &data[(first + kept) * nvalue]);
+      }
+      kept++;
+    }
+    if (kept == n) continue;
+    broken += n - kept;
+    n = kept;
+    dX.resize((size_t) n * D);
+    w.resize(n);
+    G.resize((size_t) n * D);
+    for (int k = 0; k < n; k++) {
+      const double *const value = &data[(first + k) * nvalue];
+      double Rsq = 0.0;
+      for (int a = 0; a < D; a++) {
+        dX[k * D + a] = value[D + a];
+        Rsq += value[D + a] * value[D + a];
+      }
+      w[k] = value[2 * D] * Rsq;    // V_i V_j W: the factor V_i does not matter
+    }
+    if (weights(n, dX.data(), w.data(), hub->h, quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
+      n = 0;
+      continue;
+    }
+    for (int k = 0; k < n; k++)
+      for (int a = 0; a < D; a++) data[(first + k) * nvalue + a] = G[k * D + a];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   where the partners of each bond are: after atoms or ghosts have changed
+------------------------------------------------------------------------- */
+
+void FixFSIReference::resolve()
+{
+  const tagint *const tag = atom->tag;
+  solids.clear();
+  ghosts.clear();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_solid(i)) continue;
+    if (slot[i] < 0)
+      error->one(FLERR, "Solid atom {} has no reference configuration: it was made during a run. Make it before one", tag[i]);
+    solids.push_back(i);
+    const size_t first = (size_t) slot[i] * maxbond;
+    for (int k = 0; k < nbond[slot[i]]; k++) {
+      const tagint t = partner[first + k];
+      const int j = atom->map(t);
+      if (j < 0)
+        error->one(FLERR, "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {}: one of them was lost, or the solid is "
+                          "stretched so far that comm_modify cutoff must be larger", tag[i], t,
+                   comm->cutghostuser > neighbor->cutneighmax ? comm->cutghostuser : neighbor->cutneighmax);
+      local[first + k] = domain->closest_image(i, j);
+    }
+  }
+  for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; i++)
+    if (is_solid(i)) ghosts.push_back(i);
+}
+
+/* ----------------------------------------------------------------------
+   every slot holds n bonds: one size, so that a freed slot serves any atom
+------------------------------------------------------------------------- */
+
+void FixFSIReference::reserve(int n)
+{
+  if (n <= maxbond) return;
+  const int old = maxbond, slots = nbond.size();
+  maxbond = n;
+  maxexchange = 2 + maxbond * (nvalue + 1);
+  const auto widen = [&](auto &list, int width) {
+    std::decay_t<decltype(list)> wider((size_t) slots * maxbond * width);
+    for (int s = 0; s < slots; s++)
+      std::copy_n(list.begin() + (size_t) s * old * width, (size_t) nbond[s] * width,
+                  wider.begin() + (size_t) s * maxbond * width);
+    list.swap(wider);
+  };
+  widen(local, 1);
+  widen(partner, 1);
+  widen(data, nvalue);
+}
+
+int FixFSIReference::new_slot(int n)
+{
+  reserve(n);
+  int s;
+  if (unused.empty()) {
+    s = nbond.size();
+    nbond.push_back(n);
+    quadrature.push_back(1.0);
+    const size_t size = (size_t) nbond.size() * maxbond;
+    local.resize(size);
+    partner.resize(size);
+    data.resize(size * nvalue);
+  } else {
+    s = unused.back();
+    unused.pop_back();
+    nbond[s] = n;
+    quadrature[s] = 1.0;
+  }
+  return s;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIReference::grow_arrays(int n)
+{
+  memory->grow(slot, n, "fsi/reference:slot");
+}
+
+void FixFSIReference::copy_arrays(int i, int j, int delflag)
+{
+  // when atom j is deleted its place becomes free; otherwise its bonds have moved on with an earlier copy
+  if (delflag && slot[j] >= 0) unused.push_back(slot[j]);
+  slot[j] = slot[i];
+}
+
+void FixFSIReference::set_arrays(int i)
+{
+  slot[i] = -1;
+}
+
+/* ----------------------------------------------------------------------
+   number of bonds, then partner and values of each
+------------------------------------------------------------------------- */
+
+int FixFSIReference::pack(int i, double *buf) const
+{
+  int m = 0;
+  const int n = slot[i] < 0 ? -1 : nbond[slot[i]];
+  buf[m++] = ubuf(n).d;
+  if (n < 0) return m;
+  buf[m++] = quadrature[slot[i]];
+  const size_t first = (size_t) slot[i] * maxbond;
+  for (int k = 0; k < n; k++) buf[m++] = ubuf(partner[first + k]).d;
+  memcpy(buf + m, &data[first * nvalue], (size_t) n * nvalue * sizeof(double));
+  return m + n * nvalue;
+}
+
+int FixFSIReference::unpack(int i, const double *buf)
+{
+  int m = 0;
+  const int n = (int) ubuf(buf[m++]).i;
+  slot[i] = -1;
+  if (n < 0) return m;
+  slot[i] = new_slot(n);
+  quadrature[slot[i]] = buf[m++];
+  const size_t first = (size_t) slot[i] * maxbond;
+  for (int k = 0; k < n; k++) partner[first + k] = (tagint) ubuf(buf[m++]).i;
+  memcpy(&data[first * nvalue], buf + m, (size_t) n * nvalue * sizeof(double));
+  return m + n * nvalue;
+}
+
+int FixFSIReference::pack_exchange(int i, double *buf)
+{
+  return pack(i, buf);
+}
+
+int FixFSIReference::unpack_exchange(int i, double *buf)
+{
+  return unpack(i, buf);
+}
+
+int FixFSIReference::pack_restart(int i, double *buf)
+{
+  buf[0] = 1 + pack(i, buf + 1);
+  return (int) buf[0];
+}
+
+void FixFSIReference::unpack_restart(int i, int nth)
+{
+  // values of this fix are the nth set of atom->extra, each preceded by its length
+  double *extra = atom->extra[i];
+  int m = 0;
+  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
+  unpack(i, extra + m + 1);
+}
+
+int FixFSIReference::size_restart(int i)
+{
+  return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + 1);
+}
+
+int FixFSIReference::maxsize_restart()
+{
+  return 3 + maxbond * (nvalue + 1);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSIReference::memory_usage()
+{
+  return (double) atom->nmax * sizeof(int) + (double) local.capacity() * sizeof(int) + (double) partner.capacity() * sizeof(tagint) +
+      (double) (data.capacity() + quadrature.capacity()) * sizeof(double);
+}

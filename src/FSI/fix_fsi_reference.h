@@ -1,0 +1,100 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(fsi/reference,FixFSIReference);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_FSI_REFERENCE_H
+#define LMP_FIX_FSI_REFERENCE_H
+
+#include "fix.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// The reference configuration of total-Lagrangian solids: for every particle its bonds to the neighbours of its own body, with
+// the gradient's weights. Made by pair_style fsi/solid/tl; taken at the start of the first run; travels with its atom between
+// ranks and through restart files. Memory and messages exist for solid particles only.
+
+class FixFSIReference : public Fix {
+ public:
+  FixFSIReference(class LAMMPS *, int, char **);
+  ~FixFSIReference() override;
+  int setmask() override;
+  void init() override;
+  void init_list(int, class NeighList *) override;
+  void setup_post_neighbor() override;
+  void post_neighbor() override;
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+  double memory_usage() override;
+
+  bool quadratic;    // gradients exact for quadratic fields, where neighbours suffice
+  bool end_corrected;    // volumes of the energy's integral with corrections at faces
+
+  // per bond, 2 D + 2 numbers: G_ij, X_j - X_i, V_i V_j W/|X|^2, V_i V_j (grad W)/x_ij
+  int nvalue;
+  // bonds of local atom i
+  int count(int i) const { return nbond[slot[i]]; }
+  const int *partners(int i) const { return &local[(size_t) slot[i] * maxbond]; }    // indices of local and ghost atoms
+  double weight(int i) const { return quadrature[slot[i]]; }    // of i in the energy's integral, times its volume
+  const double *values(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }
+
+  // removes bonds longer than stretch times their reference length, and makes the gradient anew from those left; a particle
+  // whose bonds no longer suffice loses them all
+  void break_bonds(double stretch);
+  bigint broken;    // bonds removed by this rank; each is counted from both ends
+
+  // local solid atoms, and ghosts of solid atoms
+  std::vector<int> solids, ghosts;
+
+ private:
+  class FixFSI *hub;
+  class NeighList *list;
+  int *slot;    // per local atom: where its bonds are, -1 = not a solid, or none yet
+  int maxbond;
+  std::vector<int> nbond, local, unused;
+  std::vector<tagint> partner;
+  std::vector<double> data, quadrature;
+  double *layer;    // while the reference is taken: layers to the face ahead, by direction
+
+  void take();
+  template <int D> void take_reference(const std::vector<int> &);
+  template <int D> void find_quadrature(const std::vector<int> &);
+  void resolve();
+  bool is_solid(int i) const;
+  template <int D> void break_bonds_of_all(double stretch);
+  void reserve(int n);
+  int new_slot(int n);
+  int pack(int, double *) const;
+  int unpack(int, const double *);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

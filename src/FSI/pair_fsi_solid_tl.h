@@ -1,0 +1,106 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+
+#ifdef PAIR_CLASS
+// clang-format off
+PairStyle(fsi/solid/tl,PairFSISolidTL);
+// clang-format on
+#else
+
+#ifndef LMP_PAIR_FSI_SOLID_TL_H
+#define LMP_PAIR_FSI_SOLID_TL_H
+
+#include "fsi_elastic.h"
+#include "pair_fsi.h"
+
+#include <utility>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Elastic solids in total-Lagrangian form. The deformation gradient of particle i is
+//   F_i = sum_j (x_j - x_i) (x) G_ij
+// over its bonds, the neighbours in the reference configuration, and the force is minus the derivative of the energy
+// sum_i V_i psi(F_i): momentum, angular momentum and energy are kept to round-off and time step. Particle i alone gives
+// the forces -V_i P_i G_ij to its partners and the opposite to itself, so neither F nor P crosses ranks.
+// Particles of different bodies meet by contact only.
+
+class PairFSISolidTL : public PairFSI {
+ public:
+  PairFSISolidTL(class LAMMPS *);
+  ~PairFSISolidTL() override;
+  void settings(int, char **) override;
+  void init_style() override;
+  void compute(int, int) override;
+  void write_restart_settings(FILE *) override;
+  void read_restart_settings(FILE *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+  double memory_usage() override;
+  double artificial_alpha() const { return alpha; }
+
+  // all forces of this style, on local atoms, at the positions in atom->x of local and ghost atoms
+  void internal_forces();
+  // positions, and velocities where a force needs them, of ghost solids from their owners
+  void forward_positions();
+  double **force_of_solids() { return fsolid; }
+  // law hypo: deviatoric stress from half a step back to half a step ahead, at positions dt/2 ahead of the velocities' time
+  bool hypoelastic() const { return law == HYPO; }
+  void advance_stress(double dt);
+  void break_bonds();    // keyword damage
+  const std::vector<int> &solids() const;
+  double strain_energy;    // of this rank's particles at the last forces; kept for compute fsi/energy
+
+  struct Stress {
+    double sigma[6];    // Cauchy: xx yy zz xy xz yz
+    double J;           // det F
+    double pressure() const { return -(sigma[0] + sigma[1] + sigma[2]) / 3.0; }
+    double von_mises() const;
+  };
+  Stress stress(int i) const;    // of local atom i at the positions in atom->x
+
+ protected:
+  bool handles(int, int) const override;
+  bool defines(int species) const override { return species == FSI::SOLID; }
+  bool needs_neighbors() override { return several_bodies(); }
+  FSI::State make_state(const FSI::Material &) const override;
+
+ private:
+  enum Law { SVK, NEOHOOKEAN, HYPO };
+  double alpha, beta, zeta, damage;
+  int law, plane_stress, linear, plain;
+  class FixFSIReference *reference;
+  std::vector<FSI::StVenantKirchhoff> svk;    // per type
+  std::vector<FSI::NeoHookean> neohookean;
+  std::vector<FSI::HypoElastic> hypo;
+  double **fsolid;
+  int nmax;
+
+  template <class L> const L *laws() const;
+  enum { HOURGLASS = 1, VISCOSITY = 2, LEDGER = 4, VIRIAL = 8, NFLAGS = 16 };
+  void (PairFSISolidTL::*bond_loop[2])();    // without and with virial
+  template <class L, int D, int FLAGS> void bond_forces();
+  template <class L, int D> void select(int flags);
+  template <class L, int D, int... F> void pick(int flags, std::integer_sequence<int, F...>);
+  template <int D> void contact_forces();
+  template <int D> void deformation(int i, double *F) const;
+  template <int D> void advance_stress_of_all(double dt);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif
