@@ -263,7 +263,7 @@ int FixFSI::ngrad() const
 {
   const int terms = solid->terms();
   if (terms == 0) return dim * dim;
-  return std::max(dim * terms + packed_size(terms), dim * dim + dim * terms);
+  return dim * terms + 2 * packed_size(terms);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -603,17 +603,18 @@ template <int D, int TERMS> void FixFSI::advance_solids(bool advance)
     double *L = grad[i];
     if constexpr (TERMS > 0) {
       // L = [sum_j w_ij (v_j - v_i)(x)phi_j] C^T
-      double C[D * TERMS], full[D * D] = {};
-      if (gradient_coefficients<D, TERMS>(L + D * TERMS, C) == Gradient<D>::DEFICIENT) {
-        // hardly any neighbours: torn off, no strain, no stress to share
-        std::fill_n(C, D * TERMS, 0.0);
-      }
+      double C[D * TERMS], force_C[D * TERMS], full[D * D] = {};
+      const double *const moments = L + D * TERMS;
+      // hardly any neighbours: torn off, no strain, no stress to share
+      if (gradient_coefficients<D, TERMS>(moments, C) == Gradient<D>::DEFICIENT) std::fill_n(C, D * TERMS, 0.0);
+      if (gradient_coefficients<D, TERMS>(moments + packed_size(TERMS), force_C) == Gradient<D>::DEFICIENT)
+        std::fill_n(force_C, D * TERMS, 0.0);
       for (int a = 0; a < D; a++)
         for (int b = 0; b < D; b++)
           for (int k = 0; k < TERMS; k++) full[a * D + b] += L[a * TERMS + k] * C[b * TERMS + k];
       const double inv = 1.0 / h;
       for (int k = 0; k < D * D; k++) L[k] = full[k] * inv;
-      for (int k = 0; k < D * TERMS; k++) L[D * D + k] = C[k] * inv;
+      for (int k = 0; k < D * TERMS; k++) L[D * D + k] = force_C[k] * inv;
     }
     if (!advance) continue;
     const double work = fix_stress->advance<D>(i, L, dt, s);

@@ -150,6 +150,18 @@ void PairFSISolid::velocity_gradient(double dt)
    order in time and irreversible; what it would change is its compression, below the error of the plain gradient
 ------------------------------------------------------------------------- */
 
+// sum_j w phi (x) phi of both particles of a pair, phi as seen from i: from j the linear terms change sign
+template <int D, int TERMS>
+static inline void add_moments(const double *phi, double wi, double wj, double *gi, double *gj)
+{
+  for (int a = 0, m = 0; a < TERMS; a++)
+    for (int b = 0; b <= a; b++, m++) {
+      const double t = phi[a] * phi[b];
+      gi[m] += wi * t;
+      gj[m] += ((a < D) == (b < D) ? wj : -wj) * t;
+    }
+}
+
 template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(double dt)
 {
   constexpr int D = K::DIM;
@@ -175,8 +187,23 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
         xij[d] = x[i][d] - x[j][d] - dth * vij[d];
         rsq += xij[d] * xij[d];
       }
+      const double vol_j = rmass[j] / state[type[j]].rho0;
+      if constexpr (TERMS > 0) {
+        double xji[D], phi[TERMS], mid = 0.0;
+        for (int d = 0; d < D; d++) {
+          xji[d] = (x[j][d] - x[i][d]) * hinv;
+          mid += xji[d] * xji[d];
+        }
+        mid *= kernel.h * kernel.h;
+        if (mid < kernel.cutsq) {
+          const double g = kernel.gradient(std::sqrt(mid));
+          gradient_basis<D, TERMS>(xji, phi);
+          add_moments<D, TERMS>(phi, -g * vol_j, -g * vol_i, grad[i] + D * TERMS + packed_size(TERMS),
+                                grad[j] + D * TERMS + packed_size(TERMS));
+        }
+      }
       if (rsq >= kernel.cutsq) continue;
-      const double g = kernel.gradient(std::sqrt(rsq)), vol_j = rmass[j] / state[type[j]].rho0;
+      const double g = kernel.gradient(std::sqrt(rsq));
       double *gi = grad[i], *gj = grad[j];
       if constexpr (TERMS == 0) {
         // v_ji (x) g_ij is the same seen from i and from j; only the volumes differ
@@ -187,7 +214,6 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
             gj[a * D + b] += vol_i * t;
           }
       } else {
-        // seen from j the linear terms change sign, and with them all products of a linear and a quadratic one
         const double wi = -g * vol_j, wj = -g * vol_i;
         double xji[D], phi[TERMS];
         for (int d = 0; d < D; d++) xji[d] = -xij[d] * hinv;
@@ -198,14 +224,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
             gi[a * TERMS + k] += wi * t;
             gj[a * TERMS + k] += (k < D ? wj : -wj) * t;
           }
-        gi += D * TERMS;
-        gj += D * TERMS;
-        for (int a = 0, m = 0; a < TERMS; a++)
-          for (int b = 0; b <= a; b++, m++) {
-            const double t = phi[a] * phi[b];
-            gi[m] += wi * t;
-            gj[m] += ((a < D) == (b < D) ? wj : -wj) * t;
-          }
+        add_moments<D, TERMS>(phi, wi, wj, gi + D * TERMS, gj + D * TERMS);
       }
     }
   }

@@ -47,8 +47,8 @@ class PairFSISolid : public PairFSI {
   int terms() const;
 
   // adds to fix fsi's grad, over the own body, at the positions dt/2 ago, to which the velocities belong: plain,
-  // sum_j V_j (v_j - v_i)(x)grad_i W_ij; else sum_j w (v_j - v_i)(x)phi and, packed, sum_j w phi (x) phi, with
-  // grad_i W_ij = -w x_ij/V_j and the basis phi of x_ji/h
+  // sum_j V_j (v_j - v_i)(x)grad_i W_ij; else sum_j w (v_j - v_i)(x)phi and, packed, the moments sum_j w phi (x) phi, with
+  // grad_i W_ij = -w x_ij/V_j and the basis phi of x_ji/h; then these moments at the positions of now, for the forces
   void velocity_gradient(double dt);
   // adds sum_j W_ij over the own body, or over all solids (density mode summation), to psi
   void number_density(double *psi, bool all_bodies);
