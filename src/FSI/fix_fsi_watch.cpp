@@ -376,8 +376,8 @@ std::string FixFSIWatch::describe(Quantity q, Finding &all)
 }
 
 /* ----------------------------------------------------------------------
-   In the middle of a step positions and walls go back to its start: a state from which the step can be repeated. (Continuity
-   density and stress are half a step ahead of it instead of behind, as after a start: an error of one step.)
+   In the middle of a step positions, walls and densities of fluids go back to its start: a state from which the step can be
+   repeated. (Density and stress of fsi/solid stay where they are, a step too far: an error of one step's strain.)
 ------------------------------------------------------------------------- */
 
 void FixFSIWatch::stop(Quantity q, When when)
@@ -389,6 +389,9 @@ void FixFSIWatch::stop(Quantity q, When when)
     for (int i = 0; i < atom->nlocal; i++)
       if (atom->mask[i] & hub->groupbit)
         for (int d = 0; d < hub->dim; d++) atom->x[i][d] += back * atom->v[i][d];
+    if (hub->fluid && hub->density_fluid == FixFSI::CONTINUITY)
+      for (int i = 0; i < atom->nlocal; i++)
+        if (hub->state[atom->type[i]].species == FLUID) atom->rho[i] -= (update->dt + hub->stagger) * hub->rate[i];
     for (auto *fix : hub->wall_fixes)
       for (auto &w : fix->walls) w.position += back * w.velocity[w.axis];
     update->ntimestep--;
@@ -467,6 +470,7 @@ void FixFSIWatch::write_neighbours(const Finding &all)
   }
   char bounds[9];
   domain->boundary_string(bounds);
+  utils::print(fp, "ITEM: TIME\n{:.16g}\n", update->atime + (update->ntimestep - update->atimestep) * update->dt);
   utils::print(fp, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n", update->ntimestep, rows.size() / NCOL,
                bounds);
   for (int d = 0; d < 3; d++) utils::print(fp, "{:.16g} {:.16g}\n", domain->boxlo[d], domain->boxhi[d]);
