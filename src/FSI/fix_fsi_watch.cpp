@@ -73,7 +73,7 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
   limit[MACH] = 0.5;
   limit[DISTANCE] = 0.1;
   limit[DENSITY] = 0.3;
-  limit[COURANT] = 1.0;
+  limit[COURANT] = 0.45;
   limit[ENERGY] = 10.0;
   limit[LOST] = 0.0;
   limit[REFLECTED] = BIG;
@@ -181,6 +181,18 @@ void FixFSIWatch::post_force(int)
   check_speed(update->dt * force->ftm2v);
   if (update->ntimestep % interval == 0) check_rest();
   judge(MIDDLE);
+  if (hub->substeps == 1) return;
+  // the sub-steps of a solid may take it anywhere: keep a state to go back to
+  const int n = atom->nlocal;
+  kept.resize(6 * n);
+  for (int i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) {
+      kept[6 * i + d] = atom->x[i][d];
+      kept[6 * i + 3 + d] = atom->v[i][d];
+    }
+  kept_walls.clear();
+  for (auto *fix : hub->wall_fixes)
+    for (const auto &w : fix->walls) kept_walls.push_back(w.position);
 }
 
 /* ----------------------------------------------------------------------
@@ -384,7 +396,17 @@ void FixFSIWatch::stop(Quantity q, When when)
 {
   Finding all;
   auto text = describe(q, all);
-  if (when == MIDDLE) {
+  if (when == END) {
+    for (int i = 0; i < atom->nlocal; i++)
+      for (int d = 0; d < 3; d++) {
+        atom->x[i][d] = kept[6 * i + d];
+        atom->v[i][d] = kept[6 * i + 3 + d];
+      }
+    int k = 0;
+    for (auto *fix : hub->wall_fixes)
+      for (auto &w : fix->walls) w.position = kept_walls[k++];
+  }
+  if (when != START) {
     const double back = -0.5 * update->dt;
     for (int i = 0; i < atom->nlocal; i++)
       if (atom->mask[i] & hub->groupbit)
@@ -423,6 +445,21 @@ void FixFSIWatch::stop(Quantity q, When when)
       MPI_Allreduce(&n, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
       domain->pbc();
       domain->reset_box();
+      // what has left a fixed box since the last reneighboring would be missing when the file is read
+      double mine[6], ends[6];
+      for (int d = 0; d < 3; d++) {
+        mine[d] = -domain->boxlo[d];
+        mine[3 + d] = domain->boxhi[d];
+        for (int i = 0; i < atom->nlocal && !domain->periodicity[d]; i++) {
+          if (atom->x[i][d] < domain->boxlo[d]) mine[d] = std::max(mine[d], hub->dx - atom->x[i][d]);
+          if (atom->x[i][d] >= domain->boxhi[d]) mine[3 + d] = std::max(mine[3 + d], hub->dx + atom->x[i][d]);
+        }
+      }
+      MPI_Allreduce(mine, ends, 6, MPI_DOUBLE, MPI_MAX, world);
+      for (int d = 0; d < 3; d++) {
+        domain->boxlo[d] = -ends[d];
+        domain->boxhi[d] = ends[3 + d];
+      }
       WriteRestart write(lmp);
       write.multiproc_options(0, 0, nullptr);
       write.write(restart_file);
