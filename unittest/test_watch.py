@@ -46,18 +46,20 @@ SCENES = {  # text and the limit of its time step
 def test_too_long_steps(tmp_path, name, more):
     """One to six times the limit, with and without the check that knows at once: sound, or stopped with a cause."""
     make, limit = SCENES[name]
+    time = 0.15 if name == "fluid" else 0.05  # until the first splash, or the plate, leaves the box
     sound = []
     for k in range(1, 7):
         scene, text = make()
-        text = re.sub("timestep .*", f"timestep {k * limit!r}", text) + watch(every=1) + f"fix watch all fsi/watch 10 {more}\nrun {600 // k}\n"
+        text = re.sub("timestep .*", f"timestep {k * limit!r}", text) + watch(every=1) + f"fix watch all fsi/watch 10 {more}\nrun {round(time / (k * limit))}\n"
         done = lammps(tmp_path / str(k), text, scene_data=scene.data())
         frames = done.frames()
         for frame in frames:
             assert np.isfinite(frame.vector(("x", "y", "vx", "vy", "rho"))).all(), f"{k} times the limit, step {frame.step}"
         if done.status == 0:
             sound.append(k)
-            # nothing faster than water that falls from the top, three times over
-            assert np.abs(frames[-1].vector(("vx", "vy"))).max() < 3 * np.sqrt(2 * 9.81 * 0.2)
+            energy = (frames[-1]["mass"] * (frames[-1]["vx"] ** 2 + frames[-1]["vy"] ** 2)).sum()
+            first = energy if k == 1 else first
+            assert 0.5 < energy / first < 2.0, f"{k} times the limit"
         else:
             message = error(done)
             print(f"{name}{' ' + more}, {k} times the limit: {message[7:140]}")
@@ -68,8 +70,8 @@ def test_too_long_steps(tmp_path, name, more):
                         + watch("again.dump", 1) + "run 0\n")
             assert np.isfinite(again.frames("again.dump")[0].vector(("x", "y", "vx", "vy", "rho"))).all()
     print(f"{name}{' ' + more}: sound at {sound} times the limit")
-    # measured: total-Lagrangian solids fail at twice the limit, the fluid and fsi/solid beyond four times
-    assert sound == [1] if not more else 1 in sound and 6 not in sound
+    # without courant, measured: total-Lagrangian solids fail at twice the limit, fsi/solid at six times, the fluid not yet there
+    assert sound == [1] if not more else 1 in sound and (name == "fluid" or 6 not in sound)
 
 
 # ---- one thing at a time -------------------------------------------------------------------------------------------

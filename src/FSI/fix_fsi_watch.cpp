@@ -242,16 +242,17 @@ void FixFSIWatch::enter(Quantity q, int i, double value, int j)
 
 void FixFSIWatch::check_speed(double kick)
 {
-  double **v = atom->v;
-  double **f = atom->f;
+  const int nlocal = atom->nlocal;
+  if (nlocal == 0) return;
+  const double *v = atom->v[0], *f = atom->f[0];
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
   const double *const largest = speed_sq.data();
   const int moves = hub->groupbit, watched = groupbit;
-  for (int i = 0; i < atom->nlocal; i++) {
+  for (int i = 0; i < nlocal; i++, v += 3, f += 3) {
     if (!(mask[i] & watched)) continue;
     const double k = (mask[i] & moves) ? kick / rmass[i] : 0.0;
-    const double a = v[i][0] + k * f[i][0], b = v[i][1] + k * f[i][1], c = v[i][2] + k * f[i][2];
+    const double a = v[0] + k * f[0], b = v[1] + k * f[1], c = v[2] + k * f[2];
     const double vsq = a * a + b * b + c * c;
     if (vsq <= largest[type[i]] && rho[i] > 0.0 && rho[i] < BIG) continue;
     if (!(vsq < HUGE_SQUARE && std::abs(rho[i]) < BIG)) enter(FINITE, i, vsq + rho[i]);
