@@ -473,6 +473,7 @@ void FixFSI::update_state(bool advance)
       if (solid->terms() == 0) dim == 2 ? advance_solids<2, 0>(advance) : advance_solids<3, 0>(advance);
       else if (solid->terms() == dim) dim == 2 ? advance_solids<2, 2>(advance) : advance_solids<3, 3>(advance);
       else dim == 2 ? advance_solids<2, 5>(advance) : advance_solids<3, 9>(advance);
+      if (advance && solid->has_hourglass()) solid->advance_hourglass(update->dt);
     }
   }
   if (need_psi) {
