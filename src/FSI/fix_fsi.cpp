@@ -162,6 +162,12 @@ void FixFSI::init()
     error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
   if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
 
+  // the plain forces of a solid end at its face with half a kernel of neighbours missing, which the fluid's pairs supply; forces with
+  // corrected gradients are complete without them
+  if (fluid && fluid->shares_stress() && (solid_tl || (solid && solid->terms())))
+    error->all(FLERR, "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid gradient plain: with corrected gradients "
+                      "use couple wall");
+
   auto stress = modify->get_fix_by_style("^fsi/stress$");
   if (stress.size() > 1) error->all(FLERR, "There can be only one fix fsi/stress");
   fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);
@@ -467,6 +473,7 @@ void FixFSI::update_state(bool advance)
       if (solid->terms() == 0) dim == 2 ? advance_solids<2, 0>(advance) : advance_solids<3, 0>(advance);
       else if (solid->terms() == dim) dim == 2 ? advance_solids<2, 2>(advance) : advance_solids<3, 3>(advance);
       else dim == 2 ? advance_solids<2, 5>(advance) : advance_solids<3, 9>(advance);
+      if (advance && solid->has_hourglass()) solid->advance_hourglass(update->dt);
     }
   }
   if (need_psi) {
@@ -685,7 +692,7 @@ void FixFSI::unpack_forward_comm(int n, int first, double *buf)
 int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 {
   const int *const type = atom->type;
-  const int ng = ngrad(), ns = nshift();
+  const int ng = grad ? ngrad() : 0, ns = nshift();    // without solids there is no gradient
   int m = 0;
   for (int i = first; i < first + n; i++) {
     if (summed) buf[m++] = summed[i];
@@ -706,7 +713,7 @@ int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
 {
   const int *const type = atom->type;
-  const int ng = ngrad(), ns = nshift();
+  const int ng = grad ? ngrad() : 0, ns = nshift();    // without solids there is no gradient
   int m = 0;
   for (int ii = 0; ii < n; ii++) {
     const int i = list[ii];
