@@ -1,6 +1,7 @@
 # fsiplugin.so: the package for a LAMMPS of the same release, through "plugin load" or LAMMPS_PLUGIN_PATH (*plugin.so).
 add_library(fsiplugin MODULE "${CMAKE_CURRENT_SOURCE_DIR}/src/PLUGIN/fsiplugin.cpp" $<TARGET_OBJECTS:fsi>)
-set_target_properties(fsiplugin PROPERTIES PREFIX "" SUFFIX ".so" LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
+set_target_properties(fsiplugin PROPERTIES PREFIX "" SUFFIX ".so" LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}"
+                      INSTALL_RPATH "")
 target_compile_features(fsiplugin PRIVATE cxx_std_17)
 target_compile_options(fsiplugin PRIVATE ${FSI_INSTRUMENT})
 fsi_compile_as_lammps(fsiplugin)
