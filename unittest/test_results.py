@@ -15,7 +15,7 @@ A stone falls.
 ![as everybody knows it](../../doc/unrelated.png)
 
 ## Where it is off
-Too *fast*, see ![curve](curve.png) and [theory](../../doc/theory.md), [web](https://example.org), [below](#x).
+Too *fast*, see ![curve](curve.png) and [theory](../../doc/testing.md), [web](https://example.org), [below](#x).
 
 ### In detail
 Air.
@@ -106,7 +106,7 @@ def test_gallery_shows_what_the_readme_shows_else_everything(tree):
 
 def test_remarks_are_quoted_with_links_that_work(tree):
     remarks = page_of(tree).split("## Where it is off")[1]
-    assert ("Too *fast*, see ![curve](../../examples/stone/curve.png) and [theory](../../examples/stone/../../doc/theory.md), "
+    assert ("Too *fast*, see ![curve](../../examples/stone/curve.png) and [theory](../../examples/stone/../../doc/testing.md), "
             "[web](https://example.org), [below](#x).\n\n### In detail\nAir.") in remarks
     assert "quoted" not in remarks and "Study" not in remarks
 

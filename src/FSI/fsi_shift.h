@@ -22,7 +22,7 @@
 // and 0.1 to 0.4 in the second, 1.3 on a straight edge, in 2D and 3D. Walls (images) and solids count as full.
 //
 // Velocity and density go along unchanged: what is neglected, delta r.grad v and delta r.grad rho, is what Sun et al. neglect.
-// With C doubled the error of Taylor-Green vortices changes by less than 0.001 (doc/theory.md), which bounds it. Linear momentum
+// With C doubled the error of Taylor-Green vortices changes by less than 0.001 (doc/src/theory.rst), which bounds it. Linear momentum
 // is kept exactly; angular momentum and potential energy are not, and the energy ledger knows nothing of shifting.
 
 #ifndef LMP_FSI_SHIFT_H

@@ -1,0 +1,118 @@
+"""The manual says what LAMMPS takes: every command under Examples runs, every keyword in the sources has its place on the page."""
+
+import re
+import subprocess
+
+import pytest
+from conftest import run
+
+from fsi import launch, paths
+
+PAGES = paths.ROOT / "doc/src"
+SOURCES = paths.ROOT / "src/FSI"
+STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in sorted(SOURCES.glob("*.h"))
+          for kind, name in re.findall(r"^(Pair|Fix|Compute|Command|Atom)Style\(([^,]+),", header.read_text(), re.M)}
+STYLES["atom_style_fsi"] = STYLES.pop("atom_fsi")
+STYLES["fsi_set"] = STYLES.pop("command_fsi_set")
+STYLES.pop("fix_fsi_reference")  # internal
+
+SETUP = """units si
+dimension 2
+boundary f f p
+atom_style fsi
+region box block -0.05 0.3 -0.05 0.3 -0.005 0.005
+create_box 2 box
+lattice sq 0.01 origin 0.5 0.5 0
+region water block 0 0.1 0 0.1 INF INF units box
+region plate block 0.1 0.15 0 0.1 INF INF units box
+create_atoms 1 region water
+create_atoms 2 region plate
+group water type 1
+group plate type 2
+set group plate mol 1
+timestep 1e-5
+neighbor 0.003 bin
+"""
+PAIRS = """pair_style hybrid fsi/fluid sound 16 fsi/solid
+pair_coeff * * fsi/fluid materials.fsi water plate
+pair_coeff * * fsi/solid materials.fsi NULL plate
+"""
+FIX, STRESS, GRAVITY = "fix sph all fsi 0.01 wendland 1.5\n", "fix stress all fsi/stress\n", "fix g all gravity 9.81 vector 0 -1 0\n"
+
+
+def lagrangian(text):
+    return text.replace("fsi/solid", "fsi/solid/tl")
+
+
+def examples(page):
+    """Commands under Examples, a continued line as one; commands of one paragraph belong together."""
+    text = (PAGES / f"{page}.rst").read_text()
+    block = re.search(r'^Examples\n"+\n\n\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)', text, re.M)[1]
+    paragraphs = [re.sub(r"^ +", "", p.strip("\n"), flags=re.M) for p in re.split(r"\n\s*\n", block) if p.strip()]
+    return paragraphs if page.startswith("pair") else [line for p in paragraphs for line in p.splitlines()]
+
+
+def deck(page, example):
+    """A scene of water and plate in which the example is one of the commands."""
+    if page == "atom_style_fsi":
+        return SETUP
+    if page.startswith("pair"):
+        return SETUP + example + "\n" + FIX + (STRESS if re.search(r"fsi/solid(?!/)", example) else "") + "run 1\n"
+    sub = "substeps" in example
+    pairs = lagrangian(PAIRS) if sub else PAIRS
+    fix = "" if page == "fix_fsi" else FIX
+    stress = "" if sub or page == "fix_fsi_stress" else STRESS
+    return SETUP + pairs + fix + stress + GRAVITY + example + "\nrun 1\n"
+
+
+CASES = [(page, example) for page in STYLES for example in examples(page)]
+
+
+@pytest.mark.parametrize("page, example", CASES, ids=[f"{p}-{e.splitlines()[0][:60]}" for p, e in CASES])
+def test_example(tmp_path, page, example):
+    run(tmp_path, deck(page, example))
+
+
+@pytest.mark.parametrize("page, name", STYLES.items())
+def test_page_has_every_keyword(page, name):
+    """Words that the source compares arguments with, as a user may write them, stand on the page."""
+    text = (PAGES / f"{page}.rst").read_text()
+    title = name if page == "fsi_set" else f"{page.split('_fsi')[0].replace('pair', 'pair_style')} {name}"
+    assert f".. index:: {title}\n" in text and f"\n{title} command\n===" in text
+    source = SOURCES / f"{page}.cpp"
+    if not source.exists():
+        return
+    code = source.read_text()
+    words = set(re.findall(r'strcmp\(arg\[[^\]]*\](?:, | \+ \d\], )"([^"]+)"\)', code)) | set(re.findall(r'key == "([^"]+)"', code))
+    words |= set(re.findall(r'^    \{"(\w+)", "', code, re.M))  # fix fsi/watch
+    for choice in re.findall(r"(?:choice\(iarg, |names = )\{([^}]*)\}", code):
+        words |= set(re.findall(r'"([^"]+)"', choice))
+    words -= {"*", "NULL"}
+    missing = sorted(w for w in words if w not in text)
+    assert not missing, f"{source.name} knows {missing}, {page}.rst does not"
+
+
+def test_every_command_page_is_in_the_index():
+    listed = set(re.findall(r"^   (\w+)$", (PAGES / "index.rst").read_text(), re.M))
+    assert {p.stem for p in PAGES.glob("*.rst")} - {"index"} == listed
+    assert set(STYLES) <= listed
+
+
+def test_howto_deck(tmp_path):
+    """The deck of the Howto, shortened to the first contact."""
+    text = (PAGES / "in.howto").read_text()
+    assert "run           2500" in text
+    log = run(tmp_path, text.replace("run           2500", "run 600")).output
+    energy = [float(line.split()[-1]) for line in log.splitlines() if re.match(r"\s+\d+ +[\d.e-]+ +[\d.e-]+ +\d", line)]
+    assert len(energy) >= 2 and abs(energy[-1] / energy[0] - 1.0) < 1e-3
+
+
+def test_manual_builds_without_warnings(tmp_path):
+    """Sphinx, where it is there (tools/doc installs it)."""
+    here = subprocess.run(["bash", "-c", ". tools/common.sh; find_python sphinx"], cwd=paths.ROOT, check=False, capture_output=True)
+    if here.returncode:
+        pytest.skip("no Sphinx")
+    done = subprocess.run([paths.ROOT / "tools/doc", str(tmp_path)], env=launch.environment(), stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    assert (tmp_path / "pair_fsi_fluid.html").exists()
