@@ -29,6 +29,7 @@ ALTERNATIVES = {  # what else crosses ranks: options of the scene, in 2D and 3D
               "solid": "artificial/visc 0.5 0"},
     "full": {"kernel": "quintic 1.0", "fluid": "sound 10 couple full tension yes artificial/visc 0.1 0",
              "solid": "artificial/visc 0.1 0 artificial/stress 0.3"},
+    "hourglass": {"solid": "artificial/visc 0.1 0 hourglass 0.5 gradient quadratic"},
     "quadratic": {"solid": "artificial/visc 0.1 0 artificial/stress 0.2 gradient quadratic"},
     "shift": {"fluid": "sound 10 laminar/visc/central shift 0.5"},
     "extrapolate": {"fluid": NO_DIFFUSION + " extrapolate yes"},

@@ -212,6 +212,46 @@ void FixFSI::init()
 }
 
 /* ----------------------------------------------------------------------
+   say what is simulated, when it changes: every effect that is on, every one that is not and how to turn it on, and what memory and
+   messages they need
+------------------------------------------------------------------------- */
+
+void FixFSI::setup(int)
+{
+  static const char *const modes[] = {"continuity", "summation", "ratio"};
+  static const char *const kernels[] = {"cubic spline", "quintic spline", "Wendland C2"};
+  std::vector<PairFSI::Effect> effects;
+  if (fluid) effects.push_back({fmt::format("density of the fluid by {}", modes[density_fluid]), "", true});
+  if (solid) effects.push_back({fmt::format("density of the solid by {}", modes[density_solid]), "", true});
+  for (const PairFSI *pair : {(PairFSI *) fluid, (PairFSI *) solid, (PairFSI *) solid_tl})
+    if (pair)
+      for (const auto &e : pair->effects()) effects.push_back(e);
+  if (fluid) effects.push_back({fmt::format("{} mirror walls", walls.wall.size()), "fix fsi/wall/mirror", !wall_fixes.empty()});
+  if (fix_stress) effects.push_back({"plasticity", "fix fsi/stress plastic", fix_stress->plastic});
+  if (solid_tl) effects.push_back({fmt::format("{} solid sub-steps", substeps), "fix fsi substeps", substeps > 1});
+  effects.push_back({"energy ledger", "compute fsi/energy", ledger});
+  std::string on, off;
+  for (const auto &e : effects) {
+    if (e.on) on += "\n    " + e.name;
+    else off += (off.empty() ? "" : ", ") + e.keyword;
+  }
+
+  const int ng = need_grad ? ngrad() : 0, ns = need_shift ? nshift() : 0;
+  const int fluid_bytes = 8 * (fluid ? 2 * dim + 4 + (density_fluid == CONTINUITY) + ns : 0) + (wall_fixes.empty() ? 0 : 4);
+  std::string text = fmt::format("FSI: {}, h = {:g} dx, dx = {:g}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[kernel],
+                                 h / dx, dx, on, off.empty() ? "none" : off);
+  text += fmt::format("  arrays of all particles: {} bytes each{}{}\n", 8 * (need_psi + ng) + fluid_bytes,
+                      need_psi ? ", number density" : "", ng ? ", velocity gradient" : "");
+  const int back = (fluid && density_fluid == CONTINUITY) || ng;
+  text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", 1,
+                      (force->newton_pair ? back + need_psi : 0),
+                      solid_tl ? fmt::format("; {} each way for solid sub-steps", substeps > 1 ? substeps : 1) : "");
+  if (text == announced) return;
+  announced = text;
+  if (comm->me == 0) utils::logmesg(lmp, text);
+}
+
+/* ----------------------------------------------------------------------
    an atom that was never given a mass or a density gets those of the stress-free lattice
 ------------------------------------------------------------------------- */
 

@@ -513,6 +513,17 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
 
 /* ---------------------------------------------------------------------- */
 
+std::vector<PairFSI::Effect> PairFSISolid::effects() const
+{
+  static const char *const orders[] = {"plain", "exact for linear fields", "exact for quadratic fields"};
+  return {{fmt::format("updated-Lagrangian solid, gradients {}", orders[gradient]), "gradient", true},
+          {fmt::format("artificial viscosity of the solid, alpha {:g}", alpha), "artificial/visc", alpha > 0.0 || beta > 0.0},
+          {fmt::format("artificial stress {:g}", epsilon), "artificial/stress", epsilon > 0.0},
+          {fmt::format("hourglass control of the solid {:g}", xi), "hourglass", xi > 0.0}};
+}
+
+/* ---------------------------------------------------------------------- */
+
 void PairFSISolid::write_restart_settings(FILE *fp)
 {
   double d[] = {alpha, beta, epsilon, xi};

@@ -560,6 +560,18 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *list_, double *buf)
 
 /* ---------------------------------------------------------------------- */
 
+std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
+{
+  static const char *const names[] = {"St. Venant-Kirchhoff", "neo-Hookean", "hypoelastic"};
+  return {{fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"), "law",
+           true},
+          {fmt::format("artificial viscosity of the solid, alpha {:g}", alpha), "artificial/visc", alpha > 0.0 || beta > 0.0},
+          {fmt::format("hourglass control of the solid {:g}", zeta), "hourglass", zeta > 0.0},
+          {fmt::format("damage at strain {:g}", damage), "damage", damage > 0.0}};
+}
+
+/* ---------------------------------------------------------------------- */
+
 void PairFSISolidTL::write_restart_settings(FILE *fp)
 {
   double d[] = {alpha, beta, zeta, damage};
