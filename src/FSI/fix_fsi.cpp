@@ -159,6 +159,10 @@ void FixFSI::init()
   if (!fluid && !solid && !solid_tl)
     error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
   if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
+  if (solid_tl && density_solid != CONTINUITY)
+    error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
+  if (solid_tl && fluid && !fluid->couples_as_wall())
+    error->all(FLERR, "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress is not one that crosses to the fluid");
 
   auto stress = modify->get_fix_by_style("^fsi/stress$");
   if (stress.size() > 1) error->all(FLERR, "There can be only one fix fsi/stress");

@@ -45,6 +45,7 @@ class PairFSIFluid : public PairFSI {
   // of all fluid particles); 0 = off
   double surface_ratio;
   int surface_max;
+  bool couples_as_wall() const { return couple == WALL; }
 
   // adds the density rate (continuity) of fluids to fix fsi's rate, at the positions dt/2 ago, to which the velocities belong
   void density_rate(double dt);
