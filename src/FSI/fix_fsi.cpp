@@ -394,6 +394,7 @@ void FixFSI::substep_solids()
   for (int n = 0; n < substeps; n++) {
     drift(dth);
     solid_tl->forward_positions();
+    std::fill_n(solid_tl->virial, 6, 0.0);
     solid_tl->internal_forces();
     fs = solid_tl->force_of_solids();
     for (const int i : moving) {
@@ -402,7 +403,9 @@ void FixFSI::substep_solids()
     }
     drift(dth);
   }
-  // what is seen from outside: the whole force
+  // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
+  if (force->pair != solid_tl)
+    for (int k = 0; k < 6; k++) force->pair->virial[k] += solid_tl->virial[k];
   for (const int i : solid_tl->solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
 }
