@@ -29,6 +29,10 @@ ALTERNATIVES = {  # what else crosses ranks: options of the scene, in 2D and 3D
               "solid": "artificial/visc 0.5 0"},
     "full": {"kernel": "quintic 1.0", "fluid": "sound 10 couple full tension yes artificial/visc 0.1 0"},
     "extrapolate": {"fluid": NO_DIFFUSION + " extrapolate yes"},
+    "tl": {"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.1 0.1 hourglass 0.1"},
+    "tl substeps": {"solid_style": "fsi/solid/tl", "solid": "law neohookean", "sph": "substeps 4"},
+    "tl viscous substeps": {"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.2 0 gradient linear",
+                            "sph": "substeps 3"},
 }
 # a thin plate of the paper's raw density is in such tension at its corners that it tears itself apart in 3D
 OTHERS = [(name, dim) for name in ALTERNATIVES for dim in (2, 3) if (name, dim) != ("solid summation", 3)]
@@ -111,6 +115,14 @@ def test_balance(tmp_path, reference, name, dim, how):
     extra = {"once": "balance 1.0 shift xy 20 1.0\n", "always": "fix balance all balance 10 1.0 shift xy 10 1.0\n",
              "rcb": "comm_style tiled\nfix balance all balance 20 1.0 rcb\n"}[how]
     agree(want, frames(tmp_path, scene, 4, "2 2 1", extra))
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+def test_balance_of_total_lagrangian_solid(tmp_path, dim):
+    """Bonds travel with their particles when ranks change their shape, too."""
+    scene = dam_gate(dim, **ALTERNATIVES["tl viscous substeps"])
+    rcb = "comm_style tiled\nfix balance all balance 20 1.0 rcb\n"
+    agree(frames(tmp_path / "one", scene), frames(tmp_path / "four", scene, 4, "2 2 1", rcb))
 
 
 @pytest.mark.parametrize("ranks", (1, 4))
