@@ -93,6 +93,7 @@ MUTATIONS = [
     (BONDS, "if (delflag && slot[j] >= 0) unused.push_back(slot[j]);", "if (slot[j] >= 0) unused.push_back(slot[j]);", "solid_tl restart"),
     (BONDS, "quadrature[slot[i]] = buf[m++];", "m++;", "solid_tl restart"),
     (BONDS, "std::fabs(atom->x[j][a] - atom->x[i][a]) > 0.5 * domain->prd[a]", "false", "solid_tl"),
+    ("atom_vec_fsi.cpp", "atom->map_style = Atom::MAP_YES;", "", "parallel"),
     ("compute_fsi_energy.cpp", "!(atom->mask[i] & hub->groupbit) ? 0.0 : ", "", "solid_tl"),
     ("fsi_gradient.h", "for (int b = k + 1; b < terms; b++) c[k] -= L[b][k] * c[b];", "", "ctest"),
     ("fsi_gradient.h", "TOLERANCE = 1.0e-4", "TOLERANCE = 1.0e-1", "ctest"),

@@ -12,6 +12,8 @@ SCENES = {"fluid_box": fluid_box, "dam_gate": dam_gate}
 # Forces at step 0 differ by the order of summation only: about 100 terms, each 1e-16 of the largest, in sums that cancel to a
 # tenth or so.
 FORCE = 1e-13
+# A total-Lagrangian plate of 2 MPa starts with the elastic forces of F = 1 to round-off: 1e-16 of 10 terms, 1e4 times the weight.
+FORCE_TL = 1e-11
 # After 100 steps relative to the largest coordinate, velocity, density, stress: growth of those 1e-16 by collisions of
 # perturbed particles; measured: 4e-13 at most. A missing ghost shows at 1e-4 and above.
 TRAJECTORY = 1e-9
@@ -62,9 +64,9 @@ def reference(folder):
     return get
 
 
-def agree(want, got):
+def agree(want, got, force=FORCE):
     assert [frame.step for frame in got] == [0, 100]
-    assert difference(want[0], got[0], "f") < FORCE
+    assert difference(want[0], got[0], "f") < force
     for quantity in ("x", "v", "rho", "stress"):
         assert difference(want[1], got[1], quantity) < TRAJECTORY, quantity
 
@@ -90,8 +92,9 @@ def test_decomposition(tmp_path, reference, name, dim, ranks, grid, newton):
 def test_decomposition_of_other_effects(tmp_path, name, dim):
     scene = dam_gate(dim, **ALTERNATIVES[name])
     want = frames(tmp_path / "one", scene)
-    agree(want, frames(tmp_path / "four", replace(scene, newton="off"), 4, "2 2 1"))
-    agree(want, frames(tmp_path / "on", scene, 4, "2 2 1"))
+    force = FORCE_TL if scene.solid_style == "fsi/solid/tl" else FORCE
+    agree(want, frames(tmp_path / "four", replace(scene, newton="off"), 4, "2 2 1"), force)
+    agree(want, frames(tmp_path / "on", scene, 4, "2 2 1"), force)
 
 
 @pytest.mark.parametrize("newton", ("on", "off"))
@@ -122,7 +125,7 @@ def test_balance_of_total_lagrangian_solid(tmp_path, dim):
     """Bonds travel with their particles when ranks change their shape, too."""
     scene = dam_gate(dim, **ALTERNATIVES["tl viscous substeps"])
     rcb = "comm_style tiled\nfix balance all balance 20 1.0 rcb\n"
-    agree(frames(tmp_path / "one", scene), frames(tmp_path / "four", scene, 4, "2 2 1", rcb))
+    agree(frames(tmp_path / "one", scene), frames(tmp_path / "four", scene, 4, "2 2 1", rcb), FORCE_TL)
 
 
 @pytest.mark.parametrize("ranks", (1, 4))
