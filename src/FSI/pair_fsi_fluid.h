@@ -52,6 +52,7 @@ class PairFSIFluid : public PairFSI {
   // of all fluid particles); 0 = off
   double surface_ratio;
   int surface_max;
+  bool couples_as_wall() const { return couple == WALL; }
 
   double shifting;    // coefficient C of particle shifting; 0 = off
 
