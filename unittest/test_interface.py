@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import dam_gate, difference, run, watch
 from scenes import RUBBER, WATER, Scene, close, cloud, lattice, pairs, sum_over
 
 RHO_S, NU, C_F = 2000.0, 0.25, 10.0
@@ -145,3 +146,15 @@ def test_no_tension(dim, couple):
         s.put("rho", np.where(solid, 1050, 1000))
         f = s.run().get("f")[~solid, 0].sum()
         assert abs(f) < 1e-12 if couple == "wall" else f < -1
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_walls_of_held_solids_need_no_solid_style(tmp_path, dim):
+    """Solid particles that nothing integrates: pair_style fsi/fluid alone moves the water as beside fsi/solid."""
+    scene = dam_gate(dim)
+    both = scene.text().replace("fix sph all fsi", "group water type 1\ngroup plate type 2\nvelocity plate set 0 0 0\nfix sph water fsi")
+    alone = "\n".join(line for line in both.splitlines() if "fix stress" not in line and "pair_coeff * * fsi/solid" not in line)
+    alone = alone.replace(f" {scene.solid_style} {scene.solid}", "").replace("hybrid ", "").replace("* * fsi/fluid", "* *")
+    end = [run(tmp_path / name, text + watch(every=50) + "run 50\n", scene_data=scene.data()).frames()[-1].of_types(1)
+           for name, text in (("both", both), ("alone", alone))]
+    assert difference(*end, "x") < 1e-12 and difference(*end, "v") < 1e-12

@@ -161,6 +161,10 @@ void FixFSI::init()
   if (!fluid && !solid && !solid_tl)
     error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
   if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
+  if (solid_tl && density_solid != CONTINUITY)
+    error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
+  if (solid_tl && fluid && !fluid->couples_as_wall())
+    error->all(FLERR, "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress is not one that crosses to the fluid");
 
   // the plain forces of a solid end at its face with half a kernel of neighbours missing, which the fluid's pairs supply; forces with
   // corrected gradients are complete without them
@@ -460,6 +464,7 @@ void FixFSI::substep_solids()
     drift(dth);
     solid_tl->forward_positions();
     solid_tl->advance_stress(dt);
+    std::fill_n(solid_tl->virial, 6, 0.0);
     solid_tl->internal_forces();
     fs = solid_tl->force_of_solids();
     for (const int i : moving) {
@@ -468,7 +473,9 @@ void FixFSI::substep_solids()
     }
     drift(dth);
   }
-  // what is seen from outside: the whole force
+  // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
+  if (force->pair != solid_tl)
+    for (int k = 0; k < 6; k++) force->pair->virial[k] += solid_tl->virial[k];
   for (const int i : solid_tl->solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
 }

@@ -17,6 +17,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "force.h"
 #include "memory.h"
 #include "neighbor.h"
 
@@ -86,8 +87,9 @@ void PairFSI::set_flags()
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = 1; j <= atom->ntypes; j++) {
       const int a = material[i].species, b = material[j].species;
-      setflag[i][j] = (a != NONE && b != NONE && handles(a, b)) ? 1 : 0;
-      count += setflag[i][j];
+      const bool acts = a != NONE && b != NONE && handles(a, b);
+      setflag[i][j] = acts || (force->pair == this && leaves_alone(a, b)) ? 1 : 0;
+      count += acts;
     }
   if (count == 0)
     error->all(FLERR, "Pair_coeff gives pair style {} no pair to act on: none of its materials is a {}", style,
@@ -103,6 +105,7 @@ void PairFSI::init_style()
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) hub->enter_state(t, make_state(material[t]));
   if (needs_neighbors()) neighbor->add_request(this);
+  else list = nullptr;    // that of an earlier run is gone
 }
 
 /* ----------------------------------------------------------------------
@@ -128,7 +131,7 @@ bool PairFSI::several_bodies() const
 double PairFSI::init_one(int i, int j)
 {
   if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set: types {} and {}", i, j);
-  return hub->cut;
+  return handles(material[i].species, material[j].species) ? hub->cut : 0.0;
 }
 
 /* ----------------------------------------------------------------------

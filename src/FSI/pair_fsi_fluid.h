@@ -52,6 +52,7 @@ class PairFSIFluid : public PairFSI {
   // of all fluid particles); 0 = off
   double surface_ratio;
   int surface_max;
+  bool couples_as_wall() const { return couple == WALL; }
 
   double shifting;    // coefficient C of particle shifting; 0 = off
 
@@ -67,6 +68,8 @@ class PairFSIFluid : public PairFSI {
 
  protected:
   bool handles(int, int) const override;
+  // walls of held solid particles need no pair style of their own
+  bool leaves_alone(int a, int b) const override { return a == FSI::SOLID && b == FSI::SOLID; }
   bool defines(int species) const override { return species == FSI::FLUID || species == FSI::SOLID; }
   FSI::State make_state(const FSI::Material &) const override;
 

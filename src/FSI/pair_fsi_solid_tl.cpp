@@ -26,6 +26,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
+#include "update.h"
 
 #include <cmath>
 #include <cstring>
@@ -191,14 +192,14 @@ const std::vector<int> &PairFSISolidTL::solids() const
 }
 
 /* ----------------------------------------------------------------------
-   with sub-steps the forces act inside fix fsi's last half of the step, not here
+   with sub-steps the forces act inside fix fsi's last half of the step, not here; but in setup forces, energy and virial are seen
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
   check_tally();
-  if (hub->substeps > 1) return;
+  if (hub->substeps > 1 && !update->setupflag) return;
   internal_forces();
   double **f = atom->f;
   for (const int i : reference->solids)
