@@ -115,12 +115,13 @@ def state(folder, spacing, crossings):
 
 
 def clamp_place(frames, spacing):
-    """Where the sections' rotation, continued from columns 2 to 8 by a parabola, is zero [m]: the place of the clamp.
+    """Where the sections' rotation, continued by a parabola, is zero [m]: the place of the clamp.
 
-    The rotation of a section knows bending only, so shear does not shift the place. Median over frames of large deflection.
+    The rotation of a section knows bending only, so shear does not shift the place. The parabola goes through the columns from
+    the seventh, beyond what the kernel smooths at the clamp, to four tenths of the length. Median over frames of large deflection.
     """
     lattice, places = Lattice(frames[0], spacing), []
-    columns = slice(1, min(8, lattice.shape[0]))
+    columns = slice(6, max(12, int(0.4 * lattice.shape[0])))
     x, height = lattice.start[0][columns, 0], lattice.start[1][0] - lattice.start[1][0].mean()
     for frame in frames:
         pushed = (lattice.grid(frame, "x") - lattice.start[0])[columns]
