@@ -141,11 +141,11 @@ def picture_tip(path, curves):
         end = min(tip.time[-1] for tip, _, _ in curves)
         t = np.linspace(0.0, end, 2000)
         axes.plot(t, AMPLITUDE * np.sin(2.0 * np.pi * t / PERIOD), color=plot.GREY, linewidth=1.0, linestyle="--",
-                  label="period and amplitude of finite elements")
+                  label="finite elements: period and amplitude")
         for tip, label, colour in curves:
             axes.plot(tip.time, 1e3 * tip["tip_y"], color=colour, label=label, linewidth=1.3)
         axes.set(xlabel="time [s]", ylabel="deflection of the free end [mm]", xlim=(0.0, end))
-        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(curves) + 1)
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
         figure.tight_layout()
 
 
@@ -232,6 +232,8 @@ def study(folder, cases):
         n, values = rows[-1] if kind != "tl" else next((row for row in rows if row[0] == 10), rows[-1])
         for name in ("a5_a1", "disorder", "stress_zigzag", "clamp_place"):
             undamped = (1.0, "no damping") if name == "a5_a1" else (None, None)
+            if values.get(name) is None:
+                continue  # a short run
             summary.add(f"{name}{suffix}", values.get(name), "dx" if name in ("disorder", "clamp_place") else "", *undamped)
         if len(rows) > 2:
             ns = np.array([n for n, _ in rows], float)
