@@ -60,7 +60,8 @@ class Lattice:
         plate = first.of_types(PLATE)
         self.spacing = spacing
         self.order = np.lexsort((plate["y"], plate["x"].round(9)))
-        self.shape = (round(LENGTH / spacing), round(HEIGHT / spacing))
+        rows = round(HEIGHT / spacing)
+        self.shape = (len(plate) // rows, rows)  # a column or so of the length may be held
         self.start = self.grid(first, "x"), self.grid(first, "y")
 
     def grid(self, frame, name):
@@ -83,9 +84,9 @@ class Lattice:
         return float(np.sqrt(sum(squares)) / self.spacing)
 
     def zigzag(self, frame, name):
-        """Particle by particle zigzag along x of a field, over its RMS."""
+        """Second differences of a field along x (RMS) over its largest value: 4 for a pure zigzag, 0 for a line."""
         field = self.grid(frame, name)
-        return float(np.sqrt(np.mean(np.diff(field, n=2, axis=0) ** 2) / 16.0 / np.mean(field**2)))
+        return float(np.sqrt(np.mean(np.diff(field, n=2, axis=0) ** 2)) / np.abs(field).max())
 
 
 def state(folder, spacing, crossings):
@@ -114,12 +115,13 @@ def state(folder, spacing, crossings):
 
 
 def clamp_place(frames, spacing):
-    """Where the sections' rotation, continued from columns 2 to 8 by a parabola, is zero [m]: the place of the clamp.
+    """Where the sections' rotation, continued by a parabola, is zero [m]: the place of the clamp.
 
-    The rotation of a section knows bending only, so shear does not shift the place. Median over frames of large deflection.
+    The rotation of a section knows bending only, so shear does not shift the place. The parabola goes through the columns from
+    the seventh, beyond what the kernel smooths at the clamp, to four tenths of the length. Median over frames of large deflection.
     """
     lattice, places = Lattice(frames[0], spacing), []
-    columns = slice(1, min(8, lattice.shape[0]))
+    columns = slice(6, max(12, int(0.4 * lattice.shape[0])))
     x, height = lattice.start[0][columns, 0], lattice.start[1][0] - lattice.start[1][0].mean()
     for frame in frames:
         pushed = (lattice.grid(frame, "x") - lattice.start[0])[columns]
@@ -139,11 +141,11 @@ def picture_tip(path, curves):
         end = min(tip.time[-1] for tip, _, _ in curves)
         t = np.linspace(0.0, end, 2000)
         axes.plot(t, AMPLITUDE * np.sin(2.0 * np.pi * t / PERIOD), color=plot.GREY, linewidth=1.0, linestyle="--",
-                  label="period and amplitude of finite elements")
+                  label="finite elements: period and amplitude")
         for tip, label, colour in curves:
             axes.plot(tip.time, 1e3 * tip["tip_y"], color=colour, label=label, linewidth=1.3)
         axes.set(xlabel="time [s]", ylabel="deflection of the free end [mm]", xlim=(0.0, end))
-        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(curves) + 1)
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
         figure.tight_layout()
 
 
@@ -177,6 +179,7 @@ def main(folder):
         whole = held + energy["by_viscosity"] + energy["by_stress"] + energy["by_gradient"]
         k = int(np.searchsorted(energy.time, min(crossings[-1], energy.time[-1])))
         summary.add("mechanical_energy", held[k] / held[0], "of the start")
+        summary.add("energy_drift", float(np.max(np.abs(held[:k + 1] / held[0] - 1.0))), "of the start")
         for name in ("by_viscosity", "by_stress", "by_gradient"):
             summary.add(f"taken_{name}", energy[name][k] / held[0], "of the start")
         summary.add("ledger_error", float(np.max(np.abs(whole[:k + 1] / whole[0] - 1.0))), "")
@@ -200,43 +203,56 @@ def order(n, error):
     return float(-np.polyfit(np.log(n), np.log(np.abs(error)), 1)[0]) if len(n) > 1 and np.all(error) else None
 
 
+SERIES = {"tl": "total Lagrangian", "ul": "updated, quadratic", "corrected": "updated, linear", "paper": "the paper's recipe"}
+COLOURS = {"tl": plot.BLUE, "ul": plot.ORANGE, "corrected": "#2a8c57", "paper": plot.GREY}
+TARGETS = {"period_5": 0.02, "period_10": 0.01, "period_10_ul": 0.04}
+
+
 def study(folder, cases):
-    """Convergence with the number of particles across, by series: cases are called SERIES_N, N particles across."""
+    """Convergence with the number of particles across, and long runs.
+
+    Cases are called SERIES_N, N particles across; figures are without a suffix in the total-Lagrangian series.
+    """
     folder = Path(folder)
     summary = Summary(folder)
     found = {name: figures(path) for name, path in cases.items()}
     table = {}
-    for name, values in found.items():
-        kind, _, n = name.rpartition("_")
-        if n.isdecimal() and values.get("period") and values.get("stopped_at") is None:
-            table.setdefault(kind, []).append((int(n), values))
+    for kind in SERIES:
+        rows = {int(name[len(kind) + 1:]): values for name, values in found.items()
+                if name.startswith(f"{kind}_") and name[len(kind) + 1:].isdecimal() and values.get("stopped_at") is None}
+        if rows:
+            table[kind] = sorted(rows.items())
     for kind, rows in table.items():
-        rows.sort(key=lambda row: row[0])
-        prefix = "" if kind == "best" else f"{kind}_"
+        suffix = "" if kind == "tl" else f"_{kind}"
         for n, values in rows:
-            summary.add(f"{prefix}period_{n}", values["period"], "s", PERIOD, SOURCE)
+            name = f"period_{n}{suffix}"
+            summary.add(name, values["period"], "s", PERIOD, SOURCE, TARGETS.get(name))
         for n, values in rows:
-            reference = figures(cases[f"{kind}_{n}"], "reference")["amplitude"]
-            summary.add(f"{prefix}amplitude_{n}", values["amplitude"], "mm", reference, SOURCE)
-        for n, values in rows:
-            for name in ("a5_a1", "a100_a1"):
-                if values.get(name) is not None:
-                    summary.add(f"{prefix}{name}_{n}", values[name], "", 1.0, "no damping")
+            summary.add(f"amplitude_{n}{suffix}", values["amplitude"], "mm", AMPLITUDE, SOURCE)
+        n, values = rows[-1] if kind != "tl" else next((row for row in rows if row[0] == 10), rows[-1])
+        for name in ("a5_a1", "disorder", "stress_zigzag", "clamp_place"):
+            undamped = (1.0, "no damping") if name == "a5_a1" else (None, None)
+            if values.get(name) is None:
+                continue  # a short run
+            summary.add(f"{name}{suffix}", values.get(name), "dx" if name in ("disorder", "clamp_place") else "", *undamped)
         if len(rows) > 2:
             ns = np.array([n for n, _ in rows], float)
-            errors = np.array([v["period"] for _, v in rows]) / PERIOD - 1.0
-            summary.add(f"{prefix}order_of_convergence", order(ns, errors))
+            summary.add(f"order_of_convergence{suffix}", order(ns, np.array([v["period"] for _, v in rows]) / PERIOD - 1.0))
+    for suffix, name, loss, drift in (("", "long_5", 0.005, 0.001), ("_fast", "fast_5", 0.005, 0.001), ("_ul", "ul_long_5", 0.1, None)):
+        values = found.get(name)
+        if values is not None:
+            summary.add(f"a100_a1{suffix}", values.get("a100_a1"), "", 1.0, "no damping", loss)
+            summary.add(f"energy_drift{suffix}", values.get("energy_drift"), "of the start", target=drift)
+            summary.add(f"zigzag_100{suffix}", values.get("stress_zigzag"), "", target=0.1)
+            summary.add(f"fractured_at{suffix}", values.get("fractured_at"), "s")
     for name, values in found.items():
         if values.get("stopped_at") is not None:
             summary.add(f"stopped_{name}", values["stopped_at"], "s")
-        for figure in ("fractured_at", "disorder", "mechanical_energy", "ledger_error"):
-            if values.get(figure) is not None and values.get("stopped_at") is None:
-                summary.add(f"{figure}_{name}", values[figure])
 
     picture_convergence(folder / "convergence.png", {k: r for k, r in table.items() if len(r) > 1})
-    best = table.get("best", [])
-    picture_tip(folder / "tip.png", [(series.read(cases[f"best_{n}"] / "tip.csv"), f"{n} across", colour)
-                                     for (n, _), colour in zip((best[0], best[-1]), (plot.ORANGE, plot.BLUE))] if best else [])
+    shown = [(f"{kind}_10", SERIES[kind], COLOURS[kind]) for kind in ("paper", "ul", "tl") if f"{kind}_10" in cases]
+    if shown:
+        picture_tip(folder / "tip.png", [(series.read(cases[name] / "tip.csv"), label, colour) for name, label, colour in shown])
     return summary.write()
 
 
@@ -244,20 +260,16 @@ def picture_convergence(path, table):
     """Error of the period against the number of particles across."""
     with plot.picture(path, 4.6, 3.6) as figure:
         axes = figure.add_subplot()
-        for (kind, rows), colour, mark in zip(table.items(), (plot.BLUE, plot.ORANGE, plot.GREY), "os^"):
+        for (kind, rows), mark in zip(table.items(), "os^v"):
             n = np.array([n for n, _ in rows], float)
-            axes.loglog(n, [100.0 * (v["period"] / PERIOD - 1.0) for _, v in rows], mark + "-", color=colour, label=kind)
-        n = np.array(axes.get_xlim())
-        low = min(abs(100.0 * (v["period"] / PERIOD - 1.0)) for rows in table.values() for _, v in rows)
-        top = max(n for rows in table.values() for n, _ in rows)
-        axes.loglog(n, 0.8 * low * top / n, ":", color=plot.GREY, linewidth=1.0, label="first order")
+            axes.loglog(n, [100.0 * (v["period"] / PERIOD - 1.0) for _, v in rows], mark + "-", color=COLOURS[kind], label=SERIES[kind])
         axes.set(xlabel="particles across", ylabel="error of the period [%]")
         ticks = sorted({n for rows in table.values() for n, _ in rows})
         axes.set_xticks(ticks, [str(t) for t in ticks])
         axes.minorticks_off()
-        ticks = [t for t in (1, 2, 5, 10, 20, 50) if axes.get_ylim()[0] <= t <= axes.get_ylim()[1]]
+        ticks = [t for t in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50) if axes.get_ylim()[0] <= t <= axes.get_ylim()[1]]
         axes.set_yticks(ticks, [str(t) for t in ticks])
-        axes.legend()
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.22), ncols=2)
         figure.tight_layout()
 
 

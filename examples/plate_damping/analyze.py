@@ -22,10 +22,10 @@ main = plate.main
 
 COLOURS = {"cubic_1.2": "#5aa0d8", "cubic_1.3": "#1b5e96", "cubic_1.5": "#0b2c47", "quintic_1.0": "#d1611a",
            "quintic_1.3": "#efa36b", "corrected_1.3": "#2a8c57", "nostress_1.3": "#8a4fa0",
-           "coarse_1.3": "#c98bd8"}
+           "coarse_1.3": "#c98bd8", "tl_1.5": plot.GREY}
 RECIPE = [kind for kind in COLOURS if kind.startswith(("cubic", "quintic"))]
 OTHER = {"cubic_1.3": "the paper's recipe", "corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress",
-         "coarse_1.3": "the same, 5 across"}
+         "coarse_1.3": "the same, 5 across", "tl_1.5": "total Lagrangian"}
 COLUMNS = ("a5_a1", "period", "stopped_at", "fractured_at", "disorder", "neighbour_distance_deviation", "stress_zigzag",
            "mechanical_energy", "taken_by_viscosity", "taken_by_stress")
 
@@ -57,6 +57,8 @@ def _text(value):
 def _alpha_axis(axes, rows):
     """Logarithmic from the first value above 0; 0 has its own place."""
     alphas = sorted({alpha for series in rows for alpha, _ in series})
+    if not any(alphas):
+        return  # only some of the cases ran
     axes.set_xscale("symlog", linthresh=min(a for a in alphas if a > 0.0), linscale=0.5)
     axes.set_xticks(alphas, [f"{a:g}" for a in alphas], rotation=45)
     axes.minorticks_off()
@@ -78,7 +80,7 @@ def picture_damping(path, table):
         panels = figure.subplots(1, 2, sharey=True)
         for axes, kinds, labels, title in (
                 (panels[0], RECIPE, {}, "the paper's recipe"),
-                (panels[1], OTHER, OTHER, "cubic, h/Δx = 1.3")):
+                (panels[1], OTHER, OTHER, "other gradients and solids")):
             _curves(axes, table, kinds, "a5_a1", labels)
             for k, kind in enumerate(kinds):
                 blown = [a for a, v in table.get(kind, []) if v.get("stopped_at") is not None]
