@@ -47,7 +47,7 @@ def test_elastic_gate_does_not_depend_on_ranks(gate):
 def test_still_water_stays_still(tmp_path):
     # hydrostatic pressure is exact; 1.5 % and 1e-5 are the package's own bounds for two seconds at 25 particles depth.
     # Pairing would show as a distance far below the spacing.
-    figures, folder = run(tmp_path, "still_water")
+    figures, folder = run(tmp_path, "still_water", tend=2)
     assert figures["pressure_l2"] < 0.015
     assert figures["ke_over_pe"] < 1.0e-5
     assert figures["min_pair_distance"] > 0.9

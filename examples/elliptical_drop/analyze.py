@@ -46,8 +46,8 @@ def figures(folder):
     a, b = exact(table.time, values["rate"])
     last = dump.read(Path(folder) / "particles.dump")[-1]
     found = {
-        "semi_axis_b": (table["b"][-1], "m", b[-1], EXACT),
-        "semi_axis_a": (table["a"][-1], "m", a[-1], EXACT),
+        "semi_axis_b": (float(table["b"][-1]), "m", float(b[-1]), EXACT),
+        "semi_axis_a": (float(table["a"][-1]), "m", float(a[-1]), EXACT),
         "b_error_worst": (np.abs(table["b"] / b - 1.0).max(), "", None, None),
         "kinetic_energy_drift": (table["ke"][-1] / table["ke"][0] - 1.0, "", None, None),
         "min_pair_distance": (min_pair_distance(last.vector("xy"), values["dx"]) / values["dx"], "dx", None, None),

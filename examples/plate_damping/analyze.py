@@ -20,9 +20,12 @@ plate = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(plate)
 main = plate.main
 
-COLOURS = ("#1b5e96", "#5aa0d8", "#0b2c47", "#d1611a", "#efa36b")
-RAW = ("cubic_1.2", "cubic_1.3", "cubic_1.5", "quintic_1.0", "quintic_1.3")
-OTHER = {"corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress"}
+COLOURS = {"cubic_1.2": "#5aa0d8", "cubic_1.3": "#1b5e96", "cubic_1.5": "#0b2c47", "quintic_1.0": "#d1611a",
+           "quintic_1.3": "#efa36b", "corrected_1.3": "#2a8c57", "nostress_1.3": "#8a4fa0",
+           "coarse_1.3": "#c98bd8"}
+RECIPE = [kind for kind in COLOURS if kind.startswith(("cubic", "quintic"))]
+OTHER = {"cubic_1.3": "the paper's recipe", "corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress",
+         "coarse_1.3": "the same, 5 across"}
 COLUMNS = ("a5_a1", "period", "stopped_at", "fractured_at", "disorder", "neighbour_distance_deviation", "stress_zigzag",
            "mechanical_energy", "taken_by_viscosity", "taken_by_stress")
 
@@ -61,30 +64,30 @@ def _alpha_axis(axes, rows):
     axes.set_xlabel("artificial viscosity α")
 
 
-def _curves(axes, table, kinds, name, labels=None, sign=1.0, colours=COLOURS, **style):
-    for kind, colour in zip(kinds, colours):
-        rows = [(a, v) for a, v in table.get(kind, []) if v.get(name) is not None and v.get("stopped_at") is None]
+def _curves(axes, table, kinds, name, labels):
+    for kind in kinds:
+        rows = [(a, v[name]) for a, v in table.get(kind, []) if v.get(name) and v.get("stopped_at") is None]
         if rows:
-            axes.plot([a for a, _ in rows], [sign * v[name] for _, v in rows], "o-", markersize=4, color=colour,
-                      label=(labels or {}).get(kind, kind.replace("_", ", h/Δx = ")), **style)
+            axes.plot(*zip(*rows), "o-", markersize=4, color=COLOURS[kind],
+                      label=labels.get(kind, kind.replace("_", ", h/Δx = ")))
 
 
 def picture_damping(path, table):
     """A5/A1 against alpha by kernel and h; runs that blew up as crosses at the bottom."""
-    with plot.picture(path, 8.0, 3.7) as figure:
+    with plot.picture(path, 8.0, 4.3) as figure:
         panels = figure.subplots(1, 2, sharey=True)
         for axes, kinds, labels, title in (
-                (panels[0], RAW, None, "the paper's recipe"),
-                (panels[1], ("cubic_1.3", *OTHER), {"cubic_1.3": "the paper's recipe", **OTHER}, "cubic, h/Δx = 1.3")):
+                (panels[0], RECIPE, {}, "the paper's recipe"),
+                (panels[1], OTHER, OTHER, "cubic, h/Δx = 1.3")):
             _curves(axes, table, kinds, "a5_a1", labels)
-            for k, (kind, colour) in enumerate(zip(kinds, COLOURS)):
+            for k, kind in enumerate(kinds):
                 blown = [a for a, v in table.get(kind, []) if v.get("stopped_at") is not None]
-                axes.plot(blown, [0.02 + 0.03 * k] * len(blown), "x", markersize=5, color=colour)
+                axes.plot(blown, [0.02 + 0.03 * k] * len(blown), "x", markersize=5, color=COLOURS[kind])
             axes.plot([], [], "x", color=plot.GREY, label="blew up")
             axes.set_title(title, loc="left")
             axes.set_ylim(0.0, 1.05)
             _alpha_axis(axes, [table[kind] for kind in kinds if kind in table])
-            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.12))
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=2, fontsize=8)
         panels[0].set_ylabel("A5/A1")
         figure.tight_layout()
 
@@ -92,17 +95,19 @@ def picture_damping(path, table):
 def picture_reason(path, table):
     """How disordered the particles are, and what viscosity takes."""
     labels = {"cubic_1.2": "h/Δx = 1.2", "cubic_1.3": "h/Δx = 1.3", "cubic_1.5": "h/Δx = 1.5",
-              "corrected_1.3": "1.3, corrected gradient", "nostress_1.3": "1.3, no artificial stress"}
+              "corrected_1.3": "1.3, corrected gradient", "nostress_1.3": "1.3, no artificial stress",
+              "coarse_1.3": "the same, 5 across"}
     with plot.picture(path, 8.0, 3.6) as figure:
         panels = figure.subplots(1, 2)
         for axes, name, title in ((panels[0], "disorder", "zigzag of positions over Δx after four periods"),
-                                  (panels[1], "taken_by_viscosity", "energy taken by viscosity in that time over the start's")):
+                                  (panels[1], "taken_by_viscosity", "taken by viscosity, over the start's energy")):
             _curves(axes, table, labels, name, labels)
             axes.set_title(title, loc="left")
             axes.set_yscale("log")
             _alpha_axis(axes, [table[kind] for kind in labels if kind in table])
-        panels[0].legend()
-        figure.tight_layout()
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="lower center", ncols=len(labels), fontsize=7.5,
+                      columnspacing=1.2, handlelength=1.5)
+        figure.tight_layout(rect=(0.0, 0.07, 1.0, 1.0))
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ LABELS = {"best": "shifting", "shaken": "shifting, shaken start", "plain": "no s
 LIMITS, PRESSURES = ((-1.0, 1.0), (-1.0, 1.0)), (-0.15, 0.05)
 
 
-def arm_lengths(frame, spacing):
+def arm_lengths(frame):
     """Distance from the centre of each arm's tip: the farthest hundredth of the particles, in four clusters a quarter turn apart."""
     r, angle = np.hypot(frame["x"], frame["y"]), np.arctan2(frame["y"], frame["x"])
     far = r > np.quantile(r, 0.98)
@@ -38,8 +38,7 @@ def figures(folder):
     spacing = log.read(Path(folder) / "log.lammps").values["dx"]
     frames, table = dump.read(Path(folder) / "particles.dump"), series.read(Path(folder) / "series.csv")
     early = table.time <= EARLY
-    arms, last = arm_lengths(frames[-1], spacing), frames[-1]
-    core = np.hypot(last["x"], last["y"]) < 0.25
+    arms = arm_lengths(frames[-1])
     found = {
         "centre_pressure": (1e-3 * table["centre"][early].mean(), "rho w2 L2", CENTRE, SERIES),
         "angular_momentum_drift": (table["spin"][-1] / table["spin"][0] - 1.0, "", None, None),
@@ -47,7 +46,7 @@ def figures(folder):
         "arm_length": (arms.mean(), "L", None, None),
         "arm_asymmetry": ((arms.max() - arms.min()) / arms.mean(), "", None, None),
         "voids": (sum(int(f["surface"][np.hypot(f["x"], f["y"]) < 0.25].sum()) for f in frames), "", None, None),
-        "min_pair_distance": (min_pair_distance(last.select(core).vector("xy"), spacing) / spacing, "dx", None, None),
+        "min_pair_distance": (min_pair_distance(frames[-1].vector("xy"), spacing) / spacing, "dx", None, None),
     }
     return found, frames, table, spacing
 

@@ -144,7 +144,7 @@ def clouds(path, panels, spacing, limits, label, extent=None, axis_labels=("x [m
     (xlo, xhi), (ylo, yhi) = limits
     low, high = extent or (min(p[3].min() for p in panels), max(p[3].max() for p in panels))
     norm = Normalize(low, high)
-    left, bottom, gap, title, bar = 0.62, 0.44, 0.16, 0.26, 0.85
+    left, bottom, gap, title, bar = 0.62, 0.44, 0.16, 0.26, 1.05
     panel_height = panel_width * (yhi - ylo) / (xhi - xlo)
     width, height = left + len(panels) * (panel_width + gap) + bar, bottom + panel_height + title
     with picture(path, width, height) as figure:

@@ -685,7 +685,7 @@ void FixFSI::unpack_forward_comm(int n, int first, double *buf)
 int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 {
   const int *const type = atom->type;
-  const int ng = ngrad(), ns = nshift();
+  const int ng = grad ? ngrad() : 0, ns = nshift();    // without solids there is no gradient
   int m = 0;
   for (int i = first; i < first + n; i++) {
     if (summed) buf[m++] = summed[i];
@@ -706,7 +706,7 @@ int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
 {
   const int *const type = atom->type;
-  const int ng = ngrad(), ns = nshift();
+  const int ng = grad ? ngrad() : 0, ns = nshift();    // without solids there is no gradient
   int m = 0;
   for (int ii = 0; ii < n; ii++) {
     const int i = list[ii];

@@ -30,10 +30,10 @@ namespace FSI {
     }
     // flux k: d rho_i/dt += k V_j, d rho_j/dt -= k V_i; g: grad_i W_ij = g x_ij; x_ij here is that of the particles
     // themselves, also where g belongs to an image
-    double operator()(double rho_i, double rho_j, const double *x_ij, double rho0, double c, double csq, double g) const
+    double operator()(double rho_i, double rho_j, const double *x_ij, double c, double rho0_over_csq, double g) const
     {
       const double hydrostatic =
-          rho0 / csq * (gravity[0] * x_ij[0] + gravity[1] * x_ij[1] + gravity[2] * x_ij[2]);
+          rho0_over_csq * (gravity[0] * x_ij[0] + gravity[1] * x_ij[1] + gravity[2] * x_ij[2]);
       return -scale * c * g * (rho_j - rho_i + hydrostatic);
     }
   };

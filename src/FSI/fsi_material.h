@@ -49,7 +49,7 @@ namespace FSI {
   struct State {
     int species = NONE;
     int tait = 0;
-    double rho0 = 0.0, c = 0.0, csq = 0.0, p0 = 0.0;
+    double rho0 = 0.0, c = 0.0, csq = 0.0, inv_csq = 0.0, p0 = 0.0;
     double floor = -1.0e300;    // lowest pressure; 0 where the material carries no tension
     double shear = 0.0;         // shear modulus G
     double viscosity = 0.0;     // dynamic viscosity

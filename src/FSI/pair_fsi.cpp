@@ -157,6 +157,7 @@ State PairFSI::solid_state(const Material &m, bool plane_stress) const
   s.species = SOLID;
   s.rho0 = m.rho0;
   s.csq = (plane_stress ? m.plane_stress_modulus() : m.bulk_modulus()) / m.rho0;
+  s.inv_csq = 1.0 / s.csq;
   s.c = std::sqrt(s.csq);
   s.shear = m.shear_modulus();
   s.yield = m.yield;

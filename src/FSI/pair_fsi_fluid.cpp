@@ -134,6 +134,7 @@ State PairFSIFluid::make_state(const Material &m) const
   s.rho0 = m.rho0;
   s.c = sound;
   s.csq = sound * sound;
+  s.inv_csq = 1.0 / s.csq;
   s.p0 = background;
   if (!tension) s.floor = 0.0;
   s.viscosity = m.viscosity;
@@ -210,6 +211,24 @@ void PairFSIFluid::density_rate(double dt)
    Solids count in the sums of shifting, but are not shifted.
 ------------------------------------------------------------------------- */
 
+template <int D> PairFSIFluid::Point<D> *PairFSIFluid::gather(double t)
+{
+  constexpr size_t SIZE = sizeof(Point<D>) / sizeof(double);
+  const int nall = atom->nlocal + atom->nghost;
+  if (points.size() < nall * SIZE) points.resize(atom->nmax * SIZE);
+  auto *const point = reinterpret_cast<Point<D> *>(points.data());
+  for (int i = 0; i < nall; i++) {
+    Point<D> &p = point[i];
+    for (int d = 0; d < D; d++) {
+      p.v[d] = atom->v[i][d];
+      p.x[d] = atom->x[i][d] + t * p.v[d];
+    }
+    p.rho = atom->rho[i];
+    p.vol = atom->rmass[i] / p.rho;
+  }
+  return point;
+}
+
 template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
 {
   constexpr int D = K::DIM;
@@ -217,8 +236,6 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   const double dth = 0.5 * dt;
   double **x = atom->x;
   double **v = atom->v;
-  const double *const rho = atom->rho;
-  const double *const rmass = atom->rmass;
   const int *const type = atom->type;
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
@@ -226,7 +243,11 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   const State *const state = hub->state.data();
   const int *const wmask = hub->wmask;
   const Walls walls = (FLAGS & IMAGES) ? hub->walls.moved(-dth) : Walls();
+  const Point<D> *const point = gather<D>(-dth);
   const DensityDiffusion diffusion(delta, hub->h, hub->gravity);
+  int first = 1;
+  while (state[first].species != FLUID) first++;
+  const State &only = state[first];    // without MIXED there is one fluid
   const Shift<D> shift(hub->wdx);
   double *const *const sums = hub->shift;
 
@@ -234,17 +255,17 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
                         double share) {
     const double g = kernel.gradient(std::sqrt(rsq));
     const double s = g * (vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0));
-    double ri = rmass[i] * s, rj = rmass[j] * s;
+    const Point<D> &pi = point[i], &pj = point[j];
+    double ri = pi.rho * pi.vol * s, rj = pj.rho * pj.vol * s;
     if ((FLAGS & DIFFUSION) && (!(FLAGS & MIXED) || (type[i] == type[j]))) {
-      const State &a = state[type[i]];
-      const double k = diffusion(rho[i], rho[j], real_xij, a.rho0, a.c, a.csq, g);
-      ri += k * rmass[j] / rho[j];
-      rj -= k * rmass[i] / rho[i];
+      const State &a = (FLAGS & MIXED) ? state[type[i]] : only;
+      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, a.inv_csq * a.rho0, g);
+      ri += k * pj.vol;
+      rj -= k * pi.vol;
       if (FLAGS & TALLY) {
         // m p/rho^2 of what diffusion adds to rho
-        const double vi = rmass[i] / rho[i], vj = rmass[j] / rho[j];
-        hub->tally(FixFSI::DIFFUSION, -share * k * vi * vj *
-                       (hub->pressure(i) * vi / rmass[i] - hub->pressure(j) * vj / rmass[j]));
+        hub->tally(FixFSI::DIFFUSION,
+                   -share * k * pi.vol * pj.vol * (hub->pressure(i) / pi.rho - hub->pressure(j) / pj.rho));
       }
     }
     rate[i] += ri;
@@ -252,8 +273,8 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   };
   const auto shift_pair = [&](int i, int j, double rsq, const double *xij, const double *xji) {
     const double r = std::sqrt(rsq), g = kernel.gradient(r), w = kernel.W(r);
-    shift.add(sums[i], rmass[j] / rho[j], g, w, rsq, xij);
-    shift.add(sums[j], rmass[i] / rho[i], g, w, rsq, xji);
+    shift.add(sums[i], point[j].vol, g, w, rsq, xij);
+    shift.add(sums[j], point[i].vol, g, w, rsq, xji);
   };
 
   const int inum = list->inum;
@@ -261,15 +282,15 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
     const int i = list->ilist[ii];
     const int *const jlist = list->firstneigh[i];
     const int jnum = list->numneigh[i];
-    const double xi[3] = {x[i][0] - dth * v[i][0], x[i][1] - dth * v[i][1], D == 3 ? x[i][2] - dth * v[i][2] : x[i][2]};
+    const Point<D> pi = point[i];
+    const int mask_i = (FLAGS & IMAGES) ? wmask[i] : 0;
     for (int jj = 0; jj < jnum; jj++) {
       const int j = jlist[jj] & NEIGHMASK;
-      const double xj[3] = {x[j][0] - dth * v[j][0], x[j][1] - dth * v[j][1],
-                            D == 3 ? x[j][2] - dth * v[j][2] : x[j][2]};
-      const double xij[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
+      const Point<D> &pj = point[j];
+      const double xij[3] = {pi.x[0] - pj.x[0], pi.x[1] - pj.x[1], D == 3 ? pi.x[D - 1] - pj.x[D - 1] : 0.0};
       const double rsq = xij[0] * xij[0] + xij[1] * xij[1] + (D == 3 ? xij[2] * xij[2] : 0.0);
       if (rsq >= kernel.cutsq) continue;
-      const double vij[3] = {v[i][0] - v[j][0], v[i][1] - v[j][1], v[i][2] - v[j][2]};
+      const double vij[3] = {pi.v[0] - pj.v[0], pi.v[1] - pj.v[1], D == 3 ? pi.v[D - 1] - pj.v[D - 1] : 0.0};
       // without newton a pair across ranks is computed on both: each counts half of its energy
       const double share = (newton || j < nlocal) ? 1.0 : 0.5;
       rate[j] += pair(i, j, xij, vij, rsq, xij, share);
@@ -277,8 +298,9 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
         const double xji[3] = {-xij[0], -xij[1], -xij[2]};
         shift_pair(i, j, rsq, xij, xji);
       }
-      if ((FLAGS & IMAGES) && (wmask[i] & wmask[j]))
-        walls.images(wmask[i] & wmask[j], rsq, xi, xj, kernel.cutsq,
+      if ((FLAGS & IMAGES) && mask_i && (mask_i & wmask[j])) {
+        const auto xi = pi.position(x[i]), xj = pj.position(x[j]);
+        walls.images(wmask[i] & wmask[j], rsq, xi.data(), xj.data(), kernel.cutsq,
                      [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
                        double vi[3];
                        walls.reflect_velocity(s, v[j], false, vi);
@@ -290,6 +312,7 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
                          shift_pair(i, j, rsq_image, x_image, xji);
                        }
                      });
+      }
     }
   }
 
@@ -297,17 +320,16 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   if (FLAGS & IMAGES)
     for (int i = 0; i < nlocal; i++) {
       if (!wmask[i] || state[type[i]].species != FLUID) continue;
-      const double xi[3] = {x[i][0] - dth * v[i][0], x[i][1] - dth * v[i][1],
-                            D == 3 ? x[i][2] - dth * v[i][2] : x[i][2]};
-      walls.images(wmask[i], 0.0, xi, xi, kernel.cutsq,
+      const auto xi = point[i].position(x[i]);
+      walls.images(wmask[i], 0.0, xi.data(), xi.data(), kernel.cutsq,
                    [&](const Walls::Reflection &s, double rsq, const double *x_image) {
                      double vi[3];
                      walls.reflect_velocity(s, v[i], false, vi);
                      double sum = 0.0;
                      for (int d = 0; d < D; d++) sum += (v[i][d] - vi[d]) * x_image[d];
                      const double r = std::sqrt(rsq), g = kernel.gradient(r);
-                     rate[i] += rmass[i] * g * sum;
-                     if (FLAGS & SHIFT) shift.add(sums[i], rmass[i] / rho[i], g, kernel.W(r), rsq, x_image);
+                     rate[i] += point[i].rho * point[i].vol * g * sum;
+                     if (FLAGS & SHIFT) shift.add(sums[i], point[i].vol, g, kernel.W(r), rsq, x_image);
                    });
     }
 }
@@ -405,14 +427,6 @@ void PairFSIFluid::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   check_tally();
 
-  const int nall = atom->nlocal + atom->nghost;
-  const double *const rho = atom->rho;
-  const double *const rmass = atom->rmass;
-  if ((int) aux.size() < nall) aux.resize(atom->nmax);
-  for (int i = 0; i < nall; i++) {
-    const double vol = rmass[i] / rho[i], p = hub->pressure(i);
-    aux[i] = {p * vol * vol, vol, rho[i], p};
-  }
   (this->*force_loop)();
 
   if (vflag_fdotr) virial_fdotr_compute();
@@ -440,7 +454,11 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const State *const state = hub->state.data();
   const int *const wmask = hub->wmask;
   const Walls &walls = hub->walls;
-  const Aux *const a = aux.data();
+  Point<D> *const a = gather<D>(0.0);
+  for (int i = 0; i < nlocal + atom->nghost; i++) {
+    a[i].p = hub->pressure(i);
+    a[i].pv2 = a[i].p * a[i].vol * a[i].vol;
+  }
   const ArtificialViscosity artificial(alpha, beta, hub->h);
   const LaminarViscosity<D> viscous(hub->h, laminar == CENTRAL);
   const double *const gravity = hub->gravity;
@@ -450,10 +468,10 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const auto force_on_i = [&](int i, int j, double g, double rsq, const double *xij, const double *vij, double share,
                               double *fij) {
     const double vdotx = vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0);
-    const State &si = state[type[i]], &sj = state[type[j]];
-    double p = a[i].pv2 + a[j].pv2, c = 0.5 * (si.c + sj.c);
+    double p = a[i].pv2 + a[j].pv2, c = sound;
     double shear[3] = {0.0, 0.0, 0.0};
-    if ((FLAGS & SOLIDS) && si.species != sj.species) {
+    if ((FLAGS & SOLIDS) && state[type[i]].species != state[type[j]].species) {
+      const State &si = state[type[i]], &sj = state[type[j]];
       const bool fluid_i = si.species == FLUID;
       const int nf = fluid_i ? i : j, ns = fluid_i ? j : i;
       c = si.c < sj.c ? si.c : sj.c;
@@ -526,14 +544,17 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     const int i = list->ilist[ii];
     const int *const jlist = list->firstneigh[i];
     const int jnum = list->numneigh[i];
+    const Point<D> pi = a[i];
+    const int mask_i = (FLAGS & MIRROR) ? wmask[i] : 0;
     double fi[3] = {0.0, 0.0, 0.0};
     for (int jj = 0; jj < jnum; jj++) {
       const int j = jlist[jj] & NEIGHMASK;
-      const double xij[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
+      const Point<D> &pj = a[j];
+      const double xij[3] = {pi.x[0] - pj.x[0], pi.x[1] - pj.x[1], D == 3 ? pi.x[D - 1] - pj.x[D - 1] : 0.0};
       const double rsq = xij[0] * xij[0] + xij[1] * xij[1] + (D == 3 ? xij[2] * xij[2] : 0.0);
       if (rsq >= kernel.cutsq) continue;
       const double g = kernel.gradient(std::sqrt(rsq));
-      const double vij[3] = {v[i][0] - v[j][0], v[i][1] - v[j][1], v[i][2] - v[j][2]};
+      const double vij[3] = {pi.v[0] - pj.v[0], pi.v[1] - pj.v[1], D == 3 ? pi.v[D - 1] - pj.v[D - 1] : 0.0};
       // without newton a pair across ranks is computed on both: each counts half of wall forces and energies
       const double share = (newton || j < nlocal) ? 1.0 : 0.5;
       double fij[3];
@@ -548,7 +569,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
         fi[d] += fij[d];
         fj[d] -= fij[d];
       }
-      if ((FLAGS & MIRROR) && (wmask[i] & wmask[j]))
+      if ((FLAGS & MIRROR) && mask_i && (mask_i & wmask[j]))
         walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
                      [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
                        // a solid's stress is that of the particle, not of its image: look from the solid
@@ -615,5 +636,5 @@ void PairFSIFluid::read_restart_settings(FILE *fp)
 
 double PairFSIFluid::memory_usage()
 {
-  return (double) aux.capacity() * sizeof(Aux);
+  return (double) points.capacity() * sizeof(double);
 }

@@ -22,6 +22,7 @@ PairStyle(fsi/fluid,PairFSIFluid);
 
 #include "pair_fsi.h"
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -71,10 +72,14 @@ class PairFSIFluid : public PairFSI {
   double sound, background, alpha, beta, delta;
   int tait, laminar, couple, extrapolate, tension;
 
-  struct Aux {
-    double pv2, vol, rho, p;    // p V^2, V = m/rho, rho, p
+  // what a loop needs of a particle, side by side (in 2D a cache line); local and ghost, gathered at the start of each loop
+  template <int D> struct Point {
+    double x[D], v[D], rho, vol;
+    double p, pv2;    // force loop only; pv2 = p V^2
+    std::array<double, 3> position(const double *atom_x) const { return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]}; }
   };
-  std::vector<Aux> aux;         // local and ghost, filled at the start of compute()
+  std::vector<double> points;
+  template <int D> Point<D> *gather(double t);    // positions a time t later
 
   enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, LEDGER = 16, NFORCE = 32 };
   enum { DIFFUSION = 1, IMAGES = 2, MIXED = 4, TALLY = 8, SHIFT = 16, NRATE = 32 };
