@@ -18,7 +18,7 @@ from pathlib import Path
 from . import launch, log, paths, plot
 from .scene import Refusal, deck_variables
 
-REPEATS = ((2.0, 3), (8.0, 2))  # runs shorter than so many CPU seconds are made so many times
+REPEATS = ((1.0, 3), (4.0, 2))  # runs shorter than so many CPU seconds are made so many times
 
 
 class Deck:
@@ -89,13 +89,27 @@ class Store:
     def make(self, settings):
         """The point, run if it is not stored yet."""
         found = self.get(settings)
-        if found is None:
-            found = self._run(settings)
-            path = self.path(settings)
-            unfinished = path.with_suffix(".unfinished")
-            unfinished.write_text(json.dumps(found, indent=1) + "\n")
-            unfinished.replace(path)  # an interrupted sweep leaves whole points only
-        return found
+        return found if found is not None else self._put(settings, self._run(settings))
+
+    def again(self, settings):
+        """Times a stored point once more."""
+        point = self.get(settings)
+        with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
+            point["cpu_seconds"] += self._simulate(Path(name), settings)["cpu_seconds"]
+        return self._put(settings, point)
+
+    def wanted(self, point):
+        """How often a stored point should be run."""
+        if point["status"] != "ok":
+            return 1
+        return self.repeats or next((n for below, n in REPEATS if min(point["cpu_seconds"]) < below), 1)
+
+    def _put(self, settings, point):
+        path = self.path(settings)
+        unfinished = path.with_suffix(".unfinished")
+        unfinished.write_text(json.dumps(point, indent=1) + "\n")
+        unfinished.replace(path)  # an interrupted sweep leaves whole points only
+        return point
 
     def _run(self, settings):
         point = {"settings": self.deck.normal(settings), "source": self.source, "status": "ok", "why": None, "figures": {}}
@@ -109,14 +123,6 @@ class Store:
                         point["figures"] = self.measure(folder)
                 except (Exception, SystemExit) as error:  # pylint: disable=broad-exception-caught
                     point |= {"status": "failed", "why": f"analysis: {error}"[:200]}
-        if point["status"] == "ok":
-            first = point["cpu_seconds"][0]
-            wanted = self.repeats or next((n for below, n in REPEATS if first < below), 1)
-            for _ in range(wanted - 1):
-                with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
-                    again = self._simulate(Path(name), settings)
-                if again["status"] == "ok":
-                    point["cpu_seconds"] += again["cpu_seconds"]
         return point
 
     def _simulate(self, folder, settings):
@@ -129,7 +135,8 @@ class Store:
         (folder / "in.deck").write_text(text)
         (folder / "run.json").write_text(json.dumps({"variables": {**deck_variables(self.deck.path), **variables}}))
         seconds = int(self.limit) + 1
-        done = subprocess.run(launch.lammps("in.deck", 1, variables), cwd=folder, env=launch.environment(),
+        command = launch.lammps("in.deck", 1, variables)[len(launch.mpirun(1)):]  # no launcher: it dies with this process
+        done = subprocess.run(command, cwd=folder, env=launch.environment(),
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds)))
@@ -167,28 +174,37 @@ def _quiet():
 
 
 def sweep(store, jobs, say=print, budget=None):
-    """Makes all points of `jobs`, [(label, settings, expected work in any unit)], the cheap ones first.
+    """Makes all points of `jobs`, [(label, settings, expected work in any unit)], the cheap ones first; then times them again.
 
-    Says after each how long the rest will take. budget [CPU s]: stop when so much has been used. Returns whether all are there.
+    Repetitions go over all points in turn, so that what else the machine does at one time does not fall on one point alone. Says
+    after each run how long the rest will take. budget [CPU s]: stop when so much has been used. Returns whether all is done.
     """
-    left = {}
-    for label, settings, work in jobs:
-        if store.get(settings) is None:
-            left.setdefault(store.path(settings), (label, settings, work))
-    order = sorted(left.values(), key=lambda job: job[2])
-    say(f"cost: {len(jobs)} points, {len(order)} to run")
-    started, used, worked = time.perf_counter(), 0.0, 0.0
-    for k, (label, settings, work) in enumerate(order, start=1):
+    jobs = sorted({store.path(settings): (label, settings, work) for label, settings, work in jobs}.values(), key=lambda job: job[2])
+    left = [job for job in jobs if store.get(job[1]) is None]
+    say(f"cost: {len(jobs)} points, {len(left)} to run")
+    used = worked = spent = 0.0
+    for k, (label, settings, work) in enumerate(left, start=1):
+        began = time.perf_counter()
         point = store.make(settings)
-        seconds = point["cpu_seconds"]
-        used, worked = used + sum(seconds), worked + work
-        wall = time.perf_counter() - started
-        rest = sum(job[2] for job in order[k:]) / worked * wall
-        say(f"cost: {k}/{len(order)} {label}: " + (f"{min(seconds):.2f} CPU s x {len(seconds)}" if point["status"] == "ok"
-                                                  else f"{point['status']} ({point['why']})") + f"; {_time(rest)} left")
-        if budget and used > budget and k < len(order):
-            say(f"cost: {used:.0f} CPU s used, {len(order) - k} points left: the same command goes on from here")
+        used += sum(point["cpu_seconds"])
+        if point["status"] == "ok":  # one that fails says nothing about the cost of the others
+            worked, spent = worked + work, spent + time.perf_counter() - began
+        rest = sum(job[2] for job in left[k:]) * (spent / worked if worked else 0.0)
+        say(f"cost: {k}/{len(left)} {label}: " + (f"{point['cpu_seconds'][0]:.2f} CPU s" if point["status"] == "ok"
+                                                 else f"{point['status']} ({point['why']})") + f"; {_time(rest)} left")
+        if budget and used > budget and k < len(left):
+            say(f"cost: {used:.0f} CPU s used, {len(left) - k} points left: the same command goes on from here")
             return False
+    for turn in range(2, 1 + (store.repeats or max(n for _, n in REPEATS))):
+        again = [job for job in jobs if len((point := store.get(job[1]))["cpu_seconds"]) < min(turn, store.wanted(point))]
+        if again:
+            expected = sum(min(store.get(job[1])["cpu_seconds"]) for job in again)
+            say(f"cost: run {turn} of {len(again)} short points, {_time(expected)} of CPU time")
+        for label, settings, _ in again:
+            used += store.again(settings)["cpu_seconds"][-1]
+            if budget and used > budget:
+                say(f"cost: {used:.0f} CPU s used: the same command goes on with the repetitions")
+                return True
     return True
 
 
