@@ -13,7 +13,7 @@ import cost_report  # noqa: E402
 from fsi import log, paths, scene, sweep  # noqa: E402
 from fsi.scene import Refusal  # noqa: E402
 
-OPTIONS = ("out", "budget", "limit", "repeats", "draw")
+OPTIONS = ("out", "budget", "limit", "repeats", "draw", "source")
 BASE_CFL = 0.25
 
 
@@ -108,7 +108,7 @@ def own_deck(path, vary, measure, given):
         values = [float(v) for v in values]
     except ValueError:
         raise Refusal(f"--vary {variable}: the first one is the resolution and must be numbers") from None
-    whole = all(v == int(v) and v >= 1.0 for v in values)
+    whole = all(v == int(v) and v >= 1.0 for v in values)  # a number of particles; else a spacing
     values = [int(v) for v in values] if whole else values
     values.sort(reverse=not whole)
     first = {name: choices[0] for name, choices in others}
@@ -171,6 +171,8 @@ def main(arguments):
         name, measure = deck_path.stem if deck_path.suffix else deck_path.name.removeprefix("in."), printed(measure)
         files = [p for p in deck_path.resolve().parent.iterdir() if p.is_file() and p.name not in ("log.lammps", deck_path.name)]
     folder = Path(options["out"]).resolve() if "out" in options else paths.RESULTS / "cost" / name
+    if "source" in options and "draw" not in options:
+        raise Refusal("source= is for draw=only: what runs is what is built")
     deck = sweep.Deck(deck_path, definition.get("edits"))
     wanted = points(definition)
     for point in wanted:
@@ -178,7 +180,7 @@ def main(arguments):
     if options.get("draw") is None and not scene.build():
         return 1
 
-    store = sweep.Store(folder / "points", deck, measure, files, options["limit"] or 600.0, options["repeats"])
+    store = sweep.Store(folder / "points", deck, measure, files, options["limit"] or 600.0, options["repeats"], options.get("source"))
     complete = True
     if options.get("draw") is None:
         complete = sweep.sweep(store, [(p["label"], p["settings"], work(definition, p["settings"])) for p in wanted],
