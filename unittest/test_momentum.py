@@ -13,7 +13,7 @@ def build(dim, couple, more=""):
     return Scene(x, v, dim=dim, dx=dx, hdx=1.3, dt=5e-4, type=1 + solid, mol=1 + solid, materials=(WATER, RUBBER),
                  box=((-20,) * 3, (20,) * 3),
                  fluid=f"sound 10 couple {couple} artificial/visc 0.1 0.1 density/diffusion 0.1 {more}",
-                 solid="artificial/visc 0.2 0 artificial/stress 0.3 gradient corrected")
+                 solid="artificial/visc 0.2 0 artificial/stress 0.3 gradient " + ("corrected" if couple == "wall" else "plain"))
 
 
 def angular(s):

@@ -27,7 +27,9 @@ ALTERNATIVES = {  # what else crosses ranks: options of the scene, in 2D and 3D
     "ratio": {"density": "fluid ratio solid ratio", "fluid": NO_DIFFUSION + " surface 0.7 bulk"},
     "plain": {"kernel": "cubic 1.3", "fluid": "sound 10 eos tait couple pressure artificial/visc 0.1 0",
               "solid": "artificial/visc 0.5 0"},
-    "full": {"kernel": "quintic 1.0", "fluid": "sound 10 couple full tension yes artificial/visc 0.1 0"},
+    "full": {"kernel": "quintic 1.0", "fluid": "sound 10 couple full tension yes artificial/visc 0.1 0",
+             "solid": "artificial/visc 0.1 0 artificial/stress 0.3"},
+    "quadratic": {"solid": "artificial/visc 0.1 0 artificial/stress 0.2 gradient quadratic"},
     "shift": {"fluid": "sound 10 laminar/visc/central shift 0.5"},
     "extrapolate": {"fluid": NO_DIFFUSION + " extrapolate yes"},
 }

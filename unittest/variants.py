@@ -23,7 +23,8 @@ VARIANTS = {
 }
 SCENES = {
     "dam 2D": dam_gate(2, solid="artificial/visc 0.1 0 artificial/stress 0.3 gradient corrected"),
-    "dam 3D": dam_gate(3, fluid="sound 10 couple full artificial/visc 0.05 0"),
+    "dam 3D": dam_gate(3, fluid="sound 10 couple full artificial/visc 0.05 0", solid="artificial/visc 0.1 0"),
+    "quadratic": dam_gate(3, solid="artificial/visc 0.1 0 artificial/stress 0.2 gradient quadratic"),
     "fluid 2D": fluid_box(2),
     "ratio": dam_gate(2, density="fluid ratio solid ratio", fluid="sound 10 artificial/visc 0.05 0 surface 0.9 bulk"),
 }

@@ -44,7 +44,7 @@ class Summary:
         met = None
         if target is not None:
             size = error if reference else value
-            met = size is not None and abs(size) <= target
+            met = bool(size is not None and abs(size) <= target)
         self.figures.append({"name": name, "value": value, "unit": unit, "reference": reference, "source": source,
                              "relative_error": _finite(error), "target": target, "met": met})
 

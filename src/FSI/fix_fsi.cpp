@@ -162,6 +162,12 @@ void FixFSI::init()
     error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
   if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
 
+  // the plain forces of a solid end at its face with half a kernel of neighbours missing, which the fluid's pairs supply; forces with
+  // corrected gradients are complete without them
+  if (fluid && fluid->shares_stress() && (solid_tl || (solid && solid->terms())))
+    error->all(FLERR, "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid gradient plain: with corrected gradients "
+                      "use couple wall");
+
   auto stress = modify->get_fix_by_style("^fsi/stress$");
   if (stress.size() > 1) error->all(FLERR, "There can be only one fix fsi/stress");
   fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);

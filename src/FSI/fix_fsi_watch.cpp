@@ -73,7 +73,7 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
   limit[MACH] = 0.5;
   limit[DISTANCE] = 0.1;
   limit[DENSITY] = 0.3;
-  limit[COURANT] = 1.0;
+  limit[COURANT] = 0.45;
   limit[ENERGY] = 10.0;
   limit[LOST] = 0.0;
   limit[REFLECTED] = BIG;
@@ -181,6 +181,18 @@ void FixFSIWatch::post_force(int)
   check_speed(update->dt * force->ftm2v);
   if (update->ntimestep % interval == 0) check_rest();
   judge(MIDDLE);
+  if (hub->substeps == 1) return;
+  // the sub-steps of a solid may take it anywhere: keep a state to go back to
+  const int n = atom->nlocal;
+  kept.resize(6 * n);
+  for (int i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) {
+      kept[6 * i + d] = atom->x[i][d];
+      kept[6 * i + 3 + d] = atom->v[i][d];
+    }
+  kept_walls.clear();
+  for (auto *fix : hub->wall_fixes)
+    for (const auto &w : fix->walls) kept_walls.push_back(w.position);
 }
 
 /* ----------------------------------------------------------------------
@@ -230,16 +242,17 @@ void FixFSIWatch::enter(Quantity q, int i, double value, int j)
 
 void FixFSIWatch::check_speed(double kick)
 {
-  double **v = atom->v;
-  double **f = atom->f;
+  const int nlocal = atom->nlocal;
+  if (nlocal == 0) return;
+  const double *v = atom->v[0], *f = atom->f[0];
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
   const double *const largest = speed_sq.data();
   const int moves = hub->groupbit, watched = groupbit;
-  for (int i = 0; i < atom->nlocal; i++) {
+  for (int i = 0; i < nlocal; i++, v += 3, f += 3) {
     if (!(mask[i] & watched)) continue;
     const double k = (mask[i] & moves) ? kick / rmass[i] : 0.0;
-    const double a = v[i][0] + k * f[i][0], b = v[i][1] + k * f[i][1], c = v[i][2] + k * f[i][2];
+    const double a = v[0] + k * f[0], b = v[1] + k * f[1], c = v[2] + k * f[2];
     const double vsq = a * a + b * b + c * c;
     if (vsq <= largest[type[i]] && rho[i] > 0.0 && rho[i] < BIG) continue;
     if (!(vsq < HUGE_SQUARE && std::abs(rho[i]) < BIG)) enter(FINITE, i, vsq + rho[i]);
@@ -376,19 +389,32 @@ std::string FixFSIWatch::describe(Quantity q, Finding &all)
 }
 
 /* ----------------------------------------------------------------------
-   In the middle of a step positions and walls go back to its start: a state from which the step can be repeated. (Continuity
-   density and stress are half a step ahead of it instead of behind, as after a start: an error of one step.)
+   In the middle of a step positions, walls and densities of fluids go back to its start: a state from which the step can be
+   repeated. (Density and stress of fsi/solid stay where they are, a step too far: an error of one step's strain.)
 ------------------------------------------------------------------------- */
 
 void FixFSIWatch::stop(Quantity q, When when)
 {
   Finding all;
   auto text = describe(q, all);
-  if (when == MIDDLE) {
+  if (when == END) {
+    for (int i = 0; i < atom->nlocal; i++)
+      for (int d = 0; d < 3; d++) {
+        atom->x[i][d] = kept[6 * i + d];
+        atom->v[i][d] = kept[6 * i + 3 + d];
+      }
+    int k = 0;
+    for (auto *fix : hub->wall_fixes)
+      for (auto &w : fix->walls) w.position = kept_walls[k++];
+  }
+  if (when != START) {
     const double back = -0.5 * update->dt;
     for (int i = 0; i < atom->nlocal; i++)
       if (atom->mask[i] & hub->groupbit)
         for (int d = 0; d < hub->dim; d++) atom->x[i][d] += back * atom->v[i][d];
+    if (hub->fluid && hub->density_fluid == FixFSI::CONTINUITY)
+      for (int i = 0; i < atom->nlocal; i++)
+        if (hub->state[atom->type[i]].species == FLUID) atom->rho[i] -= (update->dt + hub->stagger) * hub->rate[i];
     for (auto *fix : hub->wall_fixes)
       for (auto &w : fix->walls) w.position += back * w.velocity[w.axis];
     update->ntimestep--;
@@ -420,6 +446,21 @@ void FixFSIWatch::stop(Quantity q, When when)
       MPI_Allreduce(&n, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
       domain->pbc();
       domain->reset_box();
+      // what has left a fixed box since the last reneighboring would be missing when the file is read
+      double mine[6], ends[6];
+      for (int d = 0; d < 3; d++) {
+        mine[d] = -domain->boxlo[d];
+        mine[3 + d] = domain->boxhi[d];
+        for (int i = 0; i < atom->nlocal && !domain->periodicity[d]; i++) {
+          if (atom->x[i][d] < domain->boxlo[d]) mine[d] = std::max(mine[d], hub->dx - atom->x[i][d]);
+          if (atom->x[i][d] >= domain->boxhi[d]) mine[3 + d] = std::max(mine[3 + d], hub->dx + atom->x[i][d]);
+        }
+      }
+      MPI_Allreduce(mine, ends, 6, MPI_DOUBLE, MPI_MAX, world);
+      for (int d = 0; d < 3; d++) {
+        domain->boxlo[d] = -ends[d];
+        domain->boxhi[d] = ends[3 + d];
+      }
       WriteRestart write(lmp);
       write.multiproc_options(0, 0, nullptr);
       write.write(restart_file);
@@ -467,6 +508,7 @@ void FixFSIWatch::write_neighbours(const Finding &all)
   }
   char bounds[9];
   domain->boundary_string(bounds);
+  utils::print(fp, "ITEM: TIME\n{:.16g}\n", update->atime + (update->ntimestep - update->atimestep) * update->dt);
   utils::print(fp, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n", update->ntimestep, rows.size() / NCOL,
                bounds);
   for (int d = 0; d < 3; d++) utils::print(fp, "{:.16g} {:.16g}\n", domain->boxlo[d], domain->boxhi[d]);

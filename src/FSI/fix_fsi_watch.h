@@ -61,6 +61,7 @@ class FixFSIWatch : public Fix {
   double total[NQUANTITY];      // of all ranks: ENERGY, LOST, REFLECTED
   double seen[NQUANTITY];       // of all ranks at the last check: the output
   double energy_before, reflected_before;
+  std::vector<double> kept, kept_walls;    // of post_force, if there are sub-steps
   int warned;    // bits of quantities
   bigint violations;
 

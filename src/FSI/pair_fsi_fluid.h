@@ -39,6 +39,7 @@ class PairFSIFluid : public PairFSI {
   void settings(int, char **) override;
   void init_style() override;
   void compute(int, int) override;
+  bool shares_stress() const { return couple != WALL; }    // of a solid with the fluid
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
   double memory_usage() override;
