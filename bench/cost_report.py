@@ -13,6 +13,7 @@ from fsi.precision import crossings, extrapolate, order, pareto, reach
 PAGE = paths.ROOT / "doc" / "cost"
 BOUNDS = (10.0, 5.0, 2.0, 1.0)  # per cent
 COLOURS = (plot.BLUE, plot.ORANGE, "#3a923a", "#7b4fa3", "#c23b3b", "#8c6d31", "#2ba3b4", "#444444")
+NOISE = 0.2  # times that differ by less count as equal
 SAME = 1.1  # errors that differ by less than this factor count as equal
 COLUMNS = ("role", "group", "label", "x", "status", "value", "error", "crossing", "front", "cpu_seconds", "spread", "repeats", "dx",
            "particles", "steps", "particle_steps", "pair_visits", "why")
@@ -28,7 +29,7 @@ def write(folder, name, definition, points, source):
         for row, flag in zip(curve, crossings([row["error"] for row in curve])):
             row["crossing"] = bool(flag)
     candidates = [r for r in rows if r["status"] == "ok" and r["role"] in ("curve", "corner") and not r["crossing"]]
-    for k in pareto([r["cpu_seconds"] for r in candidates], [abs(r["error"]) for r in candidates]):
+    for k in pareto([r["cpu_seconds"] for r in candidates], [abs(r["error"]) for r in candidates], NOISE):
         candidates[k]["front"] = True
     methods = {name: _method(definition, curve) for name, curve in curves.items()}
     summary = {
@@ -195,7 +196,7 @@ def _recommendation(definition, summary, rows):
         before = best["method"], best["at"]
         other = max((e for e in entries if e is not best), key=lambda e: e["cpu_seconds"], default=None)
         if other:
-            sentence += (f" ({other['method']}: {variable} = {other['at']:.3g}, {other['cpu_seconds'] / best['cpu_seconds']:.2g} times the time"
+            sentence += (f" ({other['method']}: {variable} = {other['at']:.2g}, {_times(other['cpu_seconds'] / best['cpu_seconds'])} the time"
                          + (", extrapolated)" if other["kind"] == "extrapolated" else ")"))
         text.append(f"{bound} %: {sentence}")
     if text:
@@ -217,6 +218,10 @@ def _recommendation(definition, summary, rows):
         if parts:
             text.append(f"{name[0].upper()}{name[1:]}: {', '.join(parts)}")
     return ". ".join(text) + "."
+
+
+def _times(ratio):
+    return f"{ratio:.1f} times" if ratio < 10.0 else f"{float(f'{ratio:.2g}'):.0f} times"
 
 
 def _fails(knob):
@@ -271,7 +276,7 @@ def _draw_work(path, definition, rows, curves, methods):
                 label = None
                 if column == "size":
                     m = methods[name]
-                    label = name + (f" (order {m['order']:.1f} ± {m['order_interval']:.1f})" if m["order"] is not None else "")
+                    label = f"{name} ({_order(m)})" if m["order"] is not None else name
                 axes.plot(x, y, "-", color=colour, zorder=3, linewidth=1.3)
                 axes.plot(x[~hollow], y[~hollow], "o", color=colour, markersize=4.5, label=label, zorder=4)
                 axes.plot(x[hollow], y[hollow], "o", color=colour, markersize=4.5, markerfacecolor="white", zorder=4)
@@ -365,6 +370,7 @@ def _draw_effects(path, definition, rows):
                     right.text(row["cpu_seconds"], k, f" {row['cpu_seconds']:.2g}", va="center", fontsize=7.5)
                 else:
                     left.text(0.01, k, "fails", va="center", fontsize=7.5, color="#c23b3b", transform=left.get_yaxis_transform())
+            left.set_ylim(-0.6, len(mine) - 0.4)
             left.set_yticks(place, [r["label"] for r in mine])
             left.grid(axis="y", visible=False)
             right.grid(axis="y", visible=False)
@@ -383,6 +389,15 @@ def _draw_effects(path, definition, rows):
 
 def _percent(error):
     return f"{100 * error:+.2g} %" if abs(error) < 1.0 else f"{100 * error:+.0f} %"
+
+
+def _order(method):
+    """The order of convergence as text; an interval that holds 0 says that none was seen."""
+    if method["order"] is None:
+        return "-"
+    if abs(method["order"]) < method["order_interval"]:
+        return "no order"
+    return f"order {method['order']:.2f} ± {method['order_interval']:.2f}"
 
 
 def _seconds(seconds):
@@ -413,11 +428,11 @@ def _page(name, definition, summary, rows, curves):
              "Hollow: small because the error changes sign there, which is no accuracy; neither these nor runs with one setting changed count for the front.", "",
              "| method | order | 10 % | 5 % | 2 % | 1 % |", "|---|---|---|---|---|---|"]
     for method, found in summary["methods"].items():
-        fit = "-" if found["order"] is None else f"{found['order']:.2f} ± {found['order_interval']:.2f}"
+        fit = _order(found).removeprefix("order ")
         cells = [_bound_cell(found["bounds"].get(f"{b:g}")) for b in BOUNDS]
         lines.append(f"| {method} | {fit} | " + " | ".join(cells) + " |")
     lines += ["", f"CPU seconds of the coarsest run from which on all finer ones keep the bound, and its {variable}; `<`: the coarsest one made; "
-              "*slanted*: extrapolated; -: neither. Order: least squares with 95 % interval.", "",
+              "*slanted*: extrapolated; -: neither. Order: least squares with 95 % interval, none where that holds 0.", "",
               f"| method | {variable} | value | error | CPU s | spread | particle-steps | pair visits |", "|---|---|---|---|---|---|---|---|"]
     for method, curve in curves.items():
         for r in curve:

@@ -56,14 +56,16 @@ def _fit(h, value):
     return best[1:]
 
 
-def pareto(cost, error):
-    """Indices of the points that no other point beats in both cost and error, cheapest first."""
-    front, lowest = [], np.inf
-    for k in np.lexsort((error, cost)):
-        if np.isfinite(error[k]) and error[k] < lowest:
-            front.append(int(k))
-            lowest = error[k]
-    return front
+def pareto(cost, error, tolerance=0.0):
+    """Indices of the points that no other beats, cheapest first.
+
+    A point is beaten by one of lower error whose cost is not more than `tolerance` above its own, or of equal error and lower cost.
+    """
+    cost, error = np.asarray(cost, float), np.asarray(error, float)
+    front = [k for k in range(len(cost)) if np.isfinite(error[k])
+             and not np.any((error < error[k]) & (cost <= cost[k] * (1.0 + tolerance)))
+             and not np.any((error == error[k]) & (cost < cost[k]))]
+    return sorted(front, key=lambda k: cost[k])
 
 
 def crossings(error):
