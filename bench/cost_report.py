@@ -339,6 +339,7 @@ def _draw_knobs(path, definition, rows):
                 axes.set_xlim(-0.6, len(mine) - 0.4)
             elif min(place.values()) > 0.0 and max(place.values()) / min(place.values()) > 15.0:
                 axes.set_xscale("log")
+                _few_labels(axes.xaxis)
             axes.set_title(f"{knob['name']}\nof {knob['of']}, {definition['resolution']['variable']} = {knob['at']:g}", loc="left", fontsize=8)
             axes.tick_params(axis="y", colors=plot.BLUE, which="both", labelsize=7.5)
             right.tick_params(axis="y", colors=plot.ORANGE, labelsize=7.5)

@@ -101,7 +101,7 @@ class Store:
     def wanted(self, point):
         """How often a stored point should be run."""
         if point["status"] != "ok":
-            return 1
+            return 0
         return self.repeats or next((n for below, n in REPEATS if min(point["cpu_seconds"]) < below), 1)
 
     def _put(self, settings, point):
