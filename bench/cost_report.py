@@ -135,7 +135,7 @@ def _method(definition, curve):
     for bound in BOUNDS:
         k = reach(error, bound / 100.0)
         if k is not None:
-            found["bounds"][f"{bound:g}"] = {"at": curve[k]["x"], "error": curve[k]["error"], "cpu_seconds": curve[k]["cpu_seconds"],
+            found["bounds"][f"{bound:g}"] = {"at": curve[k]["x"], "error": max(map(abs, error[k:])), "cpu_seconds": curve[k]["cpu_seconds"],
                                              "particle_steps": curve[k]["particle_steps"], "kind": "coarsest run" if k == 0 else "run"}
         elif fit and fit[0] - fit[1] > 0.2 and not found["sign_changes"]:
             size = (bound / 100.0 / fit[2])**(1.0 / fit[0])

@@ -52,7 +52,7 @@ def small(name, methods, values, **changes):
 
 
 def store_of(folder, name, definition):
-    return sweep.Store(folder, sweep.Deck(scene.deck(name), definition.get("edits")), accuracy_cost.analysed(name), repeats=1)
+    return sweep.Store(folder, sweep.Deck(scene.deck(name), definition.get("edits")), accuracy_cost.analysed(name), repeats=2)
 
 
 def made(tmp_path, name, definition):
@@ -127,10 +127,11 @@ def test_sweep_goes_on_where_it_stopped(tmp_path):
     jobs = [(p["label"], p["settings"], accuracy_cost.work(definition, p["settings"])) for p in accuracy_cost.points(definition)]
     store, said = store_of(tmp_path, "standing_wave", definition), []
     assert not sweep.sweep(store, jobs, said.append, budget=1e-6)
-    assert sum(store.get(job[1]) is not None for job in jobs) == 1
+    assert sum(store.get(job[1]) is not None for job in jobs) == 1 and "1 points left" in said[-1]
     coarse = store.get(jobs[0][1])
     assert sweep.sweep(store, jobs, said.append)
-    assert store.get(jobs[0][1]) == coarse and "cost: 2 points, 1 to run" in said
+    assert store.get(jobs[0][1])["figures"] == coarse["figures"] and len(store.get(jobs[0][1])["cpu_seconds"]) == 2
+    assert "cost: 2 points, 1 to run" in said
     fine = store.get(jobs[1][1])
     assert fine["particle_steps"] > 4 * coarse["particle_steps"]
     # linear theory; 5 particles over the depth are within 10 %
