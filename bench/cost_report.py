@@ -22,8 +22,8 @@ COLUMNS = ("role", "group", "label", "x", "status", "value", "error", "crossing"
 def write(folder, name, definition, points, source):
     """Everything into `folder`; returns the summary."""
     folder.mkdir(parents=True, exist_ok=True)
-    reference, about = _reference(definition, points)
-    rows = [_row(definition, point, reference) for point in points]
+    reference, about, finest = _reference(definition, points)
+    rows = [_row(definition, point, reference, finest) for point in points]
     curves = _curves(definition, rows)
     for curve in curves.values():
         for row, flag in zip(curve, crossings([row["error"] for row in curve])):
@@ -34,7 +34,7 @@ def write(folder, name, definition, points, source):
     methods = {name: _method(definition, curve) for name, curve in curves.items()}
     summary = {
         "scene": name, "title": definition["title"], "figure": definition["figure"], "reference": about, "command": definition["command"],
-        "source": source, "points": len(rows), "failed": sum(r["status"] != "ok" for r in rows),
+        "source": source, "points": len(rows), "failed": sum(r["status"] == "failed" for r in rows),
         "spread": float(np.median([r["spread"] for r in rows if r["spread"] is not None] or [0.0])),
         "cpu_seconds": sum(s for s in {id(p["run"]): sum(p["run"]["cpu_seconds"]) for p in points}.values()),
         "methods": methods, "knobs": _knobs(definition, rows), "reach": _reach(methods)}
@@ -76,28 +76,28 @@ def _value(definition, run):
 
 
 def _reference(definition, points):
-    """(reference value, or None where the figure is an error itself; what it is)."""
+    """(reference value, or None where the figure is an error itself; what it is; the point that it is, if it is one)."""
     given = definition.get("reference")
     if given is not None:
         value = given.get("value")
         if value is None:
             value = next((p["run"]["figures"][f"{definition['figure']} reference"] for p in points
                           if f"{definition['figure']} reference" in p["run"]["figures"]), None)
-        return value or None, {"kind": "outside", "value": value, "source": given["source"]}
+        return value or None, {"kind": "outside", "value": value, "source": given["source"]}, None
     first = next(iter(definition["methods"]))
     curve = [p for p in points if p["role"] == "curve" and p["group"] == first and _value(definition, p["run"]) is not None]
     if not curve:
-        return None, {"kind": "none", "value": None, "source": f"no run of '{first}' gave a value"}
+        return None, {"kind": "none", "value": None, "source": f"no run of '{first}' gave a value"}, None
     curve.sort(key=lambda p: _size(definition, p["x"]), reverse=True)
     sizes, values = [_size(definition, p["x"]) for p in curve], [_value(definition, p["run"]) for p in curve]
     limit = extrapolate(sizes, values)
     if limit is None:
         return values[-1], {"kind": "finest", "value": values[-1], "uncertainty": None,
-                            "source": f"the finest run of '{first}': its values do not approach a limit that could be extrapolated"}
+                            "source": f"the finest run of '{first}': its values do not approach a limit that could be extrapolated"}, curve[-1]
     value, power, uncertainty = limit
     return value, {"kind": "extrapolated", "value": value, "order": power, "uncertainty": uncertainty,
                    "source": f"Richardson extrapolation of '{first}': {value:.5g}, uncertain by {uncertainty:.1g}, order {power:.2f}. "
-                             "This is convergence to itself, not agreement with an outside truth"}
+                             "This is convergence to itself, not agreement with an outside truth"}, None
 
 
 def _size(definition, x):
@@ -105,7 +105,7 @@ def _size(definition, x):
     return 1.0 / float(x) if definition["resolution"]["finer"] == "up" else float(x)
 
 
-def _row(definition, point, reference):
+def _row(definition, point, reference, finest):
     run, value = point["run"], _value(definition, point["run"])
     seconds = run["cpu_seconds"]
     row = dict.fromkeys(COLUMNS) | {key: point[key] for key in ("role", "group", "label", "x")}
@@ -114,6 +114,8 @@ def _row(definition, point, reference):
             "value": value, "crossing": False, "front": False, "repeats": len(seconds)}
     if value is not None:
         row["error"] = (value - reference) / abs(reference) if reference else value
+        if point is finest:  # it is 0 by definition
+            row |= {"status": "reference", "error": None}
         row["cpu_seconds"] = min(seconds)
         row["spread"] = (max(seconds) - min(seconds)) / min(seconds) if len(seconds) > 1 and min(seconds) else None
         row["particle_steps"] *= run.get("sub_steps") or 1
@@ -160,7 +162,7 @@ def _knobs(definition, rows):
         cheapest, best = min(same, key=lambda r: r["cpu_seconds"], default=base), min(good, key=lambda r: abs(r["error"]))
         short = lambda r: {"value": r["x"], "error": r["error"], "cpu_seconds": r["cpu_seconds"]}
         found[knob["name"]] = {"base": short(base) | {"of": knob["of"], "at": knob["at"]}, "cheapest_as_good": short(cheapest), "lowest_error": short(best),
-                               "failed": [r["x"] for r in mine if r["status"] != "ok"],
+                               "failed": [r["x"] for r in mine if r["status"] == "failed"],
                                "ran": [r["x"] for r in good], "error_range": [min(abs(r["error"]) for r in good), max(abs(r["error"]) for r in good)],
                                "cpu_range": [min(r["cpu_seconds"] for r in good), max(r["cpu_seconds"] for r in good)]}
     return found
@@ -308,7 +310,7 @@ def _draw_knobs(path, definition, rows):
             words = isinstance(knob["values"], dict) or any(isinstance(v, str) for v in knob["values"])
             place = {r["label"]: k if words else float(r["x"]) for k, r in enumerate(mine)}
             good = [r for r in mine if r["status"] == "ok"]
-            bad = [r for r in mine if r["status"] != "ok"]
+            bad = [r for r in mine if r["status"] == "failed"]
             x = np.array([place[r["label"]] for r in good])
             y = np.array([100 * abs(r["error"]) for r in good])
             time = np.array([r["cpu_seconds"] for r in good])

@@ -168,6 +168,11 @@ def test_deck_of_ones_own(tmp_path, monkeypatch, capsys):
     assert summary["reference"]["kind"] == "extrapolated" and summary["reference"]["value"] == pytest.approx(1.0, abs=1e-3)
     assert summary["methods"]["kind a"]["order"] == pytest.approx(2.0, abs=0.1)
     assert set(summary["methods"]) == {"kind a", "kind b"}
+    # two resolutions allow no extrapolation: the finer one is the reference, and has no error of its own
+    assert accuracy_cost.main([*words[:2], "h=0.5,0.25", *words[3:]]) == 0
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["reference"]["kind"] == "finest" and not summary["failed"]
+    assert summary["methods"]["kind a"]["bounds"] == {} and "reference" in (out / "points.csv").read_text()
     # a formula of the deck can be replaced; points are others, so nothing is mixed up
     assert accuracy_cost.main([*words, "offset=1"]) == 0
     assert json.loads((out / "summary.json").read_text())["reference"]["value"] == pytest.approx(2.0, abs=1e-3)
