@@ -84,7 +84,8 @@ def analysed(name):
     def measure(folder):
         module.main(folder)
         figures = json.loads((folder / "summary.json").read_text())["figures"]
-        return {f["name"]: f["value"] for f in figures} | {f"{f['name']} reference": f["reference"] for f in figures if f["reference"]}
+        references = {f"{f['name']} reference": f["reference"] for f in figures if f["reference"]}
+        return {f["name"]: f["value"] for f in figures} | references
     return measure
 
 
@@ -169,7 +170,8 @@ def main(arguments):
             raise Refusal("a deck of your own needs --vary NAME=V1,V2,V3 (the resolution first) and --measure NAME")
         definition = own_deck(deck_path, vary, measure, given)
         name, measure = deck_path.stem if deck_path.suffix else deck_path.name.removeprefix("in."), printed(measure)
-        files = [p for p in deck_path.resolve().parent.iterdir() if p.is_file() and p.name not in ("log.lammps", deck_path.name)]
+        beside = deck_path.resolve().parent.iterdir()
+        files = [p for p in beside if p.is_file() and p.name not in ("log.lammps", deck_path.name)]
     folder = Path(options["out"]).resolve() if "out" in options else paths.RESULTS / "cost" / name
     if "source" in options and "draw" not in options:
         raise Refusal("source= is for draw=only: what runs is what is built")

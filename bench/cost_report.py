@@ -31,16 +31,18 @@ def write(folder, name, definition, points, source):
     candidates = [r for r in rows if r["status"] == "ok" and r["role"] in ("curve", "corner") and not r["crossing"]]
     for k in pareto([r["cpu_seconds"] for r in candidates], [abs(r["error"]) for r in candidates], NOISE):
         candidates[k]["front"] = True
-    methods = {name: _method(definition, curve) for name, curve in curves.items()}
+    certain = 2.0 * (about.get("uncertainty") or 0.0) / abs(reference or 1.0)
+    methods = {name: _method(definition, curve, certain) for name, curve in curves.items()}
     summary = {
-        "scene": name, "title": definition["title"], "figure": definition["figure"], "reference": about, "command": definition["command"],
+        "scene": name, "title": definition["title"], "figure": definition["figure"], "reference": about,
+        "command": definition["command"],
         "source": source, "points": len(rows), "failed": sum(r["status"] == "failed" for r in rows),
         "spread": float(np.median([r["spread"] for r in rows if r["spread"] is not None] or [0.0])),
-        "cpu_seconds": sum(s for s in {id(p["run"]): sum(p["run"]["cpu_seconds"]) for p in points}.values()),
+        "cpu_seconds": sum({json.dumps(p["run"]["settings"]): sum(p["run"]["cpu_seconds"]) for p in points}.values()),
         "methods": methods, "knobs": _knobs(definition, rows), "reach": _reach(methods)}
     summary["recommendation"] = _recommendation(definition, summary, rows)
     with (folder / "points.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
     (folder / "summary.json").write_text(json.dumps(summary, indent=1, default=float) + "\n")
@@ -85,19 +87,23 @@ def _reference(definition, points):
                           if f"{definition['figure']} reference" in p["run"]["figures"]), None)
         return value or None, {"kind": "outside", "value": value, "source": given["source"]}, None
     first = next(iter(definition["methods"]))
-    curve = [p for p in points if p["role"] == "curve" and p["group"] == first and _value(definition, p["run"]) is not None]
+    curve = [p for p in points
+             if p["role"] == "curve" and p["group"] == first and _value(definition, p["run"]) is not None]
     if not curve:
         return None, {"kind": "none", "value": None, "source": f"no run of '{first}' gave a value"}, None
     curve.sort(key=lambda p: _size(definition, p["x"]), reverse=True)
     sizes, values = [_size(definition, p["x"]) for p in curve], [_value(definition, p["run"]) for p in curve]
     limit = extrapolate(sizes, values)
     if limit is None:
-        return values[-1], {"kind": "finest", "value": values[-1], "uncertainty": None,
-                            "source": f"the finest run of '{first}': its values do not approach a limit that could be extrapolated"}, curve[-1]
+        about = f"the finest run of '{first}', {values[-1]:.5g}: the values do not approach a limit that could be extrapolated"
+        step = abs(values[-1] - values[-2]) if len(values) > 1 else None
+        if step is not None:
+            about += f"; the last refinement changed it by {100 * step / abs(values[-1]):.1g} %, and errors mean no less than that"
+        return values[-1], {"kind": "finest", "value": values[-1], "uncertainty": step, "source": about}, curve[-1]
     value, power, uncertainty = limit
-    return value, {"kind": "extrapolated", "value": value, "order": power, "uncertainty": uncertainty,
-                   "source": f"Richardson extrapolation of '{first}': {value:.5g}, uncertain by {uncertainty:.1g}, order {power:.2f}. "
-                             "This is convergence to itself, not agreement with an outside truth"}, None
+    about = (f"Richardson extrapolation of '{first}': {value:.5g}, uncertain by {uncertainty:.1g}, order {power:.2f}. "
+             "This is convergence to itself, not agreement with an outside truth")
+    return value, {"kind": "extrapolated", "value": value, "order": power, "uncertainty": uncertainty, "source": about}, None
 
 
 def _size(definition, x):
@@ -108,43 +114,49 @@ def _size(definition, x):
 def _row(definition, point, reference, finest):
     run, value = point["run"], _value(definition, point["run"])
     seconds = run["cpu_seconds"]
-    row = dict.fromkeys(COLUMNS) | {key: point[key] for key in ("role", "group", "label", "x")}
+    row = dict.fromkeys(COLUMNS) | {"point": run} | {key: point[key] for key in ("role", "group", "label", "x")}
     row |= {key: run.get(key) for key in ("dx", "particles", "steps", "particle_steps", "pair_visits")}
-    row |= {"status": "ok" if value is not None else "failed", "why": run["why"] or (None if value is not None else "no valid figure"),
-            "value": value, "crossing": False, "front": False, "repeats": len(seconds)}
+    row |= {"status": "failed", "why": run["why"] or "no valid figure"} if value is None else {"status": "ok"}
+    row |= {"value": value, "crossing": False, "front": False, "repeats": len(seconds)}
     if value is not None:
         row["error"] = (value - reference) / abs(reference) if reference else value
         if point is finest:  # it is 0 by definition
             row |= {"status": "reference", "error": None}
         row["cpu_seconds"] = min(seconds)
-        row["spread"] = (max(seconds) - min(seconds)) / min(seconds) if len(seconds) > 1 and min(seconds) else None
+        if len(seconds) > 1 and min(seconds):
+            row["spread"] = (max(seconds) - min(seconds)) / min(seconds)
         row["particle_steps"] *= run.get("sub_steps") or 1
     return row
 
 
 def _curves(definition, rows):
     """{method: its rows from coarse to fine}, those that gave a figure."""
-    return {name: sorted((r for r in rows if r["role"] == "curve" and r["group"] == name and r["status"] == "ok"),
-                         key=lambda r: _size(definition, r["x"]), reverse=True) for name in definition["methods"]}
+    good = [r for r in rows if r["role"] == "curve" and r["status"] == "ok"]
+    return {name: sorted((r for r in good if r["group"] == name), key=lambda r: _size(definition, r["x"]), reverse=True)
+            for name in definition["methods"]}
 
 
-def _method(definition, curve):
-    """Order of convergence, and what each error bound costs."""
+def _method(definition, curve, certain):
+    """Order of convergence, and what each error bound costs; bounds below `certain` are beyond what the reference can judge."""
     h = [_size(definition, r["x"]) for r in curve]
     error = [r["error"] for r in curve]
     fit = order(h, error)
     found = {"order": fit and fit[0], "order_interval": fit and fit[1], "sign_changes": bool(np.any(crossings(error))), "bounds": {}}
     for bound in BOUNDS:
         k = reach(error, bound / 100.0)
+        if bound / 100.0 < certain:
+            continue
         if k is not None:
-            found["bounds"][f"{bound:g}"] = {"at": curve[k]["x"], "error": max(map(abs, error[k:])), "cpu_seconds": curve[k]["cpu_seconds"],
-                                             "particle_steps": curve[k]["particle_steps"], "kind": "coarsest run" if k == 0 else "run"}
+            found["bounds"][f"{bound:g}"] = {
+                "at": curve[k]["x"], "error": max(map(abs, error[k:])), "cpu_seconds": curve[k]["cpu_seconds"],
+                "particle_steps": curve[k]["particle_steps"], "kind": "coarsest run" if k == 0 else "run"}
         elif fit and fit[0] - fit[1] > 0.2 and not found["sign_changes"]:
             size = (bound / 100.0 / fit[2])**(1.0 / fit[0])
             slope = np.polyfit(np.log(h[-3:]), np.log([r["cpu_seconds"] for r in curve[-3:]]), 1)[0]
             at = 1.0 / size if definition["resolution"]["finer"] == "up" else size
             if size > h[-1] / 4.0:  # further away it means nothing
-                found["bounds"][f"{bound:g}"] = {"at": at, "error": bound / 100.0, "cpu_seconds": curve[-1]["cpu_seconds"] * (size / h[-1])**slope,
+                seconds = curve[-1]["cpu_seconds"] * (size / h[-1])**slope
+                found["bounds"][f"{bound:g}"] = {"at": at, "error": bound / 100.0, "cpu_seconds": seconds,
                                                  "particle_steps": None, "kind": "extrapolated"}
     return found
 
@@ -159,26 +171,31 @@ def _knobs(definition, rows):
         if base is None or not good:
             continue
         same = [r for r in good if abs(r["error"]) <= SAME * abs(base["error"])]
-        cheapest, best = min(same, key=lambda r: r["cpu_seconds"], default=base), min(good, key=lambda r: abs(r["error"]))
+        cheapest = min(same, key=lambda r: r["cpu_seconds"], default=base)
+        best = min(good, key=lambda r: abs(r["error"]))
         short = lambda r: {"value": r["x"], "error": r["error"], "cpu_seconds": r["cpu_seconds"]}
-        found[knob["name"]] = {"base": short(base) | {"of": knob["of"], "at": knob["at"]}, "cheapest_as_good": short(cheapest), "lowest_error": short(best),
-                               "failed": [r["x"] for r in mine if r["status"] == "failed"],
-                               "ran": [r["x"] for r in good], "error_range": [min(abs(r["error"]) for r in good), max(abs(r["error"]) for r in good)],
-                               "cpu_range": [min(r["cpu_seconds"] for r in good), max(r["cpu_seconds"] for r in good)]}
+        errors = [abs(r["error"]) for r in good]
+        found[knob["name"]] = {
+            "base": short(base) | {"of": knob["of"], "at": knob["at"]}, "cheapest_as_good": short(cheapest),
+            "lowest_error": short(best), "ran": [r["x"] for r in good],
+            "failed": [r["x"] for r in mine if r["status"] == "failed"], "error_range": [min(errors), max(errors)]}
     return found
 
 
 def _base(definition, entry, rows):
-    return next((r for r in rows if r["role"] == "curve" and r["group"] == entry["of"] and r["x"] == entry["at"] and r["status"] == "ok"), None)
+    """The run of a method's curve that a knob or effect starts from."""
+    return next((r for r in rows if r["role"] == "curve" and r["status"] == "ok"
+                 and (r["group"], r["x"]) == (entry["of"], entry["at"])), None)
 
 
 def _reach(methods):
-    """{bound: methods that keep it, cheapest first; the most accurate of those within a quarter of the cheapest's time before it}."""
+    """{bound: methods that keep it, cheapest first}; the most accurate of those within a quarter of the least time leads."""
     found = {}
     for bound in map("{:g}".format, BOUNDS):
         entries = sorted(({"method": n, **m["bounds"][bound]} for n, m in methods.items() if bound in m["bounds"]),
                          key=lambda e: (e["kind"] == "extrapolated", e["cpu_seconds"]))
-        near = [e for e in entries if e["kind"] != "extrapolated" and e["cpu_seconds"] <= 1.25 * entries[0]["cpu_seconds"]]
+        near = [e for e in entries
+                if e["kind"] != "extrapolated" and e["cpu_seconds"] <= 1.25 * entries[0]["cpu_seconds"]]
         best = min(near, key=lambda e: abs(e["error"]), default=None)
         found[bound] = ([best] if best else []) + [e for e in entries if e is not best]
     return found
@@ -204,14 +221,16 @@ def _recommendation(definition, summary, rows):
     if text:
         text = ["To keep " + "; ".join(text)]
     else:
-        lowest = min((r for r in rows if r["status"] == "ok" and r["role"] == "curve"), key=lambda r: abs(r["error"]), default=None)
+        curves = [r for r in rows if r["status"] == "ok" and r["role"] == "curve"]
+        lowest = min(curves, key=lambda r: abs(r["error"]), default=None)
         text = ["No method kept any of the bounds at its finest runs" +
                 (f"; the smallest error was {_percent(lowest['error'])} ({lowest['label']})" if lowest else "")]
     for name, knob in summary["knobs"].items():
         cheap, base, low = knob["cheapest_as_good"], knob["base"], knob["lowest_error"]
         parts = []
         if cheap["cpu_seconds"] < 0.9 * base["cpu_seconds"]:
-            parts.append(f"{_word(cheap['value'])} is as accurate as the base for {cheap['cpu_seconds'] / base['cpu_seconds']:.2f} of its time")
+            parts.append(f"{_word(cheap['value'])} is as accurate as the base for "
+                         f"{cheap['cpu_seconds'] / base['cpu_seconds']:.2f} of its time")
         if abs(low["error"]) < 0.67 * abs(base["error"]) and low["value"] != cheap["value"]:
             parts.append(f"the error falls from {_percent(base['error'])} to {_percent(low['error'])} at {_word(low['value'])} for "
                          f"{low['cpu_seconds'] / base['cpu_seconds']:.2f} of the time")
@@ -327,9 +346,9 @@ def _draw_knobs(path, definition, rows):
             axes.patch.set_visible(False)
             base = _base(definition, knob, rows)
             if base is not None:
-                here = [r for r in good if r["value"] == base["value"] and r["cpu_seconds"] == base["cpu_seconds"]][:1]
-                axes.plot([place[r["label"]] for r in here], [100 * abs(r["error"]) for r in here], "o", markersize=10, color="black",
-                          markerfacecolor="none", markeredgewidth=0.9)
+                here = [r for r in good if r["point"] == base["point"]]
+                axes.plot([place[r["label"]] for r in here], [100 * abs(r["error"]) for r in here], "o", markersize=10,
+                          color="black", markerfacecolor="none", markeredgewidth=0.9)
             axes.set_yscale("log")
             if len(y):
                 axes.set_ylim(min(y) / 1.6, max(max(y) * 1.6, min(y) * 8.0))
@@ -342,7 +361,8 @@ def _draw_knobs(path, definition, rows):
             elif min(place.values()) > 0.0 and max(place.values()) / min(place.values()) > 15.0:
                 axes.set_xscale("log")
                 _few_labels(axes.xaxis)
-            axes.set_title(f"{knob['name']}\nof {knob['of']}, {definition['resolution']['variable']} = {knob['at']:g}", loc="left", fontsize=8)
+            axes.set_title(f"{knob['name']}\nof {knob['of']}, {definition['resolution']['variable']} = {knob['at']:g}",
+                           loc="left", fontsize=8)
             axes.tick_params(axis="y", colors=plot.BLUE, which="both", labelsize=7.5)
             right.tick_params(axis="y", colors=plot.ORANGE, labelsize=7.5)
         height = 2.7 * lines
@@ -422,45 +442,55 @@ def _bound_cell(entry):
 def _page(name, definition, summary, rows, curves):
     variable = definition["resolution"]["variable"]
     lines = [f"# What accuracy costs: {definition['title']}", "",
-             f"Made by `{summary['command']}`; all {summary['points']} points are in [{name}.csv]({name}.csv). Do not edit: it is written anew.", "",
-             f"Error: {definition['label']} (figure `{summary['figure']}`). Reference: {summary['reference']['source']}. {definition.get('notes', '')}",
-             f"Time: CPU seconds of the time loop on one core, the least of up to three runs, which differ by {100 * summary['spread']:.0f} % "
-             "(median). Particle-steps and pair visits (neighbours times steps) do not depend on the machine.", "",
+             f"Made by `{summary['command']}`; all {summary['points']} points are in [{name}.csv]({name}.csv). Do not edit: "
+             "it is written anew.", "",
+             f"Error: {definition['label']} (figure `{summary['figure']}`). Reference: {summary['reference']['source']}. "
+             f"{definition.get('notes', '')}",
+             "Time: CPU seconds of the time loop on one core, the least of up to three runs, which differ by "
+             f"{100 * summary['spread']:.0f} % (median). Particle-steps and pair visits (neighbours times steps) do not "
+             "depend on the machine.", "",
              "## In short", summary["recommendation"], "",
-             "## Error against resolution, time and work", f"![Error against {variable}, CPU time and particle-steps]({name}_work.png)", "",
-             "Hollow: small because the error changes sign there, which is no accuracy; neither these nor runs with one setting changed count for the front.", "",
+             "## Error against resolution, time and work",
+             f"![Error against {variable}, CPU time and particle-steps]({name}_work.png)", "",
+             "Hollow: small because the error changes sign there, which is no accuracy; neither these nor runs with one "
+             "setting changed count for the front.", "",
              "| method | order | 10 % | 5 % | 2 % | 1 % |", "|---|---|---|---|---|---|"]
     for method, found in summary["methods"].items():
         fit = _order(found).removeprefix("order ")
         cells = [_bound_cell(found["bounds"].get(f"{b:g}")) for b in BOUNDS]
         lines.append(f"| {method} | {fit} | " + " | ".join(cells) + " |")
-    lines += ["", f"CPU seconds of the coarsest run from which on all finer ones keep the bound, and its {variable}; `<`: the coarsest one made; "
-              "*slanted*: extrapolated; -: neither. Order: least squares with 95 % interval, none where that holds 0.", "",
+    lines += ["", f"CPU seconds of the coarsest run from which on all finer ones keep the bound, and its {variable}; "
+              "`<`: the coarsest one made; *slanted*: extrapolated; -: neither. Order: least squares with 95 % interval, none where that holds 0.", "",
               f"| method | {variable} | value | error | CPU s | spread | particle-steps | pair visits |", "|---|---|---|---|---|---|---|---|"]
     for method, curve in curves.items():
         for r in curve:
             mark = " (sign changes)" if r["crossing"] else " **front**" if r["front"] else ""
-            lines.append(f"| {method} | {r['x']:.4g} | {r['value']:.5g} | {_percent(r['error'])}{mark} | {r['cpu_seconds']:.3g} | "
+            lines.append(f"| {method} | {r['x']:.4g} | {r['value']:.5g} | {_percent(r['error'])}{mark} | "
+                         + f"{r['cpu_seconds']:.3g} | "
                          + (f"{100 * r['spread']:.0f} %" if r["spread"] is not None else "1 run")
                          + f" | {r['particle_steps']:.2e} | " + (f"{r['pair_visits']:.2e} |" if r["pair_visits"] else "- |"))
     if summary["knobs"]:
         lines += ["", "## One setting at a time", f"![Error and time over each setting]({name}_knobs.png)", "",
                   "Blue: error; orange: CPU time; ring: the base; cross: the run fails.", "",
-                  "| setting | base | cheapest that is as good | lowest error | error from, to | fails at |", "|---|---|---|---|---|---|"]
+                  "| setting | base | cheapest that is as good | lowest error | all errors | fails at |", "|---|---|---|---|---|---|"]
         for knob, k in summary["knobs"].items():
             base, cheap, low = k["base"], k["cheapest_as_good"], k["lowest_error"]
-            ratio = cheap["cpu_seconds"] / base["cpu_seconds"]
-            lines.append(f"| {knob} | {_percent(base['error'])}, {_seconds(base['cpu_seconds'])} | {_word(cheap['value'])}: {_percent(cheap['error'])}, {ratio:.2f} of the time | "
-                         f"{_word(low['value'])}: {_percent(low['error'])}, {low['cpu_seconds'] / base['cpu_seconds']:.2f} of the time | "
-                         f"{100 * k['error_range'][0]:.2g}, {100 * k['error_range'][1]:.2g} % | {', '.join(map(_word, k['failed'])) or '-'} |")
+            cells = [f"{_word(r['value'])}: {_percent(r['error'])}, {r['cpu_seconds'] / base['cpu_seconds']:.2f} of the time"
+                     for r in (cheap, low)]
+            lines.append(f"| {knob} | {_percent(base['error'])}, {_seconds(base['cpu_seconds'])} | {cells[0]} | {cells[1]} | "
+                         + " to ".join(f"{100 * e:.2g}" for e in k["error_range"]) + " % | "
+                         + (", ".join(map(_word, k["failed"])) or "-") + " |")
         lines += ["", f"As good: an error of at most {SAME:g} times that of the base."]
     if definition.get("effects"):
-        lines += ["", "## What each effect is worth", f"![Error and time with and without]({name}_effects.png)", "", "Grey: the base; the others differ from it in one thing."]
+        lines += ["", "## What each effect is worth", f"![Error and time with and without]({name}_effects.png)", "",
+                  "Grey: the base; the others differ from it as said."]
     corners = [r for r in rows if r["role"] == "corner"]
     if corners:
         lines += ["", "## Several settings at once", "| settings | error | CPU s | particle-steps |", "|---|---|---|---|"]
-        lines += [f"| {r['label']} | " + (f"{_percent(r['error'])}{' **front**' if r['front'] else ''} | {r['cpu_seconds']:.3g} | {r['particle_steps']:.2e} |"
-                                          if r["status"] == "ok" else "fails | | |") for r in corners]
+        for r in corners:
+            mark = " **front**" if r["front"] else ""
+            cells = f"{_percent(r['error'])}{mark} | {r['cpu_seconds']:.3g} | {r['particle_steps']:.2e}" if r["status"] == "ok" else "fails | |"
+            lines.append(f"| {r['label']} | {cells} |")
     return "\n".join(lines) + "\n"
 
 
@@ -476,9 +506,10 @@ def _index():
         for bound in BOUNDS:
             run = [e for e in summary["reach"][f"{bound:g}"] if e["kind"] != "extrapolated"]
             cells.append(f"{_bound_cell(run[0])} {run[0]['method']}" if run else "-")
-        lines.append(f"| [{summary['title']}]({summary['scene']}.md) | `{summary['figure']}`; {summary['reference']['source']} | " + " | ".join(cells) + " |")
+        lines.append(f"| [{summary['title']}]({summary['scene']}.md) | `{summary['figure']}`; {summary['reference']['source']} | "
+                     + " | ".join(cells) + " |")
     lines += ["", "CPU seconds (in brackets the resolution) of the cheapest method whose runs keep the bound from there on.", ""]
     for summary in found:
-        lines += [f"## {summary['title']}", f"[![Error against resolution, time and work]({summary['scene']}_work.png)]({summary['scene']}.md)", "",
-                  summary["recommendation"], ""]
+        picture = f"![Error against resolution, time and work]({summary['scene']}_work.png)"
+        lines += [f"## {summary['title']}", f"[{picture}]({summary['scene']}.md)", "", summary["recommendation"], ""]
     return "\n".join(lines)

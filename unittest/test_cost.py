@@ -34,6 +34,8 @@ def test_extrapolation_finds_the_limit():
     assert precision.extrapolate(H, [1.0, 1.1, 1.05, 1.12]) is None  # to and fro
     assert precision.extrapolate(H, [1.0, 1.1, 1.3, 1.7]) is None  # ever larger steps
     assert precision.extrapolate(H[:2], [1.0, 1.1]) is None
+    # a coarse run far off, then hardly any change: with and without it the limits differ by more than the last step
+    assert precision.extrapolate([2.5, 1.667, 1.25, 1.0], [30.97, 36.32, 36.75, 37.07]) is None
 
 
 def test_front_bounds_and_changes_of_sign():

@@ -29,7 +29,7 @@ def extrapolate(h, value):
 
     Least squares over orders of 0.3 to 6. The uncertainty is the distance between the limit and the finest value's own neighbour
     estimate: the larger of the change when the coarsest point is left out and a quarter of the last step to the limit. None
-    where the values do not approach a limit: fewer than three, or differences that grow.
+    where the values do not approach a limit: fewer than three, differences that grow, or a limit less certain than the values.
     """
     h, value = (np.asarray(a, float) for a in (h, value))
     by_size = np.argsort(h)[::-1]
@@ -42,7 +42,8 @@ def extrapolate(h, value):
         return None
     limit, power = _fit(h, value)
     change = abs(_fit(h[1:], value[1:])[0] - limit) if len(h) > 3 else 0.0
-    return limit, power, max(change, 0.25 * abs(limit - value[-1]))
+    uncertainty = max(change, 0.25 * abs(limit - value[-1]))
+    return (limit, power, uncertainty) if uncertainty <= 2.0 * abs(steps[1]) else None
 
 
 def _fit(h, value):
