@@ -5,7 +5,7 @@ import json
 import shutil
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from fsi import paths, plot
 from fsi.precision import crossings, extrapolate, order, pareto, reach
@@ -273,6 +273,18 @@ def _plain(value, _=None):
     return f"$10^{{{power}}}$" if front == "1" else rf"${front}\cdot10^{{{power}}}$"
 
 
+def _resolution_ticks(axes, definition, values):
+    """Marks the resolutions that were run, as many as there is room for."""
+    sizes = {_size(definition, v): v for v in values}
+    room = 0.13 * np.log(max(sizes) / min(sizes)) if sizes else 0.0
+    ticks = []
+    for size in sorted(sizes):
+        if not ticks or np.log(size / ticks[-1]) > room:
+            ticks.append(size)
+    axes.set_xticks(ticks, [f"{sizes[t]:.3g}" for t in ticks])
+    axes.xaxis.set_minor_locator(NullLocator())
+
+
 def _draw_work(path, definition, rows, curves, methods):
     with plot.picture(path, 10.2, 4.4) as figure:
         panels = figure.subplots(1, 3, sharey=True)
@@ -302,10 +314,13 @@ def _draw_work(path, definition, rows, curves, methods):
                 axes.plot(x[~hollow], y[~hollow], "o", color=colour, markersize=4.5, label=label, zorder=4)
                 axes.plot(x[hollow], y[hollow], "o", color=colour, markersize=4.5, markerfacecolor="white", zorder=4)
             axes.set(xscale="log", yscale="log")
-            _few_labels(axes.xaxis)
+            if column == "size":
+                _resolution_ticks(axes, definition, [r["x"] for curve in curves.values() for r in curve])
+            else:
+                _few_labels(axes.xaxis)
             _few_labels(axes.yaxis)
         resolution = definition["resolution"]
-        panels[0].set_xlabel(f"1/{resolution['variable']}" if resolution["finer"] == "up" else resolution["variable"])
+        panels[0].set_xlabel(resolution["variable"] + (", reversed" if resolution["finer"] == "up" else ""))
         panels[0].set_ylabel(f"{definition['label']} [%]")
         panels[1].set_xlabel("CPU time [s]")
         panels[2].set_xlabel("particle-steps")
@@ -443,7 +458,7 @@ def _page(name, definition, summary, rows, curves):
     variable = definition["resolution"]["variable"]
     lines = [f"# What accuracy costs: {definition['title']}", "",
              f"Made by `{summary['command']}`; all {summary['points']} points are in [{name}.csv]({name}.csv). Do not edit: "
-             "it is written anew.", "",
+             f"it is written anew. Contents of src and potentials: {summary['source']}.", "",
              f"Error: {definition['label']} (figure `{summary['figure']}`). Reference: {summary['reference']['source']}. "
              f"{definition.get('notes', '')}",
              "Time: CPU seconds of the time loop on one core, the least of up to three runs, which differ by "
