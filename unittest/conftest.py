@@ -29,6 +29,8 @@ class Scene:
     density: str = "fluid continuity solid continuity"
     fluid: str = "sound 10 couple wall artificial/visc 0.05 0.1 laminar/visc density/diffusion 0.1"
     solid: str = "artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected"
+    solid_style: str = "fsi/solid"
+    sph: str = ""  # further keywords of fix fsi
     newton: str = "on"
     atom_style: str = "fsi"
 
@@ -71,10 +73,10 @@ processors {processors}
         """Pair styles and fixes; coeff=False after read_restart, which knows the pair styles already."""
         plate = self.has_solid
         if plate:
-            style = f"pair_style hybrid fsi/fluid {self.fluid} fsi/solid {self.solid}\n" * coeff
+            style = f"pair_style hybrid fsi/fluid {self.fluid} {self.solid_style} {self.solid}\n" * coeff
             # restart files do not hold the coefficients of a hybrid style, whatever its parts
             pair = style + "pair_coeff * * fsi/fluid materials.fsi water plate\n" \
-                "pair_coeff * * fsi/solid materials.fsi NULL plate\n"
+                f"pair_coeff * * {self.solid_style} materials.fsi NULL plate\n"
         else:
             pair = f"pair_style fsi/fluid {self.fluid}\npair_coeff * * materials.fsi water\n" * coeff
         walls = "".join(f" {'xyz'[a]}{'lo' if s > 0 else 'hi'} {p!r} {rest}" for a, s, p, rest in self.walls)
@@ -82,8 +84,8 @@ processors {processors}
         size = float(np.sqrt(self.gravity @ self.gravity))
         density = self.density if plate else " ".join(self.density.split()[:2])
         return pair + f"""
-fix sph all fsi {DX} {self.kernel} {density}
-{'fix stress all fsi/stress' if plate else ''}
+fix sph all fsi {DX} {self.kernel} {density} {self.sph}
+{'fix stress all fsi/stress' if plate and self.solid_style == 'fsi/solid' else ''}
 fix gravity all gravity {size!r} vector {g[0]!r} {g[1]!r} {g[2]!r}
 {f'fix walls all fsi/wall/mirror{walls}' if walls else ''}
 timestep {self.dt!r}

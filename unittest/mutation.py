@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 # file, what is there, what is put there instead, tests that look at it (pytest files, or a ctest name)
 FLUID, SOLID, HUB = "pair_fsi_fluid.cpp", "pair_fsi_solid.cpp", "fix_fsi.cpp"
+TL, BONDS = "pair_fsi_solid_tl.cpp", "fix_fsi_reference.cpp"
 MUTATIONS = [
     (HUB, "const double dth = 0.5 * update->dt;\n  for", "const double dth = 0.51 * update->dt;\n  for", "integrator"),
     (HUB, "dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt", "dt = update->dt, dtf = dt * force->ftm2v, dth = 0.49 * dt", "integrator"),
@@ -71,6 +72,40 @@ MUTATIONS = [
     ("fsi_tensor.h", "const double angle = 0.5 * dt", "const double angle = -0.5 * dt", "ctest"),
     ("fsi_jaumann.h", "plane_stress ? 2.0 : 3.0", "plane_stress ? 3.0 : 2.0", "ctest"),
     ("fsi_walls.h", "rsq += 4.0 * ai[k] * aj[k];", "rsq += 2.0 * ai[k] * aj[k];", "ctest"),
+    (TL, "t[a * D + c] -= kr * r * X[c];", "t[a * D + c] += kr * r * X[c];", "solid_tl"),
+    (TL, "extra[a] -= kr * r;", "extra[a] += kr * r;", "solid_tl"),
+    (TL, "for (int c = 0; c < D; c++) fj[a] -= t[a * D + c] * b[c];", "for (int c = 0; c < D; c++) fj[a] -= t[c * D + a] * b[c];", "solid_tl"),
+    (TL, "  comm->reverse_comm(this);\n}", "}", "solid_tl"),
+    (TL, "rmass[i] / si.rho0 * reference->weight(i)", "rmass[i] / si.rho0", "solid_tl"),
+    (TL, "const double q = 0.5 * b[2 * D + 1]", "const double q = b[2 * D + 1]", "solid_tl"),
+    (TL, "fsolid[i][d] += f * xij[d];", "fsolid[i][d] -= f * xij[d];", "solid_tl"),
+    (TL, "if (molecule[i] == molecule[j]) continue;", "", "solid_tl"),
+    (TL, "const bool both = newton || j < nlocal;", "const bool both = true;", "solid_tl"),
+    (TL, "comm_forward = alpha > 0.0 || beta > 0.0 ? 2 * dim : dim;", "comm_forward = dim;", "solid_tl parallel"),
+    (TL, "atom->x[i][d] + shift[d];", "atom->x[i][d];", "solid_tl"),
+    (TL, "if (hub->substeps > 1 && !update->setupflag) return;", "if (hub->substeps > 1) return;", "solid_tl"),
+    (TL, "s.sigma[voigt[a][c]] = sum / s.J;", "s.sigma[voigt[a][c]] = sum;", "solid_tl"),
+    ("pair_fsi.cpp", "  else list = nullptr;", "  //", "solid_tl"),
+    (HUB, "v[i][d] += dtfm * (f[i][d] + fs[i][d]);", "v[i][d] += dtfm * fs[i][d];", "solid_tl"),
+    (HUB, "back = -0.5 * update->dt;", "back = 0.0;", "solid_tl"),
+    (HUB, "if (atom->mask[i] & groupbit) moving.push_back(i);", "moving.push_back(i);", "solid_tl"),
+    (HUB, "solid_tl->forward_positions();", "", "solid_tl"),
+    (HUB, "std::fill_n(solid_tl->virial, 6, 0.0);", "", "solid_tl"),
+    (HUB, "tally_dt = ledger ? dt : 0.0;", "", "solid_tl"),
+    (BONDS, "w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));", "w.push_back(volume(j));", "solid_tl"),
+    (BONDS, "if (molecule[j] != molecule[i] || !is_solid(j)) continue;", "if (!is_solid(j)) continue;", "solid_tl"),
+    (BONDS, "{0.0, 1.0 / 12.0, -1.0 / 8.0, 1.0 / 24.0}", "{0.0, 1.0 / 12.0, -1.0 / 8.0, 1.0 / 12.0}", "solid_tl"),
+    (BONDS, "    comm->forward_comm(this);\n", "", "solid_tl"),
+    (BONDS, "if (delflag && slot[j] >= 0) unused.push_back(slot[j]);", "if (slot[j] >= 0) unused.push_back(slot[j]);", "solid_tl restart"),
+    (BONDS, "quadrature[slot[i]] = buf[m++];", "m++;", "solid_tl restart"),
+    (BONDS, "std::fabs(atom->x[j][a] - atom->x[i][a]) > 0.5 * domain->prd[a]", "false", "solid_tl"),
+    ("atom_vec_fsi.cpp", "atom->map_style = Atom::MAP_YES;", "", "parallel"),
+    ("compute_fsi_energy.cpp", "!(atom->mask[i] & hub->groupbit) ? 0.0 : ", "", "solid_tl"),
+    ("fsi_gradient.h", "for (int b = k + 1; b < terms; b++) c[k] -= L[b][k] * c[b];", "", "ctest"),
+    ("fsi_gradient.h", "TOLERANCE = 1.0e-4", "TOLERANCE = 1.0e-1", "ctest"),
+    ("fsi_elastic.h", "r.energy = 0.5 * lambda * tr * tr + mu", "r.energy = lambda * tr * tr + mu", "ctest"),
+    ("fsi_elastic.h", "C[1] = F[5] * F[6] - F[3] * F[8];", "C[1] = F[3] * F[8] - F[5] * F[6];", "ctest"),
+    ("fsi_contact.h", "scale(dim == 3 ? dx : 1.0)", "scale(1.0)", "ctest"),
 ]
 
 

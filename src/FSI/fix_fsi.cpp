@@ -161,6 +161,10 @@ void FixFSI::init()
   if (!fluid && !solid && !solid_tl)
     error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
   if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
+  if (solid_tl && density_solid != CONTINUITY)
+    error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
+  if (solid_tl && fluid && !fluid->couples_as_wall())
+    error->all(FLERR, "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress is not one that crosses to the fluid");
 
   // the plain forces of a solid end at its face with half a kernel of neighbours missing, which the fluid's pairs supply; forces with
   // corrected gradients are complete without them
@@ -209,6 +213,46 @@ void FixFSI::init()
     give_defaults(i);
   }
   find_gravity();
+}
+
+/* ----------------------------------------------------------------------
+   say what is simulated, when it changes: every effect that is on, every one that is not and how to turn it on, and what memory and
+   messages they need
+------------------------------------------------------------------------- */
+
+void FixFSI::setup(int)
+{
+  static const char *const modes[] = {"continuity", "summation", "ratio"};
+  static const char *const kernels[] = {"cubic spline", "quintic spline", "Wendland C2"};
+  std::vector<PairFSI::Effect> effects;
+  if (fluid) effects.push_back({fmt::format("density of the fluid by {}", modes[density_fluid]), "", true});
+  if (solid) effects.push_back({fmt::format("density of the solid by {}", modes[density_solid]), "", true});
+  for (const PairFSI *pair : {(PairFSI *) fluid, (PairFSI *) solid, (PairFSI *) solid_tl})
+    if (pair)
+      for (const auto &e : pair->effects()) effects.push_back(e);
+  if (fluid) effects.push_back({fmt::format("{} mirror walls", walls.wall.size()), "fix fsi/wall/mirror", !wall_fixes.empty()});
+  if (fix_stress) effects.push_back({"plasticity", "fix fsi/stress plastic", fix_stress->plastic});
+  if (solid_tl) effects.push_back({fmt::format("{} solid sub-steps", substeps), "fix fsi substeps", substeps > 1});
+  effects.push_back({"energy ledger", "compute fsi/energy", ledger});
+  std::string on, off;
+  for (const auto &e : effects) {
+    if (e.on) on += "\n    " + e.name;
+    else off += (off.empty() ? "" : ", ") + e.keyword;
+  }
+
+  const int ng = need_grad ? ngrad() : 0, ns = need_shift ? nshift() : 0;
+  const int fluid_bytes = 8 * (fluid ? 2 * dim + 4 + (density_fluid == CONTINUITY) + ns : 0) + (wall_fixes.empty() ? 0 : 4);
+  std::string text = fmt::format("FSI: {}, h = {:g} dx, dx = {:g}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[kernel],
+                                 h / dx, dx, on, off.empty() ? "none" : off);
+  text += fmt::format("  arrays of all particles: {} bytes each{}{}\n", 8 * (need_psi + ng) + fluid_bytes,
+                      need_psi ? ", number density" : "", ng ? ", velocity gradient" : "");
+  const int back = (fluid && density_fluid == CONTINUITY) || ng;
+  text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", 1,
+                      (force->newton_pair ? back + need_psi : 0),
+                      solid_tl ? fmt::format("; {} each way for solid sub-steps", substeps > 1 ? substeps : 1) : "");
+  if (text == announced) return;
+  announced = text;
+  if (comm->me == 0) utils::logmesg(lmp, text);
 }
 
 /* ----------------------------------------------------------------------
@@ -420,6 +464,7 @@ void FixFSI::substep_solids()
     drift(dth);
     solid_tl->forward_positions();
     solid_tl->advance_stress(dt);
+    std::fill_n(solid_tl->virial, 6, 0.0);
     solid_tl->internal_forces();
     fs = solid_tl->force_of_solids();
     for (const int i : moving) {
@@ -428,7 +473,9 @@ void FixFSI::substep_solids()
     }
     drift(dth);
   }
-  // what is seen from outside: the whole force
+  // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
+  if (force->pair != solid_tl)
+    for (int k = 0; k < 6; k++) force->pair->virial[k] += solid_tl->virial[k];
   for (const int i : solid_tl->solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
 }
@@ -473,6 +520,7 @@ void FixFSI::update_state(bool advance)
       if (solid->terms() == 0) dim == 2 ? advance_solids<2, 0>(advance) : advance_solids<3, 0>(advance);
       else if (solid->terms() == dim) dim == 2 ? advance_solids<2, 2>(advance) : advance_solids<3, 3>(advance);
       else dim == 2 ? advance_solids<2, 5>(advance) : advance_solids<3, 9>(advance);
+      if (advance && solid->has_hourglass()) solid->advance_hourglass(update->dt);
     }
   }
   if (need_psi) {

@@ -42,6 +42,7 @@ class FixFSI : public Fix {
   ~FixFSI() override;
   int setmask() override;
   void init() override;
+  void setup(int) override;
   void setup_pre_force(int) override;
   void initial_integrate(int) override;
   void pre_exchange() override;
@@ -130,6 +131,7 @@ class FixFSI : public Fix {
   bool need_psi, need_grad, need_ratio, need_shift;
 
   void substep_solids();
+  std::string announced;    // the list of effects as last printed
   template <int D, int TERMS> void advance_solids(bool advance);
   void advance_density();
   void density_from_psi();

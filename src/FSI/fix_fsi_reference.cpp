@@ -42,6 +42,7 @@ FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
 {
   restart_peratom = 1;
   create_attribute = 1;
+  stores_ids = 1;
   maxexchange = 1;
   maxexchange_dynamic = 1;
   comm_forward = 2 * domain->dimension;
@@ -216,6 +217,9 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
             rsq += d[a] * d[a];
           }
           if (rsq >= kernel.cutsq) continue;
+          if (domain->closest_image(i, j) != j)
+            error->one(FLERR, "Solid atoms {} and {} are neighbors through more than one image: a periodic box must be wider than two "
+                              "supports, {}, of the kernel", tag[i], tag[j], 2.0 * kernel.cut);
           near.push_back(j);
           dX.insert(dX.end(), d, d + D);
           w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
@@ -338,12 +342,21 @@ void FixFSIReference::resolve()
     const size_t first = (size_t) slot[i] * maxbond;
     for (int k = 0; k < nbond[slot[i]]; k++) {
       const tagint t = partner[first + k];
-      const int j = atom->map(t);
+      int j = atom->map(t);
+      if (j >= 0) {
+        // the image that is meant may be beyond the ghosts, too
+        j = domain->closest_image(i, j);
+        for (int a = 0; a < domain->dimension; a++)
+          if (domain->periodicity[a] && std::fabs(atom->x[j][a] - atom->x[i][a]) > 0.5 * domain->prd[a]) {
+            j = -1;
+            break;
+          }
+      }
       if (j < 0)
         error->one(FLERR, "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {}: one of them was lost, or the solid is "
                           "stretched so far that comm_modify cutoff must be larger", tag[i], t,
                    comm->cutghostuser > neighbor->cutneighmax ? comm->cutghostuser : neighbor->cutneighmax);
-      local[first + k] = domain->closest_image(i, j);
+      local[first + k] = j;
     }
   }
   for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; i++)

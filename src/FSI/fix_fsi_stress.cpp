@@ -18,8 +18,10 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "force.h"
 #include "memory.h"
 #include "modify.h"
+#include "pair_fsi_solid.h"
 
 #include <cmath>
 #include <cstring>
@@ -29,7 +31,8 @@ using namespace LAMMPS_NS;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), stress(nullptr), plane_stress(false), plastic(false), ns(domain->dimension == 2 ? 3 : 6), n(ns)
+    Fix(lmp, narg, arg), stress(nullptr), plane_stress(false), plastic(false), hourglass(false),
+    ns(domain->dimension == 2 ? 3 : 6), n(ns), dim(domain->dimension)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
@@ -49,7 +52,8 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
       error->all(FLERR, "Unknown fix fsi/stress keyword {}: expected plane or plastic", arg[iarg]);
   }
   if (plastic && plane_stress) error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
-  n = ns + (plastic ? 1 : 0);
+  hourglass = wants_hourglass(force);
+  n = ns + (plastic ? 1 : 0) + (hourglass ? dim : 0);
 
   restart_peratom = 1;
   create_attribute = 1;
@@ -57,6 +61,14 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
   for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixFSIStress::wants_hourglass(Force *force)
+{
+  const auto *pair = dynamic_cast<PairFSISolid *>(force->pair_match("^fsi/solid$", 0));
+  return pair && pair->has_hourglass();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -75,6 +87,8 @@ FixFSIStress::~FixFSIStress()
 void FixFSIStress::init()
 {
   const FixFSI *hub = FixFSI::find(lmp, "Fix fsi/stress");
+  if (hourglass != wants_hourglass(force))
+    error->all(FLERR, "Fix fsi/stress must be defined after the pair_style command that says whether there is hourglass control");
   bool yields = false;
   for (const auto &s : hub->state) yields = yields || s.yield > 0.0;
   if (comm->me == 0 && plastic && !yields)

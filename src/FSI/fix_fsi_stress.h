@@ -51,6 +51,8 @@ class FixFSIStress : public Fix {
   double **stress;
   bool plane_stress;
   bool plastic;    // materials yield; stress[i] is followed by the equivalent plastic strain
+  bool hourglass;    // pair_style fsi/solid keeps a force per particle in stress[i], last
+  double *hourglass_force(int i) { return stress[i] + n - dim; }
   double plastic_strain(int i) const { return plastic ? stress[i][ns] : 0.0; }
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between (fsi_jaumann.h)
@@ -70,8 +72,10 @@ class FixFSIStress : public Fix {
   double von_mises(int i, double p) const;
 
  private:
+  static bool wants_hourglass(class Force *);
   int ns;    // components of the deviator
   int n;     // values per atom
+  int dim;
 };
 
 }    // namespace LAMMPS_NS

@@ -23,6 +23,7 @@
 #ifndef LMP_FSI_GRADIENT_H
 #define LMP_FSI_GRADIENT_H
 
+#include <cstddef>
 #include <vector>
 
 namespace LAMMPS_NS {

@@ -103,6 +103,7 @@ void PairFSI::init_style()
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) hub->enter_state(t, make_state(material[t]));
   if (needs_neighbors()) neighbor->add_request(this);
+  else list = nullptr;    // that of an earlier run is gone
 }
 
 /* ----------------------------------------------------------------------

@@ -34,6 +34,13 @@ class PairFSI : public Pair {
   void write_restart(FILE *) override;
   void read_restart(FILE *) override;
 
+  // an effect that the style offers: what it is called, the keyword that turns it on, and whether it is on
+  struct Effect {
+    std::string name, keyword;
+    bool on;
+  };
+  virtual std::vector<Effect> effects() const = 0;
+
  protected:
   const std::string style;    // for messages
   class FixFSI *hub;

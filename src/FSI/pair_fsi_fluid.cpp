@@ -601,6 +601,31 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
 
 /* ---------------------------------------------------------------------- */
 
+bool PairFSIFluid::has_solids() const
+{
+  for (const auto &m : material)
+    if (m.species == SOLID) return true;
+  return false;
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<PairFSI::Effect> PairFSIFluid::effects() const
+{
+  const auto given = [](const std::string &name, double value) { return fmt::format("{} {:g}", name, value); };
+  static const char *const modes[] = {"wall", "pressure", "full"};
+  return {{given("artificial viscosity of the fluid, alpha", alpha), "artificial/visc", alpha > 0.0 || beta > 0.0},
+          {"laminar viscosity", "laminar/visc", laminar != 0},
+          {given("density diffusion", delta), "density/diffusion", delta > 0.0},
+          {given("particle shifting", shifting), "shift", shifting > 0.0},
+          {given("free surface where psi is below", surface_ratio), "surface", surface_ratio > 0.0},
+          {"tension in the fluid", "tension", tension != 0},
+          {given("background pressure", background), "background", background != 0.0},
+          {fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()}};
+}
+
+/* ---------------------------------------------------------------------- */
+
 void PairFSIFluid::write_restart_settings(FILE *fp)
 {
   double d[] = {sound, background, alpha, beta, delta, surface_ratio, shifting};

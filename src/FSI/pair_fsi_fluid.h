@@ -39,9 +39,11 @@ class PairFSIFluid : public PairFSI {
   void settings(int, char **) override;
   void init_style() override;
   void compute(int, int) override;
+  bool has_solids() const;
   bool shares_stress() const { return couple != WALL; }    // of a solid with the fluid
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
+  std::vector<Effect> effects() const override;
   double memory_usage() override;
   double artificial_alpha() const { return alpha; }
   bool has_laminar() const { return laminar; }
@@ -50,6 +52,7 @@ class PairFSIFluid : public PairFSI {
   // of all fluid particles); 0 = off
   double surface_ratio;
   int surface_max;
+  bool couples_as_wall() const { return couple == WALL; }
 
   double shifting;    // coefficient C of particle shifting; 0 = off
 

@@ -14,6 +14,7 @@
 #include "pair_fsi_solid.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
@@ -21,6 +22,7 @@
 #include "force.h"
 #include "fsi_contact.h"
 #include "fsi_gradient.h"
+#include "fsi_hourglass.h"
 #include "fsi_kernel.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_tensor.h"
@@ -39,7 +41,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), alpha(0.0), beta(0.0), epsilon(0.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
+    PairFSI(lmp, "fsi/solid"), alpha(0.0), beta(0.0), epsilon(0.0), xi(0.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
 {
 }
 
@@ -69,6 +71,10 @@ void PairFSISolid::settings(int narg, char **arg)
       need(narg, arg, iarg, 1);
       epsilon = number(arg[iarg + 1], "artificial/stress");
       iarg += 2;
+    } else if (strcmp(arg[iarg], "hourglass") == 0) {
+      need(narg, arg, iarg, 1);
+      xi = number(arg[iarg + 1], "hourglass");
+      iarg += 2;
     } else if (strcmp(arg[iarg], "gradient") == 0) {
       need(narg, arg, iarg, 1);
       if (strcmp(arg[iarg + 1], "plain") == 0) gradient = PLAIN;
@@ -77,7 +83,7 @@ void PairFSISolid::settings(int narg, char **arg)
       else error->all(FLERR, "Unknown pair_style fsi/solid gradient {}: expected plain, corrected or quadratic", arg[iarg + 1]);
       iarg += 2;
     } else
-      error->all(FLERR, "Unknown pair_style fsi/solid keyword {}: expected artificial/visc, artificial/stress or gradient",
+      error->all(FLERR, "Unknown pair_style fsi/solid keyword {}: expected artificial/visc, artificial/stress, hourglass or gradient",
                  arg[iarg]);
   }
 }
@@ -104,6 +110,8 @@ State PairFSISolid::make_state(const Material &m) const
 void PairFSISolid::init_style()
 {
   PairFSI::init_style();
+  comm_forward = has_hourglass() ? hub->dim * hub->dim : 0;
+  comm_reverse = has_hourglass() ? hub->dim : 0;
   const bool bodies = several_bodies();
   const int flags = (alpha > 0.0 || beta > 0.0 ? ARTIFICIAL_VISCOSITY : 0) | (epsilon > 0.0 ? ARTIFICIAL_STRESS : 0) |
       (bodies ? BODIES : 0) | (modify->get_compute_by_style("^fsi/energy$").empty() ? 0 : LEDGER);
@@ -230,6 +238,103 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
   }
 }
 
+/* ----------------------------------------------------------------------
+   hourglass control (fsi_hourglass.h)
+------------------------------------------------------------------------- */
+
+void PairFSISolid::advance_hourglass(double dt)
+{
+  const int dim = hub->dim;
+  comm->forward_comm(this);
+  hourglass_rate.assign((size_t) (atom->nlocal + atom->nghost) * dim, 0.0);
+  with_kernel(hub->kernel, dim, hub->h, [&](const auto &k) { hourglass_pairs<std::decay_t<decltype(k)>>(dt); });
+  if (force->newton_pair) comm->reverse_comm(this);
+  if (dim == 2) rotate_hourglass<2>(dt);
+  else rotate_hourglass<3>(dt);
+}
+
+template <class K> void PairFSISolid::hourglass_pairs(double dt)
+{
+  constexpr int D = K::DIM;
+  const K kernel(hub->h);
+  const Hourglass hourglass{xi};
+  double **x = atom->x;
+  double **v = atom->v;
+  const int *const type = atom->type;
+  const tagint *const molecule = atom->molecule;
+  const State *const state = hub->state.data();
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    const State &si = state[type[i]];
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+      if (molecule[i] != molecule[j]) continue;
+      double xij[D], vij[D], rsq = 0.0, rate[D];
+      for (int d = 0; d < D; d++) {
+        vij[d] = v[i][d] - v[j][d];
+        xij[d] = x[i][d] - x[j][d] - 0.5 * dt * vij[d];
+        rsq += xij[d] * xij[d];
+      }
+      if (rsq >= kernel.cutsq) continue;
+      const State &sj = state[type[j]];
+      hourglass.operator()<D>(0.5 * (si.shear + sj.shear), atom->rmass[i] / si.rho0 * atom->rmass[j] / sj.rho0,
+                              kernel.gradient(std::sqrt(rsq)), xij, vij, hub->grad[i], hub->grad[j], rate);
+      for (int d = 0; d < D; d++) {
+        hourglass_rate[i * D + d] += rate[d];
+        hourglass_rate[j * D + d] -= rate[d];
+      }
+    }
+  }
+}
+
+template <int D> void PairFSISolid::rotate_hourglass(double dt)
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (material[atom->type[i]].species != SOLID) continue;
+    double Q[D * D], Qh[D * D], turned[D] = {};
+    double *const q = hub->fix_stress->hourglass_force(i), *const rate = &hourglass_rate[i * D];
+    rotation<D>(hub->grad[i], dt, Q);
+    rotation<D>(hub->grad[i], 0.5 * dt, Qh);
+    for (int a = 0; a < D; a++)
+      for (int b = 0; b < D; b++) turned[a] += Q[a * D + b] * q[b] + dt * Qh[a * D + b] * rate[b];
+    for (int a = 0; a < D; a++) q[a] = turned[a];
+  }
+}
+
+int PairFSISolid::pack_forward_comm(int n, int *list_, double *buf, int, int *)
+{
+  int m = 0;
+  for (int ii = 0; ii < n; ii++)
+    if (material[atom->type[list_[ii]]].species == SOLID)
+      for (int k = 0; k < comm_forward; k++) buf[m++] = hub->grad[list_[ii]][k];
+  return m;
+}
+
+void PairFSISolid::unpack_forward_comm(int n, int first, double *buf)
+{
+  int m = 0;
+  for (int i = first; i < first + n; i++)
+    if (material[atom->type[i]].species == SOLID)
+      for (int k = 0; k < comm_forward; k++) hub->grad[i][k] = buf[m++];
+}
+
+int PairFSISolid::pack_reverse_comm(int n, int first, double *buf)
+{
+  int m = 0;
+  for (int i = first; i < first + n; i++)
+    if (material[atom->type[i]].species == SOLID)
+      for (int k = 0; k < comm_reverse; k++) buf[m++] = hourglass_rate[i * comm_reverse + k];
+  return m;
+}
+
+void PairFSISolid::unpack_reverse_comm(int n, int *list_, double *buf)
+{
+  int m = 0;
+  for (int ii = 0; ii < n; ii++)
+    if (material[atom->type[list_[ii]]].species == SOLID)
+      for (int k = 0; k < comm_reverse; k++) hourglass_rate[list_[ii] * comm_reverse + k] += buf[m++];
+}
+
 /* ---------------------------------------------------------------------- */
 
 void PairFSISolid::number_density(double *psi, bool all_bodies)
@@ -260,6 +365,14 @@ void PairFSISolid::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   check_tally();
   (this->*force_loop)();
+  if (has_hourglass()) {
+    double **f = atom->f;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (material[atom->type[i]].species != SOLID) continue;
+      const double *q = hub->fix_stress->hourglass_force(i);
+      for (int d = 0; d < hub->dim; d++) f[i][d] += q[d];
+    }
+  }
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
@@ -400,9 +513,20 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
 
 /* ---------------------------------------------------------------------- */
 
+std::vector<PairFSI::Effect> PairFSISolid::effects() const
+{
+  static const char *const orders[] = {"plain", "exact for linear fields", "exact for quadratic fields"};
+  return {{fmt::format("updated-Lagrangian solid, gradients {}", orders[gradient]), "gradient", true},
+          {fmt::format("artificial viscosity of the solid, alpha {:g}", alpha), "artificial/visc", alpha > 0.0 || beta > 0.0},
+          {fmt::format("artificial stress {:g}", epsilon), "artificial/stress", epsilon > 0.0},
+          {fmt::format("hourglass control of the solid {:g}", xi), "hourglass", xi > 0.0}};
+}
+
+/* ---------------------------------------------------------------------- */
+
 void PairFSISolid::write_restart_settings(FILE *fp)
 {
-  double d[] = {alpha, beta, epsilon};
+  double d[] = {alpha, beta, epsilon, xi};
   restart_value(fp, d, true);
   restart_value(fp, gradient, true);
 }
@@ -411,12 +535,13 @@ void PairFSISolid::write_restart_settings(FILE *fp)
 
 void PairFSISolid::read_restart_settings(FILE *fp)
 {
-  double d[3];
+  double d[4];
   restart_value(fp, d, false);
   restart_value(fp, gradient, false);
   alpha = d[0];
   beta = d[1];
   epsilon = d[2];
+  xi = d[3];
 }
 
 /* ---------------------------------------------------------------------- */

@@ -39,12 +39,20 @@ class PairFSISolid : public PairFSI {
   void compute(int, int) override;
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+  std::vector<Effect> effects() const override;
   double memory_usage() override;
   double artificial_alpha() const { return alpha; }
 
   // gradients: 0 = plain, else the number of terms for which they are exact (fsi_gradient.h): dim linear ones (Bonet and
   // Lok 1999), or the quadratic ones too
   int terms() const;
+  // forces of hourglass control from half a step back to half a step ahead, with fix fsi's L of the time between
+  bool has_hourglass() const { return xi > 0.0; }
+  void advance_hourglass(double dt);
 
   // adds to fix fsi's grad, over the own body, at the positions dt/2 ago, to which the velocities belong: plain,
   // sum_j V_j (v_j - v_i)(x)grad_i W_ij; else sum_j w (v_j - v_i)(x)phi and, packed, the moments sum_j w phi (x) phi, with
@@ -60,7 +68,10 @@ class PairFSISolid : public PairFSI {
 
  private:
   enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };
-  double alpha, beta, epsilon;
+  double alpha, beta, epsilon, xi;
+  std::vector<double> hourglass_rate;    // local and ghost
+  template <class K> void hourglass_pairs(double);
+  template <int D> void rotate_hourglass(double);
   int gradient;
 
   // local and ghost, filled at the start of compute(): stress and artificial stress, both times V^2

@@ -26,6 +26,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
+#include "update.h"
 
 #include <cmath>
 #include <cstring>
@@ -191,14 +192,14 @@ const std::vector<int> &PairFSISolidTL::solids() const
 }
 
 /* ----------------------------------------------------------------------
-   with sub-steps the forces act inside fix fsi's last half of the step, not here
+   with sub-steps the forces act inside fix fsi's last half of the step, not here; but in setup forces, energy and virial are seen
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
   ev_init(eflag, vflag);
   check_tally();
-  if (hub->substeps > 1) return;
+  if (hub->substeps > 1 && !update->setupflag) return;
   internal_forces();
   double **f = atom->f;
   for (const int i : reference->solids)
@@ -556,6 +557,18 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *list_, double *buf)
     if (hub->state[type[i]].species == SOLID)
       for (int d = 0; d < hub->dim; d++) fsolid[i][d] += buf[m++];
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
+{
+  static const char *const names[] = {"St. Venant-Kirchhoff", "neo-Hookean", "hypoelastic"};
+  return {{fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"), "law",
+           true},
+          {fmt::format("artificial viscosity of the solid, alpha {:g}", alpha), "artificial/visc", alpha > 0.0 || beta > 0.0},
+          {fmt::format("hourglass control of the solid {:g}", zeta), "hourglass", zeta > 0.0},
+          {fmt::format("damage at strain {:g}", damage), "damage", damage > 0.0}};
 }
 
 /* ---------------------------------------------------------------------- */

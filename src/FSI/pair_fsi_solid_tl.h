@@ -49,6 +49,7 @@ class PairFSISolidTL : public PairFSI {
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;
   void unpack_reverse_comm(int, int *, double *) override;
+  std::vector<Effect> effects() const override;
   double memory_usage() override;
   double artificial_alpha() const { return alpha; }
 
