@@ -51,19 +51,21 @@ def write(folder, name, definition, points, source):
         _draw_knobs(folder / "knobs.png", definition, rows)
     if definition.get("effects"):
         _draw_effects(folder / "effects.png", definition, rows)
-    (folder / "page.md").write_text(_page(name, definition, summary, rows, curves))
+    (folder / "page.md").write_text(_page(definition, summary, rows, curves))
     return summary
 
 
 def publish(folder, name):
     """Copies a scene's page, pictures and tables to doc/cost and renews the list there."""
     PAGE.mkdir(parents=True, exist_ok=True)
+    page = (folder / "page.md").read_text().replace("[points.csv](points.csv)", f"[{name}.csv]({name}.csv)")
     for file in ("work.png", "knobs.png", "effects.png"):
         if (folder / file).exists():
             shutil.copyfile(folder / file, PAGE / f"{name}_{file}")
+            page = page.replace(f"]({file})", f"]({name}_{file})")
     shutil.copyfile(folder / "points.csv", PAGE / f"{name}.csv")
     shutil.copyfile(folder / "summary.json", PAGE / f"{name}.json")
-    shutil.copyfile(folder / "page.md", PAGE / f"{name}.md")
+    (PAGE / f"{name}.md").write_text(page)
     (PAGE / "README.md").write_text(_index())
 
 
@@ -454,10 +456,10 @@ def _bound_cell(entry):
     return {"coarsest run": f"< {text}", "extrapolated": f"*{text}*"}.get(entry["kind"], text)
 
 
-def _page(name, definition, summary, rows, curves):
+def _page(definition, summary, rows, curves):
     variable = definition["resolution"]["variable"]
     lines = [f"# What accuracy costs: {definition['title']}", "",
-             f"Made by `{summary['command']}`; all {summary['points']} points are in [{name}.csv]({name}.csv). Do not edit: "
+             f"Made by `{summary['command']}`; all {summary['points']} points are in [points.csv](points.csv). Do not edit: "
              f"it is written anew. Contents of src and potentials: {summary['source']}.", "",
              f"Error: {definition['label']} (figure `{summary['figure']}`). Reference: {summary['reference']['source']}. "
              f"{definition.get('notes', '')}",
@@ -466,7 +468,7 @@ def _page(name, definition, summary, rows, curves):
              "depend on the machine.", "",
              "## In short", summary["recommendation"], "",
              "## Error against resolution, time and work",
-             f"![Error against {variable}, CPU time and particle-steps]({name}_work.png)", "",
+             f"![Error against {variable}, CPU time and particle-steps](work.png)", "",
              "Hollow: small because the error changes sign there, which is no accuracy; neither these nor runs with one "
              "setting changed count for the front.", "",
              "| method | order | 10 % | 5 % | 2 % | 1 % |", "|---|---|---|---|---|---|"]
@@ -485,7 +487,7 @@ def _page(name, definition, summary, rows, curves):
                          + (f"{100 * r['spread']:.0f} %" if r["spread"] is not None else "1 run")
                          + f" | {r['particle_steps']:.2e} | " + (f"{r['pair_visits']:.2e} |" if r["pair_visits"] else "- |"))
     if summary["knobs"]:
-        lines += ["", "## One setting at a time", f"![Error and time over each setting]({name}_knobs.png)", "",
+        lines += ["", "## One setting at a time", "![Error and time over each setting](knobs.png)", "",
                   "Blue: error; orange: CPU time; ring: the base; cross: the run fails.", "",
                   "| setting | base | cheapest that is as good | lowest error | all errors | fails at |", "|---|---|---|---|---|---|"]
         for knob, k in summary["knobs"].items():
@@ -497,7 +499,7 @@ def _page(name, definition, summary, rows, curves):
                          + (", ".join(map(_word, k["failed"])) or "-") + " |")
         lines += ["", f"As good: an error of at most {SAME:g} times that of the base."]
     if definition.get("effects"):
-        lines += ["", "## What each effect is worth", f"![Error and time with and without]({name}_effects.png)", "",
+        lines += ["", "## What each effect is worth", "![Error and time with and without](effects.png)", "",
                   "Grey: the base; the others differ from it as said."]
     corners = [r for r in rows if r["role"] == "corner"]
     if corners:
