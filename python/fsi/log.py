@@ -8,6 +8,9 @@ import numpy as np
 
 _LOOP = re.compile(r"Loop time of (\S+) on (\d+) procs for (\d+) steps with (\d+) atoms")
 _MEMORY = re.compile(r"Per MPI rank memory allocation \(min/avg/max\) = (\S+) \| (\S+) \| (\S+) Mbytes")
+_USE = re.compile(r"(\S+)% CPU use with")
+_NEIGHBOURS = re.compile(r"Total # of neighbors = (\d+)")
+_BUILDS = re.compile(r"Neighbor list builds = (\d+)")
 _VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
 _VALUE = re.compile(r"^FSI (\w+) (\S+)\s*$")
 
@@ -22,6 +25,9 @@ class Run:
     steps: int = None
     atoms: int = None
     bytes_per_rank: float = None  # average over ranks
+    cpu_use: float = None  # CPU over wall time in the loop
+    neighbours: int = None  # entries of the neighbour list at the end; None where LAMMPS counts none
+    builds: int = None  # of the neighbour list
 
 
 @dataclass
@@ -75,6 +81,12 @@ def read(path):
                 run = log.runs[-1]
                 run.loop_seconds, run.ranks = float(match[1]), int(match[2])
                 run.steps, run.atoms = int(match[3]), int(match[4])
+        elif log.runs and (match := _USE.match(line)):
+            log.runs[-1].cpu_use = float(match[1]) / 100.0
+        elif log.runs and (match := _NEIGHBOURS.match(line)):
+            log.runs[-1].neighbours = int(match[1]) or None
+        elif log.runs and (match := _BUILDS.match(line)):
+            log.runs[-1].builds = int(match[1])
         elif match := _VERSION.match(line):
             log.version = log.version or match[1]
         elif match := _VALUE.match(line):

@@ -1,0 +1,200 @@
+"""Sweeps of accuracy and cost: what they make of made-up numbers, and short ones of two scenes and of a deck of one's own.
+
+Times are not asserted: only what is certain, that finer costs more work and that these errors fall.
+"""
+
+import csv
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from fsi import paths, precision, scene, sweep
+
+sys.path.insert(0, str(paths.ROOT / "bench"))
+import accuracy_cost  # noqa: E402
+import cost_report  # noqa: E402
+
+H = np.array([0.1, 0.05, 0.025, 0.0125])
+
+
+def test_order_of_a_power_law():
+    slope, interval, constant = precision.order(H, -3.0 * H**1.7)
+    assert slope == pytest.approx(1.7) and constant == pytest.approx(3.0) and interval < 1e-6
+    # an error that is off the line by a quarter must widen the interval so that it still holds the slope
+    slope, interval, _ = precision.order(H, 3.0 * H**1.7 * np.array([1.0, 1.25, 0.8, 1.0]))
+    assert 0.1 < interval < 2.0 and abs(slope - 1.7) < interval
+    assert precision.order(H[:2], H[:2]) is None
+
+
+def test_extrapolation_finds_the_limit():
+    limit, power, uncertainty = precision.extrapolate(H, 2.0 - 5.0 * H**1.5)
+    assert power == pytest.approx(1.5, abs=0.02) and limit == pytest.approx(2.0, abs=1e-3) and abs(limit - 2.0) <= uncertainty
+    assert precision.extrapolate(H, [1.0, 1.1, 1.05, 1.12]) is None  # to and fro
+    assert precision.extrapolate(H, [1.0, 1.1, 1.3, 1.7]) is None  # ever larger steps
+    assert precision.extrapolate(H[:2], [1.0, 1.1]) is None
+    # a coarse run far off, then hardly any change: with and without it the limits differ by more than the last step
+    assert precision.extrapolate([2.5, 1.667, 1.25, 1.0], [30.97, 36.32, 36.75, 37.07]) is None
+
+
+def test_front_bounds_and_changes_of_sign():
+    assert precision.pareto([1.0, 2.0, 2.0, 3.0, 4.0], [5.0, 3.0, 4.0, 3.0, np.nan]) == [0, 1]
+    assert precision.reach([0.3, 0.04, 0.06, 0.01], 0.05) == 3  # one coarser run within the bound by chance does not count
+    assert precision.reach([0.04, -0.03, 0.01], 0.05) == 0
+    assert precision.reach([0.04, 0.03, 0.06], 0.05) is None
+    assert precision.crossings([0.2, 0.01, -0.05, -0.04]).tolist() == [False, True, False, False]
+
+
+def small(name, methods, values, **changes):
+    """A scene's own definition, cut down to some of its methods at a few resolutions."""
+    definition = accuracy_cost.load(name, {})
+    chosen = {m: {**definition["methods"][m], "at": values} for m in methods}
+    return definition | {"methods": chosen, "knobs": [], "effects": [], "corners": {}} | changes
+
+
+def store_of(folder, name, definition):
+    return sweep.Store(folder, sweep.Deck(scene.deck(name), definition.get("edits")), accuracy_cost.analysed(name), repeats=2)
+
+
+def made(tmp_path, name, definition):
+    """Sweeps and reports; returns (summary, rows of points.csv by label, store, jobs)."""
+    wanted = accuracy_cost.points(definition)
+    store = store_of(tmp_path / "points", name, definition)
+    jobs = [(p["label"], p["settings"], accuracy_cost.work(definition, p["settings"])) for p in wanted]
+    assert sweep.sweep(store, jobs, lambda _: None)
+    for point in wanted:
+        point["run"] = store.get(point["settings"])
+    cost_report.write(tmp_path, name, definition, wanted, store.source)
+    with (tmp_path / "points.csv").open() as file:
+        rows = {row["label"]: row for row in csv.DictReader(file)}
+    return json.loads((tmp_path / "summary.json").read_text()), rows, store, jobs
+
+
+@pytest.fixture(scope="module")
+def plate(tmp_path_factory):
+    knob = [{"name": "Courant number", "variable": "cfl", "of": "TL linear", "at": 3, "values": [0.25, 2.0]}]
+    effects = [{"of": "TL linear", "at": 3, "cases": {"no hourglass control": {"hourglass": 0}}}]
+    folder = tmp_path_factory.mktemp("plate")
+    definition = small("oscillating_plate", ["TL linear", "TL quadratic"], [3, 4, 5], knobs=knob, effects=effects)
+    definition["common"] = {**definition["common"], "periods": "1.7"}  # one swing, of the softest, too
+    return folder, *made(folder, "oscillating_plate", definition)
+
+
+def test_plate_finer_costs_more_and_errs_less(plate):
+    _, summary, rows, _, _ = plate
+    for method in ("TL linear", "TL quadratic"):
+        curve = [rows[f"{method}, n = {n}"] for n in (3, 4, 5)]
+        for name in ("particles", "steps", "particle_steps", "pair_visits"):
+            assert np.all(np.diff([float(r[name]) for r in curve]) > 0.0), name
+        errors = [abs(float(r["error"])) for r in curve]
+        assert np.all(np.diff(errors) < 0.0)
+        assert summary["methods"][method]["order"] > 0.0
+    # bending is a quadratic displacement: gradients exact for it err far less, by a factor of 3 at the least at three across
+    assert abs(float(rows["TL quadratic, n = 3"]["error"])) < abs(float(rows["TL linear, n = 3"]["error"])) / 3.0
+
+
+def test_plate_unstable_run_is_a_point_too(plate):
+    folder, summary, rows, _, _ = plate
+    failed = rows["Courant number = 2.0"]  # eight times the rule of the time step: explicit schemes are not that stable
+    assert failed["status"] == "failed" and failed["why"] and not failed["error"]
+    assert summary["failed"] == 1 and summary["knobs"]["Courant number"]["failed"] == [2.0]
+    assert "2" in (folder / "page.md").read_text().split("## One setting")[1]
+
+
+def test_plate_leaves_pictures_and_page(plate):
+    folder, summary, rows, _, _ = plate
+    for name in ("work.png", "knobs.png", "effects.png"):
+        assert (folder / name).read_bytes().startswith(b"\x89PNG")
+    text = (folder / "page.md").read_text()
+    assert summary["recommendation"] in text and "0.2553" in text
+    assert summary["reference"]["kind"] == "outside"
+    assert sum(row["front"] == "True" for row in rows.values()) >= 1
+
+
+def test_nothing_is_run_twice(plate, monkeypatch):
+    *_, store, jobs = plate
+    monkeypatch.setattr(sweep.Store, "_simulate", lambda *_: pytest.fail("ran again"))
+    assert sweep.sweep(store, jobs, lambda _: None)
+    label, settings, _ = jobs[0]
+    assert store.path({**settings, "kernel": "wendland"}) == store.path(settings), label  # the same by other words
+    assert store.path({**settings, "vf": "0.01"}) == store.path(settings)  # the deck's own default
+    assert store.path({**settings, "vf": "0.02"}) != store.path(settings)
+    store.source = "another"
+    assert store.get(settings) is None
+
+
+def test_sweep_goes_on_where_it_stopped(tmp_path):
+    definition = small("standing_wave", ["quintic 1.0"], [0.1, 0.05])
+    jobs = [(p["label"], p["settings"], accuracy_cost.work(definition, p["settings"])) for p in accuracy_cost.points(definition)]
+    store, said = store_of(tmp_path, "standing_wave", definition), []
+    assert not sweep.sweep(store, jobs, said.append, budget=1e-6)
+    assert sum(store.get(job[1]) is not None for job in jobs) == 1 and "1 points left" in said[-1]
+    coarse = store.get(jobs[0][1])
+    assert sweep.sweep(store, jobs, said.append)
+    assert store.get(jobs[0][1])["figures"] == coarse["figures"] and len(store.get(jobs[0][1])["cpu_seconds"]) == 2
+    assert "cost: 2 points, 1 to run" in said
+    fine = store.get(jobs[1][1])
+    assert fine["particle_steps"] > 4 * coarse["particle_steps"]
+    # linear theory; 5 particles over the depth are within 10 %
+    assert fine["figures"]["period"] == pytest.approx(fine["figures"]["period reference"], rel=0.1)
+
+
+DECK = """# value = 1 + 3 h^2 for the default kernel, printed without any physics
+variable h index 0.5
+variable kind index a
+variable offset equal 0
+units lj
+region box block 0 $(2/v_h) 0 2 0 2
+lattice sc 1
+create_box 1 box
+create_atoms 1 box
+mass 1 1
+pair_style zero 1.0
+pair_coeff * *
+if "${kind} == b" then "variable slope equal 6" else "variable slope equal 3"
+variable value equal 1+v_slope*v_h^2+v_offset
+thermo_style custom step v_value
+thermo 1
+run 1
+"""
+
+
+def test_deck_of_ones_own(tmp_path, monkeypatch, capsys):
+    deck, out = tmp_path / "mine.in", tmp_path / "out"
+    deck.write_text(DECK)
+    monkeypatch.setattr(scene, "build", lambda: True)
+    words = [str(deck), "--vary", "h=0.1,0.5,0.25,0.125", "--vary", "kind=a,b", "--measure", "value", f"out={out}", "repeats=1"]
+    assert accuracy_cost.main(words) == 0
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["reference"]["kind"] == "extrapolated" and summary["reference"]["value"] == pytest.approx(1.0, abs=1e-3)
+    assert summary["methods"]["kind a"]["order"] == pytest.approx(2.0, abs=0.1)
+    assert set(summary["methods"]) == {"kind a", "kind b"}
+    # two resolutions allow no extrapolation: the finer one is the reference, and has no error of its own
+    assert accuracy_cost.main([*words[:2], "h=0.5,0.25", *words[3:]]) == 0
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["reference"]["kind"] == "finest" and not summary["failed"]
+    assert summary["methods"]["kind a"]["bounds"] == {} and "reference" in (out / "points.csv").read_text()
+    # a formula of the deck can be replaced; points are others, so nothing is mixed up
+    assert accuracy_cost.main([*words, "offset=1"]) == 0
+    assert json.loads((out / "summary.json").read_text())["reference"]["value"] == pytest.approx(2.0, abs=1e-3)
+    assert "8 points, 8 to run" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("words, says", [
+    (["nothing"], "neither a scene nor a file"), (["still_water", "--measure", "p"], "deck of your own"),
+    (["oscillating_plate", "nn=3", "draw=only"], "no variable 'nn'"), (["oscillating_plate", "draw"], "NAME=VALUE"),
+    (["oscillating_plate", "budget=much"], "a number"), (["oscillating_plate", "source=0"], "draw=only"),
+    (["oscillating_plate", "--vary"], "needs a value")])
+def test_mistakes_are_told(words, says):
+    with pytest.raises(scene.Refusal, match=says):
+        accuracy_cost.main(words)
+
+
+def test_definitions_of_all_scenes_fit_their_decks():
+    for path in sorted(paths.EXAMPLES.glob("*/cost.json")):
+        name = path.parent.name
+        definition = accuracy_cost.load(name, {})
+        deck = sweep.Deck(scene.deck(name), definition.get("edits"))
+        for point in accuracy_cost.points(definition):
+            deck.instance(point["settings"])  # refuses what the deck does not have
