@@ -8,6 +8,7 @@ import numpy as np
 
 _LOOP = re.compile(r"Loop time of (\S+) on (\d+) procs for (\d+) steps with (\d+) atoms")
 _MEMORY = re.compile(r"Per MPI rank memory allocation \(min/avg/max\) = (\S+) \| (\S+) \| (\S+) Mbytes")
+_VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
 _VALUE = re.compile(r"^FSI (\w+) (\S+)\s*$")
 
 
@@ -31,6 +32,7 @@ class Log:
     values: dict  # what the deck printed as "FSI <name> <value>": numbers where they are numbers
     warnings: list
     errors: list
+    version: str = None  # of LAMMPS: "4 Feb 2025"
 
     @property
     def finished(self):
@@ -73,6 +75,8 @@ def read(path):
                 run = log.runs[-1]
                 run.loop_seconds, run.ranks = float(match[1]), int(match[2])
                 run.steps, run.atoms = int(match[3]), int(match[4])
+        elif match := _VERSION.match(line):
+            log.version = log.version or match[1]
         elif match := _VALUE.match(line):
             log.values[match[1]] = _number(match[2])
         elif expect_header and line.strip():

@@ -1,6 +1,8 @@
 """Runs the scenes in examples/: builds, simulates, analyses. The command line of tools/run.
 
 Each scene is a folder with a deck in.<scene> and an analyze.py whose main(folder) writes summary.json and pictures.
+One that needs several runs lists them in cases.json, {"CASE": {"variables": {...}, "ranks": N}} with `ranks` optional; after
+them study(folder, {case: its folder}) of analyze.py writes what is said about all of them into the folder above.
 """
 
 import difflib
@@ -10,13 +12,18 @@ import re
 import subprocess
 import sys
 import time
+import traceback
+from contextlib import contextmanager
 from pathlib import Path
 
 from . import launch, paths
 from .summary import RUN_FILE
 
-OPTIONS = ("ranks", "out")
+OPTIONS = ("ranks", "out", "case")
 MADE_FILE = ".made-by-tools-run"
+CASES_FILE = "cases.json"
+OWN_RUN = "custom"  # folder of a run with the user's variables beside the cases, whose results stay as they are
+SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools")  # what decides a result
 
 
 class Refusal(Exception):
@@ -43,6 +50,28 @@ def deck_variables(path):
     return found
 
 
+def cases(scene):
+    """The runs that make up a scene, {case: {"variables": {name: value}, "ranks": N or None}}; {} if it is one run."""
+    path = paths.EXAMPLES / scene / CASES_FILE
+    if not path.exists():
+        return {}
+    try:
+        found = {name: {"variables": {k: str(v) for k, v in case.get("variables", {}).items()},
+                        "ranks": case.get("ranks")} for name, case in json.loads(path.read_text()).items()}
+    except (ValueError, AttributeError) as error:
+        raise Refusal(f"{path} is not of the form {{\"CASE\": {{\"variables\": {{...}}}}}}: {error}") from None
+    for name, case in found.items():
+        if not re.fullmatch(r"\w[\w.+-]*", name) or name == OWN_RUN:
+            raise Refusal(f"{path}: '{name}' cannot be a case, since it has to be the name of a folder")
+        if case["ranks"] is not None and (not isinstance(case["ranks"], int) or case["ranks"] < 1):
+            raise Refusal(f"{path}: ranks of '{name}' must be a whole number, 1 or more")
+        try:
+            check(scene, case["variables"])
+        except Refusal as refusal:
+            raise Refusal(f"{path}: case '{name}': {refusal}") from None
+    return found
+
+
 def parse(arguments):
     """Splits NAME=VALUE arguments into (options of this tool, LAMMPS variables)."""
     options, variables = {}, {}
@@ -51,10 +80,11 @@ def parse(arguments):
         if not equals or not name or not value:
             raise Refusal(f"'{argument}' is not of the form NAME=VALUE, such as ranks=2")
         (options if name in OPTIONS else variables)[name] = value
-    ranks = options.get("ranks", str(min(2, launch.cores())))
-    if not ranks.isdecimal() or int(ranks) < 1:
-        raise Refusal(f"ranks={ranks}: a whole number of MPI ranks is needed, 1 or more")
-    options["ranks"] = int(ranks)
+    if "ranks" in options:
+        ranks = options["ranks"]
+        if not ranks.isdecimal() or int(ranks) < 1:
+            raise Refusal(f"ranks={ranks}: a whole number of MPI ranks is needed, 1 or more")
+        options["ranks"] = int(ranks)
     return options, variables
 
 
@@ -68,45 +98,112 @@ def check(scene, variables):
         if name not in known:
             listed = ", ".join(f"{n}={default}" for n, default in known.items()) or "none"
             raise Refusal(f"{scene} has no variable '{name}'{_similar(name, [*known, *OPTIONS])}. "
-                          f"Its variables and their defaults: {listed}. Options: ranks=N, out=FOLDER")
+                          f"Its variables and their defaults: {listed}. Options: ranks=N, out=FOLDER, case=NAME")
         if _is_number(known[name]) and not _is_number(value):
             raise Refusal(f"{name}={value}: a number is needed, such as the default {known[name]}")
 
 
-def run(scene, folder, ranks, variables):
-    """Simulates and analyses a scene in `folder`; returns LAMMPS' exit status, 0 if all went well."""
+def run(scene, folder, ranks, variables, case=None):
+    """Simulates and analyses a scene in `folder`; returns 0 if all went well, else LAMMPS' exit status or 1."""
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    _clear(folder)
-    before = _files(folder)
-    try:
+    with _record(folder):
         given = "".join(f" {name}={value}" for name, value in variables.items())
         print(f"run: {scene}{given} ranks={ranks}, results in {folder}", flush=True)
         status, wall, output = _simulate(scene, folder, ranks, variables)
         if status != 0:
             _explain(folder, status, output)
             return status
-        record = {"scene": scene, "ranks": ranks, "wall_seconds": round(wall, 3),
-                  "variables": {**deck_variables(deck(scene)), **variables}}
-        (folder / RUN_FILE).write_text(json.dumps(record, indent=2) + "\n")
+        _write_run(folder, {"scene": scene, **({"case": case} if case else {}), "ranks": ranks,
+                            "wall_seconds": round(wall, 3), "given": variables,
+                            "variables": {**deck_variables(deck(scene)), **variables}})
         print(f"run: LAMMPS took {wall:.1f} s; analysing", flush=True)
-        analyse(scene, folder)
+        module = _analysis(scene)
+        if module is not None and not _calls(module.main, folder):
+            return 1
         print(f"run: figures, pictures and log are in {folder}", flush=True)
         return 0
-    finally:
-        made = sorted(_files(folder) - before - {MADE_FILE})
-        (folder / MADE_FILE).write_text("".join(f"{name}\n" for name in made))
 
 
-def analyse(scene, folder):
-    """Calls main(folder) of the scene's analyze.py, if it has one."""
+def run_cases(scene, folder, ranks=None):
+    """Runs every case of a scene in a folder of its own below `folder`, then the study of those that ran.
+
+    `ranks` overrides what the cases say. Returns 0 if all of it went well; a case that fails does not stop the others.
+    """
+    folder = Path(folder)
+    wanted = cases(scene)
+    with _record(folder):
+        ran = {}
+        for k, (name, case) in enumerate(wanted.items(), start=1):
+            print(f"run: {scene}, case {name} ({k} of {len(wanted)})", flush=True)
+            if run(scene, folder / name, ranks or case["ranks"] or default_ranks(), case["variables"], name) == 0:
+                ran[name] = folder / name
+        failed = [name for name in wanted if name not in ran]
+        _write_run(folder, {"scene": scene, "cases": list(ran), "failed": failed})
+        good = not failed
+        module = _analysis(scene)
+        if ran and hasattr(module, "study"):
+            good &= _calls(module.study, folder, ran)
+        print(f"run: {scene}: {len(ran)} of {len(wanted)} cases ran" +
+              (f"; failed: {', '.join(failed)}" if failed else ""), flush=True)
+        return 0 if good else 1
+
+
+def default_ranks():
+    """MPI ranks where nobody says how many."""
+    return min(2, launch.cores())
+
+
+def _analysis(scene):
+    """The scene's analyze.py as a module; None if it has none."""
     path = paths.EXAMPLES / scene / "analyze.py"
     if not path.exists():
-        return
+        return None
     spec = importlib.util.spec_from_file_location(f"fsi_analyze_{scene}", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    module.main(folder)
+    return module
+
+
+def _calls(function, *arguments):
+    """Whether an analysis comes to its end; if not, says why, so that what else is to be run can go on."""
+    try:
+        function(*arguments)
+    except (Exception, SystemExit):  # pylint: disable=broad-exception-caught
+        print(f"\nrun: the analysis of {arguments[0]} failed", file=sys.stderr)
+        traceback.print_exc()
+        return False
+    return True
+
+
+@contextmanager
+def _record(folder):
+    """Clears `folder` of what an earlier run left there; afterwards notes what this one leaves."""
+    folder.mkdir(parents=True, exist_ok=True)
+    _clear(folder)
+    before = _files(folder)
+    try:
+        yield
+    finally:
+        # what is noted further down is that folder's own business
+        below = {str(path.parent.relative_to(folder)) for path in folder.rglob(MADE_FILE) if path.parent != folder}
+        made = [name for name in sorted(_files(folder) - before - {MADE_FILE})
+                if not any(str(parent) in below for parent in Path(name).parents)]
+        (folder / MADE_FILE).write_text("".join(f"{name}\n" for name in made))
+
+
+def _write_run(folder, record):
+    """run.json: what was run, for the summary."""
+    (folder / RUN_FILE).write_text(json.dumps({**record, "commit": _commit()}, indent=2) + "\n")
+
+
+def _commit():
+    """The commit that is checked out, "+" behind it where sources differ from it; None without git."""
+    def git(*words):
+        return subprocess.run(["git", "-C", str(paths.ROOT), *words], capture_output=True, text=True, check=True).stdout
+    try:
+        return git("rev-parse", "--short=10", "HEAD").strip() + ("+" if git("status", "--porcelain", *SOURCES) else "")
+    except (OSError, subprocess.CalledProcessError):
+        return None
 
 
 def _simulate(scene, folder, ranks, variables):
@@ -161,22 +258,50 @@ def main(arguments):
     """tools/run with at least one argument."""
     if not arguments:
         raise Refusal("which scene? " + ", ".join(scenes()))
-    wanted = scenes() if arguments[0] == "all" else [arguments[0]]
+    every = arguments[0] == "all"
+    wanted = scenes() if every else [arguments[0]]
     options, variables = parse(arguments[1:])
-    for scene in wanted:
-        check(scene, variables)
-    out = Path(options["out"]).resolve() if "out" in options else None
-    if subprocess.run([str(paths.ROOT / "tools" / "setup")], check=False).returncode != 0:
+    if every and "case" in options:
+        raise Refusal("case= is for one scene, not for all")
+    jobs = {scene: _job(scene, options, variables, every) for scene in wanted}
+    if not build():
         return 1
 
     statuses = {}
-    for scene in wanted:
-        folder = paths.RESULTS / scene if out is None else out / scene if arguments[0] == "all" else out
-        statuses[scene] = run(scene, folder, options["ranks"], variables)
+    for k, (scene, job) in enumerate(jobs.items(), start=1):
+        if len(jobs) > 1:
+            print(f"run: scene {scene} ({k} of {len(jobs)})", flush=True)
+        statuses[scene] = job()
     failed = [scene for scene, status in statuses.items() if status != 0]
-    if len(wanted) > 1:
-        print(f"run: {len(wanted) - len(failed)} scenes ran, {len(failed)} failed", *failed)
+    if len(jobs) > 1:
+        print(f"run: {len(jobs) - len(failed)} scenes ran, {len(failed)} failed", *failed)
     return 1 if failed else 0
+
+
+def build():
+    """Brings the build up to date; whether that worked."""
+    return subprocess.run([str(paths.ROOT / "tools" / "setup")], check=False).returncode == 0
+
+
+def _job(scene, options, variables, every):
+    """What the command line asks of a scene, checked, as a function without arguments that returns an exit status."""
+    check(scene, variables)
+    known = cases(scene)
+    ranks = options.get("ranks")
+    out = Path(options["out"]).resolve() if "out" in options else None
+    folder = paths.RESULTS / scene if out is None else out / scene if every else out
+    if known and not variables and "case" not in options:
+        return lambda: run_cases(scene, folder, ranks)
+    if "case" not in options:
+        below = OWN_RUN if known and out is None else ""
+        return lambda: run(scene, folder / below, ranks or default_ranks(), variables)
+    name = options["case"]
+    if name not in known:
+        raise Refusal(f"{scene} has no case '{name}'{_similar(name, known)}. Its cases: {', '.join(known) or 'none'}")
+    if variables:
+        raise Refusal("case= sets the variables: give either it or NAME=VALUE")
+    return lambda: run(scene, folder / name if out is None else folder,
+                       ranks or known[name]["ranks"] or default_ranks(), known[name]["variables"], name)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Collects a run's figures and writes them as summary.json."""
+"""Collects the figures of a run, or of a study of several, and writes them as summary.json."""
 
 import json
 import math
@@ -7,33 +7,61 @@ from pathlib import Path
 from . import log as lammps_log
 
 RUN_FILE = "run.json"
+LOG_FILE = "log.lammps"
 
 
 class Summary:
-    """The figures of the run in `folder`: what was measured about the run itself, and what `add` is given."""
+    """The figures of the run in `folder`: what was measured about the run itself, and what `add` is given.
+
+    In a study's folder, which has no log but holds the folders of its cases, `cases` are their summaries by name, and
+    size and cost are summed over them.
+    """
 
     def __init__(self, folder):
         self.folder = Path(folder)
-        self.log = lammps_log.read(self.folder / "log.lammps")
         run = self.folder / RUN_FILE
         self.run = json.loads(run.read_text()) if run.exists() else {}
         self.figures = []
+        self.log, self.cases = None, {}
+        if (self.folder / LOG_FILE).exists():
+            self.log = lammps_log.read(self.folder / LOG_FILE)
+        else:
+            names = self.run.get("cases") or [path.parent.name for path in sorted(self.folder.glob("*/summary.json"))]
+            self.cases = {name: json.loads((self.folder / name / "summary.json").read_text()) for name in names}
+            if not self.cases:
+                raise FileNotFoundError(f"{self.folder} has neither {LOG_FILE} nor folders with a summary.json")
 
-    def add(self, name, value, unit="", reference=None, source=None):
-        """Adds a figure; `reference` is the published value in the same unit, `source` says whose."""
+    def add(self, name, value, unit="", reference=None, source=None, target=None):
+        """Adds a figure; `reference` is the published value in the same unit, `source` says whose.
+
+        `target` is what was set out for: the largest allowed size of the relative error, or, without a reference or
+        with 0 for it, of the value itself.
+        """
+        value = _finite(value)
         error = None
         if reference and value is not None:
             error = (value - reference) / abs(reference)
-        self.figures.append({"name": name, "value": _finite(value), "unit": unit, "reference": reference,
-                             "source": source, "relative_error": _finite(error)})
+        met = None
+        if target is not None:
+            size = error if reference else value
+            met = size is not None and abs(size) <= target
+        self.figures.append({"name": name, "value": value, "unit": unit, "reference": reference, "source": source,
+                             "relative_error": _finite(error), "target": target, "met": met})
 
     def write(self):
         """Writes summary.json, prints it as a table, returns it as a dictionary."""
-        cost = self._cost()
+        cost = self._cost() if self.log else self._cost_of_cases()
         for name, unit in (("wall_seconds", "s"), ("particle_steps_per_second", "1/s"), ("bytes_per_particle", "B")):
             self.add(name, cost[name], unit)
         summary = {"scene": self.run.get("scene", self.folder.name), "figures": self.figures, **cost,
-                   "variables": self.run.get("variables", {})}
+                   "commit": self.run.get("commit")}
+        if self.cases:
+            kept = ("given", "particles", "steps", "ranks", "wall_seconds")
+            summary["cases"] = {name: {key: case.get(key) for key in kept} for name, case in self.cases.items()}
+            summary["failed_cases"] = self.run.get("failed", [])
+        else:
+            summary |= {"case": self.run.get("case"), "given": self.run.get("given", {}),
+                        "variables": self.run.get("variables", {})}
         (self.folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
         print(table(summary))
         return summary
@@ -46,36 +74,69 @@ class Summary:
         ranks = runs[-1].ranks if runs else self.run.get("ranks")
         particles = runs[0].atoms if runs else None
         memory = max((run.bytes_per_rank for run in runs if run.bytes_per_rank), default=None)
-        speed = work / loop if loop > 0.0 else None
         return {
             "particles": particles,
             "steps": sum(run.steps for run in runs),
             "ranks": ranks,
             "wall_seconds": self.run.get("wall_seconds", loop if runs else None),
-            "particle_steps_per_second": speed,
-            "particle_steps_per_second_per_rank": speed / ranks if speed and ranks else None,
+            "loop_seconds": loop,
+            "particle_steps": work,
+            **_speed(work, loop, loop * (ranks or 0)),
             "bytes_per_particle": memory * ranks / particles if memory and particles else None,
+            "lammps": self.log.version,
         }
+
+    def _cost_of_cases(self):
+        """As above: particles, ranks and memory of the largest case, the rest over all."""
+        cases = list(self.cases.values())
+        largest = max(cases, key=lambda case: case["particles"] or 0)
+        work, loop, steps, wall = (sum(case[key] or 0 for case in cases)
+                                   for key in ("particle_steps", "loop_seconds", "steps", "wall_seconds"))
+        return {
+            "particles": largest["particles"],
+            "steps": steps,
+            "ranks": largest["ranks"],
+            "wall_seconds": wall,
+            "loop_seconds": loop,
+            "particle_steps": work,
+            **_speed(work, loop, sum(case["loop_seconds"] * (case["ranks"] or 0) for case in cases)),
+            "bytes_per_particle": largest["bytes_per_particle"],
+            "lammps": largest["lammps"],
+        }
+
+
+def _speed(work, seconds, rank_seconds):
+    return {"particle_steps_per_second": work / seconds if seconds else None,
+            "particle_steps_per_second_per_rank": work / rank_seconds if rank_seconds else None}
 
 
 def table(summary):
     """A summary as text for the terminal."""
-    rows = [("figure", "value", "unit", "reference", "error", "source")]
+    rows = [("figure", "value", "unit", "reference", "error", "target", "source")]
     for figure in summary["figures"]:
         error = figure["relative_error"]
         rows.append((figure["name"], _text(figure["value"]), figure["unit"], _text(figure["reference"], ""),
-                     "" if error is None else f"{100 * error:+.1f} %", figure["source"] or ""))
-    widths = [max(len(row[k]) for row in rows) for k in range(6)]
+                     "" if error is None else f"{100 * error:+.1f} %", verdict(figure), figure["source"] or ""))
+    widths = [max(len(row[k]) for row in rows) for k in range(7)]
     lines = []
     for row in rows:
         cells = [row[0].ljust(widths[0]), row[1].rjust(widths[1]), row[2].ljust(widths[2]),
-                 row[3].rjust(widths[3]), row[4].rjust(widths[4]), row[5]]
+                 row[3].rjust(widths[3]), row[4].rjust(widths[4]), row[5].ljust(widths[5]), row[6]]
         lines.append("  ".join(cells).rstrip())
     lines.insert(1, "-" * max(map(len, lines)))
     lines.append("")
-    lines.append(f"{summary['particles']} particles, {summary['steps']} steps, {summary['ranks']} ranks, "
+    size = f"{len(summary['cases'])} cases of up to {summary['particles']}" if "cases" in summary else summary["particles"]
+    lines.append(f"{size} particles, {summary['steps']} steps, {summary['ranks']} ranks, "
                  f"{_text(summary['particle_steps_per_second_per_rank'])} particle-steps per second and rank")
     return "\n".join(lines)
+
+
+def verdict(figure):
+    """What was set out for and whether that is met, as text; empty where nothing was."""
+    bound = figure.get("target")
+    if bound is None:
+        return ""
+    return (f"{100 * bound:g} %" if figure["reference"] else f"{bound:g}") + (" met" if figure["met"] else " MISSED")
 
 
 def _finite(value):
