@@ -26,3 +26,6 @@ hydrostatic_plate  solid rho 2700.0 young 67.5e9 poisson 0.34
 
 # Columns that bend and twist: Lee, Gil and Bonet, Computers and Structures 118 (2013) 13
 column           solid rho 1100.0 young 17.0e6 poisson 0.45
+
+# Rubber rings that collide: Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641; only ratios matter
+ring             solid rho 1200.0 young 10.0e6 poisson 0.3975
