@@ -60,7 +60,7 @@ def picture(path, frames, spacing):
             order = np.argsort(frame["z"])
             drawn = panel.scatter(frame["x"][order], frame["y"][order], s=side**2, c=1e-6 * frame["vonmises"][order], marker="o",
                                   linewidths=0.2, edgecolors="black", cmap=plot.SOLID_COLOURS, vmin=0.0, vmax=max(top, 1e-9))
-            panel.set(xlim=(-0.5 * width, 0.5 * width), ylim=(-0.9, height - 0.9), aspect="equal", xlabel="x [m]")
+            panel.set(xticks=(-0.5, 0.5), xlim=(-0.5 * width, 0.5 * width), ylim=(-0.9, height - 0.9), aspect="equal", xlabel="x [m]")
             panel.set_title(f"{1e3 * frame.time:.0f} ms", loc="left", pad=3)
             panel.grid(False)
         axes[0].set_ylabel("y [m]")
