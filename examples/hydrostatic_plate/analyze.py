@@ -49,7 +49,7 @@ def picture(path, runs):
             axes.plot(plate.time, 1e6 * plate["deflection"], color=colour, label=label)
         axes.plot((0.0, end), (REFERENCE, REFERENCE), "--", color=plot.GREY, linewidth=1.2, label="finite elements")
         axes.plot((0.0, end), (THIN, THIN), ":", color=plot.GREY, linewidth=1.2, label="thin plate")
-        axes.set(xlabel="time [s]", ylabel="deflection at mid-span [μm]")
+        axes.set(xlabel="time [s]", ylabel="deflection at mid-span [μm]", ylim=(-80.0, -60.0))
         axes.legend()
         figure.tight_layout()
 

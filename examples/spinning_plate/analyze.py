@@ -39,10 +39,10 @@ def main(folder):
     summary.add("angular_momentum_drift", np.abs(plate["spin"] / plate["spin"][0] - 1.0).max(), target=0.005)
     summary.add("energy_drift", np.abs(energy - 1.0).max(), target=0.005)
     summary.add("ledger_error", np.abs(plate["total"] / plate["total"][0] - 1.0).max())
-    turned = [f["x"] * first["y"] - f["y"] * first["x"] for f, first in zip(frames, [frames[0]] * len(frames))]
-    along = [f["x"] * frames[0]["x"] + f["y"] * frames[0]["y"] for f in frames]
-    angle = np.unwrap([np.arctan2(-t.sum(), a.sum()) for t, a in zip(turned, along)])
+    x, y = frames[0]["x"], frames[0]["y"]
+    angle = np.unwrap([np.arctan2((x * f["y"] - y * f["x"]).sum(), (x * f["x"] + y * f["y"]).sum()) for f in frames])
     summary.add("turns", angle[-1] / (2.0 * np.pi))
+    summary.add("rotation", angle[-1] / (values["omega"] * frames[-1].time), "of a rigid body's")
     off = [deviation(frames[0], frame) for frame in frames]
     summary.add("largest_deformation", max(off) / values["length"], "of the length")
     summary.add("last_deformation", off[-1] / values["length"], "of the length")
@@ -59,12 +59,12 @@ def picture_drift(path, runs):
         axes = figure.add_subplot()
         for (plate, label), colour in zip(runs, COLOURS):
             energy = (plate["kinetic"] + plate["strain"]) / plate["kinetic"][0]
-            axes.plot(plate.time[1:], np.maximum(np.abs(plate["spin"] / plate["spin"][0] - 1.0)[1:], 1e-16), color=colour,
+            axes.plot(plate.time[1:], np.maximum(np.abs(plate["spin"] / plate["spin"][0] - 1.0)[1:], 1e-16), linewidth=1.0, color=colour,
                       label=f"{label}, angular momentum")
-            axes.plot(plate.time[1:], np.maximum(np.abs(energy - 1.0)[1:], 1e-16), "--", color=colour, label=f"{label}, energy")
+            axes.plot(plate.time[1:], np.maximum(np.abs(energy - 1.0)[1:], 1e-16), "--", linewidth=1.0, color=colour, label=f"{label}, energy")
         axes.set_yscale("log")
         axes.set(xlabel="time [s]", ylabel="relative change")
-        axes.legend(fontsize=7)
+        axes.legend(fontsize=7, loc="center right", bbox_to_anchor=(1.0, 0.4), frameon=True)
         figure.tight_layout()
 
 

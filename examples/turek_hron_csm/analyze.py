@@ -58,9 +58,17 @@ def add_rest(summary, tip, suffix=""):
 def picture_tip(path, runs, points=True):
     """Vertical displacement of the tip. runs: [(tip, label)]."""
     fem = series.read(HERE / "fem.csv")
-    plot.lines(path, "time [s]", "vertical displacement of the tip [mm]",
-               [(tip.time, 1e3 * tip["uy"], label, colour) for (tip, label), colour in zip(runs, (plot.BLUE, plot.ORANGE))],
-               [(fem.time, 1e3 * fem["uy"], "finite elements, Turek & Hron", plot.GREY)] if points else [])
+    with plot.picture(path, 7.4, 3.6) as figure:
+        axes = figure.add_subplot()
+        for (tip, label), colour in zip(runs, (plot.BLUE, plot.ORANGE)):
+            axes.plot(tip.time, 1e3 * tip["uy"], color=colour, label=label)
+        if points:
+            seen = fem.time <= max(tip.time[-1] for tip, _ in runs)
+            axes.plot(fem.time[seen], 1e3 * fem["uy"][seen], "o", markersize=3.5, markerfacecolor="white", color=plot.GREY,
+                      label="finite elements, Turek & Hron")
+        axes.set(xlabel="time [s]", ylabel="vertical displacement\nof the tip [mm]")
+        axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))
+        figure.tight_layout()
 
 
 def read(folder):
