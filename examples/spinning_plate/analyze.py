@@ -48,8 +48,8 @@ def main(folder):
     summary.add("last_deformation", off[-1] / values["length"], "of the length")
 
     picture_drift(folder / "drift.png", [(plate, "plate")])
-    plot.snapshots(folder / "plate.png", dump.nearest(frames, np.linspace(0.0, frames[-1].time, 3), frames[-1].time), values["dx"],
-                   fluid=(), solid=(1,), limits=((-0.13, 0.13), (-0.13, 0.13)))
+    plot.snapshots(folder / "plate.png", dump.nearest(frames, frames[-1].time * np.array((0.0, 0.43, 1.0)), frames[-1].time), values["dx"],
+                   fluid=(), solid=(1,), limits=((-0.2, 0.2), (-0.2, 0.2)))
     return summary.write()
 
 
