@@ -22,3 +22,14 @@ plate            solid rho 1000.0 young 1.9984472e6 poisson 0.39751553
 
 # fluid of nu = 0.002 m^2/s, for the decay of a standing wave a metre or two long
 wave_viscous     fluid rho 1000.0 viscosity 2.0
+# Elastic beam of Turek and Hron, in Fluid-Structure Interaction (Springer LNCSE 53, 2006) 371: structural tests CSM1, CSM3
+turek_csm        solid rho 1000.0 young 1.4e6 poisson 0.4
+
+# Plate under a water column: Fourey, Oger, Le Touze and Alessandrini, IOP Conf. Ser.: Mater. Sci. Eng. 10 (2010) 012041
+hydrostatic_plate  solid rho 2700.0 young 67.5e9 poisson 0.34
+
+# Columns that bend and twist: Lee, Gil and Bonet, Computers and Structures 118 (2013) 13
+column           solid rho 1100.0 young 17.0e6 poisson 0.45
+
+# Rubber rings that collide: Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641; only ratios matter
+ring             solid rho 1200.0 young 10.0e6 poisson 0.3975
