@@ -18,17 +18,18 @@ def run(tmp_path, name, **variables):
 
 @pytest.fixture(scope="module")
 def gate(tmp_path_factory):
-    """Two particles across the gate, up to the end of the first swing, on 1 and on 2 ranks."""
-    return {n: run(tmp_path_factory.mktemp(f"gate{n}"), "elastic_gate", dx=0.0025, tend=0.16, ranks=n) for n in (1, 2)}
+    """Three particles across the gate, beyond the first peak, on 1 and on 2 ranks."""
+    return {n: run(tmp_path_factory.mktemp(f"gate{n}"), "elastic_gate", dx=0.005 / 3, tend=0.13, ranks=n) for n in (1, 2)}
 
 
-def test_elastic_gate_swings_as_measured(gate):
-    # Antoci, Gallati & Sibilla 2007 measured 46.4 mm and 17.1 mm at 0.16 s; converged codes give 39-43 mm and
-    # 13-15 mm at 0.11-0.12 s. The bounds enclose both, with 3 mm for two particles across the gate.
-    figures, _ = gate[2]
-    assert 36.0 < figures["tip_x_peak"] < 50.0
-    assert 0.09 < figures["tip_x_peak_time"] <= 0.16
-    assert 11.0 < figures["tip_y_peak"] < 20.0
+def test_elastic_gate_swings_as_it_should(gate):
+    # No code was fitted to: finite elements bend this gate by 34.81 mm and 9.50 mm under the whole reservoir's static load (scene
+    # gate_static), and what it swings beyond that exceeds what the water's fall takes in all three published codes, which peak at
+    # 39.0 to 42.7 mm and 13.1 to 14.8 mm after 0.115 to 0.120 s. Below: 3 % and 6 % for three particles across, as in gate_static.
+    for figures, _ in gate.values():
+        assert 0.97 * 34.81 < figures["tip_x_peak"] < 42.7
+        assert 0.94 * 9.50 < figures["tip_y_peak"] < 14.8
+        assert 0.09 < figures["tip_x_peak_time"] < 0.125
 
 
 def test_elastic_gate_keeps_water_and_mass(gate):
