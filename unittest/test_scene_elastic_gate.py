@@ -45,9 +45,9 @@ def summary(tmp_path):
 
 def frame(time, water, gate=()):
     """A frame of a dump. water: [(id, x, y, vx)]; gate: [(id, x, y)]."""
-    rows = [f"{i} 1 {x} {y} {vx} 0" for i, x, y, vx in water] + [f"{i} 2 {x} {y} 0 0" for i, x, y in gate]
+    rows = [f"{i} 1 {x} {y} {vx} 0 {1000 + i}" for i, x, y, vx in water] + [f"{i} 2 {x} {y} 0 0 1100" for i, x, y in gate]
     return "\n".join([f"ITEM: TIME\n{time}\nITEM: TIMESTEP\n{time * 1000:.0f}\nITEM: NUMBER OF ATOMS\n{len(rows)}",
-                      "ITEM: BOX BOUNDS ff ff pp\n-0.01 1\n-0.01 0.3\n-0.001 0.001", "ITEM: ATOMS id type x y vx vy", *rows, ""])
+                      "ITEM: BOX BOUNDS ff ff pp\n-0.01 1\n-0.01 0.3\n-0.001 0.001", "ITEM: ATOMS id type x y vx vy rho", *rows, ""])
 
 
 def test_study_is_about_the_finest_run(summary):
@@ -101,7 +101,7 @@ def test_only_what_leaves_at_the_far_end_is_outflow(tmp_path):
         frame(0.01, [(4, 0.51, 0.01, 1.0)], gate))
     run = Log(runs=[Run(thermo={"Atoms": np.array([64, 61]), "v_mass": np.array([1.0, 1.0])})], values={}, warnings=[], errors=[])
     frames = dump.read(tmp_path / "particles.dump")
-    assert STUDY.count_leaks(frames, 0.001, run) == (2, 1)
-    # masses: 4 particles of water are 14 kg per metre
-    run.runs[0].thermo["v_mass"] = np.array([20.0, 20.0 - 3.5])
-    assert STUDY.mass_error(run, frames[0], frames[1], 1) == pytest.approx(0.0, abs=1e-12)
+    assert STUDY.count_leaks(frames, 0.001, run) == (2, [1])
+    # a particle's mass is as its share of all densities: four of water and sixty of rubber
+    run.runs[0].thermo["v_mass"] = np.array([20.0, 20.0 * (1.0 - 1001.0 / (4010.0 + 60 * 1100.0))])
+    assert STUDY.mass_error(run, frames[0], frames[1], [1]) == pytest.approx(0.0, abs=1e-12)
