@@ -29,8 +29,8 @@ def test_elastic_gate_swings_as_it_should(tmp_path):
 
 
 def test_elastic_gate_does_not_depend_on_ranks(tmp_path):
-    # the flow is chaotic, so round-off grows, but the tip's curve must not show it: 1 % of its peak
-    a, b = (series.read(run(tmp_path / str(n), "elastic_gate", dx=0.0025, tend=0.1, ranks=n)[1] / "tip.csv") for n in (1, 2))
+    # the flow is chaotic, so round-off grows, but the tip's curve must not show it: 1 % of its largest value
+    a, b = (series.read(run(tmp_path / str(n), "elastic_gate", dx=0.0025, tend=0.06, ranks=n)[1] / "tip.csv") for n in (1, 2))
     np.testing.assert_allclose(a["time"], b["time"])
     assert np.max(np.abs(a["tip_x"] - b["tip_x"])) < 0.01 * a["tip_x"].max()
 
