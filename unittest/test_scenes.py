@@ -3,7 +3,6 @@
 import json
 
 import numpy as np
-import pytest
 
 from fsi import scene, series
 
@@ -16,30 +15,22 @@ def run(tmp_path, name, **variables):
     return {f["name"]: f["value"] for f in figures}, tmp_path
 
 
-@pytest.fixture(scope="module")
-def gate(tmp_path_factory):
-    """Two particles across the gate, up to the end of the first swing, on 1 and on 2 ranks."""
-    return {n: run(tmp_path_factory.mktemp(f"gate{n}"), "elastic_gate", dx=0.0025, tend=0.16, ranks=n) for n in (1, 2)}
+def test_elastic_gate_swings_as_it_should(tmp_path):
+    # Three particles across, beyond the first peak. Finite elements bend this gate by 34.81 mm and 9.50 mm under the whole reservoir's
+    # static load (scene gate_static); the three published codes (CODE_PEAKS of the analysis) peak at 39.0 to 42.7 mm and 13.1 to 14.8 mm
+    # after 0.115 to 0.120 s: a falling head on a gate with inertia bends it farther than that head at rest. The lower bounds leave
+    # 3 % and 6 % for three particles across, as in gate_static.
+    figures, _ = run(tmp_path, "elastic_gate", dx=0.005 / 3, tend=0.13)
+    assert 0.97 * 34.81 < figures["tip_x_peak"] < 42.7
+    assert 0.94 * 9.50 < figures["tip_y_peak"] < 14.8
+    assert 0.09 < figures["tip_x_peak_time"] < 0.125
+    assert figures["particles_leaked"] == figures["outflow_particles"] == 0
+    assert figures["mass_error"] == 0.0
 
 
-def test_elastic_gate_swings_as_measured(gate):
-    # Antoci, Gallati & Sibilla 2007 measured 46.4 mm and 17.1 mm at 0.16 s; converged codes give 39-43 mm and
-    # 13-15 mm at 0.11-0.12 s. The bounds enclose both, with 3 mm for two particles across the gate.
-    figures, _ = gate[2]
-    assert 36.0 < figures["tip_x_peak"] < 50.0
-    assert 0.09 < figures["tip_x_peak_time"] <= 0.16
-    assert 11.0 < figures["tip_y_peak"] < 20.0
-
-
-def test_elastic_gate_keeps_water_and_mass(gate):
-    for figures, _ in gate.values():
-        assert figures["particles_leaked"] == 0
-        assert figures["mass_error"] == 0.0
-
-
-def test_elastic_gate_does_not_depend_on_ranks(gate):
-    # the flow is chaotic, so round-off grows, but the tip's curve must not show it: 1 % of its peak
-    a, b = (series.read(folder / "tip.csv") for _, folder in (gate[1], gate[2]))
+def test_elastic_gate_does_not_depend_on_ranks(tmp_path):
+    # the flow is chaotic, so round-off grows, but the tip's curve must not show it: 1 % of its largest value
+    a, b = (series.read(run(tmp_path / str(n), "elastic_gate", dx=0.0025, tend=0.06, ranks=n)[1] / "tip.csv") for n in (1, 2))
     np.testing.assert_allclose(a["time"], b["time"])
     assert np.max(np.abs(a["tip_x"] - b["tip_x"])) < 0.01 * a["tip_x"].max()
 

@@ -2,8 +2,8 @@
 """Figures and pictures of the elastic gate.   usage: analyze.py FOLDER
 
 main reads tip.csv, particles.dump and log.lammps in FOLDER, which tools/run makes; writes summary.json, tip.png and
-snapshots.png there. study compares runs of several resolutions and moduli with experiment and other codes: summary.json, tip.png,
-convergence.png.
+snapshots.png there. study compares runs of several resolutions, moduli and forms of the solid with experiment and other codes:
+summary.json, tip.png, convergence.png, and of the case `long` long_snapshots.png.
 """
 
 import shutil
@@ -24,11 +24,16 @@ WATER, RUBBER, CLAMPED = 1, 2, 3
 WATER_AREA = 0.1 * 0.14  # [m^2]
 GATE_FACE, GATE_LENGTH, GATE_THICKNESS = 0.1, 0.079, 0.005  # [m]; held above GATE_LENGTH, floor at y = 0
 WALL_FROM = 0.085  # [m] above this the wall that holds the gate must be tight; below, the gate's bend moves it
-SNAPSHOT_TIMES = (0.0, 0.08, 0.16, 0.24, 0.32, 0.4)  # [s]
+FAR_END = 1.0  # [m] water may leave the box there
+SNAPSHOT_TIMES, LONG_TIMES = (0.0, 0.08, 0.16, 0.24, 0.32, 0.4), (0.0, 1.0, 2.0, 4.0)  # [s] of a run of up to 1 s; of a longer one
+LONG = "long"  # the case that is about what is left at the end
 SOURCE = "experiment, Antoci, Gallati & Sibilla 2007"
 CODES = {"khayyer2018": ("Khayyer et al. 2018", "--"), "yang2012": ("Yang et al. 2012", "-."), "ng2020": ("Ng et al. 2020", ":")}
 COMPONENTS = {"x": "horizontal", "y": "vertical"}
-PEAK_TARGET, CONVERGED = 0.10, 0.03  # of the peak: away from the experiment; change between the two finest resolutions
+# Peaks of the codes' digitised curves: horizontal [mm], its time [s], vertical [mm]; all with 12 MPa
+CODE_PEAKS = {"khayyer2018": (42.7, 0.115, 14.8), "yang2012": (39.3, 0.120, 13.1), "ng2020": (39.0, 0.116, 13.7)}
+MASS_DIGITS = 1e-6  # to which log and dump write masses and densities
+PEAK_TARGET, CONVERGED = 0.10, 0.02  # of the peak: away from the experiment; change from one resolution to the next
 
 
 class Midline:
@@ -58,8 +63,8 @@ class Midline:
 
 
 def count_leaks(frames, spacing, log):
-    """Number of water particles that pass a wall or the gate, over an iterable of all frames."""
-    leaks = Leaks(0.5 * spacing)
+    """Number of water particles that pass a wall or the gate, and IDs of those that leave at the far end; frames: all, an iterable."""
+    leaks, outflow = Leaks(0.5 * spacing), []
     midline = before = None
     for frame in frames:
         midline = midline or Midline(frame)
@@ -75,15 +80,19 @@ def count_leaks(frames, spacing, log):
         beside = (fraction > 0.05) & (fraction < 0.9) & (distance < 2.5 * GATE_THICKNESS)
         leaks.add(water, beside & (distance < 0.25 * GATE_THICKNESS))
 
-        now = {"id": water["id"], "x": water["x"], "y": water["y"], "side": np.where(beside, side, 0)}
+        now = {"id": water["id"], "x": water["x"], "y": water["y"], "side": np.where(beside, side, 0),
+               "vx": water["vx"], "time": frame.time}
         if before is not None:
+            gone = ~np.isin(before["id"], now["id"], assume_unique=True)
+            reach = before["x"] + 2.0 * before["vx"] * (now["time"] - before["time"])  # twice the way to the next frame
+            outflow += before["id"][gone & (reach > FAR_END)].tolist()
             _, new, old = np.intersect1d(now["id"], before["id"], assume_unique=True, return_indices=True)
             crossed = np.zeros(len(water), bool)
             crossed[new] = now["side"][new] * before["side"][old] < 0
             crossed[new] |= _crosses_wall(before["x"][old], before["y"][old], now["x"][new], now["y"][new])
             leaks.add(water, crossed)
         before = now
-    return leaks.count(log)
+    return leaks.count(log, len(outflow)), outflow
 
 
 def _crosses_wall(x0, y0, x1, y1):
@@ -93,11 +102,14 @@ def _crosses_wall(x0, y0, x1, y1):
     return crosses & (y0 + share * (y1 - y0) > WALL_FROM)
 
 
-def mass_error(log, first, last):
-    """Relative change of the mass in the run, from thermo if it has it, else from the number of particles."""
+def mass_error(log, first, last, outflow):
+    """Relative change of the mass in the run but for particles `outflow`, from thermo if it has it, else of the number of particles."""
     mass = log.column("v_mass", "mass", "Mass")
-    start, end = (mass[0], mass[-1]) if mass is not None else (len(first), len(last))
-    return abs(end - start) / start
+    if mass is None:
+        return abs(len(last) + len(outflow) - len(first)) / len(first)
+    # particles start in equal cells, each with the mass of its density
+    gone = np.sum(first["rho"][np.isin(first["id"], outflow)]) / np.sum(first["rho"])
+    return abs(mass[-1] / mass[0] + gone - 1.0)
 
 
 def rms(tip, name, experiment, column):
@@ -144,63 +156,69 @@ def main(folder):
         summary.add(f"rms_{name}_experiment", rms(tip, f"tip_{name}", experiment, column), "mm")
 
     # one pass over a file that may be large; only the frames for the pictures are kept
+    wanted = SNAPSHOT_TIMES if tip.time[-1] < 1.0 else LONG_TIMES
     kept, ends = {}, {}
 
     def passing():
         for frame in dump.frames(folder / "particles.dump"):
             ends.setdefault("first", frame)
             ends["last"] = frame
-            for time in SNAPSHOT_TIMES:
+            for time in wanted:
                 if time not in kept or abs(frame.time - time) < abs(kept[time].time - time):
                     kept[time] = frame
             yield frame
 
+    values = summary.log.values
     first = next(dump.frames(folder / "particles.dump"))
-    spacing = summary.log.values.get("dx") or float(np.sqrt(WATER_AREA / len(first.of_types(WATER))))
-    summary.add("particles_leaked", count_leaks(passing(), spacing, summary.log))
-    summary.add("mass_error", mass_error(summary.log, ends["first"], ends["last"]))
+    spacing = values.get("dx") or float(np.sqrt(WATER_AREA / len(first.of_types(WATER))))
+    leaked, outflow = count_leaks(passing(), spacing, summary.log)
+    summary.add("particles_leaked", leaked)
+    summary.add("outflow_particles", len(outflow))
+    summary.add("mass_error", mass_error(summary.log, ends["first"], ends["last"], outflow))
 
-    picture_tip(folder / "tip.png", [(_label(summary.log.values), tip, plot.BLUE, "-")], experiment)
-    shown = dump.nearest(list(kept.values()), SNAPSHOT_TIMES, tolerance=0.02)
+    picture_tip(folder / "tip.png", [(_label(values), tip, plot.BLUE, "-")], experiment)
+    shown = dump.nearest(list(kept.values()), wanted, tolerance=0.02)
     plot.snapshots(folder / "snapshots.png", shown, spacing, (WATER,), (RUBBER, CLAMPED),
-                   limits=((-0.005, 0.3), (-0.005, 0.15)))
+                   limits=((-0.005, 0.3), (-0.005, 0.15)), columns=3 if len(shown) > 4 else 2)
     return summary.write()
 
 
 def study(folder, runs):
-    """Compares the runs {case: folder}: per modulus the resolutions with each other, the finest with the experiment."""
+    """Compares the runs {case: folder}: per modulus the resolutions with each other, the finest with experiment and codes."""
     folder = Path(folder)
     summary = Summary(folder)
     experiment, codes = series.read(HERE / "experiment.csv"), series.read(HERE / "codes.csv")
-    found = {}  # modulus -> [(values of the log, tip, folder)], the finest last
-    for run in map(Path, runs.values()):
-        values = log.read(run / LOG_FILE).values
-        found.setdefault(_modulus(values), []).append((values, series.read(run / "tip.csv"), run))
+    found, others = {}, []  # modulus -> runs of the total-Lagrangian gate, the coarsest first; runs of other forms of the solid
+    for case, run in runs.items():
+        if case != LONG:
+            values = log.read(Path(run) / LOG_FILE).values
+            tried = found.setdefault(_modulus(values), []) if _solid(values) == "tl" else others
+            tried.append((values, series.read(Path(run) / "tip.csv"), Path(run)))
 
     for modulus, tried in sorted(found.items()):
         tried.sort(key=lambda run: run[0]["across"])
-        tip = tried[-1][1]
-        for name, column in COMPONENTS.items():
-            # no farther from the experiment than the nearest of the codes
-            distances = {label: rms(codes, f"{code}_{column}", experiment, column) for code, (label, _) in CODES.items()}
-            summary.add(f"{modulus}_rms_{name}", rms(tip, f"tip_{name}", experiment, column), "mm", None,
-                        SOURCE + "; codes: " + ", ".join(f"{label} {mm:.1f}" for label, mm in distances.items()),
-                        min(distances.values()))
-        for name, column in COMPONENTS.items():
-            peak, time = tip.peak(f"tip_{name}")
-            measured, measured_time = experiment.peak(column)
-            summary.add(f"{modulus}_tip_{name}_peak", 1e3 * peak, "mm", 1e3 * measured, SOURCE, PEAK_TARGET)
-            summary.add(f"{modulus}_tip_{name}_peak_time", time, "s", measured_time, SOURCE)
+        _add_finest(summary, modulus, tried[-1][1], experiment, codes)
+        for name in COMPONENTS:
             peaks = [run[1].peak(f"tip_{name}")[0] for run in tried]
             for (coarse, _, _), (fine, _, _), a, b in zip(tried, tried[1:], peaks, peaks[1:]):
                 summary.add(f"{modulus}_tip_{name}_peak_change_{coarse['across']:.0f}_to_{fine['across']:.0f}_across",
-                            b / a - 1.0, target=CONVERGED if fine is tried[-1][0] else None)
+                            b / a - 1.0, target=CONVERGED)
+    for values, tip, _ in others:
+        same = [run[1] for run in found.get(_modulus(values), ()) if run[0]["across"] == values["across"]]
+        for name in COMPONENTS if same else ():
+            summary.add(f"{_modulus(values)}_{_solid(values)}_tip_{name}_peak_{values['across']:.0f}_across",
+                        1e3 * tip.peak(f"tip_{name}")[0], "mm", 1e3 * same[0].peak(f"tip_{name}")[0],
+                        "our total-Lagrangian gate at this spacing")
     summary.add("particles_leaked", sum(_figure(case, "particles_leaked") for case in summary.cases.values()), target=0)
-    summary.add("mass_error", max(_figure(case, "mass_error") for case in summary.cases.values()), target=0)
+    summary.add("mass_error", max(_figure(case, "mass_error") for case in summary.cases.values()), target=MASS_DIGITS)
+    if LONG in runs:
+        _add_long(summary, Path(runs[LONG]))
 
     colours = dict(zip(sorted(found), (plot.BLUE, plot.ORANGE)))
-    picture_tip(folder / "tip.png", [(_label(tried[-1][0]), tried[-1][1], colours[modulus], "-")
-                                     for modulus, tried in sorted(found.items())], experiment, codes)
+    picture_tip(folder / "tip.png",
+                [(_label(tried[-1][0]), tried[-1][1], colours[modulus], "-") for modulus, tried in sorted(found.items())] +
+                [(_label(values), tip, colours.get(_modulus(values), plot.GREY), "--") for values, tip, _ in others],
+                experiment, codes)
     picture_tip(folder / "convergence.png",
                 [(_label(values), tip, colours[modulus], style) for modulus, tried in sorted(found.items())
                  for (values, tip, _), style in zip(reversed(tried), ("-", "--", "-.", ":"))], experiment)
@@ -209,13 +227,56 @@ def study(folder, runs):
     return summary.write()
 
 
+def _add_finest(summary, modulus, tip, experiment, codes):
+    """The finest run of a modulus beside experiment and codes."""
+    for name, column in COMPONENTS.items():
+        # no farther from the experiment than the nearest of the codes
+        distances = {label: rms(codes, f"{code}_{column}", experiment, column) for code, (label, _) in CODES.items()}
+        summary.add(f"{modulus}_rms_{name}", rms(tip, f"tip_{name}", experiment, column), "mm", None,
+                    SOURCE + "; codes: " + ", ".join(f"{label} {mm:.1f}" for label, mm in distances.items()),
+                    min(distances.values()))
+    for name, column in COMPONENTS.items():
+        peak, time = tip.peak(f"tip_{name}")
+        measured, measured_time = experiment.peak(column)
+        summary.add(f"{modulus}_tip_{name}_peak", 1e3 * peak, "mm", 1e3 * measured, SOURCE, PEAK_TARGET)
+        summary.add(f"{modulus}_tip_{name}_peak_time", time, "s", measured_time, SOURCE)
+    if modulus == "12MPa":
+        peak, time = tip.peak("tip_x")
+        for name, value, unit, which in (("x_peak", 1e3 * peak, "mm", 0), ("x_peak_time", time, "s", 1),
+                                         ("y_peak", 1e3 * tip.peak("tip_y")[0], "mm", 2)):
+            low, high = (pick(peaks[which] for peaks in CODE_PEAKS.values()) for pick in (min, max))
+            middle = 0.5 * (low + high)
+            summary.add(f"{modulus}_tip_{name}_in_codes", value, unit, middle,
+                        f"codes: middle of their {low:g} to {high:g} {unit}", (high - middle) / middle)
+
+
+def _add_long(summary, folder):
+    """What is left after most of the water has gone."""
+    tip = series.read(folder / "tip.csv")
+    late = tip.time > tip.time[-1] - 0.5
+    for name in COMPONENTS:
+        summary.add(f"{LONG}_tip_{name}_end", 1e3 * np.mean(tip[f"tip_{name}"][late]), "mm", None, "mean over the last 0.5 s")
+    *_, last = dump.frames(folder / "particles.dump")
+    water = last.of_types(WATER)
+    summary.add(f"{LONG}_water_speed_end", float(np.sqrt(np.mean(water["vx"]**2 + water["vy"]**2))), "m/s", None, "root mean square")
+    for name in ("outflow_particles", "particles_leaked", "mass_error"):
+        summary.add(f"{LONG}_{name}", _figure(summary.cases[LONG], name))
+    shutil.copyfile(folder / "snapshots.png", summary.folder / f"{LONG}_snapshots.png")
+
+
 def _modulus(values):
     """A run's modulus, as the material's name ends: 12MPa."""
     return values["rubber"].split("_")[-1]
 
 
+def _solid(values):
+    """The form of a run's solid, as the deck names it."""
+    return values.get("solid", "tl")
+
+
 def _label(values):
-    return f"{_modulus(values).replace('MPa', ' MPa')}, {values['across']:.0f} particles across"
+    form = {"tl": "", "ul": ", updated Lagrangian", "paper": ", updated, plain gradients"}[_solid(values)]
+    return f"{_modulus(values).replace('MPa', ' MPa')}, {values['across']:.0f} across{form}"
 
 
 def _figure(summary, name):

@@ -28,11 +28,10 @@ class Leaks:
             self.first = ids
         self.last = ids
 
-    def count(self, log):
-        """Number of particles that leaked or were lost; those that the deck counts as outflow are no loss."""
+    def count(self, log, outflow=0):
+        """Number of particles that leaked or were lost; `outflow` of those left where they may, which is no loss."""
         lost = max(len(self.first - self.last), _drop(log)) if self.first else _drop(log)
-        outflow = log.column("v_outflow", "outflow")
-        return len(self.offenders) + max(0, lost - int(outflow[-1] if outflow is not None else 0))
+        return len(self.offenders) + max(0, lost - outflow)
 
 
 def _drop(log):
