@@ -760,7 +760,7 @@ def plate_period(n, keywords="", columns=1):
     return 2 * (t - 10 * dt * new / (new - old))
 
 
-# the table of doc/theory.md at 5 across and at 3: per cent that the period is too long
+# the table of doc/src/theory.rst at 5 across and at 3: per cent that the period is too long
 PERIODS = [(3, "", 1, 1.4), (5, "", 1, 1.0), (5, "volumes plain", 1, 3.0), (5, "gradient linear", 1, 17.0), (5, "", 0, 5.0)]
 
 
@@ -781,7 +781,7 @@ def test_cantilever_tip_under_its_weight():
     g, thick = 0.02, n * dx
     modulus, inertia = E / (1 - NU**2), thick**3 / 12
     q = RHO * thick * g
-    beam = length + 0.25 * dx    # the clamp that particles feel: doc/theory.md
+    beam = length + 0.25 * dx    # the clamp that particles feel: doc/src/theory.rst
     expected = q * beam**4 / (8 * modulus * inertia) + q * beam**2 / (2 * G * thick * 5 / 6)
     tip = np.flatnonzero(np.abs(x[:, 0] - x[:, 0].max()) < 1e-9)
     # critical damping of the first mode: rate 2 omega per mass
