@@ -69,7 +69,7 @@ namespace FSI {
     {
       if (plane_stress) lambda = 2.0 * lambda * mu / (lambda + 2.0 * mu);
     }
-    template <int D> PiolaStress<D> operator()(const double *F, const double *) const
+    template <int D> PiolaStress<D> operator()(const double *F, const double * = nullptr) const
     {
       Sym<D> E;
       for (int a = 0; a < D; a++)
@@ -97,7 +97,7 @@ namespace FSI {
   struct NeoHookean {
     double lambda, mu;
     NeoHookean(double bulk, double shear, bool) : lambda(bulk - 2.0 / 3.0 * shear), mu(shear) {}
-    template <int D> PiolaStress<D> operator()(const double *F, const double *) const
+    template <int D> PiolaStress<D> operator()(const double *F, const double * = nullptr) const
     {
       PiolaStress<D> r;
       double C[D * D], trace = 0.0;

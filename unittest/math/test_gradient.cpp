@@ -79,13 +79,13 @@ template <int D> typename GradientWeights<D>::Order weigh(const Neighbours<D> &n
 
 }    // namespace
 
-template <class T> class Gradient : public ::testing::Test {};
-TYPED_TEST_SUITE(Gradient, Dimensions, DimensionName);
+template <class T> class Weights : public ::testing::Test {};
+TYPED_TEST_SUITE(Weights, Dimensions, DimensionName);
 
 /* ---------------------------------------------------------------------- */
 
 // inside, at a face, an edge (corner in 2D), a corner, and beside a face
-TYPED_TEST(Gradient, QuadraticFieldsAreExact)
+TYPED_TEST(Weights, QuadraticFieldsAreExact)
 {
   constexpr int D = TypeParam::value;
   const int lows[][3] = {{-3, -3, -3}, {0, -3, -3}, {0, 0, -3}, {0, 0, 0}, {-1, -3, 0}};
@@ -101,7 +101,7 @@ TYPED_TEST(Gradient, QuadraticFieldsAreExact)
       }
 }
 
-TYPED_TEST(Gradient, LinearOrderOnRequest)
+TYPED_TEST(Weights, LinearOrderOnRequest)
 {
   constexpr int D = TypeParam::value;
   const int lo[3] = {0, -3, -3}, hi[3] = {3, 3, 3};
@@ -116,7 +116,7 @@ TYPED_TEST(Gradient, LinearOrderOnRequest)
 }
 
 // the documented place: 0.6 dx inside the face
-TYPED_TEST(Gradient, LinearGradientAtAFaceIsThatOfAPlaceInside)
+TYPED_TEST(Weights, LinearGradientAtAFaceIsThatOfAPlaceInside)
 {
   constexpr int D = TypeParam::value;
   const int lo[3] = {0, -3, -3}, hi[3] = {3, 3, 3};
@@ -135,7 +135,7 @@ TYPED_TEST(Gradient, LinearGradientAtAFaceIsThatOfAPlaceInside)
 }
 
 // weights belong to differences: a constant field has none, whatever G; and length scales out
-TYPED_TEST(Gradient, ScalesWithLength)
+TYPED_TEST(Weights, ScalesWithLength)
 {
   constexpr int D = TypeParam::value;
   const int lo[3] = {-1, 0, -3}, hi[3] = {3, 3, 3};
@@ -150,7 +150,7 @@ TYPED_TEST(Gradient, ScalesWithLength)
 
 /* ---------------------------------------------------------------------- */
 
-TYPED_TEST(Gradient, LineOrPlaneIsDeficient)
+TYPED_TEST(Weights, LineOrPlaneIsDeficient)
 {
   constexpr int D = TypeParam::value;
   std::vector<double> G;
@@ -179,7 +179,7 @@ TYPED_TEST(Gradient, LineOrPlaneIsDeficient)
   EXPECT_EQ(weigh(skew, true, G), GradientWeights<D>::DEFICIENT);
 }
 
-TYPED_TEST(Gradient, TooFewNeighboursAreDeficient)
+TYPED_TEST(Weights, TooFewNeighboursAreDeficient)
 {
   constexpr int D = TypeParam::value;
   const int lo[3] = {0, 0, 0}, hi[3] = {1, 0, 0};
@@ -194,7 +194,7 @@ TYPED_TEST(Gradient, TooFewNeighboursAreDeficient)
 }
 
 // two layers: nothing tells u = X^2 across from u = X. What remains is exact for linear fields.
-TYPED_TEST(Gradient, TwoLayers)
+TYPED_TEST(Weights, TwoLayers)
 {
   constexpr int D = TypeParam::value;
   std::vector<double> G;
@@ -214,7 +214,7 @@ TYPED_TEST(Gradient, TwoLayers)
 }
 
 // D + 1 particles: no quadratic term at all
-TYPED_TEST(Gradient, SimplexIsLinear)
+TYPED_TEST(Weights, SimplexIsLinear)
 {
   constexpr int D = TypeParam::value;
   Neighbours<D> n((const int[3]){0, 0, 0}, (const int[3]){1, 1, 1}, 0.0);
