@@ -1,6 +1,7 @@
 """fix fsi/dt: limits, bounds, sub-steps, what a changing time step does to the scheme, restarts."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -187,7 +188,7 @@ run 100
 
 def gate_tl(more, steps="run 100", **files):
     scene = dam_gate(2)
-    text = total_lagrangian(scene.text()).replace("continuity\n", "continuity substeps 4\n", 1)
+    text = total_lagrangian(replace(scene, sph="substeps 4").text())
     return text + f"fix dt all fsi/dt 10 {more}\n{steps}\n", scene.data()
 
 

@@ -21,11 +21,11 @@ def resume(scene, file, steps=20):
 
 
 def endless(folder, ranks):
-    """A run that writes restarts, started; returns when a few are there."""
+    """A run that writes restarts, started; returns when a few are there. Its steps are so short that nothing leaves the box."""
     scene = dam_gate(2)
     folder.mkdir(exist_ok=True)
     (folder / "scene.data").write_text(scene.data())
-    (folder / "in.test").write_text(scene.text() + "fix watch all fsi/watch 10\nrestart 20 a.restart b.restart\nrun 10000000\n")
+    (folder / "in.test").write_text(scene.text() + "timestep 1e-9\nfix watch all fsi/watch 10\nrestart 20 a.restart b.restart\nrun 10000000\n")
     process = subprocess.Popen(launch.lammps("in.test", ranks), cwd=folder, env=launch.environment(), stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     end = time.monotonic() + SECONDS

@@ -36,7 +36,7 @@ SCENES = {  # text and the limit of its time step
     "fluid": (lambda: (fluid_box(2), fluid_box(2).text()), 0.25 * 1.5 * DX / 10.5),
     "gate": (lambda: (dam_gate(2), dam_gate(2).text()), 0.25 * 1.5 * DX / PLATE_C),
     "gate, total Lagrangian": (lambda: (dam_gate(2), total_lagrangian(dam_gate(2).text())), 0.25 * 1.5 * DX / PLATE_C),
-    "gate, sub-steps": (lambda: (dam_gate(2), total_lagrangian(dam_gate(2).text()).replace("continuity\n", "continuity substeps 4\n", 1)),
+    "gate, sub-steps": (lambda: (dam_gate(2), total_lagrangian(dam_gate(2, sph="substeps 4").text())),
                         4 * 0.25 * 1.5 * DX / PLATE_C),
 }
 
