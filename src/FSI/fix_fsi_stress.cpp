@@ -67,6 +67,7 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
 
 bool FixFSIStress::wants_hourglass(Force *force)
 {
+  if (!force->pair) return false;
   const auto *pair = dynamic_cast<PairFSISolid *>(force->pair_match("^fsi/solid$", 0));
   return pair && pair->has_hourglass();
 }
