@@ -22,6 +22,7 @@ UNTIL = 2.5  # fronts are compared until t sqrt(2g/L) = 2.5, or until the wall i
 PLATEAU = (3.0, 5.0)  # t sqrt(g/H): between the first impact and the return of the run-up
 SNAPSHOT_TIMES = (0.0, 1.5, 2.4, 3.0, 4.0, 5.0, 5.7, 6.3, 7.0)  # t sqrt(g/H)
 CODE = "code, TrixiParticles WCSPH, H/dx = 400"
+FRONT_TARGET, PLATEAU_TARGET = {"code": 0.025, "experiment": 0.05}, 0.15  # of front and plateau, with 80 particles over the height
 MPS = "code, Koshizuka & Oka 1996"
 BUCHNER = "experiment, Buchner 2002"
 MEASURED = {1: ("martin_moyce_57mm", "Martin & Moyce 1952, L = 57 mm", plot.ORANGE),
@@ -97,10 +98,10 @@ def add_classical(summary, run, suffix=""):
     """Figures of the column 2H x H: front against a converged code, wall pressure against the experiment."""
     code, measured = (series.read(HERE / f"{name}.csv") for name in ("front_code", "gauge_experiment"))
     deviation = run.deviation(code.time, code["wcsph"])
-    summary.add(f"front_error_code{suffix}", largest(deviation), "", 0.0, CODE)
+    summary.add(f"front_error_code{suffix}", largest(deviation), "", 0.0, CODE, FRONT_TARGET["code"] if suffix == "_80" else None)
     summary.add(f"front_error_code_rms{suffix}", float(np.sqrt(np.mean(deviation**2))), "", 0.0, CODE)
     summary.add(f"pressure_plateau{suffix}", plateau(run.t, run.gauge), "rho g H",
-                plateau(measured.time, measured["pressure"]), BUCHNER)
+                plateau(measured.time, measured["pressure"]), BUCHNER, PLATEAU_TARGET if suffix == "_80" else None)
 
 
 def add_tall(summary, run):
@@ -109,7 +110,8 @@ def add_tall(summary, run):
         times, fronts = tall_reference(number)
         lag = run.lag(times, fronts)
         source = f"experiment, {label}"
-        summary.add(f"front_error_experiment_{name}", largest(run.deviation(times, fronts)), "", 0.0, source)
+        summary.add(f"front_error_experiment_{name}", largest(run.deviation(times, fronts)), "", 0.0, source,
+                    FRONT_TARGET["experiment"])
         summary.add(f"front_lag_{name}", float(lag), "sqrt(L/2g)", 0.0, source)
         summary.add(f"front_error_lagged_{name}", largest(run.deviation(times, fronts, lag)), "", 0.0, source)
     summary.add("front_error_mps", largest(run.deviation(*tall_reference(CODE_SET))), "", 0.0, MPS)
