@@ -353,8 +353,8 @@ void FixFSIReference::resolve()
           }
       }
       if (j < 0)
-        error->one(FLERR, "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {}: one of them was lost, or the solid is "
-                          "stretched so far that comm_modify cutoff must be larger", tag[i], t,
+        error->one(FLERR, "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {}: one of them was lost, the solid "
+                          "blew up (try a shorter time step, more sub-steps), or it is stretched so far that comm_modify cutoff must be larger", tag[i], t,
                    comm->cutghostuser > neighbor->cutneighmax ? comm->cutghostuser : neighbor->cutneighmax);
       local[first + k] = j;
     }
