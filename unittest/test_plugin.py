@@ -12,9 +12,6 @@ PLAIN = paths.ROOT / "build-plain"
 SCENE = dam_gate(2)
 LOAD = "plugin load fsiplugin.so\n"
 
-# objects compiled with other options (tools/coverage) need not give the same bits
-pytestmark = pytest.mark.skipif(paths.BUILD != paths.ROOT / "build", reason="once, with the usual build")
-
 
 def same_options():
     """Options of cmake that make the objects those of the usual build."""
