@@ -116,7 +116,7 @@ void FixFSIReference::take()
   std::vector<int> bare;
   for (int i = 0; i < atom->nlocal; i++)
     if (slot[i] < 0 && is_solid(i)) bare.push_back(i);
-  const bigint mine = bare.size();
+  bigint mine = bare.size();
   bigint all;
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all == 0) return;
