@@ -341,8 +341,12 @@ void FixFSIWatch::judge(When when)
     const double value = q >= ENERGY ? total[q] : worst[q].value;
     if (q == DISTANCE ? value < limit[q] : value > limit[q]) mine |= 1 << q;
   }
-  if (comm->nprocs == 1) crossed = mine;
-  else MPI_Allreduce(&mine, &crossed, 1, MPI_INT, MPI_BOR, world);
+  // a maximum per bit: LAMMPS' stand-in for MPI in serial builds has no bitwise or
+  int bits[NQUANTITY], all_bits[NQUANTITY];
+  for (int q = 0; q < NQUANTITY; q++) bits[q] = mine >> q & 1;
+  MPI_Allreduce(bits, all_bits, NQUANTITY, MPI_INT, MPI_MAX, world);
+  crossed = 0;
+  for (int q = 0; q < NQUANTITY; q++) crossed |= all_bits[q] << q;
   if (!crossed) return;
 
   for (int k = 0; k < NQUANTITY; k++) {
@@ -493,7 +497,7 @@ void FixFSIWatch::write_neighbours(const Finding &all)
                                v[2], f[0], f[1], f[2], atom->rho[i]})
       mine.push_back(value);
   }
-  const int n = mine.size();
+  int n = mine.size();
   std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
   MPI_Gather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
   for (int k = 1; k < comm->nprocs; k++) starts[k] = starts[k - 1] + counts[k - 1];
