@@ -18,7 +18,6 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
-#include "group.h"
 #include "update.h"
 
 #include <algorithm>
@@ -27,7 +26,7 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), sum{}, about{}, hub(nullptr)
+ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), sum{}, about{}, reduced(false), hub(nullptr)
 {
   if (narg != 3) error->all(FLERR, "Compute fsi/force takes no arguments");
   vector_flag = 1;
@@ -52,8 +51,26 @@ void ComputeFSIForce::init()
 }
 
 /* ----------------------------------------------------------------------
+   a point inside the body: where its first particle is; later its centre of mass when it was last asked for
+------------------------------------------------------------------------- */
+
+void ComputeFSIForce::find_body()
+{
+  tagint mine = MAXTAGINT, first;
+  double place[3] = {};
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && hub->state[atom->type[i]].species == FSI::SOLID && atom->tag[i] < mine) {
+      mine = atom->tag[i];
+      std::copy_n(atom->x[i], 3, place);
+    }
+  MPI_Allreduce(&mine, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  if (mine != first) std::fill_n(place, 3, 0.0);
+  MPI_Allreduce(place, about, 3, MPI_DOUBLE, MPI_SUM, world);
+}
+
+/* ----------------------------------------------------------------------
    Forces on ghosts count where they are, before they are sent home: the sum is the same. Without newton ghosts get none.
-   Lever arms are those of the nearest periodic image, from a point inside the body: its centre of mass at the start of the run.
+   Lever arms are those of the nearest periodic image, from a point inside the body.
 ------------------------------------------------------------------------- */
 
 void ComputeFSIForce::tally(double sign)
@@ -61,10 +78,8 @@ void ComputeFSIForce::tally(double sign)
   const int nlocal = atom->nlocal, nall = nlocal + (force->newton_pair ? atom->nghost : 0);
   if (sign < 0.0) {
     std::fill_n(sum, (int) NSUM, 0.0);
-    if (update->setupflag) {
-      group->xcm(igroup, group->mass(igroup), about);
-      domain->remap(about);
-    }
+    if (update->setupflag) find_body();
+    reduced = false;
   }
   for (int i = 0; i < nall; i++) {
     if (!(atom->mask[i] & groupbit) || hub->state[atom->type[i]].species != FSI::SOLID) continue;
@@ -87,6 +102,8 @@ void ComputeFSIForce::tally(double sign)
 void ComputeFSIForce::compute_vector()
 {
   invoked_vector = update->ntimestep;
+  if (reduced) return;
+  reduced = true;
   double all[NSUM];
   MPI_Allreduce(sum, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
   for (int d = 0; d < 3; d++) {
@@ -95,4 +112,7 @@ void ComputeFSIForce::compute_vector()
     vector[3 + d] = all[TORQUE + d];
     if (all[MASS] > 0.0) vector[3 + d] -= (all[MOMENT + a] * all[FORCE + b] - all[MOMENT + b] * all[FORCE + a]) / all[MASS];
   }
+  if (all[MASS] == 0.0) return;    // no solid particle in the group
+  for (int d = 0; d < 3; d++) about[d] += all[MOMENT + d] / all[MASS];
+  domain->remap(about);
 }

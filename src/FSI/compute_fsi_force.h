@@ -39,7 +39,10 @@ class ComputeFSIForce : public Compute {
  private:
   enum { FORCE = 0, TORQUE = 3, MOMENT = 6, MASS = 9, NSUM };    // about and from `about`
   double sum[NSUM], about[3];
+  bool reduced;    // over ranks, since the last forces
   class FixFSI *hub;
+
+  void find_body();
 };
 
 }    // namespace LAMMPS_NS
