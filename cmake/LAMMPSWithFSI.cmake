@@ -13,11 +13,6 @@ option(BUILD_TOOLS "Build LAMMPS' tools" OFF)
 include("${LAMMPS_SOURCE_DIR}/cmake/Modules/StyleHeaderUtils.cmake")
 if(FSI_COMPILED_IN)
   RegisterStyles("${FSI_SOURCE_DIR}")
-  if(NOT FSI_FFTW)    # so that is_available(fix,fsi/spectrum) says so in a script
-    get_property(_headers GLOBAL PROPERTY FIX)
-    list(REMOVE_ITEM _headers "${FSI_SOURCE_DIR}/fix_fsi_spectrum.h")
-    set_property(GLOBAL PROPERTY FIX "${_headers}")
-  endif()
 endif()
 
 # Our targets land beside lmp, whatever LAMMPS' own CMakeLists makes of its binary folder

@@ -126,9 +126,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("compute", "fsi/force", &create_with_arguments<ComputeFSIForce>);
   two("compute", "fsi/probe", &create_with_arguments<ComputeFSIProbe>);
   two("compute", "fsi/surface/atom", &create_with_arguments<ComputeFSISurfaceAtom>);
-#if defined(FSI_FFTW3)
   two("fix", "fsi/spectrum", &create_with_arguments<FixFSISpectrum>);
-#endif
   two("fix", "fsi/wall/mirror", &create_with_arguments<FixFSIWallMirror>);
   two("fix", "fsi/watch", &create_with_arguments<FixFSIWatch>);
   two("fix", "fsi/dt", &create_with_arguments<FixFSIDt>);
