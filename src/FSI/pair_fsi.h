@@ -61,6 +61,8 @@ class PairFSI : public Pair {
   bool several_bodies() const;
   void need(int narg, char **arg, int iarg, int n);
   double number(const char *value, const char *what);
+  double contact_reach(const char *value);    // keyword contact of solids, over dx
+  void check_contact(double) const;
   void set_flags();
   void allocate();
   void check_tally();

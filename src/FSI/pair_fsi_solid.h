@@ -68,7 +68,7 @@ class PairFSISolid : public PairFSI {
 
  private:
   enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };
-  double alpha, beta, epsilon, xi;
+  double alpha, beta, epsilon, xi, contact_range;
   std::vector<double> hourglass_rate;    // local and ghost
   template <class K> void hourglass_pairs(double);
   template <int D> void rotate_hourglass(double);
