@@ -105,3 +105,13 @@ def test_sliding_block():
 def test_bodies_apart_by_the_range_do_not_push():
     x, mol = two_blocks([6, 5], 2.5001 * DX)
     assert np.abs(forces("fsi/solid/tl", x, mol, 2.5, 2)).max() < 1e-9 * E * DX
+
+
+@STYLES
+def test_range_is_kept_in_restart_files(style, tmp_path):
+    x, mol = two_blocks([7, 5], 0.9 * DX, 0.2 * DX)
+    with Scene(x, dx=DX, mol=mol, materials=(MATERIAL,), solid_style=style, solid="contact 2.2") as s:
+        before = s.run().get("f")
+        s.run_lines(f"write_restart {tmp_path / 'here'}", "clear", f"read_restart {tmp_path / 'here'}", f"fix sph all fsi {DX} wendland 1.5",
+                    "fix stress all fsi/stress" if style == "fsi/solid" else "")
+        close(s.run().get("f"), before, 1e-12)
