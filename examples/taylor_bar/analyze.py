@@ -22,7 +22,7 @@ LENGTH_FEM, RADIUS_FEM = 21.42, 7.22
 LENGTH_SOURCE = "code: converged finite elements (Carina)"
 RADIUS_SOURCE = "code: converged finite elements, Foulk et al. 2021"
 SNAPSHOTS = (0.0, 1e-5, 2e-5, 4e-5, 8e-5)
-COLOURS = (plot.BLUE, plot.ORANGE, plot.GREY)
+COLOURS = ("#9ec4e4", "#5b9bd5", plot.BLUE, plot.ORANGE)
 
 
 def foot_radius(first, frame):
@@ -74,14 +74,14 @@ def main(folder):
 
 
 def picture(path, frames, spacing):
-    """A slice through the axis, coloured by von Mises stress, which beyond 400 MPa is 100 MPa times the plastic strain higher."""
+    """The slice that goes through the axis at the start, coloured by von Mises stress, which beyond 400 MPa is 100 MPa times the plastic strain higher."""
     limits = (-8.0, 8.0), (-1.0, 34.0)
     with plot.picture(path, 8.0, 4.0) as figure:
         axes = figure.subplots(1, len(frames), sharey=True, squeeze=False).ravel()
         figure.subplots_adjust(left=0.065, right=0.89, bottom=0.13, top=0.92, wspace=0.06)
         side = 1e3 * spacing / 35.0 * 0.79 * 4.0 * 72.0
+        cut = np.abs(frames[0]["y"]) < 1e-3 * spacing
         for panel, frame in zip(axes, frames):
-            cut = np.abs(frame["y"]) < 1e-3 * spacing
             drawn = panel.scatter(1e3 * frame["x"][cut], 1e3 * frame["z"][cut], s=(0.9 * side)**2, c=1e-6 * frame["vonmises"][cut], linewidths=0,
                                   cmap=plot.SOLID_COLOURS, vmin=0.0, vmax=700.0)
             panel.axhline(0.0, color="black", linewidth=0.8)
