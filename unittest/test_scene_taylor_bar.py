@@ -16,9 +16,9 @@ def figures(tmp_path_factory):
 
 
 def test_bar_is_as_short_as_by_finite_elements(figures):
-    # 21.42 mm and 7.22 mm converged. With 4 across the foot, which spreads to 2.25 of its radius over two or three layers, stays narrower
+    # 21.42 mm and 7.22 mm converged; with 4 across the layers are 5 % of the length and the section is good to 3 %
     assert figures["final_length"] == pytest.approx(21.42, rel=0.05)
-    assert 5.4 < figures["foot_radius"] < 7.22
+    assert figures["foot_radius"] == pytest.approx(7.22, rel=0.05)
 
 
 def test_energy_goes_into_plastic_work(figures):

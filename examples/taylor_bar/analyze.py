@@ -26,11 +26,12 @@ COLOURS = ("#9ec4e4", "#5b9bd5", plot.BLUE, plot.ORANGE)
 
 
 def foot_radius(first, frame):
-    """Radius [mm] of the foot's edge: r = aR + bR^3 of the particles on the end face, fitted, at the bar's radius."""
+    """Radius [mm] to which the edge of the end face has gone: the line through the two outermost circles of its particles, at the bar's radius."""
     foot = np.abs(first["z"]) < 1e-9
     before, now = (1e3 * np.hypot(f["x"], f["y"])[foot] for f in (first, frame))
-    fit = np.linalg.lstsq(np.stack([before, before**3], 1), now, rcond=None)[0]
-    return float(fit @ [RADIUS, RADIUS**3])
+    circle = np.round(before, 6)
+    (a, b), (ra, rb) = np.unique(circle)[-2:], [now[circle == c].mean() for c in np.unique(circle)[-2:]]
+    return float(ra + (rb - ra) / (b - a) * (RADIUS - a))
 
 
 def asymmetry(first, frame, spacing):
