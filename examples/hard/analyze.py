@@ -264,7 +264,7 @@ ROWS = {
     "still_jitter": Row("the same from a jittered lattice", r"still_\d+_jitter", still, STILL, "continuity, density diffusion"),
     "corner": Row("still water, 10 s, obstacle with corners", r"still_corner_\d+", still, STILL, "continuity, density diffusion, couple wall"),
     "spray": Row("spray of 1, 2, 3 particles", "spray_.*", ballistic, {"off_parabola": ("<", 1e-12)}, "no tension"),
-    "wall": Row("a million steps against a wall: a particle, and a drop of nine", "wall.*", wall, {"leaked": ("<=", 0), "steps": (">=", 1000000)}, "guard"),
+    "wall": Row("a million steps against a wall: a particle, and a drop of nine", "wall.*", wall, {"leaked": ("<=", 0), "steps": (">=", 1000000)}, "guard of 0.4 dx, continuity"),
     "pull": Row("plate pulled out of water", "pull", pull, {"hanging": ("<=", 0), "pull": ("<", 1e-12)}, "couple wall: no suction"),
     "tear": Row("solid torn between two ranks", "tear.*", tear, {"pieces": ("==", 2), "ranks_differ": ("<", 1e-6)}, "damage"),
     "empty": Row("box that empties on a rank", "empty", momentum, {"momentum_error": ("<", 1e-12)}, ""),
@@ -440,8 +440,8 @@ def picture(path, cases):
                     colour = plot.BLUE if kind in fluids else {1: plot.ORANGE, 2: plot.ORANGE if fluids else plot.GREY}.get(int(kind), plot.GREY)
                     axis.plot(part["x"], part["y"], ".", markersize=1.2 if len(frame) > 1500 else 2.2, color=colour, rasterized=True)
                 low, high = (np.quantile(np.concatenate([first.vector("xy"), frame.vector("xy")]), q, axis=0) for q in (0.002, 0.998))
+                low, high = low - 0.03 * (high - low).max(), high + 0.03 * (high - low).max()
                 axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-                axis.margins(0.05)
                 axis.set_title(f"{PICTURED[group]}: {recipe}, t = {frame.time:.3g} s", loc="left", fontsize=8)
         figure.tight_layout()
 
