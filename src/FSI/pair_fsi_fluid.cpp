@@ -260,7 +260,9 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
     double ri = pi.rho * pi.vol * s, rj = pj.rho * pj.vol * s;
     if ((FLAGS & DIFFUSION) && (!(FLAGS & MIXED) || (type[i] == type[j]))) {
       const State &a = (FLAGS & MIXED) ? state[type[i]] : only;
-      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, a.inv_csq * a.rho0, g);
+      // neither can be hydrostatic without pressure: particles that fly free would push each other apart
+      const bool slack = a.pressure(pi.rho) <= a.floor && a.pressure(pj.rho) <= a.floor;
+      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, slack ? 0.0 : a.inv_csq * a.rho0, g);
       ri += k * pj.vol;
       rj -= k * pi.vol;
       if (FLAGS & TALLY) {
