@@ -15,6 +15,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "compute_fsi_force.h"
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
@@ -154,6 +155,8 @@ void PairFSIFluid::init_style()
     if (!any && comm->me == 0)
       error->warning(FLERR, "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
   }
+  force_computes.clear();
+  for (auto *compute : modify->get_compute_by_style("^fsi/force$")) force_computes.push_back(dynamic_cast<ComputeFSIForce *>(compute));
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &k) { select<std::decay_t<decltype(k)>>(); });
 }
 
@@ -411,7 +414,9 @@ void PairFSIFluid::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   check_tally();
 
+  for (auto *measure : force_computes) measure->tally(-1.0);
   (this->*force_loop)();
+  for (auto *measure : force_computes) measure->tally(1.0);
 
   if (vflag_fdotr) virial_fdotr_compute();
 }
