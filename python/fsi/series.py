@@ -67,13 +67,16 @@ def rms_distance(series, name, reference, reference_name, tolerance=1e-3):
 def read_ave(path):
     """Reads a file of fix ave/time: columns over TimeStep, each (steps,); of mode vector (steps, rows)."""
     titles, data = [], []
-    for line in Path(path).read_text().splitlines():
+    lines = Path(path).read_text().splitlines()
+    if not lines or not lines[0].startswith("# Time-averaged"):
+        raise ValueError(f"{path} is not a file of fix ave/time")
+    for line in lines:
         if line.startswith("#"):
             titles.append(line.lstrip("# ").split())
         elif line.strip():
             data.append([float(word) for word in line.split()])
     if len(titles) < 2 or not data:
-        raise ValueError(f"{path} is not a file of fix ave/time, or empty")
+        raise ValueError(f"{path} has no rows")
     if len(titles) == 2:
         names = titles[1]
         if len(data[-1]) != len(names):
