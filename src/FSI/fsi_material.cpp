@@ -65,11 +65,8 @@ class MaterialReader : protected Pointers {
   std::vector<Material> read(const std::string &file, const std::vector<std::string> &names)
   {
     std::vector<Material> all;
-    // on rank 0 only: elsewhere the file need not be readable
-    int found_file = comm->me || !utils::get_potential_file_path(file).empty();
-    MPI_Bcast(&found_file, 1, MPI_INT, 0, world);
-    if (!found_file)
-      error->all(FLERR, "Cannot open material file {}: it is neither in the working folder nor in those of the environment variable "
+    if (utils::get_potential_file_path(file).empty())
+      error->one(FLERR, "Cannot open material file {}: it is neither in the working folder nor in those of the environment variable "
                         "LAMMPS_POTENTIALS; type  export LAMMPS_POTENTIALS=<folder of the .fsi files>", file);
     PotentialFileReader reader(lmp, file, "fsi material");
     while (char *line = reader.next_line()) all.push_back(parse(file, line));
