@@ -164,7 +164,7 @@ class Adviser : protected Pointers {
     }
   }
 
-  static double longitudinal(const State &s) { return std::sqrt(s.csq + 4.0 / 3.0 * s.shear / s.rho0); }
+  static double longitudinal(const State &s) { return std::sqrt(s.wave_speed_sq()); }
 
   void box() const
   {
