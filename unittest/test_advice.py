@@ -40,6 +40,8 @@ CASES = {
     # largest c without a warning is 7 sqrt(2gH) = 8.77
     "sound": ([("sound 12.53", "sound 8.7")], None, r"speed of sound 8.7 .* 6.9 times sqrt\(2gH\) of its height H = 0.08, 1.25: .* sound 12.5$"),
     "speed": ([("run 0", "velocity all set 3 4 0 units box\nrun 0"), ("4e-5", "3e-5")], None, r"2.5 times its speed at the start, 5: .* sound 50$"),
+    "lattice units": ([("run 0", "velocity all set 2 0 0\nrun 0"), ("fix g all", "#")], None,
+                      r"speed of sound 12.53 .* 6.3e\+02 times the speed 0.02 .*: velocity \.\.\. units box"),
     "spacing": ([("fsi 0.01", "fsi 0.0085"), ("4e-5", "3e-5")], None, r"nearest neighbors are 0.01 apart on average, but the spacing is 0.0085"),
     "coarse": ([("sq 0.01", "sq 0.013")], None, r"most particles have no neighbor within 0.0125: is 0.01 the spacing"),
     "overlap": ([("run 0", "create_atoms 1 single 0.028 0.025 0 units box\nrun 0")], None, r"atoms 13 and 65 are 0.3 spacings apart"),

@@ -134,6 +134,22 @@ def test_command_line(frames, tmp_path, capsys):
             cli.main([str(w) for w in words])
 
 
+def test_frequency(tmp_path, capsys):
+    """Four periods: the window's bias is below 1 %; a drift and a smaller, faster swing change nothing more."""
+    t = np.arange(0.0, 2.0, 0.01)**1.01  # unevenly spaced
+    for f in (2.1, 3.7):
+        y = 5.0 + 0.3 * t + np.cos(2 * np.pi * f * t) + 0.3 * np.sin(2 * np.pi * 11 * t)
+        assert series.frequency(t, y) == pytest.approx(f, rel=0.01)
+    (tmp_path / "tip.csv").write_text("time,tip\n" + "".join(f"{a},{b}\n" for a, b in zip(t, y)))
+    cli.main(["frequency", str(tmp_path / "tip.csv"), "tip", "0.2"])
+    assert float(capsys.readouterr().out.split()[0]) == pytest.approx(3.7, rel=0.01)
+    for words, message in ((["tip", "0", "0.01"], "has 2 rows"), ([], "takes a column"), (["speed"], "no column speed")):
+        with pytest.raises(SystemExit, match=message):
+            cli.main(["frequency", str(tmp_path / "tip.csv"), *words])
+    with pytest.raises(ValueError, match="constant"):
+        series.frequency(t, np.ones(len(t)))
+
+
 def test_animation_says_what_the_dump_lacks(tmp_path):
     path = tmp_path / "bare.dump"
     path.write_text(DUMP.format(step=0, time=0, p=1).replace(" p\n", " c_1[1]\n"))

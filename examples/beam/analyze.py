@@ -17,18 +17,10 @@ E, NU, RHO, LENGTH, THICKNESS = 1.9984472e6, 0.39751553, 1000.0, 0.2, 0.02
 FREQUENCY = 1.8751041**2 / (2.0 * np.pi * LENGTH**2) * np.sqrt(E * THICKNESS**2 / (12.0 * (1.0 - NU**2) * RHO))
 
 
-def frequency(time, value):
-    """Of a swing about its mean: whole periods between upward crossings."""
-    value = value - 0.5 * (value.max() + value.min())
-    k = np.flatnonzero((value[:-1] < 0) & (value[1:] >= 0))
-    crossings = time[k] - value[k] * (time[k + 1] - time[k]) / (value[k + 1] - value[k])
-    return (len(crossings) - 1) / (crossings[-1] - crossings[0])
-
-
 def main(folder):
     """Reads tip.csv, particles.dump and log.lammps; writes summary.json, tip.png and snapshots.png."""
     summary, s = Summary(folder), series.read(Path(folder) / "tip.csv")
-    summary.add("frequency", float(frequency(s.time, s["tip"])), "Hz", FREQUENCY, "theory, slender beam in plane strain", target=0.03)
+    summary.add("frequency", series.frequency(s.time, s["tip"]), "Hz", FREQUENCY, "theory, slender beam in plane strain", target=0.03)
     energy = summary.log.column("c_energy")
     summary.add("energy_error", float(np.abs(energy / energy[0] - 1.0).max()), target=1e-3)
     plot.lines(Path(folder) / "tip.png", "t [s]", "tip [mm]", [(s.time, 1000.0 * s["tip"], "tip", plot.BLUE)])

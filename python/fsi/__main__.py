@@ -3,6 +3,7 @@
     fsi log log.lammps                        what was run, how fast, figures, warnings
     fsi log log.lammps COLUMN ...             columns of the thermo output as CSV
     fsi series FILE [COLUMN ...]              the same of files of fix print (CSV) and fix ave/time
+    fsi frequency FILE COLUMN [FROM [TO]]     of the largest peak of a column's spectrum, between two times
     fsi dump particles.dump                   frames, particles, columns and their ranges
     fsi vtk particles.dump [FOLDER]           for ParaView
     fsi animate particles.dump [FILE.mp4]     by ffmpeg
@@ -71,6 +72,20 @@ def show_series(path, wanted, picture):
     _show(_columns(table, wanted, path), picture)
 
 
+def show_frequency(path, wanted, picture):
+    """fsi frequency"""
+    if picture or not 1 <= len(wanted) <= 3:
+        raise ValueError("frequency takes a column and perhaps two times")
+    table = series.read_any(path).columns
+    (first, time), *_ = table.items()
+    column = _columns(table, wanted[:1], path)[wanted[0]]
+    low, high = [*map(float, wanted[1:]), *(time[0], time[-1])[len(wanted) - 1:]]
+    inside = (time >= low) & (time <= high)
+    if inside.sum() < 8:
+        raise ValueError(f"{path} has {inside.sum()} rows between {first} = {low:g} and {high:g}")
+    print(f"{series.frequency(time[inside], column[inside]):.6g} per unit of {first}")
+
+
 def show_dump(path, wanted, picture):
     """fsi dump"""
     if wanted:
@@ -95,7 +110,7 @@ def main(arguments=None):
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     if len(arguments) >= 2 and arguments[0] in ("vtk", "animate"):
         return {"vtk": vtk, "animate": animate}[arguments[0]].main(arguments[1:])
-    show = {"log": show_log, "series": show_series, "dump": show_dump}.get(arguments[0] if arguments else "")
+    show = {"log": show_log, "series": show_series, "frequency": show_frequency, "dump": show_dump}.get(arguments[0] if arguments else "")
     if show is None or len(arguments) < 2:
         sys.exit(__doc__)
     picture = next((a.split("=", 1)[1] for a in arguments[2:] if a.startswith("plot=")), None)

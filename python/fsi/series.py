@@ -64,6 +64,21 @@ def rms_distance(series, name, reference, reference_name, tolerance=1e-3):
     return float(np.sqrt(np.mean((series.at(name, clipped) - reference[reference_name][inside]) ** 2)))
 
 
+def frequency(time, values):
+    """Where the spectrum is highest: Hann window, mean removed, the peak between the bins; at least two periods are needed."""
+    n = len(time)
+    even = np.linspace(time[0], time[-1], n)
+    values = np.interp(even, time, values)
+    window = np.hanning(n)
+    size = np.abs(np.fft.rfft((values - np.average(values, weights=window)) * window, 16 * n))
+    rate = np.fft.rfftfreq(16 * n, (even[-1] - even[0]) / (n - 1))
+    k = int(np.argmax(np.where(rate * (even[-1] - even[0]) < 1.5, 0.0, size)))  # below is the window itself
+    if size[k] == 0.0 or k + 1 >= len(size):
+        raise ValueError("there is no frequency in a constant")
+    a, b, c = np.log(size[k - 1:k + 2])
+    return float(rate[k] + 0.5 * (a - c) / (a - 2.0 * b + c) * rate[1])
+
+
 def read_ave(path):
     """Reads a file of fix ave/time: columns over TimeStep, each (steps,); of mode vector (steps, rows)."""
     titles, data = [], []

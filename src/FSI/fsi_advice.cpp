@@ -313,7 +313,14 @@ class Adviser : protected Pointers {
     const double falls = std::sqrt(2.0 * g * height), expected = std::max(most[0], falls);
     for (int t = 1; t <= atom->ntypes; t++) {
       const State &s = hub.state[t];
-      if (!present[t] || s.species != FLUID || s.c >= (7.0 - 1.0e-3) * expected) continue;
+      if (!present[t] || s.species != FLUID || expected == 0.0) continue;
+      if (s.c > 50.0 * expected) {
+        warn(fmt::format("the speed of sound {:g} of the fluid is {:.2g} times the speed {:.3g} that there is or falling gives: 10 times is "
+                         "enough. If the fluid should be faster: velocity ... units box (its default are lattice units per time)",
+                         s.c, s.c / expected, expected));
+        break;
+      }
+      if (s.c >= (7.0 - 1.0e-3) * expected) continue;
       warn(fmt::format("the speed of sound {:g} of the fluid is {:.1f} times {}, {:.3g}: it should be 7 to 10 times the fastest flow, "
                        "sound {:.3g}", s.c, s.c / expected,
                        most[0] > falls ? std::string("its speed at the start") : fmt::format("sqrt(2gH) of its height H = {:.3g}", height),
