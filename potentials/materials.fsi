@@ -10,11 +10,12 @@
 water            fluid rho 1000.0 viscosity 1.0e-3
 # water without viscosity, as the benchmarks treat it
 water_inviscid   fluid rho 1000.0
-# sunflower oil at 20 C: Sahasrabudhe, Rodriguez-Martinez, O'Meara and Farkas, Int. J. Food Properties 20 (2017) 1965, rounded
-oil              fluid rho 920.0 viscosity 0.065
+# sunflower oil at room temperature, rounded: the oil of Botia-Vera, Souto-Iglesias, Bulian and Lobovsky's sloshing experiments
+# (SPHERIC benchmark 10, 2010), 5e-5 m^2/s
+oil              fluid rho 917.0 viscosity 0.0459
 # glycerol at 20 C: CRC Handbook of Chemistry and Physics (viscosity 1.41 Pa s)
 glycerol         fluid rho 1261.0 viscosity 1.41
-# rubbers as linear elastic bodies at small strain, nearly incompressible: representative values (Ashby, Materials Selection in
+# rubbers as linear elastic bodies at small strain, nearly incompressible: representative values, no particular rubber (after Ashby, Materials Selection in
 # Mechanical Design: natural rubber 1.5-2.5 MPa, 0.92-0.93 kg/l; silicone 5-20 MPa, 1.3-1.8 kg/l); poisson 0.49 stands for 0.4999
 rubber_natural   solid rho 930.0 young 2.0e6 poisson 0.49
 rubber_silicone  solid rho 1300.0 young 5.0e6 poisson 0.49
@@ -49,3 +50,6 @@ column           solid rho 1100.0 young 17.0e6 poisson 0.45
 
 # Rubber rings that collide: Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641; only ratios matter
 ring             solid rho 1200.0 young 10.0e6 poisson 0.3975
+
+# Copper of the Taylor bar: Zhu and Cescotto, Int. J. Numer. Methods Eng. 38 (1995) 987; linear hardening
+copper           solid rho 8930.0 young 117.0e9 poisson 0.35 yield 400.0e6 hardening 100.0e6
