@@ -61,12 +61,13 @@ class Markdown(Directive):
         return found
 
     def link(self, app, path, kind, target, anchor):
-        """The attribute with a place that exists in the HTML: a page of the manual, a picture's copy, or none."""
+        """The attribute with a place that exists in the HTML: a page of the manual, a picture's copy, or none (pages that are
+        only made by a run, and files that are none)."""
         anchor = anchor or ""
         if not target:
             return f'{kind}="{anchor}"'
         place = Path(os.path.normpath(path.parent / target))
-        if not place.exists():
+        if kind == "src" and not place.exists():
             raise self.error(f"{path.name}: {target} does not exist")
         name = str(place.relative_to(ROOT))
         if name in PAGES:
