@@ -22,6 +22,7 @@
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
+#include "fsi_advice.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_tensor.h"
@@ -269,6 +270,7 @@ void FixFSI::setup(int)
   if (text == announced) return;
   announced = text;
   if (comm->me == 0) utils::logmesg(lmp, text);
+  advise(lmp, *this);
 }
 
 /* ----------------------------------------------------------------------
