@@ -15,8 +15,9 @@ BOUNDS = (10.0, 5.0, 2.0, 1.0)  # per cent
 COLOURS = (plot.BLUE, plot.ORANGE, "#3a923a", "#7b4fa3", "#c23b3b", "#8c6d31", "#2ba3b4", "#444444")
 NOISE = 0.2  # times that differ by less count as equal
 SAME = 1.1  # errors that differ by less than this factor count as equal
+BESIDE = "to_outside"  # column: relative difference to a figure from outside that does not judge the discretisation
 COLUMNS = ("role", "group", "label", "x", "status", "value", "error", "crossing", "front", "cpu_seconds", "spread", "repeats", "dx",
-           "particles", "steps", "particle_steps", "pair_visits", "why")
+           "particles", "steps", "particle_steps", "pair_visits", "instructions_per_particle_step", "instructions_per_pair_visit", "why")
 
 
 def write(folder, name, definition, points, source):
@@ -42,7 +43,7 @@ def write(folder, name, definition, points, source):
         "methods": methods, "knobs": _knobs(definition, rows), "reach": _reach(methods)}
     summary["recommendation"] = _recommendation(definition, summary, rows)
     with (folder / "points.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
+        writer = csv.DictWriter(file, [*COLUMNS[:-1], *_further(definition), COLUMNS[-1]], extrasaction="ignore", lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
     (folder / "summary.json").write_text(json.dumps(summary, indent=1, default=float) + "\n")
@@ -127,8 +128,27 @@ def _row(definition, point, reference, finest):
         row["cpu_seconds"] = float(np.median(seconds))  # not the least: clocks of short runs err to both sides
         if len(seconds) > 1 and min(seconds):
             row["spread"] = (max(seconds) - min(seconds)) / min(seconds)
-        row["particle_steps"] *= run.get("sub_steps") or 1
+        row |= {name: run["figures"].get(name) for name in definition.get("also", ())}
+        if "beside" in definition:
+            row[BESIDE] = value / definition["beside"]["value"] - 1.0
+        if counted := run.get("instructions"):
+            row["instructions_per_particle_step"] = counted["instructions"] / counted["particle_steps"]
+            if counted["pair_visits"]:
+                row["instructions_per_pair_visit"] = counted["instructions"] / counted["pair_visits"]
     return row
+
+
+def _further(definition):
+    """Columns of figures beside the one that is judged: {column: heading}."""
+    found = dict(definition.get("also", {}))
+    if "beside" in definition:
+        found[BESIDE] = f"to {definition['beside']['source']}"
+    return found
+
+
+def _further_cells(definition, row):
+    return "".join(" - |" if row.get(name) is None else f" {_percent(row[name])} |" if name == BESIDE else f" {row[name]:.2g} |"
+                   for name in _further(definition))
 
 
 def _curves(definition, rows):
@@ -144,6 +164,10 @@ def _method(definition, curve, certain):
     error = [r["error"] for r in curve]
     fit = order(h, error)
     found = {"order": fit and fit[0], "order_interval": fit and fit[1], "sign_changes": bool(np.any(crossings(error))), "bounds": {}}
+    counted = next((r for r in curve if r["instructions_per_particle_step"]), None)
+    found["instructions"] = counted and {
+        "at": counted["x"], "steps": counted["point"]["instructions"]["steps"],
+        "per_particle_step": counted["instructions_per_particle_step"], "per_pair_visit": counted["instructions_per_pair_visit"]}
     for bound in BOUNDS:
         k = reach(error, bound / 100.0)
         if bound / 100.0 < certain:
@@ -180,8 +204,40 @@ def _knobs(definition, rows):
         found[knob["name"]] = {
             "base": short(base) | {"of": knob["of"], "at": knob["at"]}, "cheapest_as_good": short(cheapest),
             "lowest_error": short(best), "ran": [r["x"] for r in good],
-            "failed": [r["x"] for r in mine if r["status"] == "failed"], "error_range": [min(errors), max(errors)]}
+            "failed": [r["x"] for r in mine if r["status"] == "failed"], "error_range": [min(errors), max(errors)],
+            "flat": _flat(base, good), "optimum": _optimum(good)}
     return found
+
+
+def _numbers(rows):
+    """The rows in order of their values; none where values are words."""
+    return sorted(rows, key=lambda r: r["x"]) if all(isinstance(r["x"], (int, float)) for r in rows) else []
+
+
+def _flat(base, good):
+    """[least, largest] value about the base over which the error is that of the base; None for words or a single value."""
+    ordered = _numbers(good)
+    here = next((k for k, r in enumerate(ordered) if r["point"] == base["point"]), None)
+    if here is None:
+        return None
+    low = high = here
+    near = lambda r: abs(base["error"]) / SAME <= abs(r["error"]) <= SAME * abs(base["error"])
+    while low > 0 and near(ordered[low - 1]):
+        low -= 1
+    while high + 1 < len(ordered) and near(ordered[high + 1]):
+        high += 1
+    return [ordered[low]["x"], ordered[high]["x"]] if high > low else None
+
+
+def _optimum(good):
+    """The value of least error if errors rise to both of its sides and have one sign, so that it is no change of sign; else None."""
+    ordered = _numbers(good)
+    errors = [r["error"] for r in ordered]
+    if len(ordered) < 3 or min(errors) * max(errors) <= 0.0:
+        return None
+    size = np.abs(errors)
+    k = int(np.argmin(size))
+    return ordered[k]["x"] if size[0] > SAME * size[k] and size[-1] > SAME * size[k] else None
 
 
 def _base(definition, entry, rows):
@@ -236,8 +292,11 @@ def _recommendation(definition, summary, rows):
         if abs(low["error"]) < 0.67 * abs(base["error"]) and low["value"] != cheap["value"]:
             parts.append(f"the error falls from {_percent(base['error'])} to {_percent(low['error'])} at {_word(low['value'])} for "
                          f"{low['cpu_seconds'] / base['cpu_seconds']:.2f} of the time")
+        if knob["optimum"] is not None and (knob["optimum"] not in (low["value"], cheap["value"]) or not parts):
+            parts.append(f"the error is least at {_word(knob['optimum'])} and rises to both sides")
         if knob["failed"]:
-            parts.append(_fails(knob))
+            flat = knob["flat"]
+            parts.append((f"the error is flat from {_word(flat[0])} to {_word(flat[1])}, " if flat else "") + _fails(knob))
         if parts:
             text.append(f"{name[0].upper()}{name[1:]}: {', '.join(parts)}")
     return ". ".join(text) + "."
@@ -464,40 +523,56 @@ def _page(definition, summary, rows, curves):
              f"Error: {definition['label']} (figure `{summary['figure']}`). Reference: {summary['reference']['source']}. "
              f"{definition.get('notes', '')}",
              "Time: CPU seconds of the time loop on one core, the median of up to three runs, which differ by "
-             f"{100 * summary['spread']:.0f} % (median). Particle-steps and pair visits (neighbours times steps) do not "
-             "depend on the machine.", "",
+             f"{100 * summary['spread']:.0f} % (median). Other work on the machine lengthens even CPU time through shared "
+             "caches. What does not depend on the machine: particle-steps (of total-Lagrangian solids times sub-steps), pair visits (entries "
+             "of the neighbour list times steps, and bonds of total-Lagrangian solids, from both ends, times sub-steps), instructions of "
+             "the time loop (callgrind, over the first steps of one run of each method).", "",
              "## In short", summary["recommendation"], "",
              "## Error against resolution, time and work",
              f"![Error against {variable}, CPU time and particle-steps](work.png)", "",
              "Hollow: small because the error changes sign there, which is no accuracy; neither these nor runs with one "
              "setting changed count for the front.", "",
-             "| method | order | 10 % | 5 % | 2 % | 1 % |", "|---|---|---|---|---|---|"]
+             "| method | order | 10 % | 5 % | 2 % | 1 % | instructions per particle-step | per pair visit |", "|---|---|---|---|---|---|---|---|"]
     for method, found in summary["methods"].items():
         fit = _order(found).removeprefix("order ")
         cells = [_bound_cell(found["bounds"].get(f"{b:g}")) for b in BOUNDS]
+        counted = found["instructions"] or {}
+        cells += [f"{counted[key]:.0f}" if counted.get(key) else "-" for key in ("per_particle_step", "per_pair_visit")]
         lines.append(f"| {method} | {fit} | " + " | ".join(cells) + " |")
     lines += ["", f"CPU seconds of the coarsest run from which on all finer ones keep the bound, and its {variable}; "
               "`<`: the coarsest one made; *slanted*: extrapolated; -: neither. Order: least squares with 95 % interval, none where that holds 0.", "",
-              f"| method | {variable} | value | error | CPU s | spread | particle-steps | pair visits |", "|---|---|---|---|---|---|---|---|"]
+              f"| method | {variable} | value | error | CPU s | spread | particle-steps | pair visits |"
+              + "".join(f" {heading} |" for heading in _further(definition).values()), "|---" * (8 + len(_further(definition))) + "|"]
     for method, curve in curves.items():
         for r in curve:
             mark = " (sign changes)" if r["crossing"] else " **front**" if r["front"] else ""
             lines.append(f"| {method} | {r['x']:.4g} | {r['value']:.5g} | {_percent(r['error'])}{mark} | "
                          + f"{r['cpu_seconds']:.3g} | "
                          + (f"{100 * r['spread']:.0f} %" if r["spread"] is not None else "1 run")
-                         + f" | {r['particle_steps']:.2e} | " + (f"{r['pair_visits']:.2e} |" if r["pair_visits"] else "- |"))
+                         + f" | {r['particle_steps']:.2e} | " + (f"{r['pair_visits']:.2e} |" if r["pair_visits"] else "- |")
+                         + _further_cells(definition, r))
     if summary["knobs"]:
         lines += ["", "## One setting at a time", "![Error and time over each setting](knobs.png)", "",
                   "Blue: error; orange: CPU time; ring: the base; cross: the run fails.", "",
-                  "| setting | base | cheapest that is as good | lowest error | all errors | fails at |", "|---|---|---|---|---|---|"]
+                  "| setting | base | cheapest that is as good | lowest error | all errors | flat over | least between | fails at |",
+                  "|---|---|---|---|---|---|---|---|"]
         for knob, k in summary["knobs"].items():
             base, cheap, low = k["base"], k["cheapest_as_good"], k["lowest_error"]
             cells = [f"{_word(r['value'])}: {_percent(r['error'])}, {r['cpu_seconds'] / base['cpu_seconds']:.2f} of the time"
                      for r in (cheap, low)]
             lines.append(f"| {knob} | {_percent(base['error'])}, {_seconds(base['cpu_seconds'])} | {cells[0]} | {cells[1]} | "
                          + " to ".join(f"{100 * e:.2g}" for e in k["error_range"]) + " % | "
+                         + (" to ".join(map(_word, k["flat"])) if k["flat"] else "-") + " | "
+                         + (_word(k["optimum"]) if k["optimum"] is not None else "-") + " | "
                          + (", ".join(map(_word, k["failed"])) or "-") + " |")
-        lines += ["", f"As good: an error of at most {SAME:g} times that of the base."]
+        lines += ["", f"As good: an error of at most {SAME:g} times that of the base. Flat: within that factor of it to both sides. Least "
+                  "between: an optimum with errors of one sign that rise on both sides of it."]
+        if "also" in definition:
+            lines += ["", "| setting | value | error | CPU s |" + "".join(f" {h} |" for h in _further(definition).values()),
+                      "|---" * (4 + len(_further(definition))) + "|"]
+            lines += [f"| {r['group']} | {_word(r['x'])} | "
+                      + (f"{_percent(r['error'])} | {r['cpu_seconds']:.3g} |" if r["status"] == "ok" else "fails | |")
+                      + _further_cells(definition, r) for r in rows if r["role"] == "knob"]
     if definition.get("effects"):
         lines += ["", "## What each effect is worth", "![Error and time with and without](effects.png)", "",
                   "Grey: the base; the others differ from it as said."]
