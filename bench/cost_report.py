@@ -209,6 +209,12 @@ def _knobs(definition, rows):
     return found
 
 
+def _same(base, rows):
+    """Those of a knob's rows that are its base: the same point, or the same run by settings that say more."""
+    return ([r for r in rows if r["point"] == base["point"]]
+            or [r for r in rows if (r["value"], r["steps"]) == (base["value"], base["steps"])][:1])
+
+
 def _numbers(rows):
     """The rows in order of their values; none where values are words."""
     return sorted(rows, key=lambda r: r["x"]) if all(isinstance(r["x"], (int, float)) for r in rows) else []
@@ -217,7 +223,7 @@ def _numbers(rows):
 def _flat(base, good):
     """[least, largest] value about the base over which the error is that of the base; None for words or a single value."""
     ordered = _numbers(good)
-    here = next((k for k, r in enumerate(ordered) if r["point"] == base["point"]), None)
+    here = next((k for k, r in enumerate(ordered) if r in _same(base, good)), None)
     if here is None:
         return None
     low = high = here
@@ -422,7 +428,7 @@ def _draw_knobs(path, definition, rows):
             axes.patch.set_visible(False)
             base = _base(definition, knob, rows)
             if base is not None:
-                here = [r for r in good if r["point"] == base["point"]]
+                here = _same(base, good)
                 axes.plot([place[r["label"]] for r in here], [100 * abs(r["error"]) for r in here], "o", markersize=10,
                           color="black", markerfacecolor="none", markeredgewidth=0.9)
             axes.set_yscale("log")

@@ -160,10 +160,12 @@ def test_pair_visits(tmp_path, atoms, half, visits):
 
 
 def test_flat_ranges_and_optima():
-    rows = [{"x": x, "error": e, "point": x} for x, e in ((0.1, 0.02), (0.2, 0.0201), (0.4, 0.0205), (0.8, 0.03), (1.6, 0.5))]
+    rows = [{"x": x, "error": e, "point": x, "value": x, "steps": 1} for x, e in ((0.1, 0.02), (0.2, 0.0201), (0.4, 0.0205), (0.8, 0.03), (1.6, 0.5))]
     assert cost_report._flat(rows[1], rows) == [0.1, 0.4]
     assert cost_report._flat(rows[3], rows) is None  # neighbours are all further off than a tenth
     assert cost_report._optimum(rows) is None  # the least is at the end
+    other = {**rows[1], "point": "the same by more settings"}
+    assert cost_report._flat(other, rows) == [0.1, 0.4]
     rows[0]["error"] = 0.04
     assert cost_report._optimum(rows) == 0.2
     rows[4]["error"] = -0.5

@@ -19,7 +19,7 @@ from pathlib import Path
 from . import launch, log, paths, plot
 from .scene import Refusal, deck_variables
 
-REPEATS = ((1.0, 3), (4.0, 2))  # runs shorter than so many CPU seconds are made so many times
+REPEATS = ((1.0, 3), (3.0, 2))  # runs shorter than so many CPU seconds are made so many times
 COUNTED = 60000  # particle-steps of which instructions are counted: valgrind is some fifty times slower
 TIME_LOOP = "LAMMPS_NS::Verlet::run(int)"
 
