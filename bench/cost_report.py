@@ -74,10 +74,17 @@ def publish(folder, name):
 
 def _value(definition, run):
     """The measured figure; None where the run failed or the definition says that it did."""
-    figures = run["figures"]
-    if run["status"] != "ok" or any(figures.get(name) is not None for name in definition.get("failed_if", ())):
-        return None
-    return figures.get(definition["figure"])
+    return None if run["status"] != "ok" or _invalid(definition, run) else run["figures"].get(definition["figure"])
+
+
+def _invalid(definition, run):
+    """Why a run that came to its end does not count, by failed_if: a list of figures, or {figure: largest value}; else None."""
+    limits = definition.get("failed_if", ())
+    for name in limits:
+        value = run["figures"].get(name)
+        if value is not None and (not isinstance(limits, dict) or value > limits[name]):
+            return f"{name} = {value:.3g}"
+    return None
 
 
 def _reference(definition, points):
@@ -119,7 +126,7 @@ def _row(definition, point, reference, finest):
     seconds = run["cpu_seconds"]
     row = dict.fromkeys(COLUMNS) | {"point": run} | {key: point[key] for key in ("role", "group", "label", "x")}
     row |= {key: run.get(key) for key in ("dx", "particles", "steps", "particle_steps", "pair_visits")}
-    row |= {"status": "failed", "why": run["why"] or "no valid figure"} if value is None else {"status": "ok"}
+    row |= {"status": "failed", "why": run["why"] or _invalid(definition, run) or "no valid figure"} if value is None else {"status": "ok"}
     row |= {"value": value, "crossing": False, "front": False, "repeats": len(seconds)}
     if value is not None:
         row["error"] = (value - reference) / abs(reference) if reference else value
@@ -317,6 +324,8 @@ def _fails(knob):
     failed, good = knob["failed"], knob["ran"]
     if all(isinstance(v, (int, float)) for v in failed + good) and len(failed) > 1 and min(failed) > max(good):
         return f"runs fail from {min(failed):g} on, the last that runs is {max(good):g}"
+    if all(isinstance(v, (int, float)) for v in failed + good) and len(failed) > 1 and max(failed) < min(good):
+        return f"runs fail up to {max(failed):g}, the first that runs is {min(good):g}"
     return f"runs fail at {', '.join(map(_word, failed))}"
 
 
@@ -471,7 +480,7 @@ def _draw_effects(path, definition, rows):
                        color=[plot.GREY if r["x"] else plot.ORANGE for r in mine])
             for k, row in enumerate(mine):
                 if row["status"] == "ok":
-                    left.text(error[k], k, f" {error[k]:.2g}", va="center", fontsize=7.5)
+                    left.text(error[k], k, f" {error[k]:.2g}" if error[k] < 99.5 else f" {error[k]:.0f}", va="center", fontsize=7.5)
                     right.text(row["cpu_seconds"], k, f" {row['cpu_seconds']:.2g}", va="center", fontsize=7.5)
                 else:
                     left.text(0.01, k, "fails", va="center", fontsize=7.5, color="#c23b3b", transform=left.get_yaxis_transform())

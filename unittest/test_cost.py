@@ -159,6 +159,12 @@ def test_pair_visits(tmp_path, atoms, half, visits):
     assert found.pair_visits() == visits and (found.solid_particles, found.substeps) == (100, 8)
 
 
+def test_runs_that_do_not_count():
+    run = {"status": "ok", "figures": {"period": 2.0, "scatter": 0.03}}
+    for limits, value in (([], 2.0), (["scatter"], None), (["stopped"], 2.0), ({"scatter": 0.02}, None), ({"scatter": 0.04}, 2.0)):
+        assert cost_report._value({"figure": "period", "failed_if": limits}, run) == value
+
+
 def test_flat_ranges_and_optima():
     rows = [{"x": x, "error": e, "point": x, "value": x, "steps": 1} for x, e in ((0.1, 0.02), (0.2, 0.0201), (0.4, 0.0205), (0.8, 0.03), (1.6, 0.5))]
     assert cost_report._flat(rows[1], rows) == [0.1, 0.4]
