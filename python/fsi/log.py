@@ -12,6 +12,7 @@ _USE = re.compile(r"(\S+)% CPU use with")
 _NEIGHBOURS = re.compile(r"Total # of neighbors = (\d+)")
 _BUILDS = re.compile(r"Neighbor list builds = (\d+)")
 _VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
+_REPORT = re.compile(r"^FSI report (\w+) (.+)$")  # of fix fsi/report
 _VALUE = re.compile(r"^FSI (\w+) (\S+)\s*$")
 
 
@@ -28,6 +29,7 @@ class Run:
     cpu_use: float = None  # CPU over wall time in the loop
     neighbours: int = None  # entries of the neighbour list at the end; None where LAMMPS counts none
     builds: int = None  # of the neighbour list
+    report: dict = field(default_factory=dict)  # of fix fsi/report: {name: value}
 
 
 @dataclass
@@ -89,6 +91,8 @@ def read(path):
             log.runs[-1].builds = int(match[1])
         elif match := _VERSION.match(line):
             log.version = log.version or match[1]
+        elif log.runs and (match := _REPORT.match(line)):
+            log.runs[-1].report[match[1]] = _number(match[2])
         elif match := _VALUE.match(line):
             log.values[match[1]] = _number(match[2])
         elif expect_header and line.strip():
@@ -99,6 +103,17 @@ def read(path):
                 rows.append(row)
     close_table()
     return log
+
+
+def reports(path):
+    """What fix fsi/report wrote into the file of its keyword `file`: a dictionary per run."""
+    found = []
+    for line in Path(path).read_text().splitlines():
+        if match := _REPORT.match(line):
+            if match[1] == "first_step":
+                found.append({})
+            found[-1][match[1]] = _number(match[2])
+    return found
 
 
 def _number(text):
