@@ -144,13 +144,20 @@ def test_what_is_sent(tmp_path, newton, tiled):
     fluid, solid = (np.sum(near & (scene.type == t)) for t in (1, 2))
     assert solid > 20
     # sub-steps: positions and, with artificial viscosity, velocities out, forces back; density of all, rates of fluid
-    package = 8 * (fluid + solid) + substeps * 8 * (4 + 2) * solid + (8 * fluid if newton == "on" else 0)
-    lammps = 8 * (6 + (3 if newton == "on" else 0)) * (fluid + solid)
+    back = newton == "on"
+    package = 8 * (fluid + solid) + substeps * 8 * (4 + 2) * solid + 8 * fluid * back
+    lammps = 8 * (6 + 3 * back) * (fluid + solid)
     assert report["steps_counted"] == 1
     assert report["bytes_sent_per_step_of_the_package"] == package
     assert report["bytes_sent_per_step"] == package + lammps
     assert report["messages_per_step"] == 2 * (2 + 2 * substeps + (2 if newton == "on" else 0))
     assert report["messages_per_step_max"] == report["messages_per_step"] / 2
+    # one rank sends its own particles out and the other's back
+    low = scene.x[:, 1] < middle
+    counts = [[np.sum(near & side & (scene.type == t)) for t in (1, 2)] for side in (low, ~low)]
+    each = [8 * ((6 + 1) * (f + s) + 4 * substeps * s + (3 * (g + h) + g) * back + 2 * substeps * h)
+            for (f, s), (g, h) in (counts, counts[::-1])]
+    assert sum(each) == package + lammps and max(each) == report["bytes_sent_per_step_max"] > min(each)
 
 
 def test_one_rank_sends_nothing(tmp_path):

@@ -357,7 +357,9 @@ void FixFSIReport::post_run()
                                  now == natoms ? "" : fmt::format(" ({} lost)", natoms - now), comm->nprocs, comm->nprocs > 1 ? "s" : "",
                                  loop);
   std::string line = "  on:", effects;
-  for (const auto &e : hub->effects_on) {
+  auto on = hub->effects_on;
+  if (hub->fix_dt && hub->substeps > 1) on.push_back(fmt::format("{} solid sub-steps at the end", hub->substeps));
+  for (const auto &e : on) {
     if (line.size() + e.size() + 2 > WIDTH) {
       text += line + "\n";
       line = "     ";
