@@ -276,3 +276,15 @@ def test_changes_nothing(tmp_path, ranks):
     frames = [run(tmp_path / name, text + line + watch(every=60) + "run 60\n", ranks, scene_data=scene.data()).frames()[-1]
               for name, line in (("without", ""), ("with", "fix report all fsi/report every 7\n"))]
     assert differing(*frames) == []
+
+
+def test_what_is_lost_takes_its_momentum(tmp_path):
+    scene = fluid_box(2)
+    scene.v[279] = [0.0, 4.5, 0.0]  # one of the surface
+    text = scene.text().replace("lost error", "lost ignore") + watch(every=200) + "fix report all fsi/report\nrun 200\n"
+    done = run(tmp_path, text, scene_data=scene.data())
+    report, frames = reports(done)[0], done.frames()
+    gone = ~np.isin(frames[0]["id"], frames[-1]["id"])
+    assert report["lost"] == gone.sum() == 1 and "(1 lost)" in done.output and "unaccounted for: lost particles, error" in done.output
+    # it flew off under gravity alone, but for its first steps at the surface: a tenth
+    np.testing.assert_allclose(report["momentum_rest_y"], -frames[0]["mass"][gone][0] * 4.5, rtol=0.1)

@@ -371,11 +371,12 @@ void FixFSIReport::post_run()
   text += line;
   enter_line("effects", effects);
 
+  const bool lost = now != natoms;
   natoms = now;
   text += time_table(loop);
   text += cost_table(loop);
   text += accuracy_table();
-  text += momentum_table();
+  text += momentum_table(lost);
   text += energy_table();
   if (comm->me == 0) {
     utils::logmesg(lmp, text + "\n");
@@ -506,11 +507,11 @@ std::string FixFSIReport::accuracy_table()
 
 /* ---------------------------------------------------------------------- */
 
-std::string FixFSIReport::momentum_table()
+std::string FixFSIReport::momentum_table(bool lost)
 {
   const auto b = balance();
   const double relative = std::sqrt(b.rest[0] * b.rest[0] + b.rest[1] * b.rest[1] + b.rest[2] * b.rest[2]) / (b.scale > 0.0 ? b.scale : 1.0);
-  std::string others;
+  std::string others = lost ? " lost particles," : "";
   for (auto &fix : modify->get_fix_list())
     if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^fsi/") && !utils::strmatch(fix->style, "^gravity"))
       others += fmt::format(" fix {},", fix->id);

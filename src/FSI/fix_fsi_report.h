@@ -102,7 +102,7 @@ class FixFSIReport : public Fix {
   std::string time_table(double loop);
   std::string cost_table(double loop);
   std::string accuracy_table();
-  std::string momentum_table();
+  std::string momentum_table(bool lost);
   std::string energy_table();
 };
 
