@@ -411,6 +411,7 @@ void PairFSIFluid::position_divergence(double *div)
 
 void PairFSIFluid::compute(int eflag, int vflag)
 {
+  const Phase phase(hub->profile, Profile::FLUID);
   ev_init(eflag, vflag);
   check_tally();
 
