@@ -43,13 +43,18 @@ class Pair:
         return (max(self.ratios) - min(self.ratios)) / 2
 
 
-def execute(command, folder, text):
-    """Runs a command on an input text; the log."""
+def execute(command, folder, text, binary=None):
+    """Runs a command on an input text; its output."""
     (folder / "in.deck").write_text(text)
-    done = subprocess.run(command, cwd=folder, env=launch.environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+    env = launch.environment()
+    if binary:  # with the library beside it
+        env["LD_LIBRARY_PATH"] = str(Path(binary).parent)
+    done = subprocess.run(command, cwd=folder, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
     if done.returncode:
-        lines = [line for line in done.stdout.splitlines() if "ERROR" in line or "Error" in line] or done.stdout.splitlines()[-3:]
+        path = folder / "log.lammps"
+        output = (done.stdout + (path.read_text(errors="replace") if path.exists() else "")).splitlines()
+        lines = [line for line in output if line.startswith("ERROR") or "Exception" in line] or output[-3:]
         raise Failed("; ".join(lines)[:300])
     return done.stdout
 
@@ -60,7 +65,7 @@ def simulate(text, ranks=1, binary=None):
         folder = Path(name)
         start = launch.mpirun(ranks) if ranks > 1 else []
         command = [*start, str(binary or paths.BUILD / "lmp"), "-in", "in.deck", "-log", "log.lammps", "-screen", "none", "-nocite"]
-        execute(command, folder, text)
+        execute(command, folder, text, binary)
         return log.read(folder / "log.lammps")
 
 
@@ -89,7 +94,7 @@ def instructions(texts, binary=None):
         folder = Path(name)
         command = ["valgrind", "--tool=callgrind", f"--toggle-collect={loop}", f"--dump-before={loop}", "--combine-dumps=no",
                    "--callgrind-out-file=count", str(binary or paths.BUILD / "lmp"), "-in", "in.deck", "-log", "none", "-screen", "none", "-nocite"]
-        execute(command, folder, "\nclear\n".join(f"{t}\nrun {SHORT}\nrun {LONG}" for t in texts))
+        execute(command, folder, "\nclear\n".join(f"{t}\nrun {SHORT}\nrun {LONG}" for t in texts), binary)
         # a part is what was counted up to the next run; the last has no number
         parts = sorted(folder.glob("count.*"), key=lambda p: int(p.suffix[1:]))
         counts = [sum(map(int, re.findall(r"^totals: (\d+)", p.read_text(), re.M))) for p in [*parts, folder / "count"] if p.exists()]
