@@ -85,8 +85,11 @@ def pair(a, b, turns=3, binary=None):
                 memory=tuple(of[which][0].bytes_per_rank / of[which][0].atoms for which in "AB"))
 
 
-def instructions(texts, binary=None):
-    """Instructions per step of each of some inputs without run command: [int]. One process for all, since valgrind starts slowly."""
+def profiles(texts, binary=None):
+    """What the time loop executes: ({function: instructions} of SHORT steps, that of LONG steps) of each of some inputs without run command.
+
+    One process for all, since valgrind starts slowly.
+    """
     if shutil.which("valgrind") is None:
         raise Failed("valgrind is not installed: tools/setup installs it")
     loop = "LAMMPS_NS::Verlet::run(int)"
@@ -96,10 +99,41 @@ def instructions(texts, binary=None):
                    "--callgrind-out-file=count", str(binary or paths.BUILD / "lmp"), "-in", "in.deck", "-log", "none", "-screen", "none", "-nocite"]
         execute(command, folder, "\nclear\n".join(f"{t}\nrun {SHORT}\nrun {LONG}" for t in texts), binary)
         # a part is what was counted up to the next run; the last has no number
-        parts = sorted(folder.glob("count.*"), key=lambda p: int(p.suffix[1:]))
-        counts = [sum(map(int, re.findall(r"^totals: (\d+)", p.read_text(), re.M))) for p in [*parts, folder / "count"] if p.exists()]
-    counts = counts[-2 * len(texts):]
-    return [(b - a) // (LONG - SHORT) for a, b in zip(counts[::2], counts[1::2])]
+        parts = sorted(folder.glob("count.*"), key=lambda p: int(p.suffix[1:])) + [folder / "count"]
+        found = [_functions(p.read_text()) for p in parts if p.exists()][-2 * len(texts):]
+    return list(zip(found[::2], found[1::2]))
+
+
+def _functions(text):
+    """{function: instructions of its own} of a file of callgrind."""
+    names, found, current, called = {}, {}, None, False
+    for line in text.splitlines():
+        if match := re.match(r"c?fn=\((\d+)\)(?: (.*))?$", line):
+            if match[2]:
+                names[match[1]] = match[2]
+            if line.startswith("fn"):
+                current = names[match[1]]
+        elif line.startswith("calls="):
+            called = True  # the next line is what the called function took
+        elif current and (match := re.match(r"(?:[+-]?\d+|\*) (\d+)$", line)):
+            if not called:
+                found[current] = found.get(current, 0) + int(match[1])
+            called = False
+    return found
+
+
+def instructions(texts, binary=None):
+    """Instructions per step of each of some inputs without run command: [int]."""
+    return [(sum(b.values()) - sum(a.values())) // (LONG - SHORT) for a, b in profiles(texts, binary)]
+
+
+def announcements(texts):
+    """What fix fsi prints at the start of each of some inputs without run command."""
+    with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
+        folder = Path(name)
+        command = [str(paths.BUILD / "lmp"), "-in", "in.deck", "-log", "log.lammps", "-screen", "none", "-nocite"]
+        execute(command, folder, "\nclear\n".join(f"{t}\nrun 0" for t in texts))
+        return re.findall(r"^FSI: .*(?:\n  .*)*", (folder / "log.lammps").read_text(), re.M)
 
 
 def messages(texts):

@@ -154,6 +154,9 @@ void PairFSIFluid::init_style()
     if (!any && comm->me == 0)
       error->warning(FLERR, "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
   }
+  if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
+    error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
+                   has_solids() ? "it is for couple wall" : "there is no solid");
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &k) { select<std::decay_t<decltype(k)>>(); });
 }
 
