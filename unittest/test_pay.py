@@ -134,14 +134,14 @@ def test_memory_of_a_fluid():
 
 def world(style, of, hub="", commands=""):
     """Particles of type `of` (1 water, 2 plate) in a scene that has materials for both."""
-    pairs = {"fluid": "pair_coeff * * materials.fsi water plate", "solid": "pair_coeff * * materials.fsi NULL plate",
+    pairs = {"fluid": "pair_coeff * * materials.fsi water plate", "solid": "pair_coeff * * materials.fsi plate plate",
              "both": "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid materials.fsi NULL plate",
-             "tl": "pair_coeff * * materials.fsi NULL plate"}
-    kind = "both" if style.startswith("hybrid") else "tl" if "/tl" in style else style[4:].split()[0]
+             }
+    kind = "both" if style.startswith("hybrid") else style[4:].split()[0]
     text = effects.updated(*SMALL).replace("create_box 1", "create_box 2").replace("create_atoms 1", f"create_atoms {of}")
     text = re.sub(r"^pair_style .*\npair_coeff .*", f"pair_style {style}\n{pairs[kind]}", text, flags=re.M)
     text = re.sub(r"^(fix sph .*)", rf"\1 {hub}", text, flags=re.M)
-    if kind in ("fluid", "tl"):
+    if kind == "fluid":
         text = re.sub(r"^fix stress .*\n", "", text, flags=re.M)
     return effects.write_materials(text + commands + "\nrun 0")
 

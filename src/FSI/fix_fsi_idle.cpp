@@ -65,9 +65,10 @@ void FixFSI::warn_idle() const
         nothing("Fix fsi/wall/mirror slip no", "pair_style fsi/fluid has no laminar/visc");
         break;
       }
-  for (auto &fix : modify->get_fix_by_style("^fsi/(dt|watch)$"))
-    if (group->count(fix->igroup) == 0)
-      nothing(fmt::format("Fix {}", fix->style), fmt::format("group {} is empty", group->names[fix->igroup]));
+  for (const char *name : {"^fsi/dt$", "^fsi/watch$"})
+    for (auto &fix : modify->get_fix_by_style(name))
+      if (group->count(fix->igroup) == 0)
+        nothing(fmt::format("Fix {}", fix->style), fmt::format("group {} is empty", group->names[fix->igroup]));
 
   if (comm->me == 0)
     for (const auto &text : idle) error->warning(FLERR, text);
