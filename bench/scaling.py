@@ -9,6 +9,7 @@ A step of the busiest of P ranks, each with a cube of n = N/P particles (a colum
 import csv
 import json
 import math
+import os
 import re
 import sys
 from pathlib import Path
@@ -70,14 +71,14 @@ def measured(kept):
 
 
 TANK = """
-variable dx equal 0.01
+variable dx equal 0.02
 units si
 dimension 2
 boundary f f p
 atom_style fsi
 newton on
-processors 2 1
-region box block -0.05 2.05 -0.05 1.55 -0.005 0.005
+processors 2 1 1
+region box block -0.05 2.05 -0.05 1.55 -0.01 0.01
 create_box 1 box
 lattice sq ${dx} origin 0.5 0.5 0
 region water block 0 1 0 0.5 INF INF units box
@@ -88,26 +89,31 @@ fix sph all fsi ${dx} wendland 1.5
 fix gravity all gravity 9.81 vector 0 -1 0
 fix walls all fsi/wall/mirror xlo 0 xhi 2 ylo 0
 fsi_set all hydrostatic 0.5
-timestep 1.2e-4
+timestep 2.5e-4
 neighbor $(0.3*v_dx) bin
 neigh_modify every 1 delay 0 check yes
-fix balance all balance 50 THRESHOLD shift x 20 1.02
-thermo_style custom step f_balance
-thermo 100
-run 5000
+fix balance all balance 20 THRESHOLD shift x 20 1.02
+compute proc all property/atom proc
+variable first atom c_proc==0
+compute first all reduce sum v_first
+variable fullest equal 2*abs(c_first/count(all)-0.5)+1
+thermo_style custom step v_fullest
+thermo 20
+run 2000
 """
 
 
 def balance(kept):
     """Mean of the largest over the mean number of particles of two ranks over a dam break, with and without fix balance."""
+    os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")  # nothing is timed; on a busy machine a waiting rank only holds up the other
     found = {}
     for label, threshold in (("never", 1e3), ("fix balance", 1.05)):
         text = TANK.replace("THRESHOLD", f"{threshold:g}")
 
         def run(t=text):
             last = measure.simulate(t, 2).finished[-1]
-            factor = last.thermo["f_balance"]
-            return {"mean": float(factor[1:].mean()), "largest": float(factor[1:].max()), "seconds": last.loop_seconds, "cpu_use": last.cpu_use}
+            factor = last.thermo["v_fullest"]
+            return {"mean": float(factor[1:].mean()), "largest": float(factor[1:].max())}
         found[label] = kept.get(["balance", text], run)
     return found
 
@@ -175,12 +181,10 @@ def page(m, rows, balanced):
               for r in rows if r["ranks"] > 1]
     worst, best = balanced["never"], balanced["fix balance"]
     lines += ["", "## Load balance", "",
-              "A dam break in a tank that is half empty, 5000 particles, two ranks side by side, 5000 steps (0.6 s): the fuller rank's particles over the mean.", "",
+              "A dam break in a tank that is half empty, 1250 particles, two ranks side by side, 0.5 s: the fuller rank's particles over the mean.", "",
               "| | mean | largest | speed of two ranks over one, at most |", "|---|---|---|---|",
               f"| equal halves of the box | {worst['mean']:.2f} | {worst['largest']:.2f} | {2 / worst['mean']:.2f} |",
-              f"| `fix balance all balance 50 1.05 shift x 20 1.02` | {best['mean']:.3f} | {best['largest']:.2f} | {2 / best['mean']:.2f} |", "",
-              f"By the clock the balanced run takes {best['seconds'] / worst['seconds']:.2f} of the other's time" +
-              (" (on a busy machine, so this says little)." if min(best["cpu_use"], worst["cpu_use"]) < 0.9 else ".")]
+              f"| `fix balance all balance 20 1.05 shift x 20 1.02` | {best['mean']:.3f} | {best['largest']:.2f} | {2 / best['mean']:.2f} |"]
     return "\n".join(lines) + "\n"
 
 
