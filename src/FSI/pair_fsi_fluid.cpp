@@ -15,6 +15,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "compute_fsi_force.h"
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
@@ -154,6 +155,8 @@ void PairFSIFluid::init_style()
     if (!any && comm->me == 0)
       error->warning(FLERR, "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
   }
+  force_computes.clear();
+  for (auto *compute : modify->get_compute_by_style("^fsi/force$")) force_computes.push_back(dynamic_cast<ComputeFSIForce *>(compute));
   if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
     error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
                    has_solids() ? "it is for couple wall" : "there is no solid");
@@ -259,7 +262,9 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
     double ri = pi.rho * pi.vol * s, rj = pj.rho * pj.vol * s;
     if ((FLAGS & DIFFUSION) && (!(FLAGS & MIXED) || (type[i] == type[j]))) {
       const State &a = (FLAGS & MIXED) ? state[type[i]] : only;
-      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, a.inv_csq * a.rho0, g);
+      // neither can be hydrostatic without pressure: particles that fly free would push each other apart
+      const bool slack = a.pressure(pi.rho) <= a.floor && a.pressure(pj.rho) <= a.floor;
+      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, slack ? 0.0 : a.inv_csq * a.rho0, g);
       ri += k * pj.vol;
       rj -= k * pi.vol;
       if (FLAGS & TALLY) {
@@ -414,10 +419,13 @@ void PairFSIFluid::position_divergence(double *div)
 
 void PairFSIFluid::compute(int eflag, int vflag)
 {
+  const Phase phase(hub->profile, Profile::FLUID);
   ev_init(eflag, vflag);
   check_tally();
 
+  for (auto *measure : force_computes) measure->tally(-1.0);
   (this->*force_loop)();
+  for (auto *measure : force_computes) measure->tally(1.0);
 
   if (vflag_fdotr) virial_fdotr_compute();
 }
