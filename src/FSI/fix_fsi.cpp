@@ -188,6 +188,7 @@ void FixFSI::init()
   stagger = 0.0;
   auto report = modify->get_fix_by_style("^fsi/report$");
   profile = report.empty() ? nullptr : &dynamic_cast<FixFSIReport *>(report[0])->profile;
+  nmax = 0;    // effects that came since the last run need their arrays
 
   wall_fixes.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
