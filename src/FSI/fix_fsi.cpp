@@ -23,6 +23,7 @@
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
+#include "fsi_advice.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_tensor.h"
@@ -186,9 +187,9 @@ void FixFSI::init()
   auto dt = modify->get_fix_by_style("^fsi/dt$");
   fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
   stagger = 0.0;
+  nmax = 0;    // effects that came since the last run need their arrays
   auto report = modify->get_fix_by_style("^fsi/report$");
   profile = report.empty() ? nullptr : &dynamic_cast<FixFSIReport *>(report[0])->profile;
-  nmax = 0;    // effects that came since the last run need their arrays
 
   wall_fixes.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
@@ -268,13 +269,23 @@ void FixFSI::setup(int)
                                  h / dx, dx, on, off.empty() ? "none" : off);
   text += fmt::format("  arrays of all particles: {} bytes each{}{}\n", 8 * (need_psi + ng) + fluid_bytes,
                       need_psi ? ", number density" : "", ng ? ", velocity gradient" : "");
-  const int back = (fluid && density_fluid == CONTINUITY) || ng;
-  text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", 1,
-                      (force->newton_pair ? back + need_psi : 0),
-                      solid_tl ? fmt::format("; {} each way for solid sub-steps", substeps > 1 ? substeps : 1) : "");
+  // what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a ghost
+  const bool newton = force->newton_pair, hourglass = solid && solid->has_hourglass();
+  const int forward = 1 + hourglass, back = newton * (((fluid && density_fluid == CONTINUITY) || ng) + need_psi + hourglass);
+  const int both = 1 + need_psi * (1 + newton);
+  const int fluid_ghost = fluid ? both + newton * (density_fluid == CONTINUITY) * (1 + ns) : 0;
+  int solid_ghost = both;
+  if (solid) solid_ghost += comm_forward - 2 + newton * ng + hourglass * (dim * dim + newton * dim);
+  if (solid_tl) solid_ghost += substeps * dim + (substeps > 1 ? substeps * solid_tl->comm_forward : 0);
+  text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", forward, back,
+                      !solid_tl ? "" : substeps > 1 ? fmt::format("; {} each way for solid sub-steps", substeps) : "; 1 back for solid forces");
+  text += fmt::format("  they carry for each ghost:{}{}\n", fluid ? fmt::format(" {} bytes of a fluid", 8 * fluid_ghost) : "",
+                      solid || solid_tl ? fmt::format("{} {} bytes of a solid", fluid ? "," : "", 8 * solid_ghost) : "");
   if (text == announced) return;
   announced = text;
   if (comm->me == 0) utils::logmesg(lmp, text);
+  advise(lmp, *this);
+  warn_idle();
 }
 
 /* ----------------------------------------------------------------------

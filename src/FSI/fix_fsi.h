@@ -149,6 +149,7 @@ class FixFSI : public Fix {
   bool fresh_start() const;
   void give_defaults(int);
   void sort_by_tag();
+  void warn_idle() const;    // fix_fsi_idle.cpp
   void add_ghosts(double *);
 };
 
