@@ -50,7 +50,7 @@ def write(folder, name, definition, points, source):
     _draw_work(folder / "work.png", definition, rows, curves, methods)
     if definition.get("knobs"):
         _draw_knobs(folder / "knobs.png", definition, rows)
-    if definition.get("effects"):
+    if any(row["role"] == "effect" for row in rows):
         _draw_effects(folder / "effects.png", definition, rows)
     (folder / "page.md").write_text(_page(definition, summary, rows, curves))
     return summary
@@ -449,7 +449,7 @@ def _draw_knobs(path, definition, rows):
             if words:
                 axes.set_xticks(range(len(mine)), [str(r["x"]) for r in mine], rotation=35, ha="right", fontsize=7.5)
                 axes.set_xlim(-0.6, len(mine) - 0.4)
-            elif min(place.values()) > 0.0 and max(place.values()) / min(place.values()) > 15.0:
+            elif place and min(place.values()) > 0.0 and max(place.values()) / min(place.values()) > 15.0:
                 axes.set_xscale("log")
                 _few_labels(axes.xaxis)
             axes.set_title(f"{knob['name']}\nof {knob['of']}, {definition['resolution']['variable']} = {knob['at']:g}",
@@ -588,7 +588,7 @@ def _page(definition, summary, rows, curves):
             lines += [f"| {r['group']} | {_word(r['x'])} | "
                       + (f"{_percent(r['error'])} | {r['cpu_seconds']:.3g} |" if r["status"] == "ok" else "fails | |")
                       + _further_cells(definition, r) for r in rows if r["role"] == "knob"]
-    if definition.get("effects"):
+    if any(row["role"] == "effect" for row in rows):
         lines += ["", "## What each effect is worth", "![Error and time with and without](effects.png)", "",
                   "Grey: the base; the others differ from it as said."]
     corners = [r for r in rows if r["role"] == "corner"]

@@ -66,6 +66,8 @@ def made(tmp_path, name, definition):
     for point in wanted:
         point["run"] = store.get(point["settings"])
     cost_report.write(tmp_path, name, definition, wanted, store.source)
+    # an interrupted sweep is drawn, too, when it has got no further than its first points
+    cost_report.write(tmp_path / "part", name, definition, wanted[:2], store.source)
     with (tmp_path / "points.csv").open() as file:
         rows = {row["label"]: row for row in csv.DictReader(file)}
     return json.loads((tmp_path / "summary.json").read_text()), rows, store, jobs
