@@ -185,6 +185,7 @@ void FixFSI::init()
   auto dt = modify->get_fix_by_style("^fsi/dt$");
   fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
   stagger = 0.0;
+  nmax = 0;    // effects that came since the last run need their arrays
 
   wall_fixes.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/mirror$"))

@@ -15,6 +15,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "compute_fsi_force.h"
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
@@ -154,6 +155,8 @@ void PairFSIFluid::init_style()
     if (!any && comm->me == 0)
       error->warning(FLERR, "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
   }
+  force_computes.clear();
+  for (auto *compute : modify->get_compute_by_style("^fsi/force$")) force_computes.push_back(dynamic_cast<ComputeFSIForce *>(compute));
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &k) { select<std::decay_t<decltype(k)>>(); });
 }
 
@@ -257,7 +260,9 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
     double ri = pi.rho * pi.vol * s, rj = pj.rho * pj.vol * s;
     if ((FLAGS & DIFFUSION) && (!(FLAGS & MIXED) || (type[i] == type[j]))) {
       const State &a = (FLAGS & MIXED) ? state[type[i]] : only;
-      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, a.inv_csq * a.rho0, g);
+      // neither can be hydrostatic without pressure: particles that fly free would push each other apart
+      const bool slack = a.pressure(pi.rho) <= a.floor && a.pressure(pj.rho) <= a.floor;
+      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, slack ? 0.0 : a.inv_csq * a.rho0, g);
       ri += k * pj.vol;
       rj -= k * pi.vol;
       if (FLAGS & TALLY) {
@@ -409,7 +414,9 @@ void PairFSIFluid::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   check_tally();
 
+  for (auto *measure : force_computes) measure->tally(-1.0);
   (this->*force_loop)();
+  for (auto *measure : force_computes) measure->tally(1.0);
 
   if (vflag_fdotr) virial_fdotr_compute();
 }

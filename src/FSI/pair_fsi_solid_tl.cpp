@@ -40,7 +40,7 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), contact_range(1.0), law(SVK), plane_stress(0), linear(0), plain(0),
     reference(nullptr), fsolid(nullptr), nmax(0), bond_loop{nullptr, nullptr}
 {
   no_virial_fdotr_compute = 1;
@@ -96,6 +96,10 @@ void PairFSISolidTL::settings(int narg, char **arg)
       need(narg, arg, iarg, 1);
       damage = number(arg[iarg + 1], "damage strain");
       iarg += 2;
+    } else if (strcmp(arg[iarg], "contact") == 0) {
+      need(narg, arg, iarg, 1);
+      contact_range = contact_reach(arg[iarg + 1]);
+      iarg += 2;
     } else if (strcmp(arg[iarg], "law") == 0) {
       law = choice(iarg, {"svk", "neohookean", "hypo"});
       iarg += 2;
@@ -107,7 +111,7 @@ void PairFSISolidTL::settings(int narg, char **arg)
       iarg += 2;
     } else
       error->all(FLERR, "Unknown pair_style fsi/solid/tl keyword {}: expected artificial/visc, hourglass, law, plane, gradient, "
-                        "volumes or damage",
+                        "volumes, contact or damage",
                  arg[iarg]);
   }
   if (plane_stress && law == NEOHOOKEAN) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
@@ -132,6 +136,7 @@ State PairFSISolidTL::make_state(const Material &m) const
 void PairFSISolidTL::init_style()
 {
   PairFSI::init_style();
+  check_contact(contact_range);
   const int dim = hub->dim;
   if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
   if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
@@ -354,7 +359,7 @@ template <int D> void PairFSISolidTL::contact_forces()
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
   const State *const state = hub->state.data();
-  const Contact contact(D, hub->dx);
+  const Contact contact(D, hub->dx, contact_range);
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
   for (int ii = 0; ii < list->inum; ii++) {
@@ -560,7 +565,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 
 void PairFSISolidTL::write_restart_settings(FILE *fp)
 {
-  double d[] = {alpha, beta, zeta, damage};
+  double d[] = {alpha, beta, zeta, damage, contact_range};
   int n[] = {law, plane_stress, linear, plain};
   restart_value(fp, d, true);
   restart_value(fp, n, true);
@@ -570,7 +575,7 @@ void PairFSISolidTL::write_restart_settings(FILE *fp)
 
 void PairFSISolidTL::read_restart_settings(FILE *fp)
 {
-  double d[4];
+  double d[5];
   int n[4];
   restart_value(fp, d, false);
   restart_value(fp, n, false);
@@ -578,6 +583,7 @@ void PairFSISolidTL::read_restart_settings(FILE *fp)
   beta = d[1];
   zeta = d[2];
   damage = d[3];
+  contact_range = d[4];
   law = n[0];
   plane_stress = n[1];
   linear = n[2];
