@@ -33,3 +33,6 @@ column           solid rho 1100.0 young 17.0e6 poisson 0.45
 
 # Rubber rings that collide: Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641; only ratios matter
 ring             solid rho 1200.0 young 10.0e6 poisson 0.3975
+
+# Copper of the Taylor bar: Zhu and Cescotto, Int. J. Numer. Methods Eng. 38 (1995) 987; linear hardening
+copper           solid rho 8930.0 young 117.0e9 poisson 0.35 yield 400.0e6 hardening 100.0e6

@@ -49,7 +49,7 @@ def examples(page):
     text = (PAGES / f"{page}.rst").read_text()
     block = re.search(r'^Examples\n"+\n\n\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)', text, re.M)[1]
     paragraphs = [re.sub(r"^ +", "", p.strip("\n"), flags=re.M) for p in re.split(r"\n\s*\n", block) if p.strip()]
-    return paragraphs if page.startswith("pair") else [line for p in paragraphs for line in p.splitlines()]
+    return paragraphs if page.startswith("pair") or page == "fix_fsi_spectrum" else [line for p in paragraphs for line in p.splitlines()]
 
 
 def deck(page, example):

@@ -77,7 +77,7 @@ void ComputeFSIEnergy::compute_vector()
   const double half = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++) {
     const double m = atom->rmass[i];
-    const bool tl = hub->solid_tl && hub->state[atom->type[i]].species == FSI::SOLID;
+    const bool tl = hub->is_total_lagrangian(i);
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it
     const double dth = !(atom->mask[i] & hub->groupbit) ? 0.0 : tl ? half / hub->substeps : half;
     for (int d = 0; d < hub->dim; d++) {

@@ -55,6 +55,8 @@ namespace FSI {
     double viscosity = 0.0;     // dynamic viscosity
     double yield = 0.0, hardening = 0.0;
 
+    // square of the fastest waves: sound of a fluid, longitudinal waves of a solid, (K + 4G/3)/rho0
+    double wave_speed_sq() const { return species == FLUID ? csq : csq + 4.0 / 3.0 * shear / rho0; }
     double pressure(double rho) const
     {
       double p;

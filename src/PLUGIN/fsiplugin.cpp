@@ -20,10 +20,13 @@
 #include "comm.h"
 #include "compute_fsi_atom.h"
 #include "compute_fsi_energy.h"
+#include "compute_fsi_force.h"
+#include "compute_fsi_probe.h"
 #include "compute_fsi_surface_atom.h"
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
 #include "fix_fsi_reference.h"
+#include "fix_fsi_spectrum.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_watch.h"
@@ -120,7 +123,10 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   one("pair", "fsi/solid/tl", &create<PairFSISolidTL>);
   two("compute", "fsi/atom", &create_with_arguments<ComputeFSIAtom>);
   two("compute", "fsi/energy", &create_with_arguments<ComputeFSIEnergy>);
+  two("compute", "fsi/force", &create_with_arguments<ComputeFSIForce>);
+  two("compute", "fsi/probe", &create_with_arguments<ComputeFSIProbe>);
   two("compute", "fsi/surface/atom", &create_with_arguments<ComputeFSISurfaceAtom>);
+  two("fix", "fsi/spectrum", &create_with_arguments<FixFSISpectrum>);
   two("fix", "fsi/wall/mirror", &create_with_arguments<FixFSIWallMirror>);
   two("fix", "fsi/watch", &create_with_arguments<FixFSIWatch>);
   two("fix", "fsi/dt", &create_with_arguments<FixFSIDt>);
