@@ -606,7 +606,8 @@ def _index():
     """doc/cost/README.md from the summaries beside it."""
     lines = ["# What accuracy costs", "",
              "How many seconds a given error costs, method by method and setting by setting, from sweeps of the bundled scenes: "
-             "[how to choose](../choosing.md), [how these are made](../choosing.md#the-sweep-of-a-scene). Written by `tools/cost`.", "",
+             "[how to choose](../choosing.md), [how these are made](../choosing.md#the-sweep-of-a-scene). Written by `tools/cost`. "
+             "What each effect adds to a step: [effects](effects.md); beside LAMMPS' own styles: [peers](peers.md); many ranks: [scaling](scaling.md).", "",
              "| scene | error of, against | 10 % | 5 % | 2 % | 1 % |", "|---|---|---|---|---|---|"]
     found = [json.loads(path.read_text()) for path in sorted(PAGE.glob("*.json"))]
     for summary in found:

@@ -218,6 +218,16 @@ CASES = [
     ("substeps without value", SPH, SPH + " substeps", r"fix fsi substeps command: missing"),
     ("tl atom in no body", *tl("", more="group last id 1 \nset type 2 mol 2\nset group all mol 3\n"
      "create_atoms 2 single -0.015 0.1 0.0 units box\n"), r"neighbors of its own body"),
+    # fix fsi/report
+    ("report of a group", RUN, "group water type 1\nfix r water fsi/report", r"fsi/report must use group all"),
+    ("report keyword unknown", RUN, "fix r all fsi/report often 10", r"Unknown fix fsi/report keyword often: expected every or file"),
+    ("report interval zero", RUN, "fix r all fsi/report every 0", r"every 0 must be > 0"),
+    ("report interval no integer", RUN, "fix r all fsi/report every 2.5", r"2\.5"),
+    ("report without value", RUN, "fix r all fsi/report every", r"fix fsi/report every command: missing"),
+    ("report file that cannot be", RUN, "fix r all fsi/report file nowhere/report.txt", r"cannot write file nowhere/report\.txt"),
+    ("two reports", RUN, "fix r all fsi/report\nfix s all fsi/report\nrun 0", r"only one fix fsi/report"),
+    ("report without fix fsi", RUN, "unfix sph\nunfix stress\nunfix walls\npair_style zero 0.03\npair_coeff * *\nfix r all fsi/report\nrun 0",
+     r"Fix fsi/report requires fix fsi"),
     # fsi_set
     ("fsi_set without box", START, "fsi_set all density 1000\n" + START, r"Fsi_set command before simulation box"),
     ("fsi_set group unknown", RUN, "fsi_set foam density 1000", r"group-ID foam"),

@@ -98,6 +98,12 @@ def test_every_command_page_is_in_the_index():
     assert set(STYLES) <= listed
 
 
+def test_every_bundled_material_is_on_its_page():
+    names = re.findall(r"^(\w+) +(?:fluid|solid) ", (paths.POTENTIALS / "materials.fsi").read_text(), re.M)
+    text = (PAGES / "materials.rst").read_text()
+    assert len(names) > 10 and not [name for name in names if f"*{name}*" not in text]
+
+
 def test_howto_deck(tmp_path):
     """The deck of the Howto, shortened to the first contact."""
     text = (PAGES / "in.howto").read_text()

@@ -14,6 +14,7 @@ _BONDS = re.compile(r"\s*fsi/solid/tl: reference of (\d+) particles taken, (\S+)
 _SUBSTEPS = re.compile(r"fix\s+\S+\s+\S+\s+fsi\s.*\ssubsteps\s+(\d+)")
 _BUILDS = re.compile(r"Neighbor list builds = (\d+)")
 _VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
+_REPORT = re.compile(r"^FSI report (\w+) (.+)$")  # of fix fsi/report
 _VALUE = re.compile(r"^FSI (\w+) (\S+)\s*$")
 
 
@@ -31,6 +32,7 @@ class Run:
     neighbours: int = None  # entries of the half neighbour list at the end, 0 where LAMMPS does not find it (pair style hybrid)
     full_neighbours: int = None  # of the full one, which total-Lagrangian solids take their reference from
     builds: int = None  # of the neighbour list
+    report: dict = field(default_factory=dict)  # of fix fsi/report: {name: value}
 
 
 @dataclass
@@ -113,6 +115,8 @@ def read(path):
             log.solid_particles, log.bonds = int(match[1]), int(match[1]) * float(match[2])
         elif match := _SUBSTEPS.match(line):
             log.substeps = int(match[1])
+        elif log.runs and (match := _REPORT.match(line)):
+            log.runs[-1].report[match[1]] = _number(match[2])
         elif match := _VALUE.match(line):
             log.values[match[1]] = _number(match[2])
         elif expect_header and line.strip():
@@ -123,6 +127,17 @@ def read(path):
                 rows.append(row)
     close_table()
     return log
+
+
+def reports(path):
+    """What fix fsi/report wrote into the file of its keyword `file`: a dictionary per run."""
+    found = []
+    for line in Path(path).read_text().splitlines():
+        if match := _REPORT.match(line):
+            if match[1] == "first_step":
+                found.append({})
+            found[-1][match[1]] = _number(match[2])
+    return found
 
 
 def _number(text):

@@ -247,10 +247,10 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
 void PairFSISolid::advance_hourglass(double dt)
 {
   const int dim = hub->dim;
-  comm->forward_comm(this);
+  forward_comm(hub->profile, comm, this);
   hourglass_rate.assign((size_t) (atom->nlocal + atom->nghost) * dim, 0.0);
   with_kernel(hub->kernel, dim, hub->h, [&](const auto &k) { hourglass_pairs<std::decay_t<decltype(k)>>(dt); });
-  if (force->newton_pair) comm->reverse_comm(this);
+  if (force->newton_pair) reverse_comm(hub->profile, comm, this);
   if (dim == 2) rotate_hourglass<2>(dt);
   else rotate_hourglass<3>(dt);
 }
@@ -361,6 +361,7 @@ void PairFSISolid::number_density(double *psi, bool all_bodies)
 
 void PairFSISolid::compute(int eflag, int vflag)
 {
+  const Phase phase(hub->profile, Profile::SOLID);
   ev_init(eflag, vflag);
   check_tally();
   (this->*force_loop)();

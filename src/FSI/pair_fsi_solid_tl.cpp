@@ -198,6 +198,7 @@ const std::vector<int> &PairFSISolidTL::solids() const
 
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
+  const Phase phase(hub->profile, Profile::SOLID);
   ev_init(eflag, vflag);
   check_tally();
   if (hub->substeps > 1 && !update->setupflag) return;
@@ -223,7 +224,7 @@ void PairFSISolidTL::internal_forces()
     if (hub->dim == 2) contact_forces<2>();
     else contact_forces<3>();
   }
-  comm->reverse_comm(this);
+  reverse_comm(hub->profile, comm, this);
 }
 
 /* ----------------------------------------------------------------------
@@ -417,6 +418,7 @@ template <int D> void PairFSISolidTL::deformation(int i, double *F) const
 void PairFSISolidTL::advance_stress(double dt)
 {
   if (law != HYPO) return;
+  const Phase phase(hub->profile, Profile::STRESS);
   if (hub->dim == 2) advance_stress_of_all<2>(dt);
   else advance_stress_of_all<3>(dt);
 }
@@ -456,7 +458,21 @@ template <int D> void PairFSISolidTL::advance_stress_of_all(double dt)
 
 void PairFSISolidTL::break_bonds()
 {
-  if (damage > 0.0) reference->break_bonds(1.0 + damage);
+  if (damage <= 0.0) return;
+  const Phase phase(hub->profile, Profile::STRESS);
+  reference->break_bonds(1.0 + damage);
+}
+
+double PairFSISolidTL::volume_ratio(int i) const
+{
+  if (reference->count(i) == 0) return 1.0;
+  double F[9];
+  if (hub->dim == 2) {
+    deformation<2>(i, F);
+    return determinant<2>(F);
+  }
+  deformation<3>(i, F);
+  return determinant<3>(F);
 }
 
 /* ----------------------------------------------------------------------
@@ -504,7 +520,7 @@ double PairFSISolidTL::Stress::von_mises() const
 
 void PairFSISolidTL::forward_positions()
 {
-  comm->forward_comm(this);
+  forward_comm(hub->profile, comm, this);
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)

@@ -71,6 +71,7 @@ class PairFSISolidTL : public PairFSI {
     double von_mises() const;
   };
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
+  double volume_ratio(int i) const;    // det F, likewise
 
  protected:
   bool handles(int, int) const override;

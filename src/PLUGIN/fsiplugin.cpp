@@ -27,6 +27,7 @@
 #include "fix_fsi_dt.h"
 #include "fix_fsi_reference.h"
 #include "fix_fsi_spectrum.h"
+#include "fix_fsi_report.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_watch.h"
@@ -130,6 +131,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi/wall/mirror", &create_with_arguments<FixFSIWallMirror>);
   two("fix", "fsi/watch", &create_with_arguments<FixFSIWatch>);
   two("fix", "fsi/dt", &create_with_arguments<FixFSIDt>);
+  two("fix", "fsi/report", &create_with_arguments<FixFSIReport>);
   two("fix", "fsi/stress", &create_with_arguments<FixFSIStress>);
   two("fix", "fsi/reference", &create_with_arguments<FixFSIReference>);
   two("fix", "fsi", &create_with_arguments<FixFSI>);
