@@ -1,5 +1,5 @@
 # DATE: 2026-11-21 UNITS: si CONTRIBUTOR: FSI package CITATION: Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879
-# One material per line: name, fluid or solid, then keyword and value.
+# One material per line: name, fluid, solid or wall, then keyword and value.
 #   fluid: rho [kg/m^3], viscosity [Pa s] (default 0)
 #   solid: rho [kg/m^3], young [Pa], poisson [-]
 # The speed of sound of a fluid is a numerical choice and belongs to the input script.
@@ -33,3 +33,6 @@ column           solid rho 1100.0 young 17.0e6 poisson 0.45
 
 # Rubber rings that collide: Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641; only ratios matter
 ring             solid rho 1200.0 young 10.0e6 poisson 0.3975
+
+# Walls made of particles: fixed or prescribed ones have no mass that matters; a floating body has its own density
+wall             wall rho 1000.0

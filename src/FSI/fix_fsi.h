@@ -94,10 +94,14 @@ class FixFSI : public Fix {
   double stored(int i) const;       // compressive energy of atom i
   double shear_energy(int i) const;
 
+  // viscous velocity of no-slip walls of particles (fix fsi/wall/particle); null: there are none
+  double **wall_velocity;
+
   FSI::Walls walls;     // at the time of the positions in atom->x
   double gravity[3];
   class FixFSIStress *fix_stress;
   std::vector<class FixFSIWallMirror *> wall_fixes;
+  std::vector<class FixFSIWallParticle *> particle_walls;
   class PairFSIFluid *fluid;
   class PairFSISolid *solid;
   class PairFSISolidTL *solid_tl;

@@ -194,6 +194,7 @@ void FixFSIDt::find_limits()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
     const State &s = hub->state[type[i]];
+    if (s.species == RIGID) continue;    // rigid
     present[type[i]] = 1;
     if (s.species == FLUID) {
       double c = s.c;

@@ -165,7 +165,7 @@ void FixFSIWatch::setup(int)
 double FixFSIWatch::speed_sq_of(int type) const
 {
   const State &s = hub->state[type];
-  if (s.species == NONE || limit[MACH] == BIG || (warned & 1 << MACH)) return HUGE_SQUARE;
+  if (s.species == NONE || s.species == RIGID || limit[MACH] == BIG || (warned & 1 << MACH)) return HUGE_SQUARE;
   return limit[MACH] * limit[MACH] * speed_of_waves_sq(s);
 }
 
@@ -278,6 +278,7 @@ void FixFSIWatch::check_rest()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
     const State &s = hub->state[type[i]];
+    if (s.species == RIGID) continue;    // neither compressed nor integrated
     const bool tl = hub->solid_tl && s.species == SOLID;
     const double csq = speed_of_waves_sq(s), c = std::sqrt(csq);
     const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2], speed = std::sqrt(vsq);
