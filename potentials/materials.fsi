@@ -36,3 +36,8 @@ ring             solid rho 1200.0 young 10.0e6 poisson 0.3975
 
 # Walls made of particles: fixed or prescribed ones have no mass that matters; a floating body has its own density
 wall             wall rho 1000.0
+
+# Rolling tank with an elastic baffle: Botia-Vera, Souto-Iglesias, Bulian and Lobovsky, 5th SPHERIC workshop (2010); Idelsohn, Marti,
+# Souto-Iglesias and Onate, Comput. Mech. 43 (2008) 125
+sunflower_oil    fluid rho 917.0 viscosity 0.04585
+baffle_6MPa      solid rho 1100.0 young 6.0e6 poisson 0.49

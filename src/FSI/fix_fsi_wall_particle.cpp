@@ -89,7 +89,8 @@ void FixFSIWallParticle::post_constructor()
 void FixFSIWallParticle::init()
 {
   hub = FixFSI::find(lmp, "Fix fsi/wall/particle");
-  if (!hub->fluid) error->all(FLERR, "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
+  const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
+  if (!fluid) error->all(FLERR, "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
 
   std::vector<int> mine(atom->ntypes + 1, 0), types(atom->ntypes + 1);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -111,7 +112,7 @@ void FixFSIWallParticle::init()
     s.noslip = !slip;
     s.guard = guard * hub->dx;
   }
-  if (!slip && !hub->fluid->has_laminar() && comm->me == 0)
+  if (!slip && !fluid->has_laminar() && comm->me == 0)
     error->warning(FLERR, "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has no laminar/visc");
 
   nsum = 2 + hub->dim * (slip ? 1 : 2);
