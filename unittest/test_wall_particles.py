@@ -447,3 +447,19 @@ def test_restart(tmp_path):
     again = again.replace("half.restart\n", "half.restart\npair_coeff * * scene.fsi oil wall buoy\n", 1)
     run(tmp_path, again, scene_fsi=MATERIALS)
     assert not differing(whole, dump.read(tmp_path / "again.dump")[-1])
+
+
+def test_walls_added_between_runs(tmp_path):
+    """What the first run did not need, the second has: no-slip velocities, bits of mirror walls."""
+    x, kind = tank(12, 8)
+    first = deck("laminar/visc", "oil wall", "slip yes", more=f"""run 1
+unfix walls
+fix walls wall fsi/wall/particle slip no
+fix mirror all fsi/wall/mirror yhi {8.2 * DX}
+velocity water set 0.1 0 0 units box
+reset_timestep 0
+{shot(5)}run 5
+""")
+    frame = dump.read(go(tmp_path, first, data(x, kind, None, BOX2)).folder / "atoms.dump")[-1]
+    # the walls hold the water back
+    assert 0.0 < frame["vx"][frame["type"] == 1].mean() < 0.0999

@@ -24,13 +24,13 @@ SNAPSHOTS = (0.0, 0.25, 0.45, 0.9, 1.35)  # [s]
 def add(summary, column, suffix=""):
     """Figures of the top's horizontal displacement and of the energy."""
     peak = float(column["ux"][column.time < 0.75].max(initial=0.0))
-    summary.add(f"peak{suffix}", peak, "m", PEAK, SOURCE)
+    summary.add(f"peak{suffix}", peak, "m", PEAK, SOURCE, 0.03)
     k = np.flatnonzero((column["ux"][:-1] > 0.0) & (column["ux"][1:] <= 0.0))
     crossing = None
     if len(k):
         a, b = column["ux"][k[0]], column["ux"][k[0] + 1]
         crossing = column.time[k[0]] + a / (a - b) * (column.time[k[0] + 1] - column.time[k[0]])
-    summary.add(f"zero_crossing{suffix}", crossing, "s", CROSSING, SOURCE)
+    summary.add(f"zero_crossing{suffix}", crossing, "s", CROSSING, SOURCE, 0.03)
     summary.add(f"energy_error{suffix}", np.abs(column["total"] / column["total"][0] - 1.0).max(), "of the energy", target=0.01)
 
 

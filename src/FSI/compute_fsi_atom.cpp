@@ -89,7 +89,7 @@ void ComputeFSIAtom::compute_peratom()
   const int *const mask = atom->mask;
   PairFSISolidTL::Stress tl;
   for (int i = 0; i < atom->nlocal; i++) {
-    const bool lagrangian = (mask[i] & groupbit) && hub->solid_tl && hub->state[atom->type[i]].species == SOLID;
+    const bool lagrangian = (mask[i] & groupbit) && hub->is_total_lagrangian(i);
     if (lagrangian) tl = hub->solid_tl->stress(i);
     for (int k = 0; k < n; k++) {
       double value = 0.0;

@@ -78,7 +78,7 @@ void ComputeFSIEnergy::compute_vector()
   for (int i = 0; i < atom->nlocal; i++) {
     if (hub->state[atom->type[i]].species == FSI::RIGID) continue;    // what it gets is in the term of walls
     const double m = atom->rmass[i];
-    const bool tl = hub->solid_tl && hub->state[atom->type[i]].species == FSI::SOLID;
+    const bool tl = hub->is_total_lagrangian(i);
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it
     const double dth = !(atom->mask[i] & hub->groupbit) ? 0.0 : tl ? half / hub->substeps : half;
     for (int d = 0; d < hub->dim; d++) {

@@ -165,12 +165,12 @@ void FixFSI::init()
   if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
   if (solid_tl && density_solid != CONTINUITY)
     error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
-  if (solid_tl && fluid && !fluid->couples_as_wall())
+  if (solid_tl && fluid && fluid->shares_stress())
     error->all(FLERR, "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress is not one that crosses to the fluid");
 
   // the plain forces of a solid end at its face with half a kernel of neighbours missing, which the fluid's pairs supply; forces with
   // corrected gradients are complete without them
-  if (fluid && fluid->shares_stress() && (solid_tl || (solid && solid->terms())))
+  if (fluid && fluid->shares_stress() && solid && solid->terms())
     error->all(FLERR, "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid gradient plain: with corrected gradients "
                       "use couple wall");
 
@@ -198,6 +198,7 @@ void FixFSI::init()
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/particle$"))
     particle_walls.push_back(dynamic_cast<FixFSIWallParticle *>(fix));
 
+  nmax = 0;    // arrays that the last run did not need may be needed now
   need_psi = density_fluid != CONTINUITY || (fluid && fluid->surface_ratio > 0.0) ||
       (solid && density_solid != CONTINUITY);
   need_grad = solid != nullptr;
@@ -584,9 +585,7 @@ void FixFSI::number_density(double *n)
   for (int i = 0; i < atom->nlocal; i++) n[i] = w0;
   if (fluid) fluid->number_density(n, density_solid == SUMMATION);
   if (solid) solid->number_density(n, density_solid == SUMMATION);
-  summed = n;
-  if (force->newton_pair) comm->reverse_comm(this);
-  summed = nullptr;
+  add_ghosts(n);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -595,6 +594,15 @@ void FixFSI::position_divergence(double *n)
 {
   memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
   fluid->position_divergence(n);
+  add_ghosts(n);
+}
+
+/* ----------------------------------------------------------------------
+   to local atoms what pairs left on their ghosts
+------------------------------------------------------------------------- */
+
+void FixFSI::add_ghosts(double *n)
+{
   summed = n;
   if (force->newton_pair) comm->reverse_comm(this);
   summed = nullptr;
@@ -848,11 +856,13 @@ int FixFSI::pack_restart(int i, double *buf)
 
 void FixFSI::unpack_restart(int i, int nth)
 {
-  // values of this fix are the nth set of atom->extra, each preceded by its length
-  double *extra = atom->extra[i];
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  ratio[i] = extra[m + 1];
+  ratio[i] = restart_values(atom->extra[i], nth)[0];
+}
+
+const double *FixFSI::restart_values(const double *extra, int nth)
+{
+  while (nth-- > 0) extra += static_cast<int>(extra[0]);
+  return extra + 1;
 }
 
 int FixFSI::size_restart(int)

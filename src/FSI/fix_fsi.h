@@ -76,6 +76,9 @@ class FixFSI : public Fix {
   std::vector<FSI::State> state;
   void enter_state(int type, const FSI::State &);
 
+  // the values that a fix left in a restart file for an atom: the nth set of its atom->extra, each preceded by its length
+  static const double *restart_values(const double *extra, int nth);
+
   // per atom, local and ghost; valid from pre_force on
   double *psi;      // number density, if any mode or rule needs it
   double *rate;     // density rate of fluids (continuity), local after the reverse communication
@@ -114,6 +117,7 @@ class FixFSI : public Fix {
   double pressure(int i) const;
   double psi_reference;    // of the free-surface rule
 
+  bool is_total_lagrangian(int i) const { return solid_tl && state[atom->type[i]].species == FSI::SOLID; }
   // does atom i have a deviatoric stress?
   bool has_stress(int i) const { return solid && state[atom->type[i]].species == FSI::SOLID; }
 
@@ -144,6 +148,7 @@ class FixFSI : public Fix {
   bool fresh_start() const;
   void give_defaults(int);
   void sort_by_tag();
+  void add_ghosts(double *);
 };
 
 }    // namespace LAMMPS_NS

@@ -229,7 +229,7 @@ void FixFSIDt::find_limits()
     if (fluid) alpha = hub->fluid->artificial_alpha();
     else if (hub->solid) alpha = hub->solid->artificial_alpha();
     else if (hub->solid_tl) alpha = hub->solid_tl->artificial_alpha();
-    if (!fluid) m[ELASTIC] = std::min(m[ELASTIC], 0.25 * h / std::sqrt(s.csq + 4.0 / 3.0 * s.shear / s.rho0));
+    if (!fluid) m[ELASTIC] = std::min(m[ELASTIC], 0.25 * h / std::sqrt(s.wave_speed_sq()));
     if (alpha > 0.0) m[ARTIFICIAL] = std::min(m[ARTIFICIAL], 0.4 * h / (s.c * (1.0 + 0.6 * alpha)));
     if (fluid && hub->fluid->has_laminar() && s.viscosity > 0.0)
       m[LAMINAR] = std::min(m[LAMINAR], 0.125 * h * h * s.rho0 / s.viscosity);

@@ -37,7 +37,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), broken(0), hub(nullptr), list(nullptr), slot(nullptr),
+    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), hub(nullptr), list(nullptr), slot(nullptr),
     maxbond(0), layer(nullptr)
 {
   restart_peratom = 1;
@@ -302,7 +302,6 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
       kept++;
     }
     if (kept == n) continue;
-    broken += n - kept;
     n = kept;
     dX.resize((size_t) n * D);
     w.resize(n);
@@ -474,11 +473,7 @@ int FixFSIReference::pack_restart(int i, double *buf)
 
 void FixFSIReference::unpack_restart(int i, int nth)
 {
-  // values of this fix are the nth set of atom->extra, each preceded by its length
-  double *extra = atom->extra[i];
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  unpack(i, extra + m + 1);
+  unpack(i, FixFSI::restart_values(atom->extra[i], nth));
 }
 
 int FixFSIReference::size_restart(int i)

@@ -67,7 +67,6 @@ class FixFSIReference : public Fix {
   // removes bonds longer than stretch times their reference length, and makes the gradient anew from those left; a particle
   // whose bonds no longer suffice loses them all
   void break_bonds(double stretch);
-  bigint broken;    // bonds removed by this rank; each is counted from both ends
 
   // local solid atoms, and ghosts of solid atoms
   std::vector<int> solids, ghosts;

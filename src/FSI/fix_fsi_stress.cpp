@@ -153,11 +153,7 @@ int FixFSIStress::pack_restart(int i, double *buf)
 
 void FixFSIStress::unpack_restart(int i, int nth)
 {
-  // values of this fix are the nth set of atom->extra, each preceded by its length
-  double *extra = atom->extra[i];
-  int m = 0;
-  for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-  memcpy(stress[i], extra + m + 1, n * sizeof(double));
+  memcpy(stress[i], FixFSI::restart_values(atom->extra[i], nth), n * sizeof(double));
 }
 
 int FixFSIStress::size_restart(int)

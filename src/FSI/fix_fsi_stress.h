@@ -53,7 +53,6 @@ class FixFSIStress : public Fix {
   bool plastic;    // materials yield; stress[i] is followed by the equivalent plastic strain
   bool hourglass;    // pair_style fsi/solid keeps a force per particle in stress[i], last
   double *hourglass_force(int i) { return stress[i] + n - dim; }
-  double plastic_strain(int i) const { return plastic ? stress[i][ns] : 0.0; }
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between (fsi_jaumann.h)
   // returns the plastic work per volume

@@ -52,11 +52,6 @@ static constexpr About about[] = {
     {"lost", "number of lost particles", "walls where particles escape, or a larger box; lost off if they are meant to"},
     {"reflected", "number of reflections at mirror walls", "a larger distance from the wall at the start, artificial viscosity, a shorter time step"}};
 
-static double speed_of_waves_sq(const State &s)
-{
-  return s.species == FLUID ? s.csq : s.csq + 4.0 / 3.0 * s.shear / s.rho0;
-}
-
 /* ---------------------------------------------------------------------- */
 
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
@@ -166,7 +161,7 @@ double FixFSIWatch::speed_sq_of(int type) const
 {
   const State &s = hub->state[type];
   if (s.species == NONE || s.species == RIGID || limit[MACH] == BIG || (warned & 1 << MACH)) return HUGE_SQUARE;
-  return limit[MACH] * limit[MACH] * speed_of_waves_sq(s);
+  return limit[MACH] * limit[MACH] * s.wave_speed_sq();
 }
 
 /* ----------------------------------------------------------------------
@@ -208,7 +203,7 @@ void FixFSIWatch::end_of_step()
     if (!(atom->mask[i] & groupbit)) continue;
     const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2];
     if (vsq <= speed_sq[atom->type[i]]) continue;
-    if (vsq < HUGE_SQUARE) enter(MACH, i, std::sqrt(vsq / speed_of_waves_sq(hub->state[atom->type[i]])));
+    if (vsq < HUGE_SQUARE) enter(MACH, i, std::sqrt(vsq / hub->state[atom->type[i]].wave_speed_sq()));
     else enter(FINITE, i, vsq);
   }
   judge(END);
@@ -257,7 +252,7 @@ void FixFSIWatch::check_speed(double kick)
     if (vsq <= largest[type[i]] && rho[i] > 0.0 && rho[i] < BIG) continue;
     if (!(vsq < HUGE_SQUARE && std::abs(rho[i]) < BIG)) enter(FINITE, i, vsq + rho[i]);
     else if (rho[i] <= 0.0) enter(DENSITY, i, 1.0 - rho[i] / hub->state[type[i]].rho0);
-    else enter(MACH, i, std::sqrt(vsq / speed_of_waves_sq(hub->state[type[i]])));
+    else enter(MACH, i, std::sqrt(vsq / hub->state[type[i]].wave_speed_sq()));
   }
 }
 
@@ -279,8 +274,8 @@ void FixFSIWatch::check_rest()
     if (!(mask[i] & groupbit)) continue;
     const State &s = hub->state[type[i]];
     if (s.species == RIGID) continue;    // neither compressed nor integrated
-    const bool tl = hub->solid_tl && s.species == SOLID;
-    const double csq = speed_of_waves_sq(s), c = std::sqrt(csq);
+    const bool tl = hub->is_total_lagrangian(i);
+    const double csq = s.wave_speed_sq(), c = std::sqrt(csq);
     const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2], speed = std::sqrt(vsq);
     enter(MACH, i, speed / c);
     if (s.species == FLUID) enter(COURANT, i, dt * (c + speed) / h);

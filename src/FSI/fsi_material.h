@@ -58,6 +58,8 @@ namespace FSI {
     bool kept = false, noslip = false;
     double guard = 0.0;    // distance at which it begins to push fluid off
 
+    // square of the fastest waves: sound of a fluid, longitudinal waves of a solid, (K + 4G/3)/rho0
+    double wave_speed_sq() const { return species == FLUID ? csq : csq + 4.0 / 3.0 * shear / rho0; }
     double pressure(double rho) const
     {
       double p;

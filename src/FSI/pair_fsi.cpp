@@ -30,7 +30,7 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) : Pair(lmp), style(style_in), hub(nullptr)
+PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) : Pair(lmp), style(style_in), hub(nullptr), alpha(0.0), beta(0.0)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -148,6 +148,25 @@ double PairFSI::number(const char *value, const char *what)
   const double x = utils::numeric(FLERR, value, false, lmp);
   if (!(x >= 0.0)) error->all(FLERR, "Pair style {} {} {} must be >= 0", style, what, value);
   return x;
+}
+
+/* ----------------------------------------------------------------------
+   keyword artificial/visc, if that is what stands at iarg
+------------------------------------------------------------------------- */
+
+bool PairFSI::artificial_keyword(int narg, char **arg, int &iarg)
+{
+  if (strcmp(arg[iarg], "artificial/visc") != 0) return false;
+  need(narg, arg, iarg, 2);
+  alpha = number(arg[iarg + 1], "artificial/visc alpha");
+  beta = number(arg[iarg + 2], "artificial/visc beta");
+  iarg += 3;
+  return true;
+}
+
+PairFSI::Effect PairFSI::artificial_effect(const char *of) const
+{
+  return {fmt::format("artificial viscosity of the {}, alpha {:g}", of, alpha), "artificial/visc", has_artificial()};
 }
 
 /* ----------------------------------------------------------------------

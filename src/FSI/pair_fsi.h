@@ -16,6 +16,7 @@
 #ifndef LMP_PAIR_FSI_H
 #define LMP_PAIR_FSI_H
 
+#include "atom.h"
 #include "fsi_material.h"
 #include "pair.h"
 
@@ -40,11 +41,13 @@ class PairFSI : public Pair {
     bool on;
   };
   virtual std::vector<Effect> effects() const = 0;
+  double artificial_alpha() const { return alpha; }
 
  protected:
   const std::string style;    // for messages
   class FixFSI *hub;
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
+  double alpha, beta;    // artificial/visc (fsi_viscosity_artificial.h)
 
   // does this style handle pairs of these species?
   virtual bool handles(int, int) const = 0;
@@ -61,9 +64,21 @@ class PairFSI : public Pair {
   bool several_bodies() const;
   void need(int narg, char **arg, int iarg, int n);
   double number(const char *value, const char *what);
+  bool artificial_keyword(int narg, char **arg, int &iarg);
+  bool has_artificial() const { return alpha > 0.0 || beta > 0.0; }
+  Effect artificial_effect(const char *of) const;
   void set_flags();
   void allocate();
   void check_tally();
+
+  // the solid ones among the atoms of a message: those listed, or n from first on
+  template <class Visit> void for_solids(int n, const int *listed, int first, Visit visit) const
+  {
+    for (int k = 0; k < n; k++) {
+      const int i = listed ? listed[k] : first + k;
+      if (material[atom->type[i]].species == FSI::SOLID) visit(i);
+    }
+  }
 
   template <class T> void restart_value(FILE *fp, T &value, bool write)
   {

@@ -41,7 +41,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), surface_ratio(0.0), surface_max(0), shifting(0.0), sound(0.0), background(0.0), alpha(0.0), beta(0.0), delta(0.0),
+    PairFSI(lmp, "fsi/fluid"), surface_ratio(0.0), surface_max(0), shifting(0.0), sound(0.0), background(0.0), delta(0.0),
     tait(0), laminar(0), couple(WALL), extrapolate(0), tension(0), force_loop(nullptr), rate_loop(nullptr)
 {
 }
@@ -54,6 +54,7 @@ void PairFSIFluid::settings(int narg, char **arg)
 {
   int iarg = 0;
   while (iarg < narg) {
+    if (artificial_keyword(narg, arg, iarg)) continue;
     if (strcmp(arg[iarg], "sound") == 0) {
       need(narg, arg, iarg, 1);
       sound = number(arg[iarg + 1], "sound speed");
@@ -72,11 +73,6 @@ void PairFSIFluid::settings(int narg, char **arg)
       need(narg, arg, iarg, 1);
       tension = utils::logical(FLERR, arg[iarg + 1], false, lmp);
       iarg += 2;
-    } else if (strcmp(arg[iarg], "artificial/visc") == 0) {
-      need(narg, arg, iarg, 2);
-      alpha = number(arg[iarg + 1], "artificial/visc alpha");
-      beta = number(arg[iarg + 2], "artificial/visc beta");
-      iarg += 3;
     } else if (strcmp(arg[iarg], "laminar/visc") == 0 || strcmp(arg[iarg], "laminar/visc/central") == 0) {
       laminar = strcmp(arg[iarg], "laminar/visc") == 0 ? PLAIN : CENTRAL;
       iarg += 1;
@@ -180,7 +176,7 @@ template <class K> void PairFSIFluid::select()
   }
   const bool mixed = solids > 0 || fluids > 1;
 
-  const int flags = (alpha > 0.0 || beta > 0.0 ? ARTIFICIAL : 0) | (laminar ? LAMINAR : 0) | (walls ? MIRROR : 0) |
+  const int flags = (has_artificial() ? ARTIFICIAL : 0) | (laminar ? LAMINAR : 0) | (walls ? MIRROR : 0) |
       (solids ? SOLIDS : 0) | (ledger ? LEDGER : 0);
   const int rflags = (delta > 0.0 ? DIFFUSION : 0) | (walls ? IMAGES : 0) | (mixed ? MIXED : 0) |
       (ledger ? TALLY : 0) | (shifting > 0.0 ? SHIFT : 0);
@@ -210,12 +206,7 @@ void PairFSIFluid::density_rate(double dt)
   (this->*rate_loop)(dt);
 }
 
-/* ----------------------------------------------------------------------
-   continuity: d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which makes the work of
-   the pair force -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures. Positions are those of time n, half a step
-   before atom->x, where the velocities belong: the density leapfrogs from n-1/2 to n+1/2, second order in time.
-   Solids count in the sums of shifting, but are not shifted.
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 template <int D> PairFSIFluid::Point<D> *PairFSIFluid::gather(double t)
 {
@@ -234,6 +225,13 @@ template <int D> PairFSIFluid::Point<D> *PairFSIFluid::gather(double t)
   }
   return point;
 }
+
+/* ----------------------------------------------------------------------
+   continuity: d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which makes the work of
+   the pair force -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures. Positions are those of time n, half a step
+   before atom->x, where the velocities belong: the density leapfrogs from n-1/2 to n+1/2, second order in time.
+   Solids count in the sums of shifting, but are not shifted.
+------------------------------------------------------------------------- */
 
 template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
 {
@@ -357,7 +355,9 @@ void PairFSIFluid::displacements(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-void PairFSIFluid::number_density(double *psi, bool solids_too)
+// sums of what depends on the distance of a pair, walls' images included: collect(i, j, sum) for both of a pair, collect(i, i, sum)
+// for the own images of i
+template <class Term, class Collect> void PairFSIFluid::distance_sums(Term term, Collect collect) const
 {
   double **x = atom->x;
   const int *const type = atom->type;
@@ -365,65 +365,47 @@ void PairFSIFluid::number_density(double *psi, bool solids_too)
   const int *const wmask = hub->wmask;
   const Walls &walls = hub->walls;
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
+    double s;
+    const auto add_image = [&](const Walls::Reflection &, double r2, const double *) { s += term(kernel, r2); };
     for (int ii = 0; ii < list->inum; ii++) {
       const int i = list->ilist[ii];
-      const bool add_i = solids_too || state[type[i]].species == FLUID;
       for (int jj = 0; jj < list->numneigh[i]; jj++) {
         const int j = list->firstneigh[i][jj] & NEIGHMASK;
         double rsq = 0.0;
         for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
         if (rsq >= kernel.cutsq) continue;
-        double w = kernel.W(std::sqrt(rsq));
-        if (wmask && (wmask[i] & wmask[j]))
-          walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
-                       [&](const Walls::Reflection &, double r2, const double *) { w += kernel.W(std::sqrt(r2)); });
-        if (add_i) psi[i] += w;
-        if (solids_too || state[type[j]].species == FLUID) psi[j] += w;
+        s = term(kernel, rsq);
+        if (wmask && (wmask[i] & wmask[j])) walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq, add_image);
+        collect(i, j, s);
+        collect(j, i, s);
       }
     }
     if (wmask)
       for (int i = 0; i < atom->nlocal; i++)
-        if (wmask[i] && state[type[i]].species == FLUID)
-          walls.images(wmask[i], 0.0, x[i], x[i], kernel.cutsq,
-                       [&](const Walls::Reflection &, double r2, const double *) { psi[i] += kernel.W(std::sqrt(r2)); });
+        if (wmask[i] && state[type[i]].species == FLUID) {
+          s = 0.0;
+          walls.images(wmask[i], 0.0, x[i], x[i], kernel.cutsq, add_image);
+          collect(i, i, s);
+        }
   });
 }
 
-/* ---------------------------------------------------------------------- */
+void PairFSIFluid::number_density(double *psi, bool solids_too)
+{
+  const int *const type = atom->type;
+  const State *const state = hub->state.data();
+  distance_sums([](const auto &kernel, double rsq) { return kernel.W(std::sqrt(rsq)); },
+                [&](int i, int, double s) {
+                  if (solids_too || state[type[i]].species == FLUID) psi[i] += s;
+                });
+}
 
 void PairFSIFluid::position_divergence(double *div)
 {
-  double **x = atom->x;
   const double *const rho = atom->rho;
   const double *const rmass = atom->rmass;
-  const int *const type = atom->type;
-  const State *const state = hub->state.data();
-  const int *const wmask = hub->wmask;
-  const Walls &walls = hub->walls;
-  with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
-    const auto term = [&](double rsq) { return -rsq * kernel.gradient(std::sqrt(rsq)); };
-    for (int ii = 0; ii < list->inum; ii++) {
-      const int i = list->ilist[ii];
-      for (int jj = 0; jj < list->numneigh[i]; jj++) {
-        const int j = list->firstneigh[i][jj] & NEIGHMASK;
-        double rsq = 0.0;
-        for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
-        if (rsq >= kernel.cutsq) continue;
-        double s = term(rsq);
-        if (wmask && (wmask[i] & wmask[j]))
-          walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
-                       [&](const Walls::Reflection &, double r2, const double *) { s += term(r2); });
-        div[i] += s * rmass[j] / rho[j];
-        div[j] += s * rmass[i] / rho[i];
-      }
-    }
-    if (wmask)
-      for (int i = 0; i < atom->nlocal; i++)
-        if (wmask[i] && state[type[i]].species == FLUID)
-          walls.images(wmask[i], 0.0, x[i], x[i], kernel.cutsq, [&](const Walls::Reflection &, double r2, const double *) {
-            div[i] += term(r2) * rmass[i] / rho[i];
-          });
-  });
+  distance_sums([](const auto &kernel, double rsq) { return -rsq * kernel.gradient(std::sqrt(rsq)); },
+                [&](int i, int j, double s) { div[i] += s * rmass[j] / rho[j]; });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -483,7 +465,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       const bool fluid_i = si.species == FLUID;
       const int nf = fluid_i ? i : j, ns = fluid_i ? j : i;
       c = si.c < sj.c ? si.c : sj.c;
-      if (si.species == FSI::RIGID || sj.species == FSI::RIGID) {
+      if (si.species == RIGID || sj.species == RIGID) {
         // the pressure of the wall is extrapolated already; the guard keeps out what has no pressure of its own
         const State &wall = state[type[ns]], &fluid = state[type[nf]];
         rubs = wall.noslip;
@@ -578,7 +560,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       if (FLAGS & LAMINAR) {
         const double visc = state[type[i]].viscosity + state[type[j]].viscosity, vv = a[i].vol * a[j].vol;
         double loss;
-        if ((FLAGS & SOLIDS) && (state[type[i]].species == FSI::RIGID || state[type[j]].species == FSI::RIGID)) {
+        if ((FLAGS & SOLIDS) && (state[type[i]].species == RIGID || state[type[j]].species == RIGID)) {
           // fluid beyond the wall, with the velocity extrapolated; none where it slips
           const double *const wi = state[type[i]].noslip ? wall_velocity[i] : pi.v, *const wj = state[type[j]].noslip ? wall_velocity[j] : pj.v;
           double vw[3], before[3] = {fij[0], fij[1], fij[2]};
@@ -597,7 +579,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
         // what wall particles are given: they are not in the sum of energies
         double power = 0.0;
         for (int d = 0; d < D; d++)
-          power += fij[d] * ((state[type[i]].species == FSI::RIGID ? pi.v[d] : 0.0) - (state[type[j]].species == FSI::RIGID ? pj.v[d] : 0.0));
+          power += fij[d] * ((state[type[i]].species == RIGID ? pi.v[d] : 0.0) - (state[type[j]].species == RIGID ? pj.v[d] : 0.0));
         hub->tally(FixFSI::WALLS, share * power);
       }
       double fj[3] = {0.0, 0.0, 0.0};
@@ -650,7 +632,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 {
   const auto given = [](const std::string &name, double value) { return fmt::format("{} {:g}", name, value); };
   static const char *const modes[] = {"wall", "pressure", "full"};
-  return {{given("artificial viscosity of the fluid, alpha", alpha), "artificial/visc", alpha > 0.0 || beta > 0.0},
+  return {artificial_effect("fluid"),
           {"laminar viscosity", "laminar/visc", laminar != 0},
           {given("density diffusion", delta), "density/diffusion", delta > 0.0},
           {given("particle shifting", shifting), "shift", shifting > 0.0},

@@ -45,14 +45,12 @@ class PairFSIFluid : public PairFSI {
   void read_restart_settings(FILE *) override;
   std::vector<Effect> effects() const override;
   double memory_usage() override;
-  double artificial_alpha() const { return alpha; }
   bool has_laminar() const { return laminar; }
 
   // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi
   // of all fluid particles); 0 = off
   double surface_ratio;
   int surface_max;
-  bool couples_as_wall() const { return couple == WALL; }
 
   double shifting;    // coefficient C of particle shifting; 0 = off
 
@@ -79,7 +77,7 @@ class PairFSIFluid : public PairFSI {
 
  private:
   // settings
-  double sound, background, alpha, beta, delta;
+  double sound, background, delta;
   int tait, laminar, couple, extrapolate, tension;
 
   // what a loop needs of a particle, side by side (in 2D a cache line); local and ghost, gathered at the start of each loop
@@ -90,6 +88,7 @@ class PairFSIFluid : public PairFSI {
   };
   std::vector<double> points;
   template <int D> Point<D> *gather(double t);    // positions a time t later
+  template <class Term, class Collect> void distance_sums(Term, Collect) const;
 
   enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, LEDGER = 16, NFORCE = 32 };
   enum { DIFFUSION = 1, IMAGES = 2, MIXED = 4, TALLY = 8, SHIFT = 16, NRATE = 32 };

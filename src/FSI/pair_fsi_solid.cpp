@@ -41,7 +41,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), alpha(0.0), beta(0.0), epsilon(0.0), xi(0.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
+    PairFSI(lmp, "fsi/solid"), epsilon(0.0), xi(0.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
 {
 }
 
@@ -62,12 +62,8 @@ void PairFSISolid::settings(int narg, char **arg)
 {
   int iarg = 0;
   while (iarg < narg) {
-    if (strcmp(arg[iarg], "artificial/visc") == 0) {
-      need(narg, arg, iarg, 2);
-      alpha = number(arg[iarg + 1], "artificial/visc alpha");
-      beta = number(arg[iarg + 2], "artificial/visc beta");
-      iarg += 3;
-    } else if (strcmp(arg[iarg], "artificial/stress") == 0) {
+    if (artificial_keyword(narg, arg, iarg)) continue;
+    if (strcmp(arg[iarg], "artificial/stress") == 0) {
       need(narg, arg, iarg, 1);
       epsilon = number(arg[iarg + 1], "artificial/stress");
       iarg += 2;
@@ -113,7 +109,7 @@ void PairFSISolid::init_style()
   comm_forward = has_hourglass() ? hub->dim * hub->dim : 0;
   comm_reverse = has_hourglass() ? hub->dim : 0;
   const bool bodies = several_bodies();
-  const int flags = (alpha > 0.0 || beta > 0.0 ? ARTIFICIAL_VISCOSITY : 0) | (epsilon > 0.0 ? ARTIFICIAL_STRESS : 0) |
+  const int flags = (has_artificial() ? ARTIFICIAL_VISCOSITY : 0) | (epsilon > 0.0 ? ARTIFICIAL_STRESS : 0) |
       (bodies ? BODIES : 0) | (modify->get_compute_by_style("^fsi/energy$").empty() ? 0 : LEDGER);
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &k) {
     using K = std::decay_t<decltype(k)>;
@@ -301,38 +297,35 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
   }
 }
 
-int PairFSISolid::pack_forward_comm(int n, int *list_, double *buf, int, int *)
+int PairFSISolid::pack_forward_comm(int n, int *listed, double *buf, int, int *)
 {
-  int m = 0;
-  for (int ii = 0; ii < n; ii++)
-    if (material[atom->type[list_[ii]]].species == SOLID)
-      for (int k = 0; k < comm_forward; k++) buf[m++] = hub->grad[list_[ii]][k];
-  return m;
+  double *const first = buf;
+  for_solids(n, listed, 0, [&](int i) { buf = std::copy_n(hub->grad[i], comm_forward, buf); });
+  return buf - first;
 }
 
 void PairFSISolid::unpack_forward_comm(int n, int first, double *buf)
 {
-  int m = 0;
-  for (int i = first; i < first + n; i++)
-    if (material[atom->type[i]].species == SOLID)
-      for (int k = 0; k < comm_forward; k++) hub->grad[i][k] = buf[m++];
+  for_solids(n, nullptr, first, [&](int i) {
+    std::copy_n(buf, comm_forward, hub->grad[i]);
+    buf += comm_forward;
+  });
 }
 
 int PairFSISolid::pack_reverse_comm(int n, int first, double *buf)
 {
   int m = 0;
-  for (int i = first; i < first + n; i++)
-    if (material[atom->type[i]].species == SOLID)
-      for (int k = 0; k < comm_reverse; k++) buf[m++] = hourglass_rate[i * comm_reverse + k];
+  for_solids(n, nullptr, first, [&](int i) {
+    for (int k = 0; k < comm_reverse; k++) buf[m++] = hourglass_rate[i * comm_reverse + k];
+  });
   return m;
 }
 
-void PairFSISolid::unpack_reverse_comm(int n, int *list_, double *buf)
+void PairFSISolid::unpack_reverse_comm(int n, int *listed, double *buf)
 {
-  int m = 0;
-  for (int ii = 0; ii < n; ii++)
-    if (material[atom->type[list_[ii]]].species == SOLID)
-      for (int k = 0; k < comm_reverse; k++) hourglass_rate[list_[ii] * comm_reverse + k] += buf[m++];
+  for_solids(n, listed, 0, [&](int i) {
+    for (int k = 0; k < comm_reverse; k++) hourglass_rate[i * comm_reverse + k] += *buf++;
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -517,7 +510,7 @@ std::vector<PairFSI::Effect> PairFSISolid::effects() const
 {
   static const char *const orders[] = {"plain", "exact for linear fields", "exact for quadratic fields"};
   return {{fmt::format("updated-Lagrangian solid, gradients {}", orders[gradient]), "gradient", true},
-          {fmt::format("artificial viscosity of the solid, alpha {:g}", alpha), "artificial/visc", alpha > 0.0 || beta > 0.0},
+          artificial_effect("solid"),
           {fmt::format("artificial stress {:g}", epsilon), "artificial/stress", epsilon > 0.0},
           {fmt::format("hourglass control of the solid {:g}", xi), "hourglass", xi > 0.0}};
 }

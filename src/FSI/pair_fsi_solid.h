@@ -45,7 +45,6 @@ class PairFSISolid : public PairFSI {
   void unpack_reverse_comm(int, int *, double *) override;
   std::vector<Effect> effects() const override;
   double memory_usage() override;
-  double artificial_alpha() const { return alpha; }
 
   // gradients: 0 = plain, else the number of terms for which they are exact (fsi_gradient.h): dim linear ones (Bonet and
   // Lok 1999), or the quadratic ones too
@@ -68,7 +67,7 @@ class PairFSISolid : public PairFSI {
 
  private:
   enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };
-  double alpha, beta, epsilon, xi;
+  double epsilon, xi;
   std::vector<double> hourglass_rate;    // local and ghost
   template <class K> void hourglass_pairs(double);
   template <int D> void rotate_hourglass(double);

@@ -40,7 +40,7 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), alpha(0.0), beta(0.0), zeta(0.0), damage(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
     reference(nullptr), fsolid(nullptr), nmax(0), bond_loop{nullptr, nullptr}
 {
   no_virial_fdotr_compute = 1;
@@ -84,14 +84,10 @@ void PairFSISolidTL::settings(int narg, char **arg)
   };
   int iarg = 0;
   while (iarg < narg) {
+    if (artificial_keyword(narg, arg, iarg)) continue;
     if (strcmp(arg[iarg], "volumes") == 0) {
       plain = choice(iarg, {"corrected", "plain"});
       iarg += 2;
-    } else if (strcmp(arg[iarg], "artificial/visc") == 0) {
-      need(narg, arg, iarg, 2);
-      alpha = number(arg[iarg + 1], "artificial/visc alpha");
-      beta = number(arg[iarg + 2], "artificial/visc beta");
-      iarg += 3;
     } else if (strcmp(arg[iarg], "hourglass") == 0) {
       need(narg, arg, iarg, 1);
       zeta = number(arg[iarg + 1], "hourglass");
@@ -150,7 +146,7 @@ void PairFSISolidTL::init_style()
     reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", REFERENCE)));
   reference->quadratic = !linear;
   reference->end_corrected = !plain;
-  comm_forward = alpha > 0.0 || beta > 0.0 || law == HYPO ? 2 * dim : dim;
+  comm_forward = has_artificial() || law == HYPO ? 2 * dim : dim;
   comm_reverse = dim;
 
   svk.clear();
@@ -164,7 +160,7 @@ void PairFSISolidTL::init_style()
     hypo.emplace_back(is && plane_stress ? m.plane_stress_modulus() : K, G, plane_stress);
   }
 
-  const int flags = (zeta > 0.0 ? HOURGLASS : 0) | (alpha > 0.0 || beta > 0.0 ? VISCOSITY : 0) |
+  const int flags = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0) |
       (modify->get_compute_by_style("^fsi/energy$").empty() ? 0 : LEDGER);
   if (law == SVK) dim == 2 ? select<StVenantKirchhoff, 2>(flags) : select<StVenantKirchhoff, 3>(flags);
   else if (law == NEOHOOKEAN) dim == 2 ? select<NeoHookean, 2>(flags) : select<NeoHookean, 3>(flags);
@@ -506,57 +502,46 @@ void PairFSISolidTL::forward_positions()
   comm->forward_comm(this);
 }
 
-int PairFSISolidTL::pack_forward_comm(int n, int *list_, double *buf, int pbc_flag, int *pbc)
+int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
 {
-  const int *const type = atom->type;
   const int dim = hub->dim;
   const bool velocities = comm_forward > dim;
   const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0, pbc_flag ? pbc[1] * domain->yprd : 0.0,
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
   int m = 0;
-  for (int ii = 0; ii < n; ii++) {
-    const int i = list_[ii];
-    if (hub->state[type[i]].species != SOLID) continue;
+  for_solids(n, listed, 0, [&](int i) {
     for (int d = 0; d < dim; d++) buf[m++] = atom->x[i][d] + shift[d];
     if (velocities)
       for (int d = 0; d < dim; d++) buf[m++] = atom->v[i][d];
-  }
+  });
   return m;
 }
 
 void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
-  const int *const type = atom->type;
   const int dim = hub->dim;
   const bool velocities = comm_forward > dim;
-  int m = 0;
-  for (int i = first; i < first + n; i++) {
-    if (hub->state[type[i]].species != SOLID) continue;
-    for (int d = 0; d < dim; d++) atom->x[i][d] = buf[m++];
+  for_solids(n, nullptr, first, [&](int i) {
+    for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
     if (velocities)
-      for (int d = 0; d < dim; d++) atom->v[i][d] = buf[m++];
-  }
+      for (int d = 0; d < dim; d++) atom->v[i][d] = *buf++;
+  });
 }
 
 int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 {
-  const int *const type = atom->type;
   int m = 0;
-  for (int i = first; i < first + n; i++)
-    if (hub->state[type[i]].species == SOLID)
-      for (int d = 0; d < hub->dim; d++) buf[m++] = fsolid[i][d];
+  for_solids(n, nullptr, first, [&](int i) {
+    for (int d = 0; d < hub->dim; d++) buf[m++] = fsolid[i][d];
+  });
   return m;
 }
 
-void PairFSISolidTL::unpack_reverse_comm(int n, int *list_, double *buf)
+void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
-  const int *const type = atom->type;
-  int m = 0;
-  for (int ii = 0; ii < n; ii++) {
-    const int i = list_[ii];
-    if (hub->state[type[i]].species == SOLID)
-      for (int d = 0; d < hub->dim; d++) fsolid[i][d] += buf[m++];
-  }
+  for_solids(n, listed, 0, [&](int i) {
+    for (int d = 0; d < hub->dim; d++) fsolid[i][d] += *buf++;
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -566,7 +551,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   static const char *const names[] = {"St. Venant-Kirchhoff", "neo-Hookean", "hypoelastic"};
   return {{fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"), "law",
            true},
-          {fmt::format("artificial viscosity of the solid, alpha {:g}", alpha), "artificial/visc", alpha > 0.0 || beta > 0.0},
+          artificial_effect("solid"),
           {fmt::format("hourglass control of the solid {:g}", zeta), "hourglass", zeta > 0.0},
           {fmt::format("damage at strain {:g}", damage), "damage", damage > 0.0}};
 }

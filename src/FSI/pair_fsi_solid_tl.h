@@ -51,7 +51,6 @@ class PairFSISolidTL : public PairFSI {
   void unpack_reverse_comm(int, int *, double *) override;
   std::vector<Effect> effects() const override;
   double memory_usage() override;
-  double artificial_alpha() const { return alpha; }
 
   // all forces of this style, on local atoms, at the positions in atom->x of local and ghost atoms
   void internal_forces();
@@ -81,7 +80,7 @@ class PairFSISolidTL : public PairFSI {
 
  private:
   enum Law { SVK, NEOHOOKEAN, HYPO };
-  double alpha, beta, zeta, damage;
+  double zeta, damage;
   int law, plane_stress, linear, plain;
   class FixFSIReference *reference;
   std::vector<FSI::StVenantKirchhoff> svk;    // per type
