@@ -324,7 +324,10 @@ unfix walls
 fix walls tank fsi/wall/particle
 fix body body fsi/wall/particle
 fix g2 body gravity {G} vector 0 -1 0
-fsi_set water hydrostatic {16 * DX}
+run 0
+print "BEFORE $(mass(body))"
+fsi_set all hydrostatic {16 * DX}
+print "AFTER $(mass(body))"
 fix drag water viscous {3000 * DX**2}
 fix rigid body rigid single force * on on off torque * off off on
 variable y equal xcm(body,y)
@@ -333,6 +336,7 @@ fix mean all ave/time 10 200 2000 v_y
 print "Y $(f_mean)"
 """)
     result = go(tmp_path, text, data(x, kind, None, BOX2))
+    assert value(result, "BEFORE") == value(result, "AFTER")  # fsi_set is for fluids
     last = dump.read(result.folder / "atoms.dump")[-1]
     # level of the water from its volume: what is beside and below the body
     depth = 0.4 * width * DX

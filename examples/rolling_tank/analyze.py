@@ -29,13 +29,13 @@ def first_period(half, depth, gravity=9.81):
 
 
 def period(time, value):
-    """From the zeros of an oscillation about its mean, interpolated; None if there are fewer than three."""
-    value = value - value.mean()
-    k = np.flatnonzero(value[1:] * value[:-1] < 0.0)
-    if len(k) < 3:
+    """Of the sine with an offset that fits best; None if less than the longest period tried is there."""
+    periods = np.linspace(0.9, 1.6, 1401)
+    if time[-1] - time[0] < periods[-1]:
         return None
-    zeros = time[k] - value[k] * (time[k + 1] - time[k]) / (value[k + 1] - value[k])
-    return float(2.0 * (zeros[-1] - zeros[0]) / (len(zeros) - 1))
+    misfit = [np.linalg.lstsq(np.column_stack([np.sin(w * time), np.cos(w * time), np.ones_like(time)]), value, rcond=None)[1][0]
+              for w in 2.0 * np.pi / periods]
+    return float(periods[int(np.argmin(misfit))])
 
 
 def main(folder):
