@@ -69,6 +69,16 @@ def points(definition):
     return found
 
 
+def representatives(definition, store):
+    """[(label, settings)]: of each method the middle one of the resolutions that ran, where its instructions are counted."""
+    found = []
+    for name in definition["methods"]:
+        curve = [p for p in points(definition) if p["role"] == "curve" and p["group"] == name]
+        ran = [p for p in curve if (run := store.get(p["settings"])) and run["status"] == "ok"]
+        found += [(p["label"], p["settings"]) for p in ran[len(ran) // 2:][:1]]
+    return found
+
+
 def work(definition, settings):
     """What a run should cost, in any unit, from its resolution and time step: for the order of runs and the time left."""
     value = float(settings[definition["resolution"]["variable"]])
@@ -187,6 +197,8 @@ def main(arguments):
     if options.get("draw") is None:
         complete = sweep.sweep(store, [(p["label"], p["settings"], work(definition, p["settings"])) for p in wanted],
                                lambda text: print(text, flush=True), options["budget"])
+        if complete:
+            sweep.count(store, representatives(definition, store), lambda text: print(text, flush=True))
     for point in wanted:
         point["run"] = store.get(point["settings"])
     complete &= all(point["run"] for point in wanted)

@@ -15,8 +15,9 @@ BOUNDS = (10.0, 5.0, 2.0, 1.0)  # per cent
 COLOURS = (plot.BLUE, plot.ORANGE, "#3a923a", "#7b4fa3", "#c23b3b", "#8c6d31", "#2ba3b4", "#444444")
 NOISE = 0.2  # times that differ by less count as equal
 SAME = 1.1  # errors that differ by less than this factor count as equal
+BESIDE = "to_outside"  # column: relative difference to a figure from outside that does not judge the discretisation
 COLUMNS = ("role", "group", "label", "x", "status", "value", "error", "crossing", "front", "cpu_seconds", "spread", "repeats", "dx",
-           "particles", "steps", "particle_steps", "pair_visits", "why")
+           "particles", "steps", "particle_steps", "pair_visits", "instructions_per_particle_step", "instructions_per_pair_visit", "why")
 
 
 def write(folder, name, definition, points, source):
@@ -42,14 +43,14 @@ def write(folder, name, definition, points, source):
         "methods": methods, "knobs": _knobs(definition, rows), "reach": _reach(methods)}
     summary["recommendation"] = _recommendation(definition, summary, rows)
     with (folder / "points.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
+        writer = csv.DictWriter(file, [*COLUMNS[:-1], *_further(definition), COLUMNS[-1]], extrasaction="ignore", lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
     (folder / "summary.json").write_text(json.dumps(summary, indent=1, default=float) + "\n")
     _draw_work(folder / "work.png", definition, rows, curves, methods)
     if definition.get("knobs"):
         _draw_knobs(folder / "knobs.png", definition, rows)
-    if definition.get("effects"):
+    if any(row["role"] == "effect" for row in rows):
         _draw_effects(folder / "effects.png", definition, rows)
     (folder / "page.md").write_text(_page(definition, summary, rows, curves))
     return summary
@@ -73,10 +74,17 @@ def publish(folder, name):
 
 def _value(definition, run):
     """The measured figure; None where the run failed or the definition says that it did."""
-    figures = run["figures"]
-    if run["status"] != "ok" or any(figures.get(name) is not None for name in definition.get("failed_if", ())):
-        return None
-    return figures.get(definition["figure"])
+    return None if run["status"] != "ok" or _invalid(definition, run) else run["figures"].get(definition["figure"])
+
+
+def _invalid(definition, run):
+    """Why a run that came to its end does not count, by failed_if: a list of figures, or {figure: largest value}; else None."""
+    limits = definition.get("failed_if", ())
+    for name in limits:
+        value = run["figures"].get(name)
+        if value is not None and (not isinstance(limits, dict) or value > limits[name]):
+            return f"{name} = {value:.3g}"
+    return None
 
 
 def _reference(definition, points):
@@ -118,7 +126,7 @@ def _row(definition, point, reference, finest):
     seconds = run["cpu_seconds"]
     row = dict.fromkeys(COLUMNS) | {"point": run} | {key: point[key] for key in ("role", "group", "label", "x")}
     row |= {key: run.get(key) for key in ("dx", "particles", "steps", "particle_steps", "pair_visits")}
-    row |= {"status": "failed", "why": run["why"] or "no valid figure"} if value is None else {"status": "ok"}
+    row |= {"status": "failed", "why": run["why"] or _invalid(definition, run) or "no valid figure"} if value is None else {"status": "ok"}
     row |= {"value": value, "crossing": False, "front": False, "repeats": len(seconds)}
     if value is not None:
         row["error"] = (value - reference) / abs(reference) if reference else value
@@ -127,8 +135,27 @@ def _row(definition, point, reference, finest):
         row["cpu_seconds"] = float(np.median(seconds))  # not the least: clocks of short runs err to both sides
         if len(seconds) > 1 and min(seconds):
             row["spread"] = (max(seconds) - min(seconds)) / min(seconds)
-        row["particle_steps"] *= run.get("sub_steps") or 1
+        row |= {name: run["figures"].get(name) for name in definition.get("also", ())}
+        if "beside" in definition:
+            row[BESIDE] = value / definition["beside"]["value"] - 1.0
+        if counted := run.get("instructions"):
+            row["instructions_per_particle_step"] = counted["instructions"] / counted["particle_steps"]
+            if counted["pair_visits"]:
+                row["instructions_per_pair_visit"] = counted["instructions"] / counted["pair_visits"]
     return row
+
+
+def _further(definition):
+    """Columns of figures beside the one that is judged: {column: heading}."""
+    found = dict(definition.get("also", {}))
+    if "beside" in definition:
+        found[BESIDE] = f"to {definition['beside']['source']}"
+    return found
+
+
+def _further_cells(definition, row):
+    return "".join(" - |" if row.get(name) is None else f" {_percent(row[name])} |" if name == BESIDE else f" {row[name]:.2g} |"
+                   for name in _further(definition))
 
 
 def _curves(definition, rows):
@@ -144,6 +171,10 @@ def _method(definition, curve, certain):
     error = [r["error"] for r in curve]
     fit = order(h, error)
     found = {"order": fit and fit[0], "order_interval": fit and fit[1], "sign_changes": bool(np.any(crossings(error))), "bounds": {}}
+    counted = next((r for r in curve if r["instructions_per_particle_step"]), None)
+    found["instructions"] = counted and {
+        "at": counted["x"], "steps": counted["point"]["instructions"]["steps"],
+        "per_particle_step": counted["instructions_per_particle_step"], "per_pair_visit": counted["instructions_per_pair_visit"]}
     for bound in BOUNDS:
         k = reach(error, bound / 100.0)
         if bound / 100.0 < certain:
@@ -180,8 +211,46 @@ def _knobs(definition, rows):
         found[knob["name"]] = {
             "base": short(base) | {"of": knob["of"], "at": knob["at"]}, "cheapest_as_good": short(cheapest),
             "lowest_error": short(best), "ran": [r["x"] for r in good],
-            "failed": [r["x"] for r in mine if r["status"] == "failed"], "error_range": [min(errors), max(errors)]}
+            "failed": [r["x"] for r in mine if r["status"] == "failed"], "error_range": [min(errors), max(errors)],
+            "flat": _flat(base, good), "optimum": _optimum(good)}
     return found
+
+
+def _same(base, rows):
+    """Those of a knob's rows that are its base: the same point, or the same run by settings that say more."""
+    return ([r for r in rows if r["point"] == base["point"]]
+            or [r for r in rows if (r["value"], r["steps"]) == (base["value"], base["steps"])][:1])
+
+
+def _numbers(rows):
+    """The rows in order of their values; none where values are words."""
+    return sorted(rows, key=lambda r: r["x"]) if all(isinstance(r["x"], (int, float)) for r in rows) else []
+
+
+def _flat(base, good):
+    """[least, largest] value about the base over which the error is that of the base; None for words or a single value."""
+    ordered = _numbers(good)
+    here = next((k for k, r in enumerate(ordered) if r in _same(base, good)), None)
+    if here is None:
+        return None
+    low = high = here
+    near = lambda r: abs(base["error"]) / SAME <= abs(r["error"]) <= SAME * abs(base["error"])
+    while low > 0 and near(ordered[low - 1]):
+        low -= 1
+    while high + 1 < len(ordered) and near(ordered[high + 1]):
+        high += 1
+    return [ordered[low]["x"], ordered[high]["x"]] if high > low else None
+
+
+def _optimum(good):
+    """The value of least error if errors rise to both of its sides and have one sign, so that it is no change of sign; else None."""
+    ordered = _numbers(good)
+    errors = [r["error"] for r in ordered]
+    if len(ordered) < 3 or min(errors) * max(errors) <= 0.0:
+        return None
+    size = np.abs(errors)
+    k = int(np.argmin(size))
+    return ordered[k]["x"] if size[0] > SAME * size[k] and size[-1] > SAME * size[k] else None
 
 
 def _base(definition, entry, rows):
@@ -236,8 +305,11 @@ def _recommendation(definition, summary, rows):
         if abs(low["error"]) < 0.67 * abs(base["error"]) and low["value"] != cheap["value"]:
             parts.append(f"the error falls from {_percent(base['error'])} to {_percent(low['error'])} at {_word(low['value'])} for "
                          f"{low['cpu_seconds'] / base['cpu_seconds']:.2f} of the time")
+        if knob["optimum"] is not None and (knob["optimum"] not in (low["value"], cheap["value"]) or not parts):
+            parts.append(f"the error is least at {_word(knob['optimum'])} and rises to both sides")
         if knob["failed"]:
-            parts.append(_fails(knob))
+            flat = knob["flat"]
+            parts.append((f"the error is flat from {_word(flat[0])} to {_word(flat[1])}, " if flat else "") + _fails(knob))
         if parts:
             text.append(f"{name[0].upper()}{name[1:]}: {', '.join(parts)}")
     return ". ".join(text) + "."
@@ -252,6 +324,8 @@ def _fails(knob):
     failed, good = knob["failed"], knob["ran"]
     if all(isinstance(v, (int, float)) for v in failed + good) and len(failed) > 1 and min(failed) > max(good):
         return f"runs fail from {min(failed):g} on, the last that runs is {max(good):g}"
+    if all(isinstance(v, (int, float)) for v in failed + good) and len(failed) > 1 and max(failed) < min(good):
+        return f"runs fail up to {max(failed):g}, the first that runs is {min(good):g}"
     return f"runs fail at {', '.join(map(_word, failed))}"
 
 
@@ -363,7 +437,7 @@ def _draw_knobs(path, definition, rows):
             axes.patch.set_visible(False)
             base = _base(definition, knob, rows)
             if base is not None:
-                here = [r for r in good if r["point"] == base["point"]]
+                here = _same(base, good)
                 axes.plot([place[r["label"]] for r in here], [100 * abs(r["error"]) for r in here], "o", markersize=10,
                           color="black", markerfacecolor="none", markeredgewidth=0.9)
             axes.set_yscale("log")
@@ -375,7 +449,7 @@ def _draw_knobs(path, definition, rows):
             if words:
                 axes.set_xticks(range(len(mine)), [str(r["x"]) for r in mine], rotation=35, ha="right", fontsize=7.5)
                 axes.set_xlim(-0.6, len(mine) - 0.4)
-            elif min(place.values()) > 0.0 and max(place.values()) / min(place.values()) > 15.0:
+            elif place and min(place.values()) > 0.0 and max(place.values()) / min(place.values()) > 15.0:
                 axes.set_xscale("log")
                 _few_labels(axes.xaxis)
             axes.set_title(f"{knob['name']}\nof {knob['of']}, {definition['resolution']['variable']} = {knob['at']:g}",
@@ -406,7 +480,7 @@ def _draw_effects(path, definition, rows):
                        color=[plot.GREY if r["x"] else plot.ORANGE for r in mine])
             for k, row in enumerate(mine):
                 if row["status"] == "ok":
-                    left.text(error[k], k, f" {error[k]:.2g}", va="center", fontsize=7.5)
+                    left.text(error[k], k, f" {error[k]:.2g}" if error[k] < 99.5 else f" {error[k]:.0f}", va="center", fontsize=7.5)
                     right.text(row["cpu_seconds"], k, f" {row['cpu_seconds']:.2g}", va="center", fontsize=7.5)
                 else:
                     left.text(0.01, k, "fails", va="center", fontsize=7.5, color="#c23b3b", transform=left.get_yaxis_transform())
@@ -464,41 +538,57 @@ def _page(definition, summary, rows, curves):
              f"Error: {definition['label']} (figure `{summary['figure']}`). Reference: {summary['reference']['source']}. "
              f"{definition.get('notes', '')}",
              "Time: CPU seconds of the time loop on one core, the median of up to three runs, which differ by "
-             f"{100 * summary['spread']:.0f} % (median). Particle-steps and pair visits (neighbours times steps) do not "
-             "depend on the machine.", "",
+             f"{100 * summary['spread']:.0f} % (median). Other work on the machine lengthens even CPU time through shared "
+             "caches. What does not depend on the machine: particle-steps (of total-Lagrangian solids times sub-steps), pair visits (entries "
+             "of the neighbour list times steps, and bonds of total-Lagrangian solids, from both ends, times sub-steps), instructions of "
+             "the time loop (callgrind, over the first steps of one run of each method).", "",
              "## In short", summary["recommendation"], "",
              "## Error against resolution, time and work",
              f"![Error against {variable}, CPU time and particle-steps](work.png)", "",
              "Hollow: small because the error changes sign there, which is no accuracy; neither these nor runs with one "
              "setting changed count for the front.", "",
-             "| method | order | 10 % | 5 % | 2 % | 1 % |", "|---|---|---|---|---|---|"]
+             "| method | order | 10 % | 5 % | 2 % | 1 % | instructions per particle-step | per pair visit |", "|---|---|---|---|---|---|---|---|"]
     for method, found in summary["methods"].items():
         fit = _order(found).removeprefix("order ")
         cells = [_bound_cell(found["bounds"].get(f"{b:g}")) for b in BOUNDS]
+        counted = found["instructions"] or {}
+        cells += [f"{counted[key]:.0f}" if counted.get(key) else "-" for key in ("per_particle_step", "per_pair_visit")]
         lines.append(f"| {method} | {fit} | " + " | ".join(cells) + " |")
     lines += ["", f"CPU seconds of the coarsest run from which on all finer ones keep the bound, and its {variable}; "
               "`<`: the coarsest one made; *slanted*: extrapolated; -: neither. Order: least squares with 95 % interval, none where that holds 0.", "",
-              f"| method | {variable} | value | error | CPU s | spread | particle-steps | pair visits |", "|---|---|---|---|---|---|---|---|"]
+              f"| method | {variable} | value | error | CPU s | spread | particle-steps | pair visits |"
+              + "".join(f" {heading} |" for heading in _further(definition).values()), "|---" * (8 + len(_further(definition))) + "|"]
     for method, curve in curves.items():
         for r in curve:
             mark = " (sign changes)" if r["crossing"] else " **front**" if r["front"] else ""
             lines.append(f"| {method} | {r['x']:.4g} | {r['value']:.5g} | {_percent(r['error'])}{mark} | "
                          + f"{r['cpu_seconds']:.3g} | "
                          + (f"{100 * r['spread']:.0f} %" if r["spread"] is not None else "1 run")
-                         + f" | {r['particle_steps']:.2e} | " + (f"{r['pair_visits']:.2e} |" if r["pair_visits"] else "- |"))
+                         + f" | {r['particle_steps']:.2e} | " + (f"{r['pair_visits']:.2e} |" if r["pair_visits"] else "- |")
+                         + _further_cells(definition, r))
     if summary["knobs"]:
         lines += ["", "## One setting at a time", "![Error and time over each setting](knobs.png)", "",
                   "Blue: error; orange: CPU time; ring: the base; cross: the run fails.", "",
-                  "| setting | base | cheapest that is as good | lowest error | all errors | fails at |", "|---|---|---|---|---|---|"]
+                  "| setting | base | cheapest that is as good | lowest error | all errors | flat over | least between | fails at |",
+                  "|---|---|---|---|---|---|---|---|"]
         for knob, k in summary["knobs"].items():
             base, cheap, low = k["base"], k["cheapest_as_good"], k["lowest_error"]
             cells = [f"{_word(r['value'])}: {_percent(r['error'])}, {r['cpu_seconds'] / base['cpu_seconds']:.2f} of the time"
                      for r in (cheap, low)]
             lines.append(f"| {knob} | {_percent(base['error'])}, {_seconds(base['cpu_seconds'])} | {cells[0]} | {cells[1]} | "
                          + " to ".join(f"{100 * e:.2g}" for e in k["error_range"]) + " % | "
+                         + (" to ".join(map(_word, k["flat"])) if k["flat"] else "-") + " | "
+                         + (_word(k["optimum"]) if k["optimum"] is not None else "-") + " | "
                          + (", ".join(map(_word, k["failed"])) or "-") + " |")
-        lines += ["", f"As good: an error of at most {SAME:g} times that of the base."]
-    if definition.get("effects"):
+        lines += ["", f"As good: an error of at most {SAME:g} times that of the base. Flat: within that factor of it to both sides. Least "
+                  "between: an optimum with errors of one sign that rise on both sides of it."]
+        if "also" in definition:
+            lines += ["", "| setting | value | error | CPU s |" + "".join(f" {h} |" for h in _further(definition).values()),
+                      "|---" * (4 + len(_further(definition))) + "|"]
+            lines += [f"| {r['group']} | {_word(r['x'])} | "
+                      + (f"{_percent(r['error'])} | {r['cpu_seconds']:.3g} |" if r["status"] == "ok" else "fails | |")
+                      + _further_cells(definition, r) for r in rows if r["role"] == "knob"]
+    if any(row["role"] == "effect" for row in rows):
         lines += ["", "## What each effect is worth", "![Error and time with and without](effects.png)", "",
                   "Grey: the base; the others differ from it as said."]
     corners = [r for r in rows if r["role"] == "corner"]
@@ -515,7 +605,8 @@ def _index():
     """doc/cost/README.md from the summaries beside it."""
     lines = ["# What accuracy costs", "",
              "How many seconds a given error costs, method by method and setting by setting, from sweeps of the bundled scenes: "
-             "[how to choose](../choosing.md), [how these are made](../choosing.md#the-sweep-of-a-scene). Written by `tools/cost`.", "",
+             "[how to choose](../choosing.md), [how these are made](../choosing.md#the-sweep-of-a-scene). Written by `tools/cost`. "
+             "What each effect adds to a step: [effects](effects.md); beside LAMMPS' own styles: [peers](peers.md); many ranks: [scaling](scaling.md).", "",
              "| scene | error of, against | 10 % | 5 % | 2 % | 1 % |", "|---|---|---|---|---|---|"]
     found = [json.loads(path.read_text()) for path in sorted(PAGE.glob("*.json"))]
     for summary in found:

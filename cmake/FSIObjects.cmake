@@ -6,6 +6,10 @@ add_library(fsi OBJECT ${FSI_SOURCES})
 set_target_properties(fsi PROPERTIES POSITION_INDEPENDENT_CODE ON NO_SYSTEM_FROM_IMPORTED ON)
 target_compile_features(fsi PRIVATE cxx_std_17)
 target_compile_options(fsi PRIVATE ${FSI_INSTRUMENT})
+if(FSI_FFTW)
+  target_compile_definitions(fsi PRIVATE FSI_FFTW3)
+  target_include_directories(fsi PRIVATE "${FSI_FFTW_INCLUDE_DIR}")
+endif()
 
 # Compiles a target as a part of LAMMPS, without linking it: linking would be a cycle for what goes into liblammps, and a
 # plugin finds LAMMPS' symbols in the process that loads it.

@@ -1,13 +1,31 @@
 # DATE: 2026-11-21 UNITS: si CONTRIBUTOR: FSI package CITATION: Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879
-# One material per line: name, fluid, solid or wall, then keyword and value.
+# One material per line: name, fluid, solid or wall, then keyword and value (doc/src/materials.rst).
 #   fluid: rho [kg/m^3], viscosity [Pa s] (default 0)
-#   solid: rho [kg/m^3], young [Pa], poisson [-]
+#   solid: rho [kg/m^3], young [Pa], poisson [-], yield [Pa], hardening [Pa]
 # The speed of sound of a fluid is a numerical choice and belongs to the input script.
+
+# ---- common materials: textbook values at room temperature ----
 
 # water at 20 C
 water            fluid rho 1000.0 viscosity 1.0e-3
 # water without viscosity, as the benchmarks treat it
 water_inviscid   fluid rho 1000.0
+# sunflower oil at room temperature, rounded: the oil of Botia-Vera, Souto-Iglesias, Bulian and Lobovsky's sloshing experiments
+# (SPHERIC benchmark 10, 2010), 5e-5 m^2/s
+oil              fluid rho 917.0 viscosity 0.0459
+# glycerol at 20 C: CRC Handbook of Chemistry and Physics (viscosity 1.41 Pa s)
+glycerol         fluid rho 1261.0 viscosity 1.41
+# rubbers as linear elastic bodies at small strain, nearly incompressible: representative values, no particular rubber (after Ashby, Materials Selection in
+# Mechanical Design: natural rubber 1.5-2.5 MPa, 0.92-0.93 kg/l; silicone 5-20 MPa, 1.3-1.8 kg/l); poisson 0.49 stands for 0.4999
+rubber_natural   solid rho 930.0 young 2.0e6 poisson 0.49
+rubber_silicone  solid rho 1300.0 young 5.0e6 poisson 0.49
+# aluminium alloy 6061-T6, typical values of data sheets (Aluminum Association); linear hardening of 0.5 GPa joins
+# yield (276 MPa) to strength (310 MPa) at some 7 % strain
+aluminium        solid rho 2700.0 young 68.9e9 poisson 0.33 yield 276.0e6 hardening 0.5e9
+# structural steel, EN 1993-1-1: S235
+steel            solid rho 7850.0 young 210.0e9 poisson 0.3 yield 235.0e6
+
+# ---- benchmarks ----
 # Taylor-Green vortices with U = L = 1 at Re = 100
 vortex_Re100     fluid rho 1000.0 viscosity 10.0
 
@@ -41,3 +59,6 @@ wall             wall rho 1000.0
 # Souto-Iglesias and Onate, Comput. Mech. 43 (2008) 125
 sunflower_oil    fluid rho 917.0 viscosity 0.04585
 baffle_6MPa      solid rho 1100.0 young 6.0e6 poisson 0.49
+
+# Copper of the Taylor bar: Zhu and Cescotto, Int. J. Numer. Methods Eng. 38 (1995) 987; linear hardening
+copper           solid rho 8930.0 young 117.0e9 poisson 0.35 yield 400.0e6 hardening 100.0e6

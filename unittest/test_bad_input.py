@@ -62,6 +62,16 @@ def tl(keywords="", more=""):
         "\npair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi NULL plate\n" + more
 
 
+def probe(arguments):
+    return RUN, f"compute c all fsi/probe {arguments}\nrun 0"
+
+
+def spectrum(arguments):
+    return RUN, "variable x equal step\nvariable a atom x\ncompute vector all reduce sum x y z vx vy vz\n" \
+        f"fix slow all ave/time 1 1 4 v_x\nfix s all fsi/spectrum {arguments}\nrun 0"
+
+
+NO_FSI = "unfix sph\npair_style zero 0.03\npair_coeff * *\nunfix stress\nunfix walls\n"
 HYBRID = re.compile(r"pair_style hybrid.*\npair_coeff.*\npair_coeff.*\n")
 
 
@@ -208,6 +218,9 @@ CASES = [
     ("tl volumes without value", *tl("volumes"), r"fsi/solid/tl volumes command: missing"),
     ("tl hourglass negative", *tl("hourglass -0.1"), r"hourglass -0\.1 must be >= 0"),
     ("tl hourglass no number", *tl("hourglass soft"), r"soft"),
+    ("tl contact below one", *tl("contact 0.5"), r"contact 0\.5 must be >= 1"),
+    ("tl contact beyond the kernel", *tl("contact 3.5"), r"contact 3\.5 must not exceed the kernel's support, 3 spacings"),
+    ("tl contact without value", *tl("contact"), r"fsi/solid/tl contact command: missing"),
     ("tl hourglass without value", *tl("hourglass"), r"fsi/solid/tl hourglass command: missing"),
     ("tl viscosity negative", *tl("artificial/visc 0.1 -1"), r"artificial/visc beta -1 must be >= 0"),
     ("tl viscosity without values", *tl("artificial/visc 0.1"), r"fsi/solid/tl artificial/visc command: missing"),
@@ -226,6 +239,16 @@ CASES = [
     ("substeps without value", SPH, SPH + " substeps", r"fix fsi substeps command: missing"),
     ("tl atom in no body", *tl("", more="group last id 1 \nset type 2 mol 2\nset group all mol 3\n"
      "create_atoms 2 single -0.015 0.1 0.0 units box\n"), r"neighbors of its own body"),
+    # fix fsi/report
+    ("report of a group", RUN, "group water type 1\nfix r water fsi/report", r"fsi/report must use group all"),
+    ("report keyword unknown", RUN, "fix r all fsi/report often 10", r"Unknown fix fsi/report keyword often: expected every or file"),
+    ("report interval zero", RUN, "fix r all fsi/report every 0", r"every 0 must be > 0"),
+    ("report interval no integer", RUN, "fix r all fsi/report every 2.5", r"2\.5"),
+    ("report without value", RUN, "fix r all fsi/report every", r"fix fsi/report every command: missing"),
+    ("report file that cannot be", RUN, "fix r all fsi/report file nowhere/report.txt", r"cannot write file nowhere/report\.txt"),
+    ("two reports", RUN, "fix r all fsi/report\nfix s all fsi/report\nrun 0", r"only one fix fsi/report"),
+    ("report without fix fsi", RUN, "unfix sph\nunfix stress\nunfix walls\npair_style zero 0.03\npair_coeff * *\nfix r all fsi/report\nrun 0",
+     r"Fix fsi/report requires fix fsi"),
     # fsi_set
     ("fsi_set without box", START, "fsi_set all density 1000\n" + START, r"Fsi_set command before simulation box"),
     ("fsi_set group unknown", RUN, "fsi_set foam density 1000", r"group-ID foam"),
@@ -241,11 +264,49 @@ CASES = [
     # computes
     ("quantity unknown", RUN, "compute c all fsi/atom rho heat", r"quantity heat"),
     ("quantity missing", RUN, "compute c all fsi/atom", r"compute fsi/atom command: missing"),
-    ("compute without fix fsi", RUN, "unfix sph\npair_style zero 0.03\npair_coeff * *\n"
-     "unfix stress\nunfix walls\ncompute c all fsi/atom rho\nrun 0", r"Compute fsi/atom requires fix fsi"),
+    ("compute without fix fsi", RUN, NO_FSI + "compute c all fsi/atom rho\nrun 0", r"Compute fsi/atom requires fix fsi"),
     ("surface rule unknown", RUN, "compute c all fsi/surface/atom colour 0.7", r"rule colour"),
     ("surface threshold missing", RUN, "compute c all fsi/surface/atom divergence", r"divergence command: missing"),
     ("surface threshold large", RUN, "compute c all fsi/surface/atom divergence 1.5", r"threshold 1\.5 must be between"),
+    ("probe argument unknown", *probe("q point 0 0 0"), r"fsi/probe argument q: expected p, rho"),
+    ("probe without quantity", *probe("point 0 0 0"), r"fsi/probe needs a quantity"),
+    ("probe without place", *probe("p rho"), r"fsi/probe needs a place"),
+    ("probe point cut", *probe("p point 0 0"), r"fsi/probe point command: missing"),
+    ("probe patch cut", *probe("p patch 0 0 0 1"), r"fsi/probe patch command: missing"),
+    ("probe point no number", *probe("p point left 0 0"), r"left"),
+    ("probe patch upside down", *probe("p patch 0 0.1 0 0 0.02 0"), r"patch ends at y = 0\.02 below its start 0\.1"),
+    ("probe patch without extent", *probe("p patch 0 0.1 0 0 0.1 1"), r"patch has no extent"),
+    ("probe line without extent", *probe("level line 0 0.1 0 0 0.1 0"), r"line has no extent"),
+    ("probe level at a point", *probe("level point 0 0 0"), r"fsi/probe level needs a line"),
+    ("probe pressure along a line", *probe("p line 0 0 0 0 1 0"), r"fsi/probe p needs a point or a patch"),
+    ("probe extrapolate no logical", *probe("p point 0 0 0 extrapolate maybe"), r"maybe"),
+    ("probe extrapolate without value", *probe("p point 0 0 0 extrapolate"), r"extrapolate command: missing"),
+    ("probe without fix fsi", RUN, NO_FSI + "compute c all fsi/probe p point 0 0 0\nrun 0", r"Compute fsi/probe requires fix fsi"),
+    ("force with arguments", RUN, "compute c all fsi/force all", r"fsi/force takes no arguments"),
+    ("force without fluid", HYBRID, "pair_style fsi/solid/tl\npair_coeff * * materials.fsi plate plate\ncompute c all fsi/force\n",
+     r"fsi/force requires pair_style fsi/fluid"),
+    ("force without fix fsi", RUN, NO_FSI + "compute c all fsi/force\nrun 0", r"Compute fsi/force requires fix fsi"),
+    # fix fsi/spectrum
+    ("spectrum without input", *spectrum("10"), r"fix fsi/spectrum command: missing"),
+    ("spectrum Nevery zero", *spectrum("0 v_x"), r"Nevery 0 must be >= 1"),
+    ("spectrum input no reference", *spectrum("10 x"), r"input x: expected v_name"),
+    ("spectrum input of an array", *spectrum("10 f_walls[1][1]"), r"f_walls\[1\]\[1\]: expected .*equal-style variable"),
+    ("spectrum no such variable", *spectrum("10 v_y"), r"v_y: there is no variable y"),
+    ("spectrum variable of atoms", *spectrum("10 v_a"), r"v_a: variable a is not equal-style"),
+    ("spectrum variable with index", *spectrum("10 v_x[1]"), r"v_x\[1\]: expected"),
+    ("spectrum no such compute", *spectrum("10 c_none"), r"c_none: there is no compute none"),
+    ("spectrum compute without vector", *spectrum("10 c_thermo_pe[1]"), r"compute thermo_pe has no global vector"),
+    ("spectrum compute without scalar", *spectrum("10 c_vector"), r"compute vector has no global scalar"),
+    ("spectrum index too large", *spectrum("10 c_vector[7]"), r"vector of compute vector has 6 entries"),
+    ("spectrum no such fix", *spectrum("10 f_none"), r"f_none: there is no fix none"),
+    ("spectrum fix at other steps", *spectrum("10 f_slow"), r"fix slow has values every 4 steps, Nevery is 10"),
+    ("spectrum keyword unknown", *spectrum("10 v_x colour 1"), r"keyword colour"),
+    ("spectrum keyword without value", *spectrum("10 v_x window"), r"fix fsi/spectrum window command: missing"),
+    ("spectrum window unknown", *spectrum("10 v_x window box"), r"window box: expected none, hann or hann2"),
+    ("spectrum detrend unknown", *spectrum("10 v_x detrend cubic"), r"detrend cubic: expected none, mean or linear"),
+    ("spectrum peaks zero", *spectrum("10 v_x peaks 0"), r"peaks 0 must be >= 1"),
+    ("spectrum every negative", *spectrum("10 v_x every -1"), r"every -1 must be >= 0"),
+    ("spectrum file elsewhere", *spectrum("10 v_x file nowhere/s.csv"), r"Cannot open fix fsi/spectrum file nowhere/s\.csv: No such file"),
     ("virial of atoms", RUN, "compute c all stress/atom NULL\ncompute m all reduce max c_c[1]\n"
      "thermo_style custom step c_m\nrun 0", r"no per-atom virial"),
     ("energy of atoms", RUN, "compute c all pe/atom\ncompute m all reduce max c_c\nthermo_style custom step c_m\nrun 0",

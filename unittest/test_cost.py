@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 
-from fsi import paths, precision, scene, sweep
+from fsi import log, paths, precision, scene, sweep
 
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import accuracy_cost  # noqa: E402
@@ -66,6 +66,8 @@ def made(tmp_path, name, definition):
     for point in wanted:
         point["run"] = store.get(point["settings"])
     cost_report.write(tmp_path, name, definition, wanted, store.source)
+    # an interrupted sweep is drawn, too, when it has got no further than its first points
+    cost_report.write(tmp_path / "part", name, definition, wanted[:2], store.source)
     with (tmp_path / "points.csv").open() as file:
         rows = {row["label"]: row for row in csv.DictReader(file)}
     return json.loads((tmp_path / "summary.json").read_text()), rows, store, jobs
@@ -74,7 +76,7 @@ def made(tmp_path, name, definition):
 @pytest.fixture(scope="module")
 def plate(tmp_path_factory):
     knob = [{"name": "Courant number", "variable": "cfl", "of": "TL linear", "at": 3, "values": [0.25, 2.0]}]
-    effects = [{"of": "TL linear", "at": 3, "cases": {"no hourglass control": {"hourglass": 0}}}]
+    effects = [{"of": "TL linear", "at": 3, "cases": {"hourglass control": {"hourglass": 0.05}}}]
     folder = tmp_path_factory.mktemp("plate")
     definition = small("oscillating_plate", ["TL linear", "TL quadratic"], [3, 4, 5], knobs=knob, effects=effects)
     definition["common"] = {**definition["common"], "periods": "1.7"}  # one swing, of the softest, too
@@ -117,11 +119,65 @@ def test_nothing_is_run_twice(plate, monkeypatch):
     monkeypatch.setattr(sweep.Store, "_simulate", lambda *_: pytest.fail("ran again"))
     assert sweep.sweep(store, jobs, lambda _: None)
     label, settings, _ = jobs[0]
-    assert store.path({**settings, "kernel": "wendland"}) == store.path(settings), label  # the same by other words
-    assert store.path({**settings, "vf": "0.01"}) == store.path(settings)  # the deck's own default
+    assert store.path({**settings, "vf": "0.01"}) == store.path(settings), label  # the deck's own default
     assert store.path({**settings, "vf": "0.02"}) != store.path(settings)
     store.source = "another"
     assert store.get(settings) is None
+
+
+def test_defaults_that_a_recipe_changes_are_given():
+    """The plate's kernel is one by default and another with mode=paper, so that a setting equal to the former must not be dropped."""
+    deck = sweep.Deck(scene.deck("oscillating_plate"))
+    assert deck.instance({"mode": "paper", "kernel": "wendland", "vf": "0.01"})[1] == {"mode": "paper", "kernel": "wendland"}
+
+
+def test_instructions_are_those_of_the_time_loop(plate, tmp_path):
+    # twice the steps, twice the instructions, with 10 % for what a run does once; the start of LAMMPS alone takes more than either
+    *_, store, jobs = plate
+    counted = [store._simulate(tmp_path, jobs[0][1], steps) for steps in (40, 80)]  # pylint: disable=protected-access
+    assert counted[0]["steps"] == 40 and counted[1]["instructions"] == pytest.approx(2 * counted[0]["instructions"], rel=0.1)
+    # a pair takes tens of instructions: a kernel, a stress times a gradient; thousands would be something else
+    assert 10 < counted[0]["instructions"] / counted[0]["pair_visits"] < 1000
+
+
+LOG = """LAMMPS (4 Feb 2025)
+fix sph mobile fsi 0.0025 wendland 1.5 substeps 8
+  fsi/solid/tl: reference of 100 particles taken, 9.5 bonds each
+Per MPI rank memory allocation (min/avg/max) = 8 | 8 | 8 Mbytes
+Loop time of 2 on 1 procs for 50 steps with {atoms} atoms
+{half}FullNghs:          31950 ave       31950 max       31950 min
+Total # of neighbors = 31950
+"""
+
+
+@pytest.mark.parametrize("atoms, half, visits", [
+    (1000, "", 50 * (0.5 * (31950 - 950) + 8 * 950)),  # half of what the full list has beyond the solid, and sub-steps over its bonds
+    (1000, "Neighs:  0 ave 0 max 0 min\n", 50 * (0.5 * (31950 - 950) + 8 * 950)),
+    (1000, "Neighs:  20000 ave 20000 max 20000 min\n", 50 * (20000 + 8 * 950)),
+    (100, "Neighs:  0 ave 0 max 0 min\n", 50 * 8 * 950)])  # one solid and nothing else: no list
+def test_pair_visits(tmp_path, atoms, half, visits):
+    (tmp_path / "log.lammps").write_text(LOG.format(atoms=atoms, half=half))
+    found = log.read(tmp_path / "log.lammps")
+    assert found.pair_visits() == visits and (found.solid_particles, found.substeps) == (100, 8)
+
+
+def test_runs_that_do_not_count():
+    run = {"status": "ok", "figures": {"period": 2.0, "scatter": 0.03}}
+    for limits, value in (([], 2.0), (["scatter"], None), (["stopped"], 2.0), ({"scatter": 0.02}, None), ({"scatter": 0.04}, 2.0)):
+        assert cost_report._value({"figure": "period", "failed_if": limits}, run) == value
+
+
+def test_flat_ranges_and_optima():
+    rows = [{"x": x, "error": e, "point": x, "value": x, "steps": 1} for x, e in ((0.1, 0.02), (0.2, 0.0201), (0.4, 0.0205), (0.8, 0.03), (1.6, 0.5))]
+    assert cost_report._flat(rows[1], rows) == [0.1, 0.4]
+    assert cost_report._flat(rows[3], rows) is None  # neighbours are all further off than a tenth
+    assert cost_report._optimum(rows) is None  # the least is at the end
+    other = {**rows[1], "point": "the same by more settings"}
+    assert cost_report._flat(other, rows) == [0.1, 0.4]
+    rows[0]["error"] = 0.04
+    assert cost_report._optimum(rows) == 0.2
+    rows[4]["error"] = -0.5
+    assert cost_report._optimum(rows) is None  # a change of sign is none
 
 
 def test_sweep_goes_on_where_it_stopped(tmp_path):

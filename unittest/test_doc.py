@@ -49,7 +49,7 @@ def examples(page):
     text = (PAGES / f"{page}.rst").read_text()
     block = re.search(r'^Examples\n"+\n\n\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)', text, re.M)[1]
     paragraphs = [re.sub(r"^ +", "", p.strip("\n"), flags=re.M) for p in re.split(r"\n\s*\n", block) if p.strip()]
-    return paragraphs if page.startswith("pair") else [line for p in paragraphs for line in p.splitlines()]
+    return paragraphs if page.startswith("pair") or page == "fix_fsi_spectrum" else [line for p in paragraphs for line in p.splitlines()]
 
 
 def deck(page, example):
@@ -101,6 +101,12 @@ def test_every_command_page_is_in_the_index():
     listed = set(re.findall(r"^   (\w+)$", (PAGES / "index.rst").read_text(), re.M))
     assert {p.stem for p in PAGES.glob("*.rst")} - {"index"} == listed
     assert set(STYLES) <= listed
+
+
+def test_every_bundled_material_is_on_its_page():
+    names = re.findall(r"^(\w+) +(?:fluid|solid) ", (paths.POTENTIALS / "materials.fsi").read_text(), re.M)
+    text = (PAGES / "materials.rst").read_text()
+    assert len(names) > 10 and not [name for name in names if f"*{name}*" not in text]
 
 
 def test_howto_deck(tmp_path):

@@ -228,3 +228,16 @@ def test_segment_leaves_alone_what_flows_behind(dim):
         s.run(10)
         close(s.get("x"), x + 0.01 * v, 1e-12)
         assert s.fix_scalar("walls") == 0
+
+
+def test_wall_that_comes_after_a_run():
+    """The same forces as if it had been there from the start."""
+    x, v = cloud((6, 5), DX, vmax=0.3)
+    wall, forces = "fix walls all fsi/wall/mirror ylo 0", []
+    for first in ((), (wall,)):
+        with Scene(x, v, dx=DX, hdx=1.3, fluid="artificial/visc 0.1 0", commands=["run 0 post no", *first]) as s:
+            s.put("rho", 1010.0)
+            if not first:
+                s.run().run_lines(wall)
+            forces.append(s.run().get("f"))
+    close(*forces, 1e-13)

@@ -160,6 +160,8 @@ def main(folder):
     reference = AMPLITUDE * float(given.get("vf", AMPLITUDE_AT)) / AMPLITUDE_AT
 
     summary.add("period", period(crossings), "s", PERIOD, SOURCE)
+    if "frequency" in values:
+        summary.add("frequency", values["frequency"], "Hz", 1.0 / PERIOD, SOURCE)
     summary.add("amplitude", 1e3 * peaks[0] if len(peaks) else None, "mm", reference, SOURCE)
     for k in (5, 100):
         if len(peaks) >= k:

@@ -31,6 +31,14 @@ def pressure_error(water, tank):
     return float(np.linalg.norm(water["p"] - exact) / np.linalg.norm(exact))
 
 
+def density_error(water, tank):
+    """Largest error of the density over rho0; None without the speed of sound, of which the exact profile is made."""
+    if "c" not in tank or "rho" not in water:
+        return None
+    exact = tank["rho0"] + hydrostatic(water["y"], tank) / tank["c"] ** 2
+    return float(np.max(np.abs(water["rho"] - exact)) / tank["rho0"])
+
+
 def ke_over_pe(water, tank):
     """Kinetic over potential energy from the floor up; one mass for all unless there is a column `mass`."""
     mass = water["mass"] if "mass" in water else 1.0
@@ -59,6 +67,9 @@ def main(folder):
 
     summary.add("pressure_l2", errors[-1], target=0.015)
     summary.add("pressure_l2_worst", max(errors[len(errors) // 2:]))
+    density = density_error(last, tank)
+    if density is not None:
+        summary.add("density_error", density, "rho0")
     summary.add("ke_over_pe", ke_over_pe(last, tank), target=1e-5)
     summary.add("min_pair_distance", min_pair_distance(last.vector(), spacing) / spacing, "dx")
     summary.add("particles_leaked", leaks.count(summary.log), target=0)

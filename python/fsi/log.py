@@ -9,9 +9,12 @@ import numpy as np
 _LOOP = re.compile(r"Loop time of (\S+) on (\d+) procs for (\d+) steps with (\d+) atoms")
 _MEMORY = re.compile(r"Per MPI rank memory allocation \(min/avg/max\) = (\S+) \| (\S+) \| (\S+) Mbytes")
 _USE = re.compile(r"(\S+)% CPU use with")
-_NEIGHBOURS = re.compile(r"Total # of neighbors = (\d+)")
+_NEIGHBOURS = re.compile(r"(Neighs|FullNghs):\s+(\S+) ave")
+_BONDS = re.compile(r"\s*fsi/solid/tl: reference of (\d+) particles taken, (\S+) bonds each")
+_SUBSTEPS = re.compile(r"fix\s+\S+\s+\S+\s+fsi\s.*\ssubsteps\s+(\d+)")
 _BUILDS = re.compile(r"Neighbor list builds = (\d+)")
 _VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
+_REPORT = re.compile(r"^FSI report (\w+) (.+)$")  # of fix fsi/report
 _VALUE = re.compile(r"^FSI (\w+) (\S+)\s*$")
 
 
@@ -26,8 +29,10 @@ class Run:
     atoms: int = None
     bytes_per_rank: float = None  # average over ranks
     cpu_use: float = None  # CPU over wall time in the loop
-    neighbours: int = None  # entries of the neighbour list at the end; None where LAMMPS counts none
+    neighbours: int = None  # entries of the half neighbour list at the end, 0 where LAMMPS does not find it (pair style hybrid)
+    full_neighbours: int = None  # of the full one, which total-Lagrangian solids take their reference from
     builds: int = None  # of the neighbour list
+    report: dict = field(default_factory=dict)  # of fix fsi/report: {name: value}
 
 
 @dataclass
@@ -39,11 +44,27 @@ class Log:
     warnings: list
     errors: list
     version: str = None  # of LAMMPS: "4 Feb 2025"
+    solid_particles: int = 0  # of total-Lagrangian solids
+    bonds: float = 0.0  # of all of them, each seen from both ends
+    substeps: int = 1  # steps of total-Lagrangian solids in each step
 
     @property
     def finished(self):
         """Runs that came to their end."""
         return [run for run in self.runs if run.loop_seconds is not None]
+
+    def pair_visits(self):
+        """Entries of the neighbour list, each pair once, and bonds of total-Lagrangian solids, from both ends, times (sub-)steps.
+
+        Beside such solids LAMMPS counts only a full list of all, less their bonds then. None where it counts nothing.
+        """
+        visits = 0.0
+        for run in self.finished:
+            listed = run.neighbours or 0.5 * max(0.0, (run.full_neighbours or 0) - self.bonds)
+            if self.solid_particles == run.atoms:  # one body alone needs no list
+                listed = 0.0
+            visits += run.steps * (listed + self.substeps * self.bonds)
+        return visits or None
 
     def column(self, *names):
         """A thermo column over all runs, by the first of the names that exists; None if none does."""
@@ -84,11 +105,18 @@ def read(path):
         elif log.runs and (match := _USE.match(line)):
             log.runs[-1].cpu_use = float(match[1]) / 100.0
         elif log.runs and (match := _NEIGHBOURS.match(line)):
-            log.runs[-1].neighbours = int(match[1]) or None
+            count = max(0, round(float(match[2]) * (log.runs[-1].ranks or 1)))
+            setattr(log.runs[-1], "neighbours" if match[1] == "Neighs" else "full_neighbours", count)
         elif log.runs and (match := _BUILDS.match(line)):
             log.runs[-1].builds = int(match[1])
         elif match := _VERSION.match(line):
             log.version = log.version or match[1]
+        elif match := _BONDS.match(line):
+            log.solid_particles, log.bonds = int(match[1]), int(match[1]) * float(match[2])
+        elif match := _SUBSTEPS.match(line):
+            log.substeps = int(match[1])
+        elif log.runs and (match := _REPORT.match(line)):
+            log.runs[-1].report[match[1]] = _number(match[2])
         elif match := _VALUE.match(line):
             log.values[match[1]] = _number(match[2])
         elif expect_header and line.strip():
@@ -99,6 +127,17 @@ def read(path):
                 rows.append(row)
     close_table()
     return log
+
+
+def reports(path):
+    """What fix fsi/report wrote into the file of its keyword `file`: a dictionary per run."""
+    found = []
+    for line in Path(path).read_text().splitlines():
+        if match := _REPORT.match(line):
+            if match[1] == "first_step":
+                found.append({})
+            found[-1][match[1]] = _number(match[2])
+    return found
 
 
 def _number(text):

@@ -114,6 +114,28 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
             figure.colorbar(ScalarMappable(norm, colours), cax=axes, label=label, extend="max")
 
 
+def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0):
+    """Numbered pictures folder/00000.png ... of all frames, as snapshots in one panel each with the same limits and colours."""
+    (xlo, xhi), (ylo, yhi) = _extent(frames, spacing)
+    scales = _scales(frames, fluid, solid)
+    bar = 0.9 * len(scales)
+    panel = width - bar - 0.8
+    height = max(panel * (yhi - ylo) / (xhi - xlo), 0.8)
+    for k, frame in enumerate(frames):
+        with picture(folder / f"{k:05d}.png", width, height + 0.75) as figure:
+            axes = figure.add_axes((0.7 / width, 0.45 / (height + 0.75), panel / width, height / (height + 0.75)))
+            for types, name, colours, norm, scale, _ in scales:
+                part = frame.of_types(*types)
+                axes.scatter(part["x"], part["y"], s=(1.3 * spacing * panel * 72.0 / (xhi - xlo))**2, c=part[name] / scale, marker="s",
+                             linewidths=0, cmap=colours, norm=norm)
+            axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal", xlabel="x [m]", ylabel="y [m]")
+            axes.set_title(f"t = {frame.time:.3f} s", loc="left", pad=3)
+            axes.grid(False)
+            for n, (_, _, colours, norm, _, label) in enumerate(scales):
+                place = ((0.85 + panel + 0.9 * n) / width, 0.45 / (height + 0.75), 0.13 / width, height / (height + 0.75))
+                figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_axes(place), label=label, extend="max")
+
+
 def _extent(frames, spacing):
     """Smallest limits that show all particles of all frames."""
     return [(min(f[name].min() for f in frames) - spacing, max(f[name].max() for f in frames) + spacing)

@@ -2,7 +2,8 @@
 
 Each scene is a folder with a deck in.<scene> and an analyze.py whose main(folder) writes summary.json and pictures.
 One that needs several runs lists them in cases.json, {"CASE": {"variables": {...}, "ranks": N}} with `ranks` optional; after
-them study(folder, {case: its folder}) of analyze.py writes what is said about all of them into the folder above.
+them study(folder, {case: its folder}) of analyze.py writes what is said about all of them into the folder above. A case may run
+another scene's deck, with any of its variables and the edits that edits.json names, and it may be one whose failure is a result.
 """
 
 import difflib
@@ -23,6 +24,7 @@ from .summary import RUN_FILE
 OPTIONS = ("ranks", "out", "case")
 MADE_FILE = ".made-by-tools-run"
 CASES_FILE = "cases.json"
+EDITS_FILE = "edits.json"  # {name: {"find": regular expression, "put": text with {value}}}: settings that no deck has a variable for
 OWN_RUN = "custom"  # folder of a run with the user's variables beside the cases, whose results stay as they are
 SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools")  # what decides a result
 
@@ -47,13 +49,14 @@ def deck_variables(path):
 
 
 def cases(scene):
-    """The runs that make up a scene, {case: {"variables": {name: value}, "ranks": N or None}}; {} if it is one run."""
+    """The runs that make up a scene, {case: {"variables", "ranks", "deck", "may_fail"}}; {} if it is one run."""
     path = paths.EXAMPLES / scene / CASES_FILE
     if not path.exists():
         return {}
     try:
-        found = {name: {"variables": {k: str(v) for k, v in case.get("variables", {}).items()},
-                        "ranks": case.get("ranks")} for name, case in json.loads(path.read_text()).items()}
+        found = {name: {"variables": {k: str(v) for k, v in case.get("variables", {}).items()}, "ranks": case.get("ranks"),
+                        "deck": case.get("deck"), "may_fail": bool(case.get("may_fail"))}
+                 for name, case in json.loads(path.read_text()).items()}
     except (ValueError, AttributeError) as error:
         raise Refusal(f"{path} is not of the form {{\"CASE\": {{\"variables\": {{...}}}}}}: {error}") from None
     for name, case in found.items():
@@ -62,10 +65,22 @@ def cases(scene):
         if case["ranks"] is not None and (not isinstance(case["ranks"], int) or case["ranks"] < 1):
             raise Refusal(f"{path}: ranks of '{name}' must be a whole number, 1 or more")
         try:
-            check(scene, case["variables"])
+            if case["deck"]:
+                _borrowed(scene, case["deck"]).instance(case["variables"])
+            else:
+                check(scene, case["variables"])
         except Refusal as refusal:
             raise Refusal(f"{path}: case '{name}': {refusal}") from None
     return found
+
+
+def _borrowed(scene, name):
+    """The deck of another scene, with the edits of `scene`."""
+    from .sweep import Deck  # pylint: disable=import-outside-toplevel,cyclic-import
+    if name not in scenes():
+        raise Refusal(f"there is no scene '{name}'{_similar(name, scenes())}")
+    path = paths.EXAMPLES / scene / EDITS_FILE
+    return Deck(deck(name), json.loads(path.read_text()) if path.exists() else None)
 
 
 def parse(arguments):
@@ -99,19 +114,28 @@ def check(scene, variables):
             raise Refusal(f"{name}={value}: a number is needed, such as the default {known[name]}")
 
 
-def run(scene, folder, ranks, variables, case=None):
-    """Simulates and analyses a scene in `folder`; returns 0 if all went well, else LAMMPS' exit status or 1."""
+def run(scene, folder, ranks, variables, case=None, borrowed=None, may_fail=False):
+    """Simulates and analyses a scene in `folder`; returns 0 if all went well, else LAMMPS' exit status or 1.
+
+    borrowed: name of the scene whose deck is run; may_fail: a run that LAMMPS ends with an error is analysed, too.
+    """
     folder = Path(folder)
     with _record(folder):
         given = "".join(f" {name}={value}" for name, value in variables.items())
         print(f"run: {scene}{given} ranks={ranks}, results in {folder}", flush=True)
-        status, wall, output = _simulate(scene, folder, ranks, variables)
+        path, settings = deck(scene), variables
+        if borrowed:
+            text, settings = _borrowed(scene, borrowed).instance(variables)
+            path = folder / f"in.{borrowed}"
+            path.write_text(text)
+        status, wall, output = _simulate(path, folder, ranks, settings)
         if status != 0:
             _explain(folder, status, output)
-            return status
+            if not may_fail:
+                return status
         _write_run(folder, {"scene": scene, **({"case": case} if case else {}), "ranks": ranks,
-                            "wall_seconds": round(wall, 3), "given": variables,
-                            "variables": {**deck_variables(deck(scene)), **variables}})
+                            "wall_seconds": round(wall, 3), "given": variables, **({"status": status} if status else {}),
+                            "variables": {**deck_variables(path), **variables}})
         print(f"run: LAMMPS took {wall:.1f} s; analysing", flush=True)
         module = _analysis(scene)
         if module is not None and not _calls(module.main, folder):
@@ -131,7 +155,8 @@ def run_cases(scene, folder, ranks=None):
         ran = {}
         for k, (name, case) in enumerate(wanted.items(), start=1):
             print(f"run: {scene}, case {name} ({k} of {len(wanted)})", flush=True)
-            if run(scene, folder / name, ranks or case["ranks"] or default_ranks(), case["variables"], name) == 0:
+            if run(scene, folder / name, ranks or case["ranks"] or default_ranks(), case["variables"], name, case["deck"],
+                   case["may_fail"]) == 0:
                 ran[name] = folder / name
         failed = [name for name in wanted if name not in ran]
         _write_run(folder, {"scene": scene, "cases": list(ran), "failed": failed})
@@ -164,7 +189,10 @@ def _calls(function, *arguments):
     """Whether an analysis comes to its end; if not, says why, so that what else is to be run can go on."""
     try:
         function(*arguments)
-    except (Exception, SystemExit):  # pylint: disable=broad-exception-caught
+    except SystemExit as refusal:  # what the analysis has to say, in its own words
+        print(f"\nrun: {refusal}", file=sys.stderr)
+        return False
+    except Exception:  # pylint: disable=broad-exception-caught
         print(f"\nrun: what was to be made of {arguments[0]} failed", file=sys.stderr)
         traceback.print_exc()
         return False
@@ -202,9 +230,9 @@ def _commit():
         return None
 
 
-def _simulate(scene, folder, ranks, variables):
+def _simulate(path, folder, ranks, variables):
     """Runs LAMMPS, its output going to the terminal; returns (status, wall seconds, last lines)."""
-    command = launch.lammps(deck(scene), ranks, variables)
+    command = launch.lammps(Path(path).resolve(), ranks, variables)
     started = time.perf_counter()
     tail = []
     with subprocess.Popen(command, cwd=folder, env=launch.environment(), stdin=subprocess.DEVNULL,
@@ -302,7 +330,8 @@ def _job(scene, options, variables, every):
     if variables:
         raise Refusal("case= sets the variables: give either it or NAME=VALUE")
     return lambda: run(scene, folder / name if out is None else folder,
-                       ranks or known[name]["ranks"] or default_ranks(), known[name]["variables"], name)
+                       ranks or known[name]["ranks"] or default_ranks(), known[name]["variables"], name,
+                       known[name]["deck"], known[name]["may_fail"])
 
 
 if __name__ == "__main__":

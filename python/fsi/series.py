@@ -62,3 +62,63 @@ def rms_distance(series, name, reference, reference_name, tolerance=1e-3):
         return None
     clipped = np.clip(times[inside], series.time[0], series.time[-1])
     return float(np.sqrt(np.mean((series.at(name, clipped) - reference[reference_name][inside]) ** 2)))
+
+
+def frequency(time, values):
+    """Where the spectrum is highest: Hann window, mean removed, the peak between the bins; at least two periods are needed."""
+    n = len(time)
+    even = np.linspace(time[0], time[-1], n)
+    values = np.interp(even, time, values)
+    window = np.hanning(n)
+    size = np.abs(np.fft.rfft((values - np.average(values, weights=window)) * window, 16 * n))
+    rate = np.fft.rfftfreq(16 * n, (even[-1] - even[0]) / (n - 1))
+    k = int(np.argmax(np.where(rate * (even[-1] - even[0]) < 1.5, 0.0, size)))  # below is the window itself
+    if size[k] == 0.0 or k + 1 >= len(size):
+        raise ValueError("there is no frequency in a constant")
+    a, b, c = np.log(size[k - 1:k + 2])
+    return float(rate[k] + 0.5 * (a - c) / (a - 2.0 * b + c) * rate[1])
+
+
+def read_ave(path):
+    """Reads a file of fix ave/time: columns over TimeStep, each (steps,); of mode vector (steps, rows)."""
+    titles, data = [], []
+    lines = Path(path).read_text().splitlines()
+    if not lines or not lines[0].startswith("# Time-averaged"):
+        raise ValueError(f"{path} is not a file of fix ave/time")
+    for line in lines:
+        if line.startswith("#"):
+            titles.append(line.lstrip("# ").split())
+        elif line.strip():
+            data.append([float(word) for word in line.split()])
+    if len(titles) < 2 or not data:
+        raise ValueError(f"{path} has no rows")
+    if len(titles) == 2:
+        names = titles[1]
+        if len(data[-1]) != len(names):
+            data.pop()  # cut off
+        table = np.array(data)
+        return Series({name: table[:, k] for k, name in enumerate(names)})
+    names, steps, blocks, k = titles[2][1:], [], [], 0
+    while k < len(data):
+        step, rows = data[k][0], int(data[k][1])
+        block = data[k + 1:k + 1 + rows]
+        if len(block) < rows or len(block[-1]) != len(names) + 1:
+            break
+        steps.append(step)
+        blocks.append([row[1:] for row in block])
+        k += 1 + rows
+    table = np.array(blocks)  # (steps, rows, columns)
+    return Series({"TimeStep": np.array(steps), **{name: table[:, :, k] for k, name in enumerate(names)}})
+
+
+def read_any(path):
+    """A file of fix ave/time or of fix print, whichever it is."""
+    with open(path, encoding="utf-8", errors="replace") as file:
+        averaged = file.readline().startswith("# Time-averaged")
+    return read_ave(path) if averaged else read(path)
+
+
+def rows(columns):
+    """Columns of mode vector as one column per row: NAME[1], NAME[2] ..."""
+    return {name if values.ndim == 1 else f"{name}[{k + 1}]": values if values.ndim == 1 else values[:, k]
+            for name, values in columns.items() for k in range(1 if values.ndim == 1 else values.shape[1])}

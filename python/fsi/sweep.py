@@ -10,6 +10,7 @@ import io
 import json
 import re
 import resource
+import shutil
 import subprocess
 import tempfile
 import time
@@ -18,7 +19,9 @@ from pathlib import Path
 from . import launch, log, paths, plot
 from .scene import Refusal, deck_variables
 
-REPEATS = ((1.0, 3), (4.0, 2))  # runs shorter than so many CPU seconds are made so many times
+REPEATS = ((1.0, 3), (3.0, 2))  # runs shorter than so many CPU seconds are made so many times
+COUNTED = 60000  # particle-steps of which instructions are counted: valgrind is some fifty times slower
+TIME_LOOP = "LAMMPS_NS::Verlet::run(int)"
 
 
 class Deck:
@@ -32,11 +35,13 @@ class Deck:
         self.text = self.path.read_text()
         self.edits = edits or {}
         self.defaults = deck_variables(self.path) | {n: str(e.get("default", "")) for n, e in self.edits.items()}
+        # those that an `if` declares, too, have no default of their own: the deck's recipe decides
+        self.open = set(re.findall(r"[\"']variable\s+(\w+)\s+index\b", self.text))
         self.formulas = set(re.findall(r"^\s*variable\s+(\w+)\s+equal\b", self.text, re.M))
 
     def normal(self, settings):
         """Settings as strings, without those that are the deck's own."""
-        return {n: str(v) for n, v in sorted(settings.items()) if str(v) != self.defaults.get(n)}
+        return {n: str(v) for n, v in sorted(settings.items()) if n in self.open or str(v) != self.defaults.get(n)}
 
     def instance(self, settings):
         """(text of the deck, variables for -var) for some settings."""
@@ -98,6 +103,17 @@ class Store:
             point["cpu_seconds"] += self._simulate(Path(name), settings)["cpu_seconds"]
         return self._put(settings, point)
 
+    def count(self, settings):
+        """Counts the instructions of a stored point's first time steps, nothing else of the run, by callgrind."""
+        point = self.get(settings)
+        steps = min(max(COUNTED * point["steps"] // point["particle_steps"], 4), point["steps"], 500)
+        with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
+            cost = self._simulate(Path(name), settings, steps)
+        if "instructions" not in cost:
+            return None
+        point["instructions"] = {key: cost[key] for key in ("instructions", "steps", "particle_steps", "pair_visits")}
+        return self._put(settings, point)
+
     def wanted(self, point):
         """How often a stored point should be run."""
         if point["status"] != "ok":
@@ -125,17 +141,22 @@ class Store:
                     point |= {"status": "failed", "why": f"analysis: {error}"[:200]}
         return point
 
-    def _simulate(self, folder, settings):
-        """One run in `folder`: its status and cost."""
+    def _simulate(self, folder, settings, steps=None):
+        """One run in `folder`: its status and cost. steps: only so many, under callgrind."""
         text, variables = self.deck.instance(settings)
+        if steps:  # in place of the first run; none after it
+            first, *rest = re.split(r"^run\s.*$", text, flags=re.M)
+            text = f"{first}run {steps}" + "".join(rest) if rest else text
         for path in self.files:
             if not (folder / path.name).exists():
                 (folder / path.name).symlink_to(path.resolve())
         (folder / "in.deck").unlink(missing_ok=True)
         (folder / "in.deck").write_text(text)
         (folder / "run.json").write_text(json.dumps({"variables": {**deck_variables(self.deck.path), **variables}}))
-        seconds = int(self.limit) + 1
+        seconds = int(min(self.limit, 100.0) if steps else self.limit) + 1
         command = launch.lammps("in.deck", 1, variables)[len(launch.mpirun(1)):]  # no launcher: it dies with this process
+        if steps:
+            command = ["valgrind", "--tool=callgrind", f"--toggle-collect={TIME_LOOP}", "--callgrind-out-file=/dev/null", *command]
         done = subprocess.run(command, cwd=folder, env=launch.environment(),
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", check=False,
@@ -147,14 +168,15 @@ class Store:
             why = (found.errors if found else None) or [line for line in done.stdout.splitlines() if "ERROR" in line or "ignal" in line]
             return cost | {"status": "failed", "why": (why or ["stopped"])[0][:200], "dx": found.values.get("dx") if found else None}
         runs = found.finished
+        if counted := re.search(r"Collected : (\d+)", done.stdout):
+            cost["instructions"] = int(counted[1])
         cost["cpu_seconds"] = [sum(run.loop_seconds * (run.cpu_use or 1.0) for run in runs)]
-        neighbours = [run.neighbours for run in runs]
         return cost | {
             "dx": found.values.get("dx"), "particles": runs[0].atoms, "steps": sum(run.steps for run in runs),
-            "particle_steps": sum(run.steps * run.atoms for run in runs),
-            "pair_visits": sum(n * run.steps for n, run in zip(neighbours, runs)) if all(neighbours) else None,
-            "neighbour_builds": sum(run.builds or 0 for run in runs),
-            "sub_steps": found.values.get("substeps", 1)}
+            # a sub-step moves the solid's particles only, and visits its bonds
+            "particle_steps": sum(run.steps * (run.atoms + (found.substeps - 1) * found.solid_particles) for run in runs),
+            "pair_visits": found.pair_visits(),
+            "neighbour_builds": sum(run.builds or 0 for run in runs)}
 
 
 @contextlib.contextmanager
@@ -206,6 +228,18 @@ def sweep(store, jobs, say=print, budget=None):
                 say(f"cost: {used:.0f} CPU s used: the same command goes on with the repetitions")
                 return True
     return True
+
+
+def count(store, jobs, say=print):
+    """Counts instructions of some points, [(label, settings)], where there is a valgrind and the counts are not there yet."""
+    left = [job for job in jobs if (point := store.get(job[1])) and point["status"] == "ok" and "instructions" not in point]
+    if left and shutil.which("valgrind") is None:
+        say("cost: no valgrind, so instructions are not counted")
+        return
+    for label, settings in left:
+        found = store.count(settings)
+        say(f"cost: {label}: " + (f"{found['instructions']['instructions']:.3g} instructions in {found['instructions']['steps']} steps"
+                                  if found else "no instructions counted"))
 
 
 def _time(seconds):

@@ -50,6 +50,14 @@ void ComputeFSIEnergy::init()
   hub = FixFSI::find(lmp, "Compute fsi/energy");
 }
 
+const char *ComputeFSIEnergy::name(int k)
+{
+  static const char *const names[NHAVE + FixFSI::NTERM] = {
+      "kinetic",           "gravitational",     "compressive", "shear",    "artificial viscosity", "laminar viscosity",
+      "density diffusion", "artificial stress", "walls",       "coupling", "gradient",             "plastic"};
+  return names[k];
+}
+
 /* ----------------------------------------------------------------------
    the sum of the ledger: constant, but for the error of the time step
 ------------------------------------------------------------------------- */

@@ -33,6 +33,7 @@ class ComputeFSIEnergy : public Compute {
   void init() override;
   double compute_scalar() override;
   void compute_vector() override;
+  static const char *name(int);    // of an entry of the vector
 
  private:
   class FixFSI *hub;

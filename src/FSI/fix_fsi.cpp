@@ -19,10 +19,12 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi_dt.h"
+#include "fix_fsi_report.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_wall_particle.h"
 #include "force.h"
+#include "fsi_advice.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_tensor.h"
@@ -48,7 +50,7 @@ using namespace FSI;
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
     shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
-    solid(nullptr), solid_tl(nullptr), substeps(1), fix_dt(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
+    solid(nullptr), solid_tl(nullptr), substeps(1), fix_dt(nullptr), profile(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
     tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
@@ -187,6 +189,9 @@ void FixFSI::init()
   auto dt = modify->get_fix_by_style("^fsi/dt$");
   fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
   stagger = 0.0;
+  nmax = 0;    // effects that came since the last run need their arrays
+  auto report = modify->get_fix_by_style("^fsi/report$");
+  profile = report.empty() ? nullptr : &dynamic_cast<FixFSIReport *>(report[0])->profile;
 
   wall_fixes.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
@@ -198,7 +203,6 @@ void FixFSI::init()
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/particle$"))
     particle_walls.push_back(dynamic_cast<FixFSIWallParticle *>(fix));
 
-  nmax = 0;    // arrays that the last run did not need may be needed now
   need_psi = density_fluid != CONTINUITY || (fluid && fluid->surface_ratio > 0.0) ||
       (solid && density_solid != CONTINUITY);
   need_grad = solid != nullptr;
@@ -260,9 +264,12 @@ void FixFSI::setup(int)
   if (fluid) effects.push_back({fmt::format("{} groups of wall particles", particle_walls.size()), "fix fsi/wall/particle", !particle_walls.empty()});
   effects.push_back({"energy ledger", "compute fsi/energy", ledger});
   std::string on, off;
+  effects_on.clear();
   for (const auto &e : effects) {
-    if (e.on) on += "\n    " + e.name;
-    else off += (off.empty() ? "" : ", ") + e.keyword;
+    if (e.on) {
+      on += "\n    " + e.name;
+      effects_on.push_back(e.name);
+    } else off += (off.empty() ? "" : ", ") + e.keyword;
   }
 
   const int ng = need_grad ? ngrad() : 0, ns = need_shift ? nshift() : 0;
@@ -271,13 +278,23 @@ void FixFSI::setup(int)
                                  h / dx, dx, on, off.empty() ? "none" : off);
   text += fmt::format("  arrays of all particles: {} bytes each{}{}\n", 8 * (need_psi + ng) + fluid_bytes,
                       need_psi ? ", number density" : "", ng ? ", velocity gradient" : "");
-  const int back = (fluid && density_fluid == CONTINUITY) || ng;
-  text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", 1,
-                      (force->newton_pair ? back + need_psi : 0),
-                      solid_tl ? fmt::format("; {} each way for solid sub-steps", substeps > 1 ? substeps : 1) : "");
+  // what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a ghost
+  const bool newton = force->newton_pair, hourglass = solid && solid->has_hourglass();
+  const int forward = 1 + hourglass, back = newton * (((fluid && density_fluid == CONTINUITY) || ng) + need_psi + hourglass);
+  const int both = 1 + need_psi * (1 + newton);
+  const int fluid_ghost = fluid ? both + newton * (density_fluid == CONTINUITY) * (1 + ns) : 0;
+  int solid_ghost = both;
+  if (solid) solid_ghost += comm_forward - 2 + newton * ng + hourglass * (dim * dim + newton * dim);
+  if (solid_tl) solid_ghost += substeps * dim + (substeps > 1 ? substeps * solid_tl->comm_forward : 0);
+  text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", forward, back,
+                      !solid_tl ? "" : substeps > 1 ? fmt::format("; {} each way for solid sub-steps", substeps) : "; 1 back for solid forces");
+  text += fmt::format("  they carry for each ghost:{}{}\n", fluid ? fmt::format(" {} bytes of a fluid", 8 * fluid_ghost) : "",
+                      solid || solid_tl ? fmt::format("{} {} bytes of a solid", fluid ? "," : "", 8 * solid_ghost) : "");
   if (text == announced) return;
   announced = text;
   if (comm->me == 0) utils::logmesg(lmp, text);
+  advise(lmp, *this);
+  warn_idle();
 }
 
 /* ----------------------------------------------------------------------
@@ -469,15 +486,21 @@ void FixFSI::final_integrate()
 
 void FixFSI::substep_solids()
 {
+  const Phase phase(profile, Profile::SOLID);
   double **x = atom->x;
   double **v = atom->v;
   double **f = atom->f;
   double **fs = nullptr;
   const double *const rmass = atom->rmass;
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
-  std::vector<int> moving;
+  std::vector<int> moving, held;
   for (const int i : solid_tl->solids())
     if (atom->mask[i] & groupbit) moving.push_back(i);
+    else if (profile) held.push_back(i);
+  const auto hold = [&](double t) {
+    for (const int i : held)
+      for (int d = 0; d < dim; d++) profile->impulse_held[d] += t * fs[i][d];
+  };
 
   const auto drift = [&](double t) {
     for (const int i : moving)
@@ -496,8 +519,10 @@ void FixFSI::substep_solids()
       const double dtfm = dt * force->ftm2v / rmass[i];
       for (int d = 0; d < dim; d++) v[i][d] += dtfm * (f[i][d] + fs[i][d]);
     }
+    hold(dt);
     drift(dth);
   }
+  hold(-update->dt);    // that of the last one is in f from here on
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
   if (force->pair != solid_tl)
     for (int k = 0; k < 6; k++) force->pair->virial[k] += solid_tl->virial[k];
@@ -527,7 +552,9 @@ void FixFSI::update_state(bool advance)
   }
 
   tally_dt = (ledger && advance) ? update->dt : 0.0;
+  Phase phase(profile);
   if (!wall_fixes.empty()) {
+    phase.next(Profile::WALLS);
     for (auto *fix : wall_fixes) fix->clear_force();
     gather_walls();
     double **x = atom->x;
@@ -541,9 +568,13 @@ void FixFSI::update_state(bool advance)
     if (rate) memset(rate, 0, nall * sizeof(double));
     if (need_shift && nall) memset(shift[0], 0, (size_t) nall * nshift() * sizeof(double));
     if (gradient && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
+    phase.next(Profile::DENSITY);
     if (rate && advance) fluid->density_rate(update->dt);
-    if (gradient) solid->velocity_gradient(advance ? update->dt : 0.0);
-    if (force->newton_pair) comm->reverse_comm(this);
+    if (gradient) {
+      phase.next(Profile::STRESS);
+      solid->velocity_gradient(advance ? update->dt : 0.0);
+    }
+    if (force->newton_pair) reverse_comm(profile, comm, this);
     if (advance) advance_density();
     if (need_shift && advance) fluid->displacements(update->dt);
     if (gradient) {
@@ -554,6 +585,7 @@ void FixFSI::update_state(bool advance)
     }
   }
   if (need_psi) {
+    phase.next(Profile::DENSITY);
     number_density(psi);
     psi_reference = psi_bulk;
     if (fluid && fluid->surface_max) {
@@ -568,7 +600,8 @@ void FixFSI::update_state(bool advance)
     solid_tl->break_bonds();
     if (substeps == 1) solid_tl->advance_stress(update->dt);
   }
-  comm->forward_comm(this);
+  if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
+  forward_comm(profile, comm, this);
   for (auto *fix : particle_walls) fix->extrapolate(advance);
 }
 
@@ -604,7 +637,7 @@ void FixFSI::position_divergence(double *n)
 void FixFSI::add_ghosts(double *n)
 {
   summed = n;
-  if (force->newton_pair) comm->reverse_comm(this);
+  if (force->newton_pair) reverse_comm(profile, comm, this);
   summed = nullptr;
 }
 
@@ -679,6 +712,11 @@ double FixFSI::shear_energy(int i) const
   } else
     ss = Sym<3>::load(s).squared();
   return atom->rmass[i] / atom->rho[i] * ss / (4.0 * state[atom->type[i]].shear);
+}
+
+double FixFSI::density_ratio(int i) const
+{
+  return is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i) : atom->rho[i] / state[atom->type[i]].rho0;
 }
 
 /* ----------------------------------------------------------------------

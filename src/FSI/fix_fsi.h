@@ -23,8 +23,10 @@ FixStyle(fsi,FixFSI);
 #include "atom.h"
 #include "fix.h"
 #include "fsi_material.h"
+#include "fsi_profile.h"
 #include "fsi_walls.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -96,6 +98,7 @@ class FixFSI : public Fix {
   double potential(int i) const;    // gravitational energy of atom i at the positions in atom->x
   double stored(int i) const;       // compressive energy of atom i
   double shear_energy(int i) const;
+  double density_ratio(int i) const;    // rho/rho0; that of a total-Lagrangian solid is in its deformation
 
   // viscous velocity of no-slip walls of particles (fix fsi/wall/particle); null: there are none
   double **wall_velocity;
@@ -110,6 +113,8 @@ class FixFSI : public Fix {
   class PairFSISolidTL *solid_tl;
   int substeps;    // of total-Lagrangian solids in each step
   class FixFSIDt *fix_dt;    // changes the time step; null: nothing does
+  FSI::Profile *profile;     // of fix fsi/report; null: there is none
+  std::vector<std::string> effects_on;    // what is simulated, in words; from setup on
   // what moves by rates between the middles of two steps takes update->dt + stagger: their distance, if dt changes
   double stagger;
 
@@ -148,6 +153,7 @@ class FixFSI : public Fix {
   bool fresh_start() const;
   void give_defaults(int);
   void sort_by_tag();
+  void warn_idle() const;    // fix_fsi_idle.cpp
   void add_ghosts(double *);
 };
 

@@ -21,29 +21,25 @@
 #include "modify.h"
 #include "output.h"
 #include "pair.h"
-#include "pair_fsi_fluid.h"
-#include "pair_fsi_solid.h"
-#include "pair_fsi_solid_tl.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-static constexpr double BIG = 1.0e20;
+static constexpr double BIG = Limits::UNLIMITED;
 static constexpr int MAXSUBSTEPS = 1000;
 static constexpr double PRINT = 0.95;    // causes whose limits differ by less than this are not worth a line each
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), hub(nullptr), cfl(1.0), low(0.0), high(BIG), growth(1.1), automatic(false), check(NO), target(BIG),
-    cause(MAXIMUM), ruling(-1), culprit{}, dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false)
+    Fix(lmp, narg, arg), hub(nullptr), cfl(1.0), low(0.0), high(BIG), growth(1.1), automatic(false), check(NO), limits(lmp), target(BIG),
+    cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/dt", error);
@@ -175,75 +171,16 @@ void FixFSIDt::start_of_step()
 }
 
 /* ----------------------------------------------------------------------
-   fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6 alpha); laminar: h^2/8nu;
-   acceleration: sqrt(h/|a|)/4
+   the limits (fsi_limits.cpp) with the factor cfl
 ------------------------------------------------------------------------- */
 
 void FixFSIDt::find_limits()
 {
-  const int *const mask = atom->mask, *const type = atom->type;
-  double **v = atom->v;
-  double **f = atom->f;
-  const double *const rmass = atom->rmass, *const rho = atom->rho;
-  const double h = hub->h;
-  const bool substeps = hub->solid_tl && (automatic || hub->substeps > 1);
-
-  double mine[2][NLIMIT], all[2][NLIMIT], fastest = 0.0, asq_max[2] = {0.0, 0.0};
-  tagint who[2][2] = {};
-  std::vector<char> present(atom->ntypes + 1, 0);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(mask[i] & groupbit)) continue;
-    const State &s = hub->state[type[i]];
-    if (s.species == RIGID) continue;    // rigid
-    present[type[i]] = 1;
-    if (s.species == FLUID) {
-      double c = s.c;
-      if (s.tait) c *= std::max(1.0, std::pow(rho[i] / s.rho0, 3));
-      c += std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
-      if (c > fastest) {
-        fastest = c;
-        who[0][0] = atom->tag[i];
-      }
-    }
-    // what is held does not follow its force
-    if (!(mask[i] & hub->groupbit)) continue;
-    const double w = force->ftm2v / rmass[i];
-    const double asq = w * w * (f[i][0] * f[i][0] + f[i][1] * f[i][1] + f[i][2] * f[i][2]);
-    const int in_sub = substeps && s.species == SOLID;
-    if (asq > asq_max[in_sub]) {
-      asq_max[in_sub] = asq;
-      who[in_sub][1] = atom->tag[i];
-    }
-  }
-
-  for (auto &row : mine) std::fill(row, row + NLIMIT, BIG);
-  if (fastest > 0.0) mine[0][SOUND] = 0.25 * h / fastest;
-  for (int k = 0; k < 2; k++)
-    if (asq_max[k] > 0.0) mine[k][ACCELERATION] = 0.25 * std::sqrt(h / std::sqrt(asq_max[k]));
-  for (int t = 1; t <= atom->ntypes; t++) {
-    if (!present[t]) continue;
-    const State &s = hub->state[t];
-    const bool fluid = s.species == FLUID;
-    double *const m = mine[substeps && !fluid];
-    double alpha = 0.0;
-    if (fluid) alpha = hub->fluid->artificial_alpha();
-    else if (hub->solid) alpha = hub->solid->artificial_alpha();
-    else if (hub->solid_tl) alpha = hub->solid_tl->artificial_alpha();
-    if (!fluid) m[ELASTIC] = std::min(m[ELASTIC], 0.25 * h / std::sqrt(s.wave_speed_sq()));
-    if (alpha > 0.0) m[ARTIFICIAL] = std::min(m[ARTIFICIAL], 0.4 * h / (s.c * (1.0 + 0.6 * alpha)));
-    if (fluid && hub->fluid->has_laminar() && s.viscosity > 0.0)
-      m[LAMINAR] = std::min(m[LAMINAR], 0.125 * h * h * s.rho0 / s.viscosity);
-  }
-  MPI_Allreduce(&mine[0][0], &all[0][0], 2 * NLIMIT, MPI_DOUBLE, MPI_MIN, world);
-
-  for (int k = 0; k < 2; k++) {
-    if (mine[k][SOUND] != all[k][SOUND]) who[k][0] = 0;
-    if (mine[k][ACCELERATION] != all[k][ACCELERATION]) who[k][1] = 0;
-  }
-  MPI_Allreduce(&who[0][0], &culprit[0][0], 4, MPI_LMP_TAGINT, MPI_MAX, world);
+  limits.find(hub, groupbit, hub->solid_tl && (automatic || hub->substeps > 1));
+  limits.reduce();
   for (int k = 0; k < NLIMIT; k++) {
-    step[k] = all[0][k] < BIG ? cfl * all[0][k] : BIG;
-    sub[k] = all[1][k] < BIG ? cfl * all[1][k] : BIG;
+    step[k] = limits.step[k] < BIG ? cfl * limits.step[k] : BIG;
+    sub[k] = limits.sub[k] < BIG ? cfl * limits.sub[k] : BIG;
   }
 }
 
@@ -303,8 +240,8 @@ std::string FixFSIDt::name(int k) const
   static constexpr const char *names[] = {"sound in the fluid", "elastic waves in the solid", "artificial viscosity",
                                           "laminar viscosity",  "acceleration",               "the upper bound"};
   std::string text = names[k];
-  if (k == SOUND) text += fmt::format(" (atom {})", culprit[0][0]);
-  if (k == ACCELERATION) text += fmt::format(" (atom {})", culprit[step[k] > limit[k]][1]);
+  if (k == Limits::SOUND) text += fmt::format(" (atom {})", limits.culprit[0][0]);
+  if (k == Limits::ACCELERATION) text += fmt::format(" (atom {})", limits.culprit[step[k] > limit[k]][1]);
   return text;
 }
 

@@ -21,6 +21,7 @@ FixStyle(fsi/dt,FixFSIDt);
 #define LMP_FIX_FSI_DT_H
 
 #include "fix.h"
+#include "fsi_limits.h"
 
 #include <string>
 
@@ -43,7 +44,7 @@ class FixFSIDt : public Fix {
   void start_of_step();    // called by fix fsi before anything moves
 
  private:
-  enum Limit { SOUND, ELASTIC, ARTIFICIAL, LAMINAR, ACCELERATION, NLIMIT };
+  static constexpr int NLIMIT = FSI::Limits::NLIMIT;
   enum Cause { MAXIMUM = NLIMIT, GROWTH };
   enum Check { NO, WARN, STOP };
   class FixFSI *hub;
@@ -52,11 +53,11 @@ class FixFSIDt : public Fix {
   bool automatic;    // number of sub-steps
   int check;
 
+  FSI::Limits limits;
   double step[NLIMIT], sub[NLIMIT];    // limits of the step, and of a sub-step of what takes sub-steps, with the factor cfl
   double limit[NLIMIT];                // both together
   double target;                       // smallest of these and of the bound
   int cause, ruling;                   // what sets the next step; last one that was printed
-  tagint culprit[2][2];                // particle behind sound and acceleration, of step and sub-step
   double dt, next_dt;                  // of the last step taken, 0 = none; from the next step on
   int next_substeps;
   int warned;    // bits of causes

@@ -145,6 +145,7 @@ void FixFSIWallMirror::setup(int)
 
 void FixFSIWallMirror::post_integrate()
 {
+  const Phase phase(hub->profile, Profile::WALLS);
   double **x = atom->x;
   double **v = atom->v;
   const int *const mask = atom->mask, *const type = atom->type;
@@ -164,7 +165,10 @@ void FixFSIWallMirror::post_integrate()
       x[i][w.axis] += w.side * 2.0 * (near - a);
       if (hub->ledger) hub->taken[FixFSI::WALLS] += before - hub->potential(i);
       const double vn = v[i][w.axis] - w.velocity[w.axis];
-      if (vn * w.side < 0.0) v[i][w.axis] -= 2.0 * vn;
+      if (vn * w.side < 0.0) {
+        v[i][w.axis] -= 2.0 * vn;
+        if (hub->profile) hub->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
+      }
       reflected++;
     }
   }

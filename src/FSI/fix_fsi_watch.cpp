@@ -56,7 +56,7 @@ static constexpr About about[] = {
 
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), hub(nullptr), warn(false), restart_file("fsi_watch.restart"), dump_file("fsi_watch.dump"),
-    energy_before(-1.0), reflected_before(-1.0), warned(0), violations(0)
+    nearest(BIG), energy_before(-1.0), reflected_before(-1.0), warned(0), violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/watch", error);
@@ -264,7 +264,7 @@ void FixFSIWatch::check_rest()
 {
   double **x = atom->x;
   double **v = atom->v;
-  const double *const rmass = atom->rmass, *const rho = atom->rho;
+  const double *const rmass = atom->rmass;
   const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, h = hub->h;
 
@@ -280,8 +280,7 @@ void FixFSIWatch::check_rest()
     enter(MACH, i, speed / c);
     if (s.species == FLUID) enter(COURANT, i, dt * (c + speed) / h);
     else enter(COURANT, i, dt * c / (tl ? hub->substeps : 1) / h);
-    // a total-Lagrangian solid has its density in det F
-    const double ratio = tl ? 1.0 / hub->solid_tl->stress(i).J : rho[i] / s.rho0;
+    const double ratio = hub->density_ratio(i);
     enter(DENSITY, i, ratio > 0.0 ? std::abs(ratio - 1.0) : std::max(1.0, 1.0 - ratio));
     enter(ENERGY, i, vsq);
     mine[0] += 0.5 * rmass[i] * vsq;
@@ -323,6 +322,7 @@ void FixFSIWatch::check_rest()
   for (int q = 0; q < NQUANTITY; q++) own[q] = q == DISTANCE ? -worst[q].value : q >= ENERGY ? total[q] : worst[q].value;
   MPI_Allreduce(own, seen, NQUANTITY, MPI_DOUBLE, MPI_MAX, world);
   seen[DISTANCE] = -seen[DISTANCE];
+  if (limit[DISTANCE] > 0.0) nearest = std::min(nearest, seen[DISTANCE]);
 }
 
 /* ----------------------------------------------------------------------

@@ -40,6 +40,8 @@ class FixFSIWatch : public Fix {
   double compute_scalar() override;
   double compute_vector(int) override;
 
+  double nearest;    // smallest distance over spacing of all checks so far; for fix fsi/report, which sets it back
+
  private:
   enum Quantity { FINITE, MACH, DISTANCE, DENSITY, COURANT, ENERGY, LOST, REFLECTED, NQUANTITY };
   enum When { START, MIDDLE, END };    // of a step: where positions are

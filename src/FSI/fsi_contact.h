@@ -12,9 +12,13 @@
 ------------------------------------------------------------------------- */
 
 
-// Contact of solid bodies: a penalty on particles of different bodies that are nearer than the spacing dx, conservative and
-// without adhesion or friction. Energy per pair K dx^D/2 (1 - r/dx)^2: a layer pushed in by e dx pushes back with K e, as the
-// bulk would. K is the harmonic mean of the two bulk moduli.
+// Contact of solid bodies: a penalty on particles of different bodies that are nearer than a range of R spacings, conservative and
+// without adhesion. Energy per pair s K dx^D/2 (1 - r/(R dx))^2, K the harmonic mean of the two bulk moduli. s makes two lattices
+// that face each other at a distance of dx as stiff against coming nearer as the bulk: a layer pushed in by e dx pushes back with
+// K e. With R = 1, particle against particle, s = 1.
+//
+// With R = 1 a particle feels one or two of the other body's, and the face is as bumpy as a row of balls. With R = 2 or more it
+// feels several, and their bumps average out.
 
 #ifndef LMP_FSI_CONTACT_H
 #define LMP_FSI_CONTACT_H
@@ -25,19 +29,38 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   struct Contact {
-    double dx, dxsq, scale;    // scale = dx^(D-2)
-    Contact(int dim, double dx_in) : dx(dx_in), dxsq(dx * dx), scale(dim == 3 ? dx : 1.0) {}
+    double reach, reachsq, scale;    // reach = R dx, scale = s dx^(D-2)/R^2
+    Contact(int dim, double dx, double R = 1.0) :
+        reach(R * dx), reachsq(reach * reach), scale(dim == 3 ? dx : 1.0)
+    {
+      scale /= stiffness(dim, R);
+    }
     // factor f of the force F_i = f x_ij; Ki, Kj: bulk moduli
     double operator()(double rsq, double Ki, double Kj) const
     {
-      if (rsq >= dxsq) return 0.0;
-      return 2.0 * Ki * Kj / (Ki + Kj) * scale * (dx / std::sqrt(rsq + 1.0e-18 * dxsq) - 1.0);
+      if (rsq >= reachsq) return 0.0;
+      return 2.0 * Ki * Kj / (Ki + Kj) * scale * (reach / std::sqrt(rsq + 1.0e-18 * reachsq) - 1.0);
     }
     double energy(double rsq, double Ki, double Kj) const
     {
-      if (rsq >= dxsq) return 0.0;
-      const double gap = dx - std::sqrt(rsq);
+      if (rsq >= reachsq) return 0.0;
+      const double gap = reach - std::sqrt(rsq);
       return Ki * Kj / (Ki + Kj) * scale * gap * gap;
+    }
+
+    // second derivative of the energy (R - r)^2/2 per particle of a face by the distance of the faces, where this is 1 (all lengths
+    // over dx): the sum over the other lattice, with n pairs of layers at a distance of n, of 1 - R (r^2 - n^2)/r^3
+    static double stiffness(int dim, double R)
+    {
+      const int m = static_cast<int>(R);
+      double sum = 0.0;
+      for (int n = 1; n <= m; n++)
+        for (int a = -m; a <= m; a++)
+          for (int b = (dim == 3 ? -m : 0); b <= (dim == 3 ? m : 0); b++) {
+            const double s = a * a + b * b, r = std::sqrt(s + n * n);
+            if (r <= R) sum += n * (1.0 - R * s / (r * r * r));
+          }
+      return sum;
     }
   };
 

@@ -65,6 +65,9 @@ class MaterialReader : protected Pointers {
   std::vector<Material> read(const std::string &file, const std::vector<std::string> &names)
   {
     std::vector<Material> all;
+    if (utils::get_potential_file_path(file).empty())
+      error->one(FLERR, "Cannot open material file {}: it is neither in the working folder nor in those of the environment variable "
+                        "LAMMPS_POTENTIALS; type  export LAMMPS_POTENTIALS=<folder of the .fsi files>", file);
     PotentialFileReader reader(lmp, file, "fsi material");
     while (char *line = reader.next_line()) all.push_back(parse(file, line));
 

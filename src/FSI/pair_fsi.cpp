@@ -150,6 +150,19 @@ double PairFSI::number(const char *value, const char *what)
   return x;
 }
 
+double PairFSI::contact_reach(const char *value)
+{
+  const double R = utils::numeric(FLERR, value, false, lmp);
+  if (!(R >= 1.0)) error->all(FLERR, "Pair style {} contact {} must be >= 1 spacing", style, value);
+  return R;
+}
+
+void PairFSI::check_contact(double R) const
+{
+  if (R * hub->dx > hub->cut * (1.0 + 1.0e-12))
+    error->all(FLERR, "Pair style {} contact {} must not exceed the kernel's support, {:g} spacings", style, R, hub->cut / hub->dx);
+}
+
 /* ----------------------------------------------------------------------
    keyword artificial/visc, if that is what stands at iarg
 ------------------------------------------------------------------------- */

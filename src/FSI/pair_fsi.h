@@ -64,6 +64,8 @@ class PairFSI : public Pair {
   bool several_bodies() const;
   void need(int narg, char **arg, int iarg, int n);
   double number(const char *value, const char *what);
+  double contact_reach(const char *value);    // keyword contact of solids, over dx
+  void check_contact(double) const;
   bool artificial_keyword(int narg, char **arg, int &iarg);
   bool has_artificial() const { return alpha > 0.0 || beta > 0.0; }
   Effect artificial_effect(const char *of) const;

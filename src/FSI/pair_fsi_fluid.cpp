@@ -15,6 +15,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "compute_fsi_force.h"
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
@@ -160,6 +161,11 @@ void PairFSIFluid::init_style()
     if (!any && comm->me == 0)
       error->warning(FLERR, "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
   }
+  force_computes.clear();
+  for (auto *compute : modify->get_compute_by_style("^fsi/force$")) force_computes.push_back(dynamic_cast<ComputeFSIForce *>(compute));
+  if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
+    error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
+                   has_solids() ? "it is for couple wall" : "there is no solid");
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &k) { select<std::decay_t<decltype(k)>>(); });
 }
 
@@ -255,15 +261,16 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   const Shift<D> shift(hub->wdx);
   double *const *const sums = hub->shift;
 
-  const auto pair = [&](int i, int j, const double *xij, const double *vij, double rsq, const double *real_xij,
-                        double share) {
+  const auto pair = [&](int i, int j, const Point<D> &pi, const Point<D> &pj, const double *xij, const double *vij, double rsq,
+                        const double *real_xij, double share, double &rate_i) {
     const double g = kernel.gradient(std::sqrt(rsq));
     const double s = g * (vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0));
-    const Point<D> &pi = point[i], &pj = point[j];
     double ri = pi.rho * pi.vol * s, rj = pj.rho * pj.vol * s;
     if ((FLAGS & DIFFUSION) && (!(FLAGS & MIXED) || (type[i] == type[j]))) {
       const State &a = (FLAGS & MIXED) ? state[type[i]] : only;
-      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, a.inv_csq * a.rho0, g);
+      // neither can be hydrostatic without pressure: particles that fly free would push each other apart
+      const bool slack = a.pressure(pi.rho) <= a.floor && a.pressure(pj.rho) <= a.floor;
+      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, slack ? 0.0 : a.inv_csq * a.rho0, g);
       ri += k * pj.vol;
       rj -= k * pi.vol;
       if (FLAGS & TALLY) {
@@ -272,7 +279,7 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
                    -share * k * pi.vol * pj.vol * (hub->pressure(i) / pi.rho - hub->pressure(j) / pj.rho));
       }
     }
-    rate[i] += ri;
+    rate_i += ri;
     return rj;
   };
   const auto shift_pair = [&](int i, int j, double rsq, const double *xij, const double *xji) {
@@ -281,13 +288,13 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
     shift.add(sums[j], point[i].vol, g, w, rsq, xji);
   };
 
-  const int inum = list->inum;
-  for (int ii = 0; ii < inum; ii++) {
-    const int i = list->ilist[ii];
+  // rows near walls and the many others apart: what images need would slow the loop for all
+  const auto row = [&](auto near_wall, int i) {
+    constexpr bool WALL = decltype(near_wall)::value;
     const int *const jlist = list->firstneigh[i];
     const int jnum = list->numneigh[i];
     const Point<D> pi = point[i];
-    const int mask_i = (FLAGS & IMAGES) ? wmask[i] : 0;
+    double rate_i = 0.0;
     for (int jj = 0; jj < jnum; jj++) {
       const int j = jlist[jj] & NEIGHMASK;
       const Point<D> &pj = point[j];
@@ -297,19 +304,19 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
       const double vij[3] = {pi.v[0] - pj.v[0], pi.v[1] - pj.v[1], D == 3 ? pi.v[D - 1] - pj.v[D - 1] : 0.0};
       // without newton a pair across ranks is computed on both: each counts half of its energy
       const double share = (newton || j < nlocal) ? 1.0 : 0.5;
-      rate[j] += pair(i, j, xij, vij, rsq, xij, share);
+      rate[j] += pair(i, j, pi, pj, xij, vij, rsq, xij, share, rate_i);
       if (FLAGS & SHIFT) {
         const double xji[3] = {-xij[0], -xij[1], -xij[2]};
         shift_pair(i, j, rsq, xij, xji);
       }
-      if ((FLAGS & IMAGES) && mask_i && (mask_i & wmask[j])) {
+      if (WALL && (wmask[i] & wmask[j])) {
         const auto xi = pi.position(x[i]), xj = pj.position(x[j]);
         walls.images(wmask[i] & wmask[j], rsq, xi.data(), xj.data(), kernel.cutsq,
                      [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
                        double vi[3];
                        walls.reflect_velocity(s, v[j], false, vi);
                        for (int d = 0; d < 3; d++) vi[d] = v[i][d] - vi[d];
-                       rate[j] += pair(i, j, x_image, vi, rsq_image, xij, share);
+                       rate[j] += pair(i, j, pi, pj, x_image, vi, rsq_image, xij, share, rate_i);
                        if (FLAGS & SHIFT) {
                          double xji[3] = {-x_image[0], -x_image[1], -x_image[2]};
                          walls.reflect_vector(s, xji);
@@ -318,6 +325,12 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
                      });
       }
     }
+    rate[i] += rate_i;
+  };
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    if ((FLAGS & IMAGES) && wmask[i]) row(std::true_type(), i);
+    else row(std::false_type(), i);
   }
 
   // own images
@@ -412,10 +425,13 @@ void PairFSIFluid::position_divergence(double *div)
 
 void PairFSIFluid::compute(int eflag, int vflag)
 {
+  const Phase phase(hub->profile, Profile::FLUID);
   ev_init(eflag, vflag);
   check_tally();
 
+  for (auto *measure : force_computes) measure->tally(-1.0);
   (this->*force_loop)();
+  for (auto *measure : force_computes) measure->tally(1.0);
 
   if (vflag_fdotr) virial_fdotr_compute();
 }
@@ -434,7 +450,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const K kernel(hub->h);
   double **x = atom->x;
   double **v = atom->v;
-  double **f = atom->f;
+  auto *const f = reinterpret_cast<double(*)[3]>(atom->f[0]);
   const int *const type = atom->type;
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
@@ -454,10 +470,10 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const bool all_bodies = hub->density_solid == FixFSI::SUMMATION;
 
   // force of j on i without laminar viscosity; xij, vij may be those of an image of j
-  const auto force_on_i = [&](int i, int j, double g, double rsq, const double *xij, const double *vij, double share,
-                              double *fij) {
+  const auto force_on_i = [&](int i, int j, const Point<D> &pi, const Point<D> &pj, double g, double rsq, const double *xij,
+                              const double *vij, double share, double *fij) {
     const double vdotx = vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0);
-    double p = a[i].pv2 + a[j].pv2, c = sound;
+    double p = pi.pv2 + pj.pv2, c = sound;
     double shear[3] = {0.0, 0.0, 0.0};
     bool rubs = true;
     if ((FLAGS & SOLIDS) && state[type[i]].species != state[type[j]].species) {
@@ -497,7 +513,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       }
     }
     if ((FLAGS & ARTIFICIAL) && rubs) {
-      const double q = artificial(vdotx, rsq, 0.5 * (a[i].rho + a[j].rho), c, a[i].vol * a[j].vol);
+      const double q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), c, pi.vol * pj.vol);
       p += q;
       if (FLAGS & LEDGER) hub->tally(FixFSI::ARTIFICIAL, share * q * g * vdotx);
     }
@@ -512,7 +528,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     walls.reflect_velocity(s, v[j], false, vimage);
     for (int d = 0; d < 3; d++) vij[d] = v[i][d] - vimage[d];
     double fij[3] = {0.0, 0.0, 0.0}, fji[3];
-    force_on_i(i, j, g, rsq, xij, vij, fj ? share : 0.5 * share, fij);
+    force_on_i(i, j, a[i], a[j], g, rsq, xij, vij, fj ? share : 0.5 * share, fij);
     for (int d = 0; d < 3; d++) fji[d] = -fij[d];
     walls.reflect_vector(s, fji);
     if (FLAGS & LAMINAR) {
@@ -537,13 +553,12 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     }
   };
 
-  const int inum = list->inum;
-  for (int ii = 0; ii < inum; ii++) {
-    const int i = list->ilist[ii];
+  // as in rate_pairs
+  const auto row = [&](auto near_wall, int i) {
+    constexpr bool WALL = decltype(near_wall)::value;
     const int *const jlist = list->firstneigh[i];
     const int jnum = list->numneigh[i];
     const Point<D> pi = a[i];
-    const int mask_i = (FLAGS & MIRROR) ? wmask[i] : 0;
     double fi[3] = {0.0, 0.0, 0.0};
     for (int jj = 0; jj < jnum; jj++) {
       const int j = jlist[jj] & NEIGHMASK;
@@ -556,9 +571,9 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       // without newton a pair across ranks is computed on both: each counts half of wall forces and energies
       const double share = (newton || j < nlocal) ? 1.0 : 0.5;
       double fij[3];
-      force_on_i(i, j, g, rsq, xij, vij, share, fij);
+      force_on_i(i, j, pi, pj, g, rsq, xij, vij, share, fij);
       if (FLAGS & LAMINAR) {
-        const double visc = state[type[i]].viscosity + state[type[j]].viscosity, vv = a[i].vol * a[j].vol;
+        const double visc = state[type[i]].viscosity + state[type[j]].viscosity, vv = pi.vol * pj.vol;
         double loss;
         if ((FLAGS & SOLIDS) && (state[type[i]].species == RIGID || state[type[j]].species == RIGID)) {
           // fluid beyond the wall, with the velocity extrapolated; none where it slips
@@ -587,7 +602,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
         fi[d] += fij[d];
         fj[d] -= fij[d];
       }
-      if ((FLAGS & MIRROR) && mask_i && (mask_i & wmask[j]))
+      if (WALL && (wmask[i] & wmask[j]))
         walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
                      [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
                        // a solid's stress is that of the particle, not of its image: look from the solid
@@ -604,6 +619,11 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
         ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, fij[0], fij[1], D == 3 ? fij[2] : 0.0, xij[0], xij[1], xij[2]);
     }
     for (int d = 0; d < D; d++) f[i][d] += fi[d];
+  };
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    if ((FLAGS & MIRROR) && wmask[i]) row(std::true_type(), i);
+    else row(std::false_type(), i);
   }
 
   // own images

@@ -79,6 +79,7 @@ class PairFSIFluid : public PairFSI {
   // settings
   double sound, background, delta;
   int tait, laminar, couple, extrapolate, tension;
+  std::vector<class ComputeFSIForce *> force_computes;
 
   // what a loop needs of a particle, side by side (in 2D a cache line); local and ghost, gathered at the start of each loop
   template <int D> struct Point {

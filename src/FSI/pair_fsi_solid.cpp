@@ -41,7 +41,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), epsilon(0.0), xi(0.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
+    PairFSI(lmp, "fsi/solid"), epsilon(0.0), xi(0.0), contact_range(1.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
 {
 }
 
@@ -71,6 +71,10 @@ void PairFSISolid::settings(int narg, char **arg)
       need(narg, arg, iarg, 1);
       xi = number(arg[iarg + 1], "hourglass");
       iarg += 2;
+    } else if (strcmp(arg[iarg], "contact") == 0) {
+      need(narg, arg, iarg, 1);
+      contact_range = contact_reach(arg[iarg + 1]);
+      iarg += 2;
     } else if (strcmp(arg[iarg], "gradient") == 0) {
       need(narg, arg, iarg, 1);
       if (strcmp(arg[iarg + 1], "plain") == 0) gradient = PLAIN;
@@ -79,7 +83,8 @@ void PairFSISolid::settings(int narg, char **arg)
       else error->all(FLERR, "Unknown pair_style fsi/solid gradient {}: expected plain, corrected or quadratic", arg[iarg + 1]);
       iarg += 2;
     } else
-      error->all(FLERR, "Unknown pair_style fsi/solid keyword {}: expected artificial/visc, artificial/stress, hourglass or gradient",
+      error->all(FLERR, "Unknown pair_style fsi/solid keyword {}: expected artificial/visc, artificial/stress, hourglass, "
+                        "contact or gradient",
                  arg[iarg]);
   }
 }
@@ -106,6 +111,7 @@ State PairFSISolid::make_state(const Material &m) const
 void PairFSISolid::init_style()
 {
   PairFSI::init_style();
+  check_contact(contact_range);
   comm_forward = has_hourglass() ? hub->dim * hub->dim : 0;
   comm_reverse = has_hourglass() ? hub->dim : 0;
   const bool bodies = several_bodies();
@@ -241,10 +247,10 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
 void PairFSISolid::advance_hourglass(double dt)
 {
   const int dim = hub->dim;
-  comm->forward_comm(this);
+  forward_comm(hub->profile, comm, this);
   hourglass_rate.assign((size_t) (atom->nlocal + atom->nghost) * dim, 0.0);
   with_kernel(hub->kernel, dim, hub->h, [&](const auto &k) { hourglass_pairs<std::decay_t<decltype(k)>>(dt); });
-  if (force->newton_pair) comm->reverse_comm(this);
+  if (force->newton_pair) reverse_comm(hub->profile, comm, this);
   if (dim == 2) rotate_hourglass<2>(dt);
   else rotate_hourglass<3>(dt);
 }
@@ -355,6 +361,7 @@ void PairFSISolid::number_density(double *psi, bool all_bodies)
 
 void PairFSISolid::compute(int eflag, int vflag)
 {
+  const Phase phase(hub->profile, Profile::SOLID);
   ev_init(eflag, vflag);
   check_tally();
   (this->*force_loop)();
@@ -394,7 +401,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
   double **S = hub->fix_stress->stress;
   const ArtificialViscosity viscosity(alpha, beta, hub->h);
   const ArtificialStress artificial(epsilon, hub->wdx);
-  const Contact contact(D, hub->dx);
+  const Contact contact(D, hub->dx, contact_range);
 
   auto &aux = get_aux<D>();
   if ((int) aux.size() < nall) aux.resize(atom->nmax);
@@ -519,7 +526,7 @@ std::vector<PairFSI::Effect> PairFSISolid::effects() const
 
 void PairFSISolid::write_restart_settings(FILE *fp)
 {
-  double d[] = {alpha, beta, epsilon, xi};
+  double d[] = {alpha, beta, epsilon, xi, contact_range};
   restart_value(fp, d, true);
   restart_value(fp, gradient, true);
 }
@@ -528,13 +535,14 @@ void PairFSISolid::write_restart_settings(FILE *fp)
 
 void PairFSISolid::read_restart_settings(FILE *fp)
 {
-  double d[4];
+  double d[5];
   restart_value(fp, d, false);
   restart_value(fp, gradient, false);
   alpha = d[0];
   beta = d[1];
   epsilon = d[2];
   xi = d[3];
+  contact_range = d[4];
 }
 
 /* ---------------------------------------------------------------------- */

@@ -40,7 +40,7 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), contact_range(1.0), law(SVK), plane_stress(0), linear(0), plain(0),
     reference(nullptr), fsolid(nullptr), nmax(0), bond_loop{nullptr, nullptr}
 {
   no_virial_fdotr_compute = 1;
@@ -96,6 +96,10 @@ void PairFSISolidTL::settings(int narg, char **arg)
       need(narg, arg, iarg, 1);
       damage = number(arg[iarg + 1], "damage strain");
       iarg += 2;
+    } else if (strcmp(arg[iarg], "contact") == 0) {
+      need(narg, arg, iarg, 1);
+      contact_range = contact_reach(arg[iarg + 1]);
+      iarg += 2;
     } else if (strcmp(arg[iarg], "law") == 0) {
       law = choice(iarg, {"svk", "neohookean", "hypo"});
       iarg += 2;
@@ -107,7 +111,7 @@ void PairFSISolidTL::settings(int narg, char **arg)
       iarg += 2;
     } else
       error->all(FLERR, "Unknown pair_style fsi/solid/tl keyword {}: expected artificial/visc, hourglass, law, plane, gradient, "
-                        "volumes or damage",
+                        "volumes, contact or damage",
                  arg[iarg]);
   }
   if (plane_stress && law == NEOHOOKEAN) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
@@ -132,6 +136,7 @@ State PairFSISolidTL::make_state(const Material &m) const
 void PairFSISolidTL::init_style()
 {
   PairFSI::init_style();
+  check_contact(contact_range);
   const int dim = hub->dim;
   if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
   if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
@@ -193,6 +198,7 @@ const std::vector<int> &PairFSISolidTL::solids() const
 
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
+  const Phase phase(hub->profile, Profile::SOLID);
   ev_init(eflag, vflag);
   check_tally();
   if (hub->substeps > 1 && !update->setupflag) return;
@@ -218,7 +224,7 @@ void PairFSISolidTL::internal_forces()
     if (hub->dim == 2) contact_forces<2>();
     else contact_forces<3>();
   }
-  comm->reverse_comm(this);
+  reverse_comm(hub->profile, comm, this);
 }
 
 /* ----------------------------------------------------------------------
@@ -354,7 +360,7 @@ template <int D> void PairFSISolidTL::contact_forces()
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
   const State *const state = hub->state.data();
-  const Contact contact(D, hub->dx);
+  const Contact contact(D, hub->dx, contact_range);
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
   for (int ii = 0; ii < list->inum; ii++) {
@@ -412,6 +418,7 @@ template <int D> void PairFSISolidTL::deformation(int i, double *F) const
 void PairFSISolidTL::advance_stress(double dt)
 {
   if (law != HYPO) return;
+  const Phase phase(hub->profile, Profile::STRESS);
   if (hub->dim == 2) advance_stress_of_all<2>(dt);
   else advance_stress_of_all<3>(dt);
 }
@@ -451,7 +458,21 @@ template <int D> void PairFSISolidTL::advance_stress_of_all(double dt)
 
 void PairFSISolidTL::break_bonds()
 {
-  if (damage > 0.0) reference->break_bonds(1.0 + damage);
+  if (damage <= 0.0) return;
+  const Phase phase(hub->profile, Profile::STRESS);
+  reference->break_bonds(1.0 + damage);
+}
+
+double PairFSISolidTL::volume_ratio(int i) const
+{
+  if (reference->count(i) == 0) return 1.0;
+  double F[9];
+  if (hub->dim == 2) {
+    deformation<2>(i, F);
+    return determinant<2>(F);
+  }
+  deformation<3>(i, F);
+  return determinant<3>(F);
 }
 
 /* ----------------------------------------------------------------------
@@ -499,7 +520,7 @@ double PairFSISolidTL::Stress::von_mises() const
 
 void PairFSISolidTL::forward_positions()
 {
-  comm->forward_comm(this);
+  forward_comm(hub->profile, comm, this);
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
@@ -560,7 +581,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 
 void PairFSISolidTL::write_restart_settings(FILE *fp)
 {
-  double d[] = {alpha, beta, zeta, damage};
+  double d[] = {alpha, beta, zeta, damage, contact_range};
   int n[] = {law, plane_stress, linear, plain};
   restart_value(fp, d, true);
   restart_value(fp, n, true);
@@ -570,7 +591,7 @@ void PairFSISolidTL::write_restart_settings(FILE *fp)
 
 void PairFSISolidTL::read_restart_settings(FILE *fp)
 {
-  double d[4];
+  double d[5];
   int n[4];
   restart_value(fp, d, false);
   restart_value(fp, n, false);
@@ -578,6 +599,7 @@ void PairFSISolidTL::read_restart_settings(FILE *fp)
   beta = d[1];
   zeta = d[2];
   damage = d[3];
+  contact_range = d[4];
   law = n[0];
   plane_stress = n[1];
   linear = n[2];

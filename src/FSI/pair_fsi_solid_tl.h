@@ -71,6 +71,7 @@ class PairFSISolidTL : public PairFSI {
     double von_mises() const;
   };
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
+  double volume_ratio(int i) const;    // det F, likewise
 
  protected:
   bool handles(int, int) const override;
@@ -80,7 +81,7 @@ class PairFSISolidTL : public PairFSI {
 
  private:
   enum Law { SVK, NEOHOOKEAN, HYPO };
-  double zeta, damage;
+  double zeta, damage, contact_range;
   int law, plane_stress, linear, plain;
   class FixFSIReference *reference;
   std::vector<FSI::StVenantKirchhoff> svk;    // per type

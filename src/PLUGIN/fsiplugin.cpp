@@ -20,10 +20,14 @@
 #include "comm.h"
 #include "compute_fsi_atom.h"
 #include "compute_fsi_energy.h"
+#include "compute_fsi_force.h"
+#include "compute_fsi_probe.h"
 #include "compute_fsi_surface_atom.h"
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
 #include "fix_fsi_reference.h"
+#include "fix_fsi_spectrum.h"
+#include "fix_fsi_report.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_wall_particle.h"
@@ -121,11 +125,15 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   one("pair", "fsi/solid/tl", &create<PairFSISolidTL>);
   two("compute", "fsi/atom", &create_with_arguments<ComputeFSIAtom>);
   two("compute", "fsi/energy", &create_with_arguments<ComputeFSIEnergy>);
+  two("compute", "fsi/force", &create_with_arguments<ComputeFSIForce>);
+  two("compute", "fsi/probe", &create_with_arguments<ComputeFSIProbe>);
   two("compute", "fsi/surface/atom", &create_with_arguments<ComputeFSISurfaceAtom>);
+  two("fix", "fsi/spectrum", &create_with_arguments<FixFSISpectrum>);
   two("fix", "fsi/wall/mirror", &create_with_arguments<FixFSIWallMirror>);
   two("fix", "fsi/wall/particle", &create_with_arguments<FixFSIWallParticle>);
   two("fix", "fsi/watch", &create_with_arguments<FixFSIWatch>);
   two("fix", "fsi/dt", &create_with_arguments<FixFSIDt>);
+  two("fix", "fsi/report", &create_with_arguments<FixFSIReport>);
   two("fix", "fsi/stress", &create_with_arguments<FixFSIStress>);
   two("fix", "fsi/reference", &create_with_arguments<FixFSIReference>);
   two("fix", "fsi", &create_with_arguments<FixFSI>);

@@ -1,0 +1,203 @@
+"""Measures inputs of LAMMPS: CPU time of pairs in turns, instructions, memory, messages. For effects.py, peers.py and the tests."""
+
+import hashlib
+import json
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from fsi import launch, log, paths
+
+SHORT, LONG = 2, 12  # steps of the two runs whose difference is taken: what is done once per run cancels
+
+
+class Failed(Exception):
+    """A run came to no end."""
+
+
+@dataclass
+class Pair:
+    """B against A: CPU seconds of each turn, and what both need beyond time."""
+
+    a: list
+    b: list
+    particles: int
+    memory: tuple  # bytes per particle of A and B
+
+    @property
+    def ratios(self):
+        return [b / a for a, b in zip(self.a, self.b)]
+
+    @property
+    def ratio(self):
+        return statistics.median(self.ratios)
+
+    @property
+    def spread(self):
+        """Half the range of the ratios."""
+        return (max(self.ratios) - min(self.ratios)) / 2
+
+
+def execute(command, folder, text, binary=None):
+    """Runs a command on an input text; its output."""
+    (folder / "in.deck").write_text(text)
+    env = launch.environment()
+    if binary:  # with the library beside it
+        env["LD_LIBRARY_PATH"] = str(Path(binary).parent)
+    done = subprocess.run(command, cwd=folder, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
+    if done.returncode:
+        path = folder / "log.lammps"
+        output = (done.stdout + (path.read_text(errors="replace") if path.exists() else "")).splitlines()
+        lines = [line for line in output if line.startswith("ERROR") or "Exception" in line] or output[-3:]
+        raise Failed("; ".join(lines)[:300])
+    return done.stdout
+
+
+def simulate(text, ranks=1, binary=None):
+    """The log of an input."""
+    with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
+        folder = Path(name)
+        start = launch.mpirun(ranks) if ranks > 1 else []
+        command = [*start, str(binary or paths.BUILD / "lmp"), "-in", "in.deck", "-log", "log.lammps", "-screen", "none", "-nocite"]
+        execute(command, folder, text, binary)
+        return log.read(folder / "log.lammps")
+
+
+def seconds(run):
+    """CPU seconds of a run's loop, per rank."""
+    return run.loop_seconds * (run.cpu_use or 1.0)
+
+
+def pair(a, b, turns=3, binary=None):
+    """Two inputs, each with one run, in turns in one process: A B B A A B ..., so that what the machine does else falls on both."""
+    order = "".join("AB" if k % 2 == 0 else "BA" for k in range(turns))
+    runs = simulate("\nclear\n".join({"A": a, "B": b}[which] for which in order), binary=binary).finished
+    if len(runs) != len(order):
+        raise Failed(f"{len(runs)} of {len(order)} runs ended")
+    of = {which: [run for run, o in zip(runs, order) if o == which] for which in "AB"}
+    return Pair(*([seconds(run) for run in of[which]] for which in "AB"), particles=of["A"][0].atoms,
+                memory=tuple(of[which][0].bytes_per_rank / of[which][0].atoms for which in "AB"))
+
+
+def profiles(texts, binary=None):
+    """What the time loop executes: ({function: instructions} of SHORT steps, that of LONG steps) of each of some inputs without run command.
+
+    One process for all, since valgrind starts slowly.
+    """
+    if shutil.which("valgrind") is None:
+        raise Failed("valgrind is not installed: tools/setup installs it")
+    loop = "LAMMPS_NS::Verlet::run(int)"
+    with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
+        folder = Path(name)
+        command = ["valgrind", "--tool=callgrind", f"--toggle-collect={loop}", f"--dump-before={loop}", "--combine-dumps=no",
+                   "--callgrind-out-file=count", str(binary or paths.BUILD / "lmp"), "-in", "in.deck", "-log", "none", "-screen", "none", "-nocite"]
+        execute(command, folder, "\nclear\n".join(f"{t}\nrun {SHORT}\nrun {LONG}" for t in texts), binary)
+        # a part is what was counted up to the next run; the last has no number
+        parts = sorted(folder.glob("count.*"), key=lambda p: int(p.suffix[1:])) + [folder / "count"]
+        found = [_functions(p.read_text()) for p in parts if p.exists()][-2 * len(texts):]
+    return list(zip(found[::2], found[1::2]))
+
+
+def _functions(text):
+    """{function: instructions of its own} of a file of callgrind."""
+    names, found, current, called = {}, {}, None, False
+    for line in text.splitlines():
+        if match := re.match(r"c?fn=\((\d+)\)(?: (.*))?$", line):
+            if match[2]:
+                names[match[1]] = match[2]
+            if line.startswith("fn"):
+                current = names[match[1]]
+        elif line.startswith("calls="):
+            called = True  # the next line is what the called function took
+        elif current and (match := re.match(r"(?:[+-]?\d+|\*) (\d+)$", line)):
+            if not called:
+                found[current] = found.get(current, 0) + int(match[1])
+            called = False
+    return found
+
+
+def instructions(texts, binary=None):
+    """Instructions per step of each of some inputs without run command: [int]."""
+    return [(sum(b.values()) - sum(a.values())) // (LONG - SHORT) for a, b in profiles(texts, binary)]
+
+
+def announcements(texts):
+    """What fix fsi prints at the start of each of some inputs without run command."""
+    with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
+        folder = Path(name)
+        command = [str(paths.BUILD / "lmp"), "-in", "in.deck", "-log", "log.lammps", "-screen", "none", "-nocite"]
+        execute(command, folder, "\nclear\n".join(f"{t}\nrun 0" for t in texts))
+        return re.findall(r"^FSI: .*(?:\n  .*)*", (folder / "log.lammps").read_text(), re.M)
+
+
+def messages(texts):
+    """What a rank of two sends per step in each of some inputs without run command: [{"messages", "bytes", "collectives", "ghosts"}].
+
+    Means over both ranks; no run may rebuild its lists but at its start.
+    """
+    with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
+        folder = Path(name)
+        compiler = shutil.which("mpicc")
+        if compiler is None:
+            raise Failed("mpicc is not installed: tools/setup installs it")
+        subprocess.run([compiler, "-O1", "-shared", "-fPIC", "-o", "count.so", str(paths.ROOT / "bench" / "mpi_count.c")], cwd=folder, check=True)
+        for k, text in enumerate(texts):
+            (folder / f"in.{k}").write_text(text)
+        command = [*launch.mpirun(2), "env", f"LD_PRELOAD={folder / 'count.so'}", sys.executable, str(Path(__file__).resolve()), str(len(texts))]
+        execute(command, folder, "")
+        found = [json.loads(path.read_text()) for path in sorted(folder.glob("rank*.json"))]
+    return [{key: sum(rank[k][key] for rank in found) / len(found) for key in found[0][k]} for k in range(len(texts))]
+
+
+def _count(number):
+    """One rank of `messages`."""
+    import ctypes  # pylint: disable=import-outside-toplevel
+
+    from lammps import lammps  # pylint: disable=import-outside-toplevel
+    names = ("messages", "bytes", "collectives")
+    library = ctypes.CDLL(None)
+    cells = [ctypes.c_long.in_dll(library, f"fsi_{name}") for name in names]
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+    found = []
+    for k in range(number):
+        lmp.command("clear")
+        lmp.file(f"in.{k}")
+        lmp.command("run 0")
+        counts = []
+        for steps in (SHORT, LONG):
+            before = [cell.value for cell in cells]
+            lmp.command(f"run {steps}")
+            counts.append([cell.value - b for cell, b in zip(cells, before)])
+        found.append({name: (b - a) / (LONG - SHORT) for name, a, b in zip(names, *counts)} | {"ghosts": lmp.extract_global("nghost")})
+    Path(f"rank{lmp.extract_setting('world_rank')}.json").write_text(json.dumps(found))
+    lmp.finalize()
+
+
+class Kept:
+    """Results by what they are results of, as JSON in a folder: what has been measured is not measured again."""
+
+    def __init__(self, folder, *version):
+        self.folder, self.version = Path(folder), version
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def get(self, key, make):
+        """The stored result of `key`; else that of make()."""
+        name = hashlib.sha1(json.dumps([key, self.version]).encode()).hexdigest()[:16]
+        path = self.folder / f"{name}.json"
+        if path.exists():
+            return json.loads(path.read_text())
+        result = make()
+        unfinished = path.with_suffix(".unfinished")
+        unfinished.write_text(json.dumps(result) + "\n")
+        unfinished.replace(path)
+        return result
+
+
+if __name__ == "__main__":
+    _count(int(sys.argv[1]))

@@ -1,0 +1,118 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "compute_fsi_force.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+/* ---------------------------------------------------------------------- */
+
+ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), sum{}, about{}, reduced(false), hub(nullptr)
+{
+  if (narg != 3) error->all(FLERR, "Compute fsi/force takes no arguments");
+  vector_flag = 1;
+  size_vector = 6;
+  extvector = 1;
+  vector = new double[size_vector];
+}
+
+/* ---------------------------------------------------------------------- */
+
+ComputeFSIForce::~ComputeFSIForce()
+{
+  delete[] vector;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeFSIForce::init()
+{
+  hub = FixFSI::find(lmp, "Compute fsi/force");
+  if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Compute fsi/force requires pair_style fsi/fluid");
+}
+
+/* ----------------------------------------------------------------------
+   a point inside the body: where its first particle is; later its centre of mass when it was last asked for
+------------------------------------------------------------------------- */
+
+void ComputeFSIForce::find_body()
+{
+  tagint mine = MAXTAGINT, first;
+  double place[3] = {};
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((atom->mask[i] & groupbit) && hub->state[atom->type[i]].species == FSI::SOLID && atom->tag[i] < mine) {
+      mine = atom->tag[i];
+      std::copy_n(atom->x[i], 3, place);
+    }
+  MPI_Allreduce(&mine, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  if (mine != first) std::fill_n(place, 3, 0.0);
+  MPI_Allreduce(place, about, 3, MPI_DOUBLE, MPI_SUM, world);
+}
+
+/* ----------------------------------------------------------------------
+   Forces on ghosts count where they are, before they are sent home: the sum is the same. Without newton ghosts get none.
+   Lever arms are those of the nearest periodic image, from a point inside the body.
+------------------------------------------------------------------------- */
+
+void ComputeFSIForce::tally(double sign)
+{
+  const int nlocal = atom->nlocal, nall = nlocal + (force->newton_pair ? atom->nghost : 0);
+  if (sign < 0.0) {
+    std::fill_n(sum, (int) NSUM, 0.0);
+    if (update->setupflag) find_body();
+    reduced = false;
+  }
+  for (int i = 0; i < nall; i++) {
+    if (!(atom->mask[i] & groupbit) || hub->state[atom->type[i]].species != FSI::SOLID) continue;
+    const double *const f = atom->f[i];
+    double r[3];
+    for (int d = 0; d < 3; d++) r[d] = atom->x[i][d] - about[d];
+    domain->minimum_image(r);
+    for (int d = 0; d < 3; d++) {
+      const int a = (d + 1) % 3, b = (d + 2) % 3;
+      sum[FORCE + d] += sign * f[d];
+      sum[TORQUE + d] += sign * (r[a] * f[b] - r[b] * f[a]);
+      if (sign < 0.0 && i < nlocal) sum[MOMENT + d] += atom->rmass[i] * r[d];
+    }
+    if (sign < 0.0 && i < nlocal) sum[MASS] += atom->rmass[i];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeFSIForce::compute_vector()
+{
+  invoked_vector = update->ntimestep;
+  if (reduced) return;
+  reduced = true;
+  double all[NSUM];
+  MPI_Allreduce(sum, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
+  for (int d = 0; d < 3; d++) {
+    const int a = (d + 1) % 3, b = (d + 2) % 3;
+    vector[d] = all[FORCE + d];
+    vector[3 + d] = all[TORQUE + d];
+    if (all[MASS] > 0.0) vector[3 + d] -= (all[MOMENT + a] * all[FORCE + b] - all[MOMENT + b] * all[FORCE + a]) / all[MASS];
+  }
+  if (all[MASS] == 0.0) return;    // no solid particle in the group
+  for (int d = 0; d < 3; d++) about[d] += all[MOMENT + d] / all[MASS];
+  domain->remap(about);
+}

@@ -1,0 +1,51 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef COMPUTE_CLASS
+// clang-format off
+ComputeStyle(fsi/force,ComputeFSIForce);
+// clang-format on
+#else
+
+#ifndef LMP_COMPUTE_FSI_FORCE_H
+#define LMP_COMPUTE_FSI_FORCE_H
+
+#include "compute.h"
+
+namespace LAMMPS_NS {
+
+// Force and torque of the fluid on the solid particles of a group: what pair_style fsi/fluid gives them.
+
+class ComputeFSIForce : public Compute {
+ public:
+  ComputeFSIForce(class LAMMPS *, int, char **);
+  ~ComputeFSIForce() override;
+  void init() override;
+  void compute_vector() override;
+
+  // adds the forces in atom->f with this sign: pair_style fsi/fluid calls it with -1 before its loop and with +1 after it
+  void tally(double sign);
+
+ private:
+  enum { FORCE = 0, TORQUE = 3, MOMENT = 6, MASS = 9, NSUM };    // about and from `about`
+  double sum[NSUM], about[3];
+  bool reduced;    // over ranks, since the last forces
+  class FixFSI *hub;
+
+  void find_body();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

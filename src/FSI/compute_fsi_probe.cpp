@@ -1,0 +1,356 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "compute_fsi_probe.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fsi_kernel.h"
+#include "memory.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1), hub(nullptr)
+{
+  static const std::vector<std::string> names = {"p", "rho", "vx", "vy", "vz", "fill", "level", "wet"};
+  int iarg = 3;
+  while (iarg < narg) {
+    const auto it = std::find(names.begin(), names.end(), arg[iarg]);
+    const auto need = [&](int n) {
+      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, fmt::format("compute fsi/probe {}", arg[iarg]), error);
+    };
+    if (it != names.end()) {
+      quantity.push_back(it - names.begin());
+      iarg++;
+    } else if (strcmp(arg[iarg], "extrapolate") == 0) {
+      need(1);
+      extrapolate = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      iarg += 2;
+    } else if (strcmp(arg[iarg], "point") == 0 || strcmp(arg[iarg], "patch") == 0 || strcmp(arg[iarg], "line") == 0) {
+      const bool point = strcmp(arg[iarg], "point") == 0;
+      const int n = point ? 3 : 6;
+      need(n);
+      Place place = {};
+      place.line = strcmp(arg[iarg], "line") == 0;
+      double length = 0.0;
+      for (int d = 0; d < domain->dimension; d++) {
+        place.from[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
+        place.to[d] = point ? place.from[d] : utils::numeric(FLERR, arg[iarg + 4 + d], false, lmp);
+        if (!place.line && place.to[d] < place.from[d])
+          error->all(FLERR, "Compute fsi/probe patch ends at {} = {} below its start {}", "xyz"[d], arg[iarg + 4 + d], arg[iarg + 1 + d]);
+        length += std::fabs(place.to[d] - place.from[d]);
+      }
+      if (!point && length == 0.0) error->all(FLERR, "Compute fsi/probe {} has no extent: use point", arg[iarg]);
+      places.push_back(place);
+      iarg += n + 1;
+    } else
+      error->all(FLERR, "Unknown compute fsi/probe argument {}: expected p, rho, vx, vy, vz, fill, level, wet, point, patch, line or "
+                        "extrapolate", arg[iarg]);
+  }
+  if (quantity.empty()) error->all(FLERR, "Compute fsi/probe needs a quantity: p, rho, vx, vy, vz, fill, level or wet");
+  if (places.empty()) error->all(FLERR, "Compute fsi/probe needs a place: point, patch or line");
+  for (const int q : quantity)
+    for (const auto &place : places)
+      if (place.line != (q == LEVEL || q == WET))
+        error->all(FLERR, "Compute fsi/probe {} needs {}", names[q], place.line ? "a point or a patch, not a line" : "a line");
+
+  const int rows = places.size(), columns = quantity.size();
+  if (rows * columns == 1) {
+    scalar_flag = 1;
+    extscalar = 0;
+  } else if (rows == 1 || columns == 1) {
+    vector_flag = 1;
+    extvector = 0;
+    size_vector = rows * columns;
+    memory->create(vector, size_vector, "fsi/probe:vector");
+  } else {
+    array_flag = 1;
+    extarray = 0;
+    size_array_rows = rows;
+    size_array_cols = columns;
+    memory->create(array, rows, columns, "fsi/probe:array");
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+ComputeFSIProbe::~ComputeFSIProbe()
+{
+  if (vector_flag) memory->destroy(vector);
+  if (array_flag) memory->destroy(array);
+}
+
+/* ----------------------------------------------------------------------
+   points: half a spacing apart on a patch, in the middle of their cells; a quarter along a line, with both ends
+------------------------------------------------------------------------- */
+
+void ComputeFSIProbe::init()
+{
+  hub = FixFSI::find(lmp, "Compute fsi/probe");
+  listed = -1;
+  points.clear();
+  nsums = places[0].line ? 2 : 1 + quantity.size();
+  for (auto &place : places) {
+    double length = 0.0;
+    for (int d = 0; d < 3; d++) {
+      const double extent = place.to[d] - place.from[d];
+      length += extent * extent;
+      place.n[d] = 1;
+      std::fill_n(place.step[d], 3, 0.0);
+      place.origin[d] = place.from[d];
+      if (place.line) continue;
+      // the tolerance: 0.1/0.005 is not 21 cells
+      place.n[d] = std::max(1, static_cast<int>(std::ceil(2.0 * extent / hub->dx - 1.0e-6)));
+      place.step[d][d] = extent / place.n[d];
+      place.origin[d] += 0.5 * place.step[d][d];
+    }
+    if (place.line) {
+      place.n[0] = 1 + static_cast<int>(std::ceil(4.0 * std::sqrt(length) / hub->dx - 1.0e-6));
+      for (int d = 0; d < 3; d++) place.step[0][d] = (place.to[d] - place.from[d]) / (place.n[0] - 1);
+    }
+    place.first = points.size() / 3;
+    for (int a = 0; a < place.n[0]; a++)
+      for (int b = 0; b < place.n[1]; b++)
+        for (int c = 0; c < place.n[2]; c++)
+          for (int d = 0; d < 3; d++)
+            points.push_back(place.origin[d] + a * place.step[0][d] + b * place.step[1][d] + c * place.step[2][d]);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+double ComputeFSIProbe::Place::along(int d, const double *x) const
+{
+  const double *const e = step[d];
+  return ((x[0] - origin[0]) * e[0] + (x[1] - origin[1]) * e[1] + (x[2] - origin[2]) * e[2]) /
+      (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+}
+
+/* ----------------------------------------------------------------------
+   particles that may come within the kernel's support of a place before the neighbor lists are built anew
+------------------------------------------------------------------------- */
+
+void ComputeFSIProbe::find_near()
+{
+  listed = neighbor->lastcall;
+  const double reach = hub->cut + neighbor->skin;
+  int images[3];
+  for (int d = 0; d < 3; d++) images[d] = d < hub->dim && domain->periodicity[d];
+
+  for (auto &place : places) {
+    place.near.clear();
+    for (int i = 0; i < atom->nlocal; i++) {
+      const int species = hub->state[atom->type[i]].species;
+      if (species == FLUID ? !(atom->mask[i] & groupbit) : !place.line) continue;
+      for (int a = -images[0]; a <= images[0]; a++)
+        for (int b = -images[1]; b <= images[1]; b++)
+          for (int c = -images[2]; c <= images[2]; c++) {
+            const Particle p = {i, {a * domain->prd[0], b * domain->prd[1], c * domain->prd[2]}};
+            double x[3], apart[3], rsq = 0.0;
+            for (int d = 0; d < 3; d++) {
+              x[d] = atom->x[i][d] + p.shift[d];
+              apart[d] = x[d] - place.origin[d];
+            }
+            for (int k = 0; k < 3; k++) {
+              if (place.n[k] == 1) continue;
+              const double t = std::min(std::max(place.along(k, x), 0.0), place.n[k] - 1.0);
+              for (int d = 0; d < 3; d++) apart[d] -= t * place.step[k][d];
+            }
+            for (int d = 0; d < hub->dim; d++) rsq += apart[d] * apart[d];
+            if (rsq < reach * reach) place.near.push_back(p);
+          }
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   sums of V W and of V W times each quantity over fluid particles and their images in mirror walls; along lines of V W over fluids
+   and over solids
+------------------------------------------------------------------------- */
+
+void ComputeFSIProbe::sum_up()
+{
+  if (listed != neighbor->lastcall || update->whichflag == 0) find_near();
+
+  const int npoints = points.size() / 3;
+  sums.assign((size_t) npoints * nsums, 0.0);
+  all.resize(sums.size());
+
+  // walls are known at the middle of the step, where forces are; positions are those of its end
+  const Walls walls = hub->walls.moved(update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt);
+  std::vector<double> at(points);
+  std::vector<int> mask(npoints, 0);
+  if (walls.any())
+    for (int k = 0; k < npoints; k++) {
+      // a point on a wall is not behind it
+      for (const auto &w : walls.wall)
+        if (std::fabs(w.distance(&at[3 * k])) < 1.0e-6 * hub->dx) at[3 * k + w.axis] = w.position;
+      mask[k] = walls.near(&at[3 * k], hub->cut);
+    }
+
+  double *const *const v = atom->v;
+  const double *const g = hub->gravity;
+  with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
+    for (const auto &place : places)
+      for (const auto &p : place.near) {
+        const int i = p.i;
+        double x[3];
+        for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
+        const State &state = hub->state[atom->type[i]];
+        const bool fluid = state.species == FLUID;
+        const double rho = atom->rho[i], vol = atom->rmass[i] / rho, pressure = fluid ? hub->pressure(i) : 0.0;
+        const int mask_i = walls.any() ? walls.near(x, hub->cut) : 0;
+        int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
+        for (int d = 0; d < 3; d++) {
+          if (place.n[d] == 1) continue;
+          const double *const e = place.step[d];
+          const double t = place.along(d, x), r = kernel.cut / std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+          lo[d] = std::max(0, static_cast<int>(std::ceil(t - r)));
+          hi[d] = std::min(place.n[d] - 1, static_cast<int>(std::floor(t + r)));
+        }
+        for (int a = lo[0]; a <= hi[0]; a++)
+          for (int b = lo[1]; b <= hi[1]; b++)
+            for (int c = lo[2]; c <= hi[2]; c++) {
+              const int k = place.first + (a * place.n[1] + b) * place.n[2] + c;
+              const double *const xk = &at[3 * k];
+              double *const sum = &sums[(size_t) k * nsums];
+              double rsq = 0.0, head = 0.0;
+              for (int d = 0; d < hub->dim; d++) {
+                rsq += (xk[d] - x[d]) * (xk[d] - x[d]);
+                head += rho * g[d] * (xk[d] - x[d]);
+              }
+              if (rsq >= kernel.cutsq) continue;
+              const auto add = [&](double w, const double *velocity) {
+                w *= vol;
+                if (place.line) {
+                  sum[fluid ? 0 : 1] += w;
+                  return;
+                }
+                sum[0] += w;
+                for (size_t q = 0; q < quantity.size(); q++) {
+                  if (quantity[q] == P) sum[q + 1] += w * (extrapolate ? std::max(pressure + head, state.floor) : pressure);
+                  else if (quantity[q] == RHO) sum[q + 1] += w * rho;
+                  else if (quantity[q] != FILL) sum[q + 1] += w * velocity[quantity[q] - VX];
+                }
+              };
+              add(kernel.W(std::sqrt(rsq)), v[i]);
+              if (mask_i & mask[k])
+                walls.images(mask_i & mask[k], rsq, xk, x, kernel.cutsq,
+                             [&](const Walls::Reflection &s, double rsq_image, const double *) {
+                               double image[3];
+                               walls.reflect_velocity(s, v[i], false, image);
+                               add(kernel.W(std::sqrt(rsq_image)), image);
+                             });
+            }
+      }
+  });
+  MPI_Allreduce(sums.data(), all.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, world);
+}
+
+/* ----------------------------------------------------------------------
+   mean over the points of a place of quantity k; a point without fluid within the kernel's support counts as 0
+------------------------------------------------------------------------- */
+
+double ComputeFSIProbe::field(const Place &place, int k) const
+{
+  double mean = 0.0;
+  for (int m = 0; m < place.size(); m++) {
+    const double *const sum = &all[(size_t) (place.first + m) * nsums];
+    if (quantity[k] == FILL) mean += sum[0];
+    else if (sum[0] > 0.0) mean += sum[k + 1] / sum[0];
+  }
+  return mean / place.size();
+}
+
+/* ----------------------------------------------------------------------
+   Water is where fluid fills more than half of what solids leave: F > (1 - S)/2. The level is where that ends last, seen from the
+   line's start; wet is the length over which it holds.
+------------------------------------------------------------------------- */
+
+double ComputeFSIProbe::level(const Place &place, bool wet) const
+{
+  const auto excess = [&](int m) {
+    const double *const sum = &all[(size_t) (place.first + m) * nsums];
+    return sum[1] < 0.5 ? 2.0 * sum[0] + sum[1] - 1.0 : -1.0;
+  };
+  const int last = place.n[0] - 1;
+  double top = 0.0, length = 0.0, here = excess(0);
+  for (int m = 0; m < last; m++) {
+    const double next = excess(m + 1);
+    if (here > 0.0 && next > 0.0) {
+      length += 1.0;
+      top = m + 1.0;
+    } else if (here > 0.0) {
+      length += here / (here - next);
+      top = m + here / (here - next);
+    } else if (next > 0.0) {
+      length += next / (next - here);
+      top = m + 1.0;
+    }
+    here = next;
+  }
+  const double *const e = place.step[0];
+  return (wet ? length : top) * std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ComputeFSIProbe::evaluate(double *result)
+{
+  sum_up();
+  for (const auto &place : places)
+    for (size_t k = 0; k < quantity.size(); k++)
+      *result++ = place.line ? level(place, quantity[k] == WET) : field(place, k);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double ComputeFSIProbe::compute_scalar()
+{
+  invoked_scalar = update->ntimestep;
+  evaluate(&scalar);
+  return scalar;
+}
+
+void ComputeFSIProbe::compute_vector()
+{
+  invoked_vector = update->ntimestep;
+  evaluate(vector);
+}
+
+void ComputeFSIProbe::compute_array()
+{
+  invoked_array = update->ntimestep;
+  evaluate(array[0]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double ComputeFSIProbe::memory_usage()
+{
+  double bytes = (double) (points.capacity() + sums.capacity() + all.capacity()) * sizeof(double);
+  for (const auto &place : places) bytes += (double) place.near.capacity() * sizeof(Particle);
+  return bytes;
+}

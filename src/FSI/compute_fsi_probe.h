@@ -1,0 +1,79 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef COMPUTE_CLASS
+// clang-format off
+ComputeStyle(fsi/probe,ComputeFSIProbe);
+// clang-format on
+#else
+
+#ifndef LMP_COMPUTE_FSI_PROBE_H
+#define LMP_COMPUTE_FSI_PROBE_H
+
+#include "compute.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Gauges: the fluid's fields interpolated at points and over patches, and its level along lines.
+// Each rank sums over its own particles, a reduction does the rest; particles near a place are listed as seldom as neighbors are.
+
+class ComputeFSIProbe : public Compute {
+ public:
+  ComputeFSIProbe(class LAMMPS *, int, char **);
+  ~ComputeFSIProbe() override;
+  void init() override;
+  double compute_scalar() override;
+  void compute_vector() override;
+  void compute_array() override;
+  double memory_usage() override;
+
+ private:
+  enum Quantity { P, RHO, VX, VY, VZ, FILL, LEVEL, WET };
+  std::vector<int> quantity;
+  bool extrapolate;
+
+  struct Particle {
+    int i;
+    double shift[3];    // to the periodic image that is near
+  };
+  // points of an orthogonal grid: one, along a line, or all over a patch
+  struct Place {
+    bool line;
+    double from[3], to[3];
+    int n[3], first;    // first: index of its first point among all
+    double origin[3], step[3][3];
+    std::vector<Particle> near;
+
+    int size() const { return n[0] * n[1] * n[2]; }
+    double along(int d, const double *x) const;    // where x is on grid axis d, in steps
+  };
+  std::vector<Place> places;
+  std::vector<double> points, sums, all;
+  int nsums;    // per point: fluid, solid; or fluid and one for each quantity
+  bigint listed;
+
+  class FixFSI *hub;
+
+  void find_near();
+  void sum_up();
+  void evaluate(double *result);
+  double field(const Place &, int k) const;
+  double level(const Place &, bool wet) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

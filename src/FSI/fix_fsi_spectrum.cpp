@@ -1,0 +1,333 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fix_fsi_spectrum.h"
+
+#include "arg_info.h"
+#include "comm.h"
+#include "compute.h"
+#include "error.h"
+#include "input.h"
+#include "modify.h"
+#include "update.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+// set by this package's CMake files where it found FFTW; inside a LAMMPS tree, LAMMPS' own with KSPACE
+#if defined(FSI_FFTW3) || (defined(FFT_FFTW3) && !defined(FFT_SINGLE))
+#define FSI_HAS_FFTW
+#include <fftw3.h>
+#endif
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+
+static constexpr double PI = 3.14159265358979323846;
+static constexpr int LEAST = 8;    // samples that make a spectrum
+
+/* ---------------------------------------------------------------------- */
+
+FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), input_kind(0), input_index(0), input_variable(-1), input_compute(nullptr), input_fix(nullptr), order(1),
+    detrend(MEAN), analyse_every(0), peaks(3), last(-1)
+{
+#if !defined(FSI_HAS_FFTW)
+  error->all(FLERR, "Fix fsi/spectrum is not in this build, which did not find FFTW3: install it (Debian: libfftw3-dev) and configure again");
+#endif
+  if (narg < 5) utils::missing_cmd_args(FLERR, "fix fsi/spectrum", error);
+  nevery = utils::inumeric(FLERR, arg[3], false, lmp);
+  if (nevery < 1) error->all(FLERR, "Fix fsi/spectrum Nevery {} must be >= 1", arg[3]);
+  argument = arg[4];
+
+  int iarg = 5;
+  while (iarg < narg) {
+    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi/spectrum {}", arg[iarg]), error);
+    const char *const value = arg[iarg + 1];
+    if (strcmp(arg[iarg], "window") == 0) {
+      if (strcmp(arg[iarg + 1], "none") == 0) order = 0;
+      else if (strcmp(arg[iarg + 1], "hann") == 0) order = 1;
+      else if (strcmp(arg[iarg + 1], "hann2") == 0) order = 2;
+      else error->all(FLERR, "Unknown fix fsi/spectrum window {}: expected none, hann or hann2", value);
+    } else if (strcmp(arg[iarg], "detrend") == 0) {
+      if (strcmp(arg[iarg + 1], "none") == 0) detrend = NONE;
+      else if (strcmp(arg[iarg + 1], "mean") == 0) detrend = MEAN;
+      else if (strcmp(arg[iarg + 1], "linear") == 0) detrend = LINEAR;
+      else error->all(FLERR, "Unknown fix fsi/spectrum detrend {}: expected none, mean or linear", value);
+    } else if (strcmp(arg[iarg], "peaks") == 0) {
+      const int n = utils::inumeric(FLERR, value, false, lmp);
+      if (n < 1) error->all(FLERR, "Fix fsi/spectrum peaks {} must be >= 1", value);
+      peaks.resize(n);
+    } else if (strcmp(arg[iarg], "every") == 0) {
+      analyse_every = utils::inumeric(FLERR, value, false, lmp);
+      if (analyse_every < 0) error->all(FLERR, "Fix fsi/spectrum every {} must be >= 0", value);
+    } else if (strcmp(arg[iarg], "file") == 0) {
+      file = value;
+    } else
+      error->all(FLERR, "Unknown fix fsi/spectrum keyword {}: expected window, detrend, peaks, every or file", arg[iarg]);
+    iarg += 2;
+  }
+  find_input();
+  if (!file.empty() && comm->me == 0) {    // not only at the end of the run
+    FILE *fp = fopen(file.c_str(), "a");
+    if (!fp) error->one(FLERR, "Cannot open fix fsi/spectrum file {}: {}", file, utils::getsyserror());
+    fclose(fp);
+  }
+
+  scalar_flag = vector_flag = array_flag = 1;
+  extscalar = extvector = extarray = 0;
+  size_vector = size_array_rows = peaks.size();
+  size_array_cols = 2;
+  global_freq = nevery;
+  time_depend = 1;
+  restart_global = 1;
+  modify->addstep_compute_all(((update->ntimestep + nevery - 1) / nevery) * nevery);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSISpectrum::setmask()
+{
+  return END_OF_STEP | POST_RUN;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSISpectrum::find_input()
+{
+  ArgInfo info(argument);
+  input_kind = info.get_type();
+  input_index = info.get_index1();
+  const char *const name = info.get_name();
+  if ((input_kind != ArgInfo::COMPUTE && input_kind != ArgInfo::FIX && input_kind != ArgInfo::VARIABLE) || info.get_dim() > 1 ||
+      (input_kind == ArgInfo::VARIABLE && input_index))
+    error->all(FLERR, "Fix fsi/spectrum input {}: expected v_name, c_ID, c_ID[i], f_ID or f_ID[i] (an entry of an array: through an "
+                      "equal-style variable)", argument);
+  const auto check = [&](const char *what, const auto *source) {
+    if (!source) error->all(FLERR, "Fix fsi/spectrum input {}: there is no {} {}", argument, what, name);
+    if (input_index ? !source->vector_flag : !source->scalar_flag)
+      error->all(FLERR, "Fix fsi/spectrum input {}: {} {} has no global {}", argument, what, name, input_index ? "vector" : "scalar");
+    if (input_index > 0 && input_index > source->size_vector)
+      error->all(FLERR, "Fix fsi/spectrum input {}: the vector of {} {} has {} entries", argument, what, name, source->size_vector);
+  };
+  if (input_kind == ArgInfo::COMPUTE) {
+    input_compute = modify->get_compute_by_id(name);
+    check("compute", input_compute);
+  } else if (input_kind == ArgInfo::FIX) {
+    input_fix = modify->get_fix_by_id(name);
+    check("fix", input_fix);
+    if (nevery % input_fix->global_freq)
+      error->all(FLERR, "Fix fsi/spectrum input {}: fix {} has values every {} steps, Nevery is {}", argument, name, input_fix->global_freq,
+                 nevery);
+  } else {
+    input_variable = input->variable->find(name);
+    if (input_variable < 0) error->all(FLERR, "Fix fsi/spectrum input {}: there is no variable {}", argument, name);
+    if (!input->variable->equalstyle(input_variable))
+      error->all(FLERR, "Fix fsi/spectrum input {}: variable {} is not equal-style", argument, name);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSISpectrum::init()
+{
+  find_input();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSISpectrum::setup(int)
+{
+  end_of_step();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSISpectrum::end_of_step()
+{
+  const bigint step = update->ntimestep;
+  if (step % nevery || step <= last) return;    // the last step of a run is the first of the next
+  last = step;
+  modify->clearstep_compute();
+  value.push_back(sample());
+  time.push_back(update->atime + (step - update->atimestep) * update->dt);
+  modify->addstep_compute(step + nevery);
+  if (analyse_every && value.size() % analyse_every == 0) analyse();
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSISpectrum::sample()
+{
+  if (input_kind == ArgInfo::VARIABLE) return input->variable->compute_equal(input_variable);
+  if (input_kind == ArgInfo::FIX) return input_index ? input_fix->compute_vector(input_index - 1) : input_fix->compute_scalar();
+  const int flag = input_index ? Compute::INVOKED_VECTOR : Compute::INVOKED_SCALAR;
+  if (!(input_compute->invoked_flag & flag)) {
+    if (input_index) input_compute->compute_vector();
+    else input_compute->compute_scalar();
+    input_compute->invoked_flag |= flag;
+  }
+  return input_index ? input_compute->vector[input_index - 1] : input_compute->scalar;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSISpectrum::post_run()
+{
+  if ((int) value.size() < LEAST && update->nsteps && comm->me == 0)
+    error->warning(FLERR, "Fix fsi/spectrum {} has {} samples, no spectrum: it needs at least {}", id, value.size(), LEAST);
+  analyse();
+}
+
+/* ----------------------------------------------------------------------
+   samples equally spaced in time (interpolated where fix fsi/dt has changed their distance), without trend, times the window;
+   area: sum of the window
+------------------------------------------------------------------------- */
+
+std::vector<double> FixFSISpectrum::prepare(double &area) const
+{
+  const int n = value.size();
+  const double dt = (time[n - 1] - time[0]) / (n - 1);
+  std::vector<double> y(value), w(n);
+  for (int k = 1, m = 0; k < n - 1; k++) {
+    const double t = time[0] + k * dt;
+    if (std::fabs(time[k] - t) < 1.0e-6 * dt) continue;
+    while (time[m + 1] < t) m++;
+    y[k] = value[m] + (value[m + 1] - value[m]) * (t - time[m]) / (time[m + 1] - time[m]);
+  }
+
+  area = 0.0;
+  double s1 = 0.0, s2 = 0.0, sy = 0.0, s1y = 0.0;
+  for (int k = 0; k < n; k++) {
+    const double s = std::sin(PI * k / n), x = k - 0.5 * n;
+    w[k] = order == 0 ? 1.0 : order == 1 ? s * s : s * s * s * s;
+    area += w[k];
+    s1 += w[k] * x;
+    s2 += w[k] * x * x;
+    sy += w[k] * y[k];
+    s1y += w[k] * x * y[k];
+  }
+  // weighted least squares, so that nothing is left at frequency 0
+  const double slope = detrend == LINEAR ? (area * s1y - s1 * sy) / (area * s2 - s1 * s1) : 0.0;
+  const double level = detrend == NONE ? 0.0 : (sy - slope * s1) / area;
+  for (int k = 0; k < n; k++) y[k] = w[k] * (y[k] - level - slope * (k - 0.5 * n));
+  return y;
+}
+
+/* ----------------------------------------------------------------------
+   Amplitudes A_k = 2 |X_k|/sum of w at k/(n dt). A sine whose frequency lies the part d of the distance to the next frequency
+   beyond k has, with the window sin^2m and many periods, the ratio of its two largest amplitudes
+     a = A_k+1/A_k = (m + d)/(m + 1 - d)
+   (m = 0, 1: Rife & Vincent 1970, Grandke 1983), and A_k = amplitude sin(pi d)/(pi d)/prod_j=1..m (1 - d^2/j^2).
+------------------------------------------------------------------------- */
+
+void FixFSISpectrum::analyse()
+{
+  std::fill(peaks.begin(), peaks.end(), Peak{0.0, 0.0});
+  const int n = value.size();
+  if (n < LEAST) return;
+#if defined(FSI_HAS_FFTW)
+  if (comm->me == 0) {
+    double area;
+    std::vector<double> y = prepare(area), A(n / 2 + 1);
+    auto *X = (fftw_complex *) fftw_malloc(sizeof(fftw_complex) * A.size());
+    fftw_plan plan = fftw_plan_dft_r2c_1d(n, y.data(), X, FFTW_ESTIMATE);
+    fftw_execute(plan);
+    for (int k = 0; k <= n / 2; k++) A[k] = (k == 0 || 2 * k == n ? 1.0 : 2.0) * std::hypot(X[k][0], X[k][1]) / area;
+    fftw_destroy_plan(plan);
+    fftw_free(X);
+
+    const double df = (n - 1) / (n * (time[n - 1] - time[0]));
+    std::vector<Peak> found;
+    for (int k = 1; k < n / 2; k++) {
+      if (A[k] <= A[k - 1] || A[k] < A[k + 1]) continue;
+      const bool up = A[k + 1] > A[k - 1];
+      const double a = (up ? A[k + 1] : A[k - 1]) / A[k];
+      const double d = std::max(0.0, ((order + 1) * a - order) / (a + 1.0));
+      double amplitude = A[k];
+      if (d > 0.0) amplitude *= PI * d / std::sin(PI * d);
+      for (int j = 1; j <= order; j++) amplitude *= 1.0 - d * d / (j * j);
+      found.push_back({(up ? k + d : k - d) * df, amplitude});
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Peak &p, const Peak &q) { return p.amplitude > q.amplitude; });
+    std::copy_n(found.begin(), std::min(found.size(), peaks.size()), peaks.begin());
+
+    if (!file.empty()) {
+      FILE *fp = fopen(file.c_str(), "w");
+      if (!fp) error->one(FLERR, "Cannot open fix fsi/spectrum file {}: {}", file, utils::getsyserror());
+      utils::print(fp, "frequency,amplitude\n");
+      for (int k = 0; k <= n / 2; k++) utils::print(fp, "{:.10g},{:.10g}\n", k * df, A[k]);
+      if (ferror(fp) + fclose(fp)) error->one(FLERR, "Cannot write fix fsi/spectrum file {}: {}", file, utils::getsyserror());
+    }
+  }
+#endif
+  MPI_Bcast((double *) peaks.data(), 2 * static_cast<int>(peaks.size()), MPI_DOUBLE, 0, world);
+}
+
+/* ----------------------------------------------------------------------
+   number of samples
+------------------------------------------------------------------------- */
+
+double FixFSISpectrum::compute_scalar()
+{
+  return value.size();
+}
+
+/* ----------------------------------------------------------------------
+   frequency i, the largest amplitude first; frequency and amplitude
+------------------------------------------------------------------------- */
+
+double FixFSISpectrum::compute_vector(int i)
+{
+  return peaks[i].frequency;
+}
+
+double FixFSISpectrum::compute_array(int i, int j)
+{
+  return j ? peaks[i].amplitude : peaks[i].frequency;
+}
+
+/* ----------------------------------------------------------------------
+   restart: the samples
+------------------------------------------------------------------------- */
+
+void FixFSISpectrum::write_restart(FILE *fp)
+{
+  if (comm->me) return;
+  std::vector<double> list = {(double) value.size(), ubuf(last).d};
+  list.insert(list.end(), time.begin(), time.end());
+  list.insert(list.end(), value.begin(), value.end());
+  const int size = list.size() * sizeof(double);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list.data(), sizeof(double), list.size(), fp);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSISpectrum::restart(char *buf)
+{
+  const auto *list = (double *) buf;
+  const int n = static_cast<int>(list[0]);
+  last = (bigint) ubuf(list[1]).i;
+  time.assign(list + 2, list + 2 + n);
+  value.assign(list + 2 + n, list + 2 + 2 * n);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSISpectrum::memory_usage()
+{
+  return (double) (time.capacity() + value.capacity()) * sizeof(double);
+}

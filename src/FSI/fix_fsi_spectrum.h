@@ -1,0 +1,72 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(fsi/spectrum,FixFSISpectrum);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_FSI_SPECTRUM_H
+#define LMP_FIX_FSI_SPECTRUM_H
+
+#include "fix.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Amplitude spectrum and dominant frequencies of a scalar that is sampled during a run.
+
+class FixFSISpectrum : public Fix {
+ public:
+  FixFSISpectrum(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void end_of_step() override;
+  void post_run() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double compute_array(int, int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double memory_usage() override;
+
+ private:
+  enum Detrend { NONE, MEAN, LINEAR };
+  struct Peak {
+    double frequency, amplitude;
+  };
+  std::string argument, file;    // the input as in the script
+  int input_kind, input_index, input_variable;
+  class Compute *input_compute;
+  class Fix *input_fix;
+
+  int order;    // of the window sin^(2 order)
+  int detrend, analyse_every;
+  std::vector<Peak> peaks;
+  bigint last;    // step of the last sample
+  std::vector<double> time, value;
+
+  void find_input();
+  double sample();
+  void analyse();
+  std::vector<double> prepare(double &) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

@@ -1,0 +1,374 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_advice.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "pair_fsi_fluid.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+static constexpr double BIG = 1.0e300;
+static constexpr int ENOUGH = 3;    // particles across a body (doc/choosing.md)
+
+namespace {
+
+// Local and ghost particles in cells, for questions about the nearest one.
+class Cells {
+ public:
+  Cells(const double *const *x, int n, int dim, double size) : x(x), dim(dim), size(size), next(n)
+  {
+    for (int d = 0; d < dim; d++) {
+      low[d] = BIG;
+      double high = -BIG;
+      for (int i = 0; i < n; i++) {
+        low[d] = std::min(low[d], x[i][d]);
+        high = std::max(high, x[i][d]);
+      }
+      extent[d] = n ? high - low[d] : 0.0;
+    }
+    // a few particles far away must not cost a grid of empty cells
+    double cells = 1.0;
+    for (int d = 0; d < dim; d++) cells *= extent[d] / size + 1.0;
+    if (!(cells < BIG)) {    // a particle at infinity: one cell
+      std::fill(extent, extent + 3, 0.0);
+      this->size = BIG;
+    } else if (cells > 8.0 * n + 1000.0)
+      this->size *= std::pow(cells / (8.0 * n + 1000.0), 1.0 / dim);
+    int total = 1;
+    for (int d = 0; d < dim; d++) total *= count[d] = static_cast<int>(extent[d] / this->size) + 1;
+    head.assign(total, -1);
+    for (int i = 0; i < n; i++) {
+      int c = 0;
+      for (int d = dim - 1; d >= 0; d--) c = c * count[d] + place(d, x[i][d]);
+      next[i] = head[c];
+      head[c] = i;
+    }
+  }
+
+  // calls f(j, squared distance) for all particles within the cell size of a place
+  template <typename F> void around(const double *p, F f) const
+  {
+    int from[3] = {0, 0, 0}, to[3] = {0, 0, 0}, c[3];
+    for (int d = 0; d < dim; d++) {
+      from[d] = place(d, p[d] - size);
+      to[d] = place(d, p[d] + size);
+    }
+    for (c[2] = from[2]; c[2] <= to[2]; c[2]++)
+      for (c[1] = from[1]; c[1] <= to[1]; c[1]++)
+        for (c[0] = from[0]; c[0] <= to[0]; c[0]++) {
+          int k = 0;
+          for (int d = dim - 1; d >= 0; d--) k = k * count[d] + c[d];
+          for (int j = head[k]; j >= 0; j = next[j]) {
+            double rsq = 0.0;
+            for (int d = 0; d < dim; d++) rsq += (x[j][d] - p[d]) * (x[j][d] - p[d]);
+            f(j, rsq);
+          }
+        }
+  }
+
+ private:
+  const double *const *x;
+  int dim, count[3];
+  double size, low[3], extent[3];
+  std::vector<int> head, next;
+
+  // clamped, which also takes what is not a number
+  int place(int d, double r) const
+  {
+    const double k = (r - low[d]) / size;
+    return k > 0.0 ? (k < count[d] - 1 ? static_cast<int>(k) : count[d] - 1) : 0;
+  }
+};
+
+class Adviser : protected Pointers {
+ public:
+  Adviser(LAMMPS *lmp, const FixFSI &hub) : Pointers(lmp), hub(hub), present(atom->ntypes + 1, 0)
+  {
+    std::vector<int> mine(present.size(), 0);
+    for (int i = 0; i < atom->nlocal; i++)
+      if (fluid(i) || moves(i)) mine[atom->type[i]] = 1;    // what is held limits nothing
+    MPI_Allreduce(mine.data(), present.data(), (int) mine.size(), MPI_INT, MPI_MAX, world);
+  }
+
+  void all() const
+  {
+    units();
+    box();
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, hub.dim, 1.25 * hub.dx);
+    if (spacing(cells) && (hub.solid || hub.solid_tl)) thickness(cells);
+    const double fastest = hub.fluid ? speeds() : 0.0;
+    if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step(fastest);
+  }
+
+ private:
+  const FixFSI &hub;
+  std::vector<int> present;    // types that are fluid or move, on any rank
+
+  bool fluid(int i) const { return hub.state[atom->type[i]].species == FLUID; }
+  bool solid(int i) const { return hub.state[atom->type[i]].species == SOLID; }
+  bool moves(int i) const { return solid(i) && atom->mask[i] & hub.groupbit; }
+
+  void warn(const std::string &text) const
+  {
+    if (comm->me == 0) error->warning(FLERR, "Fix fsi: " + text);
+  }
+
+  /* a density that no material has in the units of the script, or a solid softer than jelly */
+
+  void units() const
+  {
+    const bool si = strcmp(update->unit_style, "si") == 0;
+    double water = 0.0;
+    if (si) water = 1000.0;
+    for (const char *style : {"cgs", "micro", "nano"})
+      if (strcmp(update->unit_style, style) == 0) water = 1.0;
+    if (water == 0.0) {
+      if (strcmp(update->unit_style, "lj") != 0)
+        warn(fmt::format("units {} are made for atoms; for continua take si, cgs, micro, nano, or lj for numbers without units",
+                         update->unit_style));
+      return;
+    }
+    for (int t = 1; t <= atom->ntypes; t++) {
+      if (!present[t]) continue;
+      const State &s = hub.state[t];
+      if (s.rho0 < 1.0e-4 * water || s.rho0 > 30.0 * water)
+        warn(fmt::format("the density {:g} of type {} is that of no material in units {}, in which water has {:g}", s.rho0, t,
+                         update->unit_style, water));
+      else if (si && s.species == SOLID && longitudinal(s) < 1.0)
+        warn(fmt::format("elastic waves in type {} run at {:.2g} m/s only: moduli are in pascal, 1 MPa = 1e6", t, longitudinal(s)));
+    }
+  }
+
+  static double longitudinal(const State &s) { return std::sqrt(s.wave_speed_sq()); }
+
+  void box() const
+  {
+    for (int d = 0; d < hub.dim; d++)
+      if (domain->periodicity[d] && domain->prd[d] < 2.0 * hub.cut)
+        warn(fmt::format("the periodic box is {:g} long in {}, less than twice the kernel's support {:g}: particles see the same "
+                         "neighbor on both sides", domain->prd[d], "xyz"[d], hub.cut));
+    double mine = 1.0, least;
+    const double ghost = *std::max_element(comm->cutghost, comm->cutghost + hub.dim);
+    for (int d = 0; d < hub.dim; d++)
+      if (comm->procgrid[d] > 1) mine = std::min(mine, (domain->subhi[d] - domain->sublo[d]) / ghost);
+    MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE, MPI_MIN, world);
+    if (least < 1.0)
+      warn(fmt::format("a sub-domain is thinner than what it needs of its neighbors ({:.2g} of {:g}), so messages travel over several "
+                       "ranks: use fewer ranks, or processors and balance along the longer sides", least, ghost));
+    if (hub.fluid && neighbor->skin > 1.5 * hub.dx)
+      warn(fmt::format("the skin {:g} is {:.1f} spacings wide, which only costs time: neighbor {:g} bin", neighbor->skin,
+                       neighbor->skin / hub.dx, 0.3 * hub.dx));
+  }
+
+  /* the particles' distance is the spacing that they were said to have (returned), and nobody sits on somebody else */
+
+  bool spacing(const Cells &cells) const
+  {
+    const double reach = 1.25 * hub.dx;
+    double mine[3] = {0.0, 0.0, 0.0}, sum[3];    // distances, particles that have a neighbor, all
+    struct {
+      double r;
+      int rank;
+    } closest = {BIG, comm->me}, least;
+    double pair[2] = {0.0, 0.0};
+    for (int i = 0; i < atom->nlocal; i++) {
+      double nearest = reach * reach;
+      int who = -1;
+      cells.around(atom->x[i], [&](int j, double rsq) {
+        if (j == i || rsq >= nearest) return;
+        nearest = rsq;
+        who = j;
+      });
+      mine[2]++;
+      if (who < 0) continue;
+      const double r = std::sqrt(nearest);
+      mine[0] += r;
+      mine[1]++;
+      if (r < closest.r) {
+        closest.r = r;
+        pair[0] = std::min(atom->tag[i], atom->tag[who]);
+        pair[1] = std::max(atom->tag[i], atom->tag[who]);
+      }
+    }
+    MPI_Allreduce(mine, sum, 3, MPI_DOUBLE, MPI_SUM, world);
+    if (sum[2] < 2.0) return true;
+    const double mean = sum[1] > 0.0 ? sum[0] / sum[1] / hub.dx : 0.0;
+    if (sum[1] < 0.5 * sum[2]) {
+      warn(fmt::format("most particles have no neighbor within {:g}: is {:g} the spacing of the lattice?", reach, hub.dx));
+      return false;
+    }
+    if (mean < 0.6 || mean > 1.1) {
+      warn(fmt::format("nearest neighbors are {:.3g} apart on average, but the spacing is {:g}: is that of the lattice?", mean * hub.dx,
+                       hub.dx));
+      return false;
+    }
+    if (update->ntimestep == 0) {
+      MPI_Allreduce(&closest, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+      MPI_Bcast(pair, 2, MPI_DOUBLE, least.rank, world);
+      if (least.r < 0.4 * hub.dx)
+        warn(fmt::format("atoms {:.0f} and {:.0f} are {:.2g} spacings apart: do bodies or phases overlap? Put them on one lattice, or "
+                         "delete_atoms overlap", pair[0], pair[1], least.r / hub.dx));
+    }
+    return true;
+  }
+
+  /* Layers across a moving body that lies on a lattice along the axes: the shortest row through a particle, of most particles.
+     Bodies on other lattices have no rows. */
+
+  void thickness(const Cells &cells) const
+  {
+    const int dim = hub.dim;
+    std::map<tagint, std::vector<double>> rows;    // of each body: particles with 1, 2, ENOUGH or more
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!moves(i)) continue;
+      int shortest = ENOUGH, longest = 1;
+      for (int d = 0; d < dim; d++) {
+        int n = 1;
+        for (int side = -1; side <= 1; side += 2)
+          for (int k = 1; k < ENOUGH; k++) {
+            double p[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+            p[d] += side * k * hub.dx;
+            bool there = false;
+            cells.around(p, [&](int j, double rsq) {
+              there |= rsq < 0.09 * hub.dx * hub.dx && solid(j) && atom->molecule[j] == atom->molecule[i];
+            });
+            if (!there) break;
+            n++;
+          }
+        shortest = std::min(shortest, n);
+        longest = std::max(longest, n);
+      }
+      if (longest < ENOUGH) continue;
+      auto &row = rows[atom->molecule[i]];
+      row.resize(ENOUGH, 0.0);
+      row[shortest - 1]++;
+    }
+
+    // bodies are few; their IDs need not be small
+    tagint mine = rows.empty() ? MAXTAGINT : rows.begin()->first, body;
+    for (;;) {
+      MPI_Allreduce(&mine, &body, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+      if (body == MAXTAGINT) break;
+      std::vector<double> part(ENOUGH, 0.0), sum(ENOUGH, 0.0);
+      auto it = rows.find(body);
+      if (it != rows.end()) part = it->second;
+      MPI_Allreduce(part.data(), sum.data(), ENOUGH, MPI_DOUBLE, MPI_SUM, world);
+      const double thin = sum[0] + sum[1];
+      if (thin > sum[2]) {
+        warn(fmt::format("body {} is {} across: it will bend too easily and may leak; take a spacing of a third of its thickness",
+                         body, sum[0] > sum[1] ? "1 particle" : "2 particles"));
+        break;    // one is enough
+      }
+      it = rows.upper_bound(body);
+      mine = it == rows.end() ? MAXTAGINT : it->first;
+    }
+  }
+
+  /* speed of sound against what the fluid has, or gets by falling through its own height; returns the largest speed there is */
+
+  double speeds() const
+  {
+    double g = 0.0;
+    for (int d = 0; d < hub.dim; d++) g += hub.gravity[d] * hub.gravity[d];
+    g = std::sqrt(g);
+    for (int d = 0; d < hub.dim; d++)
+      if (hub.gravity[d] != 0.0 && domain->periodicity[d]) g = 0.0;    // drives a flow in a channel
+    double mine[3] = {0.0, -BIG, -BIG}, most[3];    // speed, both ends along gravity
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!fluid(i)) continue;
+      const double *const x = atom->x[i], *const v = atom->v[i];
+      mine[0] = std::max(mine[0], std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+      if (g == 0.0) continue;
+      const double z = (x[0] * hub.gravity[0] + x[1] * hub.gravity[1] + (hub.dim == 3 ? x[2] * hub.gravity[2] : 0.0)) / g;
+      mine[1] = std::max(mine[1], z);
+      mine[2] = std::max(mine[2], -z);
+    }
+    MPI_Allreduce(mine, most, 3, MPI_DOUBLE, MPI_MAX, world);
+    const double height = g > 0.0 && most[1] > -BIG ? most[1] + most[2] + hub.dx : 0.0;
+    const double falls = std::sqrt(2.0 * g * height), expected = std::max(most[0], falls);
+    for (int t = 1; t <= atom->ntypes; t++) {
+      const State &s = hub.state[t];
+      if (!present[t] || s.species != FLUID || expected == 0.0) continue;
+      if (s.c > 50.0 * expected) {
+        warn(fmt::format("the speed of sound {:g} of the fluid is {:.2g} times the speed {:.3g} that there is or falling gives: 10 times is "
+                         "enough. If the fluid should be faster: velocity ... units box (its default are lattice units per time)",
+                         s.c, s.c / expected, expected));
+        break;
+      }
+      if (s.c >= (7.0 - 1.0e-3) * expected) continue;
+      warn(fmt::format("the speed of sound {:g} of the fluid is {:.1f} times {}, {:.3g}: it should be 7 to 10 times the fastest flow, "
+                       "sound {:.3g}", s.c, s.c / expected,
+                       most[0] > falls ? std::string("its speed at the start") : fmt::format("sqrt(2gH) of its height H = {:.3g}", height),
+                       expected, 10.0 * expected));
+      break;
+    }
+    return most[0];
+  }
+
+  void time_step(double fastest) const
+  {
+    double good = BIG, most = BIG;    // what fix fsi/dt would take; where runs begin to fail (doc/choosing.md)
+    const char *what = "";
+    const auto limit = [&](double x, double y, const char *name) {
+      good = std::min(good, x);
+      if (y < most) {
+        most = y;
+        what = name;
+      }
+    };
+    for (int t = 1; t <= atom->ntypes; t++) {
+      if (!present[t]) continue;
+      const State &s = hub.state[t];
+      if (s.species == FLUID) {
+        const double time = hub.h / (s.c + fastest);
+        limit(0.25 * time, 0.5 * time, "sound in the fluid");
+        const double viscous = hub.fluid->has_laminar() && s.viscosity > 0.0 ? hub.h * hub.h * s.rho0 / s.viscosity : BIG;
+        limit(0.125 * viscous, 0.25 * viscous, "viscosity");
+      } else if (s.species == SOLID) {
+        const double time = hub.substeps * hub.h / longitudinal(s);
+        limit(0.25 * time, 0.4 * time, "elastic waves in the solid");
+      }
+    }
+    if (good == BIG) return;
+    if (update->dt > most)
+      warn(fmt::format("the time step {:g} is too long for {}, {:.3g} at most: timestep {:.3g}, or fix fsi/dt", update->dt, what, most,
+                       good));
+    else if (update->dt < 0.02 * good)
+      warn(fmt::format("the time step {:g}{} is {:.2g} times shorter than it has to be: timestep {:.3g}, or fix fsi/dt", update->dt,
+                       update->dt_default ? ", LAMMPS' default," : "", good / update->dt, good));
+  }
+};
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+void FSI::advise(LAMMPS *lmp, const FixFSI &hub)
+{
+  Adviser(lmp, hub).all();
+}

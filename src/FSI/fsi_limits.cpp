@@ -1,0 +1,114 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_limits.h"
+
+#include "atom.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "pair_fsi_fluid.h"
+#include "pair_fsi_solid.h"
+#include "pair_fsi_solid_tl.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
+{
+  for (double *row : {step, sub}) std::fill_n(row, NLIMIT, UNLIMITED);
+}
+
+/* ----------------------------------------------------------------------
+   fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6 alpha); laminar: h^2/8nu;
+   acceleration: sqrt(h/|a|)/4
+------------------------------------------------------------------------- */
+
+void Limits::find(const FixFSI *hub, int groupbit, bool substeps)
+{
+  const int *const mask = atom->mask, *const type = atom->type;
+  double **v = atom->v;
+  double **f = atom->f;
+  const double *const rmass = atom->rmass, *const rho = atom->rho;
+  const double h = hub->h;
+
+  double *const mine[2] = {step, sub}, fastest = 0.0, asq_max[2] = {0.0, 0.0};
+  for (auto &row : culprit) row[0] = row[1] = 0;
+  std::vector<char> present(atom->ntypes + 1, 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(mask[i] & groupbit)) continue;
+    const State &s = hub->state[type[i]];
+    if (s.species == RIGID) continue;
+    present[type[i]] = 1;
+    if (s.species == FLUID) {
+      double c = s.c;
+      if (s.tait) c *= std::max(1.0, std::pow(rho[i] / s.rho0, 3));
+      c += std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+      if (c > fastest) {
+        fastest = c;
+        culprit[0][0] = atom->tag[i];
+      }
+    }
+    // what is held does not follow its force
+    if (!(mask[i] & hub->groupbit)) continue;
+    const double w = force->ftm2v / rmass[i];
+    const double asq = w * w * (f[i][0] * f[i][0] + f[i][1] * f[i][1] + f[i][2] * f[i][2]);
+    const int in_sub = substeps && s.species == SOLID;
+    if (asq > asq_max[in_sub]) {
+      asq_max[in_sub] = asq;
+      culprit[in_sub][1] = atom->tag[i];
+    }
+  }
+
+  for (double *row : mine) std::fill_n(row, NLIMIT, UNLIMITED);
+  if (fastest > 0.0) mine[0][SOUND] = safe[SOUND] * h / fastest;
+  for (int k = 0; k < 2; k++)
+    if (asq_max[k] > 0.0) mine[k][ACCELERATION] = safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[k]));
+  for (int t = 1; t <= atom->ntypes; t++) {
+    if (!present[t]) continue;
+    const State &s = hub->state[t];
+    const bool fluid = s.species == FLUID;
+    double *const m = mine[substeps && !fluid];
+    double alpha = 0.0;
+    if (fluid) alpha = hub->fluid->artificial_alpha();
+    else if (hub->solid) alpha = hub->solid->artificial_alpha();
+    else if (hub->solid_tl) alpha = hub->solid_tl->artificial_alpha();
+    if (!fluid) m[ELASTIC] = std::min(m[ELASTIC], safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
+    if (alpha > 0.0) m[ARTIFICIAL] = std::min(m[ARTIFICIAL], safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
+    if (fluid && hub->fluid->has_laminar() && s.viscosity > 0.0)
+      m[LAMINAR] = std::min(m[LAMINAR], safe[LAMINAR] * h * h * s.rho0 / s.viscosity);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Limits::reduce()
+{
+  double mine[2][NLIMIT], all[2][NLIMIT];
+  std::copy_n(step, NLIMIT, mine[0]);
+  std::copy_n(sub, NLIMIT, mine[1]);
+  MPI_Allreduce(&mine[0][0], &all[0][0], 2 * NLIMIT, MPI_DOUBLE, MPI_MIN, world);
+  tagint who[2][2];
+  for (int k = 0; k < 2; k++) {
+    who[k][0] = mine[k][SOUND] == all[k][SOUND] ? culprit[k][0] : 0;
+    who[k][1] = mine[k][ACCELERATION] == all[k][ACCELERATION] ? culprit[k][1] : 0;
+  }
+  MPI_Allreduce(&who[0][0], &culprit[0][0], 4, MPI_LMP_TAGINT, MPI_MAX, world);
+  std::copy_n(all[0], NLIMIT, step);
+  std::copy_n(all[1], NLIMIT, sub);
+}

@@ -1,0 +1,43 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Limits of the time step, by cause: fix fsi/dt chooses by them, fix fsi/report says how near a run came to them.
+
+#ifndef LMP_FSI_LIMITS_H
+#define LMP_FSI_LIMITS_H
+
+#include "pointers.h"
+
+namespace LAMMPS_NS {
+class FixFSI;
+namespace FSI {
+
+  class Limits : protected Pointers {
+   public:
+    enum Limit { SOUND, ELASTIC, ARTIFICIAL, LAMINAR, ACCELERATION, NLIMIT };
+    static constexpr double UNLIMITED = 1.0e20;
+    // limit = safe times the time that the Courant number of this cause divides dt by
+    static constexpr double safe[NLIMIT] = {0.25, 0.25, 0.4, 0.125, 0.25};
+
+    double step[NLIMIT], sub[NLIMIT];    // of the step, and of a sub-step of what takes sub-steps
+    tagint culprit[2][2];                // particle behind sound and acceleration, of step and sub-step
+
+    Limits(class LAMMPS *);
+    void find(const FixFSI *, int groupbit, bool substeps);    // of this rank's particles
+    void reduce();                                             // of all ranks
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,69 @@
+"""Reference logs and the gallery: what is committed is complete and of no machine; how logs are made."""
+
+import re
+
+import pytest
+
+from fsi import gallery, log, paths, scene
+
+SCENES = gallery.short()
+
+
+def test_settings_are_the_decks():
+    for name, variables in SCENES.items():
+        scene.check(name, variables)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_reference_logs(name):
+    """Both rank counts ran to their end with the settings of the short form, and agree where they start."""
+    runs = []
+    for ranks in gallery.RANKS:
+        path, = (paths.EXAMPLES / name).glob(f"log.*.{name}.{ranks}")
+        found = log.read(path)
+        assert found.finished and not found.errors and found.finished[-1].ranks == ranks
+        assert path.name.split(".")[1] == gallery.date(found.version)
+        assert path.stat().st_size < 60e3
+        assert not re.search(r"(?<![\w.>])/(home|root|tmp|usr|work|build)\b", path.read_text())
+        runs.append(found.finished[-1])
+    assert runs[0].atoms == runs[1].atoms and runs[0].steps == runs[1].steps
+    columns = [[run.thermo[c][0] for c in run.thermo if c.startswith(("v_", "c_")) and "cpu" not in c.lower()] for run in runs]
+    assert columns[0] == pytest.approx(columns[1], rel=1e-6, abs=1e-6)
+
+
+def test_page_has_every_scene_and_its_picture():
+    text = (paths.ROOT / "doc/src/gallery.rst").read_text()
+    for name in SCENES:
+        assert f"tools/run {name}" in text
+        assert list((paths.EXAMPLES / name).glob("*.png")) and f"examples/{name}/" in text
+    for picture in re.findall(r"image:: \.\./\.\./(\S+)", text):
+        assert (paths.ROOT / picture).exists()
+
+
+def test_every_deck_shows_the_time_that_remains():
+    for name in scene.scenes():
+        assert re.search(r"thermo_style.*cpuremain", scene.deck(name).read_text().replace("&\n", "")), name
+
+
+def test_scrubbed():
+    text = f"read {paths.ROOT}/examples/a/in.a (/opt/lmp/src/fix.cpp:3) 1.5/2 f_3[1]/f_4 a/b\n"
+    assert gallery.scrubbed(text) == "read examples/a/in.a (fix.cpp:3) 1.5/2 f_3[1]/f_4 a/b\n"
+
+
+def test_date():
+    assert (gallery.date("4 Feb 2025"), gallery.date("29 Aug 2024 - Update 1")) == ("4Feb25", "29Aug24")
+
+
+def test_logs_of_one_scene(tmp_path, monkeypatch):
+    """A scene without a deck of particles: both logs, old ones replaced."""
+    folder = tmp_path / "toy"
+    folder.mkdir()
+    (folder / "in.toy").write_text('variable a index 1\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\nmass 1 1\npair_style zero 1\npair_coeff * *\n'
+                                   'print "a is ${a}"\nrun 0\n')
+    (folder / "log.1Jan20.toy.2").write_text("old")
+    (tmp_path / gallery.SHORT).write_text('{"toy": {"a": 7}}')
+    monkeypatch.setattr(paths, "EXAMPLES", tmp_path)
+    assert gallery.reference_logs("toy")
+    names = sorted(path.name for path in folder.glob("log*"))
+    assert len(names) == 2 and names[0].endswith(".toy.1") and names[1].endswith(".toy.2")
+    assert all("a is 7" in (folder / name).read_text() for name in names)

@@ -1,0 +1,182 @@
+"""A scene pays for what it names: instructions, memory and messages of effects that are not named, and warnings for those named in vain.
+
+Instructions are counted by valgrind in the time loop alone, messages around the MPI calls of two ranks: neither depends on the machine's load.
+"""
+
+import re
+import sys
+
+import pytest
+
+from fsi import paths
+
+sys.path.insert(0, str(paths.ROOT / "bench"))
+import effects  # noqa: E402
+import measure  # noqa: E402
+
+SMALL = (24, 16)
+SAME = 2e-3  # counts of the same work differ by so much: what MPI and the allocator do between is not the same every time
+DECKS = {"fluid": effects.fluid, "updated": effects.updated, "total": effects.total}
+ZERO = {  # every effect of a style that has a size, of size zero
+    "fluid": "artificial/visc 0 0 density/diffusion 0 shift 0 surface 0 bulk tension no background 0 couple wall extrapolate no",
+    "updated": "artificial/visc 0 0 artificial/stress 0 hourglass 0 gradient plain",
+    "total": "artificial/visc 0 0 hourglass 0 damage 0 law svk"}
+AWAY = "fix away all fsi/wall/mirror xlo -0.15 xhi 1.15 ylo -0.15 yhi 1.15"  # nobody is near
+
+
+def deck(name, **settings):
+    """A small scene in which nothing moves far enough for another neighbour list."""
+    text = effects.write_materials(DECKS[name](*SMALL, **settings))
+    return re.sub(r"^timestep .*", "timestep 1e-7", text, flags=re.M)
+
+
+@pytest.fixture(scope="module")
+def counted():
+    """{(scene, what is named): {function: instructions a step}}"""
+    cases = {(name, "nothing"): deck(name) for name in DECKS}
+    cases |= {(name, "zero"): deck(name, style=style) for name, style in ZERO.items()}
+    cases |= {("fluid", "walls"): deck("fluid", walls="yes"), ("fluid", "walls away"): deck("fluid", commands=AWAY),
+              ("fluid", "viscosity"): deck("fluid", style="artificial/visc 0.05 0"), ("fluid", "shift"): deck("fluid", style="shift 0.1"),
+              ("updated", "stress"): deck("updated", style="artificial/stress 0.3"), ("total", "hourglass"): deck("total", style="hourglass 0.05")}
+    found = measure.profiles(list(cases.values()))
+    steps = measure.LONG - measure.SHORT
+    return {case: {f: (n - a.get(f, 0)) / steps for f, n in b.items()} for case, (a, b) in zip(cases, found)}
+
+
+@pytest.mark.parametrize("name", DECKS)
+def test_effects_of_size_zero_cost_no_instruction(counted, name):
+    nothing, zero = (sum(counted[name, what].values()) for what in ("nothing", "zero"))
+    assert nothing > 1e5  # pairs have been visited
+    assert abs(zero / nothing - 1.0) < SAME
+
+
+@pytest.mark.parametrize("name, what, least", [("fluid", "viscosity", 0.05), ("fluid", "shift", 0.2), ("fluid", "walls", 0.2),
+                                               ("updated", "stress", 0.05), ("total", "hourglass", 0.2)])
+def test_a_named_effect_is_counted(counted, name, what, least):
+    """What the other tests find absent would be seen."""
+    assert sum(counted[name, what].values()) > (1.0 + least) * sum(counted[name, "nothing"].values())
+
+
+FOREIGN = {"fluid": "Solid|Stress|Reference|Wall|Energy|FSIDt|Watch|Surface|position_divergence|number_density|displacements",
+           "updated": "Fluid|SolidTL|Reference|Wall|Energy|FSIDt|Watch|Surface|hourglass|number_density",
+           "total": "Fluid|Wall|FixFSIStress|Energy|FSIDt|Watch|Surface|advance_solids|break_bonds|number_density"}
+
+
+@pytest.mark.parametrize("name", DECKS)
+def test_no_function_of_what_is_not_named_runs(counted, name):
+    """But for a constant number of instructions: what asks, once a step, whether there is anything to do."""
+    ours = {f: n for f, n in counted[name, "nothing"].items() if "FSI" in f}
+    particles = SMALL[0] * SMALL[1]
+    assert sum(ours.values()) > 100 * particles
+    foreign = {f: n for f, n in ours.items() if re.search(FOREIGN[name], re.sub(r"\(.*", "", f)) and n > 0.1 * particles}
+    assert not foreign
+
+
+def test_walls_that_nobody_is_near_cost_a_look(counted):
+    """Each particle's distance to four walls, for the guard and for images, at some 20 instructions each; pairs cost nothing more."""
+    more = sum(counted["fluid", "walls away"].values()) - sum(counted["fluid", "nothing"].values())
+    assert 0 < more < 2 * 4 * 30 * SMALL[0] * SMALL[1]
+
+
+# ---- messages ------------------------------------------------------------------------------------------------------
+
+OWN = 8 * (6 + 3)  # LAMMPS' own for each ghost: positions and velocities out, forces back
+SENT = [(name, settings) for name in DECKS for settings in [{}, *(s for _, _, s in effects.cases(name))]
+        if not settings.get("commands")]
+
+
+@pytest.fixture(scope="module")
+def sent():
+    texts = [deck(name, **settings) for name, settings in SENT]
+    return list(zip(measure.messages(texts), measure.announcements(texts)))
+
+
+@pytest.mark.parametrize("k", range(len(SENT)), ids=[f"{n}: {' '.join(map(str, s.values())) or 'nothing'}" for n, s in SENT])
+def test_messages_are_those_announced(sent, k):
+    found, text = sent[k]
+    forward, back, more = re.search(r"positions and forces: (\d+) forward, (\d+) back(; 1 back)?", text).groups()
+    size = int(re.search(r"for each ghost: (\d+) bytes", text)[1])
+    assert found["ghosts"] > 0
+    assert found["messages"] == 2 + int(forward) + int(back) + bool(more)
+    assert found["bytes"] == (OWN + size) * found["ghosts"]
+
+
+@pytest.mark.parametrize("name, size", [("fluid", 8 + 8), ("updated", 8 + 8 * 3 + 8 * 4), ("total", 8 + 8 * 2)])
+def test_bare_scenes_send_only_their_own(sent, name, size):
+    """Density out and its rate back; with stress out and the velocity gradient back; forces of bonds back."""
+    found, _ = sent[SENT.index((name, {}))]
+    assert found["bytes"] == (OWN + size) * found["ghosts"]
+
+
+# ---- memory --------------------------------------------------------------------------------------------------------
+
+ARRAYS = {"nothing": (0, {}), "shifting": (40, {"style": "shift 0.1"}), "walls": (4, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
+          "ratio": (8, {"hub": "fluid ratio"}), "summation": (0, {"hub": "fluid summation"}),
+          "the rest": (0, {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1 eos tait tension yes background 1"})}
+SLOTS = 16384  # LAMMPS grows its arrays by so many atoms
+
+
+def test_memory_of_a_fluid():
+    """Beyond a bare LAMMPS with the same particles and lists: position, velocity, density, volume, pressure and its factor gathered for the
+    loops, the density's rate, and what an effect adds; no stress, no gradient."""
+    def text(settings):
+        return effects.write_materials(effects.fluid(125, 125, **settings)) + "\nrun 0"
+    bare = re.sub(r"^(fix|pair_style|pair_coeff) .*\n", "", text({}), flags=re.M)
+    bare = bare.replace("timestep", "pair_style zero 0.024\npair_coeff * *\nset group all mass 1\nfix move all nve\ntimestep")
+    texts = [bare, *(text(settings) for _, settings in ARRAYS.values())]
+    own, *found = [run.bytes_per_rank for run in measure.simulate("\nclear\n".join(texts)).finished]
+    gathered = 8 * (2 + 2 + 4 + 1)
+    for (name, (more, _)), total in zip(ARRAYS.items(), found):
+        assert (total - own) / SLOTS == pytest.approx(gathered + more, abs=1.5), name  # the log has four digits
+
+
+# ---- named in vain -------------------------------------------------------------------------------------------------
+
+def world(style, of, hub="", commands=""):
+    """Particles of type `of` (1 water, 2 plate) in a scene that has materials for both."""
+    pairs = {"fluid": "pair_coeff * * materials.fsi water plate", "solid": "pair_coeff * * materials.fsi plate plate",
+             "both": "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid materials.fsi NULL plate",
+             }
+    kind = "both" if style.startswith("hybrid") else style[4:].split()[0]
+    text = effects.updated(*SMALL).replace("create_box 1", "create_box 2").replace("create_atoms 1", f"create_atoms {of}")
+    text = re.sub(r"^pair_style .*\npair_coeff .*", f"pair_style {style}\n{pairs[kind]}", text, flags=re.M)
+    text = re.sub(r"^(fix sph .*)", rf"\1 {hub}", text, flags=re.M)
+    if kind == "fluid":
+        text = re.sub(r"^fix stress .*\n", "", text, flags=re.M)
+    return effects.write_materials(text + commands + "\nrun 0")
+
+
+HYBRID = "hybrid fsi/fluid sound 10 {} fsi/solid {}"
+VAIN = {
+    "shift without fluid": (world(HYBRID.format("shift 0.1 artificial/visc 0.1 0", ""), 2),
+                            ["Pair style fsi/fluid with artificial/visc, shift, couple has nothing to act on: no particle is a fluid"]),
+    "walls without fluid": (world(HYBRID.format("", ""), 2, commands="fix walls all fsi/wall/mirror xlo 0"),
+                            ["Pair style fsi/fluid", "Fix fsi/wall/mirror has nothing to act on: no particle is a fluid"]),
+    "walls without the fluid's style": (world("fsi/solid", 2, commands="fix walls all fsi/wall/mirror xlo 0"),
+                                        ["Fix fsi/wall/mirror has nothing to act on: walls mirror fluids"]),
+    "artificial stress without solid": (world(HYBRID.format("", "artificial/stress 0.3"), 1),
+                                        ["Pair style fsi/solid with gradient, artificial/stress has nothing to act on: no particle is a solid",
+                                         "Fix fsi/stress has nothing to act on: no particle is a solid"]),
+    "sub-steps without solid": (world("hybrid fsi/fluid sound 10 fsi/solid/tl", 1, "substeps 4").replace("* fsi/solid m", "* fsi/solid/tl m").replace(
+        "fix stress all fsi/stress", ""), ["Pair style fsi/solid/tl with law has nothing", "Fix fsi substeps has nothing"]),
+    "density of fluids without their style": (world("fsi/solid", 2, "fluid summation"), ["Fix fsi fluid density has nothing to act on"]),
+    "density of solids without their style": (world("fsi/fluid sound 10", 1, "solid ratio"), ["Fix fsi solid density has nothing to act on"]),
+    "no-slip walls without viscosity": (world("fsi/fluid sound 10", 1, commands="fix walls all fsi/wall/mirror ylo 0 slip no"),
+                                        ["Fix fsi/wall/mirror slip no has nothing to act on: pair_style fsi/fluid has no laminar/visc"]),
+    "extrapolation without solid": (world("fsi/fluid sound 10 extrapolate yes", 1).replace("water plate", "water water"),
+                                    ["extrapolate has nothing to act on: there is no solid"]),
+    "extrapolation without walls of solid": (world(HYBRID.format("couple full extrapolate yes", ""), 1, commands="set atom 1 type 2"),
+                                             ["extrapolate has nothing to act on: it is for couple wall"]),
+    "watch on nobody": (world("fsi/fluid sound 10", 1, commands="group none type 2\nfix watch none fsi/watch 10\nfix dt none fsi/dt 10"),
+                        ["Fix fsi/watch has nothing to act on: group none is empty", "Fix fsi/dt has nothing to act on: group none is empty"]),
+    "nothing in vain": (world(HYBRID.format("artificial/visc 0.1 0 extrapolate yes", "artificial/stress 0.3"), 1,
+                              commands="set atom 1*8 type 2\nset group all mol 1\nfix walls all fsi/wall/mirror xlo 0"), [])}
+
+
+@pytest.mark.parametrize("name", VAIN)
+def test_what_is_named_in_vain_is_warned_of(name):
+    text, expected = VAIN[name]
+    warnings = [w for w in measure.simulate(text).warnings if "nothing to act on" in w]
+    assert len(warnings) == len(expected), warnings
+    for words in expected:
+        assert any(words in w for w in warnings), (words, warnings)

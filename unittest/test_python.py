@@ -1,0 +1,192 @@
+"""The Python package by itself: installed by pip, its command line, its readers and converters; what ParaView would read is decoded anew."""
+
+import base64
+import os
+import shutil
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from conftest import run
+
+from fsi import __main__ as cli
+from fsi import animate, dump, paths, series, vtk
+
+DUMP = """ITEM: TIMESTEP
+{step}
+ITEM: TIME
+{time}
+ITEM: NUMBER OF ATOMS
+3
+ITEM: BOX BOUNDS ff ff pp
+0 1
+0 1
+-0.5 0.5
+ITEM: ATOMS id type mol x y vx vy sxx sxy p
+3 2 1 0.2 0 0 0 1e5 2e5 300
+1 1 0 0 0 1 -1 0 0 100
+2 1 0 0.1 0.05 1.5 -2 0 0 {p}
+"""
+LOG = """LAMMPS (4 Feb 2025)
+WARNING: Fix fsi: mind the gap
+FSI peak 4.5
+Per MPI rank memory allocation (min/avg/max) = 1 | 2 | 3 Mbytes
+   Step         v_time
+         0   0
+       100   0.5
+Loop time of 2.0 on 1 procs for 100 steps with 400 atoms
+"""
+
+
+@pytest.fixture
+def frames(tmp_path):
+    path = tmp_path / "some.dump"
+    path.write_text(DUMP.format(step=0, time=0, p=200) + DUMP.format(step=50, time=0.25, p="nan"))
+    return path
+
+
+def test_installed_by_pip(tmp_path, frames):
+    """Without network; used from a folder that knows nothing of the repository."""
+    shutil.copytree(paths.ROOT / "python", tmp_path / "python", ignore=shutil.ignore_patterns("build", "*.egg-info", "__pycache__"))
+    subprocess.run([sys.executable, "-m", "pip", "install", "-q", "--no-index", "--no-deps", "--no-build-isolation", "--target",
+                    tmp_path / "site", tmp_path / "python"], check=True)
+    env = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "FSI_BUILD_DIR")}
+    env["PYTHONPATH"] = str(tmp_path / "site")
+    done = subprocess.run([tmp_path / "site/bin/fsi", "dump", frames], cwd=tmp_path / "site", env=env, capture_output=True, text=True, check=True)
+    assert "2 frames from t = 0 to 0.25, 3 particles" in done.stdout
+    where = subprocess.run([sys.executable, "-c", "import fsi; print(fsi.__file__)"], cwd=tmp_path, env=env, capture_output=True, text=True, check=True)
+    assert str(tmp_path / "site") in where.stdout
+
+
+def decode(array):
+    """A DataArray of a .vtu file by the format's definition: base64 of a little-endian UInt64 length and that many bytes."""
+    raw = base64.b64decode(array.text)
+    data = raw[8:]
+    assert int.from_bytes(raw[:8], "little") == len(data)
+    values = np.frombuffer(data, {"Float64": "<f8", "Int64": "<i8", "UInt8": "u1"}[array.get("type")])
+    return values.reshape(-1, 3) if array.get("NumberOfComponents") == "3" else values
+
+
+def test_vtk(frames):
+    index = vtk.convert(frames)
+    sets = ElementTree.parse(index).getroot().findall("Collection/DataSet")
+    assert [float(s.get("timestep")) for s in sets] == [0.0, 0.25]
+    piece = ElementTree.parse(index.parent / sets[1].get("file")).getroot().find("UnstructuredGrid/Piece")
+    assert piece.get("NumberOfPoints") == piece.get("NumberOfCells") == "3"
+    data = {a.get("Name"): decode(a) for a in piece.find("PointData")}
+    assert set(data) == {"id", "type", "mol", "v", "sxx", "sxy", "p"}
+    np.testing.assert_array_equal(data["id"], [1, 2, 3])
+    np.testing.assert_array_equal(data["v"], [[1, -1, 0], [1.5, -2, 0], [0, 0, 0]])
+    np.testing.assert_array_equal(data["p"], [100, np.nan, 300])
+    np.testing.assert_array_equal(decode(piece.find("Points/DataArray")), [[0, 0, 0], [0.1, 0.05, 0], [0.2, 0, 0]])
+    cells = {a.get("Name"): decode(a) for a in piece.find("Cells")}
+    np.testing.assert_array_equal(cells["connectivity"], [0, 1, 2])
+    np.testing.assert_array_equal(cells["offsets"], [1, 2, 3])
+    np.testing.assert_array_equal(cells["types"], [1, 1, 1])  # VTK_VERTEX
+
+
+def test_species_and_spacing(frames):
+    read = dump.read(frames)
+    assert animate.species(read) == ((1,), (2,))
+    assert animate.species(read, {1}) == ((2,), (1,))
+    assert animate.spacing(read[0]) == pytest.approx(np.hypot(0.1, 0.05))
+
+
+def test_animation(frames, tmp_path, monkeypatch, capsys):
+    """A stand-in for ffmpeg finds all pictures, numbered, of one size; without any the pictures stay."""
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    monkeypatch.setenv("PATH", str(tools))
+    animate.main([str(frames)])
+    pictures = sorted((tmp_path / "some").glob("*.png"))
+    assert [p.name for p in pictures] == ["00000.png", "00001.png"]
+    assert "ffmpeg is not here" in capsys.readouterr().err
+    assert len({p.read_bytes()[16:24] for p in pictures}) == 1  # width and height in the header
+
+    fake = tools / "ffmpeg"
+    fake.write_text(f"#!{sys.executable}\nimport sys, glob, os\nfrom pathlib import Path\n"
+                    "source = Path(sys.argv[sys.argv.index('-i') + 1])\nassert source.name == '%05d.png'\n"
+                    "Path(sys.argv[-1]).write_text(sys.argv[sys.argv.index('-framerate') + 1] + ' ' + str(len(list(source.parent.glob('*.png')))))\n")
+    fake.chmod(0o755)
+    animate.main([str(frames), str(tmp_path / "a.mp4"), "rate=5"])
+    assert (tmp_path / "a.mp4").read_text() == "5.0 2"
+
+
+def test_command_line(frames, tmp_path, capsys):
+    path = tmp_path / "log.lammps"
+    path.write_text(LOG)
+
+    def says(*words):
+        cli.main([str(w) for w in words])
+        return capsys.readouterr().out
+
+    text = says("log", path)
+    assert "400 atoms, 100 steps on 1 ranks in 2 s, 2e+04 particle-steps/s" in text and "peak = 4.5" in text and "mind the gap" in text
+    assert says("log", path, "Step", "time") == "Step,time\n0,0\n100,0.5\n"
+    says("log", path, "time", "Step", f"plot={tmp_path / 'log.png'}")
+    says("dump", frames, f"plot={tmp_path / 'dump.png'}")
+    assert all((tmp_path / name).read_bytes().startswith(b"\x89PNG") for name in ("log.png", "dump.png"))
+    for words, message in (([], "Usage"), (["log", path, "speed"], "no column speed; it has Step, v_time"), (["dump", path], "no frames"),
+                           (["log", tmp_path / "none"], "No such file")):
+        with pytest.raises(SystemExit, match=message):
+            cli.main([str(w) for w in words])
+
+
+def test_frequency(tmp_path, capsys):
+    """Four periods: the window's bias is below 1 %; a drift and a smaller, faster swing change nothing more."""
+    t = np.arange(0.0, 2.0, 0.01)**1.01  # unevenly spaced
+    for f in (2.1, 3.7):
+        y = 5.0 + 0.3 * t + np.cos(2 * np.pi * f * t) + 0.3 * np.sin(2 * np.pi * 11 * t)
+        assert series.frequency(t, y) == pytest.approx(f, rel=0.01)
+    (tmp_path / "tip.csv").write_text("time,tip\n" + "".join(f"{a},{b}\n" for a, b in zip(t, y)))
+    cli.main(["frequency", str(tmp_path / "tip.csv"), "tip", "0.2"])
+    assert float(capsys.readouterr().out.split()[0]) == pytest.approx(3.7, rel=0.01)
+    for words, message in ((["tip", "0", "0.01"], "has 2 rows"), ([], "takes a column"), (["speed"], "no column speed")):
+        with pytest.raises(SystemExit, match=message):
+            cli.main(["frequency", str(tmp_path / "tip.csv"), *words])
+    with pytest.raises(ValueError, match="constant"):
+        series.frequency(t, np.ones(len(t)))
+
+
+def test_animation_says_what_the_dump_lacks(tmp_path):
+    path = tmp_path / "bare.dump"
+    path.write_text(DUMP.format(step=0, time=0, p=1).replace(" p\n", " c_1[1]\n"))
+    with pytest.raises(SystemExit, match="colname"):
+        animate.main([str(path)])
+
+
+def test_files_of_fix_ave_time_and_print(tmp_path):
+    """As LAMMPS itself writes them, in both modes; a cut-off end is left out."""
+    run(tmp_path, """units lj
+region box block 0 4 0 4 0 4
+lattice sc 1
+create_box 1 box
+create_atoms 1 box
+mass 1 1
+pair_style zero 1
+pair_coeff * *
+fix 1 all nve
+velocity all set 1 2 0
+compute v all reduce sum vx vy
+variable t equal step*dt
+fix a all ave/time 1 2 4 c_v[1] v_t file scalar.ave
+fix b all ave/time 1 1 4 c_v mode vector file vector.ave
+fix c all print 4 "${t},$(step)" file print.csv title "time,step" screen no
+run 8
+""")
+    scalar = series.read_any(tmp_path / "scalar.ave")
+    np.testing.assert_array_equal(scalar.time, [4, 8])
+    np.testing.assert_allclose(scalar["c_v[1]"], 64)
+    np.testing.assert_allclose(scalar["v_t"], [0.0175, 0.0375], rtol=1e-6)
+    vector = series.rows(series.read_any(tmp_path / "vector.ave").columns)
+    np.testing.assert_allclose(vector["c_v[1]"], [64, 64, 64])
+    np.testing.assert_allclose(vector["c_v[2]"], [128, 128, 128])
+    np.testing.assert_array_equal(vector["TimeStep"], [0, 4, 8])
+    np.testing.assert_array_equal(series.read_any(tmp_path / "print.csv")["step"], [0, 4, 8])
+    text = (tmp_path / "vector.ave").read_text()
+    (tmp_path / "cut.ave").write_text(text[:text.rindex("\n", 0, -1)])
+    assert len(series.read_ave(tmp_path / "cut.ave").time) == 2
+    with pytest.raises(ValueError, match="not a file of fix ave/time"):
+        series.read_ave(tmp_path / "print.csv")

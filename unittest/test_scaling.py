@@ -1,0 +1,56 @@
+"""The model of many ranks, and what tools/cost effects, peers and scaling refuse."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from fsi import paths
+from fsi.scene import Refusal
+
+sys.path.insert(0, str(paths.ROOT / "bench"))
+import effects  # noqa: E402
+import peers  # noqa: E402
+import scaling  # noqa: E402
+
+M = {"tau": 1e-6, "bytes": 98.0, "exchanges": 4, "w": 3.0}
+FREE = {"latency": 0.0, "bandwidth": np.inf, "ghost": 0.0, "imbalance": 0.0}
+
+
+def test_ghosts_are_the_shell_around_a_cube():
+    axis = np.arange(-3, 13)
+    x = np.stack(np.meshgrid(axis, axis, axis), -1).reshape(-1, 3)
+    inside = ((x >= 0) & (x < 10)).all(1)
+    assert scaling.ghosts(inside.sum(), 3.0) == pytest.approx((~inside).sum())
+
+
+@pytest.mark.parametrize("ranks", [2, 100, 10000])
+def test_a_network_that_costs_nothing(ranks):
+    assert scaling.step(1e8, ranks, M, FREE) * ranks == pytest.approx(scaling.step(1e8, 1, M))
+
+
+@pytest.mark.parametrize("name, value, seconds", [
+    ("latency", 1e-6, 1e-6 * (4 * 6 + np.log2(1000))),  # four exchanges with six swaps, one collective call
+    ("bandwidth", 1e9, ((100 + 6)**3 - 1e6) * 98 / 1e9), ("ghost", 0.1, 0.1 * ((100 + 6)**3 - 1e6) * 1e-6), ("imbalance", 0.05, 0.05 * 1e6 * 1e-6)])
+def test_each_term(name, value, seconds):
+    """A million particles on each of 1000 ranks."""
+    more = scaling.step(1e9, 1000, M, FREE | {name: value}) - scaling.step(1e9, 1000, M, FREE)
+    assert more == pytest.approx(seconds, rel=1e-9)
+
+
+def test_small_cubes_ask_further_ranks():
+    """Two particles along an edge, three spacings of ghosts: two ranks each way, so twice the swaps."""
+    small = {**FREE, "latency": 1.0, "collectives": 0}
+    assert scaling.step(8 * 1000, 1000, M, small) == pytest.approx(2 * 6 * 4, rel=1e-4)
+
+
+@pytest.mark.parametrize("program", [effects, peers, scaling])
+def test_nonsense_is_refused(program):
+    with pytest.raises(Refusal, match="nonsense"):
+        program.main(["nonsense"])
+
+
+def test_the_gates_deck_can_do_without_each_part():
+    whole = effects.gate(400, 0)
+    for part in ("viscosity", "diffusion", "walls", "rubber viscosity", "substeps"):
+        assert len(effects.gate(400, 0, without=(part,))) < len(whole)
