@@ -50,7 +50,7 @@ def reference_logs(name):
         with tempfile.TemporaryDirectory() as folder:
             print(f"gallery: {name} on {ranks}", flush=True)
             with redirect_stdout(StringIO()):
-                status, _, output = scene._simulate(name, Path(folder), ranks, variables)
+                status, _, output = scene._simulate(scene.deck(name), Path(folder), ranks, variables)
             if status != 0:
                 print(*output[-5:], sep="\n", file=sys.stderr)
                 return False
