@@ -42,7 +42,7 @@ def test_short_form(monkeypatch, tmp_path):
     assert not table["drop"]["paper"]["pass"] and not table["spin"]["paper"]["pass"]
     assert table["drop"]["best"]["worst"]["distance"] > 0.7 > 0.3 > table["drop"]["paper"]["worst"]["distance"]
     page = (tmp_path / "README.md").read_text()
-    assert "passes 6 of 6 rows." in page and "fails 2 of the 2" in page and (tmp_path / "hard.png").exists()
+    assert "passes 6 of 6 rows" in page and "fails 2 of the 2" in page and (tmp_path / "hard.png").exists()
     assert "FAIL" in page and (tmp_path / "hard.csv").read_text().count("\n") > 15
 
 

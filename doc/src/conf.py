@@ -31,21 +31,21 @@ class LAMMPSLexer(RegexLexer):
 
 
 # Markdown pages that have a page in the manual
-PAGES = {"doc/results/README.md": "results", "doc/cost/README.md": "cost", "doc/choosing.md": "choosing", "doc/scenes.md": "scenes",
-         "doc/testing.md": "testing"} | {f"doc/cost/{p.name}": "cost" for p in (Path(__file__).parents[1] / "cost").glob("*_*.md")}
+PAGES = {"doc/results/README.md": "results", "doc/cost/README.md": "cost", "doc/choosing.md": "choosing", "doc/hard/README.md": "hard", "doc/scenes.md": "scenes",
+         "doc/testing.md": "testing"} | {f"doc/cost/{p.name}": "cost" for p in (Path(__file__).parents[1] / "cost").glob("*.md") if p.name != "README.md"}
 ROOT = Path(__file__).resolve().parents[2]
 
 
 class Markdown(Directive):
-    """``.. markdown:: FILE ...``: Markdown files of the repository as they are, without their title; pictures are copied, links followed."""
+    """``.. markdown:: FILE-OR-PATTERN ...``: Markdown files of the repository as they are, without their title; pictures are copied, links followed."""
 
     required_arguments, optional_arguments = 1, 100
 
     def run(self):
         env = self.state.document.settings.env
         found = []
-        for name in self.arguments:
-            path = Path(env.relfn2path(name)[1])
+        given = [Path(env.relfn2path(name)[1]) for name in self.arguments]
+        for path in dict.fromkeys(path for pattern in given for path in sorted(pattern.parent.glob(pattern.name))):
             env.note_dependency(str(path))
             # a table may stand in a paragraph's place in GitHub's Markdown, and raw HTML may hold Markdown
             text = re.sub(r"(?m)^(?!\||\s*$)(.*)\n(?=\|[^\n]*\n\|[\s:|-]+$)", r"\1\n\n", path.read_text())

@@ -11,14 +11,13 @@ own examples). Pictures that a scene's README shows are renewed from results/SCE
 import json
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
-from contextlib import redirect_stdout
 from datetime import datetime
-from io import StringIO
 from pathlib import Path
 
-from . import log, paths, scene
+from . import launch, log, paths, scene
 from .results import _pictures, _readme
 
 SHORT = "short.json"
@@ -49,10 +48,10 @@ def reference_logs(name):
     for ranks in RANKS:
         with tempfile.TemporaryDirectory() as folder:
             print(f"gallery: {name} on {ranks}", flush=True)
-            with redirect_stdout(StringIO()):
-                status, _, output = scene._simulate(scene.deck(name), Path(folder), ranks, variables)
-            if status != 0:
-                print(*output[-5:], sep="\n", file=sys.stderr)
+            done = subprocess.run(launch.lammps(scene.deck(name), ranks, variables), cwd=folder, env=launch.environment(),
+                                  stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False)
+            if done.returncode != 0:
+                print(done.stdout[-1000:], file=sys.stderr)
                 return False
             text = (Path(folder) / "log.lammps").read_text(errors="replace")
             target = paths.EXAMPLES / name

@@ -17,8 +17,6 @@
 #ifndef LMP_FSI_VISCOSITY_ARTIFICIAL_H
 #define LMP_FSI_VISCOSITY_ARTIFICIAL_H
 
-#include <algorithm>
-
 namespace LAMMPS_NS {
 namespace FSI {
 
@@ -31,8 +29,8 @@ namespace FSI {
     // vdotx = v_ij.x_ij; rho, c: pair means; vv = V_i V_j
     double operator()(double vdotx, double rsq, double rho, double c, double vv) const
     {
-      // without a branch: every second pair of a fluid separates, which no processor can foresee
-      const double mu = h * std::min(vdotx, 0.0) / (rsq + eta);
+      if (vdotx >= 0.0) return 0.0;
+      const double mu = h * vdotx / (rsq + eta);
       return rho * vv * mu * (beta * mu - alpha * c);
     }
   };
