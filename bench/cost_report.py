@@ -38,7 +38,7 @@ def write(folder, name, definition, points, source):
         "scene": name, "title": definition["title"], "figure": definition["figure"], "reference": about,
         "command": definition["command"],
         "source": source, "points": len(rows), "failed": sum(r["status"] == "failed" for r in rows),
-        "spread": float(np.median([r["spread"] for r in rows if r["spread"] is not None] or [0.0])),
+        "spread": float(np.median(spreads)) if (spreads := [r["spread"] for r in rows if r["spread"] is not None]) else None,
         "cpu_seconds": sum({json.dumps(p["run"]["settings"]): sum(p["run"]["cpu_seconds"]) for p in points}.values()),
         "methods": methods, "knobs": _knobs(definition, rows), "reach": _reach(methods)}
     summary["recommendation"] = _recommendation(definition, summary, rows)
@@ -537,8 +537,9 @@ def _page(definition, summary, rows, curves):
              f"it is written anew. Contents of src and potentials: {summary['source']}.", "",
              f"Error: {definition['label']} (figure `{summary['figure']}`). Reference: {summary['reference']['source']}. "
              f"{definition.get('notes', '')}",
-             "Time: CPU seconds of the time loop on one core, the median of up to three runs, which differ by "
-             f"{100 * summary['spread']:.0f} % (median). Other work on the machine lengthens even CPU time through shared "
+             "Time: CPU seconds of the time loop on one core, " +
+             ("one run of each point. " if summary["spread"] is None else "the median of up to three runs, which differ by "
+              f"{100 * summary['spread']:.0f} % (median). ") + "Other work on the machine lengthens even CPU time through shared "
              "caches. What does not depend on the machine: particle-steps (of total-Lagrangian solids times sub-steps), pair visits (entries "
              "of the neighbour list times steps, and bonds of total-Lagrangian solids, from both ends, times sub-steps), instructions of "
              "the time loop (callgrind, over the first steps of one run of each method).", "",

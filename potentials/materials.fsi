@@ -1,5 +1,5 @@
 # DATE: 2026-11-21 UNITS: si CONTRIBUTOR: FSI package CITATION: Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879
-# One material per line: name, fluid or solid, then keyword and value (doc/src/materials.rst).
+# One material per line: name, fluid, solid or wall, then keyword and value (doc/src/materials.rst).
 #   fluid: rho [kg/m^3], viscosity [Pa s] (default 0)
 #   solid: rho [kg/m^3], young [Pa], poisson [-], yield [Pa], hardening [Pa]
 # The speed of sound of a fluid is a numerical choice and belongs to the input script.
@@ -51,6 +51,14 @@ column           solid rho 1100.0 young 17.0e6 poisson 0.45
 
 # Rubber rings that collide: Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641; only ratios matter
 ring             solid rho 1200.0 young 10.0e6 poisson 0.3975
+
+# Walls made of particles: fixed or prescribed ones have no mass that matters; a floating body has its own density
+wall             wall rho 1000.0
+
+# Rolling tank with an elastic baffle: Botia-Vera, Souto-Iglesias, Bulian and Lobovsky, 5th SPHERIC workshop (2010); Idelsohn, Marti,
+# Souto-Iglesias and Onate, Comput. Mech. 43 (2008) 125
+sunflower_oil    fluid rho 917.0 viscosity 0.04585
+baffle_6MPa      solid rho 1100.0 young 6.0e6 poisson 0.49
 
 # Copper of the Taylor bar: Zhu and Cescotto, Int. J. Numer. Methods Eng. 38 (1995) 987; linear hardening
 copper           solid rho 8930.0 young 117.0e9 poisson 0.35 yield 400.0e6 hardening 100.0e6

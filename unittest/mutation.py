@@ -35,7 +35,7 @@ MUTATIONS = [
     (FLUID, "rj = pj.rho * pj.vol * s;", "rj = -pj.rho * pj.vol * s;", "density"),
     (FLUID, "rj -= k * pi.vol;", "rj += k * pi.vol;", "density"),
     (FLUID, "rate[i] += point[i].rho * point[i].vol * g * sum;", "rate[i] -= point[i].rho * point[i].vol * g * sum;", "walls"),
-    (FLUID, "double p = a[i].pv2 + a[j].pv2,", "double p = a[i].pv2 - a[j].pv2,", "walls momentum density"),
+    (FLUID, "double p = pi.pv2 + pj.pv2,", "double p = pi.pv2 - pj.pv2,", "walls momentum density"),
     (FLUID, "c = si.c < sj.c ? si.c : sj.c;", "c = si.c > sj.c ? si.c : sj.c;", "interface momentum"),
     (FLUID, "p = a[nf].pv2 + pw * a[ns].vol * a[ns].vol;", "p = a[nf].pv2 - pw * a[ns].vol * a[ns].vol;", "interface"),
     (FLUID, "if (p < 0.0) p = 0.0;", "if (p < 0.0) p = -p;", "interface"),

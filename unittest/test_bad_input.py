@@ -35,6 +35,8 @@ FILES = {
     "soft.fsi": materials(WATER, "plate solid rho 1000 poisson 0.4"),
     "long.fsi": materials(WATER, PLATE, "w" * 200 + " fluid rho 1000"),
     "name.fsi": materials(WATER, PLATE, "lonely"),
+    "wall.fsi": materials(WATER, "plate wall rho 1000"),
+    "stiff.fsi": materials(WATER, "plate wall rho 1000 young 1e6"),
 }
 
 
@@ -71,6 +73,12 @@ def spectrum(arguments):
 
 NO_FSI = "unfix sph\npair_style zero 0.03\npair_coeff * *\nunfix stress\nunfix walls\n"
 HYBRID = re.compile(r"pair_style hybrid.*\npair_coeff.*\npair_coeff.*\n")
+
+
+def wall(more=""):
+    """The scene with the plate's particles as a wall"""
+    return f"pair_style fsi/fluid sound 10\npair_coeff * * wall.fsi water plate\n{more}\n"
+
 
 # name, text to replace, replacement, what the error must say (a regular expression), dimension
 CASES = [
@@ -119,6 +127,19 @@ CASES = [
      r"support 0\.03 of fix fsi is larger than the comm_modify cutoff 0\.02"),
     ("triclinic box", RUN, "change_box all triclinic\nrun 0", r"triclinic"),
     ("dimension given late", START, START + "\ndimension 3", r"[Dd]imension"),
+    # fix fsi/wall/particle: the plate is of a wall
+    ("wall without its fix", HYBRID, wall(), r"Atom \d+ of type 2 is of a wall, but in no fix fsi/wall/particle"),
+    ("wall fix of water", HYBRID, wall("fix w all fsi/wall/particle"), r"Atom \d+ of fix fsi/wall/particle w is of type 1, whose material is not a wall"),
+    ("wall particles integrated", re.compile(HYBRID.pattern + r"([\s\S]*)\nrun 0"), wall("") + r"\1\ngroup w type 2\nfix w w fsi/wall/particle\nrun 0",
+     r"fix fsi/wall/particle w is also in the group of fix fsi"),
+    ("wall fix keyword unknown", HYBRID, wall("fix w all fsi/wall/particle rough yes"), r"keyword rough: expected slip or guard"),
+    ("wall fix value missing", HYBRID, wall("fix w all fsi/wall/particle guard"), r"fix fsi/wall/particle guard command: missing"),
+    ("wall guard large", HYBRID, wall("fix w all fsi/wall/particle guard 1.5"), r"guard 1\.5 must be between 0 and 1"),
+    ("wall slip no logical", HYBRID, wall("fix w all fsi/wall/particle slip perhaps"), r"perhaps"),
+    ("wall twice", re.compile(HYBRID.pattern + r"([\s\S]*)fix sph all([\s\S]*)\nrun 0"),
+     wall("group w type 2\ngroup m type 1\nfix w1 w fsi/wall/particle\nfix w2 w fsi/wall/particle") + r"\1fix sph m\2\nrun 0",
+     r"Atom type 2 is in two fixes fsi/wall/particle"),
+    ("keyword of a solid for a wall", *coeff("stiff.fsi water plate"), r"Unknown keyword young of wall plate .*expected rho"),
     # fix fsi/stress
     ("solid without fix fsi/stress", STRESS, "", r"fsi/solid requires fix fsi/stress"),
     ("two fix fsi/stress", STRESS, STRESS + "\nfix stress2 all fsi/stress", r"only one fix fsi/stress"),

@@ -60,6 +60,11 @@ def deck(page, example):
         return SETUP + example + "\n" + FIX + (STRESS if re.search(r"fsi/solid(?!/)", example) else "") + "run 1\n"
     sub = "substeps" in example
     pairs = lagrangian(PAIRS) if sub else PAIRS
+    if page == "fix_fsi_wall_particle":
+        walls = SETUP.replace("create_box 2", "create_box 3").replace("group water", "region wall block -0.04 0 -0.04 0.1 INF INF units box\n"
+                                                                      "create_atoms 3 region wall\ngroup wall type 3\ngroup water")
+        pairs = PAIRS.replace("water plate", "water plate wall").replace("NULL plate", "NULL plate NULL")
+        return walls + pairs + FIX.replace("all", "fluid").replace("fix", "group fluid subtract all wall\nfix", 1) + STRESS + GRAVITY + example + "\nrun 1\n"
     fix = "" if page == "fix_fsi" else FIX
     stress = "" if sub or page == "fix_fsi_stress" else STRESS
     return SETUP + pairs + fix + stress + GRAVITY + example + "\nrun 1\n"

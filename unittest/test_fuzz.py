@@ -18,9 +18,11 @@ COMMANDS = [
     "pair_style fsi/solid/tl artificial/visc 0.1 0.1 hourglass 0.1 law svk plane strain gradient linear volumes plain",
     "pair_style hybrid fsi/fluid sound 10 couple wall fsi/solid gradient plain",
     "pair_coeff * * materials.fsi water plate",
+    "pair_coeff * * materials.fsi water tank",
     "pair_coeff * * fsi/fluid materials.fsi water plate",
     "fix sph all fsi 0.01 wendland 1.5 fluid continuity solid ratio substeps 3",
     "fix stress all fsi/stress plane strain",
+    "fix particles all fsi/wall/particle slip no guard 0.9",
     "fix walls all fsi/wall/mirror xlo 0 range y 0 INF velocity 0.1 0 0 slip no ylo EDGE guard 0.2",
     "fix dt all fsi/dt 10 cfl 0.9 min 1e-9 max 1e-3 growth 1.2 substeps auto check no",
     "fix watch all fsi/watch 10 mach 0.3 distance 0.2 density off courant 0.4 energy 5 lost 0 reflected 9 action warn dump off",
@@ -34,6 +36,7 @@ COMMANDS = [
 MATERIALS = """# DATE: 2025-01-01 UNITS: si CONTRIBUTOR: test
 water fluid rho 1000 viscosity 1e-3
 plate solid rho 1000 young 2e6 poisson 0.4
+tank wall rho 1000
 """
 WORDS = ["0", "-1", "1e400", "nan", "-inf", "1e-320", "99999999999", "3.5", "*", "NULL", "INF", "yes", "", "\t", "é", "x" * 80, "$", "&", '"',
          "fluid", "solid", "rho", "all", "xlo", "EDGE", "off", "auto", "#", "%s%n", "0x10", "1.5.2"]

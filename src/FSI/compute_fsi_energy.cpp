@@ -84,6 +84,7 @@ void ComputeFSIEnergy::compute_vector()
   // in the setup of a run positions and velocities are of one time
   const double half = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++) {
+    if (hub->state[atom->type[i]].species == FSI::RIGID) continue;    // what it gets is in the term of walls
     const double m = atom->rmass[i];
     const bool tl = hub->is_total_lagrangian(i);
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it

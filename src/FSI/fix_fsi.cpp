@@ -22,6 +22,7 @@
 #include "fix_fsi_report.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
+#include "fix_fsi_wall_particle.h"
 #include "force.h"
 #include "fsi_advice.h"
 #include "fsi_gradient.h"
@@ -48,7 +49,7 @@ using namespace FSI;
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
-    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
+    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
     solid(nullptr), solid_tl(nullptr), substeps(1), fix_dt(nullptr), profile(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
     tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false)
 {
@@ -126,6 +127,7 @@ FixFSI::~FixFSI()
   memory->destroy(shift);
   memory->destroy(grad);
   memory->destroy(wmask);
+  memory->destroy(wall_velocity);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -197,6 +199,9 @@ void FixFSI::init()
   if (!fluid && !wall_fixes.empty() && comm->me == 0)
     error->warning(FLERR, "Fix fsi/wall/mirror has nothing to act on: walls mirror fluids, and there is no pair_style fsi/fluid");
   gather_walls();
+  particle_walls.clear();
+  for (auto &fix : modify->get_fix_by_style("^fsi/wall/particle$"))
+    particle_walls.push_back(dynamic_cast<FixFSIWallParticle *>(fix));
 
   need_psi = density_fluid != CONTINUITY || (fluid && fluid->surface_ratio > 0.0) ||
       (solid && density_solid != CONTINUITY);
@@ -230,6 +235,9 @@ void FixFSI::init()
     if (state[atom->type[i]].species == NONE)
       error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i],
                  atom->type[i]);
+    if (state[atom->type[i]].species == RIGID &&
+        std::none_of(particle_walls.begin(), particle_walls.end(), [&](const Fix *fix) { return atom->mask[i] & fix->groupbit; }))
+      error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
     give_defaults(i);
   }
   find_gravity();
@@ -253,6 +261,7 @@ void FixFSI::setup(int)
   if (fluid) effects.push_back({fmt::format("{} mirror walls", walls.wall.size()), "fix fsi/wall/mirror", !wall_fixes.empty()});
   if (fix_stress) effects.push_back({"plasticity", "fix fsi/stress plastic", fix_stress->plastic});
   if (solid_tl) effects.push_back({fmt::format("{} solid sub-steps", substeps), "fix fsi substeps", substeps > 1});
+  if (fluid) effects.push_back({fmt::format("{} groups of wall particles", particle_walls.size()), "fix fsi/wall/particle", !particle_walls.empty()});
   effects.push_back({"energy ledger", "compute fsi/energy", ledger});
   std::string on, off;
   effects_on.clear();
@@ -536,6 +545,10 @@ void FixFSI::update_state(bool advance)
     if (need_shift) memory->grow(shift, nmax, nshift(), "fsi:shift");
     if (need_grad) memory->grow(grad, nmax, ngrad(), "fsi:grad");
     if (!wall_fixes.empty()) memory->grow(wmask, nmax, "fsi:wmask");
+    if (std::any_of(particle_walls.begin(), particle_walls.end(), [](const auto *fix) { return !fix->slip; })) {
+      memory->grow(wall_velocity, nmax, 3, "fsi:wall_velocity");
+      memset(wall_velocity[0], 0, (size_t) nmax * 3 * sizeof(double));
+    }
   }
 
   tally_dt = (ledger && advance) ? update->dt : 0.0;
@@ -545,7 +558,8 @@ void FixFSI::update_state(bool advance)
     for (auto *fix : wall_fixes) fix->clear_force();
     gather_walls();
     double **x = atom->x;
-    for (int i = 0; i < nall; i++) wmask[i] = walls.near(x[i], cut);
+    // walls of particles go on behind a mirror themselves
+    for (int i = 0; i < nall; i++) wmask[i] = state[atom->type[i]].species == RIGID ? 0 : walls.near(x[i], cut);
   }
 
   // the gradient's coefficients are needed by forces, so in setup too
@@ -588,6 +602,7 @@ void FixFSI::update_state(bool advance)
   }
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
   forward_comm(profile, comm, this);
+  for (auto *fix : particle_walls) fix->extrapolate(advance);
 }
 
 /* ----------------------------------------------------------------------
@@ -646,6 +661,7 @@ void FixFSI::density_from_psi()
   const double *const rmass = atom->rmass;
   const int *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++) {
+    if (state[type[i]].species == RIGID) continue;
     const int mode = state[type[i]].species == FLUID ? density_fluid : density_solid;
     if (mode == SUMMATION) rho[i] = rmass[i] * psi[i];
     else if (mode == RATIO) {

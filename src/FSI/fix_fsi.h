@@ -100,10 +100,14 @@ class FixFSI : public Fix {
   double shear_energy(int i) const;
   double density_ratio(int i) const;    // rho/rho0; that of a total-Lagrangian solid is in its deformation
 
+  // viscous velocity of no-slip walls of particles (fix fsi/wall/particle); null: there are none
+  double **wall_velocity;
+
   FSI::Walls walls;     // at the time of the positions in atom->x
   double gravity[3];
   class FixFSIStress *fix_stress;
   std::vector<class FixFSIWallMirror *> wall_fixes;
+  std::vector<class FixFSIWallParticle *> particle_walls;
   class PairFSIFluid *fluid;
   class PairFSISolid *solid;
   class PairFSISolidTL *solid_tl;

@@ -34,7 +34,8 @@ using namespace FSI;
 void FixFSI::warn_idle() const
 {
   bigint mine[2] = {0, 0}, all[2];    // fluid and solid particles
-  for (int i = 0; i < atom->nlocal; i++) mine[state[atom->type[i]].species == SOLID]++;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (state[atom->type[i]].species != RIGID) mine[state[atom->type[i]].species == SOLID]++;
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
 
   std::vector<std::string> idle;

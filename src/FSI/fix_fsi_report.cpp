@@ -232,6 +232,7 @@ void FixFSIReport::sample()
   double **v = atom->v;
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = hub->state[atom->type[i]];
+    if (s.species == RIGID) continue;
     const bool fluid = s.species == FLUID;
     enter(fluid ? FLUID_DENSITY : SOLID_DENSITY, std::abs(hub->density_ratio(i) - 1.0), 0.0, atom->tag[i]);
     if (fluid) enter(MACH, std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]) / s.c, 0.0, atom->tag[i]);

@@ -160,7 +160,7 @@ void FixFSIWatch::setup(int)
 double FixFSIWatch::speed_sq_of(int type) const
 {
   const State &s = hub->state[type];
-  if (s.species == NONE || limit[MACH] == BIG || (warned & 1 << MACH)) return HUGE_SQUARE;
+  if (s.species == NONE || s.species == RIGID || limit[MACH] == BIG || (warned & 1 << MACH)) return HUGE_SQUARE;
   return limit[MACH] * limit[MACH] * s.wave_speed_sq();
 }
 
@@ -273,6 +273,7 @@ void FixFSIWatch::check_rest()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
     const State &s = hub->state[type[i]];
+    if (s.species == RIGID) continue;    // neither compressed nor integrated
     const bool tl = hub->is_total_lagrangian(i);
     const double csq = s.wave_speed_sq(), c = std::sqrt(csq);
     const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2], speed = std::sqrt(vsq);

@@ -349,7 +349,7 @@ class Adviser : protected Pointers {
         limit(0.25 * time, 0.5 * time, "sound in the fluid");
         const double viscous = hub.fluid->has_laminar() && s.viscosity > 0.0 ? hub.h * hub.h * s.rho0 / s.viscosity : BIG;
         limit(0.125 * viscous, 0.25 * viscous, "viscosity");
-      } else {
+      } else if (s.species == SOLID) {
         const double time = hub.substeps * hub.h / longitudinal(s);
         limit(0.25 * time, 0.4 * time, "elastic waves in the solid");
       }

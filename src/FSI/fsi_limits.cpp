@@ -53,6 +53,7 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps)
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
     const State &s = hub->state[type[i]];
+    if (s.species == RIGID) continue;
     present[type[i]] = 1;
     if (s.species == FLUID) {
       double c = s.c;

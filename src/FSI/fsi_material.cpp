@@ -107,8 +107,9 @@ class MaterialReader : protected Pointers {
       const std::string species = values.next_string();
       if (species == "fluid") m.species = FLUID;
       else if (species == "solid") m.species = SOLID;
+      else if (species == "wall") m.species = RIGID;
       else
-        error->one(FLERR, "Material {} in file {} is of unknown species {}: expected fluid or solid", name, file, species);
+        error->one(FLERR, "Material {} in file {} is of unknown species {}: expected fluid, solid or wall", name, file, species);
 
       bool has_young = false, has_poisson = false;
       while (values.has_next()) {
@@ -126,7 +127,7 @@ class MaterialReader : protected Pointers {
         else if (key == "hardening" && m.species == SOLID) m.hardening = value;
         else
           error->one(FLERR, "Unknown keyword {} of {} {} in file {}: expected {}", key, species, name, file,
-                     m.species == FLUID ? "rho, viscosity" : "rho, young, poisson, yield, hardening");
+                     m.species == FLUID ? "rho, viscosity" : m.species == RIGID ? "rho" : "rho, young, poisson, yield, hardening");
         if (!std::isfinite(value)) error->one(FLERR, "Value of {} of material {} in file {} is not finite", key, name, file);
       }
       if (m.rho0 <= 0.0) error->one(FLERR, "Material {} in file {} needs rho > 0", name, file);

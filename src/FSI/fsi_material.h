@@ -24,12 +24,12 @@ class LAMMPS;
 
 namespace FSI {
 
-  enum Species { NONE, FLUID, SOLID };
+  enum Species { NONE, FLUID, SOLID, RIGID };
 
   // Trivially copyable: pair styles write it to restart files as it is.
   struct Material {
     char name[64];
-    int species;         // FLUID or SOLID
+    int species;         // FLUID, SOLID or RIGID (wall)
     double rho0;         // reference density
     double viscosity;    // fluid: dynamic viscosity
     double young;        // solid: Young's modulus
@@ -54,6 +54,9 @@ namespace FSI {
     double shear = 0.0;         // shear modulus G
     double viscosity = 0.0;     // dynamic viscosity
     double yield = 0.0, hardening = 0.0;
+    // wall, entered by its fix fsi/wall/particle
+    bool kept = false, noslip = false;
+    double guard = 0.0;    // distance at which it begins to push fluid off
 
     // square of the fastest waves: sound of a fluid, longitudinal waves of a solid, (K + 4G/3)/rho0
     double wave_speed_sq() const { return species == FLUID ? csq : csq + 4.0 / 3.0 * shear / rho0; }
@@ -73,7 +76,7 @@ namespace FSI {
   };
 
   // Reads the materials called names from a *.fsi file (LAMMPS potential file: header with DATE and UNITS, then one
-  // material per line: name, fluid or solid, keyword-value pairs). Every rank gets the result. "NULL" gives species NONE.
+  // material per line: name, fluid, solid or wall, keyword-value pairs). Every rank gets the result. "NULL" gives species NONE.
   // Errors name the file, the material and the keyword.
   std::vector<Material> read_materials(LAMMPS *lmp, const std::string &file, const std::vector<std::string> &names);
 

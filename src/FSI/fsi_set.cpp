@@ -73,6 +73,7 @@ void FSISet::command(int narg, char **arg)
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     const State &s = hub->state[atom->type[i]];
+    if (s.species == RIGID) continue;    // has its pressure from the fluid, and its mass
     const double value = each[i];
     double rho = value;
     if (hydrostatic) {

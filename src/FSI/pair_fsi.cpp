@@ -88,7 +88,7 @@ void PairFSI::set_flags()
     for (int j = 1; j <= atom->ntypes; j++) {
       const int a = material[i].species, b = material[j].species;
       const bool acts = a != NONE && b != NONE && handles(a, b);
-      setflag[i][j] = acts || (force->pair == this && leaves_alone(a, b)) ? 1 : 0;
+      setflag[i][j] = acts || leaves_alone(a, b, force->pair == this) ? 1 : 0;
       count += acts;
     }
   if (count == 0)

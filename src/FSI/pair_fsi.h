@@ -51,8 +51,8 @@ class PairFSI : public Pair {
 
   // does this style handle pairs of these species?
   virtual bool handles(int, int) const = 0;
-  // without a hybrid style: may pairs of these species go without a force?
-  virtual bool leaves_alone(int, int) const { return false; }
+  // may pairs of these species go without a force? alone: without a hybrid style
+  virtual bool leaves_alone(int, int, bool alone) const { return false; }
   // equation of state and constants of a type
   virtual FSI::State make_state(const FSI::Material &) const = 0;
   // does this style tell fix fsi the state of a type of this species?

@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_contact.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_kernel.h"
 #include "fsi_shift.h"
@@ -126,11 +127,16 @@ State PairFSIFluid::make_state(const Material &m) const
   // a solid's state is that of pair_style fsi/solid, if there is one: it enters its own afterwards
   if (m.species == SOLID) return solid_state(m, false);
   State s;
-  s.species = FLUID;
-  s.tait = tait;
+  s.species = m.species;
   s.rho0 = m.rho0;
   s.c = sound;
   s.csq = sound * sound;
+  if (m.species == RIGID) {
+    // its density is what says its pressure, its volume should be that of fluid under this pressure
+    for (const auto &other : material)
+      if (other.species == FLUID) s.csq = sound * sound * other.rho0 / m.rho0;
+  } else
+    s.tait = tait;
   s.inv_csq = 1.0 / s.csq;
   s.p0 = background;
   if (!tension) s.floor = 0.0;
@@ -172,7 +178,7 @@ template <class K> void PairFSIFluid::select()
   int fluids = 0, solids = 0;
   for (const auto &m : material) {
     if (m.species == FLUID) fluids++;
-    if (m.species == SOLID) solids++;
+    if (m.species == SOLID || m.species == RIGID) solids++;
   }
   const bool mixed = solids > 0 || fluids > 1;
 
@@ -460,6 +466,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const ArtificialViscosity artificial(alpha, beta, hub->h);
   const LaminarViscosity<D> viscous(hub->h, laminar == CENTRAL);
   const double *const gravity = hub->gravity;
+  const double *const *const wall_velocity = hub->wall_velocity;
   const bool all_bodies = hub->density_solid == FixFSI::SUMMATION;
 
   // force of j on i without laminar viscosity; xij, vij may be those of an image of j
@@ -468,12 +475,21 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     const double vdotx = vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0);
     double p = pi.pv2 + pj.pv2, c = sound;
     double shear[3] = {0.0, 0.0, 0.0};
+    bool rubs = true;
     if ((FLAGS & SOLIDS) && state[type[i]].species != state[type[j]].species) {
       const State &si = state[type[i]], &sj = state[type[j]];
       const bool fluid_i = si.species == FLUID;
       const int nf = fluid_i ? i : j, ns = fluid_i ? j : i;
       c = si.c < sj.c ? si.c : sj.c;
-      if (couple == WALL) {
+      if (si.species == RIGID || sj.species == RIGID) {
+        // the pressure of the wall is extrapolated already; the guard keeps out what has no pressure of its own
+        const State &wall = state[type[ns]], &fluid = state[type[nf]];
+        rubs = wall.noslip;
+        if (rsq < wall.guard * wall.guard) {
+          const double k = Contact(D, wall.guard)(rsq, fluid.rho0 * fluid.csq, fluid.rho0 * fluid.csq);
+          for (int d = 0; d < D; d++) shear[d] = k * xij[d];
+        }
+      } else if (couple == WALL) {
         double pw = a[nf].p;
         if (extrapolate) {
           // hydrostatic difference from the fluid to the solid particle, also for images
@@ -491,12 +507,12 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       }
       if (FLAGS & LEDGER) {
         // beyond the compression of the fluid and, in density mode summation, of the solid
-        double power = (p - a[nf].pv2 - (all_bodies ? a[ns].pv2 : 0.0)) * g * vdotx;
+        double power = (p - a[nf].pv2 - (all_bodies && state[type[ns]].species == SOLID ? a[ns].pv2 : 0.0)) * g * vdotx;
         for (int d = 0; d < D; d++) power -= shear[d] * vij[d];
         hub->tally(FixFSI::COUPLING, share * power);
       }
     }
-    if (FLAGS & ARTIFICIAL) {
+    if ((FLAGS & ARTIFICIAL) && rubs) {
       const double q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), c, pi.vol * pj.vol);
       p += q;
       if (FLAGS & LEDGER) hub->tally(FixFSI::ARTIFICIAL, share * q * g * vdotx);
@@ -557,9 +573,29 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
       double fij[3];
       force_on_i(i, j, pi, pj, g, rsq, xij, vij, share, fij);
       if (FLAGS & LAMINAR) {
-        const double loss = viscous(g, rsq, state[type[i]].viscosity + state[type[j]].viscosity, pi.vol * pj.vol, xij,
-                                    vij, fij);
+        const double visc = state[type[i]].viscosity + state[type[j]].viscosity, vv = pi.vol * pj.vol;
+        double loss;
+        if ((FLAGS & SOLIDS) && (state[type[i]].species == RIGID || state[type[j]].species == RIGID)) {
+          // fluid beyond the wall, with the velocity extrapolated; none where it slips
+          const double *const wi = state[type[i]].noslip ? wall_velocity[i] : pi.v, *const wj = state[type[j]].noslip ? wall_velocity[j] : pj.v;
+          double vw[3], before[3] = {fij[0], fij[1], fij[2]};
+          for (int d = 0; d < D; d++) vw[d] = wi[d] - wj[d];
+          const bool noslip = state[type[i]].noslip || state[type[j]].noslip;
+          loss = viscous(g, rsq, noslip ? 2.0 * visc : 0.0, vv, xij, vw, fij);
+          if (FLAGS & LEDGER) {
+            loss = 0.0;
+            for (int d = 0; d < D; d++) loss -= (fij[d] - before[d]) * vij[d];
+          }
+        } else
+          loss = viscous(g, rsq, visc, vv, xij, vij, fij);
         if (FLAGS & LEDGER) hub->tally(FixFSI::LAMINAR, share * loss);
+      }
+      if ((FLAGS & LEDGER) && (FLAGS & SOLIDS)) {
+        // what wall particles are given: they are not in the sum of energies
+        double power = 0.0;
+        for (int d = 0; d < D; d++)
+          power += fij[d] * ((state[type[i]].species == RIGID ? pi.v[d] : 0.0) - (state[type[j]].species == RIGID ? pj.v[d] : 0.0));
+        hub->tally(FixFSI::WALLS, share * power);
       }
       double fj[3] = {0.0, 0.0, 0.0};
       for (int d = 0; d < D; d++) {

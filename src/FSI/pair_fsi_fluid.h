@@ -66,9 +66,13 @@ class PairFSIFluid : public PairFSI {
 
  protected:
   bool handles(int, int) const override;
-  // walls of held solid particles need no pair style of their own
-  bool leaves_alone(int a, int b) const override { return a == FSI::SOLID && b == FSI::SOLID; }
-  bool defines(int species) const override { return species == FSI::FLUID || species == FSI::SOLID; }
+  // walls of held solid particles need no pair style of their own; wall particles act on fluids only
+  bool leaves_alone(int a, int b, bool alone) const override
+  {
+    const auto rigid = [](int s) { return s == FSI::SOLID || s == FSI::RIGID; };
+    return rigid(a) && rigid(b) && (alone || a == FSI::RIGID || b == FSI::RIGID);
+  }
+  bool defines(int species) const override { return species != FSI::NONE; }
   FSI::State make_state(const FSI::Material &) const override;
 
  private:

@@ -30,6 +30,7 @@
 #include "fix_fsi_report.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
+#include "fix_fsi_wall_particle.h"
 #include "fix_fsi_watch.h"
 #include "fsi_set.h"
 #include "lammps.h"
@@ -129,6 +130,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("compute", "fsi/surface/atom", &create_with_arguments<ComputeFSISurfaceAtom>);
   two("fix", "fsi/spectrum", &create_with_arguments<FixFSISpectrum>);
   two("fix", "fsi/wall/mirror", &create_with_arguments<FixFSIWallMirror>);
+  two("fix", "fsi/wall/particle", &create_with_arguments<FixFSIWallParticle>);
   two("fix", "fsi/watch", &create_with_arguments<FixFSIWatch>);
   two("fix", "fsi/dt", &create_with_arguments<FixFSIDt>);
   two("fix", "fsi/report", &create_with_arguments<FixFSIReport>);

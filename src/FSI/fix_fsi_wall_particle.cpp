@@ -1,0 +1,302 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fix_fsi_wall_particle.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fix_store_atom.h"
+#include "force.h"
+#include "fsi_kernel.h"
+#include "group.h"
+#include "memory.h"
+#include "modify.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+#include "pair_fsi_fluid.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), slip(true), guard(0.9), before(nullptr), hub(nullptr), sum(nullptr), nmax(0), nsum(0), force_on{}
+{
+  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
+  for (int iarg = 3; iarg < narg; iarg += 2) {
+    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi/wall/particle {}", arg[iarg]), error);
+    if (strcmp(arg[iarg], "slip") == 0) slip = utils::logical(FLERR, arg[iarg + 1], false, lmp);
+    else if (strcmp(arg[iarg], "guard") == 0) {
+      guard = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (!(guard >= 0.0 && guard <= 1.0))
+        error->all(FLERR, "Fix fsi/wall/particle guard {} must be between 0 and 1", arg[iarg + 1]);
+    } else
+      error->all(FLERR, "Unknown fix fsi/wall/particle keyword {}: expected slip or guard", arg[iarg]);
+  }
+  scalar_flag = vector_flag = 1;
+  size_vector = 3;
+  extscalar = extvector = 1;
+  global_freq = 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIWallParticle::~FixFSIWallParticle()
+{
+  if (!id_store.empty() && modify->get_fix_by_id(id_store)) modify->delete_fix(id_store);
+  memory->destroy(sum);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSIWallParticle::setmask()
+{
+  return PRE_REVERSE;
+}
+
+/* ----------------------------------------------------------------------
+   velocities of the last step, which migrate with the atoms and go into restart files
+------------------------------------------------------------------------- */
+
+void FixFSIWallParticle::post_constructor()
+{
+  id_store = id + std::string("_FSI_WALL");
+  before = dynamic_cast<FixStoreAtom *>(
+      modify->add_fix(fmt::format("{} {} STORE/ATOM 4 0 0 1", id_store, group->names[igroup])));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWallParticle::init()
+{
+  hub = FixFSI::find(lmp, "Fix fsi/wall/particle");
+  const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
+  if (!fluid) error->all(FLERR, "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
+
+  std::vector<int> mine(atom->ntypes + 1, 0), types(atom->ntypes + 1);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    if (hub->state[atom->type[i]].species != RIGID)
+      error->one(FLERR, "Atom {} of fix fsi/wall/particle {} is of type {}, whose material is not a wall", atom->tag[i], id,
+                 atom->type[i]);
+    if (atom->mask[i] & hub->groupbit)
+      error->one(FLERR, "Atom {} of fix fsi/wall/particle {} is also in the group of fix fsi: leave it out, and move it with fix move "
+                 "or fix rigid", atom->tag[i], id);
+    mine[atom->type[i]] = 1;
+  }
+  MPI_Allreduce(mine.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
+  for (int t = 1; t <= atom->ntypes; t++) {
+    if (!types[t]) continue;
+    State &s = hub->state[t];
+    if (s.kept) error->all(FLERR, "Atom type {} is in two fixes fsi/wall/particle", t);
+    s.kept = true;
+    s.noslip = !slip;
+    s.guard = guard * hub->dx;
+  }
+  if (!slip && !fluid->has_laminar() && comm->me == 0)
+    error->warning(FLERR, "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has no laminar/visc");
+
+  nsum = 2 + hub->dim * (slip ? 1 : 2);
+  comm_reverse = nsum;
+  comm_forward = 1 + (slip ? 0 : hub->dim);
+}
+
+/* ----------------------------------------------------------------------
+   those of the group within reach of the neighbour list
+------------------------------------------------------------------------- */
+
+void FixFSIWallParticle::find_pairs()
+{
+  pairs.clear();
+  const NeighList *const list = hub->fluid->list;
+  const int *const mask = atom->mask, *const type = atom->type;
+  const auto is_fluid = [&](int i) { return hub->state[type[i]].species == FLUID; };
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    const bool wall = mask[i] & groupbit;
+    if (!wall && !is_fluid(i)) continue;
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+      if (wall) {
+        if (is_fluid(j)) pairs.emplace_back(i, j);
+      } else if (mask[j] & groupbit)
+        pairs.emplace_back(j, i);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq. 27), a_w: acceleration of the
+   wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23)
+------------------------------------------------------------------------- */
+
+void FixFSIWallParticle::extrapolate(bool advance)
+{
+  const int dim = hub->dim, nall = atom->nlocal + atom->nghost;
+  double **x = atom->x;
+  double **v = atom->v;
+  double *rho = atom->rho;
+  const int *const mask = atom->mask, *const type = atom->type;
+  if (neighbor->ago == 0) find_pairs();
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    memory->grow(sum, nmax, nsum, "fsi/wall/particle:sum");
+  }
+  if (nall) memset(sum[0], 0, (size_t) nall * nsum * sizeof(double));
+
+  with_kernel(hub->kernel, dim, hub->h, [&](const auto &kernel) {
+    for (const auto &[w, j] : pairs) {
+      double d[3], rsq = 0.0;
+      for (int k = 0; k < dim; k++) {
+        d[k] = x[w][k] - x[j][k];
+        rsq += d[k] * d[k];
+      }
+      if (rsq >= kernel.cutsq) continue;
+      const double W = kernel.W(std::sqrt(rsq));
+      double *const s = sum[w];
+      s[0] += W;
+      s[1] += W * hub->pressure(j);
+      for (int k = 0; k < dim; k++) s[2 + k] += W * rho[j] * d[k];
+      if (!slip)
+        for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
+    }
+  });
+  if (force->newton_pair) comm->reverse_comm(this);
+
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(mask[i] & groupbit)) continue;
+    const State &state = hub->state[type[i]];
+    const double *const s = sum[i];
+    double *const old = before->astore[i];
+    double p = s[1];
+    for (int k = 0; k < dim; k++) {
+      // a wall that is set in motion has no acceleration in its first step
+      const double a = (advance && old[3] > 0.0) ? (v[i][k] - old[k]) / update->dt : 0.0;
+      p += (hub->gravity[k] - a) * s[2 + k];
+      if (!slip) hub->wall_velocity[i][k] = 2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
+    }
+    p = s[0] > 0.0 ? p / s[0] : state.p0;
+    rho[i] = state.density(std::max(p, state.floor));
+    if (advance) {
+      std::copy_n(v[i], 3, old);
+      old[3] = 1.0;
+    }
+  }
+  comm->forward_comm(this);
+}
+
+/* ----------------------------------------------------------------------
+   force of the fluid: only pairs have added to f so far
+------------------------------------------------------------------------- */
+
+void FixFSIWallParticle::setup_pre_reverse(int eflag, int vflag)
+{
+  pre_reverse(eflag, vflag);
+}
+
+void FixFSIWallParticle::pre_reverse(int, int)
+{
+  const int n = atom->nlocal + (force->newton_pair ? atom->nghost : 0);
+  std::fill_n(force_on, 3, 0.0);
+  for (int i = 0; i < n; i++)
+    if (atom->mask[i] & groupbit)
+      for (int d = 0; d < 3; d++) force_on[d] += atom->f[i][d];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSIWallParticle::compute_vector(int n)
+{
+  double all;
+  MPI_Allreduce(&force_on[n], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/* ----------------------------------------------------------------------
+   pairs of fluid and wall within the guard's distance
+------------------------------------------------------------------------- */
+
+double FixFSIWallParticle::compute_scalar()
+{
+  const double limit = guard * hub->dx;
+  double mine = 0.0, all;
+  for (const auto &[w, j] : pairs) {
+    double rsq = 0.0;
+    for (int k = 0; k < hub->dim; k++) rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
+    // without newton a pair across ranks is in the lists of both
+    if (rsq < limit * limit) mine += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSIWallParticle::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  int m = 0;
+  for (int ii = 0; ii < n; ii++) {
+    const int i = list[ii];
+    buf[m++] = atom->rho[i];
+    if (!slip)
+      for (int d = 0; d < hub->dim; d++) buf[m++] = hub->wall_velocity[i][d];
+  }
+  return m;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWallParticle::unpack_forward_comm(int n, int first, double *buf)
+{
+  int m = 0;
+  for (int i = first; i < first + n; i++) {
+    atom->rho[i] = buf[m++];
+    if (!slip)
+      for (int d = 0; d < hub->dim; d++) hub->wall_velocity[i][d] = buf[m++];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSIWallParticle::pack_reverse_comm(int n, int first, double *buf)
+{
+  int m = 0;
+  for (int i = first; i < first + n; i++)
+    for (int k = 0; k < nsum; k++) buf[m++] = sum[i][k];
+  return m;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWallParticle::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  int m = 0;
+  for (int ii = 0; ii < n; ii++)
+    for (int k = 0; k < nsum; k++) sum[list[ii]][k] += buf[m++];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSIWallParticle::memory_usage()
+{
+  return (double) nmax * nsum * sizeof(double) + (double) pairs.capacity() * sizeof(pairs[0]);
+}

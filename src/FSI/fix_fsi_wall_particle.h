@@ -1,0 +1,73 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(fsi/wall/particle,FixFSIWallParticle);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_FSI_WALL_PARTICLE_H
+#define LMP_FIX_FSI_WALL_PARTICLE_H
+
+#include "fix.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Walls of any shape, made of particles (Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057): a wall particle's pressure, and
+// for no slip its velocity in viscous forces, are extrapolated from the fluid around it. The pressure is kept as the density
+// that has it, so the pair loops treat the particle as fluid. What moves the particles (fix move, fix rigid, nothing) is of no
+// concern here: their acceleration is that of their velocity.
+
+class FixFSIWallParticle : public Fix {
+ public:
+  FixFSIWallParticle(class LAMMPS *, int, char **);
+  ~FixFSIWallParticle() override;
+  int setmask() override;
+  void post_constructor() override;
+  void init() override;
+  void setup_pre_reverse(int, int) override;
+  void pre_reverse(int, int) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+
+  bool slip;
+  // called by fix fsi when the fluid's densities and the positions are those at which forces are computed
+  void extrapolate(bool advance);
+
+ private:
+  double guard;    // distance of a fluid particle below which it is pushed off, in spacings
+  std::string id_store;
+  class FixStoreAtom *before;    // velocity at the last step, and whether there was one
+  class FixFSI *hub;
+  std::vector<std::pair<int, int>> pairs;    // wall and fluid particles that may be within the kernel's support
+  double **sum;    // per atom: of W, p W, rho (x_wall - x) W, v W over the fluid
+  int nmax, nsum;
+  double force_on[3];    // this group, this rank's part
+
+  void find_pairs();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif
