@@ -253,13 +253,19 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   const State *const state = hub->state.data();
   const int *const wmask = hub->wmask;
   const Walls walls = (FLAGS & IMAGES) ? hub->walls.moved(-dth) : Walls();
-  const Point<D> *const point = gather<D>(-dth);
+  Point<D> *const point = gather<D>(-dth);
   const DensityDiffusion diffusion(delta, hub->h, hub->gravity);
   int first = 1;
   while (state[first].species != FLUID) first++;
   const State &only = state[first];    // without MIXED there is one fluid
   const Shift<D> shift(hub->wdx);
   double *const *const sums = hub->shift;
+  // who has pressure: without it on either side nothing is hydrostatic, and diffusion would push apart particles that fly free
+  if (FLAGS & DIFFUSION)
+    for (int i = 0; i < nlocal + atom->nghost; i++) {
+      const State &s = state[type[i]];
+      point[i].p = s.pressure(point[i].rho) > s.floor ? 1.0 : 0.0;
+    }
 
   const auto pair = [&](int i, int j, const Point<D> &pi, const Point<D> &pj, const double *xij, const double *vij, double rsq,
                         const double *real_xij, double share, double &rate_i) {
@@ -268,9 +274,7 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
     double ri = pi.rho * pi.vol * s, rj = pj.rho * pj.vol * s;
     if ((FLAGS & DIFFUSION) && (!(FLAGS & MIXED) || (type[i] == type[j]))) {
       const State &a = (FLAGS & MIXED) ? state[type[i]] : only;
-      // neither can be hydrostatic without pressure: particles that fly free would push each other apart
-      const bool slack = a.pressure(pi.rho) <= a.floor && a.pressure(pj.rho) <= a.floor;
-      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, slack ? 0.0 : a.inv_csq * a.rho0, g);
+      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, (pi.p > pj.p ? pi.p : pj.p) * a.inv_csq * a.rho0, g);
       ri += k * pj.vol;
       rj -= k * pi.vol;
       if (FLAGS & TALLY) {

@@ -84,7 +84,7 @@ class PairFSIFluid : public PairFSI {
   // what a loop needs of a particle, side by side (in 2D a cache line); local and ghost, gathered at the start of each loop
   template <int D> struct Point {
     double x[D], v[D], rho, vol;
-    double p, pv2;    // force loop only; pv2 = p V^2
+    double p, pv2;    // force loop: pressure, p V^2; rate loop: whether there is pressure
     std::array<double, 3> position(const double *atom_x) const { return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]}; }
   };
   std::vector<double> points;
