@@ -104,7 +104,7 @@ def test_every_command_page_is_in_the_index():
 
 
 def test_every_bundled_material_is_on_its_page():
-    names = re.findall(r"^(\w+) +(?:fluid|solid) ", (paths.POTENTIALS / "materials.fsi").read_text(), re.M)
+    names = re.findall(r"^(\w+) +(?:fluid|solid|wall) ", (paths.POTENTIALS / "materials.fsi").read_text(), re.M)
     text = (PAGES / "materials.rst").read_text()
     assert len(names) > 10 and not [name for name in names if f"*{name}*" not in text]
 

@@ -119,7 +119,8 @@ def _run(inputs):
         counts[0 if failed else 1] += 1
         # LAMMPS leaves a hole in its list if an error ends the definition of a fix that is there already
         for fix in lmp.available_ids("fix"):
-            lmp.command(f"unfix {fix}")
+            if lmp.has_id("fix", fix):    # some take another one with them
+                lmp.command(f"unfix {fix}")
     lmp.close()
     print(*counts)
 
