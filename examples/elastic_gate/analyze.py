@@ -103,12 +103,13 @@ def _crosses_wall(x0, y0, x1, y1):
 
 
 def mass_error(log, first, last, outflow):
-    """Relative change of the mass in the run but for particles `outflow`, from thermo if it has it, else of the number of particles."""
+    """Relative change of the water's mass in the run but for particles `outflow`, from thermo if it has it, else of the number of particles."""
     mass = log.column("v_mass", "mass", "Mass")
     if mass is None:
         return abs(len(last) + len(outflow) - len(first)) / len(first)
     # particles start in equal cells, each with the mass of its density
-    gone = np.sum(first["rho"][np.isin(first["id"], outflow)]) / np.sum(first["rho"])
+    water = first.of_types(WATER)
+    gone = np.sum(water["rho"][np.isin(water["id"], outflow)]) / np.sum(water["rho"])
     return abs(mass[-1] / mass[0] + gone - 1.0)
 
 

@@ -50,8 +50,8 @@ def main(folder):
     leaks = Leaks(0.5 * dx)
     for frame in frames:
         oil = frame.of_types(OIL)
-        roll = np.radians(history.at("roll", [frame.time])[0])
-        roll = 0.0 if np.isnan(roll) else roll
+        # the last picture may be a digit later than the last line
+        roll = np.radians(history.at("roll", [np.clip(frame.time, history.time[0], history.time[-1])])[0])
         oil.columns["along"] = np.cos(roll) * oil["x"] + np.sin(roll) * oil["y"]
         oil.columns["up"] = np.cos(roll) * oil["y"] - np.sin(roll) * oil["x"]
         leaks.see(oil)
