@@ -817,4 +817,4 @@ def test_cantilever_tip_under_its_weight():
 def test_forces_that_substeps_hold_are_warned_of(tmp_path, line, what, substeps, warns):
     scene = dam_gate(2, solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0", sph=f"substeps {substeps}")
     output = run(tmp_path, scene.text() + f"{line}\nrun 0\n", scene_data=scene.data()).output
-    assert (f"WARNING: Fix a (style {line.split()[3]})" in output and what in output) == warns
+    assert (f"fix a (style {line.split()[3]}) acts on solids with sub-steps" in output and what in output) == warns

@@ -181,10 +181,7 @@ void FixFSI::init()
   fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);
   if (solid && !fix_stress)
     error->all(FLERR, "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
-  const bool hypo = solid_tl && solid_tl->hypoelastic();
-  if (hypo && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
-  if (!solid && !hypo && fix_stress && comm->me == 0)
-    error->warning(FLERR, "Fix fsi/stress has nothing to act on: no solid is hypoelastic");
+  if (solid_tl && solid_tl->hypoelastic() && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
 
   auto dt = modify->get_fix_by_style("^fsi/dt$");
   fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
@@ -196,8 +193,6 @@ void FixFSI::init()
   wall_fixes.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
     wall_fixes.push_back(dynamic_cast<FixFSIWallMirror *>(fix));
-  if (!fluid && !wall_fixes.empty() && comm->me == 0)
-    error->warning(FLERR, "Fix fsi/wall/mirror has nothing to act on: walls mirror fluids, and there is no pair_style fsi/fluid");
   gather_walls();
   particle_walls.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/particle$"))
@@ -212,21 +207,6 @@ void FixFSI::init()
   comm_reverse = std::max(solid ? ngrad() : 1, 1 + (need_shift ? nshift() : 0));
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
-
-  // what acts on the solid from outside is held over the sub-steps
-  if (substeps > 1)
-    for (auto &fix : modify->get_fix_list()) {
-      const bool drag = utils::strmatch(fix->style, "^viscous"), constraint = utils::strmatch(fix->style, "^setforce");
-      if (!drag && !constraint) continue;
-      int mine = 0, any;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (state[atom->type[i]].species == SOLID && (atom->mask[i] & groupbit) && (atom->mask[i] & fix->groupbit)) mine = 1;
-      MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-      if (any && comm->me == 0)
-        error->warning(FLERR, "Fix {} (style {}) acts on solids with sub-steps: {}", fix->id, fix->style,
-                       drag ? "its drag is held over a step and may drive what is faster; use artificial/visc"
-                            : "it does not hold against forces inside the solid; leave held particles out of the group of fix fsi");
-    }
 
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
@@ -280,7 +260,8 @@ void FixFSI::setup(int)
                       need_psi ? ", number density" : "", ng ? ", velocity gradient" : "");
   // what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a ghost
   const bool newton = force->newton_pair, hourglass = solid && solid->has_hourglass();
-  const int forward = 1 + hourglass, back = newton * (((fluid && density_fluid == CONTINUITY) || ng) + need_psi + hourglass);
+  const int nwalls = particle_walls.size(), forward = 1 + hourglass + nwalls;
+  const int back = newton * (((fluid && density_fluid == CONTINUITY) || ng) + need_psi + hourglass + nwalls);
   const int both = 1 + need_psi * (1 + newton);
   const int fluid_ghost = fluid ? both + newton * (density_fluid == CONTINUITY) * (1 + ns) : 0;
   int solid_ghost = both;

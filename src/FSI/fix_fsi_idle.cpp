@@ -48,14 +48,14 @@ void FixFSI::warn_idle() const
   };
   static const char *const NO_FLUID = "no particle is a fluid", *const NO_SOLID = "no particle is a solid";
 
-  if (fluid && all[0] == 0) {
-    style(fluid, "fsi/fluid", NO_FLUID);
-    if (!wall_fixes.empty()) nothing("Fix fsi/wall/mirror", NO_FLUID);
-  }
+  if (fluid && all[0] == 0) style(fluid, "fsi/fluid", NO_FLUID);
+  if (!wall_fixes.empty() && !fluid) nothing("Fix fsi/wall/mirror", "walls mirror fluids, and there is no pair_style fsi/fluid");
+  else if (!wall_fixes.empty() && all[0] == 0) nothing("Fix fsi/wall/mirror", NO_FLUID);
+  if (fix_stress && !solid && !(solid_tl && solid_tl->hypoelastic())) nothing("Fix fsi/stress", "no solid is hypoelastic");
   if (all[1] == 0) {
     if (solid) style(solid, "fsi/solid", NO_SOLID);
     if (solid_tl) style(solid_tl, "fsi/solid/tl", NO_SOLID);
-    if (fix_stress && (solid || solid_tl)) nothing("Fix fsi/stress", NO_SOLID);
+    if (fix_stress && (solid || (solid_tl && solid_tl->hypoelastic()))) nothing("Fix fsi/stress", NO_SOLID);
     if (substeps > 1) nothing("Fix fsi substeps", NO_SOLID);
   }
   if (!fluid && density_fluid != CONTINUITY) nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");

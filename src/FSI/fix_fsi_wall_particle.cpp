@@ -151,6 +151,7 @@ void FixFSIWallParticle::find_pairs()
 
 void FixFSIWallParticle::extrapolate(bool advance)
 {
+  const Phase phase(hub->profile, Profile::WALLS);
   const int dim = hub->dim, nall = atom->nlocal + atom->nghost;
   double **x = atom->x;
   double **v = atom->v;
@@ -180,7 +181,7 @@ void FixFSIWallParticle::extrapolate(bool advance)
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     }
   });
-  if (force->newton_pair) comm->reverse_comm(this);
+  if (force->newton_pair) reverse_comm(hub->profile, comm, this);
 
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
@@ -201,7 +202,7 @@ void FixFSIWallParticle::extrapolate(bool advance)
       old[3] = 1.0;
     }
   }
-  comm->forward_comm(this);
+  forward_comm(hub->profile, comm, this);
 }
 
 /* ----------------------------------------------------------------------
@@ -256,6 +257,7 @@ int FixFSIWallParticle::pack_forward_comm(int n, int *list, double *buf, int, in
   int m = 0;
   for (int ii = 0; ii < n; ii++) {
     const int i = list[ii];
+    if (!(atom->mask[i] & groupbit)) continue;
     buf[m++] = atom->rho[i];
     if (!slip)
       for (int d = 0; d < hub->dim; d++) buf[m++] = hub->wall_velocity[i][d];
@@ -269,6 +271,7 @@ void FixFSIWallParticle::unpack_forward_comm(int n, int first, double *buf)
 {
   int m = 0;
   for (int i = first; i < first + n; i++) {
+    if (!(atom->mask[i] & groupbit)) continue;
     atom->rho[i] = buf[m++];
     if (!slip)
       for (int d = 0; d < hub->dim; d++) hub->wall_velocity[i][d] = buf[m++];
@@ -281,7 +284,8 @@ int FixFSIWallParticle::pack_reverse_comm(int n, int first, double *buf)
 {
   int m = 0;
   for (int i = first; i < first + n; i++)
-    for (int k = 0; k < nsum; k++) buf[m++] = sum[i][k];
+    if (atom->mask[i] & groupbit)
+      for (int k = 0; k < nsum; k++) buf[m++] = sum[i][k];
   return m;
 }
 
@@ -291,7 +295,8 @@ void FixFSIWallParticle::unpack_reverse_comm(int n, int *list, double *buf)
 {
   int m = 0;
   for (int ii = 0; ii < n; ii++)
-    for (int k = 0; k < nsum; k++) sum[list[ii]][k] += buf[m++];
+    if (atom->mask[list[ii]] & groupbit)
+      for (int k = 0; k < nsum; k++) sum[list[ii]][k] += buf[m++];
 }
 
 /* ---------------------------------------------------------------------- */

@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_limits.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "pair_fsi_fluid.h"
@@ -121,8 +122,9 @@ class Adviser : protected Pointers {
     box();
     const Cells cells(atom->x, atom->nlocal + atom->nghost, hub.dim, 1.25 * hub.dx);
     if (spacing(cells) && (hub.solid || hub.solid_tl)) thickness(cells);
-    const double fastest = hub.fluid ? speeds() : 0.0;
-    if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step(fastest);
+    if (hub.fluid) speeds();
+    if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
+    if (hub.substeps > 1) held_forces();
   }
 
  private:
@@ -289,9 +291,9 @@ class Adviser : protected Pointers {
     }
   }
 
-  /* speed of sound against what the fluid has, or gets by falling through its own height; returns the largest speed there is */
+  /* speed of sound against what the fluid has, or gets by falling through its own height */
 
-  double speeds() const
+  void speeds() const
   {
     double g = 0.0;
     for (int d = 0; d < hub.dim; d++) g += hub.gravity[d] * hub.gravity[d];
@@ -327,40 +329,54 @@ class Adviser : protected Pointers {
                        expected, 10.0 * expected));
       break;
     }
-    return most[0];
   }
 
-  void time_step(double fastest) const
+  void time_step() const
   {
-    double good = BIG, most = BIG;    // what fix fsi/dt would take; where runs begin to fail (doc/choosing.md)
+    // where runs begin to fail (doc/choosing.md), over the limit that fix fsi/dt keeps
+    static constexpr struct {
+      int cause;
+      double fails;
+      const char *what;
+    } causes[] = {{Limits::SOUND, 2.0, "sound in the fluid"}, {Limits::ELASTIC, 1.6, "elastic waves in the solid"}, {Limits::LAMINAR, 2.0, "viscosity"}};
+    Limits limits(lmp);
+    limits.find(&hub, hub.groupbit, hub.substeps > 1);
+    limits.reduce();
+    double good = Limits::UNLIMITED, most = good;
     const char *what = "";
-    const auto limit = [&](double x, double y, const char *name) {
-      good = std::min(good, x);
-      if (y < most) {
-        most = y;
-        what = name;
-      }
-    };
-    for (int t = 1; t <= atom->ntypes; t++) {
-      if (!present[t]) continue;
-      const State &s = hub.state[t];
-      if (s.species == FLUID) {
-        const double time = hub.h / (s.c + fastest);
-        limit(0.25 * time, 0.5 * time, "sound in the fluid");
-        const double viscous = hub.fluid->has_laminar() && s.viscosity > 0.0 ? hub.h * hub.h * s.rho0 / s.viscosity : BIG;
-        limit(0.125 * viscous, 0.25 * viscous, "viscosity");
-      } else if (s.species == SOLID) {
-        const double time = hub.substeps * hub.h / longitudinal(s);
-        limit(0.25 * time, 0.4 * time, "elastic waves in the solid");
+    for (const auto &c : causes) {
+      const double limit = std::min(limits.step[c.cause], hub.substeps * limits.sub[c.cause]);
+      good = std::min(good, limit);
+      if (c.fails * limit < most) {
+        most = c.fails * limit;
+        what = c.what;
       }
     }
-    if (good == BIG) return;
+    if (good == Limits::UNLIMITED) return;
     if (update->dt > most)
       warn(fmt::format("the time step {:g} is too long for {}, {:.3g} at most: timestep {:.3g}, or fix fsi/dt", update->dt, what, most,
                        good));
     else if (update->dt < 0.02 * good)
       warn(fmt::format("the time step {:g}{} is {:.2g} times shorter than it has to be: timestep {:.3g}, or fix fsi/dt", update->dt,
                        update->dt_default ? ", LAMMPS' default," : "", good / update->dt, good));
+  }
+
+  /* what acts on the solid from outside is held over the sub-steps */
+
+  void held_forces() const
+  {
+    for (auto &fix : modify->get_fix_list()) {
+      const bool drag = utils::strmatch(fix->style, "^viscous"), constraint = utils::strmatch(fix->style, "^setforce");
+      if (!drag && !constraint) continue;
+      int mine = 0, any;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (moves(i) && (atom->mask[i] & fix->groupbit)) mine = 1;
+      MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+      if (any)
+        warn(fmt::format("fix {} (style {}) acts on solids with sub-steps: {}", fix->id, fix->style,
+                         drag ? "its drag is held over a step and may drive what is faster; use artificial/visc"
+                              : "it does not hold against forces inside the solid; leave held particles out of the group of fix fsi"));
+    }
   }
 };
 

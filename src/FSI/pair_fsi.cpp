@@ -30,7 +30,7 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) : Pair(lmp), style(style_in), hub(nullptr), alpha(0.0), beta(0.0)
+PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) : Pair(lmp), style(style_in), hub(nullptr), alpha(0.0), beta(0.0), contact_range(1.0)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -150,17 +150,24 @@ double PairFSI::number(const char *value, const char *what)
   return x;
 }
 
-double PairFSI::contact_reach(const char *value)
+/* ----------------------------------------------------------------------
+   keyword contact of solids, if that is what stands at iarg
+------------------------------------------------------------------------- */
+
+bool PairFSI::contact_keyword(int narg, char **arg, int &iarg)
 {
-  const double R = utils::numeric(FLERR, value, false, lmp);
-  if (!(R >= 1.0)) error->all(FLERR, "Pair style {} contact {} must be >= 1 spacing", style, value);
-  return R;
+  if (strcmp(arg[iarg], "contact") != 0) return false;
+  need(narg, arg, iarg, 1);
+  contact_range = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+  if (!(contact_range >= 1.0)) error->all(FLERR, "Pair style {} contact {} must be >= 1 spacing", style, arg[iarg + 1]);
+  iarg += 2;
+  return true;
 }
 
-void PairFSI::check_contact(double R) const
+void PairFSI::check_contact() const
 {
-  if (R * hub->dx > hub->cut * (1.0 + 1.0e-12))
-    error->all(FLERR, "Pair style {} contact {} must not exceed the kernel's support, {:g} spacings", style, R, hub->cut / hub->dx);
+  if (contact_range * hub->dx > hub->cut * (1.0 + 1.0e-12))
+    error->all(FLERR, "Pair style {} contact {} must not exceed the kernel's support, {:g} spacings", style, contact_range, hub->cut / hub->dx);
 }
 
 /* ----------------------------------------------------------------------

@@ -48,6 +48,7 @@ class PairFSI : public Pair {
   class FixFSI *hub;
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
   double alpha, beta;    // artificial/visc (fsi_viscosity_artificial.h)
+  double contact_range;    // of solids, over dx (fsi_contact.h)
 
   // does this style handle pairs of these species?
   virtual bool handles(int, int) const = 0;
@@ -64,8 +65,8 @@ class PairFSI : public Pair {
   bool several_bodies() const;
   void need(int narg, char **arg, int iarg, int n);
   double number(const char *value, const char *what);
-  double contact_reach(const char *value);    // keyword contact of solids, over dx
-  void check_contact(double) const;
+  bool contact_keyword(int narg, char **arg, int &iarg);
+  void check_contact() const;
   bool artificial_keyword(int narg, char **arg, int &iarg);
   bool has_artificial() const { return alpha > 0.0 || beta > 0.0; }
   Effect artificial_effect(const char *of) const;

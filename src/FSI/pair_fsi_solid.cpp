@@ -41,7 +41,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), epsilon(0.0), xi(0.0), contact_range(1.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
+    PairFSI(lmp, "fsi/solid"), epsilon(0.0), xi(0.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
 {
 }
 
@@ -62,7 +62,7 @@ void PairFSISolid::settings(int narg, char **arg)
 {
   int iarg = 0;
   while (iarg < narg) {
-    if (artificial_keyword(narg, arg, iarg)) continue;
+    if (artificial_keyword(narg, arg, iarg) || contact_keyword(narg, arg, iarg)) continue;
     if (strcmp(arg[iarg], "artificial/stress") == 0) {
       need(narg, arg, iarg, 1);
       epsilon = number(arg[iarg + 1], "artificial/stress");
@@ -70,10 +70,6 @@ void PairFSISolid::settings(int narg, char **arg)
     } else if (strcmp(arg[iarg], "hourglass") == 0) {
       need(narg, arg, iarg, 1);
       xi = number(arg[iarg + 1], "hourglass");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "contact") == 0) {
-      need(narg, arg, iarg, 1);
-      contact_range = contact_reach(arg[iarg + 1]);
       iarg += 2;
     } else if (strcmp(arg[iarg], "gradient") == 0) {
       need(narg, arg, iarg, 1);
@@ -111,7 +107,7 @@ State PairFSISolid::make_state(const Material &m) const
 void PairFSISolid::init_style()
 {
   PairFSI::init_style();
-  check_contact(contact_range);
+  check_contact();
   comm_forward = has_hourglass() ? hub->dim * hub->dim : 0;
   comm_reverse = has_hourglass() ? hub->dim : 0;
   const bool bodies = several_bodies();

@@ -67,7 +67,7 @@ class PairFSISolid : public PairFSI {
 
  private:
   enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };
-  double epsilon, xi, contact_range;
+  double epsilon, xi;
   std::vector<double> hourglass_rate;    // local and ghost
   template <class K> void hourglass_pairs(double);
   template <int D> void rotate_hourglass(double);

@@ -40,7 +40,7 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), contact_range(1.0), law(SVK), plane_stress(0), linear(0), plain(0),
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
     reference(nullptr), fsolid(nullptr), nmax(0), bond_loop{nullptr, nullptr}
 {
   no_virial_fdotr_compute = 1;
@@ -84,7 +84,7 @@ void PairFSISolidTL::settings(int narg, char **arg)
   };
   int iarg = 0;
   while (iarg < narg) {
-    if (artificial_keyword(narg, arg, iarg)) continue;
+    if (artificial_keyword(narg, arg, iarg) || contact_keyword(narg, arg, iarg)) continue;
     if (strcmp(arg[iarg], "volumes") == 0) {
       plain = choice(iarg, {"corrected", "plain"});
       iarg += 2;
@@ -95,10 +95,6 @@ void PairFSISolidTL::settings(int narg, char **arg)
     } else if (strcmp(arg[iarg], "damage") == 0) {
       need(narg, arg, iarg, 1);
       damage = number(arg[iarg + 1], "damage strain");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "contact") == 0) {
-      need(narg, arg, iarg, 1);
-      contact_range = contact_reach(arg[iarg + 1]);
       iarg += 2;
     } else if (strcmp(arg[iarg], "law") == 0) {
       law = choice(iarg, {"svk", "neohookean", "hypo"});
@@ -136,7 +132,7 @@ State PairFSISolidTL::make_state(const Material &m) const
 void PairFSISolidTL::init_style()
 {
   PairFSI::init_style();
-  check_contact(contact_range);
+  check_contact();
   const int dim = hub->dim;
   if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
   if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");

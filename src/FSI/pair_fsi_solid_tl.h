@@ -81,7 +81,7 @@ class PairFSISolidTL : public PairFSI {
 
  private:
   enum Law { SVK, NEOHOOKEAN, HYPO };
-  double zeta, damage, contact_range;
+  double zeta, damage;
   int law, plane_stress, linear, plain;
   class FixFSIReference *reference;
   std::vector<FSI::StVenantKirchhoff> svk;    // per type
