@@ -1,23 +1,16 @@
-#!/usr/bin/env python3
 """The package beside LAMMPS' own particle methods, in one program and one run: tools/cost peers"""
 
-import csv
-import json
 import statistics
 import subprocess
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+import measure
+from tool import PAGE, Job, say
 
-import measure  # noqa: E402
-
-from fsi import launch, paths, scene, sweep  # noqa: E402
-from fsi.scene import Refusal  # noqa: E402
+from fsi import paths, scene
+from fsi.command import start
 
 DECKS = Path(__file__).resolve().parent / "peers"
-PAGE = paths.ROOT / "doc" / "cost"
 BUILD = paths.ROOT / "build-peers"
 LMP = BUILD / "lmp"
 PACKAGES = ("SPH", "BPM", "RHEO", "MACHDYN")  # RHEO needs BPM
@@ -49,7 +42,7 @@ ELSEWHERE = {"sph/taitwater": 3.1, "DualSPHysics, CPU, Verlet": 1.1, "SPHinXsys"
 COLUMNS = ("what", "ours", "peer", "ratio", "spread", "neighbours_ours", "neighbours_peer", "target", "met")
 
 
-def build(say):
+def build():
     """LAMMPS with the package and its own particle methods, with the flags of the package's build; only what can be built."""
     cache = (paths.BUILD / "CMakeCache.txt").read_text()
     taken = [f"-D{line}" for line in cache.splitlines() if line.startswith(("LAMMPS_SOURCE_DIR:", "FSI_NATIVE:", "CMAKE_BUILD_TYPE:"))]
@@ -75,30 +68,16 @@ def deck(name, settings):
     return forget + "".join(f"variable {n} index {v}\n" for n, v in settings.items()) + text
 
 
-def alternate(ours, peer, turns):
-    """Speeds [particle-steps per CPU second] of both in each of some turns, and their neighbours."""
-    order = "".join("AB" if k % 2 == 0 else "BA" for k in range(turns))
-    runs = measure.simulate("\nclear\n".join({"A": ours, "B": peer}[o] for o in order), binary=LMP).finished
-    found = {}
-    for which in "AB":
-        mine = [run for run, o in zip(runs, order) if o == which]
-        found[which] = [run.atoms * run.steps / measure.seconds(run) for run in mine]
-        found[f"neighbours {which}"] = mine[0].neighbours / mine[0].atoms
-    return found
-
-
-def speeds(kept, packages, turns, say):
+def speeds(kept, packages, turns):
     rows = []
     for key, (what, ours, peer, target) in SPEEDS.items():
         if key.startswith(("tlsph", "ulsph")) and "MACHDYN" not in packages:
             continue
-        texts = [deck(*ours), deck(*peer)]
-        found = kept.get([key, texts, turns], lambda t=texts: alternate(*t, turns))
-        ratios = [a / b for a, b in zip(found["A"], found["B"])]
-        ratio = statistics.median(ratios)
-        rows.append({"what": what, "ours": statistics.median(found["A"]), "peer": statistics.median(found["B"]), "ratio": ratio,
-                     "spread": (max(ratios) - min(ratios)) / 2, "neighbours_ours": found["neighbours A"],
-                     "neighbours_peer": found["neighbours B"], "target": f">= {target}", "met": ratio >= target})
+        found = kept.pair(deck(*ours), deck(*peer), turns, LMP)
+        ratio = found.ratio
+        rows.append({"what": what, "ours": 1 / statistics.median(found.a), "peer": 1 / statistics.median(found.b), "ratio": ratio,
+                     "spread": found.spread, "neighbours_ours": found.neighbours[0],
+                     "neighbours_peer": found.neighbours[1], "target": f">= {target}", "met": ratio >= target})
         say("cost:   {what}: {ours:.3g} against {peer:.3g} particle-steps a CPU second, ratio {ratio:.2f} ± {spread:.2f}".format(**rows[-1]))
         if key == "sph 2d":
             own = ELSEWHERE["sph/taitwater"]
@@ -107,17 +86,18 @@ def speeds(kept, packages, turns, say):
     return rows
 
 
-def gate(kept, say):
+def gate(kept):
     """CPU seconds of the bundled gate at dx = 2.5 mm, with its output."""
+    text = scene.deck("elastic_gate").read_text()
+
     def run():
-        text = scene.deck("elastic_gate").read_text()
-        return {"seconds": sum(map(measure.seconds, measure.simulate("variable dx index 0.0025\n" + text, binary=LMP).finished))}
-    seconds = kept.get(["gate", scene.deck("elastic_gate").read_text()], run)["seconds"]
+        return {"seconds": sum(run.cpu_seconds for run in measure.simulate("variable dx index 0.0025\n" + text, binary=LMP).finished)}
+    seconds = kept.get(["gate", text], run)["seconds"]
     say(f"cost:   gate: {seconds:.1f} CPU seconds")
     return {"what": "elastic gate, dx = 2.5 mm, 0.4 s [CPU seconds]", "ours": seconds, "peer": 30.0, "target": "< 10", "met": seconds < 10.0}
 
 
-def ranks(kept, turns, say):
+def ranks(kept, turns):
     """Two ranks over one, by the clock; only where nothing else runs."""
     text = deck("water_fsi", {**WATER2D, "kernel": "wendland", "steps": 60})
 
@@ -138,7 +118,7 @@ def ranks(kept, turns, say):
             "target": ">= 1.85", "met": None if note else ratio >= 1.85}
 
 
-def memory(kept, say):
+def memory(kept):
     """Bytes a fluid particle beyond what LAMMPS holds for the same particles and neighbour list."""
     ours = deck("water_fsi", {**WATER2D, "steps": 10})
     lines = [line for line in ours.splitlines() if not line.startswith(("fix  ", "pair_", "balance"))]
@@ -157,9 +137,9 @@ def number(value):
     return "" if value is None else f"{value / 1e6:.2f} M" if value > 1e4 else f"{value:.3g}"
 
 
-def page(rows, command):
+def page(rows):
     lines = ["# Beside LAMMPS' own styles", "",
-             f"Written by `{command}`, which builds LAMMPS' packages {', '.join(PACKAGES)} and this one into one program, with the same flags, and runs "
+             "Written by `tools/cost peers`, which builds LAMMPS' packages {', '.join(PACKAGES)} and this one into one program, with the same flags, and runs "
              "each pair in turns in one process. Speeds are particle-steps per CPU second of the time loop on one core, wall particles included. "
              "Decks: `bench/peers`.", "",
              f"The package's water has its full physics ({FULL}), sph/taitwater has artificial viscosity and walls of particles, RHEO artificial viscosity and density damping. "
@@ -175,35 +155,14 @@ def page(rows, command):
 
 
 def main(arguments):
-    options = {}
-    for argument in arguments:
-        name, equals, value = argument.partition("=")
-        if name not in ("out", "turns") or not value:
-            raise Refusal(f"'{argument}': expected out=FOLDER or turns=N")
-        options[name] = value
-    turns = int(options.get("turns", 3))
-    if not scene.build():
-        return 1
-    say = lambda text: print(text, flush=True)
-    packages = build(say)
-    folder = Path(options.get("out", paths.RESULTS / "cost" / "peers")).resolve()
-    kept = measure.Kept(folder / "points", sweep.source_hash())
-    rows = speeds(kept, packages, turns, say) + [gate(kept, say), ranks(kept, turns, say), memory(kept, say)]
-    target = folder if "out" in options else PAGE
-    (folder / "peers.json").write_text(json.dumps(rows, indent=1) + "\n")
-    with (target / "peers.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({k: f"{v:.5g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
-    (target / "peers.md").write_text(page(rows, "tools/cost peers"))
-    say(f"cost: page and table are in {target}")
+    """tools/cost peers"""
+    job = Job("peers", arguments, turns=3)
+    packages = build()
+    rows = speeds(job.kept, packages, job.turns) + [gate(job.kept), ranks(job.kept, job.turns), memory(job.kept)]
+    job.write(COLUMNS, rows, 5, page(rows), rows)
+    say(f"cost: page and table are in {job.target}")
     return 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except (Refusal, measure.Failed) as refusal:
-        sys.exit(f"cost: {refusal}")
-    except KeyboardInterrupt:
-        sys.exit(130)
+    start("cost", main)

@@ -1,4 +1,4 @@
-"""The model of many ranks, and what tools/cost effects, peers and scaling refuse."""
+"""The model of many ranks, and what tools/cost effects, peers, scaling and solids refuse."""
 
 import sys
 
@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from fsi import paths
-from fsi.scene import Refusal
+from fsi.command import Refusal
 
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import effects  # noqa: E402
 import peers  # noqa: E402
 import scaling  # noqa: E402
+import solid_variants  # noqa: E402
 
 M = {"tau": 1e-6, "bytes": 98.0, "exchanges": 4, "w": 3.0}
 FREE = {"latency": 0.0, "bandwidth": np.inf, "ghost": 0.0, "imbalance": 0.0}
@@ -44,10 +45,11 @@ def test_small_cubes_ask_further_ranks():
     assert scaling.step(8 * 1000, 1000, M, small) == pytest.approx(2 * 6 * 4, rel=1e-4)
 
 
-@pytest.mark.parametrize("program", [effects, peers, scaling])
-def test_nonsense_is_refused(program):
-    with pytest.raises(Refusal, match="nonsense"):
-        program.main(["nonsense"])
+@pytest.mark.parametrize("word", ["nonsense", "turns=0", "out="])
+@pytest.mark.parametrize("program", [effects, peers, scaling, solid_variants])
+def test_nonsense_is_refused(program, word):
+    with pytest.raises(Refusal, match=word):
+        program.main([word])
 
 
 def test_the_gates_deck_can_do_without_each_part():
