@@ -33,12 +33,12 @@ def write_materials(text):
 
 @dataclass
 class Pair:
-    """B against A: CPU seconds of a particle-step in each turn, and what both have beside time, per particle."""
+    """B against A: seconds of each turn, of measure.pair() CPU seconds of a particle-step; what both have beside time, per particle."""
 
     a: list
     b: list
-    memory: list  # bytes; of A and B
-    neighbours: list  # entries of the list
+    memory: list = ()  # bytes; of A and B
+    neighbours: list = ()  # entries of the list
 
     @property
     def ratios(self):

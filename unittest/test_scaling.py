@@ -1,5 +1,6 @@
 """The model of many ranks, and what tools/cost effects, peers, scaling and solids refuse."""
 
+import re
 import sys
 
 import numpy as np
@@ -50,6 +51,15 @@ def test_small_cubes_ask_further_ranks():
 def test_nonsense_is_refused(program, word):
     with pytest.raises(Refusal, match=word):
         program.main([word])
+
+
+@pytest.mark.parametrize("key", [key for key in peers.SPEEDS])
+def test_peers_and_package_build_as_many_lists(key):
+    """One at the start of a run and then every tenth step: that of the start is the package's alone if the run ends between two."""
+    _, both, *sides, _ = peers.SPEEDS[key]
+    for name, own in sides:
+        every = re.search(r"^neigh_modify +every (\d+) ", peers.deck(name, {**both, **own}), re.M)
+        assert both["steps"] % int(every[1]) == 0
 
 
 def test_the_gates_deck_can_do_without_each_part():
