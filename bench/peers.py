@@ -136,7 +136,7 @@ def number(value):
 
 def page(rows):
     lines = ["# Beside LAMMPS' own styles", "",
-             "Written by `tools/cost peers`, which builds LAMMPS' packages {', '.join(PACKAGES)} and this one into one program, with the same flags, and runs "
+             f"Written by `tools/cost peers`, which builds LAMMPS' packages {', '.join(PACKAGES)} and this one into one program, with the same flags, and runs "
              "each pair in turns in one process. Speeds are particle-steps per CPU second of the time loop on one core, wall particles included. "
              "Decks: `bench/peers`.", "",
              f"The package's water has its full physics ({FULL}), sph/taitwater has artificial viscosity and walls of particles, RHEO artificial viscosity and density damping. "

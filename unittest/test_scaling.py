@@ -62,6 +62,15 @@ def test_peers_and_package_build_as_many_lists(key):
         assert both["steps"] % int(every[1]) == 0
 
 
+def test_pages_hold_their_rows():
+    row = {"what": "a style", "ours": 2e6, "peer": 1e6, "ratio": 2.0, "spread": 0.1, "neighbours_ours": 12.0, "neighbours_peer": 13.0}
+    text = peers.page([{**row, "target": ">= 3", "met": False}])
+    assert "| a style | 2.00 M | 1.00 M | 2 ± 0.1 | 12.0, 13.0 | at least 3 | **missed** |" in text and "{" not in text
+    row = {"effect": "shifting", "time": 0.5, "spread": 0.01, "instructions": 0.25, "memory": 40, "messages": 0, "bytes": 8.0, "collectives": 0}
+    text = effects.page({"fluid": ([row], {"messages": 4, "bytes": 90.0, "collectives": 0.1})})
+    assert "| shifting | +50.0% ± 1.0% | +25.00% | +40 | +0 | +8.0 | +0 |" in text and "{" not in text
+
+
 def test_the_gates_deck_can_do_without_each_part():
     whole = effects.gate(400, 0)
     for part in ("viscosity", "diffusion", "walls", "rubber viscosity", "substeps"):
