@@ -85,7 +85,7 @@ def work(definition, settings):
 
 def analysed(name):
     """What turns the folder of a scene's run into its figures: the scene's own analysis."""
-    module = scene._analysis(name)  # pylint: disable=protected-access
+    module = scene.analysis(name)
 
     def measure(folder):
         module.main(folder)

@@ -61,12 +61,12 @@ fix stress all fsi/stress {stress}
 """ + _end(n, commands, 0.004)
 
 
-def total(n, m, style="", stress=None, material="plate", hub="", commands=""):
+def total(n, m, style="", stress=None, material="plate", commands=""):
     """The same in total-Lagrangian form."""
     return _start(n, m) + f"""set group all mol 1
 pair_style fsi/solid/tl {style}
 pair_coeff * * materials.fsi {material}
-fix sph all fsi {1 / n!r} wendland 1.5 {hub}
+fix sph all fsi {1 / n!r} wendland 1.5
 {'' if stress is None else f'fix stress all fsi/stress {stress}'}
 """ + _end(n, commands, 0.004)
 
@@ -92,8 +92,8 @@ def gate(n, _, without=(), water="", rubber="", commands=""):
 STEP = "fix dt all fsi/dt 10"
 WATCH = "fix watch all fsi/watch 10 mach off distance off density off courant off energy off restart off dump off"
 LEDGER = "compute ledger all fsi/energy\nthermo_style custom step c_ledger[1]"
-SCENES = {  # scene: title, deck, base, {effect: (without, with)}; without None: the base
-    "fluid": ("Water", fluid, {}, {
+SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
+    "fluid": ("Water", fluid, {
         "artificial viscosity": {"style": "artificial/visc 0.05 0"},
         "laminar viscosity": {"style": "laminar/visc"},
         "laminar viscosity, central": {"style": "laminar/visc/central"},
@@ -107,7 +107,7 @@ SCENES = {  # scene: title, deck, base, {effect: (without, with)}; without None:
         "adaptive time step": {"commands": STEP},
         "watch": {"commands": WATCH},
         "energy ledger": ({"style": "artificial/visc 0.05 0"}, {"style": "artificial/visc 0.05 0", "commands": LEDGER})}),
-    "updated": ("Solid, updated Lagrangian", updated, {}, {
+    "updated": ("Solid, updated Lagrangian", updated, {
         "artificial viscosity": {"style": "artificial/visc 0.1 0"},
         "artificial stress": {"style": "artificial/stress 0.3"},
         "corrected gradients": {"style": "gradient corrected"},
@@ -120,7 +120,7 @@ SCENES = {  # scene: title, deck, base, {effect: (without, with)}; without None:
         "adaptive time step": {"commands": STEP},
         "watch": {"commands": WATCH},
         "energy ledger": {"commands": LEDGER}}),
-    "total": ("Solid, total Lagrangian", total, {}, {
+    "total": ("Solid, total Lagrangian", total, {
         "artificial viscosity": {"style": "artificial/visc 0.1 0"},
         "hourglass control": {"style": "hourglass 0.05"},
         "neo-Hookean": {"style": "law neohookean"},
@@ -130,7 +130,7 @@ SCENES = {  # scene: title, deck, base, {effect: (without, with)}; without None:
         "adaptive time step": {"commands": STEP},
         "watch": {"commands": WATCH},
         "energy ledger": {"commands": LEDGER}}),
-    "gate": ("Elastic gate", gate, {}, {
+    "gate": ("Elastic gate", gate, {
         "artificial viscosity of the water": ({"without": ("viscosity",)}, {}),
         "density diffusion": ({"without": ("diffusion",)}, {}),
         "mirror walls": ({"without": ("walls",)}, {}),
@@ -148,14 +148,12 @@ SIZE, SMALL, STEPS = (160, 100), (40, 25), {"fluid": 60, "updated": 60, "total":
 
 def cases(name):
     """[(effect, settings without, settings with)] of a scene."""
-    _, _, base, effects = SCENES[name]
-    return [(label, *(change if isinstance(change, tuple) else (base, change))) for label, change in effects.items()]
+    return [(label, *(change if isinstance(change, tuple) else ({}, change))) for label, change in SCENES[name][2].items()]
 
 
 def deck(name, settings, size):
     """The input of one case, without run."""
-    _, make, *_ = SCENES[name]
-    text = make(*size, **settings)
+    text = SCENES[name][1](*size, **settings)
     return text if name == "gate" else write_materials(text)
 
 

@@ -94,8 +94,8 @@ def liquid(folder):
 
 def scene_figures(folder, name):
     """The figures that a scene's own analysis makes of the run, without its pictures: {name: figure}."""
-    with sweep._quiet():  # pylint: disable=protected-access
-        return {f["name"]: f for f in scene._analysis(name).main(folder)["figures"]}  # pylint: disable=protected-access
+    with sweep.quiet():
+        return {f["name"]: f for f in scene.analysis(name).main(folder)["figures"]}
 
 
 def gate(folder):

@@ -13,7 +13,7 @@ sys.path.insert(0, str(HERE.parents[1] / "python"))
 from fsi import plot, scene  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
-plate = scene._analysis("oscillating_plate")  # pylint: disable=protected-access
+plate = scene.analysis("oscillating_plate")
 main = plate.main
 
 COLOURS = {"cubic_1.2": "#5aa0d8", "cubic_1.3": "#1b5e96", "cubic_1.5": "#0b2c47", "quintic_1.0": "#d1611a",

@@ -116,7 +116,7 @@ def run(scene, folder, ranks, variables, case=None, borrowed=None, may_fail=Fals
                             "wall_seconds": round(wall, 3), "given": variables, **({"status": status} if status else {}),
                             "variables": {**deck_variables(path), **variables}})
         print(f"run: LAMMPS took {wall:.1f} s; analysing", flush=True)
-        module = _analysis(scene)
+        module = analysis(scene)
         if module is not None and not _calls(module.main, folder):
             return 1
         print(f"run: figures, pictures and log are in {folder}", flush=True)
@@ -140,7 +140,7 @@ def run_cases(scene, folder, ranks=None):
         failed = [name for name in wanted if name not in ran]
         _write_run(folder, {"scene": scene, "cases": list(ran), "failed": failed})
         good = not failed
-        module = _analysis(scene)
+        module = analysis(scene)
         if ran and hasattr(module, "study"):
             good &= _calls(module.study, folder, ran)
         print(f"run: {scene}: {len(ran)} of {len(wanted)} cases ran" +
@@ -153,7 +153,7 @@ def default_ranks():
     return min(2, launch.cores())
 
 
-def _analysis(scene):
+def analysis(scene):
     """The scene's analyze.py as a module; None if it has none."""
     path = paths.EXAMPLES / scene / "analyze.py"
     if not path.exists():

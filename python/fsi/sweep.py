@@ -148,7 +148,7 @@ class Store:
             point |= cost
             if point["status"] == "ok":
                 try:
-                    with _quiet():
+                    with quiet():
                         point["figures"] = self.measure(folder)
                 except (Exception, SystemExit) as error:  # pylint: disable=broad-exception-caught
                     point |= {"status": "failed", "why": f"analysis: {error}"[:200]}
@@ -193,7 +193,7 @@ class Store:
 
 
 @contextlib.contextmanager
-def _quiet():
+def quiet():
     """Analyses without their pictures and tables: a sweep wants the figures only."""
     drawn = plot.picture
 
