@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from fsi import paths
+from fsi import paths, scene
 from fsi.command import Refusal
 
 sys.path.insert(0, str(paths.ROOT / "bench"))
@@ -48,7 +48,8 @@ def test_small_cubes_ask_further_ranks():
 
 @pytest.mark.parametrize("word", ["nonsense", "turns=0", "out="])
 @pytest.mark.parametrize("program", [effects, peers, scaling, solid_variants])
-def test_nonsense_is_refused(program, word):
+def test_nonsense_is_refused(program, word, monkeypatch):
+    monkeypatch.setattr(scene, "build", lambda: pytest.fail("built"))
     with pytest.raises(Refusal, match=word):
         program.main([word])
 
