@@ -1,5 +1,8 @@
-"""The commands of README.md, doc and the scenes' READMEs, those for LAMMPS aside that test_doc.py has: each runs, in short where it is long; or, where running is what other tests
-do (test_install.py, the suite itself), is taken by the command line that it is for, up to where the work would begin."""
+"""The commands of README.md, doc and the scenes' READMEs, beside those for LAMMPS that test_doc.py runs.
+
+Each is executed, in short where it is long; or, where executing it is what other tests do (test_install.py, the suite itself), it is
+taken by the command line that it is for, up to where the work would begin.
+"""
 
 import os
 import re
@@ -244,7 +247,7 @@ def test_commands(reader, commands):
 
 def test_pages_are_read():
     """Each README of a scene says how it is run; and blocks are of known languages, none is left out."""
-    assert {path.parent.name for path in SESSIONS.values() if path.parts[0] == "examples"} | {"hard"} == set(scene.scenes())
+    assert {path.parent.name for path in SESSIONS.values() if path.parts[0] == "examples"} == set(scene.scenes())
     for path in PAGES:
         languages = {language for language, _ in fenced(path, path.read_text())}
         assert languages <= {"bash", "sh", "LAMMPS", "python", "json", "text", "none"}, path
