@@ -151,7 +151,7 @@ def page(m, rows, balanced):
         "Written by `tools/cost scaling`. No machine of many nodes was at hand: what one particle costs is measured, what crosses ranks is counted "
         "(fix fsi prints it, `unittest/test_pay.py` checks it around the MPI calls), the network is assumed.", "",
         "![Strong and weak scaling](scaling.png)", "",
-        "A step of the busiest of P ranks, each a cube of n = N/P particles:", "", "```",
+        "A step of the busiest of P ranks, each a cube of n = N/P particles:", "", "```text",
         "t = (1 + imbalance) (n + g G) tau + exchanges swaps latency + G bytes/bandwidth + latency log2 P",
         "G = (n^(1/3) + 2 w)^3 - n     ghosts, w = (support + skin)/dx", "```", "",
         "| quantity | value | from |", "|---|---|---|",
