@@ -25,7 +25,6 @@
 #include "fsi_viscosity_artificial.h"
 #include "fsi_viscosity_laminar.h"
 #include "fsi_walls.h"
-#include "lmptype.h"
 
 #include <array>
 #include <vector>
@@ -40,13 +39,11 @@ namespace FSI {
     std::array<double, 3> position(const double *atom_x) const { return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]}; }
   };
 
-  // Rows of a neighbour list
+  // Rows of a neighbour list: with newton on, so that each pair is in one of them, and without special bonds in its entries.
   struct Rows {
     const std::vector<int> &i;
     const int *numneigh;
     int **firstneigh;
-    int nlocal;
-    bool newton;    // without it ghosts take nothing
   };
 
   // What a reflection makes of a point and its velocity, axis by axis.
@@ -135,13 +132,13 @@ namespace FSI {
   {
     const int *const list = rows.firstneigh[i];
     const int n = rows.numneigh[i], full = n & ~(Pack::WIDTH - 1);
-    int j[Pack::WIDTH];
     for (int jj = 0; jj < full; jj += Pack::WIDTH) {
-      for (int k = 0; k < Pack::WIDTH; k++) j[k] = list[jj + k] & NEIGHMASK;
+      const int *const j = list + jj;
       pairs(j, PackOfPoints<D>(point[j[0]], point[j[1]], point[j[2]], point[j[3]]), Pack(1.0));
     }
     if (full == n) return;
-    for (int k = 0; k < Pack::WIDTH; k++) j[k] = full + k < n ? list[full + k] & NEIGHMASK : i;
+    int j[Pack::WIDTH];
+    for (int k = 0; k < Pack::WIDTH; k++) j[k] = full + k < n ? list[full + k] : i;
     pairs(j, PackOfPoints<D>(point[j[0]], point[j[1]], point[j[2]], point[j[3]]),
           Pack(1.0, full + 1 < n ? 1.0 : 0.0, full + 2 < n ? 1.0 : 0.0, full + 3 < n ? 1.0 : 0.0));
   }
@@ -153,7 +150,6 @@ namespace FSI {
                           const Point<K::DIM> *const point, double *const rate)
   {
     constexpr int D = K::DIM;
-    const int last = rows.newton ? MAXSMALLINT : rows.nlocal - 1;    // of those that take their part
     for (const int i : rows.i) {
       const PackOfPoints<D> pi(point[i]);
       Pack sum = 0.0, flux = 0.0;
@@ -170,8 +166,7 @@ namespace FSI {
           flux += k * pj.vol;
           rate_j -= k * pi.vol;
         }
-        for (int k = 0; k < Pack::WIDTH; k++)
-          if (j[k] <= last) rate[j[k]] += rate_j.v[k];
+        for (int k = 0; k < Pack::WIDTH; k++) rate[j[k]] += rate_j.v[k];
       });
       rate[i] += point[i].rho * point[i].vol * sum.sum() + flux.sum();
     }
@@ -185,7 +180,6 @@ namespace FSI {
                            const Point<K::DIM> *const point, double (*const f)[3], double *const total)
   {
     constexpr int D = K::DIM;
-    const int last = rows.newton ? MAXSMALLINT : rows.nlocal - 1;
     for (const int i : rows.i) {
       const PackOfPoints<D> pi(point[i]);
       const double visc = LAMINAR ? 2.0 * state[type[i]].viscosity : 0.0;
@@ -209,8 +203,7 @@ namespace FSI {
           if (IMAGES) force[d] = mirror.sign[d] * force[d];
         }
         for (int k = 0; k < Pack::WIDTH; k++)
-          if (j[k] <= last)
-            for (int d = 0; d < D; d++) f[j[k]][d] += force[d].v[k];
+          for (int d = 0; d < D; d++) f[j[k]][d] += force[d].v[k];
       });
       for (int d = 0; d < D; d++) {
         f[i][d] -= sum[d].sum();

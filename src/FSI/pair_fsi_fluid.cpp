@@ -215,33 +215,37 @@ void PairFSIFluid::density_rate(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-template <int D> Point<D> *PairFSIFluid::gather(double t)
+template <int D, class Rest> Point<D> *PairFSIFluid::gather(double t, Rest rest)
 {
   constexpr size_t SIZE = sizeof(Point<D>) / sizeof(double);
   const int nall = atom->nlocal + atom->nghost;
   if (points.size() < nall * SIZE) points.resize(atom->nmax * SIZE);
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
+  const auto *const x = reinterpret_cast<const double(*)[3]>(atom->x[0]), *const v = reinterpret_cast<const double(*)[3]>(atom->v[0]);
+  const double *const rho = atom->rho, *const rmass = atom->rmass;
   for (int i = 0; i < nall; i++) {
     Point<D> &p = point[i];
     for (int d = 0; d < D; d++) {
-      p.v[d] = atom->v[i][d];
-      p.x[d] = atom->x[i][d] + t * p.v[d];
+      p.v[d] = v[i][d];
+      p.x[d] = x[i][d] + t * p.v[d];
     }
-    p.rho = atom->rho[i];
-    p.vol = atom->rmass[i] / p.rho;
+    p.rho = rho[i];
+    p.vol = rmass[i] / p.rho;
+    rest(i, p);
   }
   return point;
 }
 
 /* ----------------------------------------------------------------------
-   rows of one fluid, which loops may take four pairs at a time, and the others; all are others where the processor cannot
+   rows of one fluid, which loops take four pairs at a time, and the others; all are others with newton off, with bonds of other
+   styles, and where the processor cannot
 ------------------------------------------------------------------------- */
 
 void PairFSIFluid::find_rows()
 {
   if (neighbor->ago > 0) return;
   const int *const type = atom->type;
-  const bool can = have_packs();
+  const bool can = have_packs() && force->newton_pair && atom->molecular == Atom::ATOMIC;
   rows.clear();
   other_rows.clear();
   for (int ii = 0; ii < list->inum; ii++) {
@@ -293,7 +297,7 @@ template <class F> void PairFSIFluid::for_reflections(const Walls &walls, F f) c
     some.clear();
     for (const int i : near)
       if ((hub->wmask[i] & s.mask) == s.mask) some.push_back(i);
-    f(s, Rows{some, list->numneigh, list->firstneigh, atom->nlocal, true});
+    f(s, Rows{some, list->numneigh, list->firstneigh});
   }
 }
 
@@ -317,17 +321,16 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   double *const rate = hub->rate;
   const State *const state = hub->state.data();
   const Walls walls = (FLAGS & IMAGES) ? hub->walls.moved(-dth) : Walls();
-  Point<D> *const point = gather<D>(-dth);
   const DensityDiffusion diffusion(delta, hub->h, sound, hub->gravity);
   const Shift<D> shift(hub->wdx);
   double *const *const sums = hub->shift;
-  // who has pressure: without it on either side nothing is hydrostatic, and diffusion would push apart particles that fly free
-  if (FLAGS & DIFFUSION)
-    for (int i = 0; i < nlocal + atom->nghost; i++) {
-      const State &s = state[type[i]];
-      point[i].p = s.pressure(point[i].rho) > s.floor ? 1.0 : 0.0;
-      point[i].pv2 = diffusion.hydrostatic(point[i].position(x[i]).data(), s.rho0 * s.inv_csq);
-    }
+  Point<D> *const point = gather<D>(-dth, [&](int i, Point<D> &p) {
+    // who has pressure: without it on either side nothing is hydrostatic, and diffusion would push apart particles that fly free
+    if (!(FLAGS & DIFFUSION)) return;
+    const State &s = state[type[i]];
+    p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
+    p.pv2 = diffusion.hydrostatic(p.position(x[i]).data(), s.rho0 * s.inv_csq);
+  });
 
   const auto pair = [&](int i, int j, const Point<D> &pi, const Point<D> &pj, const double *xij, const double *vij, double rsq,
                         double share, double &rate_i) {
@@ -398,8 +401,8 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   for (const int i : other_rows) row(i);
 #if FSI_PACKS
   if constexpr (!(FLAGS & (TALLY | SHIFT))) {
-    packed_images = newton && !walls.finite();
-    rate_rows<K, (FLAGS & DIFFUSION) != 0, false>({rows, list->numneigh, list->firstneigh, nlocal, newton}, Mirror(), kernel, diffusion, point, rate);
+    packed_images = !walls.finite();
+    rate_rows<K, (FLAGS & DIFFUSION) != 0, false>({rows, list->numneigh, list->firstneigh}, Mirror(), kernel, diffusion, point, rate);
     if ((FLAGS & IMAGES) && packed_images)
       for_reflections(walls, [&](const Walls::Reflection &s, const Rows &near) {
         rate_rows<K, (FLAGS & DIFFUSION) != 0, true>(near, Mirror(walls, s), kernel, diffusion, point, rate);
@@ -511,14 +514,15 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const int *const type = atom->type;
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
-  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off
+  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off, or a hybrid style with solids that need it
   const State *const state = hub->state.data();
   const Walls &walls = hub->walls;
-  Point<D> *const a = gather<D>(0.0);
-  for (int i = 0; i < nlocal + atom->nghost; i++) {
-    a[i].p = hub->pressure(i);
-    a[i].pv2 = a[i].p * a[i].vol * a[i].vol;
-  }
+  const double *const psi = surface_ratio > 0.0 ? hub->psi : nullptr;
+  Point<D> *const a = gather<D>(0.0, [&](int i, Point<D> &p) {
+    const State &s = state[type[i]];
+    p.p = psi ? hub->pressure(i) : s.pressure(p.rho);
+    p.pv2 = p.p * p.vol * p.vol;
+  });
   const ArtificialViscosity artificial(alpha, beta, hub->h);
   const LaminarViscosity<D> viscous(hub->h, laminar == CENTRAL);
   const double *const gravity = hub->gravity;
@@ -682,12 +686,12 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   for (const int i : other_rows) row(i);
 #if FSI_PACKS
   if (!(FLAGS & LEDGER) && !tally_pairs) {
-    packed_images = newton && !(FLAGS & LAMINAR) && !walls.finite();
+    packed_images = !(FLAGS & LAMINAR) && !walls.finite();
     const auto some = [&](auto images, const Rows &which, const Mirror &mirror, double *total) {
       force_rows<K, (FLAGS & ARTIFICIAL) != 0, (FLAGS & LAMINAR) != 0, decltype(images)::value>(
           which, mirror, kernel, artificial, sound, viscous, state, type, a, f, total);
     };
-    some(std::false_type(), {rows, list->numneigh, list->firstneigh, nlocal, newton}, Mirror(), nullptr);
+    some(std::false_type(), {rows, list->numneigh, list->firstneigh}, Mirror(), nullptr);
     if constexpr ((FLAGS & MIRROR) && !(FLAGS & LAMINAR))
       if (packed_images)
         for_reflections(walls, [&](const Walls::Reflection &s, const Rows &near) {

@@ -84,7 +84,7 @@ class PairFSIFluid : public PairFSI {
 
   // local and ghost, gathered at the start of each loop
   std::vector<double> points;
-  template <int D> FSI::Point<D> *gather(double t);    // positions a time t later
+  template <int D, class Rest> FSI::Point<D> *gather(double t, Rest);    // positions a time t later; what else a loop needs
   // rows of the neighbor list: of one fluid, for loops over four pairs at a time (fsi_fluid_rows.h), and the others
   std::vector<int> rows, other_rows;
   bool mixed;    // there is more than one fluid, or something else
