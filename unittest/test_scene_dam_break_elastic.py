@@ -44,13 +44,14 @@ def test_plate_dams_water_as_a_beam_does(tmp_path):
 
 def test_full_width_is_the_section(tmp_path):
     # Periodic across, no Poisson's ratio: 3D and 2D are the same problem, so only the kernels' sums over a cubic and over a square lattice differ, by
-    # 1 to 2 % (doc/choosing.md). A surge that is 1 % faster arrives 2 ms earlier after 0.2 s, in which the plate, on its way, goes 8 % of what it has gone by
-    # 0.24 s; measured: 7 %
+    # 1 to 2 % (doc/choosing.md). The plate is on its way: a surge that is 1 % late, 2 ms, is 2 % of the way by root mean square and 10 % of it at the end
     (_, full), (_, section) = (run(tmp_path / name, **SMALL, tend=0.24, frames=4, **more) for name, more in
                                (("full", {"gap": 0, "width": 0.028}), ("section", {"dim": 2})))
     size = section["tip_x"].max()
-    assert size > 0.005
-    assert np.max(np.abs(full.at("tip_x", section.time[:-1]) - section["tip_x"][:-1])) < 0.1 * size
+    assert size > 0.004  # more than the spacing
+    times = section.time[:-1]
+    assert np.sqrt(np.mean((full.at("tip_x", times) - section["tip_x"][:-1])**2)) < 0.03 * size
+    assert full["tip_x"].max() == pytest.approx(size, rel=0.1)
     # uniform across to round-off
     assert np.abs(full["near"] - full["far"]).max() < 1e-8 * size
 
