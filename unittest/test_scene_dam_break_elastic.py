@@ -7,7 +7,7 @@ import pytest
 
 from fsi import scene, series
 
-ANALYSIS = scene._analysis("dam_break_elastic")  # pylint: disable=protected-access
+ANALYSIS = scene.analysis("dam_break_elastic")
 SMALL = {"column": 0.08, "depth": 0.12}  # a quarter of the scene's water
 
 
