@@ -134,13 +134,14 @@ namespace FSI {
     const int n = rows.numneigh[i], full = n & ~(Pack::WIDTH - 1);
     for (int jj = 0; jj < full; jj += Pack::WIDTH) {
       const int *const j = list + jj;
-      pairs(j, PackOfPoints<D>(point[j[0]], point[j[1]], point[j[2]], point[j[3]]), Pack(1.0));
+      PackOfPoints<D> pj(point[j[0]], point[j[1]], point[j[2]], point[j[3]]);
+      pairs(j, pj, Pack(1.0));
     }
     if (full == n) return;
     int j[Pack::WIDTH];
     for (int k = 0; k < Pack::WIDTH; k++) j[k] = full + k < n ? list[full + k] : i;
-    pairs(j, PackOfPoints<D>(point[j[0]], point[j[1]], point[j[2]], point[j[3]]),
-          Pack(1.0, full + 1 < n ? 1.0 : 0.0, full + 2 < n ? 1.0 : 0.0, full + 3 < n ? 1.0 : 0.0));
+    PackOfPoints<D> pj(point[j[0]], point[j[1]], point[j[2]], point[j[3]]);
+    pairs(j, pj, Pack(1.0, full + 1 < n ? 1.0 : 0.0, full + 2 < n ? 1.0 : 0.0, full + 3 < n ? 1.0 : 0.0));
   }
 
   // m_i dpsi_i/dt into rate, with density diffusion: see PairFSIFluid::rate_pairs. What is constant comes by value: stores to the
@@ -153,7 +154,7 @@ namespace FSI {
     for (const int i : rows.i) {
       const PackOfPoints<D> pi(point[i]);
       Pack sum = 0.0, flux = 0.0;
-      for_packs<D>(rows, i, point, [&](const int *j, PackOfPoints<D> pj, const Pack &live) __attribute__((always_inline)) {
+      for_packs<D>(rows, i, point, [&](const int *j, PackOfPoints<D> &pj, const Pack &live) __attribute__((always_inline)) {
         if (IMAGES) pj.reflect(mirror);
         Pack x[D], v[D];
         const Pack rsq = difference(pi.x, pj.x, x), vdotx = (difference(pi.v, pj.v, v), product(v, x));
@@ -188,7 +189,7 @@ namespace FSI {
       const double visc = LAMINAR ? 2.0 * state[type[i]].viscosity : 0.0;
       Pack sum[D];
       for (int d = 0; d < D; d++) sum[d] = 0.0;
-      for_packs<D>(rows, i, point, [&](const int *j, PackOfPoints<D> pj, const Pack &live) __attribute__((always_inline)) {
+      for_packs<D>(rows, i, point, [&](const int *j, PackOfPoints<D> &pj, const Pack &live) __attribute__((always_inline)) {
         if (IMAGES) pj.reflect(mirror);
         Pack x[D], v[D], force[D];    // force on j
         const Pack rsq = difference(pi.x, pj.x, x), vdotx = (difference(pi.v, pj.v, v), product(v, x));
