@@ -37,7 +37,8 @@ def counted():
     cases |= {(name, "zero"): deck(name, style=style) for name, style in ZERO.items()}
     cases |= {("fluid", "walls"): deck("fluid", walls="yes"), ("fluid", "walls away"): deck("fluid", commands=AWAY),
               ("fluid", "viscosity"): deck("fluid", style="artificial/visc 0.05 0"), ("fluid", "shift"): deck("fluid", style="shift 0.1"),
-              ("updated", "stress"): deck("updated", style="artificial/stress 0.3"), ("total", "hourglass"): deck("total", style="hourglass 0.05")}
+              ("updated", "stress"): deck("updated", style="artificial/stress 0.3"), ("total", "hourglass"): deck("total", style="hourglass 0.05"),
+              ("total", "damage"): deck("total", style="damage 0.5")}
     found = measure.profiles(list(cases.values()))
     steps = measure.LONG - measure.SHORT
     return {case: {f: (n - a.get(f, 0)) / steps for f, n in b.items()} for case, (a, b) in zip(cases, found)}
@@ -55,6 +56,12 @@ def test_effects_of_size_zero_cost_no_instruction(counted, name):
 def test_a_named_effect_is_counted(counted, name, what, least):
     """What the other tests find absent would be seen."""
     assert sum(counted[name, what].values()) > (1.0 + least) * sum(counted[name, "nothing"].values())
+
+
+def test_damage_looks_where_a_bond_may_break(counted):
+    """Each particle's motion, at some 20 instructions, but not its bonds, at some 50 each."""
+    more = sum(counted["total", "damage"].values()) - sum(counted["total", "nothing"].values())
+    assert 0 < more < 50 * SMALL[0] * SMALL[1]
 
 
 FOREIGN = {"fluid": "Solid|Stress|Reference|Wall|Energy|FSIDt|Watch|Surface|position_divergence|number_density|displacements",
