@@ -113,6 +113,7 @@ SCENES = {  # scene: title, deck, base, {effect: (without, with)}; without None:
         "shifting": {"style": "shift 0.1"},
         "mirror walls": {"walls": "yes"},
         "free-surface rule": {"style": "surface 0.9 bulk"},
+        "free-surface rule, every 10 steps": {"style": "surface 0.9 bulk", "hub": "surface/every 10"},
         "density by summation": {"hub": "fluid summation"},
         "density by ratio": {"hub": "fluid ratio"},
         "tension, Tait, background": {"style": "eos tait tension yes background 1"},
