@@ -86,7 +86,7 @@ MUTATIONS = [
     (TL, "t[a * D + c] -= kr * r * X[c];", "t[a * D + c] += kr * r * X[c];", "solid_tl"),
     (TL, "extra[a] -= kr * r;", "extra[a] += kr * r;", "solid_tl"),
     (TL, "for (int c = 0; c < D; c++) fj[a] -= t[a * D + c] * b[c];", "for (int c = 0; c < D; c++) fj[a] -= t[c * D + a] * b[c];", "solid_tl"),
-    (TL, "  reverse_comm(hub->profile, comm, this);\n}", "}", "solid_tl"),
+    (TL, "reference->swaps.reverse(this);", "", "solid_tl"),
     (TL, "rmass[i] / si.rho0 * reference->weight(i)", "rmass[i] / si.rho0", "solid_tl"),
     (TL, "const double q = 0.5 * b[2 * D + 1]", "const double q = b[2 * D + 1]", "solid_tl"),
     (TL, "fsolid[i][d] += f * xij[d];", "fsolid[i][d] -= f * xij[d];", "solid_tl"),

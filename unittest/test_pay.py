@@ -96,7 +96,7 @@ def test_walls_that_nobody_is_near_cost_a_look(counted):
 
 OWN = 8 * (6 + 3)  # LAMMPS' own for each ghost: positions and velocities out, forces back
 SENT = [(name, settings) for name in DECKS for settings in [{}, *(s for _, _, s in effects.cases(name))]
-        if not settings.get("commands")]
+        if not settings.get("commands")] + [("total", {"hub": "substeps 4"})]
 
 
 @pytest.fixture(scope="module")
@@ -108,13 +108,21 @@ def sent():
 @pytest.mark.parametrize("k", range(len(SENT)), ids=[f"{n}: {' '.join(map(str, s.values())) or 'nothing'}" for n, s in SENT])
 def test_messages_are_those_announced(sent, k):
     found, text = sent[k]
-    forward, back, more = re.search(r"positions and forces: (\d+) forward, (\d+) back(; 1 back)?", text).groups()
+    forward, back, more = re.search(r"positions and forces: (\d+) forward, (\d+) back(; 1 back|; 4 each way)?", text).groups()
+    solids = {None: 0, "; 1 back": 1, "; 4 each way": 8}[more]
     size = int(re.search(r"for each ghost: (\d+) bytes", text)[1])
     assert found["ghosts"] > 0
     looks = re.search(r"every (\d+) steps: (\d) message back and (\d+) bytes of a ghost more", text)
     every, message, density = map(int, looks.groups()) if looks else (1, 0, 0)
-    assert found["messages"] == pytest.approx(2 + int(forward) + int(back) + bool(more) + message / every, abs=1e-9)
+    assert found["messages"] == pytest.approx(2 + int(forward) + int(back) + solids + message / every, abs=1e-9)
     assert found["bytes"] == pytest.approx((OWN + size + density / every) * found["ghosts"], abs=1e-6)
+
+
+def test_substeps_send_nothing_where_no_solid_is():
+    """The gate, whose plate is one rank's alone: positions out, forces back, density out, its rate back, and nothing for sub-steps."""
+    found, = measure.messages([re.sub(r"^timestep .*", "timestep 1e-7", effects.counted("gate", {}), flags=re.M)])
+    assert found["ghosts"] > 100
+    assert (found["messages"], found["empty"]) == (4, 0)
 
 
 @pytest.mark.parametrize("name, size", [("fluid", 8 + 8), ("updated", 8 + 8 * 3 + 8 * 4), ("total", 8 + 8 * 2)])

@@ -274,7 +274,7 @@ void FixFSI::setup(int)
   if (solid) solid_ghost += comm_forward - 2 + newton * ng + hourglass * (dim * dim + newton * dim);
   if (solid_tl) solid_ghost += substeps * dim + (substeps > 1 ? substeps * solid_tl->comm_forward : 0);
   text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", forward, back,
-                      !solid_tl ? "" : substeps > 1 ? fmt::format("; {} each way for solid sub-steps", substeps) : "; 1 back for solid forces");
+                      !solid_tl ? "" : substeps > 1 ? fmt::format("; {} each way for solid sub-steps, where they carry solids", substeps) : "; 1 back for solid forces");
   text += fmt::format("  they carry for each ghost:{}{}\n", fluid ? fmt::format(" {} bytes of a fluid", 8 * fluid_ghost) : "",
                       solid || solid_tl ? fmt::format("{} {} bytes of a solid", fluid ? "," : "", 8 * solid_ghost) : "");
   if (need_psi && keep_psi)

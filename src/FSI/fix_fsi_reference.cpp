@@ -38,7 +38,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), hub(nullptr), list(nullptr), slot(nullptr),
+    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), swaps(lmp), hub(nullptr), list(nullptr), slot(nullptr),
     maxbond(0), apart(0.0), layer(nullptr)
 {
   restart_peratom = 1;
@@ -395,6 +395,7 @@ void FixFSIReference::resolve()
   for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; i++)
     if (is_solid(i)) ghosts.push_back(i);
   seen.clear();
+  swaps.find([this](int i) { return is_solid(i); });
 }
 
 /* ----------------------------------------------------------------------

@@ -22,6 +22,7 @@ FixStyle(fsi/reference,FixFSIReference);
 #define LMP_FIX_FSI_REFERENCE_H
 
 #include "fix.h"
+#include "fsi_swaps.h"
 
 #include <vector>
 
@@ -70,6 +71,7 @@ class FixFSIReference : public Fix {
 
   // local solid atoms, and ghosts of solid atoms
   std::vector<int> solids, ghosts;
+  FSI::Swaps swaps;    // those of solids
 
  private:
   class FixFSI *hub;
