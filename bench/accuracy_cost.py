@@ -1,17 +1,13 @@
-#!/usr/bin/env python3
 """What accuracy costs: the command line of tools/cost. A scene's sweep is its cost.json, see doc/cost/README.md."""
 
 import json
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+import cost_report
+from tool import say
 
-import cost_report  # noqa: E402
-
-from fsi import log, paths, scene, sweep  # noqa: E402
-from fsi.scene import Refusal  # noqa: E402
+from fsi import log, paths, scene, sweep
+from fsi.command import Refusal, split, start
 
 OPTIONS = ("out", "budget", "limit", "repeats", "draw", "source")
 BASE_CFL = 0.25
@@ -89,7 +85,7 @@ def work(definition, settings):
 
 def analysed(name):
     """What turns the folder of a scene's run into its figures: the scene's own analysis."""
-    module = scene._analysis(name)  # pylint: disable=protected-access
+    module = scene.analysis(name)
 
     def measure(folder):
         module.main(folder)
@@ -137,7 +133,7 @@ def own_deck(path, vary, measure, given):
 
 def parse(arguments):
     """(scene or deck, options, settings, {varied name: [values]}, measure)."""
-    what, options, settings, vary, measure = arguments[0], {}, {}, {}, None
+    what, assigned, vary, measure = arguments[0], [], {}, None
     rest = iter(arguments[1:])
     for argument in rest:
         if argument in ("--vary", "--measure"):
@@ -151,11 +147,9 @@ def parse(arguments):
             if not equals or not all(values.split(",")):
                 raise Refusal(f"--vary {value}: expected NAME=V1,V2,...")
             vary[name] = values.split(",")
-            continue
-        name, equals, value = argument.partition("=")
-        if not equals or not name or not value:
-            raise Refusal(f"'{argument}' is not of the form NAME=VALUE")
-        (options if name in OPTIONS else settings)[name] = value
+        else:
+            assigned.append(argument)
+    options, settings = split(assigned, OPTIONS)
     for name in ("budget", "limit", "repeats"):
         try:
             options[name] = {"repeats": int}.get(name, float)(options[name]) if name in options else None
@@ -196,9 +190,9 @@ def main(arguments):
     complete = True
     if options.get("draw") is None:
         complete = sweep.sweep(store, [(p["label"], p["settings"], work(definition, p["settings"])) for p in wanted],
-                               lambda text: print(text, flush=True), options["budget"])
+                               say, options["budget"])
         if complete:
-            sweep.count(store, representatives(definition, store), lambda text: print(text, flush=True))
+            sweep.count(store, representatives(definition, store), say)
     for point in wanted:
         point["run"] = store.get(point["settings"])
     complete &= all(point["run"] for point in wanted)
@@ -211,9 +205,4 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except Refusal as refusal:
-        sys.exit(f"cost: {refusal}")
-    except KeyboardInterrupt:
-        sys.exit(130)
+    start("cost", main)

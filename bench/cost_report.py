@@ -1,18 +1,18 @@
 """Figures, pictures and the page of a sweep, from its points."""
 
-import csv
 import json
 import shutil
 
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from fsi import paths, plot
+from tool import PAGE, write_csv
+
+from fsi import plot
 from fsi.precision import crossings, extrapolate, order, pareto, reach
 
-PAGE = paths.ROOT / "doc" / "cost"
 BOUNDS = (10.0, 5.0, 2.0, 1.0)  # per cent
-COLOURS = (plot.BLUE, plot.ORANGE, "#3a923a", "#7b4fa3", "#c23b3b", "#8c6d31", "#2ba3b4", "#444444")
+COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, "#7b4fa3", plot.RED, "#8c6d31", "#2ba3b4", "#444444")
 NOISE = 0.2  # times that differ by less count as equal
 SAME = 1.1  # errors that differ by less than this factor count as equal
 BESIDE = "to_outside"  # column: relative difference to a figure from outside that does not judge the discretisation
@@ -42,10 +42,7 @@ def write(folder, name, definition, points, source):
         "cpu_seconds": sum({json.dumps(p["run"]["settings"]): sum(p["run"]["cpu_seconds"]) for p in points}.values()),
         "methods": methods, "knobs": _knobs(definition, rows), "reach": _reach(methods)}
     summary["recommendation"] = _recommendation(definition, summary, rows)
-    with (folder / "points.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, [*COLUMNS[:-1], *_further(definition), COLUMNS[-1]], extrasaction="ignore", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(folder / "points.csv", [*COLUMNS[:-1], *_further(definition), COLUMNS[-1]], rows)
     (folder / "summary.json").write_text(json.dumps(summary, indent=1, default=float) + "\n")
     _draw_work(folder / "work.png", definition, rows, curves, methods)
     if definition.get("knobs"):
@@ -200,7 +197,7 @@ def _knobs(definition, rows):
     for knob in definition.get("knobs", ()):
         mine = [r for r in rows if r["role"] == "knob" and r["group"] == knob["name"]]
         good = [r for r in mine if r["status"] == "ok"]
-        base = _base(definition, knob, rows)
+        base = _base(knob, rows)
         if base is None or not good:
             continue
         same = [r for r in good if abs(r["error"]) <= SAME * abs(base["error"])]
@@ -253,7 +250,7 @@ def _optimum(good):
     return ordered[k]["x"] if size[0] > SAME * size[k] and size[-1] > SAME * size[k] else None
 
 
-def _base(definition, entry, rows):
+def _base(entry, rows):
     """The run of a method's curve that a knob or effect starts from."""
     return next((r for r in rows if r["role"] == "curve" and r["status"] == "ok"
                  and (r["group"], r["x"]) == (entry["of"], entry["at"])), None)
@@ -435,7 +432,7 @@ def _draw_knobs(path, definition, rows):
             axes.plot(x, y, "o" if words else "o-", color=plot.BLUE, markersize=4.5)
             axes.set_zorder(2)
             axes.patch.set_visible(False)
-            base = _base(definition, knob, rows)
+            base = _base(knob, rows)
             if base is not None:
                 here = _same(base, good)
                 axes.plot([place[r["label"]] for r in here], [100 * abs(r["error"]) for r in here], "o", markersize=10,
@@ -444,7 +441,7 @@ def _draw_knobs(path, definition, rows):
             if len(y):
                 axes.set_ylim(min(y) / 1.6, max(max(y) * 1.6, min(y) * 8.0))
             _few_labels(axes.yaxis)
-            axes.plot([place[r["label"]] for r in bad], [0.94] * len(bad), "x", color="#c23b3b", markersize=7, clip_on=False,
+            axes.plot([place[r["label"]] for r in bad], [0.94] * len(bad), "x", color=plot.RED, markersize=7, clip_on=False,
                       transform=axes.get_xaxis_transform())
             if words:
                 axes.set_xticks(range(len(mine)), [str(r["x"]) for r in mine], rotation=35, ha="right", fontsize=7.5)
@@ -483,7 +480,7 @@ def _draw_effects(path, definition, rows):
                     left.text(error[k], k, f" {error[k]:.2g}" if error[k] < 99.5 else f" {error[k]:.0f}", va="center", fontsize=7.5)
                     right.text(row["cpu_seconds"], k, f" {row['cpu_seconds']:.2g}", va="center", fontsize=7.5)
                 else:
-                    left.text(0.01, k, "fails", va="center", fontsize=7.5, color="#c23b3b", transform=left.get_yaxis_transform())
+                    left.text(0.01, k, "fails", va="center", fontsize=7.5, color=plot.RED, transform=left.get_yaxis_transform())
             left.set_ylim(-0.6, len(mine) - 0.4)
             left.set_yticks(place, [r["label"] for r in mine])
             left.grid(axis="y", visible=False)

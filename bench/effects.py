@@ -1,26 +1,14 @@
-#!/usr/bin/env python3
 """What each effect costs: time, instructions, memory and messages of a step with it, over those without. tools/cost effects"""
 
-import csv
-import json
 import re
-import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+import measure
+from measure import write_materials
+from tool import Job, say
 
-import measure  # noqa: E402
+from fsi import plot, scene
+from fsi.command import Refusal, start
 
-from fsi import paths, plot, scene, sweep  # noqa: E402
-from fsi.scene import Refusal  # noqa: E402
-
-PAGE = paths.ROOT / "doc" / "cost"
-MATERIALS = """# DATE: 2026-11-21 UNITS: si CITATION: none
-water fluid rho 1000 viscosity 1
-plate solid rho 1000 young 2e6 poisson 0.4
-metal solid rho 1000 young 2e6 poisson 0.4 yield 2e3
-"""
 COLUMNS = ("scene", "effect", "time", "spread", "instructions", "memory", "messages", "bytes", "collectives")
 
 
@@ -73,12 +61,12 @@ fix stress all fsi/stress {stress}
 """ + _end(n, commands, 0.004)
 
 
-def total(n, m, style="", stress=None, material="plate", hub="", commands=""):
+def total(n, m, style="", stress=None, material="plate", commands=""):
     """The same in total-Lagrangian form."""
     return _start(n, m) + f"""set group all mol 1
 pair_style fsi/solid/tl {style}
 pair_coeff * * materials.fsi {material}
-fix sph all fsi {1 / n!r} wendland 1.5 {hub}
+fix sph all fsi {1 / n!r} wendland 1.5
 {'' if stress is None else f'fix stress all fsi/stress {stress}'}
 """ + _end(n, commands, 0.004)
 
@@ -104,8 +92,8 @@ def gate(n, _, without=(), water="", rubber="", commands=""):
 STEP = "fix dt all fsi/dt 10"
 WATCH = "fix watch all fsi/watch 10 mach off distance off density off courant off energy off restart off dump off"
 LEDGER = "compute ledger all fsi/energy\nthermo_style custom step c_ledger[1]"
-SCENES = {  # scene: title, deck, base, {effect: (without, with)}; without None: the base
-    "fluid": ("Water", fluid, {}, {
+SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
+    "fluid": ("Water", fluid, {
         "artificial viscosity": {"style": "artificial/visc 0.05 0"},
         "laminar viscosity": {"style": "laminar/visc"},
         "laminar viscosity, central": {"style": "laminar/visc/central"},
@@ -120,7 +108,7 @@ SCENES = {  # scene: title, deck, base, {effect: (without, with)}; without None:
         "adaptive time step": {"commands": STEP},
         "watch": {"commands": WATCH},
         "energy ledger": ({"style": "artificial/visc 0.05 0"}, {"style": "artificial/visc 0.05 0", "commands": LEDGER})}),
-    "updated": ("Solid, updated Lagrangian", updated, {}, {
+    "updated": ("Solid, updated Lagrangian", updated, {
         "artificial viscosity": {"style": "artificial/visc 0.1 0"},
         "artificial stress": {"style": "artificial/stress 0.3"},
         "corrected gradients": {"style": "gradient corrected"},
@@ -133,7 +121,7 @@ SCENES = {  # scene: title, deck, base, {effect: (without, with)}; without None:
         "adaptive time step": {"commands": STEP},
         "watch": {"commands": WATCH},
         "energy ledger": {"commands": LEDGER}}),
-    "total": ("Solid, total Lagrangian", total, {}, {
+    "total": ("Solid, total Lagrangian", total, {
         "artificial viscosity": {"style": "artificial/visc 0.1 0"},
         "hourglass control": {"style": "hourglass 0.05"},
         "neo-Hookean": {"style": "law neohookean"},
@@ -143,7 +131,7 @@ SCENES = {  # scene: title, deck, base, {effect: (without, with)}; without None:
         "adaptive time step": {"commands": STEP},
         "watch": {"commands": WATCH},
         "energy ledger": {"commands": LEDGER}}),
-    "gate": ("Elastic gate", gate, {}, {
+    "gate": ("Elastic gate", gate, {
         "artificial viscosity of the water": ({"without": ("viscosity",)}, {}),
         "density diffusion": ({"without": ("diffusion",)}, {}),
         "mirror walls": ({"without": ("walls",)}, {}),
@@ -161,39 +149,25 @@ SIZE, SMALL, STEPS = (160, 100), (40, 25), {"fluid": 60, "updated": 60, "total":
 
 def cases(name):
     """[(effect, settings without, settings with)] of a scene."""
-    _, _, base, effects = SCENES[name]
-    return [(label, *(change if isinstance(change, tuple) else (base, change))) for label, change in effects.items()]
-
-
-def write_materials(text):
-    """A deck of its own with the materials of this page."""
-    lines = MATERIALS.splitlines()
-    return 'print """' + "\n".join(lines) + '""" file materials.fsi screen no\n' + text
+    return [(label, *(change if isinstance(change, tuple) else ({}, change))) for label, change in SCENES[name][2].items()]
 
 
 def deck(name, settings, size):
     """The input of one case, without run."""
-    _, make, *_ = SCENES[name]
-    text = make(*size, **settings)
+    text = SCENES[name][1](*size, **settings)
     return text if name == "gate" else write_materials(text)
 
 
-def counted(name, settings):
-    """The input of one case as counted: small."""
-    return deck(name, settings, COUNTED.get(name, SMALL))
-
-
-def rows_of(name, kept, turns, say):
-    """The table of a scene."""
-    small = [counted(name, s) for _, *both in cases(name) for s in both]
+def rows_of(name, kept, turns):
+    """The table of a scene, and what is sent in a step of the first case without its effect."""
+    small = [deck(name, s, COUNTED.get(name, SMALL)) for _, *both in cases(name) for s in both]
     say(f"cost: {SCENES[name][0]}: counting instructions of {len(small)} runs")
     counts = kept.get(["instructions", small], lambda: measure.instructions(small))
     still = [re.sub(r"^timestep .*", "timestep 1e-7", text, flags=re.M) for text in small]  # no list is rebuilt on the way
     sent = kept.get(["messages", still], lambda: measure.messages(still))
     rows = []
     for k, (label, without, with_it) in enumerate(cases(name)):
-        texts = [deck(name, s, TIMED.get(name, SIZE)) + f"\nrun {STEPS[name]}" for s in (without, with_it)]
-        found = measure.Pair(**kept.get(["pair", texts, turns], lambda t=texts: vars(measure.pair(*t, turns))))
+        found = kept.pair(*(deck(name, s, TIMED.get(name, SIZE)) + f"\nrun {STEPS[name]}" for s in (without, with_it)), turns)
         a, b = sent[2 * k], sent[2 * k + 1]
         row = {"scene": name, "effect": label, "time": found.ratio - 1, "spread": found.spread,
                "instructions": counts[2 * k + 1] / counts[2 * k] - 1, "memory": found.memory[1] - found.memory[0],
@@ -203,10 +177,7 @@ def rows_of(name, kept, turns, say):
             "{messages:+.2g} messages and {bytes:+.1f} B a ghost".format(**row))
         rows.append(row)
     a = sent[0]
-    seconds = min(measure.Pair(**kept.get(["pair", [deck(name, cases(name)[0][1], TIMED.get(name, SIZE)) + f"\nrun {STEPS[name]}",
-                                                       deck(name, cases(name)[0][2], TIMED.get(name, SIZE)) + f"\nrun {STEPS[name]}"], turns], dict)).a)
-    return rows, {"messages": a["messages"], "bytes": a["bytes"] / a["ghosts"], "collectives": a["collectives"], "seconds": seconds,
-                  "steps": STEPS[name]}
+    return rows, {"messages": a["messages"], "bytes": a["bytes"] / a["ghosts"], "collectives": a["collectives"]}
 
 
 def draw(path, tables):
@@ -229,11 +200,11 @@ def draw(path, tables):
         figure.tight_layout()
 
 
-def page(tables, command):
+def page(tables):
     """The page's text."""
     lines = ["# What each effect costs", "",
              "An effect that a deck does not name is not computed, stored or sent. This is what naming it adds to a step. Written by "
-             f"`{command}`; the numbers are in [effects.csv](effects.csv).", "",
+             "`tools/cost effects`; the numbers are in [effects.csv](effects.csv).", "",
              "![Added time and instructions of each effect](effects.png)", "",
              "* time: CPU time with over without, in one process in turns (A B B A A B); median, ± half the range",
              "* instructions: of the time loop by valgrind's callgrind, difference of two run lengths; the same in every repetition",
@@ -247,43 +218,19 @@ def page(tables, command):
         for r in rows:
             lines.append(f"| {r['effect']} | {r['time']:+.1%} ± {r['spread']:.1%} | {r['instructions']:+.2%} | {r['memory']:+.0f} | "
                          f"{r['messages']:+.2g} | {r['bytes']:+.1f} | {r['collectives']:+.2g} |")
-    notes = PAGE / "effects_notes.md"
-    return "\n".join(lines) + "\n" + ("\n" + notes.read_text() if notes.exists() else "")
+    return "\n".join(lines) + "\n"
 
 
 def main(arguments):
-    options, wanted = {}, []
-    for argument in arguments:
-        name, equals, value = argument.partition("=")
-        if not equals and name in SCENES:
-            wanted.append(name)
-        elif name in ("out", "turns") and value:
-            options[name] = value
-        else:
-            raise Refusal(f"'{argument}': expected out=FOLDER, turns=N or some of {', '.join(SCENES)}")
-    if not scene.build():
-        return 1
-    folder = Path(options.get("out", paths.RESULTS / "cost" / "effects")).resolve()
-    kept = measure.Kept(folder / "points", sweep.source_hash())
-    say = lambda text: print(text, flush=True)
-    tables = {name: rows_of(name, kept, int(options.get("turns", 3)), say) for name in wanted or SCENES}
-    target = folder if wanted or "out" in options else PAGE
+    """tools/cost effects"""
+    job = Job("effects", arguments, turns=3, words=SCENES)
+    tables = {name: rows_of(name, job.kept, job.turns) for name in job.chosen or SCENES}
     rows = [row for table, _ in tables.values() for row in table]
-    (folder / "effects.json").write_text(json.dumps({"effects": rows, "bases": {n: b for n, (_, b) in tables.items()}}, indent=1) + "\n")
-    with (target / "effects.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({k: f"{v:.5g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
-    draw(target / "effects.png", tables)
-    (target / "effects.md").write_text(page(tables, "tools/cost effects"))
-    say(f"cost: page, picture and table are in {target}")
+    draw(job.target / "effects.png", tables)
+    job.write(COLUMNS, rows, 5, page(tables), {"effects": rows, "bases": {n: b for n, (_, b) in tables.items()}})
+    say(f"cost: page, picture and table are in {job.target}")
     return 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except (Refusal, measure.Failed) as refusal:
-        sys.exit(f"cost: {refusal}")
-    except KeyboardInterrupt:
-        sys.exit(130)
+    start("cost", main)

@@ -1,6 +1,5 @@
-"""Measures inputs of LAMMPS: CPU time of pairs in turns, instructions, memory, messages. For effects.py, peers.py and the tests."""
+"""Measures inputs of LAMMPS: CPU time of pairs in turns, instructions, memory, messages. For the tools of this folder and the tests."""
 
-import hashlib
 import json
 import re
 import shutil
@@ -12,22 +11,34 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fsi import launch, log, paths
+from fsi.command import Refusal
 
 SHORT, LONG = 2, 12  # steps of the two runs whose difference is taken: what is done once per run cancels
+MATERIALS = """# DATE: 2026-11-21 UNITS: si CITATION: none
+water fluid rho 1000 viscosity 1
+plate solid rho 1000 young 2e6 poisson 0.4
+metal solid rho 1000 young 2e6 poisson 0.4 yield 2e3
+block solid rho 1000 young 2e6 poisson 0.4 yield 2e3 hardening 1e5
+"""
 
 
-class Failed(Exception):
+class Failed(Refusal):
     """A run came to no end."""
+
+
+def write_materials(text):
+    """A deck with materials of its own, MATERIALS, in materials.fsi."""
+    return f'print """{MATERIALS.rstrip()}""" file materials.fsi screen no\n{text}'
 
 
 @dataclass
 class Pair:
-    """B against A: CPU seconds of each turn, and what both need beyond time."""
+    """B against A: seconds of each turn, of measure.pair() CPU seconds of a particle-step; what both have beside time, per particle."""
 
     a: list
     b: list
-    particles: int
-    memory: tuple  # bytes per particle of A and B
+    memory: list = ()  # bytes; of A and B
+    neighbours: list = ()  # entries of the list
 
     @property
     def ratios(self):
@@ -43,9 +54,8 @@ class Pair:
         return (max(self.ratios) - min(self.ratios)) / 2
 
 
-def execute(command, folder, text, binary=None):
-    """Runs a command on an input text; its output."""
-    (folder / "in.deck").write_text(text)
+def execute(command, folder, binary=None):
+    """Runs a command in a folder."""
     env = launch.environment()
     if binary:  # with the library beside it
         env["LD_LIBRARY_PATH"] = str(Path(binary).parent)
@@ -56,48 +66,43 @@ def execute(command, folder, text, binary=None):
         output = (done.stdout + (path.read_text(errors="replace") if path.exists() else "")).splitlines()
         lines = [line for line in output if line.startswith("ERROR") or "Exception" in line] or output[-3:]
         raise Failed("; ".join(lines)[:300])
-    return done.stdout
+
+
+def run(folder, text, ranks=1, binary=None, before=()):
+    """Runs an input in a folder; `before` the command line."""
+    (folder / "in.deck").write_text(text)
+    command = launch.lammps("in.deck", ranks if ranks > 1 else 0, binary=binary)
+    execute([*before, *command, "-screen", "none", "-nocite"], folder, binary)
 
 
 def simulate(text, ranks=1, binary=None):
     """The log of an input."""
     with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
-        folder = Path(name)
-        start = launch.mpirun(ranks) if ranks > 1 else []
-        command = [*start, str(binary or paths.BUILD / "lmp"), "-in", "in.deck", "-log", "log.lammps", "-screen", "none", "-nocite"]
-        execute(command, folder, text, binary)
-        return log.read(folder / "log.lammps")
+        run(Path(name), text, ranks, binary)
+        return log.read(Path(name) / "log.lammps")
 
 
-def seconds(run):
-    """CPU seconds of a run's loop, per rank."""
-    return run.loop_seconds * (run.cpu_use or 1.0)
-
-
-def pair(a, b, turns=3, binary=None):
+def pair(a, b, turns, binary=None):
     """Two inputs, each with one run, in turns in one process: A B B A A B ..., so that what the machine does else falls on both."""
     order = "".join("AB" if k % 2 == 0 else "BA" for k in range(turns))
     runs = simulate("\nclear\n".join({"A": a, "B": b}[which] for which in order), binary=binary).finished
     if len(runs) != len(order):
         raise Failed(f"{len(runs)} of {len(order)} runs ended")
-    of = {which: [run for run, o in zip(runs, order) if o == which] for which in "AB"}
-    return Pair(*([seconds(run) for run in of[which]] for which in "AB"), particles=of["A"][0].atoms,
-                memory=tuple(of[which][0].bytes_per_rank / of[which][0].atoms for which in "AB"))
+    of = [[r for r, o in zip(runs, order) if o == which] for which in "AB"]
+    return Pair(*([r.cpu_seconds / r.steps / r.atoms for r in mine] for mine in of), memory=[mine[0].bytes_per_rank / mine[0].atoms for mine in of],
+                neighbours=[(mine[0].neighbours or 0) / mine[0].atoms for mine in of])
 
 
-def profiles(texts, binary=None):
+def profiles(texts):
     """What the time loop executes: ({function: instructions} of SHORT steps, that of LONG steps) of each of some inputs without run command.
 
     One process for all, since valgrind starts slowly.
     """
     if shutil.which("valgrind") is None:
         raise Failed("valgrind is not installed: tools/setup installs it")
-    loop = "LAMMPS_NS::Verlet::run(int)"
     with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
         folder = Path(name)
-        command = ["valgrind", "--tool=callgrind", f"--toggle-collect={loop}", f"--dump-before={loop}", "--combine-dumps=no",
-                   "--callgrind-out-file=count", str(binary or paths.BUILD / "lmp"), "-in", "in.deck", "-log", "none", "-screen", "none", "-nocite"]
-        execute(command, folder, "\nclear\n".join(f"{t}\nrun {SHORT}\nrun {LONG}" for t in texts), binary)
+        run(folder, "\nclear\n".join(f"{t}\nrun {SHORT}\nrun {LONG}" for t in texts), before=launch.callgrind("count", parts=True))
         # a part is what was counted up to the next run; the last has no number
         parts = sorted(folder.glob("count.*"), key=lambda p: int(p.suffix[1:])) + [folder / "count"]
         found = [_functions(p.read_text()) for p in parts if p.exists()][-2 * len(texts):]
@@ -122,18 +127,16 @@ def _functions(text):
     return found
 
 
-def instructions(texts, binary=None):
+def instructions(texts):
     """Instructions per step of each of some inputs without run command: [int]."""
-    return [(sum(b.values()) - sum(a.values())) // (LONG - SHORT) for a, b in profiles(texts, binary)]
+    return [(sum(b.values()) - sum(a.values())) // (LONG - SHORT) for a, b in profiles(texts)]
 
 
 def announcements(texts):
     """What fix fsi prints at the start of each of some inputs without run command."""
     with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
-        folder = Path(name)
-        command = [str(paths.BUILD / "lmp"), "-in", "in.deck", "-log", "log.lammps", "-screen", "none", "-nocite"]
-        execute(command, folder, "\nclear\n".join(f"{t}\nrun 0" for t in texts))
-        return re.findall(r"^FSI: .*(?:\n  .*)*", (folder / "log.lammps").read_text(), re.M)
+        run(Path(name), "\nclear\n".join(f"{t}\nrun 0" for t in texts))
+        return re.findall(r"^FSI: .*(?:\n  .*)*", (Path(name) / "log.lammps").read_text(), re.M)
 
 
 def messages(texts):
@@ -150,7 +153,7 @@ def messages(texts):
         for k, text in enumerate(texts):
             (folder / f"in.{k}").write_text(text)
         command = [*launch.mpirun(2), "env", f"LD_PRELOAD={folder / 'count.so'}", sys.executable, str(Path(__file__).resolve()), str(len(texts))]
-        execute(command, folder, "")
+        execute(command, folder)
         found = [json.loads(path.read_text()) for path in sorted(folder.glob("rank*.json"))]
     return [{key: sum(rank[k][key] for rank in found) / len(found) for key in found[0][k]} for k in range(len(texts))]
 
@@ -177,26 +180,6 @@ def _count(number):
         found.append({name: (b - a) / (LONG - SHORT) for name, a, b in zip(names, *counts)} | {"ghosts": lmp.extract_global("nghost")})
     Path(f"rank{lmp.extract_setting('world_rank')}.json").write_text(json.dumps(found))
     lmp.finalize()
-
-
-class Kept:
-    """Results by what they are results of, as JSON in a folder: what has been measured is not measured again."""
-
-    def __init__(self, folder, *version):
-        self.folder, self.version = Path(folder), version
-        self.folder.mkdir(parents=True, exist_ok=True)
-
-    def get(self, key, make):
-        """The stored result of `key`; else that of make()."""
-        name = hashlib.sha1(json.dumps([key, self.version]).encode()).hexdigest()[:16]
-        path = self.folder / f"{name}.json"
-        if path.exists():
-            return json.loads(path.read_text())
-        result = make()
-        unfinished = path.with_suffix(".unfinished")
-        unfinished.write_text(json.dumps(result) + "\n")
-        unfinished.replace(path)
-        return result
 
 
 if __name__ == "__main__":

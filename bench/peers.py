@@ -1,23 +1,16 @@
-#!/usr/bin/env python3
 """The package beside LAMMPS' own particle methods, in one program and one run: tools/cost peers"""
 
-import csv
-import json
 import statistics
 import subprocess
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+import measure
+from tool import PAGE, Job, say
 
-import measure  # noqa: E402
-
-from fsi import launch, paths, scene, sweep  # noqa: E402
-from fsi.scene import Refusal  # noqa: E402
+from fsi import paths, scene
+from fsi.command import start
 
 DECKS = Path(__file__).resolve().parent / "peers"
-PAGE = paths.ROOT / "doc" / "cost"
 BUILD = paths.ROOT / "build-peers"
 LMP = BUILD / "lmp"
 PACKAGES = ("SPH", "BPM", "RHEO", "MACHDYN")  # RHEO needs BPM
@@ -25,31 +18,29 @@ SETTINGS = ("dim", "nx", "ny", "nz", "steps", "support", "kernel", "hdx", "form"
 WATER2D = {"nx": 400, "ny": 250}
 FULL = "artificial viscosity, density diffusion, mirror walls"
 
-# name: what is compared, deck and settings of ours, of the peer's, target of the ratio of their speeds
+# name: what is compared, settings of both, deck and further settings of ours, of the peer's, target of the ratio of their speeds. Steps are
+# multiples of those between neighbour lists, so that the list that fix fsi builds at the start of a run weighs no more than one of the peer's
 SPEEDS = {
-    "sph 2d": ("sph/taitwater, 2D dam break, 100k particles, support 2.6 dx", ("water_fsi", {**WATER2D, "kernel": "wendland", "steps": 40}),
-               ("water_sph", {**WATER2D, "steps": 40}), 1.3),
-    "sph 3d": ("sph/taitwater, 3D dam break, 125k particles, support 2.6 dx",
-               ("water_fsi", {"dim": 3, "nx": 50, "ny": 50, "nz": 50, "kernel": "wendland", "steps": 8}),
-               ("water_sph", {"dim": 3, "nx": 50, "ny": 50, "nz": 50, "steps": 8}), 1.3),
-    "rheo 2d": ("RHEO, 2D dam break, 20k particles, quintic, support 3 dx",
-                ("water_fsi", {"nx": 160, "ny": 125, "kernel": "quintic", "hdx": 1.0, "steps": 20}),
-                ("water_rheo", {"nx": 160, "ny": 125, "steps": 20}), 5.0),
-    "rheo 3d": ("RHEO, 3D dam break, 14k particles, quintic, support 3 dx",
-                ("water_fsi", {"dim": 3, "nx": 24, "ny": 24, "nz": 24, "kernel": "quintic", "hdx": 1.0, "steps": 6}),
-                ("water_rheo", {"dim": 3, "nx": 24, "ny": 24, "nz": 24, "steps": 6}), 5.0),
-    "tlsph": ("MACHDYN smd/tlsph, plate, 20k particles, support 3 dx, viscosity and hourglass control",
-              ("plate_fsi", {"form": "tl", "steps": 20}), ("plate_tlsph", {"steps": 20}), 4.0),
-    "ulsph": ("MACHDYN smd/ulsph, plate, 20k particles, support 3 dx, plain gradients",
-              ("plate_fsi", {"form": "ul", "steps": 20}), ("plate_ulsph", {"steps": 20}), 2.0),
-    "ulsph corrected": ("the same, corrected gradients and hourglass control", ("plate_fsi", {"form": "corrected", "steps": 20}),
-                        ("plate_ulsph", {"correction": "GRADIENT_CORRECTION", "steps": 20}), 2.0)}
+    "sph 2d": ("sph/taitwater, 2D dam break, 100k particles, support 2.6 dx", {**WATER2D, "steps": 40},
+               ("water_fsi", {"kernel": "wendland"}), ("water_sph", {}), 1.3),
+    "sph 3d": ("sph/taitwater, 3D dam break, 125k particles, support 2.6 dx", {"dim": 3, "nx": 50, "ny": 50, "nz": 50, "steps": 20},
+               ("water_fsi", {"kernel": "wendland"}), ("water_sph", {}), 1.3),
+    "rheo 2d": ("RHEO, 2D dam break, 20k particles, quintic, support 3 dx", {"nx": 160, "ny": 125, "steps": 40},
+                ("water_fsi", {"kernel": "quintic", "hdx": 1.0}), ("water_rheo", {}), 5.0),
+    "rheo 3d": ("RHEO, 3D dam break, 14k particles, quintic, support 3 dx", {"dim": 3, "nx": 24, "ny": 24, "nz": 24, "steps": 20},
+                ("water_fsi", {"kernel": "quintic", "hdx": 1.0}), ("water_rheo", {}), 5.0),
+    "tlsph": ("MACHDYN smd/tlsph, plate, 20k particles, support 3 dx, viscosity and hourglass control", {"steps": 100},
+              ("plate_fsi", {"form": "tl"}), ("plate_tlsph", {}), 4.0),
+    "ulsph": ("MACHDYN smd/ulsph, plate, 20k particles, support 3 dx, plain gradients", {"steps": 100},
+              ("plate_fsi", {"form": "ul"}), ("plate_ulsph", {}), 2.0),
+    "ulsph corrected": ("the same, corrected gradients and hourglass control", {"steps": 100},
+                        ("plate_fsi", {"form": "corrected"}), ("plate_ulsph", {"correction": "GRADIENT_CORRECTION"}), 2.0)}
 # measured in turn with sph/taitwater on one core of another machine [million particle-steps a second]; not built here
 ELSEWHERE = {"sph/taitwater": 3.1, "DualSPHysics, CPU, Verlet": 1.1, "SPHinXsys": 1.0}
 COLUMNS = ("what", "ours", "peer", "ratio", "spread", "neighbours_ours", "neighbours_peer", "target", "met")
 
 
-def build(say):
+def build():
     """LAMMPS with the package and its own particle methods, with the flags of the package's build; only what can be built."""
     cache = (paths.BUILD / "CMakeCache.txt").read_text()
     taken = [f"-D{line}" for line in cache.splitlines() if line.startswith(("LAMMPS_SOURCE_DIR:", "FSI_NATIVE:", "CMAKE_BUILD_TYPE:"))]
@@ -75,30 +66,16 @@ def deck(name, settings):
     return forget + "".join(f"variable {n} index {v}\n" for n, v in settings.items()) + text
 
 
-def alternate(ours, peer, turns):
-    """Speeds [particle-steps per CPU second] of both in each of some turns, and their neighbours."""
-    order = "".join("AB" if k % 2 == 0 else "BA" for k in range(turns))
-    runs = measure.simulate("\nclear\n".join({"A": ours, "B": peer}[o] for o in order), binary=LMP).finished
-    found = {}
-    for which in "AB":
-        mine = [run for run, o in zip(runs, order) if o == which]
-        found[which] = [run.atoms * run.steps / measure.seconds(run) for run in mine]
-        found[f"neighbours {which}"] = mine[0].neighbours / mine[0].atoms
-    return found
-
-
-def speeds(kept, packages, turns, say):
+def speeds(kept, packages, turns):
     rows = []
-    for key, (what, ours, peer, target) in SPEEDS.items():
+    for key, (what, both, *sides, target) in SPEEDS.items():
         if key.startswith(("tlsph", "ulsph")) and "MACHDYN" not in packages:
             continue
-        texts = [deck(*ours), deck(*peer)]
-        found = kept.get([key, texts, turns], lambda t=texts: alternate(*t, turns))
-        ratios = [a / b for a, b in zip(found["A"], found["B"])]
-        ratio = statistics.median(ratios)
-        rows.append({"what": what, "ours": statistics.median(found["A"]), "peer": statistics.median(found["B"]), "ratio": ratio,
-                     "spread": (max(ratios) - min(ratios)) / 2, "neighbours_ours": found["neighbours A"],
-                     "neighbours_peer": found["neighbours B"], "target": f">= {target}", "met": ratio >= target})
+        found = kept.pair(*(deck(name, {**both, **own}) for name, own in sides), turns, LMP)
+        ratio = found.ratio
+        rows.append({"what": what, "ours": 1 / statistics.median(found.a), "peer": 1 / statistics.median(found.b), "ratio": ratio,
+                     "spread": found.spread, "neighbours_ours": found.neighbours[0],
+                     "neighbours_peer": found.neighbours[1], "target": f">= {target}", "met": ratio >= target})
         say("cost:   {what}: {ours:.3g} against {peer:.3g} particle-steps a CPU second, ratio {ratio:.2f} ± {spread:.2f}".format(**rows[-1]))
         if key == "sph 2d":
             own = ELSEWHERE["sph/taitwater"]
@@ -107,17 +84,18 @@ def speeds(kept, packages, turns, say):
     return rows
 
 
-def gate(kept, say):
+def gate(kept):
     """CPU seconds of the bundled gate at dx = 2.5 mm, with its output."""
+    text = scene.deck("elastic_gate").read_text()
+
     def run():
-        text = scene.deck("elastic_gate").read_text()
-        return {"seconds": sum(map(measure.seconds, measure.simulate("variable dx index 0.0025\n" + text, binary=LMP).finished))}
-    seconds = kept.get(["gate", scene.deck("elastic_gate").read_text()], run)["seconds"]
+        return {"seconds": sum(run.cpu_seconds for run in measure.simulate("variable dx index 0.0025\n" + text, binary=LMP).finished)}
+    seconds = kept.get(["gate", text], run)["seconds"]
     say(f"cost:   gate: {seconds:.1f} CPU seconds")
     return {"what": "elastic gate, dx = 2.5 mm, 0.4 s [CPU seconds]", "ours": seconds, "peer": 30.0, "target": "< 10", "met": seconds < 10.0}
 
 
-def ranks(kept, turns, say):
+def ranks(kept, turns):
     """Two ranks over one, by the clock; only where nothing else runs."""
     text = deck("water_fsi", {**WATER2D, "kernel": "wendland", "steps": 60})
 
@@ -129,16 +107,15 @@ def ranks(kept, turns, say):
                 found[n].append((last.loop_seconds, last.cpu_use))
         return {str(n): v for n, v in found.items()}
     found = kept.get(["ranks", text, turns], run)
-    ratios = [a[0] / b[0] for a, b in zip(found["1"], found["2"])]
+    pair = measure.Pair(*([seconds for seconds, _ in found[n]] for n in "21"))
     busy = min(use for times in found.values() for _, use in times)
-    ratio = statistics.median(ratios)
     note = "" if busy > 0.95 else f"; the machine was busy, {busy:.0%} of a core: no measurement"
-    say(f"cost:   2 ranks over 1: {ratio:.2f}{note}")
-    return {"what": f"2 ranks over 1, 100k particles, by the clock{note}", "ratio": ratio, "spread": (max(ratios) - min(ratios)) / 2,
-            "target": ">= 1.85", "met": None if note else ratio >= 1.85}
+    say(f"cost:   2 ranks over 1: {pair.ratio:.2f}{note}")
+    return {"what": f"2 ranks over 1, 100k particles, by the clock{note}", "ratio": pair.ratio, "spread": pair.spread,
+            "target": ">= 1.85", "met": None if note else pair.ratio >= 1.85}
 
 
-def memory(kept, say):
+def memory(kept):
     """Bytes a fluid particle beyond what LAMMPS holds for the same particles and neighbour list."""
     ours = deck("water_fsi", {**WATER2D, "steps": 10})
     lines = [line for line in ours.splitlines() if not line.startswith(("fix  ", "pair_", "balance"))]
@@ -157,13 +134,16 @@ def number(value):
     return "" if value is None else f"{value / 1e6:.2f} M" if value > 1e4 else f"{value:.3g}"
 
 
-def page(rows, command):
+def page(rows):
     lines = ["# Beside LAMMPS' own styles", "",
-             f"Written by `{command}`, which builds LAMMPS' packages {', '.join(PACKAGES)} and this one into one program, with the same flags, and runs "
+             f"Written by `tools/cost peers`, which builds LAMMPS' packages {', '.join(PACKAGES)} and this one into one program, with the same flags, and runs "
              "each pair in turns in one process. Speeds are particle-steps per CPU second of the time loop on one core, wall particles included. "
              "Decks: `bench/peers`.", "",
              f"The package's water has its full physics ({FULL}), sph/taitwater has artificial viscosity and walls of particles, RHEO artificial viscosity and density damping. "
              "Supports of kernels are equal; neighbours are entries of the list per particle, with the same skin (half lists, but full ones where a style asks for them).", "",
+             "A run of the package begins with a neighbour list built inside its time loop, as it would after a restart; the peers build their first before it. "
+             "It is counted: lists of the water are renewed every 10 steps and the runs are multiples of that, 40 steps in 2D and 20 in 3D, so that both sides "
+             "build equally many; the plates' lists last, so that in 100 steps the package builds one and the peer none.", "",
              "| against | ours | peer's | ratio | neighbours, ours and peer's | target | |", "|---|---|---|---|---|---|---|"]
     for r in rows:
         ratio = "" if r.get("ratio") is None else f"{r['ratio']:.3g}" + (f" ± {r['spread']:.2g}" if r.get("spread") is not None else "")
@@ -175,35 +155,14 @@ def page(rows, command):
 
 
 def main(arguments):
-    options = {}
-    for argument in arguments:
-        name, equals, value = argument.partition("=")
-        if name not in ("out", "turns") or not value:
-            raise Refusal(f"'{argument}': expected out=FOLDER or turns=N")
-        options[name] = value
-    turns = int(options.get("turns", 3))
-    if not scene.build():
-        return 1
-    say = lambda text: print(text, flush=True)
-    packages = build(say)
-    folder = Path(options.get("out", paths.RESULTS / "cost" / "peers")).resolve()
-    kept = measure.Kept(folder / "points", sweep.source_hash())
-    rows = speeds(kept, packages, turns, say) + [gate(kept, say), ranks(kept, turns, say), memory(kept, say)]
-    target = folder if "out" in options else PAGE
-    (folder / "peers.json").write_text(json.dumps(rows, indent=1) + "\n")
-    with (target / "peers.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({k: f"{v:.5g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
-    (target / "peers.md").write_text(page(rows, "tools/cost peers"))
-    say(f"cost: page and table are in {target}")
+    """tools/cost peers"""
+    job = Job("peers", arguments, turns=3)
+    packages = build()
+    rows = speeds(job.kept, packages, job.turns) + [gate(job.kept), ranks(job.kept, job.turns), memory(job.kept)]
+    job.write(COLUMNS, rows, 5, page(rows), rows)
+    say(f"cost: page and table are in {job.target}")
     return 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except (Refusal, measure.Failed) as refusal:
-        sys.exit(f"cost: {refusal}")
-    except KeyboardInterrupt:
-        sys.exit(130)
+    start("cost", main)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Many ranks, by a model: compute per particle and bytes per ghost are measured here, the network is assumed. tools/cost scaling
 
 A step of the busiest of P ranks, each with a cube of n = N/P particles (a column in a slab for few ranks is no different to leading order):
@@ -6,24 +5,18 @@ A step of the busiest of P ranks, each with a cube of n = N/P particles (a colum
     G = (n^(1/3) + 2 w)^3 - n, the ghosts, w = (support + skin)/dx
 """
 
-import csv
-import json
 import math
 import os
 import re
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+import measure
+from tool import Job, say
 
-import measure  # noqa: E402
-
-from fsi import paths, plot, scene, sweep  # noqa: E402
-from fsi.scene import Refusal  # noqa: E402
+from fsi import plot
+from fsi.command import start
 
 DECK = Path(__file__).resolve().parent / "peers" / "in.water_fsi"
-PAGE = paths.ROOT / "doc" / "cost"
 OWN = 8 * (6 + 3)  # bytes of LAMMPS' own for a ghost in a step: positions and velocities out, forces back
 BORDER = 8 * 12 / 10  # bytes of a new ghost, every tenth step
 ASSUMED = {  # name in the page: value
@@ -65,7 +58,7 @@ def measured(kept):
         found = measure.simulate(text + "\nrun 10\nrun 10").finished[-1]
         banner = measure.announcements([text])[0]
         forward, back = map(int, re.search(r"positions and forces: (\d+) forward, (\d+) back", banner).groups())
-        return {"tau": measure.seconds(found) / found.steps / found.atoms, "bytes": OWN + BORDER + int(re.search(r"(\d+) bytes of a fluid", banner)[1]),
+        return {"tau": found.cpu_seconds / found.steps / found.atoms, "bytes": OWN + BORDER + int(re.search(r"(\d+) bytes of a fluid", banner)[1]),
                 "exchanges": 2 + forward + back, "w": 3.0 + 0.3, "neighbours": 2 * found.neighbours / found.atoms}
     return kept.get(["measured", text], run)
 
@@ -122,7 +115,7 @@ def draw(path, m):
     with plot.picture(path, 8.2, 3.6) as figure:
         strong, weak = figure.subplots(1, 2)
         many = [10**(k / 4) for k in range(17)]
-        for n, colour in zip(FIXED, (plot.GREY, "#3a923a", plot.ORANGE, plot.BLUE)):
+        for n, colour in zip(FIXED, (plot.GREY, plot.GREEN, plot.ORANGE, plot.BLUE)):
             ranks = [p for p in many if n / p >= 10]
             strong.loglog(ranks, [step(n, 1, m) / step(n, p, m) if p > 1 else 1.0 for p in ranks], color=colour, label=f"$10^{{{math.log10(n):.0f}}}$ particles")
         strong.loglog(many, many, color="black", linewidth=0.7, linestyle=":", label="ideal")
@@ -158,7 +151,7 @@ def page(m, rows, balanced):
         "Written by `tools/cost scaling`. No machine of many nodes was at hand: what one particle costs is measured, what crosses ranks is counted "
         "(fix fsi prints it, `unittest/test_pay.py` checks it around the MPI calls), the network is assumed.", "",
         "![Strong and weak scaling](scaling.png)", "",
-        "A step of the busiest of P ranks, each a cube of n = N/P particles:", "", "```",
+        "A step of the busiest of P ranks, each a cube of n = N/P particles:", "", "```text",
         "t = (1 + imbalance) (n + g G) tau + exchanges swaps latency + G bytes/bandwidth + latency log2 P",
         "G = (n^(1/3) + 2 w)^3 - n     ghosts, w = (support + skin)/dx", "```", "",
         "| quantity | value | from |", "|---|---|---|",
@@ -189,36 +182,17 @@ def page(m, rows, balanced):
 
 
 def main(arguments):
-    options = {}
-    for argument in arguments:
-        name, _, value = argument.partition("=")
-        if name != "out" or not value:
-            raise Refusal(f"'{argument}': expected out=FOLDER")
-        options[name] = value
-    if not scene.build():
-        return 1
-    folder = Path(options.get("out", paths.RESULTS / "cost" / "scaling")).resolve()
-    kept = measure.Kept(folder / "points", sweep.source_hash())
-    m = measured(kept)
-    print("cost: {0:.3g} us a particle and step, {1:.0f} bytes a ghost, {2} exchanges".format(m["tau"] * 1e6, m["bytes"], m["exchanges"]), flush=True)
-    balanced = balance(kept)
+    """tools/cost scaling"""
+    job = Job("scaling", arguments)
+    m = measured(job.kept)
+    say("cost: {0:.3g} us a particle and step, {1:.0f} bytes a ghost, {2} exchanges".format(m["tau"] * 1e6, m["bytes"], m["exchanges"]))
+    balanced = balance(job.kept)
     rows = rows_of(m)
-    target = folder if "out" in options else PAGE
-    (folder / "scaling.json").write_text(json.dumps({"measured": m, "assumed": ASSUMED, "balance": balanced, "rows": rows}, indent=1) + "\n")
-    with (target / "scaling.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in r.items()} for r in rows)
-    draw(target / "scaling.png", m)
-    (target / "scaling.md").write_text(page(m, rows, balanced))
-    print(f"cost: page, picture and table are in {target}")
+    draw(job.target / "scaling.png", m)
+    job.write(list(rows[0]), rows, 4, page(m, rows, balanced), {"measured": m, "assumed": ASSUMED, "balance": balanced, "rows": rows})
+    say(f"cost: page, picture and table are in {job.target}")
     return 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except (Refusal, measure.Failed) as refusal:
-        sys.exit(f"cost: {refusal}")
-    except KeyboardInterrupt:
-        sys.exit(130)
+    start("cost", main)

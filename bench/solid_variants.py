@@ -1,23 +1,17 @@
-#!/usr/bin/env python3
 """What a step of each variant of the solid costs beside the plain one: tools/cost solids [out=FOLDER] [turns=N]
 
 A block that vibrates, 2D and 3D, one core. Each variant is timed next to the plain one in one process, in turns, and instructions of the
 time loop are counted by callgrind, which does not depend on the machine's load. Writes solids.md, solids.csv and solids.png.
 """
 
-import csv
-import re
-import shutil
-import statistics
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
+import math
+from dataclasses import replace
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
+import measure
+from tool import Job, say
 
-from fsi import launch, log, paths, plot  # noqa: E402
-from fsi.scene import Refusal, build  # noqa: E402
+from fsi import plot
+from fsi.command import start
 
 PLAIN = "updated Lagrangian, plain gradients"
 UL, TL, HYPO = "fsi/solid", "fsi/solid/tl", "fsi/solid/tl law hypo"
@@ -46,10 +40,6 @@ VARIANTS = {
 }
 SIZE = {2: (60, 50), 3: (15, 14, 14)}  # particles
 STEPS = {2: 60, 3: 12}
-SHORT, LONG = 2, 6  # steps of the two counted runs, whose difference is taken
-MATERIAL = """# DATE: 2026-11-21 UNITS: si CITATION: none
-block solid rho 1000 young 2e6 poisson 0.4 yield 2e3 hardening 1e5
-"""
 
 
 def deck(dim, style, stress):
@@ -57,7 +47,7 @@ def deck(dim, style, stress):
     dx, cells = 0.01, (*SIZE[dim], 1)[:3]
     lx, ly, lz = (dx * n for n in cells)
     depth = f"-0.1 {lz + 0.1}" if dim == 3 else f"{-dx / 2} {dx / 2}"
-    return f"""units si
+    return measure.write_materials(f"""units si
 dimension {dim}
 boundary f f {'f' if dim == 3 else 'p'}
 atom_style fsi
@@ -72,7 +62,7 @@ variable vx atom 0.3*sin(6.2832*x/{lx})*cos(6.2832*y/{ly})
 variable vy atom -0.3*cos(6.2832*x/{lx})*sin(6.2832*y/{ly})
 velocity all set v_vx v_vy NULL
 pair_style {style}
-pair_coeff * * material.fsi block
+pair_coeff * * materials.fsi block
 fix sph all fsi {dx} wendland 1.5
 {'' if stress is None else f'fix stress all fsi/stress {stress}'}
 timestep 2e-5
@@ -80,56 +70,24 @@ neighbor {0.3 * dx} bin
 neigh_modify every 1 delay 0 check yes
 thermo 1000000
 thermo_modify norm no
-"""
+""")
 
 
-def lammps(folder, text, *before):
-    """Runs an input in `folder`; its log."""
-    (folder / "material.fsi").write_text(MATERIAL)
-    (folder / "in.deck").write_text(text)
-    command = [*before, str(paths.BUILD / "lmp"), "-in", "in.deck", "-log", "log.lammps", "-screen", "none", "-nocite"]
-    done = subprocess.run(command, cwd=folder, env=launch.environment(), stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
-    found = log.read(folder / "log.lammps")
-    if done.returncode:
-        raise Refusal("; ".join(found.errors or [done.stderr[-300:]]))
-    return found
+def timed(dim, variant, turns):
+    """A variant beside the plain one, as measure.Pair, after a run of each that does not count."""
+    found = measure.pair(*(f"{deck(dim, *v)}run {STEPS[dim]}" for v in (VARIANTS[PLAIN], variant)), turns + 1)
+    return replace(found, a=found.a[1:], b=found.b[1:])
 
 
-def times(dim, plain, variant, turns):
-    """Nanoseconds of CPU per particle-step, [(plain, variant)]: in one process, ABBAAB..., after a run of each that does not count."""
-    order = "AB" + "".join("AB" if k % 2 == 0 else "BA" for k in range(turns))
-    texts = {"A": deck(dim, *plain), "B": deck(dim, *variant)}
-    with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
-        runs = lammps(Path(name), "clear\n".join(f"{texts[which]}run {STEPS[dim]}\n" for which in order)).finished
-    each = [1e9 * run.loop_seconds * run.cpu_use / run.steps / run.atoms for run in runs]
-    of = {which: [t for t, o in zip(each, order) if o == which][1:] for which in "AB"}
-    return list(zip(of["A"], of["B"]))
-
-
-def instructions(dim, variants):
-    """Instructions per particle-step of each variant, in one process."""
-    loop = "LAMMPS_NS::Verlet::run(int)"
-    with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
-        folder = Path(name)
-        found = lammps(folder, "clear\n".join(f"{deck(dim, *v)}run {SHORT}\nrun {LONG}\n" for v in variants), "valgrind", "--tool=callgrind",
-                       f"--toggle-collect={loop}", f"--dump-before={loop}", "--combine-dumps=no", "--callgrind-out-file=count")
-        # a part is what was counted up to the next run; the last has no number
-        parts = [*sorted(folder.glob("count.*"), key=lambda p: int(p.suffix[1:])), folder / "count"]
-        counts = [sum(map(int, re.findall(r"^totals: (\d+)", p.read_text(), re.M))) for p in parts if p.exists()][-2 * len(variants):]
-    return [(b - a) / (LONG - SHORT) / found.finished[0].atoms for a, b in zip(counts[::2], counts[1::2])]
-
-
-def measure(dim, turns):
-    """Rows of one dimension: {"variant", "ns", "ratio", "spread", "instructions"}."""
-    counted = instructions(dim, VARIANTS.values()) if shutil.which("valgrind") else [float("nan")] * len(VARIANTS)
+def table(dim, turns):
+    """Rows of one dimension."""
+    counts = [n / math.prod(SIZE[dim]) for n in measure.instructions([deck(dim, *v) for v in VARIANTS.values()])]
     rows = []
-    for (name, variant), count in zip(VARIANTS.items(), counted):
-        pairs = times(dim, VARIANTS[PLAIN], variant, turns)
-        ratios = [b / a for a, b in pairs]
+    for (name, variant), count in zip(VARIANTS.items(), counts):
+        pair = timed(dim, variant, turns)
         rows.append({"dimension": dim, "variant": name, "command": " ".join(filter(None, (variant[0], variant[1] and f"({variant[1]})"))),
-                     "ns": min(b for _, b in pairs), "ratio": statistics.median(ratios), "spread": (max(ratios) - min(ratios)) / 2,
-                     "instructions": count, "instruction_ratio": count / counted[0]})
-        print(f"{dim}D  {name:40s} {rows[-1]['ns']:7.0f} ns  {rows[-1]['ratio']:5.2f} +- {rows[-1]['spread']:.2f}  {count:8.0f} instructions", flush=True)
+                     "ns": 1e9 * min(pair.b), "ratio": pair.ratio, "spread": pair.spread, "instructions": count, "instruction_ratio": count / counts[0]})
+        say(f"{dim}D  {name:40s} {rows[-1]['ns']:7.0f} ns  {pair.ratio:5.2f} +- {pair.spread:.2f}  {count:8.0f} instructions")
     return rows
 
 
@@ -173,27 +131,13 @@ def page(tables, turns):
 
 def main(arguments):
     """tools/cost solids"""
-    given = dict(a.partition("=")[::2] for a in arguments)
-    if set(given) - {"out", "turns"} or not given.get("turns", "5").isdecimal() or int(given.get("turns", "5")) < 1:
-        raise Refusal("tools/cost solids takes out=FOLDER and turns=N, N at least 1")
-    if not build():
-        return 1
-    turns, out = int(given.get("turns", "5")), Path(given.get("out", paths.ROOT / "doc" / "cost"))
-    out.mkdir(parents=True, exist_ok=True)
-    tables = {dim: measure(dim, turns) for dim in (2, 3)}
-    with open(out / "solids.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(tables[2][0]), lineterminator="\n")
-        writer.writeheader()
-        for row in tables[2] + tables[3]:
-            writer.writerow({key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()})
-    picture(out / "solids.png", tables)
-    (out / "solids.md").write_text(page(tables, turns), encoding="utf-8")
-    print(f"cost: {out / 'solids.md'}")
+    job = Job("solids", arguments, turns=5)
+    tables = {dim: table(dim, job.turns) for dim in (2, 3)}
+    picture(job.target / "solids.png", tables)
+    job.write(list(tables[2][0]), tables[2] + tables[3], 4, page(tables, job.turns))
+    say(f"cost: {job.target / 'solids.md'}")
     return 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except Refusal as refusal:
-        sys.exit(f"cost: {refusal}")
+    start("cost", main)

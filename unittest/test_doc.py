@@ -97,6 +97,28 @@ def test_page_has_every_keyword(page, name):
     assert not missing, f"{source.name} knows {missing}, {page}.rst does not"
 
 
+def run_time_messages():
+    """[words] of what the sources say about atoms and steps, not arguments; of each message the longest part between its numbers."""
+    found = []
+    for source in SOURCES.glob("*.cpp"):
+        code = source.read_text()
+        for text in re.findall(r'(?:FLERR, |fmt::format\()((?:"[^"]*"\s*)+)', code):
+            text = re.sub(r"\{[^}]*\}", "|", re.sub(r'"\s*"', "", text).strip().strip('"')).removeprefix("Fix fsi/dt: ")
+            if re.match(r"(\w+ )*atoms? (type )?\||on step \|", text, re.I):
+                found.append(max((part.strip(" ,.") for part in text.split(":")[0].split("|")), key=lambda part: len(part.split())))
+        if source.stem == "fix_fsi_watch":
+            found += re.findall(r'^    \{"\w*", "([^"]+)", "', code, re.M)
+    return found
+
+
+def test_run_time_messages_are_among_the_symptoms():
+    text = " ".join((PAGES / "troubleshooting.rst").read_text().replace("*", "").replace("\\", "").split())
+    messages = run_time_messages()
+    assert len(messages) > 20 and min(len(m.split()) for m in messages) >= 2
+    missing = [m for m in messages if m not in text]
+    assert not missing, f"doc/src/troubleshooting.rst lacks {missing}"
+
+
 def test_every_command_page_is_in_the_index():
     listed = set(re.findall(r"^   (\w+)$", (PAGES / "index.rst").read_text(), re.M))
     assert {p.stem for p in PAGES.glob("*.rst")} - {"index"} == listed

@@ -8,7 +8,7 @@ import pytest
 
 from fsi import paths, scene
 
-ROWS = scene._analysis("hard").ROWS  # pylint: disable=protected-access
+ROWS = scene.analysis("hard").ROWS
 GOOD = ("drop", "spin", "spray", "tear", "empty", "jump_plate")  # rows whose runs take a second or two
 
 
@@ -61,7 +61,7 @@ def test_a_run_that_is_stopped_is_a_result(monkeypatch, tmp_path, capsys):
 
 def test_pieces_and_neighbours():
     """Pairs and clusters against all pairs, of random points."""
-    module = scene._analysis("hard")  # pylint: disable=protected-access
+    module = scene.analysis("hard")
     x = np.random.default_rng(1).uniform(0.0, 1.0, (200, 2))
     apart = np.linalg.norm(x[:, None] - x[None], axis=2)
     i, j, r = module.near(x, 0.05)

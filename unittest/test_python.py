@@ -69,13 +69,21 @@ def decode(array):
     return values.reshape(-1, 3) if array.get("NumberOfComponents") == "3" else values
 
 
+def read_vtu(path):
+    """(the piece, {name: array at points}); the file says of itself what `decode` takes for granted."""
+    root = ElementTree.parse(path).getroot()
+    assert root.tag == "VTKFile" and [root.get(a) for a in ("type", "byte_order", "header_type")] == ["UnstructuredGrid", "LittleEndian", "UInt64"]
+    piece = root.find("UnstructuredGrid/Piece")
+    assert {a.get("format") for a in piece.iter("DataArray")} == {"binary"}
+    return piece, {a.get("Name"): decode(a) for a in piece.find("PointData")}
+
+
 def test_vtk(frames):
     index = vtk.convert(frames)
     sets = ElementTree.parse(index).getroot().findall("Collection/DataSet")
     assert [float(s.get("timestep")) for s in sets] == [0.0, 0.25]
-    piece = ElementTree.parse(index.parent / sets[1].get("file")).getroot().find("UnstructuredGrid/Piece")
+    piece, data = read_vtu(index.parent / sets[1].get("file"))
     assert piece.get("NumberOfPoints") == piece.get("NumberOfCells") == "3"
-    data = {a.get("Name"): decode(a) for a in piece.find("PointData")}
     assert set(data) == {"id", "type", "mol", "v", "sxx", "sxy", "p"}
     np.testing.assert_array_equal(data["id"], [1, 2, 3])
     np.testing.assert_array_equal(data["v"], [[1, -1, 0], [1.5, -2, 0], [0, 0, 0]])
@@ -85,6 +93,40 @@ def test_vtk(frames):
     np.testing.assert_array_equal(cells["connectivity"], [0, 1, 2])
     np.testing.assert_array_equal(cells["offsets"], [1, 2, 3])
     np.testing.assert_array_equal(cells["types"], [1, 1, 1])  # VTK_VERTEX
+
+
+def test_vtk_of_a_run(tmp_path, capsys):
+    """Three dimensions, compressed, by the command line: eight atoms that fly straight on are where velocity times time puts them."""
+    run(tmp_path, """units lj
+region box block 0 8 0 8 0 8
+create_box 1 box
+lattice sc 1
+region corner block 0 1 0 1 0 1
+create_atoms 1 region corner
+mass 1 1
+pair_style zero 1
+pair_coeff * *
+timestep 0.25
+fix 1 all nve
+velocity all set 1 2 3
+variable p atom x+10*y+100*z
+dump 1 all custom 2 flight.dump.gz id type x y z vx vy vz v_p
+dump_modify 1 time yes sort id format float %.17g colname v_p p
+run 4
+""")
+    cli.main(["vtk", str(tmp_path / "flight.dump.gz")])
+    index = tmp_path / "flight/flight.pvd"
+    assert capsys.readouterr().out.split() == [str(index)]
+    sets = ElementTree.parse(index).getroot().findall("Collection/DataSet")
+    assert [float(s.get("timestep")) for s in sets] == [0.0, 0.5, 1.0]
+    for one in sets:
+        piece, data = read_vtu(index.parent / one.get("file"))
+        x = np.array([[i, j, k] for k in (0, 1) for j in (0, 1) for i in (0, 1)]) + float(one.get("timestep")) * np.array([1.0, 2.0, 3.0])
+        order = np.lexsort(decode(piece.find("Points/DataArray")).T)
+        np.testing.assert_array_equal(decode(piece.find("Points/DataArray"))[order], x)
+        np.testing.assert_array_equal(data["p"][order], x @ [1.0, 10.0, 100.0])
+        np.testing.assert_array_equal(data["v"], np.tile([1.0, 2.0, 3.0], (8, 1)))
+        np.testing.assert_array_equal(data["id"], np.arange(1, 9))
 
 
 def test_species_and_spacing(frames):

@@ -1,17 +1,19 @@
-"""The model of many ranks, and what tools/cost effects, peers and scaling refuse."""
+"""The model of many ranks, and what tools/cost effects, peers, scaling and solids refuse."""
 
+import re
 import sys
 
 import numpy as np
 import pytest
 
-from fsi import paths
-from fsi.scene import Refusal
+from fsi import paths, scene
+from fsi.command import Refusal
 
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import effects  # noqa: E402
 import peers  # noqa: E402
 import scaling  # noqa: E402
+import solid_variants  # noqa: E402
 
 M = {"tau": 1e-6, "bytes": 98.0, "exchanges": 4, "w": 3.0}
 FREE = {"latency": 0.0, "bandwidth": np.inf, "ghost": 0.0, "imbalance": 0.0}
@@ -44,10 +46,30 @@ def test_small_cubes_ask_further_ranks():
     assert scaling.step(8 * 1000, 1000, M, small) == pytest.approx(2 * 6 * 4, rel=1e-4)
 
 
-@pytest.mark.parametrize("program", [effects, peers, scaling])
-def test_nonsense_is_refused(program):
-    with pytest.raises(Refusal, match="nonsense"):
-        program.main(["nonsense"])
+@pytest.mark.parametrize("word", ["nonsense", "turns=0", "out="])
+@pytest.mark.parametrize("program", [effects, peers, scaling, solid_variants])
+def test_nonsense_is_refused(program, word, monkeypatch):
+    monkeypatch.setattr(scene, "build", lambda: pytest.fail("built"))
+    with pytest.raises(Refusal, match=word):
+        program.main([word])
+
+
+@pytest.mark.parametrize("key", [key for key in peers.SPEEDS])
+def test_peers_and_package_build_as_many_lists(key):
+    """One at the start of a run and then every tenth step: that of the start is the package's alone if the run ends between two."""
+    _, both, *sides, _ = peers.SPEEDS[key]
+    for name, own in sides:
+        every = re.search(r"^neigh_modify +every (\d+) ", peers.deck(name, {**both, **own}), re.M)
+        assert both["steps"] % int(every[1]) == 0
+
+
+def test_pages_hold_their_rows():
+    row = {"what": "a style", "ours": 2e6, "peer": 1e6, "ratio": 2.0, "spread": 0.1, "neighbours_ours": 12.0, "neighbours_peer": 13.0}
+    text = peers.page([{**row, "target": ">= 3", "met": False}])
+    assert "| a style | 2.00 M | 1.00 M | 2 ± 0.1 | 12.0, 13.0 | at least 3 | **missed** |" in text and "{" not in text
+    row = {"effect": "shifting", "time": 0.5, "spread": 0.01, "instructions": 0.25, "memory": 40, "messages": 0, "bytes": 8.0, "collectives": 0}
+    text = effects.page({"fluid": ([row], {"messages": 4, "bytes": 90.0, "collectives": 0.1})})
+    assert "| shifting | +50.0% ± 1.0% | +25.00% | +40 | +0 | +8.0 | +0 |" in text and "{" not in text
 
 
 def test_the_gates_deck_can_do_without_each_part():

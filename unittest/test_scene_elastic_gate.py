@@ -8,7 +8,7 @@ import pytest
 from fsi import dump, scene, series
 from fsi.log import Log, Run
 
-STUDY = scene._analysis("elastic_gate")  # pylint: disable=protected-access
+STUDY = scene.analysis("elastic_gate")
 
 
 def write_run(folder, tip, values, leaked=0, outflow=0):

@@ -6,7 +6,6 @@ study(folder, cases) makes the table of ROWS from them; a row that `best` misses
 """
 
 import csv
-import importlib.util
 import json
 import re
 import sys
@@ -19,7 +18,7 @@ sys.path.insert(0, str(HERE.parents[1] / "python"))
 
 import numpy as np  # noqa: E402
 
-from fsi import dump, log, paths, plot, series, sweep  # noqa: E402
+from fsi import dump, log, paths, plot, scene, series, sweep  # noqa: E402
 from fsi.geometry import min_pair_distance  # noqa: E402
 from fsi.leaks import Leaks  # noqa: E402
 from fsi.summary import RUN_FILE, Summary, number  # noqa: E402
@@ -93,13 +92,10 @@ def liquid(folder):
     return {"in_one_piece": whole, "distance": min(min_pair_distance(f.vector("xy"), dx) for f in frames) / dx}
 
 
-def scene_figures(folder, scene):
+def scene_figures(folder, name):
     """The figures that a scene's own analysis makes of the run, without its pictures: {name: figure}."""
-    spec = importlib.util.spec_from_file_location(f"fsi_analyze_{scene}", paths.EXAMPLES / scene / "analyze.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    with sweep._quiet():  # pylint: disable=protected-access
-        return {f["name"]: f for f in module.main(folder)["figures"]}
+    with sweep.quiet():
+        return {f["name"]: f for f in scene.analysis(name).main(folder)["figures"]}
 
 
 def gate(folder):

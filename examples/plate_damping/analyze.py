@@ -4,20 +4,16 @@
 main() is that of examples/oscillating_plate, whose deck this scene runs; study() makes the table and the pictures.
 """
 
-import importlib.util
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from fsi import plot  # noqa: E402
+from fsi import plot, scene  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
-_spec = importlib.util.spec_from_file_location("fsi_analyze_oscillating_plate",
-                                               HERE.parent / "oscillating_plate" / "analyze.py")
-plate = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(plate)
+plate = scene.analysis("oscillating_plate")
 main = plate.main
 
 COLOURS = {"cubic_1.2": "#5aa0d8", "cubic_1.3": "#1b5e96", "cubic_1.5": "#0b2c47", "quintic_1.0": "#d1611a",

@@ -85,7 +85,7 @@ def main(folder):
 
 
 def study(folder, cases):
-    """The figures of both runs."""
+    """The figures of all runs."""
     summary = Summary(folder)
     for name in cases:
         for figure in summary.cases[name]["figures"]:

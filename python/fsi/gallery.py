@@ -18,6 +18,7 @@ from datetime import datetime
 from pathlib import Path
 
 from . import launch, log, paths, scene
+from .command import Refusal, start
 from .results import _pictures, _readme
 
 SHORT = "short.json"
@@ -102,7 +103,7 @@ def main(arguments):
     wanted = [] if arguments == ["page"] else arguments or sorted(short())
     unknown = [name for name in wanted if name not in short()]
     if unknown:
-        raise scene.Refusal(f"examples/{SHORT} has no {', '.join(unknown)}; it has {', '.join(short())}")
+        raise Refusal(f"examples/{SHORT} has no {', '.join(unknown)}; it has {', '.join(short())}")
     failed = []
     if wanted and not scene.build():
         return 1
@@ -117,7 +118,4 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except scene.Refusal as refusal:
-        sys.exit(f"gallery: {refusal}")
+    start("gallery", main)

@@ -34,6 +34,11 @@ class Run:
     builds: int = None  # of the neighbour list
     report: dict = field(default_factory=dict)  # of fix fsi/report: {name: value}
 
+    @property
+    def cpu_seconds(self):
+        """Of the loop, per rank."""
+        return self.loop_seconds * (self.cpu_use or 1.0)
+
 
 @dataclass
 class Log:

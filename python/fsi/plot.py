@@ -9,7 +9,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-BLUE, ORANGE, GREY = "#1b5e96", "#d1611a", "#555555"
+BLUE, ORANGE, GREY, GREEN, RED = "#1b5e96", "#d1611a", "#555555", "#3a923a", "#c23b3b"
 FLUID_COLOURS, SOLID_COLOURS = "viridis", "inferno"
 STYLE = {
     "font.size": 9,
@@ -85,20 +85,15 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
     bar_distance = 0.92
     width = left + columns * (panel_width + gap) + bar_distance * len(scales)
     height = bottom + rows * (panel_height + title + gap)
-    side = 1.3 * spacing * panel_width * 72.0 / (xhi - xlo)  # points
 
     with picture(path, width, height) as figure:
         for k, frame in enumerate(frames):
             row, column = divmod(k, columns)
-            place = (left + column * (panel_width + gap), bottom + (rows - 1 - row) * (panel_height + title + gap))
-            axes = figure.add_axes((place[0] / width, place[1] / height, panel_width / width, panel_height / height))
-            for types, name, colours, norm, scale, _ in scales:
-                part = frame.of_types(*types)
-                axes.scatter(part["x"], part["y"], s=side**2, c=part[name] / scale, marker="s", linewidths=0,
-                             cmap=colours, norm=norm)
+            axes = _axes(figure, left + column * (panel_width + gap), bottom + (rows - 1 - row) * (panel_height + title + gap),
+                         panel_width, panel_height)
+            _particles(axes, frame, scales, 1.3 * spacing * panel_width / (xhi - xlo))
             axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal")
             axes.set_title(f"t = {frame.time:.2f} s", loc="left", pad=3)
-            axes.grid(False)
             # the last label would run into the next panel's first one
             axes.xaxis.set_major_locator(MaxNLocator(4, prune="upper"))
             axes.yaxis.set_major_locator(MaxNLocator(4))
@@ -107,11 +102,8 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
                 axes.set_ylabel("y [m]")
             if row == rows - 1:
                 axes.set_xlabel("x [m]")
-        start = left + columns * (panel_width + gap) + 0.1
-        for k, (_, _, colours, norm, _, label) in enumerate(scales):
-            axes = figure.add_axes(((start + bar_distance * k) / width, bottom / height, 0.13 / width,
-                                    (height - bottom - title - gap) / height))
-            figure.colorbar(ScalarMappable(norm, colours), cax=axes, label=label, extend="max")
+        for k, scale in enumerate(scales):
+            _bar(figure, scale, left + columns * (panel_width + gap) + 0.1 + bar_distance * k, bottom, height - bottom - title - gap)
 
 
 def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0):
@@ -123,17 +115,32 @@ def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0):
     height = max(panel * (yhi - ylo) / (xhi - xlo), 0.8)
     for k, frame in enumerate(frames):
         with picture(folder / f"{k:05d}.png", width, height + 0.75) as figure:
-            axes = figure.add_axes((0.7 / width, 0.45 / (height + 0.75), panel / width, height / (height + 0.75)))
-            for types, name, colours, norm, scale, _ in scales:
-                part = frame.of_types(*types)
-                axes.scatter(part["x"], part["y"], s=(1.3 * spacing * panel * 72.0 / (xhi - xlo))**2, c=part[name] / scale, marker="s",
-                             linewidths=0, cmap=colours, norm=norm)
+            axes = _axes(figure, 0.7, 0.45, panel, height)
+            _particles(axes, frame, scales, 1.3 * spacing * panel / (xhi - xlo))
             axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal", xlabel="x [m]", ylabel="y [m]")
             axes.set_title(f"t = {frame.time:.3f} s", loc="left", pad=3)
-            axes.grid(False)
-            for n, (_, _, colours, norm, _, label) in enumerate(scales):
-                place = ((0.85 + panel + 0.9 * n) / width, 0.45 / (height + 0.75), 0.13 / width, height / (height + 0.75))
-                figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_axes(place), label=label, extend="max")
+            for n, scale in enumerate(scales):
+                _bar(figure, scale, 0.85 + panel + 0.9 * n, 0.45, height)
+
+
+def _axes(figure, left, bottom, width, height):
+    """Axes at a place [inch]."""
+    across, up = figure.get_size_inches()
+    return figure.add_axes((left / across, bottom / up, width / across, height / up))
+
+
+def _particles(axes, frame, scales, side):
+    """A square of `side` [inch] for each particle of a frame."""
+    for types, name, colours, norm, scale, _ in scales:
+        part = frame.of_types(*types)
+        axes.scatter(part["x"], part["y"], s=(72.0 * side)**2, c=part[name] / scale, marker="s", linewidths=0, cmap=colours, norm=norm)
+    axes.grid(False)
+
+
+def _bar(figure, scale, left, bottom, height):
+    """The colours of one of _scales()."""
+    _, _, colours, norm, _, label = scale
+    figure.colorbar(ScalarMappable(norm, colours), cax=_axes(figure, left, bottom, 0.13, height), label=label, extend="max")
 
 
 def _extent(frames, spacing):
@@ -171,8 +178,7 @@ def clouds(path, panels, spacing, limits, label, extent=None, axis_labels=("x [m
     width, height = left + len(panels) * (panel_width + gap) + bar, bottom + panel_height + title
     with picture(path, width, height) as figure:
         for k, (name, x, y, value) in enumerate(panels):
-            axes = figure.add_axes(((left + k * (panel_width + gap)) / width, bottom / height, panel_width / width,
-                                    panel_height / height))
+            axes = _axes(figure, left + k * (panel_width + gap), bottom, panel_width, panel_height)
             axes.scatter(x, y, s=(0.9 * spacing * panel_width * 72.0 / (xhi - xlo))**2, c=value, linewidths=0, cmap=colours,
                          norm=norm, rasterized=True)
             axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal", xlabel=axis_labels[0])
@@ -183,6 +189,5 @@ def clouds(path, panels, spacing, limits, label, extent=None, axis_labels=("x [m
             axes.tick_params(labelleft=k == 0)
             if k == 0:
                 axes.set_ylabel(axis_labels[1])
-        axes = figure.add_axes(((left + len(panels) * (panel_width + gap)) / width, bottom / height, 0.12 / width,
-                                panel_height / height))
+        axes = _axes(figure, left + len(panels) * (panel_width + gap), bottom, 0.12, panel_height)
         figure.colorbar(ScalarMappable(norm, colours), cax=axes, label=label)

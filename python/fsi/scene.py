@@ -18,8 +18,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from . import launch, paths, results
+from .command import Refusal, split, start, whole
 from .paths import scenes
 from .summary import RUN_FILE
+from .sweep import Deck, deck_variables
 
 OPTIONS = ("ranks", "out", "case")
 MADE_FILE = ".made-by-tools-run"
@@ -29,23 +31,9 @@ OWN_RUN = "custom"  # folder of a run with the user's variables beside the cases
 SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools")  # what decides a result
 
 
-class Refusal(Exception):
-    """Something to tell the user, without a traceback."""
-
-
 def deck(scene):
     """The scene's input file."""
     return paths.EXAMPLES / scene / f"in.{scene}"
-
-
-def deck_variables(path):
-    """Names and defaults of what -var can set in a deck: its index-style variables."""
-    found = {}
-    for line in Path(path).read_text().splitlines():
-        match = re.match(r"\s*variable\s+(\w+)\s+index\s+(\S+)", line)
-        if match:
-            found.setdefault(match[1], match[2].strip("\"'"))
-    return found
 
 
 def cases(scene):
@@ -76,7 +64,6 @@ def cases(scene):
 
 def _borrowed(scene, name):
     """The deck of another scene, with the edits of `scene`."""
-    from .sweep import Deck  # pylint: disable=import-outside-toplevel,cyclic-import
     if name not in scenes():
         raise Refusal(f"there is no scene '{name}'{_similar(name, scenes())}")
     path = paths.EXAMPLES / scene / EDITS_FILE
@@ -85,17 +72,9 @@ def _borrowed(scene, name):
 
 def parse(arguments):
     """Splits NAME=VALUE arguments into (options of this tool, LAMMPS variables)."""
-    options, variables = {}, {}
-    for argument in arguments:
-        name, equals, value = argument.partition("=")
-        if not equals or not name or not value:
-            raise Refusal(f"'{argument}' is not of the form NAME=VALUE, such as ranks=2")
-        (options if name in OPTIONS else variables)[name] = value
+    options, variables = split(arguments, OPTIONS, "NAME=VALUE, such as ranks=2")
     if "ranks" in options:
-        ranks = options["ranks"]
-        if not ranks.isdecimal() or int(ranks) < 1:
-            raise Refusal(f"ranks={ranks}: a whole number of MPI ranks is needed, 1 or more")
-        options["ranks"] = int(ranks)
+        options["ranks"] = whole("ranks", options["ranks"])
     return options, variables
 
 
@@ -137,7 +116,7 @@ def run(scene, folder, ranks, variables, case=None, borrowed=None, may_fail=Fals
                             "wall_seconds": round(wall, 3), "given": variables, **({"status": status} if status else {}),
                             "variables": {**deck_variables(path), **variables}})
         print(f"run: LAMMPS took {wall:.1f} s; analysing", flush=True)
-        module = _analysis(scene)
+        module = analysis(scene)
         if module is not None and not _calls(module.main, folder):
             return 1
         print(f"run: figures, pictures and log are in {folder}", flush=True)
@@ -161,7 +140,7 @@ def run_cases(scene, folder, ranks=None):
         failed = [name for name in wanted if name not in ran]
         _write_run(folder, {"scene": scene, "cases": list(ran), "failed": failed})
         good = not failed
-        module = _analysis(scene)
+        module = analysis(scene)
         if ran and hasattr(module, "study"):
             good &= _calls(module.study, folder, ran)
         print(f"run: {scene}: {len(ran)} of {len(wanted)} cases ran" +
@@ -174,7 +153,7 @@ def default_ranks():
     return min(2, launch.cores())
 
 
-def _analysis(scene):
+def analysis(scene):
     """The scene's analyze.py as a module; None if it has none."""
     path = paths.EXAMPLES / scene / "analyze.py"
     if not path.exists():
@@ -335,9 +314,4 @@ def _job(scene, options, variables, every):
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except Refusal as refusal:
-        sys.exit(f"run: {refusal}")
-    except KeyboardInterrupt:
-        sys.exit(130)
+    start("run", main)

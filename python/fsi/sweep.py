@@ -17,11 +17,20 @@ import time
 from pathlib import Path
 
 from . import launch, log, paths, plot
-from .scene import Refusal, deck_variables
+from .command import Refusal
 
 REPEATS = ((1.0, 3), (3.0, 2))  # runs shorter than so many CPU seconds are made so many times
 COUNTED = 60000  # particle-steps of which instructions are counted: valgrind is some fifty times slower
-TIME_LOOP = "LAMMPS_NS::Verlet::run(int)"
+
+
+def deck_variables(path):
+    """Names and defaults of what -var can set in a deck: its index-style variables."""
+    found = {}
+    for line in Path(path).read_text().splitlines():
+        match = re.match(r"\s*variable\s+(\w+)\s+index\s+(\S+)", line)
+        if match:
+            found.setdefault(match[1], match[2].strip("\"'"))
+    return found
 
 
 class Deck:
@@ -69,6 +78,14 @@ def source_hash():
         for path in sorted(p for p in folder.rglob("*") if p.is_file()):
             digest.update(str(path.relative_to(paths.ROOT)).encode() + path.read_bytes())
     return digest.hexdigest()[:12]
+
+
+def put(path, result):
+    """Stores a result as JSON; an interruption leaves whole files only."""
+    unfinished = path.with_suffix(".unfinished")
+    unfinished.write_text(json.dumps(result, indent=1) + "\n")
+    unfinished.replace(path)
+    return result
 
 
 class Store:
@@ -121,11 +138,7 @@ class Store:
         return self.repeats or next((n for below, n in REPEATS if min(point["cpu_seconds"]) < below), 1)
 
     def _put(self, settings, point):
-        path = self.path(settings)
-        unfinished = path.with_suffix(".unfinished")
-        unfinished.write_text(json.dumps(point, indent=1) + "\n")
-        unfinished.replace(path)  # an interrupted sweep leaves whole points only
-        return point
+        return put(self.path(settings), point)
 
     def _run(self, settings):
         point = {"settings": self.deck.normal(settings), "source": self.source, "status": "ok", "why": None, "figures": {}}
@@ -135,7 +148,7 @@ class Store:
             point |= cost
             if point["status"] == "ok":
                 try:
-                    with _quiet():
+                    with quiet():
                         point["figures"] = self.measure(folder)
                 except (Exception, SystemExit) as error:  # pylint: disable=broad-exception-caught
                     point |= {"status": "failed", "why": f"analysis: {error}"[:200]}
@@ -154,9 +167,9 @@ class Store:
         (folder / "in.deck").write_text(text)
         (folder / "run.json").write_text(json.dumps({"variables": {**deck_variables(self.deck.path), **variables}}))
         seconds = int(min(self.limit, 100.0) if steps else self.limit) + 1
-        command = launch.lammps("in.deck", 1, variables)[len(launch.mpirun(1)):]  # no launcher: it dies with this process
+        command = launch.lammps("in.deck", 0, variables)  # no launcher: it dies with this process
         if steps:
-            command = ["valgrind", "--tool=callgrind", f"--toggle-collect={TIME_LOOP}", "--callgrind-out-file=/dev/null", *command]
+            command = launch.callgrind("/dev/null") + command
         done = subprocess.run(command, cwd=folder, env=launch.environment(),
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", check=False,
@@ -170,7 +183,7 @@ class Store:
         runs = found.finished
         if counted := re.search(r"Collected : (\d+)", done.stdout):
             cost["instructions"] = int(counted[1])
-        cost["cpu_seconds"] = [sum(run.loop_seconds * (run.cpu_use or 1.0) for run in runs)]
+        cost["cpu_seconds"] = [sum(run.cpu_seconds for run in runs)]
         return cost | {
             "dx": found.values.get("dx"), "particles": runs[0].atoms, "steps": sum(run.steps for run in runs),
             # a sub-step moves the solid's particles only, and visits its bonds
@@ -180,7 +193,7 @@ class Store:
 
 
 @contextlib.contextmanager
-def _quiet():
+def quiet():
     """Analyses without their pictures and tables: a sweep wants the figures only."""
     drawn = plot.picture
 

@@ -18,23 +18,25 @@
 #ifndef LMP_FSI_DENSITY_DIFFUSION_H
 #define LMP_FSI_DENSITY_DIFFUSION_H
 
+#include "fsi_pack.h"
+
 namespace LAMMPS_NS {
 namespace FSI {
 
   struct DensityDiffusion {
-    double scale;        // 2 delta h
-    double gravity[3];
-    DensityDiffusion(double delta, double h, const double *g) : scale(2.0 * delta * h)
+    double scale;    // 2 delta h c
+    const double *gravity;
+    DensityDiffusion(double delta, double h, double c, const double *g) : scale(2.0 * delta * h * c), gravity(g) {}
+    // hydrostatic part of the density at x, but for a constant
+    double hydrostatic(const double *x, double rho0_over_csq) const
     {
-      for (int k = 0; k < 3; k++) gravity[k] = g[k];
+      return rho0_over_csq * (gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
     }
-    // flux k: d rho_i/dt += k V_j, d rho_j/dt -= k V_i; g: grad_i W_ij = g x_ij; x_ij here is that of the particles
-    // themselves, also where g belongs to an image
-    double operator()(double rho_i, double rho_j, const double *x_ij, double c, double rho0_over_csq, double g) const
+    // flux k: d rho_i/dt += k V_j, d rho_j/dt -= k V_i; hydro: difference i - j of the hydrostatic parts at the particles
+    // themselves, also where g, with grad_i W_ij = g x_ij, belongs to an image; T: double or Pack
+    template <class T> FSI_INLINE T operator()(const T &rho_i, const T &rho_j, const T &hydro, const T &g) const
     {
-      const double hydrostatic =
-          rho0_over_csq * (gravity[0] * x_ij[0] + gravity[1] * x_ij[1] + gravity[2] * x_ij[2]);
-      return -scale * c * g * (rho_j - rho_i + hydrostatic);
+      return -scale * g * (rho_j - rho_i + hydro);
     }
   };
 

@@ -21,6 +21,8 @@
 #ifndef LMP_FSI_KERNEL_H
 #define LMP_FSI_KERNEL_H
 
+#include "fsi_pack.h"
+
 #include <cmath>
 
 namespace LAMMPS_NS {
@@ -41,26 +43,25 @@ namespace FSI {
         norm(Shape::sigma(D) / (D == 2 ? h_in * h_in : h_in * h_in * h_in)), gnorm(norm * hinv * hinv)
     {
     }
-    double W(double r) const { return norm * Shape::w(r * hinv); }
+    // T: a number, or several side by side (fsi_pack.h)
+    template <class T> FSI_INLINE T W(const T &r) const { return norm * Shape::w(r * hinv); }
     // factor g with grad_i W_ij = g x_ij
-    double gradient(double r) const { return gnorm * Shape::dwq(r * hinv); }
+    template <class T> FSI_INLINE T gradient(const T &r) const { return gnorm * Shape::dwq(r * hinv); }
   };
 
   // paper, eq. 10: cubic spline with sigma = 15/(7 pi) in 2D, 3/(2 pi) in 3D
   struct CubicShape {
     static constexpr double support = 2.0;
     static double sigma(int dim) { return dim == 2 ? 15.0 / (7.0 * PI) : 3.0 / (2.0 * PI); }
-    static double w(double q)
+    template <class T> FSI_INLINE static T w(const T &q)
     {
-      const double t = 2.0 - q;
-      if (q < 1.0) return 2.0 / 3.0 - q * q + 0.5 * q * q * q;
-      return q < 2.0 ? t * t * t * (1.0 / 6.0) : 0.0;
+      const T t = greater(2.0 - q, T(0.0));
+      return where(q < T(1.0), 2.0 / 3.0 - q * q + 0.5 * q * q * q, t * t * t * (1.0 / 6.0));
     }
-    static double dwq(double q)
+    template <class T> FSI_INLINE static T dwq(const T &q)
     {
-      const double t = 2.0 - q;
-      if (q < 1.0) return -2.0 + 1.5 * q;
-      return q < 2.0 ? -0.5 * t * t / q : 0.0;
+      const T t = greater(2.0 - q, T(0.0));
+      return where(q < T(1.0), -2.0 + 1.5 * q, -0.5 * t * t / greater(q, T(1.0)));
     }
   };
 
@@ -68,32 +69,23 @@ namespace FSI {
   struct QuinticShape {
     static constexpr double support = 3.0;
     static double sigma(int dim) { return dim == 2 ? 7.0 / (478.0 * PI) : 1.0 / (120.0 * PI); }
-    static double pow5(double t)
+    template <class T> FSI_INLINE static T w(const T &q)
     {
-      const double t2 = t * t;
-      return t2 * t2 * t;
+      const T a = greater(3.0 - q, T(0.0)), b = greater(2.0 - q, T(0.0)), c = greater(1.0 - q, T(0.0));
+      return pow4(a) * a - 6.0 * (pow4(b) * b) + 15.0 * (pow4(c) * c);
     }
-    static double pow4(double t)
+    template <class T> FSI_INLINE static T dwq(const T &q)
     {
-      const double t2 = t * t;
-      return t2 * t2;
-    }
-    static double w(double q)
-    {
-      if (q >= 3.0) return 0.0;
-      double s = pow5(3.0 - q);
-      if (q < 2.0) s -= 6.0 * pow5(2.0 - q);
-      if (q < 1.0) s += 15.0 * pow5(1.0 - q);
-      return s;
-    }
-    static double dwq(double q)
-    {
-      if (q >= 3.0) return 0.0;
       // the innermost piece in powers of q: the sum of the three has no 1/q left
-      if (q < 1.0) return -120.0 + q * q * (120.0 - 50.0 * q);
-      double s = pow4(3.0 - q);
-      if (q < 2.0) s -= 6.0 * pow4(2.0 - q);
-      return -5.0 * s / q;
+      const T s = pow4(greater(3.0 - q, T(0.0))) - 6.0 * pow4(greater(2.0 - q, T(0.0)));
+      return where(q < T(1.0), -120.0 + q * q * (120.0 - 50.0 * q), -5.0 * s / greater(q, T(1.0)));
+    }
+
+   private:
+    template <class T> FSI_INLINE static T pow4(const T &t)
+    {
+      const T t2 = t * t;
+      return t2 * t2;
     }
   };
 
@@ -101,16 +93,14 @@ namespace FSI {
   struct WendlandShape {
     static constexpr double support = 2.0;
     static double sigma(int dim) { return dim == 2 ? 7.0 / (4.0 * PI) : 21.0 / (16.0 * PI); }
-    static double w(double q)
+    template <class T> FSI_INLINE static T w(const T &q)
     {
-      if (q >= 2.0) return 0.0;
-      const double t = 1.0 - 0.5 * q, t2 = t * t;
+      const T t = greater(1.0 - 0.5 * q, T(0.0)), t2 = t * t;
       return t2 * t2 * (2.0 * q + 1.0);
     }
-    static double dwq(double q)
+    template <class T> FSI_INLINE static T dwq(const T &q)
     {
-      if (q >= 2.0) return 0.0;
-      const double t = 1.0 - 0.5 * q;
+      const T t = greater(1.0 - 0.5 * q, T(0.0));
       return -5.0 * t * t * t;
     }
   };

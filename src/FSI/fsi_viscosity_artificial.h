@@ -17,6 +17,8 @@
 #ifndef LMP_FSI_VISCOSITY_ARTIFICIAL_H
 #define LMP_FSI_VISCOSITY_ARTIFICIAL_H
 
+#include "fsi_pack.h"
+
 namespace LAMMPS_NS {
 namespace FSI {
 
@@ -26,11 +28,11 @@ namespace FSI {
         alpha(alpha_in), beta(beta_in), h(h_in), eta(0.01 * h_in * h_in)
     {
     }
-    // vdotx = v_ij.x_ij; rho, c: pair means; vv = V_i V_j
-    double operator()(double vdotx, double rsq, double rho, double c, double vv) const
+    // vdotx = v_ij.x_ij; rho: mean of the pair; vv = V_i V_j; T: double or Pack
+    template <class T> FSI_INLINE T operator()(const T &vdotx, const T &rsq, const T &rho, double c, const T &vv) const
     {
-      if (vdotx >= 0.0) return 0.0;
-      const double mu = h * vdotx / (rsq + eta);
+      if (none(vdotx < T(0.0))) return T(0.0);
+      const T mu = h * lesser(vdotx, T(0.0)) / (rsq + eta);
       return rho * vv * mu * (beta * mu - alpha * c);
     }
   };

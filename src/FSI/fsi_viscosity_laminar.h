@@ -23,6 +23,8 @@
 #ifndef LMP_FSI_VISCOSITY_LAMINAR_H
 #define LMP_FSI_VISCOSITY_LAMINAR_H
 
+#include "fsi_pack.h"
+
 namespace LAMMPS_NS {
 namespace FSI {
 
@@ -30,13 +32,13 @@ namespace FSI {
     double eta;    // 0.01 h^2
     bool central;
     LaminarViscosity(double h, bool c) : eta(0.01 * h * h), central(c) {}
-    // adds F_ij to f and returns the power it takes; g: grad_i W_ij = g x_ij; visc: eta_i + eta_j; vv = V_i V_j
-    double operator()(double g, double rsq, double visc, double vv, const double *x_ij, const double *v_ij, double *f) const
+    // adds F_ij to f and returns the power it takes; g: grad_i W_ij = g x_ij; visc: eta_i + eta_j; vv = V_i V_j; T: double or Pack
+    template <class T> FSI_INLINE T operator()(const T &g, const T &rsq, double visc, const T &vv, const T *x_ij, const T *v_ij, T *f) const
     {
-      const double k = vv * visc * g / (rsq + eta);
-      double power = 0.0;
+      const T k = vv * visc * g / (rsq + eta);
+      T power = 0.0;
       if (central) {
-        double vx = 0.0;
+        T vx = 0.0;
         for (int d = 0; d < D; d++) vx += v_ij[d] * x_ij[d];
         for (int d = 0; d < D; d++) f[d] += (D + 2) * k * vx * x_ij[d];
         power = (D + 2) * k * vx * vx;

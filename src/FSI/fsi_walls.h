@@ -58,6 +58,12 @@ namespace FSI {
     std::vector<Reflection> reflections;
 
     bool any() const { return !wall.empty(); }
+    bool finite() const    // has one an extent?
+    {
+      for (const auto &w : wall)
+        if (w.finite) return true;
+      return false;
+    }
 
     void find_reflections()
     {

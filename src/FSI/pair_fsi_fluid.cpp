@@ -29,6 +29,7 @@
 #include "fsi_viscosity_laminar.h"
 #include "modify.h"
 #include "neigh_list.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <cmath>
@@ -180,7 +181,7 @@ template <class K> void PairFSIFluid::select()
     if (m.species == FLUID) fluids++;
     if (m.species == SOLID || m.species == RIGID) solids++;
   }
-  const bool mixed = solids > 0 || fluids > 1;
+  mixed = solids > 0 || fluids > 1;
 
   const int flags = (has_artificial() ? ARTIFICIAL : 0) | (laminar ? LAMINAR : 0) | (walls ? MIRROR : 0) |
       (solids ? SOLIDS : 0) | (ledger ? LEDGER : 0);
@@ -214,22 +215,90 @@ void PairFSIFluid::density_rate(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-template <int D> PairFSIFluid::Point<D> *PairFSIFluid::gather(double t)
+template <int D, class Rest> Point<D> *PairFSIFluid::gather(double t, Rest rest)
 {
   constexpr size_t SIZE = sizeof(Point<D>) / sizeof(double);
   const int nall = atom->nlocal + atom->nghost;
   if (points.size() < nall * SIZE) points.resize(atom->nmax * SIZE);
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
+  const auto *const x = reinterpret_cast<const double(*)[3]>(atom->x[0]), *const v = reinterpret_cast<const double(*)[3]>(atom->v[0]);
+  const double *const rho = atom->rho, *const rmass = atom->rmass;
   for (int i = 0; i < nall; i++) {
     Point<D> &p = point[i];
     for (int d = 0; d < D; d++) {
-      p.v[d] = atom->v[i][d];
-      p.x[d] = atom->x[i][d] + t * p.v[d];
+      p.v[d] = v[i][d];
+      p.x[d] = x[i][d] + t * p.v[d];
     }
-    p.rho = atom->rho[i];
-    p.vol = atom->rmass[i] / p.rho;
+    p.rho = rho[i];
+    p.vol = rmass[i] / p.rho;
+    rest(i, p);
   }
   return point;
+}
+
+/* ----------------------------------------------------------------------
+   rows of one fluid, which loops take four pairs at a time, and the others; all are others with newton off, with bonds of other
+   styles, and where the processor cannot
+------------------------------------------------------------------------- */
+
+void PairFSIFluid::find_rows()
+{
+  if (neighbor->ago > 0) return;
+  const int *const type = atom->type;
+  const bool can = have_packs() && force->newton_pair && atom->molecular == Atom::ATOMIC;
+  rows.clear();
+  other_rows.clear();
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    bool pure = can && hub->state[type[i]].species == FLUID;
+    if (mixed)
+      for (int jj = 0; jj < list->numneigh[i] && pure; jj++) pure = type[list->firstneigh[i][jj] & NEIGHMASK] == type[i];
+    (pure ? rows : other_rows).push_back(i);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   calls f(i, j, reflection, rsq, x_i - M x_j) for the images M x_j of what is near walls with i in these rows: with j = i for the
+   own images of a fluid particle, and, if pairs, for those of its neighbours; position(i) says where particles are
+------------------------------------------------------------------------- */
+
+template <class Position, class F>
+void PairFSIFluid::for_images(const std::vector<int> &which, bool pairs, const Walls &walls, double cutsq, Position position, F f) const
+{
+  const int *const wmask = hub->wmask;
+  for (const int i : which) {
+    if (!wmask[i]) continue;
+    const std::array<double, 3> xi = position(i);
+    int j = i;
+    const auto image = [&](const Walls::Reflection &s, double rsq, const double *dx) { f(i, j, s, rsq, dx); };
+    if (hub->state[atom->type[i]].species == FLUID) walls.images(wmask[i], 0.0, xi.data(), xi.data(), cutsq, image);
+    for (int jj = 0; jj < list->numneigh[i] && pairs; jj++) {
+      j = list->firstneigh[i][jj] & NEIGHMASK;
+      const int both = wmask[i] & wmask[j];
+      if (!both) continue;
+      const std::array<double, 3> xj = position(j);
+      double rsq = 0.0;
+      for (int d = 0; d < 3; d++) rsq += (xi[d] - xj[d]) * (xi[d] - xj[d]);
+      if (rsq < cutsq) walls.images(both, rsq, xi.data(), xj.data(), cutsq, image);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   calls f(reflection, rows) with those of the rows of one fluid that have images in it
+------------------------------------------------------------------------- */
+
+template <class F> void PairFSIFluid::for_reflections(const Walls &walls, F f) const
+{
+  std::vector<int> near, some;
+  for (const int i : rows)
+    if (hub->wmask[i]) near.push_back(i);
+  for (const auto &s : walls.reflections) {
+    some.clear();
+    for (const int i : near)
+      if ((hub->wmask[i] & s.mask) == s.mask) some.push_back(i);
+    f(s, Rows{some, list->numneigh, list->firstneigh});
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -251,30 +320,25 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   const bool newton = force->newton_pair;
   double *const rate = hub->rate;
   const State *const state = hub->state.data();
-  const int *const wmask = hub->wmask;
   const Walls walls = (FLAGS & IMAGES) ? hub->walls.moved(-dth) : Walls();
-  Point<D> *const point = gather<D>(-dth);
-  const DensityDiffusion diffusion(delta, hub->h, hub->gravity);
-  int first = 1;
-  while (state[first].species != FLUID) first++;
-  const State &only = state[first];    // without MIXED there is one fluid
+  const DensityDiffusion diffusion(delta, hub->h, sound, hub->gravity);
   const Shift<D> shift(hub->wdx);
   double *const *const sums = hub->shift;
-  // who has pressure: without it on either side nothing is hydrostatic, and diffusion would push apart particles that fly free
-  if (FLAGS & DIFFUSION)
-    for (int i = 0; i < nlocal + atom->nghost; i++) {
-      const State &s = state[type[i]];
-      point[i].p = s.pressure(point[i].rho) > s.floor ? 1.0 : 0.0;
-    }
+  Point<D> *const point = gather<D>(-dth, [&](int i, Point<D> &p) {
+    // who has pressure: without it on either side nothing is hydrostatic, and diffusion would push apart particles that fly free
+    if (!(FLAGS & DIFFUSION)) return;
+    const State &s = state[type[i]];
+    p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
+    p.pv2 = diffusion.hydrostatic(p.position(x[i]).data(), s.rho0 * s.inv_csq);
+  });
 
   const auto pair = [&](int i, int j, const Point<D> &pi, const Point<D> &pj, const double *xij, const double *vij, double rsq,
-                        const double *real_xij, double share, double &rate_i) {
+                        double share, double &rate_i) {
     const double g = kernel.gradient(std::sqrt(rsq));
     const double s = g * (vij[0] * xij[0] + vij[1] * xij[1] + (D == 3 ? vij[2] * xij[2] : 0.0));
     double ri = pi.rho * pi.vol * s, rj = pj.rho * pj.vol * s;
     if ((FLAGS & DIFFUSION) && (!(FLAGS & MIXED) || (type[i] == type[j]))) {
-      const State &a = (FLAGS & MIXED) ? state[type[i]] : only;
-      const double k = diffusion(pi.rho, pj.rho, real_xij, a.c, (pi.p > pj.p ? pi.p : pj.p) * a.inv_csq * a.rho0, g);
+      const double k = diffusion(pi.rho, pj.rho, greater(pi.p, pj.p) * (pi.pv2 - pj.pv2), g);
       ri += k * pj.vol;
       rj -= k * pi.vol;
       if (FLAGS & TALLY) {
@@ -292,9 +356,7 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
     shift.add(sums[j], point[i].vol, g, w, rsq, xji);
   };
 
-  // rows near walls and the many others apart: what images need would slow the loop for all
-  const auto row = [&](auto near_wall, int i) {
-    constexpr bool WALL = decltype(near_wall)::value;
+  const auto row = [&](int i) {
     const int *const jlist = list->firstneigh[i];
     const int jnum = list->numneigh[i];
     const Point<D> pi = point[i];
@@ -308,51 +370,51 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
       const double vij[3] = {pi.v[0] - pj.v[0], pi.v[1] - pj.v[1], D == 3 ? pi.v[D - 1] - pj.v[D - 1] : 0.0};
       // without newton a pair across ranks is computed on both: each counts half of its energy
       const double share = (newton || j < nlocal) ? 1.0 : 0.5;
-      rate[j] += pair(i, j, pi, pj, xij, vij, rsq, xij, share, rate_i);
+      rate[j] += pair(i, j, pi, pj, xij, vij, rsq, share, rate_i);
       if (FLAGS & SHIFT) {
         const double xji[3] = {-xij[0], -xij[1], -xij[2]};
         shift_pair(i, j, rsq, xij, xji);
       }
-      if (WALL && (wmask[i] & wmask[j])) {
-        const auto xi = pi.position(x[i]), xj = pj.position(x[j]);
-        walls.images(wmask[i] & wmask[j], rsq, xi.data(), xj.data(), kernel.cutsq,
-                     [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
-                       double vi[3];
-                       walls.reflect_velocity(s, v[j], false, vi);
-                       for (int d = 0; d < 3; d++) vi[d] = v[i][d] - vi[d];
-                       rate[j] += pair(i, j, pi, pj, x_image, vi, rsq_image, xij, share, rate_i);
-                       if (FLAGS & SHIFT) {
-                         double xji[3] = {-x_image[0], -x_image[1], -x_image[2]};
-                         walls.reflect_vector(s, xji);
-                         shift_pair(i, j, rsq_image, x_image, xji);
-                       }
-                     });
-      }
     }
     rate[i] += rate_i;
   };
-  for (int ii = 0; ii < list->inum; ii++) {
-    const int i = list->ilist[ii];
-    if ((FLAGS & IMAGES) && wmask[i]) row(std::true_type(), i);
-    else row(std::false_type(), i);
-  }
-
-  // own images
-  if (FLAGS & IMAGES)
-    for (int i = 0; i < nlocal; i++) {
-      if (!wmask[i] || state[type[i]].species != FLUID) continue;
-      const auto xi = point[i].position(x[i]);
-      walls.images(wmask[i], 0.0, xi.data(), xi.data(), kernel.cutsq,
-                   [&](const Walls::Reflection &s, double rsq, const double *x_image) {
-                     double vi[3];
-                     walls.reflect_velocity(s, v[i], false, vi);
-                     double sum = 0.0;
-                     for (int d = 0; d < D; d++) sum += (v[i][d] - vi[d]) * x_image[d];
-                     const double r = std::sqrt(rsq), g = kernel.gradient(r);
-                     rate[i] += point[i].rho * point[i].vol * g * sum;
-                     if (FLAGS & SHIFT) shift.add(sums[i], point[i].vol, g, kernel.W(r), rsq, x_image);
-                   });
+  const auto image = [&](int i, int j, const Walls::Reflection &s, double rsq, const double *x_image) {
+    double vij[3];
+    walls.reflect_velocity(s, v[j], false, vij);
+    for (int d = 0; d < 3; d++) vij[d] = v[i][d] - vij[d];
+    if (j == i) {
+      const double g = kernel.gradient(std::sqrt(rsq));
+      rate[i] += point[i].rho * point[i].vol * g * (vij[0] * x_image[0] + vij[1] * x_image[1] + (D == 3 ? vij[2] * x_image[2] : 0.0));
+      if (FLAGS & SHIFT) shift.add(sums[i], point[i].vol, g, kernel.W(std::sqrt(rsq)), rsq, x_image);
+      return;
     }
+    rate[j] += pair(i, j, point[i], point[j], x_image, vij, rsq, (newton || j < nlocal) ? 1.0 : 0.5, rate[i]);
+    if (FLAGS & SHIFT) {
+      double xji[3] = {-x_image[0], -x_image[1], -x_image[2]};
+      walls.reflect_vector(s, xji);
+      shift_pair(i, j, rsq, x_image, xji);
+    }
+  };
+
+  find_rows();
+  bool packed_images = false;
+  for (const int i : other_rows) row(i);
+#if FSI_PACKS
+  if constexpr (!(FLAGS & (TALLY | SHIFT))) {
+    packed_images = !walls.finite();
+    rate_rows<K, (FLAGS & DIFFUSION) != 0, false>({rows, list->numneigh, list->firstneigh}, Mirror(), kernel, diffusion, point, rate);
+    if ((FLAGS & IMAGES) && packed_images)
+      for_reflections(walls, [&](const Walls::Reflection &s, const Rows &near) {
+        rate_rows<K, (FLAGS & DIFFUSION) != 0, true>(near, Mirror(walls, s), kernel, diffusion, point, rate);
+      });
+  } else
+#endif
+    for (const int i : rows) row(i);
+  if (FLAGS & IMAGES) {
+    const auto position = [&](int i) { return point[i].position(x[i]); };
+    for_images(rows, !packed_images, walls, kernel.cutsq, position, image);
+    for_images(other_rows, true, walls, kernel.cutsq, position, image);
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -377,13 +439,7 @@ void PairFSIFluid::displacements(double dt)
 template <class Term, class Collect> void PairFSIFluid::distance_sums(Term term, Collect collect) const
 {
   double **x = atom->x;
-  const int *const type = atom->type;
-  const State *const state = hub->state.data();
-  const int *const wmask = hub->wmask;
-  const Walls &walls = hub->walls;
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
-    double s;
-    const auto add_image = [&](const Walls::Reflection &, double r2, const double *) { s += term(kernel, r2); };
     for (int ii = 0; ii < list->inum; ii++) {
       const int i = list->ilist[ii];
       for (int jj = 0; jj < list->numneigh[i]; jj++) {
@@ -391,19 +447,19 @@ template <class Term, class Collect> void PairFSIFluid::distance_sums(Term term,
         double rsq = 0.0;
         for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
         if (rsq >= kernel.cutsq) continue;
-        s = term(kernel, rsq);
-        if (wmask && (wmask[i] & wmask[j])) walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq, add_image);
+        const double s = term(kernel, rsq);
         collect(i, j, s);
         collect(j, i, s);
       }
     }
-    if (wmask)
-      for (int i = 0; i < atom->nlocal; i++)
-        if (wmask[i] && state[type[i]].species == FLUID) {
-          s = 0.0;
-          walls.images(wmask[i], 0.0, x[i], x[i], kernel.cutsq, add_image);
-          collect(i, i, s);
-        }
+    if (hub->wmask)
+      for_images({list->ilist, list->ilist + list->inum}, true, hub->walls, kernel.cutsq,
+                 [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
+                 [&](int i, int j, const Walls::Reflection &, double rsq, const double *) {
+                   const double s = term(kernel, rsq);
+                   collect(i, j, s);
+                   if (j != i) collect(j, i, s);
+                 });
   });
 }
 
@@ -458,15 +514,15 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const int *const type = atom->type;
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
-  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off
+  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off, or a hybrid style with solids that need it
   const State *const state = hub->state.data();
-  const int *const wmask = hub->wmask;
   const Walls &walls = hub->walls;
-  Point<D> *const a = gather<D>(0.0);
-  for (int i = 0; i < nlocal + atom->nghost; i++) {
-    a[i].p = hub->pressure(i);
-    a[i].pv2 = a[i].p * a[i].vol * a[i].vol;
-  }
+  const double *const psi = surface_ratio > 0.0 ? hub->psi : nullptr;
+  Point<D> *const a = gather<D>(0.0, [&](int i, Point<D> &p) {
+    const State &s = state[type[i]];
+    p.p = psi ? hub->pressure(i) : s.pressure(p.rho);
+    p.pv2 = p.p * p.vol * p.vol;
+  });
   const ArtificialViscosity artificial(alpha, beta, hub->h);
   const LaminarViscosity<D> viscous(hub->h, laminar == CENTRAL);
   const double *const gravity = hub->gravity;
@@ -557,9 +613,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     }
   };
 
-  // as in rate_pairs
-  const auto row = [&](auto near_wall, int i) {
-    constexpr bool WALL = decltype(near_wall)::value;
+  const auto row = [&](int i) {
     const int *const jlist = list->firstneigh[i];
     const int jnum = list->numneigh[i];
     const Point<D> pi = a[i];
@@ -601,44 +655,62 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
           power += fij[d] * ((state[type[i]].species == RIGID ? pi.v[d] : 0.0) - (state[type[j]].species == RIGID ? pj.v[d] : 0.0));
         hub->tally(FixFSI::WALLS, share * power);
       }
-      double fj[3] = {0.0, 0.0, 0.0};
-      for (int d = 0; d < D; d++) {
-        fi[d] += fij[d];
-        fj[d] -= fij[d];
-      }
-      if (WALL && (wmask[i] & wmask[j]))
-        walls.images(wmask[i] & wmask[j], rsq, x[i], x[j], kernel.cutsq,
-                     [&](const Walls::Reflection &s, double rsq_image, const double *x_image) {
-                       // a solid's stress is that of the particle, not of its image: look from the solid
-                       if ((FLAGS & SOLIDS) && state[type[j]].species == SOLID) {
-                         double from_j[3] = {-x_image[0], -x_image[1], -x_image[2]};
-                         walls.reflect_vector(s, from_j);
-                         image_forces(j, i, s, rsq_image, from_j, share, fj, fi);
-                       } else
-                         image_forces(i, j, s, rsq_image, x_image, share, fi, fj);
-                     });
+      for (int d = 0; d < D; d++) fi[d] += fij[d];
       if (newton || j < nlocal)
-        for (int d = 0; d < D; d++) f[j][d] += fj[d];
+        for (int d = 0; d < D; d++) f[j][d] -= fij[d];
       if (tally_pairs)
         ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, fij[0], fij[1], D == 3 ? fij[2] : 0.0, xij[0], xij[1], xij[2]);
     }
     for (int d = 0; d < D; d++) f[i][d] += fi[d];
   };
-  for (int ii = 0; ii < list->inum; ii++) {
-    const int i = list->ilist[ii];
-    if ((FLAGS & MIRROR) && wmask[i]) row(std::true_type(), i);
-    else row(std::false_type(), i);
-  }
-
-  // own images
-  if (FLAGS & MIRROR)
-    for (int i = 0; i < nlocal; i++) {
-      if (!wmask[i] || state[type[i]].species != FLUID) continue;
-      walls.images(wmask[i], 0.0, x[i], x[i], kernel.cutsq,
-                   [&](const Walls::Reflection &s, double rsq, const double *x_image) {
-                     image_forces(i, i, s, rsq, x_image, 1.0, f[i], nullptr);
-                   });
+  const auto image = [&](int i, int j, const Walls::Reflection &s, double rsq, const double *x_image) {
+    if (j == i) {
+      image_forces(i, i, s, rsq, x_image, 1.0, f[i], nullptr);
+      return;
     }
+    const double share = (newton || j < nlocal) ? 1.0 : 0.5;
+    double fj[3] = {0.0, 0.0, 0.0};
+    if ((FLAGS & SOLIDS) && state[type[j]].species == SOLID) {
+      // a solid's stress is that of the particle, not of its image: look from the solid
+      double from_j[3] = {-x_image[0], -x_image[1], -x_image[2]};
+      walls.reflect_vector(s, from_j);
+      image_forces(j, i, s, rsq, from_j, share, fj, f[i]);
+    } else
+      image_forces(i, j, s, rsq, x_image, share, f[i], fj);
+    if (newton || j < nlocal)
+      for (int d = 0; d < D; d++) f[j][d] += fj[d];
+  };
+
+  find_rows();
+  bool packed_images = false;
+  for (const int i : other_rows) row(i);
+#if FSI_PACKS
+  if (!(FLAGS & LEDGER) && !tally_pairs) {
+    packed_images = !(FLAGS & LAMINAR) && !walls.finite();
+    const auto some = [&](auto images, const Rows &which, const Mirror &mirror, double *total) {
+      force_rows<K, (FLAGS & ARTIFICIAL) != 0, (FLAGS & LAMINAR) != 0, decltype(images)::value>(
+          which, mirror, kernel, artificial, sound, viscous, state, type, a, f, total);
+    };
+    some(std::false_type(), {rows, list->numneigh, list->firstneigh}, Mirror(), nullptr);
+    if constexpr ((FLAGS & MIRROR) && !(FLAGS & LAMINAR))
+      if (packed_images)
+        for_reflections(walls, [&](const Walls::Reflection &s, const Rows &near) {
+          double total[3] = {0.0, 0.0, 0.0};
+          some(std::true_type(), near, Mirror(walls, s), total);
+          // of both particles of a pair: what is along the wall cancels, what is normal to it doubles
+          for (int k = 0; k < s.n; k++) {
+            const int axis = walls.wall[s.w[k]].axis;
+            hub->add_wall_force(s.w[k], axis, 2.0 * total[axis]);
+          }
+        });
+  } else
+#endif
+    for (const int i : rows) row(i);
+  if (FLAGS & MIRROR) {
+    const auto position = [&](int i) { return a[i].position(x[i]); };
+    for_images(rows, !packed_images, walls, kernel.cutsq, position, image);
+    for_images(other_rows, true, walls, kernel.cutsq, position, image);
+  }
 }
 
 /* ---------------------------------------------------------------------- */

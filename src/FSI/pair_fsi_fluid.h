@@ -20,9 +20,10 @@ PairStyle(fsi/fluid,PairFSIFluid);
 #ifndef LMP_PAIR_FSI_FLUID_H
 #define LMP_PAIR_FSI_FLUID_H
 
+#include "fsi_fluid_rows.h"
+#include "fsi_walls.h"
 #include "pair_fsi.h"
 
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -81,14 +82,16 @@ class PairFSIFluid : public PairFSI {
   int tait, laminar, couple, extrapolate, tension;
   std::vector<class ComputeFSIForce *> force_computes;
 
-  // what a loop needs of a particle, side by side (in 2D a cache line); local and ghost, gathered at the start of each loop
-  template <int D> struct Point {
-    double x[D], v[D], rho, vol;
-    double p, pv2;    // force loop: pressure, p V^2; rate loop: whether there is pressure
-    std::array<double, 3> position(const double *atom_x) const { return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]}; }
-  };
+  // local and ghost, gathered at the start of each loop
   std::vector<double> points;
-  template <int D> Point<D> *gather(double t);    // positions a time t later
+  template <int D, class Rest> FSI::Point<D> *gather(double t, Rest);    // positions a time t later; what else a loop needs
+  // rows of the neighbor list: of one fluid, for loops over four pairs at a time (fsi_fluid_rows.h), and the others
+  std::vector<int> rows, other_rows;
+  bool mixed;    // there is more than one fluid, or something else
+  void find_rows();
+  template <class Position, class F>
+  void for_images(const std::vector<int> &rows, bool pairs, const FSI::Walls &, double cutsq, Position, F) const;
+  template <class F> void for_reflections(const FSI::Walls &, F) const;
   template <class Term, class Collect> void distance_sums(Term, Collect) const;
 
   enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, LEDGER = 16, NFORCE = 32 };

@@ -1,0 +1,128 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Four numbers side by side in a vector register (AVX2), for loops that take four pairs at a time.
+//
+// Formulas are templates over the number, double or Pack, and written once: lesser, greater and where are what they use for
+// branches. FSI_INLINE makes them part of the loop that calls them, a function marked FSI_AVX2, which is compiled for a
+// processor that has AVX2 whatever the rest is compiled for: ask have_packs() before calling it. No fused multiply-add, so
+// that all machines agree. Where compiler or processor is another, FSI_PACKS is 0 and loops go pair by pair.
+
+#ifndef LMP_FSI_PACK_H
+#define LMP_FSI_PACK_H
+
+#include <cmath>
+
+#if defined(__GNUC__) && defined(__x86_64__)
+#define FSI_PACKS 1
+#define FSI_INLINE inline __attribute__((always_inline))
+#define FSI_AVX2 __attribute__((target("avx2,fma")))
+#else
+#define FSI_PACKS 0
+#define FSI_INLINE inline
+#endif
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  FSI_INLINE double root(double x) { return std::sqrt(x); }
+  FSI_INLINE double lesser(double a, double b) { return a < b ? a : b; }
+  FSI_INLINE double greater(double a, double b) { return a > b ? a : b; }
+  FSI_INLINE double where(bool condition, double a, double b) { return condition ? a : b; }
+  FSI_INLINE bool none(bool condition) { return !condition; }    // a way out, if it is worth a branch
+
+#if FSI_PACKS
+  struct Pack {
+    static constexpr int WIDTH = 4;
+    typedef double Vector __attribute__((vector_size(WIDTH * sizeof(double))));
+    struct Mask {
+      decltype(Vector() < Vector()) m;
+    };
+    Vector v;
+
+    Pack() = default;
+    FSI_INLINE Pack(double x) : v(x - Vector{}) {}    // gcc makes one broadcast of this, not of {x, x, x, x}
+    FSI_INLINE Pack(double a, double b, double c, double d) : v(Vector{a, b, c, d}) {}
+    FSI_INLINE double sum() const { return (v[0] + v[1]) + (v[2] + v[3]); }
+
+    FSI_INLINE friend Pack operator+(const Pack &a, const Pack &b) { return make(a.v + b.v); }
+    FSI_INLINE friend Pack operator-(const Pack &a, const Pack &b) { return make(a.v - b.v); }
+    FSI_INLINE friend Pack operator*(const Pack &a, const Pack &b) { return make(a.v * b.v); }
+    FSI_INLINE friend Pack operator/(const Pack &a, const Pack &b) { return make(a.v / b.v); }
+    FSI_INLINE Pack &operator+=(const Pack &b) { v += b.v; return *this; }
+    FSI_INLINE Pack &operator-=(const Pack &b) { v -= b.v; return *this; }
+    FSI_INLINE friend Pack operator-(const Pack &a) { return make(-a.v); }
+    FSI_INLINE friend Mask operator<(const Pack &a, const Pack &b) { return {a.v < b.v}; }
+    FSI_INLINE friend Pack lesser(const Pack &a, const Pack &b) { return make(a.v < b.v ? a.v : b.v); }
+    FSI_INLINE friend Pack greater(const Pack &a, const Pack &b) { return make(a.v > b.v ? a.v : b.v); }
+    FSI_INLINE friend Pack where(const Mask &condition, const Pack &a, const Pack &b) { return make(condition.m ? a.v : b.v); }
+    FSI_INLINE friend bool none(const Mask &) { return false; }
+    FSI_INLINE friend Pack root(const Pack &a)
+    {
+      return {__builtin_sqrt(a.v[0]), __builtin_sqrt(a.v[1]), __builtin_sqrt(a.v[2]), __builtin_sqrt(a.v[3])};
+    }
+
+    // the four doubles at each of a, b, c, d become the columns out[0] to out[3]
+    FSI_INLINE static void columns(const double *a, const double *b, const double *c, const double *d, Pack *out)
+    {
+      const Pack A = load(a), B = load(b), C = load(c), D = load(d);
+      const Pack low = shuffle<0, 4, 2, 6>(A, B), high = shuffle<1, 5, 3, 7>(A, B);
+      const Pack low2 = shuffle<0, 4, 2, 6>(C, D), high2 = shuffle<1, 5, 3, 7>(C, D);
+      out[0] = shuffle<0, 1, 4, 5>(low, low2);
+      out[1] = shuffle<0, 1, 4, 5>(high, high2);
+      out[2] = shuffle<2, 3, 6, 7>(low, low2);
+      out[3] = shuffle<2, 3, 6, 7>(high, high2);
+    }
+
+    // the two doubles at each of a, b, c, d
+    FSI_INLINE static void columns(const double *a, const double *b, const double *c, const double *d, Pack &first, Pack &second)
+    {
+      const Pack A(a[0], a[1], c[0], c[1]), B(b[0], b[1], d[0], d[1]);
+      first = shuffle<0, 4, 2, 6>(A, B);
+      second = shuffle<1, 5, 3, 7>(A, B);
+    }
+
+   private:
+    FSI_INLINE static Pack make(const Vector &x)
+    {
+      Pack p;
+      p.v = x;
+      return p;
+    }
+    FSI_INLINE static Pack load(const double *p)
+    {
+      Pack x;
+      __builtin_memcpy(&x.v, p, sizeof(x.v));
+      return x;
+    }
+    // elements of a (0 to 3) and b (4 to 7)
+    template <int I, int J, int K, int L> FSI_INLINE static Pack shuffle(const Pack &a, const Pack &b)
+    {
+#if defined(__clang__) || __GNUC__ >= 12
+      return make(__builtin_shufflevector(a.v, b.v, I, J, K, L));
+#else
+      typedef long Index __attribute__((vector_size(WIDTH * sizeof(double))));
+      return make(__builtin_shuffle(a.v, b.v, Index{I, J, K, L}));
+#endif
+    }
+  };
+
+  inline bool have_packs() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+#else
+  inline bool have_packs() { return false; }
+#endif
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
