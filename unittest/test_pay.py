@@ -120,7 +120,7 @@ def test_messages_are_those_announced(sent, k):
 
 def test_substeps_send_nothing_where_no_solid_is():
     """The gate, whose plate is one rank's alone: positions out, forces back, density out, its rate back, and nothing for sub-steps."""
-    found, = measure.messages([re.sub(r"^timestep .*", "timestep 1e-7", effects.counted("gate", {}), flags=re.M)])
+    found, = measure.messages([re.sub(r"^timestep .*", "timestep 1e-7", effects.deck("gate", {}, effects.COUNTED["gate"]), flags=re.M)])
     assert found["ghosts"] > 100
     assert (found["messages"], found["empty"]) == (4, 0)
 

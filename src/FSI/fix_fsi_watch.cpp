@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
+#include "fsi_pack.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -55,32 +56,17 @@ static constexpr About about[] = {
     {"reflected", "number of reflections at mirror walls", "a larger distance from the wall at the start, artificial viscosity, a shorter time step"}};
 
 /* ----------------------------------------------------------------------
-   Is everything small, so that none of n particles can be one to look at? In a form that compilers turn into vector instructions,
-   for which x86-64 needs to be asked; without them it is no shorter than to look.
+   Is everything small, so that none of n particles can be one to look at? In a form that compilers turn into vector instructions;
+   without them it is no shorter than to look.
 ------------------------------------------------------------------------- */
 
-#if defined(__GNUC__) && defined(__x86_64__)
-__attribute__((target("avx2"))) static bool all_small(int n, const double *v, const double *f, const double *rho, double speed, double force)
+FSI_AVX2 static bool all_small(int n, const double *v, const double *f, const double *rho, double speed, double force)
 {
   int64_t not_small = 0;
   for (int k = 0; k < 3 * n; k++) not_small |= (int64_t) !(std::abs(v[k]) <= speed) | (int64_t) !(std::abs(f[k]) <= force);
   for (int k = 0; k < n; k++) not_small |= (int64_t) !(rho[k] > 0.0) | (int64_t) !(rho[k] < BIG);
   return !not_small;
 }
-static bool can_tell()
-{
-  return __builtin_cpu_supports("avx2");
-}
-#else
-static bool all_small(int, const double *, const double *, const double *, double, double)
-{
-  return false;
-}
-static bool can_tell()
-{
-  return false;
-}
-#endif
 
 /* ---------------------------------------------------------------------- */
 
@@ -269,7 +255,7 @@ void FixFSIWatch::enter(Quantity q, int i, double value, int j)
 
 void FixFSIWatch::check_speed(double kick)
 {
-  static const bool tell = can_tell();
+  static const bool tell = have_packs();
   constexpr int BLOCK = 256;
   const int nlocal = atom->nlocal;
   if (nlocal == 0) return;
