@@ -63,8 +63,15 @@ static constexpr About about[] = {
 FSI_AVX2 static bool all_small(int n, const double *v, const double *f, const double *rho, double speed, double force)
 {
   int64_t not_small = 0;
-  for (int k = 0; k < 3 * n; k++) not_small |= (int64_t) !(std::abs(v[k]) <= speed) | (int64_t) !(std::abs(f[k]) <= force);
-  for (int k = 0; k < n; k++) not_small |= (int64_t) !(rho[k] > 0.0) | (int64_t) !(rho[k] < BIG);
+  const int64_t yes = 0, no = -1;    // as wide as a number
+  for (int k = 0; k < 3 * n; k++) {
+    not_small |= std::abs(v[k]) <= speed ? yes : no;
+    not_small |= std::abs(f[k]) <= force ? yes : no;
+  }
+  for (int k = 0; k < n; k++) {
+    not_small |= rho[k] > 0.0 ? yes : no;
+    not_small |= rho[k] < BIG ? yes : no;
+  }
   return !not_small;
 }
 
@@ -296,37 +303,44 @@ void FixFSIWatch::check_rest()
 {
   double **x = atom->x;
   double **v = atom->v;
-  const double *const rmass = atom->rmass;
+  const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, h = hub->h;
 
-  // kinetic energy, and what of it is small: that of a hundredth of the speed of waves
-  double mine[3] = {0.0, 0.0, (double) atom->nlocal}, all[3];
-  std::vector<double> fastest(atom->ntypes + 1, -1.0);    // of a type: Mach and Courant number grow with it
-  double furthest = -1.0;                                 // from its density at rest
+  struct Of {
+    double csq, rho0, mass, fastest;    // of a type Mach and Courant number grow with the speed
+    int species;
+  };
+  std::vector<Of> all_of(atom->ntypes + 1, {0.0, 1.0, 0.0, -1.0, NONE});
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const State &s = hub->state[t];
+    all_of[t] = {s.species == NONE ? 0.0 : s.wave_speed_sq(), s.rho0, 0.0, -1.0, s.species};
+  }
+  double kinetic = 0.0, furthest = -1.0;    // furthest from the density at rest
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    const State &s = hub->state[type[i]];
-    if (s.species == RIGID) continue;    // neither compressed nor integrated
-    const double csq = s.wave_speed_sq();
+    Of &of = all_of[type[i]];
+    if (of.species == RIGID) continue;    // neither compressed nor integrated
     const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2];
-    mine[0] += 0.5 * rmass[i] * vsq;
-    mine[1] += 0.5e-4 * rmass[i] * csq;
-    if (vsq > fastest[type[i]]) {
-      fastest[type[i]] = vsq;
-      const double c = std::sqrt(csq), speed = std::sqrt(vsq);
+    kinetic += rmass[i] * vsq;
+    of.mass += rmass[i];
+    if (vsq > of.fastest) {
+      of.fastest = vsq;
+      const double c = std::sqrt(of.csq), speed = std::sqrt(vsq);
       enter(MACH, i, speed / c);
-      if (s.species == FLUID) enter(COURANT, i, dt * (c + speed) / h);
+      if (of.species == FLUID) enter(COURANT, i, dt * (c + speed) / h);
       else enter(COURANT, i, dt * c / (hub->is_total_lagrangian(i) ? hub->substeps : 1) / h);
       enter(ENERGY, i, vsq);
     }
-    const double ratio = s.species == FLUID ? atom->rho[i] / s.rho0 : hub->density_ratio(i);
-    const double error = ratio > 0.0 ? std::abs(ratio - 1.0) : std::max(1.0, 1.0 - ratio);
+    const double error = std::abs((of.species == FLUID ? rho[i] / of.rho0 : hub->density_ratio(i)) - 1.0);
     if (error > furthest) {
       furthest = error;
       enter(DENSITY, i, error);
     }
   }
+  // kinetic energy, and what of it is small: that of a hundredth of the speed of waves
+  double mine[3] = {0.5 * kinetic, 0.0, (double) atom->nlocal}, all[3];
+  for (const Of &of : all_of) mine[1] += 0.5e-4 * of.mass * of.csq;
 
   // pairs whose neighbour lists are at hand: all but those inside one total-Lagrangian body
   if (limit[DISTANCE] > 0.0) {
