@@ -60,5 +60,8 @@ wall             wall rho 1000.0
 sunflower_oil    fluid rho 917.0 viscosity 0.04585
 baffle_6MPa      solid rho 1100.0 young 6.0e6 poisson 0.49
 
+# Elastic obstacle in a dam break: Walhorn, Koelke, Huebner and Dinkler, Computers and Structures 83 (2005) 2100
+obstacle_1MPa    solid rho 2500.0 young 1.0e6 poisson 0.0
+
 # Copper of the Taylor bar: Zhu and Cescotto, Int. J. Numer. Methods Eng. 38 (1995) 987; linear hardening
 copper           solid rho 8930.0 young 117.0e9 poisson 0.35 yield 400.0e6 hardening 100.0e6

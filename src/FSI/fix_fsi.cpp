@@ -426,8 +426,7 @@ void FixFSI::initial_integrate(int)
     next_reneighbor = update->ntimestep;
     domain->pbc();
   }
-  double **x = atom->x;
-  double **v = atom->v;
+  Row *const x = rows(atom->x), *const v = rows(atom->v);
   const int *const mask = atom->mask;
   const double dth = 0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++)
@@ -448,9 +447,7 @@ void FixFSI::pre_force(int)
 
 void FixFSI::final_integrate()
 {
-  double **x = atom->x;
-  double **v = atom->v;
-  double **f = atom->f;
+  Row *const x = rows(atom->x), *const v = rows(atom->v), *const f = rows(atom->f);
   const double *const rmass = atom->rmass;
   const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
@@ -547,7 +544,7 @@ void FixFSI::update_state(bool advance)
     phase.next(Profile::WALLS);
     for (auto *fix : wall_fixes) fix->clear_force();
     gather_walls();
-    double **x = atom->x;
+    const Row *const x = rows(atom->x);
     // walls of particles go on behind a mirror themselves
     for (int i = 0; i < nall; i++) wmask[i] = state[atom->type[i]].species == RIGID ? 0 : walls.near(x[i], cut);
   }

@@ -65,6 +65,10 @@ class FixFSI : public Fix {
   int maxsize_restart() override;
   double memory_usage() override;
 
+  // the rows of a per-atom array, which LAMMPS allocates in one piece, without the way through its pointers to them
+  typedef double Row[3];
+  static Row *rows(double **a) { return reinterpret_cast<Row *>(a[0]); }
+
   // discretisation
   int dim;
   int kernel;          // FSI::KernelKind

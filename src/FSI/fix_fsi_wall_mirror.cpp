@@ -146,8 +146,7 @@ void FixFSIWallMirror::setup(int)
 void FixFSIWallMirror::post_integrate()
 {
   const Phase phase(hub->profile, Profile::WALLS);
-  double **x = atom->x;
-  double **v = atom->v;
+  auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   const int *const mask = atom->mask, *const type = atom->type;
   const double dth = 0.5 * update->dt, near = guard * hub->dx;
 

@@ -172,12 +172,15 @@ namespace FSI {
     }
   }
 
+  // doubles from the forces on a particle to those on the next: as in atom->f; in 3D four, which a register holds
+  constexpr int row_of_forces(int dim) { return dim == 3 ? 4 : 3; }
+
   // pressure and viscosity into f: see PairFSIFluid::force_pairs; the forces on the rows' particles are added to total. No
   // laminar viscosity of images: at a no-slip wall it has velocities of its own.
   template <class K, bool ARTIFICIAL, bool LAMINAR, bool IMAGES>
   FSI_AVX2 void force_rows(const Rows &rows, const Mirror mirror, const K kernel, const ArtificialViscosity artificial, const double c,
                            const LaminarViscosity<K::DIM> viscous, const State *const state, const int *const type,
-                           const Point<K::DIM> *const point, double (*const f)[3], double *const total)
+                           const Point<K::DIM> *const point, double (*const f)[row_of_forces(K::DIM)], double *const total)
   {
     constexpr int D = K::DIM;
     for (const int i : rows.i) {
@@ -202,8 +205,11 @@ namespace FSI {
           sum[d] += force[d];
           if (IMAGES) force[d] = mirror.sign[d] * force[d];
         }
-        for (int k = 0; k < Pack::WIDTH; k++)
-          for (int d = 0; d < D; d++) f[j[k]][d] += force[d].v[k];
+        if constexpr (D == 3)
+          Pack::add_rows(force[0], force[1], force[2], f[j[0]], f[j[1]], f[j[2]], f[j[3]]);
+        else
+          for (int k = 0; k < Pack::WIDTH; k++)
+            for (int d = 0; d < D; d++) f[j[k]][d] += force[d].v[k];
       });
       for (int d = 0; d < D; d++) {
         f[i][d] -= sum[d].sum();

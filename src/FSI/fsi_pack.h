@@ -51,7 +51,13 @@ namespace FSI {
     Vector v;
 
     Pack() = default;
-    FSI_INLINE Pack(double x) : v(x - Vector{}) {}    // gcc makes one broadcast of this, not of {x, x, x, x}
+    FSI_INLINE Pack(double x)
+    {
+      Pack first;
+      first.v = Vector{};
+      first.v[0] = x;
+      v = shuffle<0, 0, 0, 0>(first, first).v;    // one broadcast, outside loops; gcc takes {x, x, x, x} apart
+    }
     FSI_INLINE Pack(double a, double b, double c, double d) : v(Vector{a, b, c, d}) {}
     FSI_INLINE double sum() const { return (v[0] + v[1]) + (v[2] + v[3]); }
 
@@ -84,6 +90,17 @@ namespace FSI {
       out[3] = shuffle<2, 3, 6, 7>(high, high2);
     }
 
+    // the inverse: adds the nth numbers of x, y, z to the first three of the four doubles at a, b, c, d
+    FSI_INLINE static void add_rows(const Pack &x, const Pack &y, const Pack &z, double *a, double *b, double *c, double *d)
+    {
+      const Pack low = shuffle<0, 4, 2, 6>(x, y), high = shuffle<1, 5, 3, 7>(x, y);
+      const Pack low2 = shuffle<0, 4, 2, 6>(z, 0.0), high2 = shuffle<1, 5, 3, 7>(z, 0.0);
+      store(a, load(a) + shuffle<0, 1, 4, 5>(low, low2));
+      store(b, load(b) + shuffle<0, 1, 4, 5>(high, high2));
+      store(c, load(c) + shuffle<2, 3, 6, 7>(low, low2));
+      store(d, load(d) + shuffle<2, 3, 6, 7>(high, high2));
+    }
+
     // the two doubles at each of a, b, c, d
     FSI_INLINE static void columns(const double *a, const double *b, const double *c, const double *d, Pack &first, Pack &second)
     {
@@ -105,6 +122,7 @@ namespace FSI {
       __builtin_memcpy(&x.v, p, sizeof(x.v));
       return x;
     }
+    FSI_INLINE static void store(double *p, const Pack &x) { __builtin_memcpy(p, &x.v, sizeof(x.v)); }
     // elements of a (0 to 3) and b (4 to 7)
     template <int I, int J, int K, int L> FSI_INLINE static Pack shuffle(const Pack &a, const Pack &b)
     {

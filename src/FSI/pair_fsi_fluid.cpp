@@ -221,7 +221,7 @@ template <int D, class Rest> Point<D> *PairFSIFluid::gather(double t, Rest rest)
   const int nall = atom->nlocal + atom->nghost;
   if (points.size() < nall * SIZE) points.resize(atom->nmax * SIZE);
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
-  const auto *const x = reinterpret_cast<const double(*)[3]>(atom->x[0]), *const v = reinterpret_cast<const double(*)[3]>(atom->v[0]);
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   const double *const rho = atom->rho, *const rmass = atom->rmass;
   for (int i = 0; i < nall; i++) {
     Point<D> &p = point[i];
@@ -510,7 +510,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const K kernel(hub->h);
   double **x = atom->x;
   double **v = atom->v;
-  auto *const f = reinterpret_cast<double(*)[3]>(atom->f[0]);
+  auto *const f = FixFSI::rows(atom->f);
   const int *const type = atom->type;
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
@@ -687,9 +687,12 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
 #if FSI_PACKS
   if (!(FLAGS & LEDGER) && !tally_pairs) {
     packed_images = !(FLAGS & LAMINAR) && !walls.finite();
+    constexpr int ROW = row_of_forces(D);
+    if (ROW > 3) forces.assign((size_t) ROW * (nlocal + atom->nghost), 0.0);
+    auto *const sums = reinterpret_cast<double(*)[ROW]>(ROW > 3 ? forces.data() : atom->f[0]);
     const auto some = [&](auto images, const Rows &which, const Mirror &mirror, double *total) {
       force_rows<K, (FLAGS & ARTIFICIAL) != 0, (FLAGS & LAMINAR) != 0, decltype(images)::value>(
-          which, mirror, kernel, artificial, sound, viscous, state, type, a, f, total);
+          which, mirror, kernel, artificial, sound, viscous, state, type, a, sums, total);
     };
     some(std::false_type(), {rows, list->numneigh, list->firstneigh}, Mirror(), nullptr);
     if constexpr ((FLAGS & MIRROR) && !(FLAGS & LAMINAR))
@@ -703,6 +706,9 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
             hub->add_wall_force(s.w[k], axis, 2.0 * total[axis]);
           }
         });
+    if (ROW > 3)
+      for (int i = 0; i < nlocal + atom->nghost; i++)
+        for (int d = 0; d < D; d++) f[i][d] += sums[i][d];
   } else
 #endif
     for (const int i : rows) row(i);
@@ -775,5 +781,5 @@ void PairFSIFluid::read_restart_settings(FILE *fp)
 
 double PairFSIFluid::memory_usage()
 {
-  return (double) points.capacity() * sizeof(double);
+  return (double) (points.capacity() + forces.capacity()) * sizeof(double) + (double) (rows.capacity() + other_rows.capacity()) * sizeof(int);
 }

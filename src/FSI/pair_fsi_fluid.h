@@ -84,6 +84,7 @@ class PairFSIFluid : public PairFSI {
 
   // local and ghost, gathered at the start of each loop
   std::vector<double> points;
+  std::vector<double> forces;    // sums of loops that have them in rows of their own
   template <int D, class Rest> FSI::Point<D> *gather(double t, Rest);    // positions a time t later; what else a loop needs
   // rows of the neighbor list: of one fluid, for loops over four pairs at a time (fsi_fluid_rows.h), and the others
   std::vector<int> rows, other_rows;
