@@ -66,9 +66,9 @@ def test_damage_looks_where_a_bond_may_break(counted):
 
 
 def test_between_looks_for_the_surface_it_costs_nothing(counted):
-    """A comparison for each particle, where its pressure is computed."""
+    """A comparison for each particle, where its pressure is computed, and no loop over pairs, some 16 of them at 60 each."""
     more = sum(counted["fluid", "surface"].values()) - sum(counted["fluid", "nothing"].values())
-    assert 0 < more < 20 * SMALL[0] * SMALL[1]
+    assert 0 < more < 50 * SMALL[0] * SMALL[1]
 
 
 FOREIGN = {"fluid": "Solid|Stress|Reference|Wall|Energy|FSIDt|Watch|Surface|position_divergence|number_density|displacements",
