@@ -546,7 +546,9 @@ void FixFSI::update_state(bool advance)
     gather_walls();
     const Row *const x = rows(atom->x);
     // walls of particles go on behind a mirror themselves
-    for (int i = 0; i < nall; i++) wmask[i] = state[atom->type[i]].species == RIGID ? 0 : walls.near(x[i], cut);
+    const Clearance away(walls.wall, cut);
+    for (int i = 0; i < nall; i++)
+      wmask[i] = away.holds(x[i]) || state[atom->type[i]].species == RIGID ? 0 : walls.near(x[i], cut);
   }
 
   // the gradient's coefficients are needed by forces, so in setup too

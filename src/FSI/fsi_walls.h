@@ -23,6 +23,7 @@
 #ifndef LMP_FSI_WALLS_H
 #define LMP_FSI_WALLS_H
 
+#include <cmath>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -45,6 +46,25 @@ namespace FSI {
       for (int b = 0; b < 3; b++)
         if (b != axis && (x[b] < lo[b] - margin || x[b] > hi[b] + margin)) return false;
       return true;
+    }
+  };
+
+  // Where no point is within a margin of a wall's plane or behind it: the many that are there need no look at each wall.
+  struct Clearance {
+    double lo[3], hi[3];
+    Clearance(const std::vector<Wall> &walls, double margin)
+    {
+      for (int d = 0; d < 3; d++) {
+        lo[d] = -INFINITY;
+        hi[d] = INFINITY;
+      }
+      for (const auto &w : walls)
+        if (w.side > 0.0) lo[w.axis] = std::fmax(lo[w.axis], w.position + margin);
+        else hi[w.axis] = std::fmin(hi[w.axis], w.position - margin);
+    }
+    bool holds(const double *x) const
+    {
+      return x[0] > lo[0] && x[0] < hi[0] && x[1] > lo[1] && x[1] < hi[1] && x[2] > lo[2] && x[2] < hi[2];
     }
   };
 

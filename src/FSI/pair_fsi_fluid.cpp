@@ -284,15 +284,24 @@ void PairFSIFluid::for_images(const std::vector<int> &which, bool pairs, const W
   }
 }
 
+/* ---------------------------------------------------------------------- */
+
+std::vector<int> PairFSIFluid::near_walls() const
+{
+  std::vector<int> near;
+  if (hub->wmask)
+    for (const int i : rows)
+      if (hub->wmask[i]) near.push_back(i);
+  return near;
+}
+
 /* ----------------------------------------------------------------------
-   calls f(reflection, rows) with those of the rows of one fluid that have images in it
+   calls f(reflection, rows) with those of some rows that have images in it
 ------------------------------------------------------------------------- */
 
-template <class F> void PairFSIFluid::for_reflections(const Walls &walls, F f) const
+template <class F> void PairFSIFluid::for_reflections(const std::vector<int> &near, const Walls &walls, F f) const
 {
-  std::vector<int> near, some;
-  for (const int i : rows)
-    if (hub->wmask[i]) near.push_back(i);
+  std::vector<int> some;
   for (const auto &s : walls.reflections) {
     some.clear();
     for (const int i : near)
@@ -397,6 +406,7 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   };
 
   find_rows();
+  const std::vector<int> near = near_walls();
   bool packed_images = false;
   for (const int i : other_rows) row(i);
 #if FSI_PACKS
@@ -404,15 +414,15 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
     packed_images = !walls.finite();
     rate_rows<K, (FLAGS & DIFFUSION) != 0, false>({rows, list->numneigh, list->firstneigh}, Mirror(), kernel, diffusion, point, rate);
     if ((FLAGS & IMAGES) && packed_images)
-      for_reflections(walls, [&](const Walls::Reflection &s, const Rows &near) {
-        rate_rows<K, (FLAGS & DIFFUSION) != 0, true>(near, Mirror(walls, s), kernel, diffusion, point, rate);
+      for_reflections(near, walls, [&](const Walls::Reflection &s, const Rows &some) {
+        rate_rows<K, (FLAGS & DIFFUSION) != 0, true>(some, Mirror(walls, s), kernel, diffusion, point, rate);
       });
   } else
 #endif
     for (const int i : rows) row(i);
   if (FLAGS & IMAGES) {
     const auto position = [&](int i) { return point[i].position(x[i]); };
-    for_images(rows, !packed_images, walls, kernel.cutsq, position, image);
+    for_images(near, !packed_images, walls, kernel.cutsq, position, image);
     for_images(other_rows, true, walls, kernel.cutsq, position, image);
   }
 }
@@ -682,6 +692,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   };
 
   find_rows();
+  const std::vector<int> near = near_walls();
   bool packed_images = false;
   for (const int i : other_rows) row(i);
 #if FSI_PACKS
@@ -690,16 +701,16 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     constexpr int ROW = row_of_forces(D);
     if (ROW > 3) forces.assign((size_t) ROW * (nlocal + atom->nghost), 0.0);
     auto *const sums = reinterpret_cast<double(*)[ROW]>(ROW > 3 ? forces.data() : atom->f[0]);
-    const auto some = [&](auto images, const Rows &which, const Mirror &mirror, double *total) {
+    const auto forces_of = [&](auto images, const Rows &which, const Mirror &mirror, double *total) {
       force_rows<K, (FLAGS & ARTIFICIAL) != 0, (FLAGS & LAMINAR) != 0, decltype(images)::value>(
           which, mirror, kernel, artificial, sound, viscous, state, type, a, sums, total);
     };
-    some(std::false_type(), {rows, list->numneigh, list->firstneigh}, Mirror(), nullptr);
+    forces_of(std::false_type(), {rows, list->numneigh, list->firstneigh}, Mirror(), nullptr);
     if constexpr ((FLAGS & MIRROR) && !(FLAGS & LAMINAR))
       if (packed_images)
-        for_reflections(walls, [&](const Walls::Reflection &s, const Rows &near) {
+        for_reflections(near, walls, [&](const Walls::Reflection &s, const Rows &some) {
           double total[3] = {0.0, 0.0, 0.0};
-          some(std::true_type(), near, Mirror(walls, s), total);
+          forces_of(std::true_type(), some, Mirror(walls, s), total);
           // of both particles of a pair: what is along the wall cancels, what is normal to it doubles
           for (int k = 0; k < s.n; k++) {
             const int axis = walls.wall[s.w[k]].axis;
@@ -714,7 +725,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
     for (const int i : rows) row(i);
   if (FLAGS & MIRROR) {
     const auto position = [&](int i) { return a[i].position(x[i]); };
-    for_images(rows, !packed_images, walls, kernel.cutsq, position, image);
+    for_images(near, !packed_images, walls, kernel.cutsq, position, image);
     for_images(other_rows, true, walls, kernel.cutsq, position, image);
   }
 }

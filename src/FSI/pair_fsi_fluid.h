@@ -92,7 +92,8 @@ class PairFSIFluid : public PairFSI {
   void find_rows();
   template <class Position, class F>
   void for_images(const std::vector<int> &rows, bool pairs, const FSI::Walls &, double cutsq, Position, F) const;
-  template <class F> void for_reflections(const FSI::Walls &, F) const;
+  std::vector<int> near_walls() const;    // those of rows that are
+  template <class F> void for_reflections(const std::vector<int> &rows, const FSI::Walls &, F) const;
   template <class Term, class Collect> void distance_sums(Term, Collect) const;
 
   enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, LEDGER = 16, NFORCE = 32 };
