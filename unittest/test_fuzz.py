@@ -20,7 +20,7 @@ COMMANDS = [
     "pair_coeff * * materials.fsi water plate",
     "pair_coeff * * materials.fsi water tank",
     "pair_coeff * * fsi/fluid materials.fsi water plate",
-    "fix sph all fsi 0.01 wendland 1.5 fluid continuity solid ratio substeps 3",
+    "fix sph all fsi 0.01 wendland 1.5 fluid continuity solid ratio substeps 3 surface/every 5",
     "fix stress all fsi/stress plane strain",
     "fix particles all fsi/wall/particle slip no guard 0.9",
     "fix walls all fsi/wall/mirror xlo 0 range y 0 INF velocity 0.1 0 0 slip no ylo EDGE guard 0.2",

@@ -36,6 +36,7 @@ ALTERNATIVES = {  # what else crosses ranks: options of the scene, in 2D and 3D
     "shift": {"fluid": "sound 10 laminar/visc/central shift 0.5"},
     "extrapolate": {"fluid": NO_DIFFUSION + " extrapolate yes"},
     "tl": {"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.1 0.1 hourglass 0.1"},
+    "surface": {"fluid": "sound 10 artificial/visc 0.05 0 surface 0.9 max", "sph": "surface/every 7"},
     "tl substeps": {"solid_style": "fsi/solid/tl", "solid": "law neohookean", "sph": "substeps 4"},
     "tl viscous substeps": {"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.2 0 gradient linear",
                             "sph": "substeps 3"},
@@ -195,3 +196,18 @@ def test_sums_over_pairs(tmp_path, dim, ranks, newton):
     for part in (slice(None, walls), slice(walls, None)):
         assert np.abs(one[part] - other[part]).max() < 1e-9 * np.abs(one[part]).max()
     assert np.abs(one[walls + 4:] - other[walls + 4:]).max() < 1e-9 * np.abs(one[walls + 4:]).max()
+
+
+@pytest.mark.parametrize("kept", [{"sph": "surface/every 1000", "fluid": NO_DIFFUSION + " surface 0.9 bulk"},
+                                  {"density": "fluid ratio solid continuity", "fluid": NO_DIFFUSION}], ids=["surface", "ratio"])
+def test_what_a_particle_keeps_goes_with_it(tmp_path, kept):
+    """Water flies from one rank to the other: its number density or density reference, found at the start, too."""
+    scene = fluid_box(2, gravity=np.array([0.0, -1e-9, 0.0]), **kept)
+    scene.walls = []
+    scene.v[:, 0] += 10.0
+    scene.box[0, 1] += 0.3
+    one, two = frames(tmp_path / "one", scene), frames(tmp_path / "two", scene, 2, "2 1 1")
+    middle = scene.box[0].mean()
+    assert ((one[0]["x"] < middle) & (one[1]["x"] > middle)).sum() > 50
+    agree(one, two)
+    assert np.array_equal(one[1]["p"] == 0.0, two[1]["p"] == 0.0)

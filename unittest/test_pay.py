@@ -36,8 +36,10 @@ def counted():
     cases = {(name, "nothing"): deck(name) for name in DECKS}
     cases |= {(name, "zero"): deck(name, style=style) for name, style in ZERO.items()}
     cases |= {("fluid", "walls"): deck("fluid", walls="yes"), ("fluid", "walls away"): deck("fluid", commands=AWAY),
+              ("fluid", "surface"): deck("fluid", style="surface 0.9 bulk", hub="surface/every 1000"),
               ("fluid", "viscosity"): deck("fluid", style="artificial/visc 0.05 0"), ("fluid", "shift"): deck("fluid", style="shift 0.1"),
-              ("updated", "stress"): deck("updated", style="artificial/stress 0.3"), ("total", "hourglass"): deck("total", style="hourglass 0.05")}
+              ("updated", "stress"): deck("updated", style="artificial/stress 0.3"), ("total", "hourglass"): deck("total", style="hourglass 0.05"),
+              ("total", "damage"): deck("total", style="damage 0.5")}
     found = measure.profiles(list(cases.values()))
     steps = measure.LONG - measure.SHORT
     return {case: {f: (n - a.get(f, 0)) / steps for f, n in b.items()} for case, (a, b) in zip(cases, found)}
@@ -55,6 +57,18 @@ def test_effects_of_size_zero_cost_no_instruction(counted, name):
 def test_a_named_effect_is_counted(counted, name, what, least):
     """What the other tests find absent would be seen."""
     assert sum(counted[name, what].values()) > (1.0 + least) * sum(counted[name, "nothing"].values())
+
+
+def test_damage_looks_where_a_bond_may_break(counted):
+    """Each particle's motion, at some 20 instructions, but not its bonds, at some 50 each."""
+    more = sum(counted["total", "damage"].values()) - sum(counted["total", "nothing"].values())
+    assert 0 < more < 50 * SMALL[0] * SMALL[1]
+
+
+def test_between_looks_for_the_surface_it_costs_nothing(counted):
+    """A comparison for each particle, where its pressure is computed, and no loop over pairs, some 16 of them at 60 each."""
+    more = sum(counted["fluid", "surface"].values()) - sum(counted["fluid", "nothing"].values())
+    assert 0 < more < 50 * SMALL[0] * SMALL[1]
 
 
 FOREIGN = {"fluid": "Solid|Stress|Reference|Wall|Energy|FSIDt|Watch|Surface|position_divergence|number_density|displacements",
@@ -82,7 +96,7 @@ def test_walls_that_nobody_is_near_cost_a_look(counted):
 
 OWN = 8 * (6 + 3)  # LAMMPS' own for each ghost: positions and velocities out, forces back
 SENT = [(name, settings) for name in DECKS for settings in [{}, *(s for _, _, s in effects.cases(name))]
-        if not settings.get("commands")]
+        if not settings.get("commands")] + [("total", {"hub": "substeps 4"})]
 
 
 @pytest.fixture(scope="module")
@@ -94,11 +108,21 @@ def sent():
 @pytest.mark.parametrize("k", range(len(SENT)), ids=[f"{n}: {' '.join(map(str, s.values())) or 'nothing'}" for n, s in SENT])
 def test_messages_are_those_announced(sent, k):
     found, text = sent[k]
-    forward, back, more = re.search(r"positions and forces: (\d+) forward, (\d+) back(; 1 back)?", text).groups()
+    forward, back, more = re.search(r"positions and forces: (\d+) forward, (\d+) back(; 1 back|; 4 each way)?", text).groups()
+    solids = {None: 0, "; 1 back": 1, "; 4 each way": 8}[more]
     size = int(re.search(r"for each ghost: (\d+) bytes", text)[1])
     assert found["ghosts"] > 0
-    assert found["messages"] == 2 + int(forward) + int(back) + bool(more)
-    assert found["bytes"] == (OWN + size) * found["ghosts"]
+    looks = re.search(r"every (\d+) steps: (\d) message back and (\d+) bytes of a ghost more", text)
+    every, message, density = map(int, looks.groups()) if looks else (1, 0, 0)
+    assert found["messages"] == pytest.approx(2 + int(forward) + int(back) + solids + message / every, abs=1e-9)
+    assert found["bytes"] == pytest.approx((OWN + size + density / every) * found["ghosts"], abs=1e-6)
+
+
+def test_substeps_send_nothing_where_no_solid_is():
+    """The gate, whose plate is one rank's alone: positions out, forces back, density out, its rate back, and nothing for sub-steps."""
+    found, = measure.messages([re.sub(r"^timestep .*", "timestep 1e-7", effects.deck("gate", {}, effects.COUNTED["gate"]), flags=re.M)])
+    assert found["ghosts"] > 100
+    assert (found["messages"], found["empty"]) == (4, 0)
 
 
 @pytest.mark.parametrize("name, size", [("fluid", 8 + 8), ("updated", 8 + 8 * 3 + 8 * 4), ("total", 8 + 8 * 2)])
@@ -111,6 +135,7 @@ def test_bare_scenes_send_only_their_own(sent, name, size):
 # ---- memory --------------------------------------------------------------------------------------------------------
 
 ARRAYS = {"nothing": (0, {}), "shifting": (40, {"style": "shift 0.1"}), "walls": (4, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
+          "surface at intervals": (8, {"style": "surface 0.9 bulk", "hub": "surface/every 10"}),
           "ratio": (8, {"hub": "fluid ratio"}), "summation": (0, {"hub": "fluid summation"}),
           "the rest": (0, {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1 eos tait tension yes background 1"})}
 SLOTS = 16384  # LAMMPS grows its arrays by so many atoms
@@ -163,6 +188,9 @@ VAIN = {
     "density of solids without their style": (world("fsi/fluid sound 10", 1, "solid ratio"), ["Fix fsi solid density has nothing to act on"]),
     "no-slip walls without viscosity": (world("fsi/fluid sound 10", 1, commands="fix walls all fsi/wall/mirror ylo 0 slip no"),
                                         ["Fix fsi/wall/mirror slip no has nothing to act on: pair_style fsi/fluid has no laminar/visc"]),
+    "surface without its rule": (world("fsi/fluid sound 10", 1, "surface/every 10"), ["Fix fsi surface/every has nothing to act on: pair_style fsi/fluid"]),
+    "surface with a density that needs it always": (world("fsi/fluid sound 10 surface 0.9 bulk", 1, "fluid ratio surface/every 10"),
+                                                    ["Fix fsi surface/every has nothing to act on: a density mode"]),
     "extrapolation without solid": (world("fsi/fluid sound 10 extrapolate yes", 1).replace("water plate", "water water"),
                                     ["extrapolate has nothing to act on: there is no solid"]),
     "extrapolation without walls of solid": (world(HYBRID.format("couple full extrapolate yes", ""), 1, commands="set atom 1 type 2"),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import KERNELS, RUBBER, WATER, Scene, lattice
+from scenes import KERNELS, RUBBER, WATER, Scene, cloud, lattice
 
 RULES = {"number/density": 0.9, "divergence": 0.75}
 BOTH = pytest.mark.parametrize("rule", RULES)
@@ -110,3 +110,26 @@ def test_no_pressure_at_the_surface(reference, dim):
         s.run()
         face = outermost(x, dim) & (np.sum([(x[:, d] < 0.06) | (x[:, d] > 0.74) for d in range(dim)], axis=0) == 1)
         assert np.all((s.p[face] == 0.0) == (reference == "max"))
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_surface_at_intervals(dim):
+    """surface/every 4: particles without pressure are those of the last step that is a multiple of 4, at the middle of which positions are known."""
+    x, v = cloud([9] * dim if dim == 2 else [6] * dim, 0.1, vmax=8.0)
+    with Scene(x, v, dim=dim, dx=0.1, kernel="wendland", hdx=1.5, density="surface/every 4", fluid="surface 0.85 bulk") as s:
+        s.put("rho", 1500.0)
+        bulk = s.kernel.lattice_sum(0.1, dim)
+
+        def surface(x):
+            r = np.linalg.norm(x[:, None] - x[None], axis=2)
+            return s.kernel.W(np.where(r < s.kernel.cut, r, s.kernel.cut)).sum(1) <= 0.85 * bulk
+        s.run()
+        expected, changes = surface(s.get("x")), 0
+        for step in range(1, 14):
+            now = surface(s.get("x") + 0.5e-3 * s.get("v"))
+            if step % 4 == 0:
+                changes += np.count_nonzero(now != expected)
+                expected = now
+            s.run(1)
+            assert np.array_equal(s.p == 0.0, expected), step
+        assert changes > 5 and 5 < np.count_nonzero(expected) < len(x) - 5

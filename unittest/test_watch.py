@@ -140,6 +140,24 @@ def test_nan_force_in_the_run(tmp_path, monkeypatch):
     assert near.step == 12 and np.isfinite(near.vector(("x", "y", "vx", "vy", "rho"))).all()
 
 
+@pytest.mark.parametrize("quantity, value, message", [("v", 6.0, r"Mach number 1\.039"), ("v", np.nan, "not finite"), ("rho", 0.0, "density error .* 1 "),
+                                                      ("rho", -1e3, "density error .* 2 "), ("rho", np.nan, "not finite"), ("rho", 1e21, "not finite")])
+@pytest.mark.parametrize("who", (1, 256, 257, 399))
+def test_one_of_many_at_once(tmp_path, monkeypatch, quantity, value, message, who):
+    """Between two full checks, one particle among calm ones, whose force is small: blocks of particles in which all is small are skipped."""
+    monkeypatch.chdir(tmp_path)
+    with Scene(lattice([20, 20], 0.1), dx=0.1, dt=1e-4, commands=["fix ext all external pf/callback 1 1", "fix watch all fsi/watch 1000 restart off dump off"]) as s:
+        def change(_, step, nlocal, tag, x, f):
+            f[:nlocal] = 0.0
+            if step == 13:
+                target = s.lmp.numpy.extract_atom(quantity)
+                target[np.flatnonzero(tag[:nlocal] == who)[0]] = value
+
+        s.lmp.set_fix_external_callback("ext", change)
+        with pytest.raises(Exception, match=rf"{message}.* on step 13, atom {who} "):
+            s.run(20)
+
+
 @pytest.mark.parametrize("ranks", (1, 2))
 def test_overflow(tmp_path, ranks):
     scene = fluid_box(2)

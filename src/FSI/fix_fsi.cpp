@@ -50,8 +50,8 @@ using namespace FSI;
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
     shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
-    solid(nullptr), solid_tl(nullptr), substeps(1), fix_dt(nullptr), profile(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
-    tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false)
+    solid(nullptr), solid_tl(nullptr), substeps(1), surface_every(1), fix_dt(nullptr), profile(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
+    tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false), keep_psi(false), send_psi(true)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
@@ -71,9 +71,11 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   int iarg = 6;
   while (iarg < narg) {
     if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi {}", arg[iarg]), error);
-    if (strcmp(arg[iarg], "substeps") == 0) {
-      substeps = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (substeps < 1) error->all(FLERR, "Fix fsi substeps {} must be >= 1", arg[iarg + 1]);
+    const bool sub = strcmp(arg[iarg], "substeps") == 0;
+    if (sub || strcmp(arg[iarg], "surface/every") == 0) {
+      int &n = sub ? substeps : surface_every;
+      n = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      if (n < 1) error->all(FLERR, "Fix fsi {} {} must be >= 1", arg[iarg], arg[iarg + 1]);
       iarg += 2;
       continue;
     }
@@ -86,7 +88,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
                  arg[iarg + 1]);
     if (strcmp(arg[iarg], "fluid") == 0) density_fluid = mode;
     else if (strcmp(arg[iarg], "solid") == 0) density_solid = mode;
-    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid, solid or substeps", arg[iarg]);
+    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid, solid, substeps or surface/every", arg[iarg]);
     iarg += 2;
   }
 
@@ -103,10 +105,11 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   force_reneighbor = 1;
   create_attribute = 1;
   need_ratio = density_fluid == RATIO || density_solid == RATIO;
-  if (need_ratio) {
+  keep_psi = surface_every > 1 && density_fluid == CONTINUITY && density_solid == CONTINUITY;
+  if (need_ratio || keep_psi) {
     restart_peratom = 1;
     grow_arrays(atom->nmax);
-    for (int i = 0; i < atom->nlocal; i++) ratio[i] = 0.0;
+    for (int i = 0; i < atom->nlocal; i++) travels()[i] = 0.0;
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
   }
@@ -117,7 +120,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
 FixFSI::~FixFSI()
 {
-  if (need_ratio && modify->get_fix_by_id(id)) {
+  if ((need_ratio || keep_psi) && modify->get_fix_by_id(id)) {
     atom->delete_callback(id, Atom::GROW);
     atom->delete_callback(id, Atom::RESTART);
   }
@@ -239,6 +242,8 @@ void FixFSI::setup(int)
     if (pair)
       for (const auto &e : pair->effects()) effects.push_back(e);
   if (fluid) effects.push_back({fmt::format("{} mirror walls", walls.wall.size()), "fix fsi/wall/mirror", !wall_fixes.empty()});
+  if (fluid && fluid->surface_ratio > 0.0)
+    effects.push_back({fmt::format("surface looked for every {} steps", surface_every), "fix fsi surface/every", keep_psi});
   if (fix_stress) effects.push_back({"plasticity", "fix fsi/stress plastic", fix_stress->plastic});
   if (solid_tl) effects.push_back({fmt::format("{} solid sub-steps", substeps), "fix fsi substeps", substeps > 1});
   if (fluid) effects.push_back({fmt::format("{} groups of wall particles", particle_walls.size()), "fix fsi/wall/particle", !particle_walls.empty()});
@@ -261,16 +266,20 @@ void FixFSI::setup(int)
   // what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a ghost
   const bool newton = force->newton_pair, hourglass = solid && solid->has_hourglass();
   const int nwalls = particle_walls.size(), forward = 1 + hourglass + nwalls;
-  const int back = newton * (((fluid && density_fluid == CONTINUITY) || ng) + need_psi + hourglass + nwalls);
-  const int both = 1 + need_psi * (1 + newton);
+  const bool send = need_psi && !keep_psi;
+  const int back = newton * (((fluid && density_fluid == CONTINUITY) || ng) + send + hourglass + nwalls);
+  const int both = 1 + send * (1 + newton);
   const int fluid_ghost = fluid ? both + newton * (density_fluid == CONTINUITY) * (1 + ns) : 0;
   int solid_ghost = both;
   if (solid) solid_ghost += comm_forward - 2 + newton * ng + hourglass * (dim * dim + newton * dim);
   if (solid_tl) solid_ghost += substeps * dim + (substeps > 1 ? substeps * solid_tl->comm_forward : 0);
   text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", forward, back,
-                      !solid_tl ? "" : substeps > 1 ? fmt::format("; {} each way for solid sub-steps", substeps) : "; 1 back for solid forces");
+                      !solid_tl ? "" : substeps > 1 ? fmt::format("; {} each way for solid sub-steps, where they carry solids", substeps) : "; 1 back for solid forces");
   text += fmt::format("  they carry for each ghost:{}{}\n", fluid ? fmt::format(" {} bytes of a fluid", 8 * fluid_ghost) : "",
                       solid || solid_tl ? fmt::format("{} {} bytes of a solid", fluid ? "," : "", 8 * solid_ghost) : "");
+  if (need_psi && keep_psi)
+    text += fmt::format("  every {} steps: {} message back and {} bytes of a ghost more, number density\n", surface_every, (int) newton,
+                        8 * (1 + newton));
   if (text == announced) return;
   announced = text;
   if (comm->me == 0) utils::logmesg(lmp, text);
@@ -564,9 +573,13 @@ void FixFSI::update_state(bool advance)
       if (advance && solid->has_hourglass()) solid->advance_hourglass(update->dt);
     }
   }
-  if (need_psi) {
+  send_psi = need_psi && (!keep_psi || !advance || neighbor->ago == 0);    // or to new ghosts
+  if (need_psi && psi_is_due(advance)) {
     phase.next(Profile::DENSITY);
     number_density(psi);
+    send_psi = true;
+  }
+  if (send_psi) {
     psi_reference = psi_bulk;
     if (fluid && fluid->surface_max) {
       double mine = 0.0;
@@ -574,7 +587,7 @@ void FixFSI::update_state(bool advance)
         if (state[atom->type[i]].species == FLUID && psi[i] > mine) mine = psi[i];
       MPI_Allreduce(&mine, &psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
     }
-    density_from_psi();
+    if (density_fluid != CONTINUITY || density_solid != CONTINUITY) density_from_psi();
   }
   if (solid_tl && advance) {
     solid_tl->break_bonds();
@@ -583,6 +596,19 @@ void FixFSI::update_state(bool advance)
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
   forward_comm(profile, comm, this);
   for (auto *fix : particle_walls) fix->extrapolate(advance);
+}
+
+/* ----------------------------------------------------------------------
+   setup goes on with what was kept, as a run must that goes on from a restart file
+------------------------------------------------------------------------- */
+
+bool FixFSI::psi_is_due(bool advance) const
+{
+  if (!keep_psi) return true;
+  if (advance) return update->ntimestep % surface_every == 0;
+  int mine = std::count(psi, psi + atom->nlocal, 0.0), all;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
+  return all > 0;
 }
 
 /* ----------------------------------------------------------------------
@@ -762,7 +788,7 @@ int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
   for (int ii = 0; ii < n; ii++) {
     const int i = list[ii];
     buf[m++] = rho[i];
-    if (need_psi) buf[m++] = psi[i];
+    if (send_psi) buf[m++] = psi[i];
     if (solid && state[type[i]].species == SOLID) {
       for (int k = 0; k < ns; k++) buf[m++] = fix_stress->stress[i][k];
       for (int k = 0; k < dim * solid->terms(); k++) buf[m++] = grad[i][dim * dim + k];
@@ -781,7 +807,7 @@ void FixFSI::unpack_forward_comm(int n, int first, double *buf)
   int m = 0;
   for (int i = first; i < first + n; i++) {
     rho[i] = buf[m++];
-    if (need_psi) psi[i] = buf[m++];
+    if (send_psi) psi[i] = buf[m++];
     if (solid && state[type[i]].species == SOLID) {
       for (int k = 0; k < ns; k++) fix_stress->stress[i][k] = buf[m++];
       for (int k = 0; k < dim * solid->terms(); k++) grad[i][dim * dim + k] = buf[m++];
@@ -834,47 +860,47 @@ void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   density mode ratio: its reference travels with the atom and through restarts
+   the reference of density mode ratio, or the number density that is kept, travels with the atom and through restarts
 ------------------------------------------------------------------------- */
 
 void FixFSI::grow_arrays(int n)
 {
-  memory->grow(ratio, n, "fsi:ratio");
+  memory->grow(travels(), n, "fsi:travels");
 }
 
 void FixFSI::copy_arrays(int i, int j, int)
 {
-  ratio[j] = ratio[i];
+  travels()[j] = travels()[i];
 }
 
 void FixFSI::set_arrays(int i)
 {
-  if (need_ratio) ratio[i] = 0.0;
+  if (need_ratio || keep_psi) travels()[i] = 0.0;
   give_defaults(i);
 }
 
 int FixFSI::pack_exchange(int i, double *buf)
 {
-  buf[0] = ratio[i];
+  buf[0] = travels()[i];
   return 1;
 }
 
 int FixFSI::unpack_exchange(int i, double *buf)
 {
-  ratio[i] = buf[0];
+  travels()[i] = buf[0];
   return 1;
 }
 
 int FixFSI::pack_restart(int i, double *buf)
 {
   buf[0] = 2;
-  buf[1] = ratio[i];
+  buf[1] = travels()[i];
   return 2;
 }
 
 void FixFSI::unpack_restart(int i, int nth)
 {
-  ratio[i] = restart_values(atom->extra[i], nth)[0];
+  travels()[i] = restart_values(atom->extra[i], nth)[0];
 }
 
 const double *FixFSI::restart_values(const double *extra, int nth)

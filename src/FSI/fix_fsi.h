@@ -116,6 +116,7 @@ class FixFSI : public Fix {
   class PairFSISolid *solid;
   class PairFSISolidTL *solid_tl;
   int substeps;    // of total-Lagrangian solids in each step
+  int surface_every;    // steps from one number density to the next of the free-surface rule
   class FixFSIDt *fix_dt;    // changes the time step; null: nothing does
   FSI::Profile *profile;     // of fix fsi/report; null: there is none
   std::vector<std::string> effects_on;    // what is simulated, in words; from setup on
@@ -146,6 +147,10 @@ class FixFSI : public Fix {
   int nmax;
   double tally_dt;
   bool need_psi, need_grad, need_ratio, need_shift;
+  bool keep_psi;    // number density is that of some steps only: it travels with its atom and through restarts
+  bool send_psi;    // in this step
+  double *&travels() { return keep_psi ? psi : ratio; }
+  bool psi_is_due(bool advance) const;
 
   void substep_solids();
   std::string announced;    // the list of effects as last printed

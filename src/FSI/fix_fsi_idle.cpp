@@ -58,6 +58,8 @@ void FixFSI::warn_idle() const
     if (fix_stress && (solid || (solid_tl && solid_tl->hypoelastic()))) nothing("Fix fsi/stress", NO_SOLID);
     if (substeps > 1) nothing("Fix fsi substeps", NO_SOLID);
   }
+  if (surface_every > 1 && !need_psi) nothing("Fix fsi surface/every", "pair_style fsi/fluid has no surface rule");
+  if (surface_every > 1 && need_psi && !keep_psi) nothing("Fix fsi surface/every", "a density mode needs the number density in each step");
   if (!fluid && density_fluid != CONTINUITY) nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");
   if (!solid && !solid_tl && density_solid != CONTINUITY) nothing("Fix fsi solid density", "there is no pair_style fsi/solid");
   if (fluid && !fluid->has_laminar())

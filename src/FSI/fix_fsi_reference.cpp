@@ -28,6 +28,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
@@ -37,8 +38,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), hub(nullptr), list(nullptr), slot(nullptr),
-    maxbond(0), layer(nullptr)
+    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), swaps(lmp), hub(nullptr), list(nullptr), slot(nullptr),
+    maxbond(0), apart(0.0), layer(nullptr)
 {
   restart_peratom = 1;
   create_attribute = 1;
@@ -273,15 +274,46 @@ void FixFSIReference::break_bonds(double stretch)
   else break_bonds_of_all<3>(stretch);
 }
 
+// Nobody of this rank's solids moves relative to anybody else by more than the diagonal of the box that holds all their displacements.
+// So a particle whose most stretched bond has more than this left is not looked at, and the same bonds break at the same step.
+template <int D> void FixFSIReference::move_apart()
+{
+  double **x = atom->x;
+  const size_t size = (solids.size() + ghosts.size()) * D;
+  const bool anew = seen.size() != size;
+  if (anew) {
+    seen.resize(size);
+    slack.assign(nbond.size(), 0.0);
+  }
+  double lo[D], hi[D], sum = 0.0, *before = seen.data();
+  std::fill_n(lo, D, std::numeric_limits<double>::max());
+  std::fill_n(hi, D, -std::numeric_limits<double>::max());
+  for (const auto *set : {&solids, &ghosts})
+    for (const int i : *set)
+      for (int a = 0; a < D; a++) {
+        const double d = x[i][a] - *before;
+        *before++ = x[i][a];
+        lo[a] = std::min(lo[a], d);
+        hi[a] = std::max(hi[a], d);
+      }
+  for (int a = 0; a < D; a++) sum += (hi[a] - lo[a]) * (hi[a] - lo[a]);
+  apart = anew ? 0.0 : apart + std::sqrt(sum) + 1e-9 * hub->dx;    // more than round-off
+}
+
 template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
 {
   double **x = atom->x;
   const double limit = stretch * stretch;
   GradientWeights<D> weights;
   std::vector<double> dX, w, G;
+  if (solids.empty()) return;
+  move_apart<D>();
   for (const int i : solids) {
+    double &reserve = slack[slot[i]];
+    if (apart < reserve) continue;
     const size_t first = (size_t) slot[i] * maxbond;
     int &n = nbond[slot[i]];
+    reserve = std::numeric_limits<double>::max();
     const auto longer = [&](int k) {
       const double *const X = &data[(first + k) * nvalue + D], *const xj = x[local[first + k]];
       double rsq = 0.0, Rsq = 0.0;
@@ -289,7 +321,9 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
         rsq += (xj[a] - x[i][a]) * (xj[a] - x[i][a]);
         Rsq += X[a] * X[a];
       }
-      return rsq > limit * Rsq;
+      if (rsq > limit * Rsq) return true;
+      reserve = std::min(reserve, apart + stretch * std::sqrt(Rsq) - std::sqrt(rsq));
+      return false;
     };
     int kept = 0;
     for (int k = 0; k < n; k++) {
@@ -360,6 +394,8 @@ void FixFSIReference::resolve()
   }
   for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; i++)
     if (is_solid(i)) ghosts.push_back(i);
+  seen.clear();
+  swaps.find([this](int i) { return is_solid(i); });
 }
 
 /* ----------------------------------------------------------------------
@@ -491,5 +527,5 @@ int FixFSIReference::maxsize_restart()
 double FixFSIReference::memory_usage()
 {
   return (double) atom->nmax * sizeof(int) + (double) local.capacity() * sizeof(int) + (double) partner.capacity() * sizeof(tagint) +
-      (double) (data.capacity() + quadrature.capacity()) * sizeof(double);
+      (double) (data.capacity() + quadrature.capacity() + seen.capacity() + slack.capacity()) * sizeof(double);
 }

@@ -22,6 +22,7 @@ FixStyle(fsi/reference,FixFSIReference);
 #define LMP_FIX_FSI_REFERENCE_H
 
 #include "fix.h"
+#include "fsi_swaps.h"
 
 #include <vector>
 
@@ -65,11 +66,12 @@ class FixFSIReference : public Fix {
   const double *values(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }
 
   // removes bonds longer than stretch times their reference length, and makes the gradient anew from those left; a particle
-  // whose bonds no longer suffice loses them all
+  // whose bonds no longer suffice loses them all. Looks only at particles of which a bond may have become too long since
   void break_bonds(double stretch);
 
   // local solid atoms, and ghosts of solid atoms
   std::vector<int> solids, ghosts;
+  FSI::Swaps swaps;    // those of solids
 
  private:
   class FixFSI *hub;
@@ -79,6 +81,10 @@ class FixFSIReference : public Fix {
   std::vector<int> nbond, local, unused;
   std::vector<tagint> partner;
   std::vector<double> data, quadrature;
+  // damage: positions of solids and ghosts at the last look, empty = indices have changed; how far particles have moved apart since
+  // indices changed, at most; per slot, how far they may before one of its bonds can be too long
+  std::vector<double> seen, slack;
+  double apart;
   double *layer;    // while the reference is taken: layers to the face ahead, by direction
 
   void take();
@@ -87,6 +93,7 @@ class FixFSIReference : public Fix {
   void resolve();
   bool is_solid(int i) const;
   template <int D> void break_bonds_of_all(double stretch);
+  template <int D> void move_apart();
   void reserve(int n);
   int new_slot(int n);
   int pack(int, double *) const;

@@ -58,6 +58,7 @@ class FixFSIWatch : public Fix {
   std::string restart_file, dump_file;
   double speed_sq_of(int type) const;
   std::vector<double> speed_sq;    // per type: largest square of the speed
+  double lightest;                 // mass of this rank's particles
 
   Finding worst[NQUANTITY];     // on this rank
   double total[NQUANTITY];      // of all ranks: ENERGY, LOST, REFLECTED

@@ -38,7 +38,7 @@ namespace FSI {
     void clear();
     int current;            // part that is running
     int enter(int part);    // returns the part before
-    template <class T> void count(Comm *, T *who, bool back);
+    template <class T> void count(Comm *, T *who, bool back, bool skip_empty);
 
     struct Message {
       int n, *list, first;    // atoms of a forward one in list, of one back from first on
@@ -75,23 +75,23 @@ namespace FSI {
   };
 
   // sizes are known only when packed: pack once more
-  template <class T> void Profile::count(Comm *comm, T *who, bool back)
+  template <class T> void Profile::count(Comm *comm, T *who, bool back, bool skip_empty)
   {
     for (const auto &m : messages_of(comm, back)) {
       const size_t most = (size_t) m.n * (back ? who->comm_reverse : who->comm_forward);
       if (buffer.size() < most) buffer.resize(most);
-      bytes += sizeof(double) *
-          (back ? who->pack_reverse_comm(m.n, m.first, buffer.data()) : who->pack_forward_comm(m.n, m.list, buffer.data(), 0, nullptr));
-      messages += 1.0;
+      const int n = back ? who->pack_reverse_comm(m.n, m.first, buffer.data()) : who->pack_forward_comm(m.n, m.list, buffer.data(), 0, nullptr);
+      bytes += sizeof(double) * n;
+      if (n > 0 || !skip_empty) messages += 1.0;
     }
   }
 
   // communication of a fix or pair style of the package; nothing is kept of what happens outside a step, in output
-  template <class T, class F> void exchange(Profile *profile, Comm *comm, T *who, bool back, F &&send)
+  template <class T, class F> void exchange(Profile *profile, Comm *comm, T *who, bool back, F &&send, bool skip_empty = false)
   {
     const bool known = profile && profile->current != Profile::OUTSIDE && comm->nprocs > 1;
     const Phase phase(known ? profile : nullptr, Profile::MESSAGES);
-    if (known && profile->counting) profile->count(comm, who, back);
+    if (known && profile->counting) profile->count(comm, who, back, skip_empty);
     send();
   }
   template <class T> void forward_comm(Profile *profile, Comm *comm, T *who)

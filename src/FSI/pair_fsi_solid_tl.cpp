@@ -220,7 +220,7 @@ void PairFSISolidTL::internal_forces()
     if (hub->dim == 2) contact_forces<2>();
     else contact_forces<3>();
   }
-  reverse_comm(hub->profile, comm, this);
+  exchange(hub->profile, comm, this, true, [this]() { reference->swaps.reverse(this); }, reference->swaps.skip_empty());
 }
 
 /* ----------------------------------------------------------------------
@@ -516,7 +516,7 @@ double PairFSISolidTL::Stress::von_mises() const
 
 void PairFSISolidTL::forward_positions()
 {
-  forward_comm(hub->profile, comm, this);
+  exchange(hub->profile, comm, this, false, [this]() { reference->swaps.forward(this); }, reference->swaps.skip_empty());
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
