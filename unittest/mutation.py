@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 # file, what is there, what is put there instead, tests that look at it (pytest files, or a ctest name)
 FLUID, SOLID, HUB = "pair_fsi_fluid.cpp", "pair_fsi_solid.cpp", "fix_fsi.cpp"
+ROWS = "fsi_fluid_rows.h"
 TL, BONDS = "pair_fsi_solid_tl.cpp", "fix_fsi_reference.cpp"
 MUTATIONS = [
     (HUB, "const double dth = 0.5 * update->dt;\n  for", "const double dth = 0.51 * update->dt;\n  for", "integrator"),
@@ -34,7 +35,7 @@ MUTATIONS = [
     (FLUID, "const double dth = 0.5 * dt;", "const double dth = 0.0;", "density integrator"),
     (FLUID, "rj = pj.rho * pj.vol * s;", "rj = -pj.rho * pj.vol * s;", "density"),
     (FLUID, "rj -= k * pi.vol;", "rj += k * pi.vol;", "density"),
-    (FLUID, "rate[i] += point[i].rho * point[i].vol * g * sum;", "rate[i] -= point[i].rho * point[i].vol * g * sum;", "walls"),
+    (FLUID, "rate[i] += point[i].rho * point[i].vol * g * (vij", "rate[i] -= point[i].rho * point[i].vol * g * (vij", "walls"),
     (FLUID, "double p = pi.pv2 + pj.pv2,", "double p = pi.pv2 - pj.pv2,", "walls momentum density"),
     (FLUID, "c = si.c < sj.c ? si.c : sj.c;", "c = si.c > sj.c ? si.c : sj.c;", "interface momentum"),
     (FLUID, "p = a[nf].pv2 + pw * a[ns].vol * a[ns].vol;", "p = a[nf].pv2 - pw * a[ns].vol * a[ns].vol;", "interface"),
@@ -45,12 +46,16 @@ MUTATIONS = [
     ("fsi_viscosity_laminar.h", "f[d] += (D + 2) * k * vx * x_ij[d];", "f[d] += 4 * k * vx * x_ij[d];", "walls"),
     ("fsi_shift.h", "sum[2 * D] -= vg * rsq;", "sum[2 * D] += vg * rsq;", "shift"),
     ("fsi_shift.h", "vg * (1.0 + 0.2 * q * q * q * q)", "vg", "shift"),
-    (FLUID, "if (FLAGS & SHIFT) shift.add(sums[i], point[i].vol, g, kernel.W(r), rsq, x_image);", "", "shift"),
-    (FLUID, "walls.reflect_vector(s, xji);\n                         shift_pair", "shift_pair", "shift"),
+    (FLUID, "if (FLAGS & SHIFT) shift.add(sums[i], point[i].vol, g, kernel.W(std::sqrt(rsq)), rsq, x_image);", "", "shift"),
+    (FLUID, "walls.reflect_vector(s, xji);\n      shift_pair", "shift_pair", "shift"),
     ("fix_fsi.cpp", "for (int k = 0; k < ns; k++) shift[i][k] += buf[m++];", "for (int k = 0; k < ns; k++) m++;", "parallel"),
-    (FLUID, "fj[d] -= fij[d];", "fj[d] -= 0.999999 * fij[d];", "momentum"),
+    (FLUID, "f[j][d] -= fij[d];", "f[j][d] -= 0.999999 * fij[d];", "momentum parallel"),
     (FLUID, "walls.reflect_vector(s, fji);", "", "walls"),
     (FLUID, "const double share = (newton || j < nlocal) ? 1.0 : 0.5;\n      double fij[3];", "const double share = 1.0;\n      double fij[3];", "walls parallel"),
+    (ROWS, "rate_j -= k * pi.vol;", "rate_j += k * pi.vol;", "density parallel"),
+    (ROWS, "if (IMAGES) force[d] = mirror.sign[d] * force[d];", "", "walls parallel"),
+    (ROWS, "f[i][d] -= sum[d].sum();", "f[i][d] -= 0.999999 * sum[d].sum();", "momentum"),
+    (ROWS, "Pack g = IMAGES ? live * kernel", "Pack g = IMAGES ? kernel", "walls parallel"),
     (FLUID, "collect(j, i, s);", "collect(j, i, -s);", "surface"),
     (SOLID, "const double t = -g * vij[a] * xij[b];", "const double t = g * vij[a] * xij[b];", "solid"),
     (SOLID, "xij[d] = x[i][d] - x[j][d] - dth * vij[d];", "xij[d] = x[i][d] - x[j][d];", "solid integrator"),
