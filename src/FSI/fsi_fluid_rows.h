@@ -144,6 +144,30 @@ namespace FSI {
     pairs(j, pj, Pack(1.0, full + 1 < n ? 1.0 : 0.0, full + 2 < n ? 1.0 : 0.0, full + 3 < n ? 1.0 : 0.0));
   }
 
+  // sum_j W_ij into psi
+  template <class K> FSI_AVX2 void density_rows(const Rows &rows, const K kernel, const double (*const x)[3], double *const psi)
+  {
+    constexpr int D = K::DIM;
+    for (const int i : rows.i) {
+      const int *const list = rows.firstneigh[i];
+      Pack sum = 0.0;
+      for (int jj = 0; jj < rows.numneigh[i]; jj += Pack::WIDTH) {
+        const int here = rows.numneigh[i] - jj;
+        const int j[] = {list[jj], here > 1 ? list[jj + 1] : i, here > 2 ? list[jj + 2] : i, here > 3 ? list[jj + 3] : i};
+        Pack rsq = 0.0;
+        for (int d = 0; d < D; d++) {
+          const Pack r = x[i][d] - Pack(x[j[0]][d], x[j[1]][d], x[j[2]][d], x[j[3]][d]);
+          rsq += r * r;
+        }
+        Pack w = kernel.W(root(rsq));
+        if (here < Pack::WIDTH) w = w * Pack(1.0, here > 1 ? 1.0 : 0.0, here > 2 ? 1.0 : 0.0, 0.0);
+        sum += w;
+        for (int k = 0; k < Pack::WIDTH; k++) psi[j[k]] += w.v[k];
+      }
+      psi[i] += sum.sum();
+    }
+  }
+
   // m_i dpsi_i/dt into rate, with density diffusion: see PairFSIFluid::rate_pairs. What is constant comes by value: stores to the
   // sums could change what is behind a reference.
   template <class K, bool DIFFUSION, bool IMAGES>

@@ -30,6 +30,7 @@
 #else
 #define FSI_PACKS 0
 #define FSI_INLINE inline
+#define FSI_AVX2
 #endif
 
 namespace LAMMPS_NS {

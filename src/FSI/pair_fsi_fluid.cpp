@@ -446,30 +446,33 @@ void PairFSIFluid::displacements(double dt)
 
 // sums of what depends on the distance of a pair, walls' images included: collect(i, j, sum) for both of a pair, collect(i, i, sum)
 // for the own images of i
-template <class Term, class Collect> void PairFSIFluid::distance_sums(Term term, Collect collect) const
+template <class Term, class Collect> void PairFSIFluid::distance_sums(bool pairs_of_rows, Term term, Collect collect)
 {
-  double **x = atom->x;
+  const auto *const x = FixFSI::rows(atom->x);
+  find_rows();
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
-    for (int ii = 0; ii < list->inum; ii++) {
-      const int i = list->ilist[ii];
-      for (int jj = 0; jj < list->numneigh[i]; jj++) {
-        const int j = list->firstneigh[i][jj] & NEIGHMASK;
-        double rsq = 0.0;
-        for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
-        if (rsq >= kernel.cutsq) continue;
-        const double s = term(kernel, rsq);
-        collect(i, j, s);
-        collect(j, i, s);
-      }
-    }
+    const auto all_pairs = [&](const std::vector<int> &which) {
+      for (const int i : which)
+        for (int jj = 0; jj < list->numneigh[i]; jj++) {
+          const int j = list->firstneigh[i][jj] & NEIGHMASK;
+          double rsq = 0.0;
+          for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+          if (rsq >= kernel.cutsq) continue;
+          const double s = term(kernel, rsq);
+          collect(i, j, s);
+          collect(j, i, s);
+        }
+    };
+    all_pairs(other_rows);
+    if (pairs_of_rows) all_pairs(rows);
     if (hub->wmask)
-      for_images({list->ilist, list->ilist + list->inum}, true, hub->walls, kernel.cutsq,
-                 [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
-                 [&](int i, int j, const Walls::Reflection &, double rsq, const double *) {
-                   const double s = term(kernel, rsq);
-                   collect(i, j, s);
-                   if (j != i) collect(j, i, s);
-                 });
+      for (const auto *which : {&rows, &other_rows})
+        for_images(*which, true, hub->walls, kernel.cutsq, [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
+                   [&](int i, int j, const Walls::Reflection &, double rsq, const double *) {
+                     const double s = term(kernel, rsq);
+                     collect(i, j, s);
+                     if (j != i) collect(j, i, s);
+                   });
   });
 }
 
@@ -477,17 +480,21 @@ void PairFSIFluid::number_density(double *psi, bool solids_too)
 {
   const int *const type = atom->type;
   const State *const state = hub->state.data();
-  distance_sums([](const auto &kernel, double rsq) { return kernel.W(std::sqrt(rsq)); },
+  distance_sums(!FSI_PACKS, [](const auto &kernel, double rsq) { return kernel.W(std::sqrt(rsq)); },
                 [&](int i, int, double s) {
                   if (solids_too || state[type[i]].species == FLUID) psi[i] += s;
                 });
+#if FSI_PACKS
+  with_kernel(hub->kernel, hub->dim, hub->h,
+              [&](const auto &kernel) { density_rows({rows, list->numneigh, list->firstneigh}, kernel, FixFSI::rows(atom->x), psi); });
+#endif
 }
 
 void PairFSIFluid::position_divergence(double *div)
 {
   const double *const rho = atom->rho;
   const double *const rmass = atom->rmass;
-  distance_sums([](const auto &kernel, double rsq) { return -rsq * kernel.gradient(std::sqrt(rsq)); },
+  distance_sums(true, [](const auto &kernel, double rsq) { return -rsq * kernel.gradient(std::sqrt(rsq)); },
                 [&](int i, int j, double s) { div[i] += s * rmass[j] / rho[j]; });
 }
 

@@ -94,7 +94,7 @@ class PairFSIFluid : public PairFSI {
   void for_images(const std::vector<int> &rows, bool pairs, const FSI::Walls &, double cutsq, Position, F) const;
   std::vector<int> near_walls() const;    // those of rows that are
   template <class F> void for_reflections(const std::vector<int> &rows, const FSI::Walls &, F) const;
-  template <class Term, class Collect> void distance_sums(Term, Collect) const;
+  template <class Term, class Collect> void distance_sums(bool pairs_of_rows, Term, Collect);
 
   enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, LEDGER = 16, NFORCE = 32 };
   enum { DIFFUSION = 1, IMAGES = 2, MIXED = 4, TALLY = 8, SHIFT = 16, NRATE = 32 };
