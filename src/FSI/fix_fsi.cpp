@@ -426,12 +426,17 @@ void FixFSI::initial_integrate(int)
     next_reneighbor = update->ntimestep;
     domain->pbc();
   }
+  dim == 2 ? drift<2>() : drift<3>();
+}
+
+template <int D> void FixFSI::drift()
+{
   Row *const x = rows(atom->x), *const v = rows(atom->v);
   const int *const mask = atom->mask;
   const double dth = 0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++)
     if (mask[i] & groupbit)
-      for (int d = 0; d < dim; d++) x[i][d] += dth * v[i][d];
+      for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -447,21 +452,27 @@ void FixFSI::pre_force(int)
 
 void FixFSI::final_integrate()
 {
+  if (substeps > 1) substep_solids();
+  dim == 2 ? kick<2>() : kick<3>();
+}
+
+template <int D> void FixFSI::kick()
+{
   Row *const x = rows(atom->x), *const v = rows(atom->v), *const f = rows(atom->f);
   const double *const rmass = atom->rmass;
   const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt, dtf = dt * force->ftm2v, dth = 0.5 * dt;
-  if (substeps > 1) substep_solids();
+  const bool no_solids = substeps > 1;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    if (substeps > 1 && state[type[i]].species == SOLID) continue;
+    if (no_solids && state[type[i]].species == SOLID) continue;
     const double dtfm = dtf / rmass[i];
-    for (int d = 0; d < dim; d++) {
+    for (int d = 0; d < D; d++) {
       v[i][d] += dtfm * f[i][d];
       x[i][d] += dth * v[i][d];
     }
     if (need_shift && state[type[i]].species == FLUID)
-      for (int d = 0; d < dim; d++) x[i][d] += shift[i][d];
+      for (int d = 0; d < D; d++) x[i][d] += shift[i][d];
   }
 }
 

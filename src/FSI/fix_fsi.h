@@ -152,6 +152,8 @@ class FixFSI : public Fix {
   double *&travels() { return keep_psi ? psi : ratio; }
   bool psi_is_due(bool advance) const;
 
+  template <int D> void drift();
+  template <int D> void kick();
   void substep_solids();
   std::string announced;    // the list of effects as last printed
   template <int D, int TERMS> void advance_solids(bool advance);

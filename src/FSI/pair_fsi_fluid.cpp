@@ -44,7 +44,7 @@ using namespace FSI;
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/fluid"), surface_ratio(0.0), surface_max(0), shifting(0.0), sound(0.0), background(0.0), delta(0.0),
-    tait(0), laminar(0), couple(WALL), extrapolate(0), tension(0), force_loop(nullptr), rate_loop(nullptr)
+    tait(0), laminar(0), couple(WALL), extrapolate(0), tension(0), mixed(false), near_step(-1), force_loop(nullptr), rate_loop(nullptr)
 {
 }
 
@@ -244,6 +244,7 @@ template <int D, class Rest> Point<D> *PairFSIFluid::gather(double t, Rest rest)
 void PairFSIFluid::find_rows()
 {
   if (neighbor->ago > 0) return;
+  near_step = -1;
   const int *const type = atom->type;
   const bool can = have_packs() && force->newton_pair && atom->molecular == Atom::ATOMIC;
   rows.clear();
@@ -286,12 +287,15 @@ void PairFSIFluid::for_images(const std::vector<int> &which, bool pairs, const W
 
 /* ---------------------------------------------------------------------- */
 
-std::vector<int> PairFSIFluid::near_walls() const
+const std::vector<int> &PairFSIFluid::near_walls()
 {
-  std::vector<int> near;
-  if (hub->wmask)
-    for (const int i : rows)
-      if (hub->wmask[i]) near.push_back(i);
+  if (near_step != update->ntimestep) {
+    near_step = update->ntimestep;
+    near.clear();
+    if (hub->wmask)
+      for (const int i : rows)
+        if (hub->wmask[i]) near.push_back(i);
+  }
   return near;
 }
 
@@ -406,7 +410,7 @@ template <class K, int FLAGS> void PairFSIFluid::rate_pairs(double dt)
   };
 
   find_rows();
-  const std::vector<int> near = near_walls();
+  const std::vector<int> &near = near_walls();
   bool packed_images = false;
   for (const int i : other_rows) row(i);
 #if FSI_PACKS
@@ -699,7 +703,7 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   };
 
   find_rows();
-  const std::vector<int> near = near_walls();
+  const std::vector<int> &near = near_walls();
   bool packed_images = false;
   for (const int i : other_rows) row(i);
 #if FSI_PACKS

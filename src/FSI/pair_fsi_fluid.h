@@ -92,7 +92,9 @@ class PairFSIFluid : public PairFSI {
   void find_rows();
   template <class Position, class F>
   void for_images(const std::vector<int> &rows, bool pairs, const FSI::Walls &, double cutsq, Position, F) const;
-  std::vector<int> near_walls() const;    // those of rows that are
+  std::vector<int> near;    // those of rows that are near mirror walls, in the step near_step
+  bigint near_step;
+  const std::vector<int> &near_walls();
   template <class F> void for_reflections(const std::vector<int> &rows, const FSI::Walls &, F) const;
   template <class Term, class Collect> void distance_sums(bool pairs_of_rows, Term, Collect);
 
