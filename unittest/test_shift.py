@@ -68,7 +68,9 @@ def test_displacement(n, kernel):
     assert bounded.any() and not bounded.all()
     # coordinates of order 1 and displacements of 1e-3: round-off of the difference
     assert np.abs(got[C]["x"][:, :dim] - got[0]["x"][:, :dim] - want).max() < 1e-13
-    assert np.array_equal(got[C]["v"], got[0]["v"]) and np.array_equal(got[C]["rho"], got[0]["rho"])
+    # nothing else: with shifting pairs go one by one, which adds up rates in another order
+    for name in ("v", "rho"):
+        assert np.abs(got[C][name] - got[0][name]).max() < 1e-13 * np.abs(got[0][name]).max(), name
 
 
 @BOTH
