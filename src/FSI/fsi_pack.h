@@ -54,10 +54,12 @@ namespace FSI {
     Pack() = default;
     FSI_INLINE Pack(double x)
     {
-      Pack first;
-      first.v = Vector{};
-      first.v[0] = x;
-      v = shuffle<0, 0, 0, 0>(first, first).v;    // one broadcast, outside loops; gcc takes {x, x, x, x} apart
+#if defined(__clang__)
+      v = Vector{x, x, x, x};
+#else
+      // one instruction, outside loops: gcc 12 takes {x, x, x, x} apart, and valgrind does not know all of what comes of other forms
+      asm("vbroadcastsd %1, %0" : "=x"(v) : "x"(x));
+#endif
     }
     FSI_INLINE Pack(double a, double b, double c, double d) : v(Vector{a, b, c, d}) {}
     FSI_INLINE double sum() const { return (v[0] + v[1]) + (v[2] + v[3]); }
