@@ -46,25 +46,6 @@ namespace FSI {
     int **firstneigh;
   };
 
-  // What a reflection makes of a point and its velocity, axis by axis.
-  struct Mirror {
-    double sign[3], x[3], v[3];
-    Mirror() = default;
-    Mirror(const Walls &walls, const Walls::Reflection &s)
-    {
-      for (int d = 0; d < 3; d++) {
-        sign[d] = 1.0;
-        x[d] = v[d] = 0.0;
-      }
-      for (int k = 0; k < s.n; k++) {
-        const Wall &w = walls.wall[s.w[k]];
-        sign[w.axis] = -1.0;
-        x[w.axis] = 2.0 * w.position;
-        v[w.axis] = 2.0 * w.velocity[w.axis];
-      }
-    }
-  };
-
 #if FSI_PACKS
   template <int D> struct PackOfPoints {
     Pack x[D], v[D], rho, vol, p, pv2;
@@ -80,8 +61,9 @@ namespace FSI {
       p = a.p;
       pv2 = a.pv2;
     }
-    FSI_INLINE PackOfPoints(const Point<D> &a, const Point<D> &b, const Point<D> &c, const Point<D> &d)
+    FSI_INLINE PackOfPoints(const Point<D> *point, const int *j)
     {
+      const Point<D> &a = point[j[0]], &b = point[j[1]], &c = point[j[2]], &d = point[j[3]];
       Pack one[4], two[4];
       Pack::columns(a.x, b.x, c.x, d.x, one);
       Pack::columns(a.x + 4, b.x + 4, c.x + 4, d.x + 4, two);
@@ -126,22 +108,17 @@ namespace FSI {
     return product(c, c);
   }
 
-  // Calls pairs(j, pack, live) for four neighbours of row i at a time. Places that are left over hold i itself, which adds zero to
-  // all sums, since no formula divides by the distance; but i has images of its own: these places have live = 0, the others 1.
-  template <int D, class Pairs> FSI_INLINE void for_packs(const Rows &rows, int i, const Point<D> *point, Pairs pairs)
+  // Calls pairs(j, live) with four neighbours of row i at a time. Places that are left over hold i itself, with live = 0, the others
+  // with 1: what i adds to sums of its own is zero where no formula divides by the distance, but it has a kernel and images.
+  template <class Pairs> FSI_INLINE void for_packs(const Rows &rows, int i, Pairs pairs)
   {
     const int *const list = rows.firstneigh[i];
     const int n = rows.numneigh[i], full = n & ~(Pack::WIDTH - 1);
-    for (int jj = 0; jj < full; jj += Pack::WIDTH) {
-      const int *const j = list + jj;
-      PackOfPoints<D> pj(point[j[0]], point[j[1]], point[j[2]], point[j[3]]);
-      pairs(j, pj, Pack(1.0));
-    }
+    for (int jj = 0; jj < full; jj += Pack::WIDTH) pairs(list + jj, Pack(1.0));
     if (full == n) return;
     int j[Pack::WIDTH];
     for (int k = 0; k < Pack::WIDTH; k++) j[k] = full + k < n ? list[full + k] : i;
-    PackOfPoints<D> pj(point[j[0]], point[j[1]], point[j[2]], point[j[3]]);
-    pairs(j, pj, Pack(1.0, full + 1 < n ? 1.0 : 0.0, full + 2 < n ? 1.0 : 0.0, full + 3 < n ? 1.0 : 0.0));
+    pairs(j, Pack(1.0, full + 1 < n ? 1.0 : 0.0, full + 2 < n ? 1.0 : 0.0, full + 3 < n ? 1.0 : 0.0));
   }
 
   // sum_j W_ij into psi
@@ -149,21 +126,17 @@ namespace FSI {
   {
     constexpr int D = K::DIM;
     for (const int i : rows.i) {
-      const int *const list = rows.firstneigh[i];
       Pack sum = 0.0;
-      for (int jj = 0; jj < rows.numneigh[i]; jj += Pack::WIDTH) {
-        const int here = rows.numneigh[i] - jj;
-        const int j[] = {list[jj], here > 1 ? list[jj + 1] : i, here > 2 ? list[jj + 2] : i, here > 3 ? list[jj + 3] : i};
+      for_packs(rows, i, [&](const int *j, const Pack &live) __attribute__((always_inline)) {
         Pack rsq = 0.0;
         for (int d = 0; d < D; d++) {
           const Pack r = x[i][d] - Pack(x[j[0]][d], x[j[1]][d], x[j[2]][d], x[j[3]][d]);
           rsq += r * r;
         }
-        Pack w = kernel.W(root(rsq));
-        if (here < Pack::WIDTH) w = w * Pack(1.0, here > 1 ? 1.0 : 0.0, here > 2 ? 1.0 : 0.0, 0.0);
+        const Pack w = live * kernel.W(root(rsq));
         sum += w;
         for (int k = 0; k < Pack::WIDTH; k++) psi[j[k]] += w.v[k];
-      }
+      });
       psi[i] += sum.sum();
     }
   }
@@ -178,7 +151,8 @@ namespace FSI {
     for (const int i : rows.i) {
       const PackOfPoints<D> pi(point[i]);
       Pack sum = 0.0, flux = 0.0;
-      for_packs<D>(rows, i, point, [&](const int *j, PackOfPoints<D> &pj, const Pack &live) __attribute__((always_inline)) {
+      for_packs(rows, i, [&](const int *j, const Pack &live) __attribute__((always_inline)) {
+        PackOfPoints<D> pj(point, j);
         if (IMAGES) pj.reflect(mirror);
         Pack x[D], v[D];
         const Pack rsq = difference(pi.x, pj.x, x), vdotx = (difference(pi.v, pj.v, v), product(v, x));
@@ -213,7 +187,8 @@ namespace FSI {
       const double visc = LAMINAR ? 2.0 * state[type[i]].viscosity : 0.0;
       Pack sum[D];
       for (int d = 0; d < D; d++) sum[d] = 0.0;
-      for_packs<D>(rows, i, point, [&](const int *j, PackOfPoints<D> &pj, const Pack &live) __attribute__((always_inline)) {
+      for_packs(rows, i, [&](const int *j, const Pack &live) __attribute__((always_inline)) {
+        PackOfPoints<D> pj(point, j);
         if (IMAGES) pj.reflect(mirror);
         Pack x[D], v[D], force[D];    // force on j
         const Pack rsq = difference(pi.x, pj.x, x), vdotx = (difference(pi.v, pj.v, v), product(v, x));

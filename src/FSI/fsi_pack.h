@@ -15,8 +15,8 @@
 //
 // Formulas are templates over the number, double or Pack, and written once: lesser, greater and where are what they use for
 // branches. FSI_INLINE makes them part of the loop that calls them, a function marked FSI_AVX2, which is compiled for a
-// processor that has AVX2 whatever the rest is compiled for: ask have_packs() before calling it. No fused multiply-add, so
-// that all machines agree. Where compiler or processor is another, FSI_PACKS is 0 and loops go pair by pair.
+// processor that has AVX2 and fused multiply-add whatever the rest is compiled for: ask have_packs() before calling it. Sums
+// differ from those of other processors by round-off. Where the compiler is another, FSI_PACKS is 0 and loops go pair by pair.
 
 #ifndef LMP_FSI_PACK_H
 #define LMP_FSI_PACK_H
@@ -84,24 +84,18 @@ namespace FSI {
     // the four doubles at each of a, b, c, d become the columns out[0] to out[3]
     FSI_INLINE static void columns(const double *a, const double *b, const double *c, const double *d, Pack *out)
     {
-      const Pack A = load(a), B = load(b), C = load(c), D = load(d);
-      const Pack low = shuffle<0, 4, 2, 6>(A, B), high = shuffle<1, 5, 3, 7>(A, B);
-      const Pack low2 = shuffle<0, 4, 2, 6>(C, D), high2 = shuffle<1, 5, 3, 7>(C, D);
-      out[0] = shuffle<0, 1, 4, 5>(low, low2);
-      out[1] = shuffle<0, 1, 4, 5>(high, high2);
-      out[2] = shuffle<2, 3, 6, 7>(low, low2);
-      out[3] = shuffle<2, 3, 6, 7>(high, high2);
+      transpose(load(a), load(b), load(c), load(d), out);
     }
 
     // the inverse: adds the nth numbers of x, y, z to the first three of the four doubles at a, b, c, d
     FSI_INLINE static void add_rows(const Pack &x, const Pack &y, const Pack &z, double *a, double *b, double *c, double *d)
     {
-      const Pack low = shuffle<0, 4, 2, 6>(x, y), high = shuffle<1, 5, 3, 7>(x, y);
-      const Pack low2 = shuffle<0, 4, 2, 6>(z, 0.0), high2 = shuffle<1, 5, 3, 7>(z, 0.0);
-      store(a, load(a) + shuffle<0, 1, 4, 5>(low, low2));
-      store(b, load(b) + shuffle<0, 1, 4, 5>(high, high2));
-      store(c, load(c) + shuffle<2, 3, 6, 7>(low, low2));
-      store(d, load(d) + shuffle<2, 3, 6, 7>(high, high2));
+      Pack row[WIDTH];
+      transpose(x, y, z, 0.0, row);
+      store(a, load(a) + row[0]);
+      store(b, load(b) + row[1]);
+      store(c, load(c) + row[2]);
+      store(d, load(d) + row[3]);
     }
 
     // the two doubles at each of a, b, c, d
@@ -118,6 +112,15 @@ namespace FSI {
       Pack p;
       p.v = x;
       return p;
+    }
+    FSI_INLINE static void transpose(const Pack &a, const Pack &b, const Pack &c, const Pack &d, Pack *out)
+    {
+      const Pack low = shuffle<0, 4, 2, 6>(a, b), high = shuffle<1, 5, 3, 7>(a, b);
+      const Pack low2 = shuffle<0, 4, 2, 6>(c, d), high2 = shuffle<1, 5, 3, 7>(c, d);
+      out[0] = shuffle<0, 1, 4, 5>(low, low2);
+      out[1] = shuffle<0, 1, 4, 5>(high, high2);
+      out[2] = shuffle<2, 3, 6, 7>(low, low2);
+      out[3] = shuffle<2, 3, 6, 7>(high, high2);
     }
     FSI_INLINE static Pack load(const double *p)
     {

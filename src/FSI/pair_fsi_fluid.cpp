@@ -538,10 +538,10 @@ template <class K, int FLAGS> void PairFSIFluid::force_pairs()
   const bool tally_pairs = evflag && !vflag_fdotr;    // newton off, or a hybrid style with solids that need it
   const State *const state = hub->state.data();
   const Walls &walls = hub->walls;
-  const double *const psi = surface_ratio > 0.0 ? hub->psi : nullptr;
+  const bool surface_rule = surface_ratio > 0.0;
   Point<D> *const a = gather<D>(0.0, [&](int i, Point<D> &p) {
     const State &s = state[type[i]];
-    p.p = psi ? hub->pressure(i) : s.pressure(p.rho);
+    p.p = surface_rule ? hub->pressure(i) : s.pressure(p.rho);
     p.pv2 = p.p * p.vol * p.vol;
   });
   const ArtificialViscosity artificial(alpha, beta, hub->h);
