@@ -69,7 +69,7 @@ def test_a_tait_fluid_gets_stiffer():
 
 def test_growth_bound_and_fall():
     """From a short step up by the growth rate to the bound; down at once when a particle is fast."""
-    with Scene(lattice([4, 4], 1.0), dx=1.0, dt=1e-3, commands=["fix dt all fsi/dt 2 growth 1.5 max 0.02"]) as s:
+    with Scene(lattice([4, 4], 1.0), dx=1.0, dt=1e-3, density="mach off", commands=["fix dt all fsi/dt 2 growth 1.5 max 0.02"]) as s:
         steps = []
         for _ in range(20):
             s.run(1)
@@ -248,12 +248,120 @@ def test_check_changes_nothing_and_says_so(tmp_path):
 
 def test_prints_the_cause_when_it_changes(tmp_path):
     """Sound first; when the walls are hit at 60 m/s, something else, once."""
-    scene = fluid_box(2)
+    scene = fluid_box(2, sph="mach off")
     scene.v[:, 0] = 0.0
     text = scene.text() + "fix dt all fsi/dt 1 max 2e-4\nrun 20\nvelocity all set 300 0 0\nrun 5\n"
     lines = [line for line in run(tmp_path, text, scene_data=scene.data()).output.splitlines() if line.startswith("Fix fsi/dt")]
     assert "the upper bound limits" in lines[0] and re.search(r"(sound in the fluid|acceleration) \(atom \d+\) limits", lines[1])
     assert len(lines) <= 4
+
+
+# ---- fluid and solid with a factor each ----------------------------------------------------------------------------
+
+@pytest.mark.parametrize("more, fluid, solid", [("cfl 1.5", 1.5, 1.5), ("cfl/fluid 2", 2, 1), ("cfl/solid 0.5", 1, 0.5), ("cfl 2 cfl/solid 0.5", 2, 0.5)])
+def test_factors_of_fluid_and_solid(tmp_path, more, fluid, solid):
+    text, data = gate_tl(f"{more} substeps auto growth 100", "run 100\n" + VALUES)
+    dt, sound, elastic, cause, n = values(run(tmp_path, text, scene_data=data).output)
+    c_l = np.sqrt((1.9984472e6 / (3 * (1 - 2 * 0.39751553)) + 4 / 3 * 0.5 * 1.9984472e6 / 1.39751553) / 1000)
+    assert elastic / n == pytest.approx(solid * 0.25 * 0.015 / c_l, rel=1e-12)
+    assert sound == pytest.approx(fluid * 0.25 * 0.015 / 10, rel=0.06)  # the fluid moves, too
+    assert dt <= sound and n == np.ceil(dt / (elastic / n) * (1 - 1e-12))
+
+
+def test_factors_of_accelerations():
+    """Of fluid and solid, pushed alike, each with its own; the smaller limit counts."""
+    x = np.vstack([lattice([3, 3], 0.1), lattice([3, 3], 0.1) + [2.0, 0.0, 0.0]])
+    kind = np.repeat([1, 2], 9)
+    for more, factor in (("", 1.0), ("cfl/fluid 0.5", 0.5), ("cfl/solid 0.5", 0.5), ("cfl 2 cfl/fluid 3", 2.0)):
+        with Scene(x, dx=0.1, type=kind, mol=kind, materials=("fluid rho 1000", RUBBER), dt=1e-9, density="mach off",
+                   commands=["fix push all addforce 1e9 0 0", f"fix dt all fsi/dt 1 {more}"]) as s:
+            s.run(1)
+            a = np.linalg.norm(s.get("f"), axis=1) / s.get("rmass")
+            assert vector(s)[4] == pytest.approx(factor * 0.25 * np.sqrt(0.15 / a.max()), rel=1e-9)
+
+
+# ---- the end of a run ----------------------------------------------------------------------------------------------
+
+END = """
+variable t equal time
+thermo_style custom step v_t dt cpuremain
+thermo_modify format float %.17g
+thermo 7
+fix log all ave/time 1 1 1 v_t mode scalar file time.txt format " %.17g"
+dump d all custom 1000000 d.dump id x y
+dump_modify d every/time {every} time yes sort id format float %.17g
+run 1000000
+print "END $(time:%.17g) $(step)"
+"""
+
+
+def rows_of(output):
+    """step, time, dt of the thermo lines"""
+    return np.array([line.split()[:3] for line in output.splitlines() if re.match(r"\s+\d+ +\S+ +\S+ +\S+$", line)], float)
+
+
+@pytest.mark.parametrize("ranks", (1, 2))
+@pytest.mark.parametrize("stop", (0.01, 0.0123456789, 4e-4, 1e-5))
+def test_stops_at_a_time(tmp_path, ranks, stop):
+    """To the last bit, with a last line of thermo and a last picture, and steps that end in no crumb."""
+    scene = fluid_box(2)
+    text = re.sub("timestep .*", "", scene.text()) + f"fix dt all fsi/dt 10 stop {stop!r}\n" + END.format(every=stop / 4)
+    done = run(tmp_path, text, ranks, scene_data=scene.data())
+    time, steps = re.search(r"^END (\S+) (\d+)", done.output, re.M).groups()
+    assert float(time) == stop and int(steps) < 100
+    assert f"Fix fsi/dt: time {stop:.8g} reached on step {steps}" in done.output
+    assert re.search(rf"Loop time of \S+ on \d+ procs for {steps} steps", done.output)
+    table = rows_of(done.output)
+    assert table[-1][:2].tolist() == [int(steps), stop]
+    all_times = np.array([float(line.split()[1]) for line in (tmp_path / "time.txt").read_text().splitlines() if line[0] != "#"])
+    dt = np.diff(all_times)
+    assert len(dt) == int(steps) and dt.min() > 0.45 * dt.max()
+    times = [frame.time for frame in done.frames("d.dump")]
+    assert times[0] == 0.0 and times[-1] == pytest.approx(stop, rel=1e-12)
+
+
+def test_the_time_that_remains_is_told(tmp_path):
+    """thermo's cpuremain is that of the steps to the end, not of run's million."""
+    scene = fluid_box(2)
+    text = re.sub("timestep .*", "", scene.text()) + "fix dt all fsi/dt 10 stop 0.1\nthermo_style custom step cpu cpuremain\nthermo 50\nrun 1000000\n"
+    done = run(tmp_path, text, scene_data=scene.data())
+    rows = np.array([line.split() for line in done.output.splitlines() if re.match(r"\s+\d+ +[\d.e+-]+ +[\d.e+-]+ *$", line)], float)
+    ends = rows[1:-1, 0] * (1 + rows[1:-1, 2] / rows[1:-1, 1])
+    np.testing.assert_allclose(ends, rows[-1][0], rtol=0.2)  # steps get longer and shorter until then
+
+
+def test_runs_after_the_end(tmp_path):
+    """A run that is over has nothing to do and says so; a later end goes on; so does a run of steps."""
+    scene = fluid_box(2)
+    text = re.sub("timestep .*", "", scene.text()) + """
+fix dt all fsi/dt 10 stop 0.005
+run 1000000
+run 1000000
+run 0
+unfix dt
+fix dt all fsi/dt 10 stop 0.01
+run 1000000
+print "END $(time:%.17g)"
+unfix dt
+run 20
+print "STEPS $(step)"
+"""
+    done = run(tmp_path, text, scene_data=scene.data())
+    loops = [int(n) for n in re.findall(r"Loop time of \S+ on 1 procs for (\d+) steps", done.output)]
+    assert loops[1:3] == [0, 0] and min(loops[0], loops[3]) > 10 and loops[4] == 20
+    assert float(re.search(r"^END (\S+)", done.output, re.M)[1]) == 0.01
+    assert len(re.findall(r"WARNING: Fix fsi/dt stop 0.005: the time is 0.005 already, there is nothing to run", done.output)) == 1
+
+
+def test_a_run_to_a_time_restarts_bit_for_bit(tmp_path):
+    scene = dam_gate(2)
+    more = "fix dt all fsi/dt 10 substeps auto stop 0.01\n"
+    whole = run(tmp_path, total_lagrangian(scene.text()) + more + watch(every=1000000) + "restart 20 mid.*\nrun 1000000\nwrite_dump all custom a.dump id x y vx vy modify time yes sort id format float %.17g\n",
+                scene_data=scene.data())
+    rest = scene.setup() + "read_restart mid.20\n" + total_lagrangian(scene.physics(coeff=False))
+    done = run(tmp_path, rest + more + watch("rest.dump", 1000000) + "restart 20 other.*\nrun 1000000\nwrite_dump all custom b.dump id x y vx vy modify time yes sort id format float %.17g\n")
+    a, b = whole.frames("a.dump")[-1], done.frames("b.dump")[-1]
+    assert a.step == b.step > 30 and differing(a, b) == []
 
 
 BAD = [
@@ -264,6 +372,11 @@ BAD = [
     ("fix dt all fsi/dt 10 cfl 0", r"cfl 0 must be > 0"),
     ("fix dt all fsi/dt 10 cfl -1", r"cfl -1 must be > 0"),
     ("fix dt all fsi/dt 10 cfl much", r"much"),
+    ("fix dt all fsi/dt 10 cfl/fluid 0", r"cfl/fluid 0 must be > 0"),
+    ("fix dt all fsi/dt 10 cfl/solid -1", r"cfl/solid -1 must be > 0"),
+    ("fix dt all fsi/dt 10 stop 0", r"stop 0 must be > 0"),
+    ("fix dt all fsi/dt 10 stop never", r"never"),
+    ("fix dt all fsi/dt 10 stop 1 check warn", r"stop cannot be combined with check"),
     ("fix dt all fsi/dt 10 growth 0.9", r"growth 0.9 must be > 1"),
     ("fix dt all fsi/dt 10 min 1 max 0.5", r"min 1 must be below max 0.5"),
     ("fix dt all fsi/dt 10 substeps 3", r"substeps 3: expected keep or auto"),
@@ -287,8 +400,8 @@ def test_bad_input(tmp_path, line, message):
 
 
 def test_fix_move_is_told(tmp_path):
-    """LAMMPS' fix move cannot change its time step, and says so."""
+    """LAMMPS' fix move cannot change its time step: told before the first step, with what can."""
     scene = dam_gate(2)
     text = scene.text().replace("fix sph all", "group water type 1\ngroup plate type 2\nfix sph water")
-    done = lammps(tmp_path, text + "fix drive plate move linear -0.1 0 0\nfix dt all fsi/dt 1\nrun 5\n", scene_data=scene.data())
-    assert done.status != 0 and any("fix move" in error for error in done.errors)
+    done = lammps(tmp_path, text + "fix drive plate move linear -0.1 0 0\nfix dt all fsi/dt 10\nrun 0\n", scene_data=scene.data())
+    assert done.status != 0 and "Fix fsi/dt: fix drive (style move) cannot have its time step changed: use fix fsi/move, which can" in done.errors[0]

@@ -25,6 +25,7 @@
 #include "fix_fsi_wall_particle.h"
 #include "force.h"
 #include "fsi_advice.h"
+#include "fsi_check.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_tensor.h"
@@ -50,7 +51,7 @@ using namespace FSI;
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
     shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
-    solid(nullptr), solid_tl(nullptr), substeps(1), surface_every(1), fix_dt(nullptr), profile(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
+    solid(nullptr), solid_tl(nullptr), substeps(1), surface_every(1), fix_dt(nullptr), profile(nullptr), check(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
     tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false), keep_psi(false), send_psi(true)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
@@ -68,6 +69,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   if (hdx < 0.9 || hdx > 4.0)
     error->all(FLERR, "Fix fsi smoothing length over spacing {} must be between 0.9 and 4", arg[5]);
 
+  double mach = 1.0;
   int iarg = 6;
   while (iarg < narg) {
     if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi {}", arg[iarg]), error);
@@ -76,6 +78,13 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
       int &n = sub ? substeps : surface_every;
       n = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
       if (n < 1) error->all(FLERR, "Fix fsi {} {} must be >= 1", arg[iarg], arg[iarg + 1]);
+      iarg += 2;
+      continue;
+    }
+    if (strcmp(arg[iarg], "mach") == 0) {
+      mach = Check::OFF;
+      if (strcmp(arg[iarg + 1], "off") != 0) mach = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (!(mach > 0.0 && mach <= Check::OFF)) error->all(FLERR, "Fix fsi mach {} must be > 0, or off", arg[iarg + 1]);
       iarg += 2;
       continue;
     }
@@ -88,7 +97,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
                  arg[iarg + 1]);
     if (strcmp(arg[iarg], "fluid") == 0) density_fluid = mode;
     else if (strcmp(arg[iarg], "solid") == 0) density_solid = mode;
-    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid, solid, substeps or surface/every", arg[iarg]);
+    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid, solid, substeps, surface/every or mach", arg[iarg]);
     iarg += 2;
   }
 
@@ -100,6 +109,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     wdx = k.W(dx);
   });
   state.resize(atom->ntypes + 1);
+  check = new Check(lmp, this, mach);
 
   time_integrate = 1;
   force_reneighbor = 1;
@@ -131,6 +141,7 @@ FixFSI::~FixFSI()
   memory->destroy(grad);
   memory->destroy(wmask);
   memory->destroy(wall_velocity);
+  delete check;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -224,6 +235,15 @@ void FixFSI::init()
     give_defaults(i);
   }
   find_gravity();
+  check->init();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::setup(int)
+{
+  announce();
+  check->setup();
 }
 
 /* ----------------------------------------------------------------------
@@ -231,7 +251,7 @@ void FixFSI::init()
    messages they need
 ------------------------------------------------------------------------- */
 
-void FixFSI::setup(int)
+void FixFSI::announce()
 {
   static const char *const modes[] = {"continuity", "summation", "ratio"};
   static const char *const kernels[] = {"cubic spline", "quintic spline", "Wendland C2"};
@@ -379,6 +399,7 @@ bool FixFSI::fresh_start() const
 
 void FixFSI::pre_exchange()
 {
+  check->positions();
   if (!fresh_start()) return;
   domain->pbc();
   if (domain->box_change) {
@@ -452,6 +473,7 @@ void FixFSI::pre_force(int)
 
 void FixFSI::final_integrate()
 {
+  check->before_kick();
   if (substeps > 1) substep_solids();
   dim == 2 ? kick<2>() : kick<3>();
 }
@@ -505,6 +527,7 @@ void FixFSI::substep_solids()
       for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
   };
   tally_dt = ledger ? dt : 0.0;
+  check->before_substeps();
   drift(back);
   for (int n = 0; n < substeps; n++) {
     drift(dth);
@@ -520,6 +543,7 @@ void FixFSI::substep_solids()
     hold(dt);
     drift(dth);
   }
+  check->after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
   if (force->pair != solid_tl)

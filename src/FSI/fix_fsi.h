@@ -30,6 +30,9 @@ FixStyle(fsi,FixFSI);
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Check;
+}
 
 // The centre of the package: holds the discretisation (spacing, kernel), integrates in time (position Verlet) and
 // brings density and stress of every particle to the middle of the step before forces are computed.
@@ -119,6 +122,7 @@ class FixFSI : public Fix {
   int surface_every;    // steps from one number density to the next of the free-surface rule
   class FixFSIDt *fix_dt;    // changes the time step; null: nothing does
   FSI::Profile *profile;     // of fix fsi/report; null: there is none
+  FSI::Check *check;         // stops a run that has lost its meaning
   std::vector<std::string> effects_on;    // what is simulated, in words; from setup on
   // what moves by rates between the middles of two steps takes update->dt + stagger: their distance, if dt changes
   double stagger;
@@ -161,6 +165,7 @@ class FixFSI : public Fix {
   void density_from_psi();
   void update_state(bool);
   void gather_walls();
+  void announce();
   bool fresh_start() const;
   void give_defaults(int);
   void sort_by_tag();

@@ -21,6 +21,7 @@
 #include "modify.h"
 #include "output.h"
 #include "pair.h"
+#include "timer.h"
 #include "update.h"
 
 #include <algorithm>
@@ -33,18 +34,19 @@ using namespace FSI;
 
 static constexpr double BIG = Limits::UNLIMITED;
 static constexpr int MAXSUBSTEPS = 1000;
+static constexpr double ROUNDING = 1.0e-9;    // of the time left, in steps
 static constexpr double PRINT = 0.95;    // causes whose limits differ by less than this are not worth a line each
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), hub(nullptr), cfl(1.0), low(0.0), high(BIG), growth(1.1), automatic(false), check(NO), limits(lmp), target(BIG),
-    cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false)
+    Fix(lmp, narg, arg), hub(nullptr), of_fluid(1.0), of_solid(1.0), low(0.0), high(BIG), growth(1.1), end(BIG), cut(false), automatic(false),
+    check(NO), limits(lmp), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/dt", error);
-  nevery = utils::inumeric(FLERR, arg[3], false, lmp);
-  if (nevery <= 0) error->all(FLERR, "Fix fsi/dt interval {} must be > 0", arg[3]);
+  interval = utils::inumeric(FLERR, arg[3], false, lmp);
+  if (interval <= 0) error->all(FLERR, "Fix fsi/dt interval {} must be > 0", arg[3]);
 
   for (int iarg = 4; iarg < narg; iarg += 2) {
     const std::string key = arg[iarg];
@@ -55,7 +57,10 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
       if (!(x > 0.0 && x < BIG)) error->all(FLERR, "Fix fsi/dt {} {} must be > 0", key, value);
       return x;
     };
-    if (key == "cfl") cfl = positive();
+    if (key == "cfl") of_fluid = of_solid = positive();
+    else if (key == "cfl/fluid") of_fluid = positive();
+    else if (key == "cfl/solid") of_solid = positive();
+    else if (key == "stop") end = positive();
     else if (key == "min") low = positive();
     else if (key == "max") high = positive();
     else if (key == "growth") {
@@ -71,11 +76,13 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
       else if (strcmp(value, "error") == 0) check = STOP;
       else error->all(FLERR, "Unknown fix fsi/dt check {}: expected no, warn or error", value);
     } else
-      error->all(FLERR, "Unknown fix fsi/dt keyword {}: expected cfl, min, max, growth, substeps or check", key);
+      error->all(FLERR, "Unknown fix fsi/dt keyword {}: expected cfl, cfl/fluid, cfl/solid, min, max, growth, substeps, stop or check", key);
   }
   if (low >= high) error->all(FLERR, "Fix fsi/dt min {} must be below max {}", low, high);
   if (automatic && check) error->all(FLERR, "Fix fsi/dt substeps auto cannot be combined with check: a check changes nothing");
+  if (end < BIG && check) error->all(FLERR, "Fix fsi/dt stop cannot be combined with check: a check changes nothing");
 
+  nevery = end < BIG ? 1 : interval;
   for (int k = 0; k < NLIMIT; k++) step[k] = sub[k] = limit[k] = BIG;
   scalar_flag = vector_flag = 1;
   size_vector = NLIMIT + 2;
@@ -89,7 +96,7 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
 
 int FixFSIDt::setmask()
 {
-  return END_OF_STEP;
+  return END_OF_STEP | POST_RUN;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -103,6 +110,8 @@ void FixFSIDt::init()
     error->all(FLERR, "Fix fsi/dt and fix dt/reset cannot both set the time step");
   if (automatic && !force->pair_match("fsi/solid/tl", 1))
     error->all(FLERR, "Fix fsi/dt substeps auto requires pair_style fsi/solid/tl");
+  for (auto &fix : modify->get_fix_by_style("^move$"))
+    error->all(FLERR, "Fix fsi/dt: fix {} (style {}) cannot have its time step changed: use fix fsi/move, which can", fix->id, fix->style);
   // the time step changes when fix fsi begins its step: what moves earlier would still take the old one
   for (auto &fix : modify->get_fix_list()) {
     if (fix == hub) break;
@@ -127,20 +136,62 @@ void FixFSIDt::setup(int)
 {
   const bool go_on = restored || (dt > 0.0 && update->dt == dt);
   restored = false;
-  if (go_on) return;
-  find_limits();
-  // down at once; up only where no time step was given
-  if (check) report();
-  else choose(update->dt_default ? BIG : update->dt);
+  if (!go_on) {
+    find_limits();
+    // down at once; up only where no time step was given
+    if (check) report();
+    else choose(update->dt_default ? BIG : update->dt);
+  }
+  if (end < BIG) approach_end();
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixFSIDt::end_of_step()
 {
-  find_limits();
-  if (check) report();
-  else choose(growth * update->dt);
+  if (update->ntimestep % interval == 0) {
+    find_limits();
+    if (check) report();
+    else choose(growth * update->dt);
+  }
+  if (end < BIG) approach_end();
+}
+
+/* ----------------------------------------------------------------------
+   What is left of the time is taken in one step, or, to have no tiny one, in two equal ones. LAMMPS is told which step will be the
+   last, by and by more exactly: for the time that remains and for the last thermo output. Then the run is cut as by fix halt.
+------------------------------------------------------------------------- */
+
+void FixFSIDt::approach_end()
+{
+  const bigint now = update->ntimestep, last = update->firststep + update->nsteps;
+  const double time = update->atime + (now - update->atimestep) * update->dt;
+  const double next = next_dt > 0.0 ? next_dt : update->dt, left = end - time;
+  if (left <= ROUNDING * next) {
+    if (comm->me == 0 && now > update->firststep) utils::logmesg(lmp, "Fix fsi/dt: time {:.8g} reached on step {}\n", end, now);
+    else if (comm->me == 0 && update->nsteps > 0)
+      error->warning(FLERR, "Fix fsi/dt stop {:.8g}: the time is {:.8g} already, there is nothing to run", end, time);
+    timer->force_timeout();
+    cut = true;
+    return;
+  }
+  const double steps = std::ceil(left / next * (1.0 - ROUNDING));
+  if (steps <= 2.0) next_dt = left / steps;
+  update->laststep = steps < last - now ? now + static_cast<bigint>(steps) : last;
+  if (steps > 1.0 || output->next_thermo <= now || now == update->firststep) return;    // output will see to it
+  output->next_thermo = update->laststep;
+  output->next = std::min(output->next, output->next_thermo);
+  modify->addstep_compute(output->next_thermo);
+}
+
+/* ----------------------------------------------------------------------
+   another run may follow
+------------------------------------------------------------------------- */
+
+void FixFSIDt::post_run()
+{
+  if (cut) timer->reset_timeout();
+  cut = false;
 }
 
 /* ----------------------------------------------------------------------
@@ -171,17 +222,22 @@ void FixFSIDt::start_of_step()
 }
 
 /* ----------------------------------------------------------------------
-   the limits (fsi_limits.cpp) with the factor cfl
+   the limits (fsi_limits.cpp) with the factors
 ------------------------------------------------------------------------- */
 
 void FixFSIDt::find_limits()
 {
-  limits.find(hub, groupbit, hub->solid_tl && (automatic || hub->substeps > 1));
+  limits.find(hub, groupbit, hub->solid_tl && (automatic || hub->substeps > 1), of_fluid, of_solid);
   limits.reduce();
-  for (int k = 0; k < NLIMIT; k++) {
-    step[k] = limits.step[k] < BIG ? cfl * limits.step[k] : BIG;
-    sub[k] = limits.sub[k] < BIG ? cfl * limits.sub[k] : BIG;
-  }
+  std::copy_n(limits.step, NLIMIT, step);
+  std::copy_n(limits.sub, NLIMIT, sub);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSIDt::largest_courant() const
+{
+  return std::max(of_fluid * Limits::safe[Limits::SOUND], of_solid * Limits::safe[Limits::ELASTIC]);
 }
 
 /* ----------------------------------------------------------------------

@@ -36,12 +36,16 @@ class FixFSIDt : public Fix {
   void init() override;
   void setup(int) override;
   void end_of_step() override;
+  void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 
   void start_of_step();    // called by fix fsi before anything moves
+  bool chooses() const { return check == NO; }
+  bool chooses_substeps() const { return automatic; }
+  double largest_courant() const;    // that it allows
 
  private:
   static constexpr int NLIMIT = FSI::Limits::NLIMIT;
@@ -49,12 +53,15 @@ class FixFSIDt : public Fix {
   enum Check { NO, WARN, STOP };
   class FixFSI *hub;
 
-  double cfl, low, high, growth;
+  int interval;
+  double of_fluid, of_solid, low, high, growth;
+  double end;    // of the run
+  bool cut;      // it was
   bool automatic;    // number of sub-steps
   int check;
 
   FSI::Limits limits;
-  double step[NLIMIT], sub[NLIMIT];    // limits of the step, and of a sub-step of what takes sub-steps, with the factor cfl
+  double step[NLIMIT], sub[NLIMIT];    // limits of the step, and of a sub-step of what takes sub-steps, with the factors
   double limit[NLIMIT];                // both together
   double target;                       // smallest of these and of the bound
   int cause, ruling;                   // what sets the next step; last one that was printed
@@ -65,6 +72,7 @@ class FixFSIDt : public Fix {
 
   void find_limits();
   void choose(double most);
+  void approach_end();
   void report();
   std::string name(int) const;
 };

@@ -21,13 +21,13 @@ FixStyle(fsi/watch,FixFSIWatch);
 #define LMP_FIX_FSI_WATCH_H
 
 #include "fix.h"
+#include "fsi_stop.h"
 
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS {
 
-// Stops a run that goes wrong while its state is still finite, and says what went wrong where.
+// Limits stricter than those of fix fsi itself (fsi_check.h): stops a run that goes wrong, or warns, and says what went wrong where.
 
 class FixFSIWatch : public Fix {
  public:
@@ -36,46 +36,32 @@ class FixFSIWatch : public Fix {
   void init() override;
   void setup(int) override;
   void post_force(int) override;
-  void end_of_step() override;
   double compute_scalar() override;
   double compute_vector(int) override;
 
   double nearest;    // smallest distance over spacing of all checks so far; for fix fsi/report, which sets it back
 
  private:
-  enum Quantity { FINITE, MACH, DISTANCE, DENSITY, COURANT, ENERGY, LOST, REFLECTED, NQUANTITY };
-  enum When { START, MIDDLE, END };    // of a step: where positions are
-  struct Finding {
-    double value, x[3];
-    tagint tag, other;    // 0 = no particle
-    int type;
-  };
   class FixFSI *hub;
+  FSI::Stop halt;
 
   int interval;
-  double limit[NQUANTITY];    // BIG, for DISTANCE 0, = off
-  bool warn;
-  std::string restart_file, dump_file;
-  double speed_sq_of(int type) const;
-  std::vector<double> speed_sq;    // per type: largest square of the speed
-  double lightest;                 // mass of this rank's particles
+  double limit[FSI::NTROUBLE];    // BIG, for DISTANCE 0, = off
+  bool given[FSI::NTROUBLE];      // by the script
+  bool warn, distances;           // distances: found, whether there is a limit or not
 
-  Finding worst[NQUANTITY];     // on this rank
-  double total[NQUANTITY];      // of all ranks: ENERGY, LOST, REFLECTED
-  double seen[NQUANTITY];       // of all ranks at the last check: the output
+  FSI::Finding worst[FSI::NTROUBLE];     // on this rank
+  double total[FSI::NTROUBLE];      // of all ranks: ENERGY, LOST, REFLECTED
+  double seen[FSI::NTROUBLE];       // of all ranks at the last check: the output
   double energy_before, reflected_before;
-  std::vector<double> kept, kept_walls;    // of post_force, if there are sub-steps
   int warned;    // bits of quantities
   bigint violations;
 
   void clear();
-  void enter(Quantity, int i, double value, int j = -1);
-  void check_speed(double kick);
-  void check_rest();
-  void judge(When);
-  std::string describe(Quantity, Finding &);
-  void stop(Quantity, When);
-  void write_neighbours(const Finding &);
+  void enter(FSI::Trouble, int i, double value, int j = -1);
+  double allowed(FSI::Trouble) const;
+  void look(FSI::Stop::When);
+  void judge(FSI::Stop::When);
 };
 
 }    // namespace LAMMPS_NS

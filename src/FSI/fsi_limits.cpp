@@ -39,7 +39,7 @@ Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
    acceleration: sqrt(h/|a|)/4
 ------------------------------------------------------------------------- */
 
-void Limits::find(const FixFSI *hub, int groupbit, bool substeps)
+void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_fluid, double of_solid)
 {
   const int *const mask = atom->mask, *const type = atom->type;
   double **v = atom->v;
@@ -47,7 +47,9 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps)
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const double h = hub->h;
 
-  double *const mine[2] = {step, sub}, fastest = 0.0, asq_max[2] = {0.0, 0.0};
+  double *const mine[2] = {step, sub}, fastest = 0.0, asq_max[2] = {0.0, 0.0};    // fluid, solid
+  const double factor[2] = {of_fluid, of_solid};
+  tagint pushed[2] = {0, 0};
   for (auto &row : culprit) row[0] = row[1] = 0;
   std::vector<char> present(atom->ntypes + 1, 0);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -68,30 +70,36 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps)
     if (!(mask[i] & hub->groupbit)) continue;
     const double w = force->ftm2v / rmass[i];
     const double asq = w * w * (f[i][0] * f[i][0] + f[i][1] * f[i][1] + f[i][2] * f[i][2]);
-    const int in_sub = substeps && s.species == SOLID;
-    if (asq > asq_max[in_sub]) {
-      asq_max[in_sub] = asq;
-      culprit[in_sub][1] = atom->tag[i];
+    const int solid = s.species == SOLID;
+    if (asq > asq_max[solid]) {
+      asq_max[solid] = asq;
+      pushed[solid] = atom->tag[i];
     }
   }
 
   for (double *row : mine) std::fill_n(row, NLIMIT, UNLIMITED);
-  if (fastest > 0.0) mine[0][SOUND] = safe[SOUND] * h / fastest;
-  for (int k = 0; k < 2; k++)
-    if (asq_max[k] > 0.0) mine[k][ACCELERATION] = safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[k]));
+  if (fastest > 0.0) mine[0][SOUND] = of_fluid * safe[SOUND] * h / fastest;
+  for (int k = 0; k < 2; k++) {
+    if (asq_max[k] <= 0.0) continue;
+    const int in_sub = substeps && k;
+    const double limit = factor[k] * safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[k]));
+    if (limit >= mine[in_sub][ACCELERATION]) continue;
+    mine[in_sub][ACCELERATION] = limit;
+    culprit[in_sub][1] = pushed[k];
+  }
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!present[t]) continue;
     const State &s = hub->state[t];
     const bool fluid = s.species == FLUID;
-    double *const m = mine[substeps && !fluid];
+    double *const m = mine[substeps && !fluid], own = factor[!fluid];
     double alpha = 0.0;
     if (fluid) alpha = hub->fluid->artificial_alpha();
     else if (hub->solid) alpha = hub->solid->artificial_alpha();
     else if (hub->solid_tl) alpha = hub->solid_tl->artificial_alpha();
-    if (!fluid) m[ELASTIC] = std::min(m[ELASTIC], safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
-    if (alpha > 0.0) m[ARTIFICIAL] = std::min(m[ARTIFICIAL], safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
+    if (!fluid) m[ELASTIC] = std::min(m[ELASTIC], own * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
+    if (alpha > 0.0) m[ARTIFICIAL] = std::min(m[ARTIFICIAL], own * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
     if (fluid && hub->fluid->has_laminar() && s.viscosity > 0.0)
-      m[LAMINAR] = std::min(m[LAMINAR], safe[LAMINAR] * h * h * s.rho0 / s.viscosity);
+      m[LAMINAR] = std::min(m[LAMINAR], own * safe[LAMINAR] * h * h * s.rho0 / s.viscosity);
   }
 }
 

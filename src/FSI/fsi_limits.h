@@ -33,8 +33,9 @@ namespace FSI {
     tagint culprit[2][2];                // particle behind sound and acceleration, of step and sub-step
 
     Limits(class LAMMPS *);
-    void find(const FixFSI *, int groupbit, bool substeps);    // of this rank's particles
-    void reduce();                                             // of all ranks
+    // of this rank's particles, times a factor of fluids and one of solids
+    void find(const FixFSI *, int groupbit, bool substeps, double of_fluid = 1.0, double of_solid = 1.0);
+    void reduce();    // of all ranks
   };
 
 }    // namespace FSI

@@ -25,6 +25,7 @@
 #include "compute_fsi_surface_atom.h"
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
+#include "fix_fsi_move.h"
 #include "fix_fsi_reference.h"
 #include "fix_fsi_spectrum.h"
 #include "fix_fsi_report.h"
@@ -133,6 +134,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi/wall/particle", &create_with_arguments<FixFSIWallParticle>);
   two("fix", "fsi/watch", &create_with_arguments<FixFSIWatch>);
   two("fix", "fsi/dt", &create_with_arguments<FixFSIDt>);
+  two("fix", "fsi/move", &create_with_arguments<FixFSIMove>);
   two("fix", "fsi/report", &create_with_arguments<FixFSIReport>);
   two("fix", "fsi/stress", &create_with_arguments<FixFSIStress>);
   two("fix", "fsi/reference", &create_with_arguments<FixFSIReference>);

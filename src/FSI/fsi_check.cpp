@@ -1,0 +1,287 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_check.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "fsi_pack.h"
+#include "group.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "pair_fsi_solid_tl.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+static constexpr int EVERY = 10;    // steps from one close look to the next; and at each list build
+// A body may move as a whole, faster than the waves in it; one that blows up passes this in a step or two
+static constexpr double SOLID_OVER_FLUID = 10.0;
+static constexpr int BLOCK = 256;
+
+/* ----------------------------------------------------------------------
+   Is no number of these larger than that? A comparison that NaN fails. In a form that compilers turn into vector instructions.
+------------------------------------------------------------------------- */
+
+static FSI_INLINE bool none_above(int n, const double *a, double most)
+{
+  int64_t above = 0;
+  const int64_t yes = 0, no = -1;    // as wide as a number
+  for (int k = 0; k < n; k++) above |= std::abs(a[k]) <= most ? yes : no;
+  return !above;
+}
+
+FSI_AVX2 static bool all_below_packed(int n, const double *a, double most)
+{
+  return none_above(n, a, most);
+}
+
+static bool all_below(int n, const double *a, double most)
+{
+  static const bool packed = have_packs();
+  return packed ? all_below_packed(n, a, most) : none_above(n, a, most);
+}
+
+/* ---------------------------------------------------------------------- */
+
+Check::Check(LAMMPS *lmp, FixFSI *hub, double mach) :
+    Pointers(lmp), hub(hub), mach(mach), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), found{}, moved(0), stray(false),
+    told(false)
+{
+  stop.restart_file = "fsi_stop.restart";
+  stop.dump_file = "fsi_stop.dump";
+}
+
+/* ----------------------------------------------------------------------
+   LAMMPS stops at positions that are not finite, too, but does not say whose: look before it does
+------------------------------------------------------------------------- */
+
+void Check::init()
+{
+  limit_sq.assign(atom->ntypes + 1, HUGE_SQUARE);
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const State &s = hub->state[t];
+    if (mach == OFF || (s.species != FLUID && s.species != SOLID)) continue;
+    const double most = mach * (s.species == SOLID ? SOLID_OVER_FLUID : 1.0);
+    limit_sq[t] = most * most * s.wave_speed_sq();
+  }
+  // |v + dv| is below a limit if no component of v is above 0.9, and none of dv above 0.1, of it over the root of 3
+  const double component = std::sqrt(*std::min_element(limit_sq.begin() + 1, limit_sq.end()) / 3.0);
+  calm_speed = 0.9 * component;
+  calm_kick = 0.1 * component;
+  moved = 0;
+  for (const auto &fix : modify->get_fix_list())
+    if (fix->time_integrate) moved |= fix->groupbit;
+
+  found = {};
+  for (int i = 0; i < atom->nlocal; i++) enter(stop.not_finite(i, false));
+  judge(Stop::BEFORE);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Check::setup()
+{
+  look(true, 0.0);
+  look_for_strays();
+  judge(Stop::START);
+}
+
+/* ----------------------------------------------------------------------
+   before LAMMPS says of a position only that it is none
+------------------------------------------------------------------------- */
+
+void Check::positions()
+{
+  const int n = atom->nlocal;
+  found = {};
+  if (n && !all_below(3 * n, atom->x[0], OFF))
+    for (int i = 0; i < n; i++) enter(stop.not_finite(i, false));
+  judge(Stop::BEFORE);
+}
+
+/* ----------------------------------------------------------------------
+   Positions of local and ghost atoms are those of the middle of the step, velocities those of its start, and both can be brought
+   back. Forces are looked at in each step, what follows from them every few: what the kicks between two looks add up to is finite.
+   (Stress that is not finite makes forces that are not, too; a position does not, since pairs do not see each other any more.)
+------------------------------------------------------------------------- */
+
+void Check::before_kick()
+{
+  look(neighbor->ago == 0 || update->ntimestep % EVERY == 0, update->dt * force->ftm2v);
+  if (neighbor->ago == 0) look_for_strays();
+  if (hub->substeps == 1) judge(Stop::MIDDLE);
+}
+
+/* ----------------------------------------------------------------------
+   sub-steps may take solids anywhere: keep a state to go back to, and look at them before the fluid is kicked
+------------------------------------------------------------------------- */
+
+void Check::before_substeps()
+{
+  const auto &solids = hub->solid_tl->solids();
+  kept.resize(6 * solids.size());
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  double *to = kept.data();
+  for (const int i : solids) {
+    for (int d = 0; d < 3; d++) {
+      to[d] = x[i][d];
+      to[3 + d] = v[i][d];
+    }
+    to += 6;
+  }
+}
+
+void Check::after_substeps()
+{
+  const auto *const v = FixFSI::rows(atom->v);
+  const int *const type = atom->type;
+  for (const int i : hub->solid_tl->solids())
+    if (!(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2] <= limit_sq[type[i]])) examine(i, 0.0);
+  judge(Stop::MIDDLE);
+}
+
+/* ----------------------------------------------------------------------
+   blocks of particles in which all is small are passed over
+------------------------------------------------------------------------- */
+
+void Check::look(bool closely, double kick)
+{
+  const int n = atom->nlocal;
+  found = {};
+  if (n == 0) return;
+  const double *const x = atom->x[0], *const v = atom->v[0], *const f = atom->f[0], *const rho = atom->rho;
+  if (closely) lightest = *std::min_element(atom->rmass, atom->rmass + n);
+  const double force = kick > 0.0 ? std::min(OFF, calm_kick * lightest / kick) : OFF;
+  for (int i = 0; i < n; i += BLOCK) {
+    const int m = std::min(BLOCK, n - i);
+    bool calm = all_below(3 * m, f + 3 * i, force);
+    if (closely && calm)
+      calm = all_below(3 * m, v + 3 * i, calm_speed) && all_below(3 * m, x + 3 * i, OFF) &&
+          std::all_of(rho + i, rho + i + m, [](double r) { return r > 0.0 && r < OFF; });
+    if (!calm)
+      for (int k = i; k < i + m; k++) examine(k, kick);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Check::examine(int i, double kick)
+{
+  const double *const v = atom->v[i], *const f = atom->f[i];
+  const State &s = hub->state[atom->type[i]];
+  const double rho = atom->rho[i];
+  const bool kicked = (atom->mask[i] & hub->groupbit) && (hub->substeps == 1 || s.species != SOLID);
+  const double k = kicked ? kick / atom->rmass[i] : 0.0;
+  const double a = v[0] + k * f[0], b = v[1] + k * f[1], c = v[2] + k * f[2];
+  const double vsq = a * a + b * b + c * c;    // not a number if a force is not
+  const double *const x = atom->x[i];
+  if (vsq <= limit_sq[atom->type[i]] && rho > 0.0 && rho < OFF && std::isfinite(x[0] + x[1] + x[2])) return;
+  const Finding lost = stop.not_finite(i, true);
+  if (lost.tag) enter(lost);
+  else if (!(vsq < HUGE_SQUARE) || !(rho < OFF)) {
+    Finding one = stop.finding(FINITE, i, vsq < HUGE_SQUARE ? rho : vsq);
+    one.field = vsq < HUGE_SQUARE ? Stop::MASS_DENSITY : Stop::VELOCITY;
+    enter(one);
+  } else if (rho <= 0.0) enter(stop.finding(DENSITY, i, rho));
+  else if (s.species == FLUID || s.species == SOLID) enter(stop.finding(MACH, i, std::sqrt(vsq / s.wave_speed_sq())));
+}
+
+/* ----------------------------------------------------------------------
+   what is not finite comes first
+------------------------------------------------------------------------- */
+
+static double rank_of(const Finding &f)
+{
+  if (!f.tag) return 0.0;
+  return f.trouble == FINITE ? 3.0e200 : f.trouble == DENSITY ? 2.0e200 : std::min(f.value, 1.0e200);
+}
+
+void Check::enter(const Finding &one)
+{
+  if (rank_of(one) > rank_of(found)) found = one;
+}
+
+/* ----------------------------------------------------------------------
+   fluid that no fix moves: made in a run, or left out at its start
+------------------------------------------------------------------------- */
+
+void Check::look_for_strays()
+{
+  stray = false;
+  if (told) return;
+  const int *const mask = atom->mask;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!(mask[i] & moved) && hub->state[atom->type[i]].species == FLUID) {
+      stray = true;
+      return;
+    }
+}
+
+/* ----------------------------------------------------------------------
+   all ranks stop together
+------------------------------------------------------------------------- */
+
+void Check::judge(Stop::When when)
+{
+  int mine = found.tag ? 2 : stray, all;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
+  if (all == 0) return;
+  if (all == 1) {
+    warn_of_strays();
+    return;
+  }
+  // back to before the sub-steps, if there were any
+  if (when == Stop::MIDDLE && hub->substeps > 1) {
+    const double *from = kept.data();
+    for (const int i : hub->solid_tl->solids()) {
+      std::copy_n(from, 3, atom->x[i]);
+      std::copy_n(from + 3, 3, atom->v[i]);
+      from += 6;
+    }
+  }
+  const Finding worst = stop.worst(found, rank_of(found));
+  std::string what;
+  if (worst.trouble == DENSITY) what = fmt::format("density {:.4g} is not above 0", worst.value);
+  if (worst.trouble == MACH)
+    what = fmt::format("Mach number {:.4g} is above the limit {:g}", worst.value,
+                       mach * (hub->state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
+  stop.stop(hub, stop.describe(hub, what, worst, when), worst, when);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Check::warn_of_strays()
+{
+  told = true;
+  stray = false;
+  bigint mine[2] = {0, 0}, all[2];
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!(atom->mask[i] & moved) && hub->state[atom->type[i]].species == FLUID) {
+      mine[0]++;
+      mine[1] = std::max(mine[1], (bigint) atom->tag[i]);
+    }
+  MPI_Allreduce(&mine[0], &all[0], 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&mine[1], &all[1], 1, MPI_LMP_BIGINT, MPI_MAX, world);
+  if (comm->me == 0)
+    error->warning(FLERR, "Fix fsi: {} fluid particles (as atom {}) are on step {} in no group that a fix moves, so they stay where they are: put them "
+                   "into group {} of fix {}", all[0], all[1], update->ntimestep, group->names[hub->igroup], hub->id);
+}

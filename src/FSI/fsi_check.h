@@ -1,0 +1,63 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// What no run may lose: numbers that are finite, densities above 0, fluids slower than their sound. Fix fsi asks in every step,
+// before velocities are kicked: the last moment at which there is a state to go back to.
+
+#ifndef LMP_FSI_CHECK_H
+#define LMP_FSI_CHECK_H
+
+#include "fsi_stop.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  class Check : protected Pointers {
+   public:
+    static constexpr double OFF = 1.0e20;
+
+    Check(class LAMMPS *, FixFSI *, double mach);
+    void init();              // of a run: what a restart file or a script has put there
+    void setup();             // after the first forces
+    void positions();         // before lists are built
+    void before_kick();       // in each step
+    void before_substeps();
+    void after_substeps();
+
+   private:
+    FixFSI *const hub;
+    const double mach;    // largest Mach number of fluids
+    Stop stop;
+    std::vector<double> limit_sq;    // per type: of the speed
+    double calm_speed, calm_kick;    // components of velocities and of their change in a step from which no limit is in reach
+    double lightest;                 // mass of this rank's particles
+    std::vector<double> kept;        // positions and velocities of solids before their sub-steps
+    Finding found;                   // the first thing that is not finite, or the worst of this rank
+
+    int moved;       // bits of the groups of all fixes that move particles
+    bool stray, told;    // there is a fluid particle in none of them; it was said
+
+    void enter(const Finding &);
+    void examine(int i, double kick);
+    void look(bool closely, double kick);
+    void look_for_strays();
+    void warn_of_strays();
+    void judge(Stop::When);
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

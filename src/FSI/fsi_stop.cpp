@@ -1,0 +1,313 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_stop.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fix_fsi_dt.h"
+#include "fix_fsi_wall_mirror.h"
+#include "fsi_kernel.h"
+#include "lmptype.h"
+#include "pair_fsi_fluid.h"
+#include "pair_fsi_solid.h"
+#include "pair_fsi_solid_tl.h"
+#include "update.h"
+#include "write_restart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+static constexpr double USUAL = 0.4;    // a Courant number that is not the cause
+
+/* ---------------------------------------------------------------------- */
+
+Stop::Stop(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(who) {}
+
+/* ---------------------------------------------------------------------- */
+
+Finding Stop::finding(Trouble trouble, int i, double value, int j) const
+{
+  const double *const x = atom->x[i];
+  return {value, {x[0], x[1], x[2]}, atom->tag[i], j < 0 ? 0 : atom->tag[j], atom->type[i], trouble, 0};
+}
+
+/* ---------------------------------------------------------------------- */
+
+Finding Stop::not_finite(int i, bool forces) const
+{
+  static constexpr double ZERO[3] = {0.0, 0.0, 0.0};
+  const double *const f = forces ? atom->f[i] : ZERO, *const v = atom->v[i], *const x = atom->x[i];
+  const double values[] = {f[0] + f[1] + f[2], v[0] * v[0] + v[1] * v[1] + v[2] * v[2], atom->rho[i], x[0] + x[1] + x[2],
+                           atom->rmass[i]};
+  for (int k = FORCE; k <= MASS; k++) {
+    if (std::abs(values[k]) < HUGE_SQUARE) continue;
+    Finding found = finding(FINITE, i, values[k]);
+    found.field = k;
+    return found;
+  }
+  return {};
+}
+
+/* ---------------------------------------------------------------------- */
+
+Finding Stop::worst(const Finding &mine, double key) const
+{
+  struct {
+    double key;
+    int rank;
+  } own = {mine.tag ? key : -1.0e300, comm->me}, first;
+  MPI_Allreduce(&own, &first, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  Finding all = mine;
+  MPI_Bcast(&all, sizeof(Finding), MPI_BYTE, first.rank, world);
+  return all;
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string Stop::describe(const FixFSI *hub, const std::string &what, const Finding &all, When when) const
+{
+  static constexpr const char *fields[] = {"force", "velocity", "density", "position", "mass"};
+  auto text = who + ": " + (all.trouble == FINITE ? fmt::format("{} is not finite ({})", fields[all.field], all.value) : what);
+  text += fmt::format(" on step {}", update->ntimestep);
+  if (all.tag) text += fmt::format(", atom {} (type {}) at {:.6g} {:.6g} {:.6g}", all.tag, all.type, all.x[0], all.x[1], all.x[2]);
+  if (all.other) text += fmt::format(", and atom {}", all.other);
+  return text + ". Try " + advice(hub, all, when);
+}
+
+/* ----------------------------------------------------------------------
+   of waves in what an atom type is made of, at rest
+------------------------------------------------------------------------- */
+
+double Stop::courant(const FixFSI *hub, int type) const
+{
+  const State &s = hub->state[type];
+  const bool waves = s.species == FLUID || s.species == SOLID;
+  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) / (s.species == SOLID ? hub->substeps : 1) / hub->h : 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   what to try that is not on already
+------------------------------------------------------------------------- */
+
+std::string Stop::advice(const FixFSI *hub, const Finding &all, When when) const
+{
+  const bool fluid = !all.tag || hub->state[all.type].species == FLUID;
+  const PairFSI *const pair = fluid ? (PairFSI *) hub->fluid : hub->solid ? (PairFSI *) hub->solid : (PairFSI *) hub->solid_tl;
+  const auto off = [&](const std::string &keyword) {
+    if (!pair) return false;
+    for (const auto &e : pair->effects())
+      if (e.keyword == keyword) return !e.on;
+    return false;
+  };
+  std::vector<std::string> tips;
+  const auto missing = [&](const char *keyword, const char *tip) {
+    if (off(keyword)) tips.emplace_back(tip);
+  };
+  const auto shorter = [&]() {
+    const double number = all.tag ? courant(hub, all.type) : 0.0;
+    std::string tip;
+    if (number > USUAL) tip = fmt::format("a shorter time step (the Courant number is {:.2g}, 0.25 is usual): ", number);
+    const bool chosen = hub->fix_dt && hub->fix_dt->chooses();
+    if (!chosen) tip += std::string("fix fsi/dt") + (hub->solid_tl ? " with substeps auto" : "");
+    else if (!fluid && hub->solid_tl && !hub->fix_dt->chooses_substeps()) tip += "substeps auto of fix fsi/dt";
+    else tip += fluid ? "a smaller cfl/fluid of fix fsi/dt" : "a smaller cfl/solid of fix fsi/dt";
+    tips.insert(number > USUAL ? tips.begin() : tips.end(), tip);
+  };
+
+  switch (all.trouble) {
+    case FINITE:
+      tips.emplace_back("a look at what pushes this particle");
+      if (!fluid) missing("hourglass", "hourglass");
+      if (when != BEFORE) shorter();
+      break;
+    case MACH:
+      if (when == START) tips.emplace_back("velocity ... units box (its default are lattice units per time)");
+      if (fluid) tips.emplace_back("a higher speed of sound, if the flow is meant to be that fast");
+      missing("artificial/visc", fluid ? "artificial/visc 0.02 0" : "artificial/visc 0.1 0");
+      if (!fluid) missing("hourglass", "hourglass");
+      shorter();
+      break;
+    case DISTANCE:
+      if (when == START) tips.emplace_back("a look for overlapping particles");
+      if (hub->kernel != WENDLAND) tips.emplace_back("kernel wendland");
+      missing("artificial/visc", "artificial/visc 0.02 0");
+      missing("shift", "shift");
+      missing("background", "a background pressure, if there is no free surface");
+      if (when != START) shorter();
+      break;
+    case DENSITY:
+      if (fluid) tips.emplace_back("a higher speed of sound");
+      missing("density/diffusion", "density/diffusion 0.1");
+      if (fluid && pair && !off("tension")) tips.emplace_back("tension no, if there is a free surface");
+      if (!fluid) missing("hourglass", "hourglass");
+      shorter();
+      break;
+    case COURANT: shorter(); break;
+    case ENERGY:
+      tips.emplace_back("a look at this, the fastest particle");
+      missing("artificial/visc", fluid ? "artificial/visc 0.02 0" : "artificial/visc 0.1 0");
+      shorter();
+      break;
+    case LOST:
+      tips.emplace_back("walls where particles escape, or a larger box; if they are meant to leave, thermo_modify lost ignore");
+      break;
+    default:
+      tips.emplace_back("a larger distance from the wall at the start");
+      missing("artificial/visc", "artificial/visc 0.02 0");
+      shorter();
+  }
+  std::string text;
+  for (size_t k = 0; k < tips.size(); k++) text += (k ? "; " : "") + tips[k];
+  return text.empty() ? "a look at the particles around it" : text;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Stop::stop(const FixFSI *hub, std::string text, const Finding &all, When when)
+{
+  if (when == MIDDLE) go_back(hub);
+  if (when != BEFORE && all.tag && !dump_file.empty()) {
+    write_neighbours(hub, all);
+    text += fmt::format(". Particles around it: {}", dump_file);
+  }
+  if (when != BEFORE && !restart_file.empty()) text += write_state(hub);
+  error->all(FLERR, text);
+}
+
+/* ----------------------------------------------------------------------
+   In the middle of a step positions, walls and densities go back to its start: a state from which the step can be repeated. (The
+   stress of fsi/solid stays where it is, a step too far: an error of one step's strain.)
+------------------------------------------------------------------------- */
+
+void Stop::go_back(const FixFSI *hub)
+{
+  const double back = -0.5 * update->dt, dt = update->dt + hub->stagger;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & hub->groupbit)
+      for (int d = 0; d < hub->dim; d++) atom->x[i][d] += back * atom->v[i][d];
+  if (hub->fluid && hub->density_fluid == FixFSI::CONTINUITY)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (hub->state[atom->type[i]].species == FLUID) atom->rho[i] -= dt * hub->rate[i];
+  if (hub->solid && hub->density_solid == FixFSI::CONTINUITY)
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (hub->state[atom->type[i]].species != SOLID) continue;
+      double div = 0.0;
+      for (int k = 0; k < hub->dim; k++) div += hub->grad[i][k * (hub->dim + 1)];
+      atom->rho[i] *= (1.0 + 0.5 * dt * div) / (1.0 - 0.5 * dt * div);
+    }
+  for (auto *fix : hub->wall_fixes)
+    for (auto &w : fix->walls) w.position += back * w.velocity[w.axis];
+  update->ntimestep--;
+}
+
+/* ----------------------------------------------------------------------
+   restart file, and what to say of it
+------------------------------------------------------------------------- */
+
+std::string Stop::write_state(const FixFSI *hub)
+{
+  int mine = 1, writable;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (not_finite(i, false).tag) mine = 0;
+  MPI_Allreduce(&mine, &writable, 1, MPI_INT, MPI_MIN, world);
+  if (!writable) return ". No restart file: the state is not finite any more";
+
+  // an error of write_restart would hide what this is about
+  if (comm->me == 0) {
+    FILE *fp = fopen(restart_file.c_str(), "wb");
+    writable = fp != nullptr;
+    if (fp) fclose(fp);
+  }
+  MPI_Bcast(&writable, 1, MPI_INT, 0, world);
+  if (!writable) return fmt::format(". Restart file {} cannot be written: {}", restart_file, utils::getsyserror());
+  bigint n = atom->nlocal;
+  MPI_Allreduce(&n, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  domain->pbc();
+  domain->reset_box();
+  // what has left a fixed box since the last reneighboring would be missing when the file is read
+  double own[6], ends[6];
+  for (int d = 0; d < 3; d++) {
+    own[d] = -domain->boxlo[d];
+    own[3 + d] = domain->boxhi[d];
+    for (int i = 0; i < atom->nlocal && !domain->periodicity[d]; i++) {
+      if (atom->x[i][d] < domain->boxlo[d]) own[d] = std::max(own[d], hub->dx - atom->x[i][d]);
+      if (atom->x[i][d] >= domain->boxhi[d]) own[3 + d] = std::max(own[3 + d], hub->dx + atom->x[i][d]);
+    }
+  }
+  MPI_Allreduce(own, ends, 6, MPI_DOUBLE, MPI_MAX, world);
+  for (int d = 0; d < 3; d++) {
+    domain->boxlo[d] = -ends[d];
+    domain->boxhi[d] = ends[3 + d];
+  }
+  WriteRestart write(lmp);
+  write.multiproc_options(0, 0, nullptr);
+  write.write(restart_file);
+  return fmt::format(". State of step {}: {}", update->ntimestep, restart_file);
+}
+
+/* ----------------------------------------------------------------------
+   text dump of all particles within three cutoffs
+------------------------------------------------------------------------- */
+
+void Stop::write_neighbours(const FixFSI *hub, const Finding &all) const
+{
+  static constexpr int NINT = 3, NCOL = 13;
+  const double reach = 3.0 * hub->cut;
+  std::vector<double> mine;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const x = atom->x[i], *const v = atom->v[i], *const f = atom->f[i];
+    double d[3] = {x[0] - all.x[0], x[1] - all.x[1], x[2] - all.x[2]};
+    const bool itself = atom->tag[i] == all.tag;    // wherever it is
+    if (!itself) {
+      if (!std::isfinite(d[0] + d[1] + d[2])) continue;
+      domain->minimum_image(d);
+      if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach * reach) continue;
+    }
+    for (const tagint n : {atom->tag[i], (tagint) atom->type[i], atom->molecule[i]}) mine.push_back(ubuf(n).d);
+    mine.insert(mine.end(), {x[0], x[1], x[2], v[0], v[1], v[2], f[0], f[1], f[2], atom->rho[i]});
+  }
+  int n = mine.size();
+  std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
+  MPI_Gather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
+  for (int k = 1; k < comm->nprocs; k++) starts[k] = starts[k - 1] + counts[k - 1];
+  std::vector<double> rows(comm->me == 0 ? starts.back() + counts.back() : 0);
+  MPI_Gatherv(mine.data(), n, MPI_DOUBLE, rows.data(), counts.data(), starts.data(), MPI_DOUBLE, 0, world);
+  if (comm->me) return;
+
+  FILE *fp = fopen(dump_file.c_str(), "w");
+  if (!fp) {
+    error->warning(FLERR, "{} cannot write file {}: {}", who, dump_file, utils::getsyserror());
+    return;
+  }
+  char bounds[9];
+  domain->boundary_string(bounds);
+  utils::print(fp, "ITEM: TIME\n{:.16g}\n", update->atime + (update->ntimestep - update->atimestep) * update->dt);
+  utils::print(fp, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n", update->ntimestep, rows.size() / NCOL,
+               bounds);
+  for (int d = 0; d < 3; d++) utils::print(fp, "{:.16g} {:.16g}\n", domain->boxlo[d], domain->boxhi[d]);
+  utils::print(fp, "ITEM: ATOMS id type mol x y z vx vy vz fx fy fz rho\n");
+  for (size_t k = 0; k < rows.size(); k += NCOL) {
+    for (int c = 0; c < NINT; c++) utils::print(fp, "{}{}", c ? " " : "", (tagint) ubuf(rows[k + c]).i);
+    for (int c = NINT; c < NCOL; c++) utils::print(fp, " {:.16g}", rows[k + c]);
+    utils::print(fp, "\n");
+  }
+  fclose(fp);
+}

@@ -1,0 +1,70 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// How a run that goes wrong is stopped: who, where, what, how much, what to try; files of the state before it went wrong.
+
+#ifndef LMP_FSI_STOP_H
+#define LMP_FSI_STOP_H
+
+#include "pointers.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+class FixFSI;
+namespace FSI {
+
+  // what can be wrong
+  enum Trouble { FINITE, MACH, DISTANCE, DENSITY, COURANT, ENERGY, LOST, REFLECTED, NTROUBLE };
+  constexpr double HUGE_SQUARE = 1.0e200;    // of a speed: nothing finite gets there
+
+  // with whom
+  struct Finding {
+    double value, x[3];
+    tagint tag, other;    // 0 = no particle
+    int type;
+    Trouble trouble;
+    int field;    // of FINITE: Stop::Field
+  };
+
+  class Stop : protected Pointers {
+   public:
+    enum Field { FORCE, VELOCITY, MASS_DENSITY, POSITION, MASS };
+    enum When { BEFORE, START, MIDDLE };    // of all forces; of a step: where positions are
+
+    Stop(class LAMMPS *, const std::string &who);
+    std::string restart_file, dump_file;    // empty: none
+
+    Finding finding(Trouble, int i, double value, int j = -1) const;
+    // what of atom i is not finite? No tag if nothing is. With forces, if they are there
+    Finding not_finite(int i, bool forces) const;
+    // of the findings of all ranks the one with the largest key
+    Finding worst(const Finding &mine, double key) const;
+    // what is wrong, if it is not FINITE, then step, particle and what to try
+    std::string describe(const FixFSI *, const std::string &what, const Finding &, When) const;
+    // error->all, after writing the files
+    void stop(const FixFSI *, std::string text, const Finding &, When);
+
+   private:
+    std::string who;
+    double courant(const FixFSI *, int type) const;
+    std::string advice(const FixFSI *, const Finding &, When) const;
+    void go_back(const FixFSI *);
+    std::string write_state(const FixFSI *);
+    void write_neighbours(const FixFSI *, const Finding &) const;
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
