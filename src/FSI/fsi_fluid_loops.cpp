@@ -20,39 +20,6 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-void RowList::clear()
-{
-  rows.clear();
-  pool.clear();
-}
-
-void RowList::add_neighbor(int j)
-{
-  pool.push_back(j);
-  rows.back().n++;
-}
-
-void RowList::end_row()
-{
-  if (rows.back().n == 0) rows.pop_back();
-}
-
-void RowList::end()
-{
-  const int *first = pool.data();
-  for (auto &row : rows) {
-    row.j = first;
-    first += row.n;
-  }
-}
-
-double RowList::memory_usage() const
-{
-  return (double) rows.capacity() * sizeof(Row) + (double) pool.capacity() * sizeof(int);
-}
-
-/* ---------------------------------------------------------------------- */
-
 std::unique_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h)
 {
   if (kernel == CUBIC) return make_fluid_loops_cubic(dim, h);

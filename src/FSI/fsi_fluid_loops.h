@@ -38,15 +38,42 @@ namespace FSI {
   };
 
   // Rows and, where they are not those of LAMMPS' neighbour list, their neighbours.
-  struct RowList {
+  class RowList {
+   public:
     std::vector<Row> rows;
+    void clear()
+    {
+      rows.clear();
+      used = 0;
+    }
+    // a row of i with the n of the neighbours that choose(j) holds for, and then i itself if with_own; none if it would be empty
+    template <class Choose> void add(int i, const int *neighbors, int n, bool with_own, bool even_empty, Choose choose)
+    {
+      if (used + n + 1 > pool.size()) pool.resize(2 * (used + n + 1));
+      int *const first = pool.data() + used, *last = first;
+      for (int k = 0; k < n; k++) {
+        *last = neighbors[k];
+        last += choose(neighbors[k]) ? 1 : 0;
+      }
+      if (with_own) *last++ = i;
+      const int found = last - first;
+      if (found || even_empty) rows.push_back({i, found, nullptr});
+      used += found;
+    }
+    // no more rows: points them at their neighbours
+    void end()
+    {
+      const int *first = pool.data();
+      for (auto &row : rows) {
+        row.j = first;
+        first += row.n;
+      }
+    }
+    double memory_usage() const { return (double) rows.capacity() * sizeof(Row) + (double) pool.capacity() * sizeof(int); }
+
+   private:
     std::vector<int> pool;
-    void clear();
-    void add(int i) { rows.push_back({i, 0, nullptr}); }
-    void add_neighbor(int j);      // of the last row
-    void end_row();                // drops the last row if it has no neighbours
-    void end();                    // no more rows: points them at their neighbours
-    double memory_usage() const;
+    size_t used = 0;
   };
 
   // What a fluid particle meets, and by which rule: couple wall; the paper's rules, couple pressure and full.
@@ -89,7 +116,7 @@ namespace FSI {
     double extrapolate[3];   // gravity, where the pressure at a solid is extrapolated to it; else 0
     double stored;           // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0
     const struct Contact *guard;           // per type: of walls
-    const double (*wall_velocity)[3];      // per particle, of no-slip walls of particles
+    const double (*wall_velocity)[3];      // per particle, that no-slip walls of particles have in viscous forces
     const double *const *stress;           // per particle, of solids (couple full); null: they have none
   };
 

@@ -109,10 +109,11 @@ namespace FSI {
   {
     constexpr int W = Lanes<T>::WIDTH;
     const auto weight = [&](const int *j, int n) __attribute__((always_inline)) {
-      return Lanes<T>::make([&](int k) { return k >= n ? 0.0 : MIRRORED && j[k] == row.i ? 0.5 : 1.0; });
+      const T there = n == W ? T(1.0) : Lanes<T>::first(n);
+      return MIRRORED ? there * Lanes<T>::make([&](int k) { return j[k] == row.i ? 0.5 : 1.0; }) : there;
     };
     const int full = row.n & ~(W - 1);
-    for (int jj = 0; jj < full; jj += W) pairs(row.j + jj, MIRRORED ? weight(row.j + jj, W) : T(1.0));
+    for (int jj = 0; jj < full; jj += W) pairs(row.j + jj, weight(row.j + jj, W));
     if (full == row.n) return;
     int j[W];
     for (int k = 0; k < W; k++) j[k] = full + k < row.n ? row.j[full + k] : row.i;
@@ -274,7 +275,7 @@ namespace FSI {
           } else if (KIND == WITH_WALL) {
             // fluid beyond the wall, with the velocity extrapolated
             T w[D];
-            for (int d = 0; d < D; d++) w[d] = pi.v[d] - L::make([&](int k) { return laws.wall_velocity ? laws.wall_velocity[j[k]][d] : 0.0; });
+            for (int d = 0; d < D; d++) w[d] = pi.v[d] - L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
             viscous(g, rsq, visc, pi.vol * pj.vol, x, w, rubbing);
             if (FLAGS & Flag::SUMS) by_laminar -= share * product(rubbing, v);
           } else {

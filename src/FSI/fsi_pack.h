@@ -116,6 +116,13 @@ namespace FSI {
       second = shuffle<1, 5, 3, 7>(A, B);
     }
 
+    FSI_INLINE static Pack load(const double *p)
+    {
+      Pack x;
+      __builtin_memcpy(&x.v, p, sizeof(x.v));
+      return x;
+    }
+
    private:
     typedef double Half __attribute__((vector_size(2 * sizeof(double))));
     FSI_INLINE static void add(double *p, const Half &x)
@@ -139,12 +146,6 @@ namespace FSI {
       out[1] = shuffle<0, 1, 4, 5>(high, high2);
       out[2] = shuffle<2, 3, 6, 7>(low, low2);
       out[3] = shuffle<2, 3, 6, 7>(high, high2);
-    }
-    FSI_INLINE static Pack load(const double *p)
-    {
-      Pack x;
-      __builtin_memcpy(&x.v, p, sizeof(x.v));
-      return x;
     }
     FSI_INLINE static void store(double *p, const Pack &x) { __builtin_memcpy(p, &x.v, sizeof(x.v)); }
     // elements of a (0 to 3) and b (4 to 7)
@@ -174,6 +175,8 @@ namespace FSI {
     FSI_INLINE static double place(double x, int) { return x; }
     // f(k) for place k
     template <class F> FSI_INLINE static double make(F f) { return f(0); }
+    // 1 in the first n places, else 0
+    FSI_INLINE static double first(int n) { return n; }
     template <int N> FSI_INLINE static void add_rows(const double *x, double (*a)[N], const int *j, int n)
     {
       for (int d = 0; d < n; d++) a[*j][d] += x[d];
@@ -190,6 +193,11 @@ namespace FSI {
     FSI_INLINE static double sum(const Pack &x) { return x.sum(); }
     FSI_INLINE static double place(const Pack &x, int k) { return x.v[k]; }
     template <class F> FSI_INLINE static Pack make(F f) { return {f(0), f(1), f(2), f(3)}; }
+    FSI_INLINE static Pack first(int n)
+    {
+      static constexpr double ones[2 * WIDTH] = {1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0};
+      return Pack::load(ones + WIDTH - n);
+    }
     FSI_INLINE static void add_rows(const Pack *x, double (*a)[2], const int *j, int)
     {
       Pack::add_rows(x[0], x[1], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);

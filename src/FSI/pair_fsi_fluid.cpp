@@ -208,6 +208,7 @@ void PairFSIFluid::find_rows()
     for_pairs_with_others([&](int i, int j) { other[first[i + 1]++] = j; });
   }
 
+  std::vector<int> unmasked;
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], n = list->numneigh[i], *const neighbors = list->firstneigh[i];
@@ -216,26 +217,19 @@ void PairFSIFluid::find_rows()
       rows[FLUIDS].rows.push_back({i, n, neighbors});
       continue;
     }
-    for (const int t : fluid_types) {
-      rows[FLUIDS].add(i);
-      for (int jj = 0; jj < n; jj++) {
-        const int j = neighbors[jj] & NEIGHMASK;
-        if (type[j] == t) rows[FLUIDS].add_neighbor(j);
-      }
-      if (t != type[i]) rows[FLUIDS].end_row();    // that of its own type stays, for its own images
-    }
+    unmasked.resize(n);
+    for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
+    // that of its own type stays if it is empty, for its own images
+    for (const int t : fluid_types)
+      rows[FLUIDS].add(i, unmasked.data(), n, false, t == type[i], [=](int j) { return type[j] == t; });
   }
   if (!own) rows[FLUIDS].end();
   if (other_types.empty()) return;
   for (int i = 0; i < nall; i++) {
     if (first[i] == first[i + 1]) continue;
-    for (const int t : other_types) {
-      RowList &list_of = rows[state[t].species == SOLID ? SOLIDS : WALLS];
-      list_of.add(i);
-      for (int k = first[i]; k < first[i + 1]; k++)
-        if (type[other[k]] == t) list_of.add_neighbor(other[k]);
-      list_of.end_row();
-    }
+    for (const int t : other_types)
+      rows[state[t].species == SOLID ? SOLIDS : WALLS].add(i, &other[first[i]], first[i + 1] - first[i], false, false,
+                                                           [=](int j) { return type[j] == t; });
   }
   rows[WALLS].end();
   rows[SOLIDS].end();
@@ -248,11 +242,19 @@ void PairFSIFluid::find_rows()
 
 template <class Position> void PairFSIFluid::find_images(const Walls &walls, Position position)
 {
-  const int *const wmask = hub->wmask, *const type = atom->type;
+  const int *const wmask = hub->wmask, *const type = atom->type, nlocal = atom->nlocal;
   const double cutsq = hub->cut * hub->cut;
   const int n = walls.reflections.size();
   const bool finite = walls.finite();
-  std::vector<int> reflections;    // that particle i has images in
+  const auto sees = [&](int i, int j, int k) {
+    const auto xi = position(i), xj = position(j);
+    double rsq = 0.0;
+    for (int d = 0; d < 3; d++) rsq += (xi[d] - xj[d]) * (xi[d] - xj[d]);
+    bool found = false;
+    walls.images(wmask[i] & wmask[j], rsq, xi.data(), xj.data(), cutsq,
+                 [&](const Walls::Reflection &s, double, const double *) { found = found || &s == &walls.reflections[k]; });
+    return found;
+  };
   for (const int kind : {FLUIDS, SOLIDS}) {
     auto &lists = images[kind];
     lists.resize(n);
@@ -260,32 +262,15 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
     for (const Row &row : rows[kind].rows) {
       const int i = row.i;
       if (!wmask[i]) continue;
-      const bool with_own = kind == FLUIDS && i < atom->nlocal && (row.n == 0 || type[row.j[0]] == type[i]);
-      reflections.clear();
-      for (int k = 0; k < n; k++)
-        if ((wmask[i] & walls.reflections[k].mask) == walls.reflections[k].mask) reflections.push_back(k);
-      for (const int k : reflections) lists[k].add(i);
-      if (finite) {
-        const auto xi = position(i);
-        const auto add = [&](int j) {
-          const auto xj = position(j);
-          double rsq = 0.0;
-          for (int d = 0; d < 3; d++) rsq += (xi[d] - xj[d]) * (xi[d] - xj[d]);
-          if (rsq < cutsq)
-            walls.images(wmask[i] & wmask[j], rsq, xi.data(), xj.data(), cutsq,
-                         [&](const Walls::Reflection &s, double, const double *) { lists[&s - walls.reflections.data()].add_neighbor(j); });
-        };
-        for (int jj = 0; jj < row.n; jj++)
-          if (wmask[row.j[jj]]) add(row.j[jj]);
-        if (with_own) add(i);
-      } else
-        for (const int k : reflections) {
-          const int mask = walls.reflections[k].mask;
-          for (int jj = 0; jj < row.n; jj++)
-            if ((wmask[row.j[jj]] & mask) == mask) lists[k].add_neighbor(row.j[jj]);
-          if (with_own) lists[k].add_neighbor(i);
-        }
-      for (const int k : reflections) lists[k].end_row();
+      const bool of_own_type = kind == FLUIDS && i < nlocal && (row.n == 0 || type[row.j[0]] == type[i]);
+      for (int k = 0; k < n; k++) {
+        const int mask = walls.reflections[k].mask;
+        if ((wmask[i] & mask) != mask) continue;
+        if (finite)
+          lists[k].add(i, row.j, row.n, of_own_type && sees(i, i, k), false, [&](int j) { return (wmask[j] & mask) == mask && sees(i, j, k); });
+        else
+          lists[k].add(i, row.j, row.n, of_own_type, false, [=](int j) { return (wmask[j] & mask) == mask; });
+      }
     }
     for (auto &list_of : lists) list_of.end();
   }
@@ -453,7 +438,7 @@ template <int D> void PairFSIFluid::compute_forces()
   });
 
   ForceLaws laws = {alpha, beta, laminar, {}, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(),
-                    hub->wall_velocity ? FixFSI::rows(hub->wall_velocity) : nullptr, hub->fix_stress ? hub->fix_stress->stress : nullptr};
+                    FixFSI::rows(hub->wall_velocity ? hub->wall_velocity : atom->v), hub->fix_stress ? hub->fix_stress->stress : nullptr};
   if (extrapolate) std::copy_n(hub->gravity, 3, laws.extrapolate);
   PairSums sums, *const of_pairs = hub->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
