@@ -141,6 +141,18 @@ def test_restart_goes_on_bit_for_bit(tmp_path, ranks, every, solid):
     assert steps[0] == steps[1] and float(steps[0][1]) != scene.dt
 
 
+@pytest.mark.parametrize("step", ("timestep 1e-9", ""))
+def test_the_clock_goes_on(tmp_path, step):
+    """After a restart, whatever the script says of the time step: to the last bit the time of the uninterrupted run."""
+    scene = fluid_box(2)
+    more = 'fix dt all fsi/dt 7\nthermo_style custom step time\n'
+    whole = run(tmp_path, scene.text() + more + 'restart 40 mid.*\nrun 80\nprint "TIME $(time:%.17g)"\n', scene_data=scene.data())
+    rest = scene.setup() + "read_restart mid.40\n" + re.sub("timestep .*", step, scene.physics(coeff=False))
+    done = run(tmp_path, rest + more + 'restart 40 other.*\nrun 40\nprint "TIME $(time:%.17g)"\n')
+    times = [re.search(r"^TIME (\S+)", r.output, re.M)[1] for r in (whole, done)]
+    assert times[0] == times[1] and float(times[0]) > 0.01
+
+
 def test_two_runs_are_one(tmp_path):
     scene = fluid_box(2)
     steps = []
@@ -230,7 +242,7 @@ def test_substeps_auto_moves_the_gate_as_given_ones_do(tmp_path):
     assert np.abs(a["x"] - b["x"]).max() < 2e-3 * np.abs(a["x"] - dam_gate(2).x[dam_gate(2).type == 2][:, 0]).max()
 
 
-def test_check_changes_nothing_and_says_so(tmp_path):
+def test_stop_changes_nothing_and_says_so(tmp_path):
     scene = fluid_box(2)
     base = re.sub("timestep .*", "timestep 4e-4", scene.text())
     plain = run(tmp_path / "plain", base + watch(every=40) + "run 40\n", scene_data=scene.data())
@@ -382,7 +394,6 @@ BAD = [
     ("fix dt all fsi/dt 10 substeps 3", r"substeps 3: expected keep or auto"),
     ("fix dt all fsi/dt 10 check yes", r"check yes: expected no, warn or error"),
     ("fix dt all fsi/dt 10 colour red", r"keyword colour"),
-    ("fix dt all fsi/dt 10 substeps auto", r"substeps auto requires pair_style fsi/solid/tl"),
     ("fix dt all fsi/dt 10 substeps auto check warn", r"cannot be combined with check"),
     ("fix dt all fsi/dt 10\nfix dt2 all fsi/dt 10", r"only one fix fsi/dt"),
     ("fix dt all fsi/dt 10\nfix reset all dt/reset 1 NULL NULL 0.1", r"fix dt/reset cannot both"),

@@ -196,6 +196,8 @@ VAIN = {
                                     ["extrapolate has nothing to act on: there is no solid"]),
     "extrapolation without walls of solid": (world(HYBRID.format("couple full extrapolate yes", ""), 1, commands="set atom 1 type 2"),
                                              ["extrapolate has nothing to act on: it is for couple wall"]),
+    "sub-steps of what has none": (world("fsi/fluid sound 10", 1, commands="fix dt all fsi/dt 10 substeps auto"),
+                                   ["Fix fsi/dt substeps auto has nothing to act on: there is no pair_style fsi/solid/tl"]),
     "watch on nobody": (world("fsi/fluid sound 10", 1, commands="group none type 2\nfix watch none fsi/watch 10\nfix dt none fsi/dt 10"),
                         ["Fix fsi/watch has nothing to act on: group none is empty", "Fix fsi/dt has nothing to act on: group none is empty"]),
     "nothing in vain": (world(HYBRID.format("artificial/visc 0.1 0 extrapolate yes", "artificial/stress 0.3"), 1,

@@ -1,4 +1,4 @@
-"""fix fsi/watch: limits stricter than those that every run has (test_check.py): names particle and cause, and leaves a state to look at."""
+"""fix fsi/watch: limits stricter than those that every run has (test_stop.py): names particle and cause, and leaves a state to look at."""
 
 import re
 
@@ -9,7 +9,7 @@ from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
 from conftest import DX, dam_gate, difference, differing, fluid_box, lammps, run, watch
 from fsi import dump
 from scenes import RUBBER, Scene, lattice, pairs
-from test_check import SCENES
+from test_stop import SCENES
 from test_dt import total_lagrangian
 
 CAUSES = r"Mach number|distance over particle spacing|density|Courant number|kinetic energy|not finite"

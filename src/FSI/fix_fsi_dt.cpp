@@ -41,7 +41,8 @@ static constexpr double PRINT = 0.95;    // causes whose limits differ by less t
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), hub(nullptr), of_fluid(1.0), of_solid(1.0), low(0.0), high(BIG), growth(1.1), end(BIG), cut(false), automatic(false),
-    check(NO), limits(lmp), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false)
+    check(NO), limits(lmp), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false), atime(0.0),
+    atimestep(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/dt", error);
@@ -108,8 +109,6 @@ void FixFSIDt::init()
   if (check) return;
   if (!modify->get_fix_by_style("^dt/reset$").empty())
     error->all(FLERR, "Fix fsi/dt and fix dt/reset cannot both set the time step");
-  if (automatic && !force->pair_match("fsi/solid/tl", 1))
-    error->all(FLERR, "Fix fsi/dt substeps auto requires pair_style fsi/solid/tl");
   for (auto &fix : modify->get_fix_by_style("^move$"))
     error->all(FLERR, "Fix fsi/dt: fix {} (style {}) cannot have its time step changed: use fix fsi/move, which can", fix->id, fix->style);
   // the time step changes when fix fsi begins its step: what moves earlier would still take the old one
@@ -120,8 +119,9 @@ void FixFSIDt::init()
                  fix->style, hub->id);
   }
   if (restored) {
-    // whatever a timestep command between read_restart and here has said
-    update->update_time();
+    // whatever a timestep command between read_restart and here has said; without one LAMMPS forgets the time since atimestep
+    update->atime = atime;
+    update->atimestep = atimestep;
     update->dt = dt;
     update->dt_default = 0;
   }
@@ -342,7 +342,7 @@ double FixFSIDt::compute_vector(int k)
 void FixFSIDt::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const double list[] = {dt, next_dt, (double) next_substeps, (double) ruling};
+  const double list[] = {dt, next_dt, (double) next_substeps, (double) ruling, update->atime, (double) update->atimestep};
   const int size = sizeof(list);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(list, size, 1, fp);
@@ -357,5 +357,7 @@ void FixFSIDt::restart(char *buf)
   next_dt = list[1];
   if (automatic) next_substeps = static_cast<int>(list[2]);
   ruling = static_cast<int>(list[3]);
+  atime = list[4];
+  atimestep = static_cast<bigint>(list[5]);
   restored = dt > 0.0;
 }

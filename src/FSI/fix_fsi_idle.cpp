@@ -18,6 +18,7 @@
 
 #include "comm.h"
 #include "error.h"
+#include "fix_fsi_dt.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "group.h"
@@ -58,6 +59,7 @@ void FixFSI::warn_idle() const
     if (fix_stress && (solid || (solid_tl && solid_tl->hypoelastic()))) nothing("Fix fsi/stress", NO_SOLID);
     if (substeps > 1) nothing("Fix fsi substeps", NO_SOLID);
   }
+  if (fix_dt && fix_dt->chooses_substeps() && !solid_tl) nothing("Fix fsi/dt substeps auto", "there is no pair_style fsi/solid/tl");
   if (surface_every > 1 && !need_psi) nothing("Fix fsi surface/every", "pair_style fsi/fluid has no surface rule");
   if (surface_every > 1 && need_psi && !keep_psi) nothing("Fix fsi surface/every", "a density mode needs the number density in each step");
   if (!fluid && density_fluid != CONTINUITY) nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");

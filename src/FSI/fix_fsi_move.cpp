@@ -202,6 +202,8 @@ void FixFSIMove::setup_pre_exchange()
 void FixFSIMove::initial_integrate(int)
 {
   move(MIDDLE);
+  double shift[3];
+  if (style == VARIABLE) evaluate(shift, end_speed, false);
 }
 
 void FixFSIMove::final_integrate()
@@ -224,8 +226,8 @@ void FixFSIMove::evaluate(double *shift, double *speed, bool everywhere)
   for (int k = 0; k < 3; k++) {
     if (source[k] == EQUAL) shift[k] = input->variable->compute_equal(index[k]);
     if (of_velocity[k] == EQUAL) speed[k] = input->variable->compute_equal(velocity_index[k]);
-    if (source[k] == ATOM) input->variable->compute_atom(index[k], igroup, &values[0][k], 6, 0);
-    if (of_velocity[k] == ATOM) input->variable->compute_atom(velocity_index[k], igroup, &values[0][3 + k], 6, 0);
+    if (everywhere && source[k] == ATOM) input->variable->compute_atom(index[k], igroup, &values[0][k], 6, 0);
+    if (everywhere && of_velocity[k] == ATOM) input->variable->compute_atom(velocity_index[k], igroup, &values[0][3 + k], 6, 0);
   }
   modify->addstep_compute(update->ntimestep + 1);
 }
@@ -257,6 +259,19 @@ void FixFSIMove::follow(const double *from, double t, double *x, double *v) cons
     x[k] = point[k] + along * axis[k] + a[k] * c + b * s + rate[k] * t;
     v[k] = omega * (b * c - a[k] * s) + rate[k];
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixFSIMove::velocity_at_end(int i, double *v) const
+{
+  double x[3];
+  if (style != VARIABLE) follow(original[i], now() - origin, x, v);
+  for (int k = 0; k < domain->dimension; k++) {
+    if (!sets_velocity(k) || of_velocity[k] == ATOM) return false;
+    if (of_velocity[k] == EQUAL) v[k] = end_speed[k];
+  }
+  return true;
 }
 
 /* ----------------------------------------------------------------------

@@ -40,6 +40,8 @@ class FixFSIMove : public Fix {
   void initial_integrate(int) override;
   void final_integrate() override;
   void reset_dt() override {}
+  // velocity of a particle of the group at the end of the step that is going on; false: not known before it is there
+  bool velocity_at_end(int i, double *v) const;
   double memory_usage() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -64,6 +66,7 @@ class FixFSIMove : public Fix {
   int index[3], velocity_index[3];
   double origin;        // time at which particles were at
   double **original;    // these positions, not wrapped
+  double end_speed[3];  // of equal-style variables, at the end of the step
   double **values;      // of atom-style variables: displacements and velocities
   int nmax;
 

@@ -17,6 +17,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_move.h"
 #include "fix_store_atom.h"
 #include "force.h"
 #include "fsi_kernel.h"
@@ -115,6 +116,8 @@ void FixFSIWallParticle::init()
   if (!slip && !fluid->has_laminar() && comm->me == 0)
     error->warning(FLERR, "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has no laminar/visc");
 
+  movers.clear();
+  for (auto &fix : modify->get_fix_by_style("^fsi/move$")) movers.push_back(dynamic_cast<FixFSIMove *>(fix));
   nsum = 2 + hub->dim * (slip ? 1 : 2);
   comm_reverse = nsum;
   comm_forward = 1 + (slip ? 0 : hub->dim);
@@ -188,10 +191,19 @@ void FixFSIWallParticle::extrapolate(bool advance)
     const State &state = hub->state[type[i]];
     const double *const s = sum[i];
     double *const old = before->astore[i];
+    // acceleration: in this step where the motion is known, else in the last; a wall that is set in motion has none in its first step
+    const double *from = old, *to = v[i];
+    double known = old[3], span = update->dt + 2.0 * hub->stagger, next[3];
+    for (const auto *mover : movers)
+      if ((mask[i] & mover->groupbit) && mover->velocity_at_end(i, next)) {
+        from = v[i];
+        to = next;
+        known = 1.0;
+        span = update->dt;
+      }
     double p = s[1];
     for (int k = 0; k < dim; k++) {
-      // a wall that is set in motion has no acceleration in its first step
-      const double a = (advance && old[3] > 0.0) ? (v[i][k] - old[k]) / update->dt : 0.0;
+      const double a = advance && known > 0.0 ? (to[k] - from[k]) / span : 0.0;
       p += (hub->gravity[k] - a) * s[2 + k];
       if (!slip) hub->wall_velocity[i][k] = 2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
     }

@@ -57,6 +57,7 @@ class FixFSIWallParticle : public Fix {
  private:
   double guard;    // distance of a fluid particle below which it is pushed off, in spacings
   std::string id_store;
+  std::vector<class FixFSIMove *> movers;
   class FixStoreAtom *before;    // velocity at the last step, and whether there was one
   class FixFSI *hub;
   std::vector<std::pair<int, int>> pairs;    // wall and fluid particles that may be within the kernel's support

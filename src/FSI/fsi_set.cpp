@@ -34,7 +34,8 @@ using namespace FSI;
    fsi_set group-ID pressure value      density that gives this pressure
    fsi_set group-ID hydrostatic level
      the same for p = rho0 |g| (level - height), height along -g; nothing above the level
-   value: a number or, of density and pressure, an atom-style variable
+   fsi_set group-ID volume value        mass of a particle that has another place than that of the square or cubic lattice
+   value: a number or, of density, pressure and volume, an atom-style variable
    The mass follows: a particle keeps the volume of its place in the lattice. (With the mass of the uncompressed lattice
    volumes would say "compressed" where distances do not, and still water would settle 2 % off at c = 10 sqrt(2 g H).)
 ------------------------------------------------------------------------- */
@@ -42,15 +43,16 @@ using namespace FSI;
 void FSISet::command(int narg, char **arg)
 {
   if (domain->box_exist == 0) error->all(FLERR, "Fsi_set command before simulation box is defined");
-  if (narg != 3) error->all(FLERR, "Fsi_set expects group-ID, density, pressure or hydrostatic, and a value");
+  if (narg != 3) error->all(FLERR, "Fsi_set expects group-ID, density, pressure, hydrostatic or volume, and a value");
 
   const int igroup = group->find(arg[0]);
   if (igroup == -1) error->all(FLERR, "Fsi_set group-ID {} does not exist", arg[0]);
   const int groupbit = group->bitmask[igroup];
   const bool hydrostatic = strcmp(arg[1], "hydrostatic") == 0;
   const bool pressure = strcmp(arg[1], "pressure") == 0;
-  if (!hydrostatic && !pressure && strcmp(arg[1], "density") != 0)
-    error->all(FLERR, "Unknown fsi_set keyword {}: expected density, pressure or hydrostatic", arg[1]);
+  const bool volume = strcmp(arg[1], "volume") == 0;
+  if (!hydrostatic && !pressure && !volume && strcmp(arg[1], "density") != 0)
+    error->all(FLERR, "Unknown fsi_set keyword {}: expected density, pressure, hydrostatic or volume", arg[1]);
   int variable = -1;
   if (utils::strmatch(arg[2], "^v_") && !hydrostatic) {
     variable = input->variable->find(arg[2] + 2);
@@ -73,8 +75,14 @@ void FSISet::command(int narg, char **arg)
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     const State &s = hub->state[atom->type[i]];
-    if (s.species == RIGID) continue;    // has its pressure from the fluid, and its mass
     const double value = each[i];
+    if (volume) {
+      if (!(value > 0.0)) error->one(FLERR, "Fsi_set volume {} must be > 0", value);
+      atom->rmass[i] = atom->rho[i] * value;
+      count++;
+      continue;
+    }
+    if (s.species == RIGID) continue;    // has its pressure from the fluid, and its mass
     double rho = value;
     if (hydrostatic) {
       const double *x = atom->x[i], height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
@@ -90,5 +98,5 @@ void FSISet::command(int narg, char **arg)
   bigint all;
   MPI_Allreduce(&count, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all == 0 && comm->me == 0) error->warning(FLERR, "Fsi_set {} {} {} acts on no particle", arg[0], arg[1], arg[2]);
-  if (comm->me == 0) utils::logmesg(lmp, "  fsi_set: density of {} particles\n", all);
+  if (comm->me == 0) utils::logmesg(lmp, "  fsi_set: {} of {} particles\n", volume ? "mass" : "density", all);
 }
