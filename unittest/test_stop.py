@@ -21,6 +21,11 @@ SCENES = {  # text and the limit of its time step
 }
 
 
+@pytest.fixture(autouse=True)
+def _files_go_elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
 def error(done):
     assert done.status != 0, "no error"
     lines = [line for line in done.errors if "Fix fsi: " in line]
@@ -109,9 +114,8 @@ def test_nan_between_runs(quantity, row, word):
             s.run(10)
 
 
-def test_nan_force_in_the_run(tmp_path, monkeypatch):
+def test_nan_force_in_the_run(tmp_path):
     """Forces of another style: caught before they get into velocities. The particle next to it is not blamed."""
-    monkeypatch.chdir(tmp_path)
     with Scene(lattice([6, 6], 0.1), dx=0.1, dt=1e-4, commands=["fix ext all external pf/callback 1 1"]) as s:
         def push(_, step, nlocal, tag, x, f):
             f[:nlocal] = np.where((tag[:nlocal, None] == 22) & (step == 13), np.nan, 0.0)
@@ -132,10 +136,9 @@ CHANGES = [("v", 11.0, "Mach number", 20), ("v", np.nan, "(velocity|force) is no
 
 @pytest.mark.parametrize("quantity, value, message, step", CHANGES)
 @pytest.mark.parametrize("who", (1, 256, 399))
-def test_one_of_many(tmp_path, monkeypatch, quantity, value, message, step, who):
+def test_one_of_many(quantity, value, message, step, who):
     """One particle among calm ones: blocks of particles in which all is small are skipped. Forces are looked at in each step, what somebody has
     set in velocities and densities at every tenth; what it does to others may be seen before."""
-    monkeypatch.chdir(tmp_path)
     with Scene(lattice([20, 20], 0.1), dx=0.1, dt=1e-4, commands=["fix ext all external pf/callback 1 1"]) as s:
         def change(_, now, nlocal, tag, x, f):
             f[:nlocal] = 0.0
