@@ -65,6 +65,10 @@ def deck(page, example):
                                                                       "create_atoms 3 region wall\ngroup wall type 3\ngroup water")
         pairs = PAIRS.replace("water plate", "water plate wall").replace("NULL plate", "NULL plate NULL")
         return walls + pairs + FIX.replace("all", "fluid").replace("fix", "group fluid subtract all wall\nfix", 1) + STRESS + GRAVITY + example + "\nrun 1\n"
+    if page == "fix_fsi_move":
+        moves = FIX.replace("all", "water") + "group wall type 2\ngroup blades type 2\n"
+        lines = examples(page)  # variables stand before the fix that has them
+        return SETUP + PAIRS + moves + STRESS + "\n".join(line for line in lines if line.startswith("variable")) + f"\n{example}\nrun 1\n"
     fix = "" if page == "fix_fsi" else FIX
     stress = "" if sub or page == "fix_fsi_stress" else STRESS
     return SETUP + pairs + fix + stress + GRAVITY + example + "\nrun 1\n"
@@ -107,7 +111,7 @@ def run_time_messages():
             if re.match(r"(\w+ )*atoms? (type )?\||on step \|", text, re.I):
                 found.append(max((part.strip(" ,.") for part in text.split(":")[0].split("|")), key=lambda part: len(part.split())))
         if source.stem == "fix_fsi_watch":
-            found += re.findall(r'^    \{"\w*", "([^"]+)", "', code, re.M)
+            found += re.findall(r'^    \{"\w+", "([^"]+)"', code, re.M)
     return found
 
 

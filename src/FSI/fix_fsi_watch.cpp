@@ -42,14 +42,15 @@ static constexpr double BIG = 1.0e20;
 struct About {
   const char *key, *what;
 };
-static constexpr About about[] = {{"", ""},
-                                  {"mach", "Mach number"},
-                                  {"distance", "distance over particle spacing"},
-                                  {"density", "density error |rho/rho0-1|"},
-                                  {"courant", "Courant number"},
-                                  {"energy", "growth of the kinetic energy"},
-                                  {"lost", "number of lost particles"},
-                                  {"reflected", "number of reflections at mirror walls"}};
+static constexpr About about[] = {
+    {"", ""},
+    {"mach", "Mach number"},
+    {"distance", "distance over particle spacing"},
+    {"density", "density error |rho/rho0-1|"},
+    {"courant", "Courant number"},
+    {"energy", "growth of the kinetic energy"},
+    {"lost", "number of lost particles"},
+    {"reflected", "number of reflections at mirror walls"}};
 
 /* ---------------------------------------------------------------------- */
 
