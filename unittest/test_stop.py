@@ -139,7 +139,7 @@ CHANGES = [("v", 11.0, "Mach number", 20), ("v", np.nan, "(velocity|force) is no
 def test_one_of_many(quantity, value, message, step, who):
     """One particle among calm ones: blocks of particles in which all is small are skipped. Forces are looked at in each step, what somebody has
     set in velocities and densities at every tenth; what it does to others may be seen before."""
-    with Scene(lattice([20, 20], 0.1), dx=0.1, dt=1e-4, commands=["fix ext all external pf/callback 1 1"]) as s:
+    with Scene(lattice([20, 20], 0.1), dx=0.1, dt=1e-4, fluid="tension yes", commands=["fix ext all external pf/callback 1 1"]) as s:
         def change(_, now, nlocal, tag, x, f):
             f[:nlocal] = 0.0
             if now == 13:
@@ -156,6 +156,21 @@ def test_one_of_many(quantity, value, message, step, who):
     found = re.search(r"on step (\d+), atom (\d+) ", text)
     assert 13 <= int(found[1]) <= step and re.search(message, text), text
     assert quantity != "f" or int(found[2]) == who, text
+
+
+def test_torn_water_may_weigh_nothing(tmp_path):
+    """Without tension it has no pressure, whatever density an impact has left it with; with tension it pulls, and is stopped."""
+    x = np.vstack([lattice([6, 6], 0.1), [[2.0, 2.0, 0.0]]])
+    rho = np.r_[np.full(36, 1000.0), -20.0]
+    for tension in ("no", "yes"):
+        with Scene(x, dx=0.1, dt=1e-4, fluid=f"tension {tension}") as s:
+            s.run()
+            s.put("rho", rho)
+            if tension == "no":
+                s.run(30)
+                continue
+            with pytest.raises(Exception, match=r"Fix fsi: density -20 is not above 0 on step 0, atom 37 \(type 1\)"):
+                s.run(30)
 
 
 def test_inside_the_substeps_of_a_solid(tmp_path):

@@ -194,6 +194,8 @@ void Check::examine(int i, double kick)
   const double a = v[0] + k * f[0], b = v[1] + k * f[1], c = v[2] + k * f[2];
   const double vsq = a * a + b * b + c * c;    // not a number if a force is not
   const double *const x = atom->x[i];
+  // torn fluid without tension has no pressure, whatever its density: spray whose density says nothing until it comes together
+  const bool torn = s.species == FLUID && s.floor == 0.0 && hub->pressure(i) == 0.0;
   if (vsq <= limit_sq[atom->type[i]] && rho > 0.0 && rho < OFF && std::isfinite(x[0] + x[1] + x[2])) return;
   const Finding lost = stop.not_finite(i, true);
   if (lost.tag) enter(lost);
@@ -201,8 +203,8 @@ void Check::examine(int i, double kick)
     Finding one = stop.finding(FINITE, i, vsq < HUGE_SQUARE ? rho : vsq);
     one.field = vsq < HUGE_SQUARE ? Stop::MASS_DENSITY : Stop::VELOCITY;
     enter(one);
-  } else if (rho <= 0.0) enter(stop.finding(DENSITY, i, rho));
-  else if (s.species == FLUID || s.species == SOLID) enter(stop.finding(MACH, i, std::sqrt(vsq / s.wave_speed_sq())));
+  } else if (rho <= 0.0 && !torn) enter(stop.finding(DENSITY, i, rho));
+  else if (vsq > limit_sq[atom->type[i]] && (s.species == FLUID || s.species == SOLID)) enter(stop.finding(MACH, i, std::sqrt(vsq / s.wave_speed_sq())));
 }
 
 /* ----------------------------------------------------------------------
