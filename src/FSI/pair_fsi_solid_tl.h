@@ -90,6 +90,7 @@ class PairFSISolidTL : public PairFSI {
   double **fsolid;
   int nmax;
 
+  void refuse_constraints() const;
   template <class L> const L *laws() const;
   enum { HOURGLASS = 1, VISCOSITY = 2, LEDGER = 4, VIRIAL = 8, NFLAGS = 16 };
   void (PairFSISolidTL::*bond_loop[2])();    // without and with virial
