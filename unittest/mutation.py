@@ -85,6 +85,8 @@ MUTATIONS = [
     ("compute_fsi_energy.cpp", "mine[1] += m * hub->gravity[d] * dth * v[i][d];", "", "energy"),
     ("fsi_kernel.h", "2.0 / 3.0 - q * q + 0.5", "2.0 / 3.0 - q * q + 0.6", "ctest"),
     ("fsi_kernel.h", "-120.0 + q * q * (120.0", "-120.0 + q * q * (121.0", "ctest"),
+    ("fsi_lattice.h", "2.0 * j.g * (xsq + ysq)", "j.g * (xsq + ysq)", "ctest"),
+    ("fsi_lattice.h", "std::min(softest, stiffness", "std::max(softest, stiffness", "ctest"),
     ("fsi_tensor.h", "const double angle = 0.5 * dt", "const double angle = -0.5 * dt", "ctest"),
     ("fsi_jaumann.h", "plane_stress ? 2.0 : 3.0", "plane_stress ? 3.0 : 2.0", "ctest"),
     ("fsi_walls.h", "rsq += 4.0 * ai[k] * aj[k];", "rsq += 2.0 * ai[k] * aj[k];", "ctest"),

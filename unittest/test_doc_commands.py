@@ -123,7 +123,7 @@ class Reader:
         """A command of a page."""
         command = re.sub(r"\[(-[^\]]*)\]", r"\1", command)  # what may be left out
         for name, value in {"<where>": f"{self.home}/prefix", "<LAMMPS tree>": f"{self.home}/LAMMPS",
-                            "<sources of that LAMMPS>": str(paths.lammps_source())}.items():
+                            "<sources of that LAMMPS>": str(paths.lammps_source()), "<this repository>": f"file://{paths.ROOT}"}.items():
             command = command.replace(name, value)
         for name, value in PLACEHOLDERS.items():
             command = re.sub(rf"\b{name}\b", value, command)
@@ -144,6 +144,14 @@ class Reader:
         self.before.append(command)
         self.set += re.findall(r"export (\w+)=", command)
         self.execute("true")
+
+    def git(self, command, words):
+        """The repository, but for its history."""
+        self.execute(command.replace("git clone", "git clone -q --depth 1"))
+        assert (self.home / words[-1] / "tools/run").exists()
+
+    def cd(self, _, words):
+        assert (self.home / words[0]).is_dir()
 
     def execute(self, command, _=None, **options):
         return shell("\n".join([*self.before, command]), self.home, without=self.set, **options)

@@ -84,7 +84,7 @@ def test_table(tree):
     assert "| study | `order` | 1.98 | 2 | theory | -1.0 % |  | 2 cases, 1234 | 12.3 | 2 |" in page
     assert "**Not as bundled: stone with dx=2.**" in page
     # nothing to judge it by: below the table; what a run costs: not as a figure
-    judged, rest = page.split("<details>")
+    judged, rest = page.split("### Further figures")
     assert "`colour`" not in judged and "| stone | `colour` | - nm |" in rest
     assert "`wall_seconds`" not in page
 
@@ -92,8 +92,7 @@ def test_table(tree):
 def test_gallery_shows_what_the_readme_shows_else_everything(tree):
     page = page_of(tree)
     folder = tree / "doc" / "results"
-    assert '<a href="../../examples/stone">Falling stone</a></b><br>\nA stone falls.\n' in page
-    assert '<img src="stone_fall.png" alt="the fall">' in page
+    assert "**[Falling stone](../../examples/stone/README.md)**<br>A stone falls.<br>![the fall](stone_fall.png) |" in page
     assert (folder / "stone_fall.png").read_text() == "stone/fall.png"
     assert "stone_other.png" not in page
     # a case's picture where the study has none of that name: the largest case's
@@ -102,6 +101,33 @@ def test_gallery_shows_what_the_readme_shows_else_everything(tree):
     write(paths.EXAMPLES / "study" / "README.md", "# Study\n\nMany.\n\n![fall](fall.png)\n")
     page_of(tree)
     assert {p.name for p in folder.glob("*.png")} == {"stone_fall.png", "study_large_fall.png"}
+
+
+def test_headlines(tree, monkeypatch):
+    """The first table: of a run, of one case with its own cost, of what is no longer there; in the README, which else stays as it is."""
+    monkeypatch.setattr(results, "HEADLINES", (("How fast", "stone", "speed", None), ("Order | slope", "study", "order", "large"),
+                                               ("Gone", "stone", "gone", None), ("Not run", "lost", "x", None)))
+    monkeypatch.setattr(paths, "ROOT", tree)
+    monkeypatch.setattr(paths, "PAGE", tree / "doc" / "results")
+    write(tree / "README.md", f"# Title\n{results.MARKS[0]}old\n{results.MARKS[1]}## Rest\n")
+    summary = json.loads((tree / "results/study/summary.json").read_text())
+    summary["cases"]["large"] |= {"wall_seconds": 200.0, "ranks": 3}
+    write(tree / "results/study/summary.json", json.dumps(summary))
+    rows = ["| [How fast](examples/stone/README.md) | 11 m/s | 10 (experiment, A \\| B 1999) | +10.0 % | 1,234 | 12 s on 2 |",
+            "| [Order \\| slope](examples/study/README.md) | 1.98 | 2 (theory) | -1.0 % | 1,234 | 3 minutes on 3 |",
+            "| [Gone](examples/stone/README.md) | no result |  |  |  |  |"]
+    assert all(row.replace("(examples", "(../../examples") in page_of(tree) for row in rows)
+    text = (tree / "README.md").read_text()
+    assert text.startswith("# Title\n") and text.endswith("## Rest\n") and "old" not in text
+    assert text.splitlines()[5:8] == rows
+
+
+def test_headlines_are_of_the_bundled_scenes():
+    """Each stands in the results as they are committed, with a truth, and so in the README."""
+    found = json.loads((paths.PAGE / "results.json").read_text())["scenes"]
+    table = results.headlines(found, "examples")
+    assert len(table.splitlines()) == 2 + len(results.HEADLINES) and "no result" not in table and " None " not in table
+    assert table in (paths.ROOT / "README.md").read_text()
 
 
 def test_remarks_are_quoted_with_links_that_work(tree):

@@ -1,24 +1,48 @@
-"""Sphinx configuration of the package's manual; pages are in the form of LAMMPS' own manual (tools/doc builds them)."""
+"""Sphinx configuration of the manual (tools/doc builds it).
 
-import os
-import re
+The source folder is the repository itself: the pages of doc/src, in the form of LAMMPS' own manual, and the Markdown pages of doc and examples as
+they are, so that a link between any two of them leads to the same page here and where the repository is browsed.
+"""
+
 import shutil
 from pathlib import Path
 
-import markdown
-from docutils import nodes
-from docutils.parsers.rst import Directive
 from pygments.lexer import RegexLexer, bygroups
 from pygments.token import Comment, Keyword, Name, String, Text
 
 project = "FSI package for LAMMPS"
 author = copyright = "the FSI package"
-extensions = ["sphinx.ext.mathjax", "sphinx.ext.extlinks"]
-extlinks = {"lammps": ("https://docs.lammps.org/%s.html", None)}
-html_theme = "alabaster"
-html_theme_options = {"page_width": "1100px", "sidebar_width": "240px", "description": "fluid-structure interaction by SPH"}
-html_show_sphinx = False
-root_doc = "index"
+root_doc = "doc/src/index"
+include_patterns = ["doc/**", "examples/*/README.md"]
+exclude_patterns = ["build*", "results", ".*", "doc/cost/peers_notes.md"]
+extensions = ["sphinx_rtd_theme", "myst_parser", "sphinx.ext.mathjax", "sphinx.ext.extlinks"]
+extlinks = {"lammps": ("https://docs.lammps.org/%s.html", "%s")}
+myst_heading_anchors = 3
+
+html_theme = "sphinx_rtd_theme"
+html_theme_options = {"collapse_navigation": False, "navigation_depth": 3, "prev_next_buttons_location": "both"}
+html_title = html_short_title = project
+html_show_sphinx = html_show_copyright = html_show_sourcelink = html_copy_source = False
+html_static_path, html_css_files = ["_static"], ["manual.css"]
+
+# MathJax 2 as Debian has it; what it takes to draw TeX as SVG goes beside the pages, so that formulas need no network
+MATHJAX = Path("/usr/share/javascript/mathjax")
+MATHJAX_PARTS = ("MathJax.js", "config/TeX-AMS_SVG.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG/*.js", "jax/output/SVG/autoload",
+                 "jax/output/SVG/fonts/TeX")
+if MATHJAX.is_dir():
+    mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"
+    mathjax2_config = {"messageStyle": "none", "showMathMenu": False}
+
+
+def copy_mathjax(app, error):
+    for part in MATHJAX_PARTS if MATHJAX.is_dir() and not error else ():
+        for source in MATHJAX.glob(part):
+            target = Path(app.outdir) / "_static/mathjax" / source.relative_to(MATHJAX)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            if source.is_dir():
+                shutil.copytree(source, target, dirs_exist_ok=True)
+            else:
+                shutil.copyfile(source, target)
 
 
 class LAMMPSLexer(RegexLexer):
@@ -30,57 +54,6 @@ class LAMMPSLexer(RegexLexer):
                        (r"^(\s*)(\w+)", bygroups(Text, Keyword)), (r"[^\S\n]+|\n", Text), (r"[^\s#\"$]+", Text), (r".", Text)]}
 
 
-# Markdown pages that have a page in the manual
-PAGES = {"doc/results/README.md": "results", "doc/cost/README.md": "cost", "doc/choosing.md": "choosing", "doc/hard/README.md": "hard", "doc/scenes.md": "scenes",
-         "doc/testing.md": "testing"} | {f"doc/cost/{p.name}": "cost" for p in (Path(__file__).parents[1] / "cost").glob("*.md") if p.name != "README.md"}
-ROOT = Path(__file__).resolve().parents[2]
-
-
-class Markdown(Directive):
-    """``.. markdown:: FILE-OR-PATTERN ...``: Markdown files of the repository as they are, without their title; pictures are copied, links followed."""
-
-    required_arguments, optional_arguments = 1, 100
-
-    def run(self):
-        env = self.state.document.settings.env
-        found = []
-        given = [Path(env.relfn2path(name)[1]) for name in self.arguments]
-        for path in dict.fromkeys(path for pattern in given for path in sorted(pattern.parent.glob(pattern.name))):
-            env.note_dependency(str(path))
-            # a table may stand in a paragraph's place in GitHub's Markdown, and raw HTML may hold Markdown
-            text = re.sub(r"(?m)^(?!\||\s*$)(.*)\n(?=\|[^\n]*\n\|[\s:|-]+$)", r"\1\n\n", path.read_text())
-            text = re.sub(r"(?m)^(?![-*] |\d+\. |\s|$)(.*)\n(?=[-*] |1\. )", r"\1\n\n", text)
-            text = text.replace("<details>", '<details markdown="1">')
-            if len(self.arguments) == 1:
-                text = re.sub(r"\A# .*\n", "", text)
-            html = markdown.markdown(text, extensions=["tables", "fenced_code", "toc", "md_in_html"], output_format="html")
-            html = re.sub(r'(href|src)="([^"#:]*)(#[^"]*)?"', lambda m: self.link(env.app, path, *m.groups()), html)
-            if path.name != "README.md":
-                html = f'<span id="{path.stem}"></span>' + html
-            found.append(nodes.raw("", html.replace("<table>", '<table class="docutils">'), format="html"))
-        return found
-
-    def link(self, app, path, kind, target, anchor):
-        """The attribute with a place that exists in the HTML: a page of the manual, a picture's copy, or none (pages that are
-        only made by a run, and files that are none)."""
-        anchor = anchor or ""
-        if not target:
-            return f'{kind}="{anchor}"'
-        place = Path(os.path.normpath(path.parent / target))
-        if kind == "src" and not place.exists():
-            raise self.error(f"{path.name}: {target} does not exist")
-        name = str(place.relative_to(ROOT))
-        if name in PAGES:
-            page = PAGES[name]
-            return f'{kind}="{page}.html{anchor or ("#" + place.stem if place.name != "README.md" and page == "cost" else "")}"'
-        if place.suffix == ".png":
-            copy = Path(app.outdir) / "_images" / name.replace("/", "_")
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(place, copy)
-            return f'{kind}="_images/{copy.name}"'
-        return f'title="{name}"'
-
-
 def setup(app):
-    app.add_directive("markdown", Markdown)
+    app.connect("build-finished", copy_mathjax)
     app.add_lexer("LAMMPS", LAMMPSLexer)

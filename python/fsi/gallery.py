@@ -72,23 +72,27 @@ def renew_pictures(name):
 
 
 def page():
-    """doc/src/gallery.rst, from READMEs, pictures and reference logs."""
-    title = "Gallery"
-    lines = [".. Written by tools/gallery; edits are lost.", "", title, "=" * len(title), "",
+    """doc/src/gallery.rst, from READMEs, pictures and reference logs; starters first."""
+    lines = [".. Written by tools/gallery; edits are lost.", "", "Gallery", "=======", "",
              "Each scene runs with ``tools/run NAME``; its folder ``examples/NAME`` holds deck, README with what to expect, and reference logs of a short",
-             "form, ``log.DATE.NAME.RANKS``, with the settings given here. What all of them give is on the page :doc:`results`. Times are those of the",
-             "short forms' loop on 1 and 2 ranks, on a machine with other work: an order of magnitude. ``tools/gallery`` makes logs and this page.", ""]
-    for name in paths.scenes():
-        readme = _readme(name)
-        lines += ["", readme["title"], "-" * len(readme["title"]), "", _rst(readme["description"]), ""]
+             "form, ``log.DATE.NAME.RANKS``, with the settings given here. What all of them give is on the page of :doc:`results <../results/README>`. Times",
+             "are those of the short forms' loop on 1 and 2 ranks, on a machine with other work: an order of magnitude.", "",
+             ".. container:: cards", ""]
+    readmes = {name: _readme(name) for name in paths.scenes()}
+    names = sorted(readmes, key=lambda name: ("starter" not in readmes[name]["description"], name))
+    for name in names:
+        lines += ["   .. container:: card", ""]
         picture = re.search(r"!\[([^\]]*)\]\(([^)\s/]+)\)", (paths.EXAMPLES / name / "README.md").read_text())
         if picture and (paths.EXAMPLES / name / picture[2]).exists():
-            lines += [f".. image:: ../../examples/{name}/{picture[2]}", f"   :alt: {picture[1]}", "   :width: 75%", ""]
+            lines += [f"      .. image:: ../../examples/{name}/{picture[2]}", f"         :alt: {picture[1]}",
+                      f"         :target: ../../examples/{name}/README.html", ""]
         runs = [log.read(path).finished[-1] for ranks in RANKS for path in sorted((paths.EXAMPLES / name).glob(f"log.*.{name}.{ranks}"))]
         settings = "".join(f" {k}={v}" for k, v in short().get(name, {}).items())
-        cost = (f" {runs[0].atoms:,} particles, {runs[0].steps:,} steps, " + ", ".join(f"{run.loop_seconds:.1f} s on {run.ranks}" for run in runs)) if runs else ""
-        lines += [f"``tools/run {name}{settings}``:{cost}." if cost else f"``tools/run {name}``", ""]
-    (paths.ROOT / "doc/src/gallery.rst").write_text("\n".join(lines).rstrip() + "\n")
+        cost = (f": {runs[0].atoms:,} particles, {runs[0].steps:,} steps, " + ", ".join(f"{run.loop_seconds:.1f} s on {run.ranks}" for run in runs)) if runs else ""
+        lines += [f"      :doc:`{readmes[name]['title']} <../../examples/{name}/README>`. {_rst(readmes[name]['description'])}", "",
+                  f"      ``tools/run {name}{settings if runs else ''}``{cost}.", ""]
+    lines += [".. toctree::", "   :hidden:", "", *(f"   ../../examples/{name}/README" for name in names)]
+    (paths.ROOT / "doc/src/gallery.rst").write_text("\n".join(lines) + "\n")
 
 
 def _rst(text):

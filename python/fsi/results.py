@@ -2,7 +2,8 @@
 
     python -m fsi.results [RESULTS [PAGE]]     default: results doc/results; tools/run all ends with it
 
-Writes README.md, results.json (all that the page is made of) and copies of the pictures into the folder PAGE.
+Writes README.md, results.json (all that the page is made of) and copies of the pictures into the folder PAGE. Its first table is also put between
+the marks in the README.md of the repository, where PAGE is in one.
 """
 
 import json
@@ -10,7 +11,6 @@ import os
 import re
 import shutil
 import sys
-from html import escape
 from pathlib import Path
 
 from . import paths
@@ -19,6 +19,25 @@ from .summary import bound, deviation, number
 REMARKS = "Where it is off"  # section of a scene's README that the page quotes
 COST = ("wall_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; columns of their own
 SHOWN = 2  # pictures per scene
+MARKS = ("<!-- results: written by tools/run all -->\n", "<!-- end of results -->\n")  # where the README has them
+# The first table: what, scene, figure, case that it is of (None: all)
+HEADLINES = (
+    ("Plate under 2 m of water: deflection", "hydrostatic_plate", "deflection_11", "11_across"),
+    ("Elastic gate: furthest displacement of its tip", "elastic_gate", "10MPa_tip_x_peak", "10MPa_5_across"),
+    ("The same gate under a load known exactly: displacement", "gate_static", "tip_x_5_across", "5_across"),
+    ("Oscillating plate: period", "oscillating_plate", "period_10", "tl_10"),
+    ("Turek and Hron's beam under gravity (CSM3): frequency", "turek_hron_csm", "frequency_10", "csm3_10"),
+    ("Bending column in 3D: first peak", "bending_column", "peak_10", "10_across"),
+    ("Taylor bar: final length", "taylor_bar", "final_length_8_across", "8_across"),
+    ("Dam break: pressure on the wall after the impact", "dam_break", "pressure_plateau_80", "best"),
+    ("Dam break on a box in 3D: arrival of the water", "dam_break_3d", "P1_arrival", None),
+    ("Rolling tank: period of the oil", "rolling_tank", "sloshing_period_free", "free"),
+    ("Standing wave: period", "standing_wave", "period", "viscous"),
+    ("Taylor-Green vortices: rate of decay", "taylor_green", "energy_decay_rate", "best"),
+    ("Elliptical drop: long axis", "elliptical_drop", "semi_axis_b", "best"),
+    ("Rotating square patch: pressure at its centre", "rotating_square_patch", "centre_pressure", "best"),
+    ("Floating block: draft", "floating_blocks", "draft_0.5", "0.5"),
+)
 _IMAGE = re.compile(r"!\[([^\]]*)\]\(([^)\s]+)\)")
 _RELATIVE_LINK = re.compile(r"(\]\()(?![a-z]+:|[#/])([^)\s]+\))")
 
@@ -69,11 +88,13 @@ def copied(name, picture):
 def render(found, examples="../../examples"):
     """The page as Markdown; `examples` leads from it to the scenes."""
     scenes = {name: entry for name, entry in found["scenes"].items() if entry["summary"]}
-    parts = [_head(found["scenes"], scenes), "## Gallery", _gallery(scenes, examples), "## Figures",
-             _explanation(scenes), _table(scenes, judged=True)]
+    parts = [_head(found["scenes"], scenes)]
+    if short := headlines(scenes, examples):
+        parts += ["## In short", short]
+    parts += ["## Gallery", _gallery(scenes, examples), "## Figures", _explanation(scenes), _table(scenes, judged=True)]
     rest = _table(scenes, judged=False)
     if rest:
-        parts += ["<details><summary>Further figures, which there is nothing to judge by</summary>", rest, "</details>"]
+        parts += ["### Further figures, which there is nothing to judge by", rest]
     remarks = [f"### {entry['title']}\n\n" + _RELATIVE_LINK.sub(rf"\g<1>{examples}/{name}/\2", entry["remarks"])
                for name, entry in scenes.items() if entry["remarks"]]
     if remarks:
@@ -107,17 +128,27 @@ def _head(every, scenes):
     return "\n".join(lines)
 
 
+def headlines(scenes, examples):
+    """The first table: some figures that have a truth to be judged by, with what they cost. Empty without results of any."""
+    rows = []
+    for what, name, figure, case in HEADLINES:
+        summary = scenes[name]["summary"] if name in scenes else None
+        if summary is None:
+            continue
+        what = f"[{what}]({examples}/{name}/README.md)"
+        found = next((f for f in summary["figures"] if f["name"] == figure), None)
+        ran = summary.get("cases", {}).get(case) if case else summary
+        rows.append([what, _ours(found), f"{number(found['reference'])} ({found['source']})", deviation(found), f"{ran['particles']:,}",
+                     f"{_duration(ran['wall_seconds'])} on {ran['ranks']}"] if found and ran else [what, "no result", "", "", "", ""])
+    return _markdown(["figure", "ours", "truth", "error", "particles", "time on cores"], rows) if rows else ""
+
+
 def _gallery(scenes, examples):
     """Two scenes side by side, each with its title, what it is, and at most two pictures."""
-    cells = []
-    for name, entry in scenes.items():
-        lines = [f'<td valign="top" width="50%"><b><a href="{examples}/{name}">{escape(entry["title"])}</a></b><br>',
-                 escape(entry["description"])]
-        lines += [f'<br><a href="{copied(name, p)}"><img src="{copied(name, p)}" alt="{escape(p["alt"])}"></a>'
-                  for p in entry["pictures"]]
-        cells.append("\n".join(lines) + "</td>")
-    rows = ["<tr>\n" + "\n".join(cells[k:k + 2]) + "\n</tr>" for k in range(0, len(cells), 2)]
-    return "<table>\n" + "\n".join(rows) + "\n</table>"
+    cells = ["<br>".join([f"**[{entry['title']}]({examples}/{name}/README.md)**", entry["description"],
+                          *(f"![{p['alt']}]({copied(name, p)})" for p in entry["pictures"])]).replace("|", "\\|") for name, entry in scenes.items()]
+    rows = [f"| {left} | {right} |" for left, right in zip(cells[::2], [*cells[1::2], ""])]
+    return "\n".join(["|  |  |", "|---|---|", *rows])
 
 
 def _explanation(scenes):
@@ -149,7 +180,12 @@ def _table(scenes, judged):
         head, rows = head[:3], [row[:3] for row in rows]
     if not rows:
         return ""
-    numbers = ("ours", "reference", "error", "particles", "wall seconds", "ranks")
+    return _markdown(head, rows)
+
+
+def _markdown(head, rows):
+    """A table; columns of numbers at the right."""
+    numbers = ("ours", "reference", "error", "particles", "wall seconds", "ranks", "time on cores")
     lines = [head, ["---:" if title in numbers else "---" for title in head], *rows]
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
 
@@ -175,8 +211,18 @@ def write(results, page):
     for name, picture in _listed(page):
         shutil.copyfile(results / name / picture["file"], page / copied(name, picture))
     (page / "README.md").write_text(render(found, Path(os.path.relpath(paths.EXAMPLES, page)).as_posix()))
+    if page.resolve() == paths.PAGE.resolve():
+        write_readme(found)
     print(f"results: {page / 'README.md'}")
     return found
+
+
+def write_readme(found):
+    """Puts the first table into the README of the repository."""
+    path = paths.ROOT / "README.md"
+    before, rest = path.read_text().split(MARKS[0])
+    table = headlines({name: entry for name, entry in found["scenes"].items() if entry["summary"]}, "examples")
+    path.write_text(before + MARKS[0] + "\n" + table + "\n\n" + MARKS[1] + rest.split(MARKS[1])[1])
 
 
 def _listed(page):

@@ -133,7 +133,10 @@ def table(summary):
 
 def deviation(figure):
     """A figure's relative error as text; empty if it has none."""
-    return "" if figure["relative_error"] is None else f"{100 * figure['relative_error']:+.1f} %"
+    if figure["relative_error"] is None:
+        return ""
+    percent = 100 * figure["relative_error"]
+    return f"{percent:+.1f} %" if abs(percent) >= 0.05 or percent == 0 else f"{percent:+.1g} %"
 
 
 def bound(figure):

@@ -27,6 +27,7 @@
 #include "fsi_advice.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
+#include "fsi_lattice.h"
 #include "fsi_tensor.h"
 #include "memory.h"
 #include "modify.h"
@@ -235,6 +236,12 @@ void FixFSI::setup(int)
   const int fluid_bytes = 8 * (fluid ? 2 * dim + 4 + (density_fluid == CONTINUITY) + ns : 0) + (wall_fixes.empty() ? 0 : 4);
   std::string text = fmt::format("FSI: {}, h = {:g} dx, dx = {:g}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[kernel],
                                  h / dx, dx, on, off.empty() ? "none" : off);
+  if (fluid)
+    with_kernel(kernel, dim, h, [&](const auto &k) {
+      const auto s = lattice_stiffness(k, dx);
+      text += fmt::format("  a lattice of the fluid under a pressure p has, for 0, a modulus of {:.3f} p when stretched, {:.3f} p in shear\n",
+                          s.stretch, s.shear);
+    });
   text += fmt::format("  arrays of all particles: {} bytes each{}{}\n", 8 * (need_psi + ng) + fluid_bytes,
                       need_psi ? ", number density" : "", ng ? ", velocity gradient" : "");
   // what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a ghost

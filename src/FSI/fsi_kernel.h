@@ -47,6 +47,7 @@ namespace FSI {
     template <class T> FSI_INLINE T W(const T &r) const { return norm * Shape::w(r * hinv); }
     // factor g with grad_i W_ij = g x_ij
     template <class T> FSI_INLINE T gradient(const T &r) const { return gnorm * Shape::dwq(r * hinv); }
+    double curvature(double r) const { return gnorm * Shape::d2w(r * hinv); }    // d^2W/dr^2
   };
 
   // paper, eq. 10: cubic spline with sigma = 15/(7 pi) in 2D, 3/(2 pi) in 3D
@@ -63,6 +64,7 @@ namespace FSI {
       const T t = greater(2.0 - q, T(0.0));
       return where(q < T(1.0), -2.0 + 1.5 * q, -0.5 * t * t / greater(q, T(1.0)));
     }
+    static double d2w(double q) { return q < 1.0 ? 3.0 * q - 2.0 : greater(2.0 - q, 0.0); }
   };
 
   // paper, eq. 11: quintic spline with sigma = 7/(478 pi) in 2D, 1/(120 pi) in 3D
@@ -79,6 +81,11 @@ namespace FSI {
       // the innermost piece in powers of q: the sum of the three has no 1/q left
       const T s = pow4(greater(3.0 - q, T(0.0))) - 6.0 * pow4(greater(2.0 - q, T(0.0)));
       return where(q < T(1.0), -120.0 + q * q * (120.0 - 50.0 * q), -5.0 * s / greater(q, T(1.0)));
+    }
+    static double d2w(double q)
+    {
+      const double a = greater(3.0 - q, 0.0), b = greater(2.0 - q, 0.0), c = greater(1.0 - q, 0.0);
+      return 20.0 * (a * a * a - 6.0 * (b * b * b) + 15.0 * (c * c * c));
     }
 
    private:
@@ -102,6 +109,11 @@ namespace FSI {
     {
       const T t = greater(1.0 - 0.5 * q, T(0.0));
       return -5.0 * t * t * t;
+    }
+    static double d2w(double q)
+    {
+      const double t = greater(1.0 - 0.5 * q, 0.0);
+      return t * t * (7.5 * q - 5.0 * t);
     }
   };
 

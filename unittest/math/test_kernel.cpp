@@ -128,6 +128,9 @@ TEST_P(KernelTest, GradientIsDerivative)
         const double derivative = (45.0 * d(1) - 9.0 * d(2) + d(3)) / (60.0 * e);
         EXPECT_LT(derivative, 0.0);
         EXPECT_NEAR(k.gradient(r) * r, derivative, 1e-8 * std::fabs(derivative)) << "r/h " << r / H;
+        const auto slope = [&](int m) { return k.gradient(r + m * e) * (r + m * e) - k.gradient(r - m * e) * (r - m * e); };
+        EXPECT_NEAR(k.curvature(r), (45.0 * slope(1) - 9.0 * slope(2) + slope(3)) / (60.0 * e), 1e-8 * std::fabs(k.curvature(0.0)))
+            << "r/h " << r / H;
       }
     }
   });
@@ -140,6 +143,7 @@ TEST_P(KernelTest, GradientFiniteAtZero)
     // (dW/dr)/r tends to the second derivative; one division and one multiplication: 1e-15, and linear in q beside it
     const double limit = c.alpha / std::pow(H, c.dim + 2) * c.curvature;
     EXPECT_NEAR(k.gradient(0.0), limit, 1e-14 * std::fabs(limit));
+    EXPECT_NEAR(k.curvature(0.0), limit, 1e-14 * std::fabs(limit));
     EXPECT_NEAR(k.gradient(1e-9 * H), limit, 1e-8 * std::fabs(limit));
   });
 }
