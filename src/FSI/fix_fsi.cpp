@@ -543,6 +543,8 @@ void FixFSI::update_state(bool advance)
       wmask[i] = away.holds(x[i]) || state[atom->type[i]].species == RIGID ? 0 : walls.near(x[i], cut);
   }
 
+  if (fluid) fluid->begin_step();
+
   // the gradient's coefficients are needed by forces, so in setup too
   const bool gradient = need_grad && (advance || solid->terms());
   if ((advance && rate) || gradient) {

@@ -23,6 +23,8 @@
 #ifndef LMP_FSI_CONTACT_H
 #define LMP_FSI_CONTACT_H
 
+#include "fsi_pack.h"
+
 #include <cmath>
 
 namespace LAMMPS_NS {
@@ -35,11 +37,12 @@ namespace FSI {
     {
       scale /= stiffness(dim, R);
     }
-    // factor f of the force F_i = f x_ij; Ki, Kj: bulk moduli
-    double operator()(double rsq, double Ki, double Kj) const
+    // factor f of the force F_i = f x_ij; Ki, Kj: bulk moduli; T: double or Pack
+    template <class T> FSI_INLINE T operator()(const T &rsq, double Ki, double Kj) const
     {
-      if (rsq >= reachsq) return 0.0;
-      return 2.0 * Ki * Kj / (Ki + Kj) * scale * (reach / std::sqrt(rsq + 1.0e-18 * reachsq) - 1.0);
+      if (none(rsq < T(reachsq))) return T(0.0);
+      const double k = 2.0 * Ki * Kj / (Ki + Kj) * scale;
+      return where(rsq < T(reachsq), k * (reach / root(rsq + T(1.0e-18 * reachsq)) - T(1.0)), T(0.0));
     }
     double energy(double rsq, double Ki, double Kj) const
     {

@@ -11,46 +11,39 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// The rows of the neighbour list that most of a fluid's time goes into, those of one fluid, four pairs at a time: density rate
-// and forces of pair_style fsi/fluid, which computes all other rows pair by pair with the same formulas.
-// There is no branch on the distance: kernels are zero from their support on. The images of neighbours in a mirror wall without
-// extent (fsi_walls.h) are rows of their own: who is not near the wall is too far from its images, too.
+// The loops of fsi_fluid_loops.h, row by row, for a kernel: one text for numbers one by one and several side by side (T: double or Pack).
+//
+// There is no branch on the distance: kernels are zero from their support on, and who is not near a wall is too far from its
+// images, too. Places that are left over at the end of a row hold i itself, which adds nothing where no formula divides by the
+// distance; but it has a kernel and images, so there it has no weight. What is constant comes by value: stores to the sums could
+// change what is behind a reference.
 
 #ifndef LMP_FSI_FLUID_ROWS_H
 #define LMP_FSI_FLUID_ROWS_H
 
+#include "fsi_contact.h"
 #include "fsi_density_diffusion.h"
+#include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
-#include "fsi_material.h"
+#include "fsi_shift.h"
+#include "fsi_tensor.h"
 #include "fsi_viscosity_artificial.h"
 #include "fsi_viscosity_laminar.h"
-#include "fsi_walls.h"
 
-#include <array>
-#include <vector>
+#include <type_traits>
 
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // What a loop needs of a particle, side by side (in 2D a cache line).
-  template <int D> struct Point {
-    double x[D], v[D], rho, vol;
-    double p, pv2;    // force loop: pressure, p V^2; rate loop: whether there is pressure, hydrostatic part of the density
-    std::array<double, 3> position(const double *atom_x) const { return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]}; }
-  };
+  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too
+  namespace Flag {
+    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64 };
+  }
 
-  // Rows of a neighbour list: with newton on, so that each pair is in one of them, and without special bonds in its entries.
-  struct Rows {
-    const std::vector<int> &i;
-    const int *numneigh;
-    int **firstneigh;
-  };
+  template <class T, int D> struct Particle {
+    T x[D], v[D], rho, vol, p, pv2;
 
-#if FSI_PACKS
-  template <int D> struct PackOfPoints {
-    Pack x[D], v[D], rho, vol, p, pv2;
-
-    FSI_INLINE explicit PackOfPoints(const Point<D> &a)
+    FSI_INLINE explicit Particle(const Point<D> &a)
     {
       for (int d = 0; d < D; d++) {
         x[d] = a.x[d];
@@ -61,29 +54,33 @@ namespace FSI {
       p = a.p;
       pv2 = a.pv2;
     }
-    FSI_INLINE PackOfPoints(const Point<D> *point, const int *j)
+    FSI_INLINE Particle(const Point<D> *point, const int *j)
     {
-      const Point<D> &a = point[j[0]], &b = point[j[1]], &c = point[j[2]], &d = point[j[3]];
-      Pack one[4], two[4];
-      Pack::columns(a.x, b.x, c.x, d.x, one);
-      Pack::columns(a.x + 4, b.x + 4, c.x + 4, d.x + 4, two);
-      x[0] = one[0];
-      x[1] = one[1];
-      if constexpr (D == 2) {
-        v[0] = one[2];
-        v[1] = one[3];
-        rho = two[0];
-        vol = two[1];
-        p = two[2];
-        pv2 = two[3];
+      if constexpr (std::is_same_v<T, double>) {
+        *this = Particle(point[*j]);
       } else {
-        x[2] = one[2];
-        v[0] = one[3];
-        v[1] = two[0];
-        v[2] = two[1];
-        rho = two[2];
-        vol = two[3];
-        Pack::columns(&a.p, &b.p, &c.p, &d.p, p, pv2);
+        const Point<D> &a = point[j[0]], &b = point[j[1]], &c = point[j[2]], &d = point[j[3]];
+        T one[4], two[4];
+        T::columns(a.x, b.x, c.x, d.x, one);
+        T::columns(a.x + 4, b.x + 4, c.x + 4, d.x + 4, two);
+        x[0] = one[0];
+        x[1] = one[1];
+        if constexpr (D == 2) {
+          v[0] = one[2];
+          v[1] = one[3];
+          rho = two[0];
+          vol = two[1];
+          p = two[2];
+          pv2 = two[3];
+        } else {
+          x[2] = one[2];
+          v[0] = one[3];
+          v[1] = two[0];
+          v[2] = two[1];
+          rho = two[2];
+          vol = two[3];
+          T::columns(&a.p, &b.p, &c.p, &d.p, p, pv2);
+        }
       }
     }
     FSI_INLINE void reflect(const Mirror &mirror)
@@ -95,129 +92,429 @@ namespace FSI {
     }
   };
 
-  template <int D> FSI_INLINE Pack product(const Pack (&a)[D], const Pack (&b)[D])
+  template <int D, class T> FSI_INLINE T product(const T (&a)[D], const T (&b)[D])
   {
-    Pack s = a[0] * b[0];
+    T s = a[0] * b[0];
     for (int d = 1; d < D; d++) s += a[d] * b[d];
     return s;
   }
-  // c = a - b; returns its square
-  template <int D> FSI_INLINE Pack difference(const Pack (&a)[D], const Pack (&b)[D], Pack (&c)[D])
+  template <int D, class T> FSI_INLINE void difference(const T (&a)[D], const T (&b)[D], T (&c)[D])
   {
     for (int d = 0; d < D; d++) c[d] = a[d] - b[d];
-    return product(c, c);
   }
 
-  // Calls pairs(j, live) with four neighbours of row i at a time. Places that are left over hold i itself, with live = 0, the others
-  // with 1: what i adds to sums of its own is zero where no formula divides by the distance, but it has a kernel and images.
-  template <class Pairs> FSI_INLINE void for_packs(const Rows &rows, int i, Pairs pairs)
+  // Calls pairs(j, weight) with the places of as many neighbours as T holds. The weight is 1, but 0 for places that are left over
+  // and, in rows of images, 1/2 for i itself: it is seen from both sides of the pair.
+  template <class T, bool MIRRORED, class Pairs> FSI_INLINE void for_neighbors(const Row &row, Pairs pairs)
   {
-    const int *const list = rows.firstneigh[i];
-    const int n = rows.numneigh[i], full = n & ~(Pack::WIDTH - 1);
-    for (int jj = 0; jj < full; jj += Pack::WIDTH) pairs(list + jj, Pack(1.0));
-    if (full == n) return;
-    int j[Pack::WIDTH];
-    for (int k = 0; k < Pack::WIDTH; k++) j[k] = full + k < n ? list[full + k] : i;
-    pairs(j, Pack(1.0, full + 1 < n ? 1.0 : 0.0, full + 2 < n ? 1.0 : 0.0, full + 3 < n ? 1.0 : 0.0));
+    constexpr int W = Lanes<T>::WIDTH;
+    const auto weight = [&](const int *j, int n) __attribute__((always_inline)) {
+      const T there = n == W ? T(1.0) : Lanes<T>::first(n);
+      return MIRRORED ? there * Lanes<T>::make([&](int k) { return j[k] == row.i ? 0.5 : 1.0; }) : there;
+    };
+    const int full = row.n & ~(W - 1);
+    for (int jj = 0; jj < full; jj += W) pairs(row.j + jj, weight(row.j + jj, W));
+    if (full == row.n) return;
+    int j[W];
+    for (int k = 0; k < W; k++) j[k] = full + k < row.n ? row.j[full + k] : row.i;
+    pairs(j, weight(j, row.n - full));
   }
 
-  // sum_j W_ij into psi
-  template <class K> FSI_AVX2 void density_rows(const Rows &rows, const K kernel, const double (*const x)[3], double *const psi)
+  // 1 for a pair that only this rank visits, else 1/2
+  template <class T> FSI_INLINE T share_of(int i, const int *j, int nlocal, bool newton)
   {
-    constexpr int D = K::DIM;
-    for (const int i : rows.i) {
-      Pack sum = 0.0;
-      for_packs(rows, i, [&](const int *j, const Pack &live) __attribute__((always_inline)) {
-        Pack rsq = 0.0;
-        for (int d = 0; d < D; d++) {
-          const Pack r = x[i][d] - Pack(x[j[0]][d], x[j[1]][d], x[j[2]][d], x[j[3]][d]);
-          rsq += r * r;
-        }
-        const Pack w = live * kernel.W(root(rsq));
-        sum += w;
-        for (int k = 0; k < Pack::WIDTH; k++) psi[j[k]] += w.v[k];
-      });
-      psi[i] += sum.sum();
-    }
+    if (newton) return T(1.0);
+    return Lanes<T>::make([&](int k) { return i < nlocal && j[k] < nlocal ? 1.0 : 0.5; });
   }
 
-  // m_i dpsi_i/dt into rate, with density diffusion: see PairFSIFluid::rate_pairs. What is constant comes by value: stores to the
-  // sums could change what is behind a reference.
-  template <class K, bool DIFFUSION, bool IMAGES>
-  FSI_AVX2 void rate_rows(const Rows &rows, const Mirror mirror, const K kernel, const DensityDiffusion diffusion,
-                          const Point<K::DIM> *const point, double *const rate)
+  // d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which makes the work of the pair force
+  // -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures
+  template <class T, class K, int KIND, int FLAGS>
+  FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
+                            const RateLaws laws, double *const rate, PairSums *const sums)
   {
     constexpr int D = K::DIM;
-    for (const int i : rows.i) {
-      const PackOfPoints<D> pi(point[i]);
-      Pack sum = 0.0, flux = 0.0;
-      for_packs(rows, i, [&](const int *j, const Pack &live) __attribute__((always_inline)) {
-        PackOfPoints<D> pj(point, j);
-        if (IMAGES) pj.reflect(mirror);
-        Pack x[D], v[D];
-        const Pack rsq = difference(pi.x, pj.x, x), vdotx = (difference(pi.v, pj.v, v), product(v, x));
-        const Pack g = IMAGES ? live * kernel.gradient(root(rsq)) : kernel.gradient(root(rsq));
-        const Pack s = g * vdotx;
+    using L = Lanes<T>;
+    const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+    T taken = 0.0;
+    for (int n = 0; n < nrows; n++) {
+      const Row row = rows[n];
+      if (row.n == 0) continue;
+      const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
+      const Particle<T, D> pi(point[i]);
+      const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c, laws.gravity);
+      T sum = 0.0, flux = 0.0;
+      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
+        Particle<T, D> pj(point, j);
+        if (FLAGS & Flag::IMAGES) pj.reflect(mirror);
+        T x[D], v[D];
+        difference(pi.x, pj.x, x);
+        difference(pi.v, pj.v, v);
+        T g = kernel.gradient(root(product(x, x)));
+        if (FLAGS & Flag::IMAGES) g = weight * g;
+        const T s = g * product(v, x);
         sum += s;
-        Pack rate_j = pj.rho * pj.vol * s;
-        if (DIFFUSION) {
-          const Pack k = diffusion(pi.rho, pj.rho, greater(pi.p, pj.p) * (pi.pv2 - pj.pv2), g);
+        if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
+        T rate_j = pj.rho * pj.vol * s;
+        if (FLAGS & Flag::DIFFUSION) {
+          const T k = diffusion(pi.rho, pj.rho, greater(pi.p, pj.p) * (pi.pv2 - pj.pv2), g);
           flux += k * pj.vol;
           rate_j -= k * pi.vol;
+          // m p/rho^2 of what diffusion adds to rho
+          if (FLAGS & Flag::SUMS)
+            taken -= share_of<T>(i, j, in.nlocal, in.newton) * k * pi.vol * pj.vol *
+                (T(laws.pressure_over_density[i]) - L::read(laws.pressure_over_density, j));
         }
-        for (int k = 0; k < Pack::WIDTH; k++) rate[j[k]] += rate_j.v[k];
+        L::add(rate_j, rate, j);
       });
-      rate[i] += point[i].rho * point[i].vol * sum.sum() + flux.sum();
+      rate[i] += point[i].rho * point[i].vol * L::sum(sum) + L::sum(flux);
     }
+    if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(taken);
   }
 
-  // doubles from the forces on a particle to those on the next: as in atom->f; in 3D four, which a register holds
-  constexpr int row_of_forces(int dim) { return dim == 3 ? 4 : 3; }
+  // Pressure p_i V_i^2 + p_j V_j^2 that fluid particle i and its neighbour share (paper eq. 14), by the rule of the pair; x_j: of the
+  // neighbour itself, not of its image
+  template <class T, int KIND, int D>
+  FSI_INLINE T shared_pressure(const Particle<T, D> &pi, const Particle<T, D> &pj, const T *x_j, const double *extrapolate, double floor)
+  {
+    if (KIND == WITH_SOLID) {
+      // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
+      T p = pi.p;
+      for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
+      return pi.pv2 + greater(p, T(floor)) * pj.vol * pj.vol;
+    }
+    if (KIND == WITH_SOLID_PRESSURE) return greater(pi.pv2 + pj.pv2, T(0.0));    // no suction
+    return pi.pv2 + pj.pv2;
+  }
 
-  // pressure and viscosity into f: see PairFSIFluid::force_pairs; the forces on the rows' particles are added to total. No
-  // laminar viscosity of images: at a no-slip wall it has velocities of its own.
-  template <class K, bool ARTIFICIAL, bool LAMINAR, bool IMAGES>
-  FSI_AVX2 void force_rows(const Rows &rows, const Mirror mirror, const K kernel, const ArtificialViscosity artificial, const double c,
-                           const LaminarViscosity<K::DIM> viscous, const State *const state, const int *const type,
-                           const Point<K::DIM> *const point, double (*const f)[row_of_forces(K::DIM)], double *const total)
+  // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14)
+  template <class T, class K, int KIND, int FLAGS>
+  FSI_INLINE void force_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
+                             const ForceLaws laws, double (*const f)[row_of_forces(K::DIM)], double *const total, PairSums *const sums)
   {
     constexpr int D = K::DIM;
-    for (const int i : rows.i) {
-      const PackOfPoints<D> pi(point[i]);
-      const double visc = LAMINAR ? 2.0 * state[type[i]].viscosity : 0.0;
-      Pack sum[D];
-      for (int d = 0; d < D; d++) sum[d] = 0.0;
-      for_packs(rows, i, [&](const int *j, const Pack &live) __attribute__((always_inline)) {
-        PackOfPoints<D> pj(point, j);
-        if (IMAGES) pj.reflect(mirror);
-        Pack x[D], v[D], force[D];    // force on j
-        const Pack rsq = difference(pi.x, pj.x, x), vdotx = (difference(pi.v, pj.v, v), product(v, x));
-        const Pack g = IMAGES ? live * kernel.gradient(root(rsq)) : kernel.gradient(root(rsq));
-        Pack p = pi.pv2 + pj.pv2;
-        if (ARTIFICIAL) p += artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), c, pi.vol * pj.vol);
-        p = p * g;
+    using L = Lanes<T>;
+    const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+    const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
+    const LaminarViscosity<D> viscous(kernel.h, laws.laminar == 2);
+    T by_artificial = 0.0, by_laminar = 0.0, by_coupling = 0.0, by_walls = 0.0, virial[6], on_all[D];
+    for (T &w : virial) w = 0.0;
+    for (T &w : on_all) w = 0.0;
+    for (int n = 0; n < nrows; n++) {
+      const Row row = rows[n];
+      if (row.n == 0) continue;
+      const int i = row.i, type_j = in.type[row.j[0]];
+      const State &fluid = in.state[in.type[i]], &other = in.state[type_j];
+      const Particle<T, D> pi(point[i]);
+      const double c = fluid.c < other.c ? fluid.c : other.c, bulk = fluid.rho0 * fluid.csq, floor = fluid.floor;
+      // beyond a wall with no slip there is fluid, where a wall slips it does not rub
+      const double rubs = KIND != WITH_WALL || other.noslip ? 1.0 : 0.0;
+      const double visc = laws.laminar ? (KIND == WITH_WALL ? 2.0 * rubs : 1.0) * (fluid.viscosity + other.viscosity) : 0.0;
+      T sum[D];
+      for (T &s : sum) s = 0.0;
+      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
+        Particle<T, D> pj(point, j);
+        const Particle<T, D> original = pj;
+        if (FLAGS & Flag::IMAGES) pj.reflect(mirror);
+        T x[D], v[D];
+        difference(pi.x, pj.x, x);
+        difference(pi.v, pj.v, v);
+        const T rsq = product(x, x), vdotx = product(v, x);
+        T g = kernel.gradient(root(rsq));
+        if (FLAGS & Flag::IMAGES) g = weight * g;
+        const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
+
+        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, laws.extrapolate, floor);
+        // beyond the compression of the fluid and, in density mode summation, of the solid
+        T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
+        if (FLAGS & Flag::ARTIFICIAL) {
+          T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), c, pi.vol * pj.vol);
+          if (KIND == WITH_WALL) q = rubs * q;
+          p += q;
+          if (FLAGS & Flag::SUMS) by_artificial += share * q * g * vdotx;
+        }
+        p = -p * g;
+        coupled = coupled * g * vdotx;
+
+        T force[D];    // on i
         for (int d = 0; d < D; d++) force[d] = p * x[d];
-        if (LAMINAR) {
-          for (int d = 0; d < D; d++) v[d] = -v[d];
-          viscous(g, rsq, visc, pi.vol * pj.vol, x, v, force);
+        if (KIND == WITH_WALL) {
+          // the guard keeps out what has no pressure of its own
+          const T k = laws.guard[type_j](rsq, bulk, bulk);
+          for (int d = 0; d < D; d++) force[d] += k * x[d];
+          coupled -= k * vdotx;
+        }
+        if constexpr (KIND == WITH_SOLID_FULL) {
+          // the stress of the solid crosses, too: it is that of the particle, not of its image, so look from the solid
+          double seen[D], shear[D] = {};
+          for (int d = 0; d < D; d++) seen[d] = ((FLAGS & Flag::IMAGES) ? mirror.sign[d] : 1.0) * x[d];
+          if (laws.stress) dot<D>(Sym<D>::load(laws.stress[*j]), seen, shear);
+          for (int d = 0; d < D; d++) {
+            const double s = ((FLAGS & Flag::IMAGES) ? mirror.sign[d] : 1.0) * shear[d] * pj.vol * pj.vol * g;
+            force[d] += s;
+            coupled -= s * v[d];
+          }
+        }
+        if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) by_coupling += share * coupled;
+
+        T on_j[D];
+        for (int d = 0; d < D; d++) on_j[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * force[d] : -force[d];
+        if (FLAGS & Flag::LAMINAR) {
+          T rubbing[D];
+          for (T &r : rubbing) r = 0.0;
+          if (FLAGS & Flag::IMAGES) {
+            // of both, each relative to the other's image, which a no-slip wall turns around
+            T w[D], seen[D], back[D];
+            for (int d = 0; d < D; d++) {
+              w[d] = pi.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * original.v[d]);
+              back[d] = original.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * pi.v[d]);
+              seen[d] = -mirror.sign[d] * x[d];
+            }
+            const T vv = pi.vol * pj.vol, loss = viscous(g, rsq, visc, vv, x, w, rubbing) + viscous(g, rsq, visc, vv, seen, back, on_j);
+            if (FLAGS & Flag::SUMS) by_laminar += 0.5 * share * loss;
+          } else if (KIND == WITH_WALL) {
+            // fluid beyond the wall, with the velocity extrapolated
+            T w[D];
+            for (int d = 0; d < D; d++) w[d] = pi.v[d] - L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
+            viscous(g, rsq, visc, pi.vol * pj.vol, x, w, rubbing);
+            if (FLAGS & Flag::SUMS) by_laminar -= share * product(rubbing, v);
+          } else {
+            const T loss = viscous(g, rsq, visc, pi.vol * pj.vol, x, v, rubbing);
+            if (FLAGS & Flag::SUMS) by_laminar += share * loss;
+          }
+          for (int d = 0; d < D; d++) {
+            force[d] += rubbing[d];
+            if (!(FLAGS & Flag::IMAGES)) on_j[d] -= rubbing[d];
+          }
+        }
+        // what wall particles are given: they are not in the sum of energies
+        if ((FLAGS & Flag::SUMS) && KIND == WITH_WALL) by_walls -= share * product(force, pj.v);
+        if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) {
+          virial[0] += share * x[0] * force[0];
+          virial[1] += share * x[1] * force[1];
+          virial[3] += share * x[0] * force[1];
+          if (D == 3) {
+            virial[2] += share * x[D - 1] * force[D - 1];
+            virial[4] += share * x[0] * force[D - 1];
+            virial[5] += share * x[1] * force[D - 1];
+          }
         }
         for (int d = 0; d < D; d++) {
           sum[d] += force[d];
-          if (IMAGES) force[d] = mirror.sign[d] * force[d];
+          if (FLAGS & Flag::IMAGES) on_all[d] += share * (force[d] + on_j[d]);
         }
-        if constexpr (D == 3)
-          Pack::add_rows(force[0], force[1], force[2], f[j[0]], f[j[1]], f[j[2]], f[j[3]]);
-        else
-          for (int k = 0; k < Pack::WIDTH; k++)
-            for (int d = 0; d < D; d++) f[j[k]][d] += force[d].v[k];
+        L::add_rows(on_j, f, j, D);
       });
-      for (int d = 0; d < D; d++) {
-        f[i][d] -= sum[d].sum();
-        if (IMAGES) total[d] -= sum[d].sum();
-      }
+      for (int d = 0; d < D; d++) f[i][d] += L::sum(sum[d]);
+    }
+    if (FLAGS & Flag::IMAGES)
+      for (int d = 0; d < D; d++) total[d] += L::sum(on_all[d]);
+    if (FLAGS & Flag::SUMS) {
+      sums->artificial += L::sum(by_artificial);
+      sums->laminar += L::sum(by_laminar);
+      sums->coupling += L::sum(by_coupling);
+      sums->walls += L::sum(by_walls);
+      for (int k = 0; k < 6; k++) sums->virial[k] += L::sum(virial[k]);
     }
   }
+
+  // sums of particle shifting; solids and walls count, but are not shifted
+  template <class T, class K, int FLAGS>
+  FSI_INLINE void shift_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
+                             const double wdx, double *const shift)
+  {
+    constexpr int D = K::DIM, N = Shift<D>::N;
+    using L = Lanes<T>;
+    const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+    const Shift<D> law(wdx);
+    for (int n = 0; n < nrows; n++) {
+      const Row row = rows[n];
+      if (row.n == 0) continue;
+      const int i = row.i;
+      const Particle<T, D> pi(point[i]);
+      T sum[N];
+      for (T &s : sum) s = 0.0;
+      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
+        Particle<T, D> pj(point, j);
+        if (FLAGS & Flag::IMAGES) pj.reflect(mirror);
+        T x[D];
+        difference(pi.x, pj.x, x);
+        const T rsq = product(x, x), r = root(rsq), w = kernel.W(r);
+        T g = kernel.gradient(r);
+        if (FLAGS & Flag::IMAGES) g = weight * g;
+        law.add(sum, pj.vol, g, w, rsq, x);
+        if (!(FLAGS & Flag::BOTH)) return;
+        T back[D], of_j[N];
+        for (int d = 0; d < D; d++) back[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * x[d] : -x[d];
+        for (T &s : of_j) s = 0.0;
+        law.add(of_j, pi.vol, g, w, rsq, back);
+        for (int k = 0; k < Lanes<T>::WIDTH; k++) {
+          double *const to = shift + (size_t) N * j[k];
+          for (int m = 0; m < N; m++) to[m] += L::place(of_j[m], k);
+        }
+      });
+      double *const to = shift + (size_t) N * i;
+      for (int m = 0; m < N; m++) to[m] += L::sum(sum[m]);
+    }
+  }
+
+  // W_ij, or V_j x_ji.grad_i W_ij
+  template <class T, class K, int FLAGS>
+  FSI_INLINE void distance_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const double (*const x)[3],
+                                const double *const vol, double *const sum)
+  {
+    constexpr int D = K::DIM;
+    using L = Lanes<T>;
+    for (int n = 0; n < nrows; n++) {
+      const Row row = rows[n];
+      if (row.n == 0) continue;
+      const int i = row.i;
+      T of_i = 0.0;
+      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
+        T rsq = 0.0;
+        for (int d = 0; d < D; d++) {
+          const T xj = L::make([&](int k) { return x[j[k]][d]; });
+          const T r = x[i][d] - ((FLAGS & Flag::IMAGES) ? mirror.x[d] + mirror.sign[d] * xj : xj);
+          rsq += r * r;
+        }
+        const T r = root(rsq);
+        if (FLAGS & Flag::DIVERGENCE) {
+          const T w = -weight * rsq * kernel.gradient(r);
+          of_i += w * L::read(vol, j);
+          if (FLAGS & Flag::BOTH) L::add(w * vol[i], sum, j);
+        } else {
+          const T w = weight * kernel.W(r);
+          of_i += w;
+          if (FLAGS & Flag::BOTH) L::add(w, sum, j);
+        }
+      });
+      sum[i] += L::sum(of_i);
+    }
+  }
+
+  // calls f with the flags among ALL that are set, as a constant
+  template <int ALL, int SET = 0, class F> void with_flags(int flags, F &&f)
+  {
+    if constexpr (ALL == 0) f(std::integral_constant<int, SET>());
+    else {
+      constexpr int LOWEST = ALL & -ALL;
+      if (flags & LOWEST) with_flags<(ALL & ~LOWEST), (SET | LOWEST)>(flags, f);
+      else with_flags<(ALL & ~LOWEST), SET>(flags, f);
+    }
+  }
+
+#if FSI_PACKS
+  // calls a loop as compiled for a processor that has packs
+  template <class Loop> FSI_AVX2 inline void packed(Loop loop)
+  {
+    loop(Pack());
+  }
 #endif
+
+  template <class K> class FluidLoopsOf : public FluidLoops {
+    static constexpr int D = K::DIM;
+    const K kernel;
+
+    // loop(number type): with packs, if the processor has them
+    template <bool PACKS = true, class Loop> static void run(Loop loop)
+    {
+#if FSI_PACKS
+      if constexpr (PACKS)
+        if (have_packs()) return packed(loop);
+#endif
+      loop(0.0);
+    }
+
+   public:
+    explicit FluidLoopsOf(double h) : kernel(h) {}
+
+    void rates(PairKind kind, const std::vector<Row> &rows, const Mirror *image, const FluidParticles &in, const RateLaws &laws, double *rate,
+               PairSums *sums) const override
+    {
+      using namespace Flag;
+      const Mirror mirror = image ? *image : Mirror();
+      const auto loop = [&](auto kind_is, auto flags) {
+        run([&](auto number) __attribute__((always_inline)) {
+          rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate, sums);
+        });
+      };
+      const int images = image ? IMAGES : 0, diffusion = kind != WITH_FLUID || laws.delta == 0.0 ? 0 : sums ? DIFFUSION | SUMS : DIFFUSION;
+      with_flags<IMAGES | DIFFUSION | SUMS>(images | diffusion, [&](auto flags) {
+        if constexpr ((flags() & DIFFUSION) || !(flags() & SUMS)) {
+          if constexpr (!(flags() & DIFFUSION))
+            if (kind != WITH_FLUID) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
+          loop(std::integral_constant<int, WITH_FLUID>(), flags);
+        }
+      });
+    }
+
+    void forces(PairKind kind, const std::vector<Row> &rows, const Mirror *image, const FluidParticles &in, const ForceLaws &laws,
+                double *force, double *total, PairSums *sums) const override
+    {
+      using namespace Flag;
+      const Mirror mirror = image ? *image : Mirror();
+      auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
+      PairSums unused;
+      if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL)) sums = &unused;
+      const auto loop = [&](auto packs, auto kind_is, auto flags) {
+        run<packs()>([&](auto number) __attribute__((always_inline)) {
+          force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
+        });
+      };
+      const std::true_type packs;
+      const std::false_type no_packs;
+      // with sums there is one loop for all effects: those that are off have coefficients of zero
+      constexpr int ALL = ARTIFICIAL | LAMINAR | SUMS;
+      const int effects = (laws.alpha > 0.0 || laws.beta > 0.0 ? ARTIFICIAL : 0) | (laws.laminar ? LAMINAR : 0);
+      with_flags<ALL | IMAGES>((sums ? ALL : effects) | (image ? IMAGES : 0), [&](auto flags) {
+        if constexpr (!(flags() & SUMS) || (flags() & ALL) == ALL) {
+          if (kind == WITH_FLUID) loop(packs, std::integral_constant<int, WITH_FLUID>(), flags);
+          if (kind == WITH_SOLID) loop(packs, std::integral_constant<int, WITH_SOLID>(), flags);
+          if constexpr (!(flags() & IMAGES))    // walls of particles have no images
+            if (kind == WITH_WALL) loop(packs, std::integral_constant<int, WITH_WALL>(), flags);
+          if constexpr (flags() & SUMS) {
+            if (kind == WITH_SOLID_PRESSURE) loop(no_packs, std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
+            if (kind == WITH_SOLID_FULL) loop(no_packs, std::integral_constant<int, WITH_SOLID_FULL>(), flags);
+          }
+        }
+      });
+    }
+
+    void shifts(PairKind kind, const std::vector<Row> &rows, const Mirror *image, const FluidParticles &in, double wdx,
+                double *shift) const override
+    {
+      const Mirror mirror = image ? *image : Mirror();
+      with_flags<Flag::IMAGES | Flag::BOTH>((image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0), [&](auto flags) {
+        run([&](auto number) __attribute__((always_inline)) {
+          shift_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, wdx, shift);
+        });
+      });
+    }
+
+    void number_density(const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], double *sum) const override
+    {
+      distances(0, rows, both, image, x, nullptr, sum);
+    }
+
+    void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], const double *vol,
+                             double *sum) const override
+    {
+      distances(Flag::DIVERGENCE, rows, both, image, x, vol, sum);
+    }
+
+   private:
+    void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], const double *vol,
+                   double *sum) const
+    {
+      const Mirror mirror = image ? *image : Mirror();
+      with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH>(
+          what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
+            run([&](auto number) __attribute__((always_inline)) {
+              distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, x, vol, sum);
+            });
+          });
+    }
+  };
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

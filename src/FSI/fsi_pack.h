@@ -98,6 +98,16 @@ namespace FSI {
       store(d, load(d) + row[3]);
     }
 
+    // likewise x, y to the two doubles at a, b, c, d
+    FSI_INLINE static void add_rows(const Pack &x, const Pack &y, double *a, double *b, double *c, double *d)
+    {
+      const Pack low = shuffle<0, 4, 2, 6>(x, y), high = shuffle<1, 5, 3, 7>(x, y);
+      add(a, Half{low.v[0], low.v[1]});
+      add(b, Half{high.v[0], high.v[1]});
+      add(c, Half{low.v[2], low.v[3]});
+      add(d, Half{high.v[2], high.v[3]});
+    }
+
     // the two doubles at each of a, b, c, d
     FSI_INLINE static void columns(const double *a, const double *b, const double *c, const double *d, Pack &first, Pack &second)
     {
@@ -106,7 +116,22 @@ namespace FSI {
       second = shuffle<1, 5, 3, 7>(A, B);
     }
 
+    FSI_INLINE static Pack load(const double *p)
+    {
+      Pack x;
+      __builtin_memcpy(&x.v, p, sizeof(x.v));
+      return x;
+    }
+
    private:
+    typedef double Half __attribute__((vector_size(2 * sizeof(double))));
+    FSI_INLINE static void add(double *p, const Half &x)
+    {
+      Half y;
+      __builtin_memcpy(&y, p, sizeof(y));
+      y += x;
+      __builtin_memcpy(p, &y, sizeof(y));
+    }
     FSI_INLINE static Pack make(const Vector &x)
     {
       Pack p;
@@ -121,12 +146,6 @@ namespace FSI {
       out[1] = shuffle<0, 1, 4, 5>(high, high2);
       out[2] = shuffle<2, 3, 6, 7>(low, low2);
       out[3] = shuffle<2, 3, 6, 7>(high, high2);
-    }
-    FSI_INLINE static Pack load(const double *p)
-    {
-      Pack x;
-      __builtin_memcpy(&x.v, p, sizeof(x.v));
-      return x;
     }
     FSI_INLINE static void store(double *p, const Pack &x) { __builtin_memcpy(p, &x.v, sizeof(x.v)); }
     // elements of a (0 to 3) and b (4 to 7)
@@ -144,6 +163,50 @@ namespace FSI {
   inline bool have_packs() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 #else
   inline bool have_packs() { return false; }
+#endif
+
+  // What a loop over particles j needs of a number type: how many it takes at a time, and how it reads and adds to their entries.
+  template <class T> struct Lanes;
+  template <> struct Lanes<double> {
+    static constexpr int WIDTH = 1;
+    FSI_INLINE static double read(const double *a, const int *j) { return a[*j]; }
+    FSI_INLINE static void add(double x, double *a, const int *j) { a[*j] += x; }
+    FSI_INLINE static double sum(double x) { return x; }
+    FSI_INLINE static double place(double x, int) { return x; }
+    // f(k) for place k
+    template <class F> FSI_INLINE static double make(F f) { return f(0); }
+    // 1 in the first n places, else 0
+    FSI_INLINE static double first(int n) { return n; }
+    template <int N> FSI_INLINE static void add_rows(const double *x, double (*a)[N], const int *j, int n)
+    {
+      for (int d = 0; d < n; d++) a[*j][d] += x[d];
+    }
+  };
+#if FSI_PACKS
+  template <> struct Lanes<Pack> {
+    static constexpr int WIDTH = Pack::WIDTH;
+    FSI_INLINE static Pack read(const double *a, const int *j) { return {a[j[0]], a[j[1]], a[j[2]], a[j[3]]}; }
+    FSI_INLINE static void add(const Pack &x, double *a, const int *j)
+    {
+      for (int k = 0; k < WIDTH; k++) a[j[k]] += x.v[k];
+    }
+    FSI_INLINE static double sum(const Pack &x) { return x.sum(); }
+    FSI_INLINE static double place(const Pack &x, int k) { return x.v[k]; }
+    template <class F> FSI_INLINE static Pack make(F f) { return {f(0), f(1), f(2), f(3)}; }
+    FSI_INLINE static Pack first(int n)
+    {
+      static constexpr double ones[2 * WIDTH] = {1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0};
+      return Pack::load(ones + WIDTH - n);
+    }
+    FSI_INLINE static void add_rows(const Pack *x, double (*a)[2], const int *j, int)
+    {
+      Pack::add_rows(x[0], x[1], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
+    }
+    FSI_INLINE static void add_rows(const Pack *x, double (*a)[4], const int *j, int)
+    {
+      Pack::add_rows(x[0], x[1], x[2], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
+    }
+  };
 #endif
 
 }    // namespace FSI

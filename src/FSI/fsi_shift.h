@@ -28,6 +28,8 @@
 #ifndef LMP_FSI_SHIFT_H
 #define LMP_FSI_SHIFT_H
 
+#include "fsi_pack.h"
+
 #include <cmath>
 
 namespace LAMMPS_NS {
@@ -38,10 +40,10 @@ namespace FSI {
     double wdx;                            // W(dx)
     explicit Shift(double w) : wdx(w) {}
 
-    // adds neighbour j of volume V_j to the sums of i; g: grad_i W_ij = g x_ij, w = W_ij
-    void add(double *sum, double vol, double g, double w, double rsq, const double *x_ij) const
+    // adds neighbour j of volume V_j to the sums of i; g: grad_i W_ij = g x_ij, w = W_ij; T: double or Pack
+    template <class T> FSI_INLINE void add(T *sum, const T &vol, const T &g, const T &w, const T &rsq, const T *x_ij) const
     {
-      const double q = w / wdx, vg = vol * g, weighted = vg * (1.0 + 0.2 * q * q * q * q);
+      const T q = w * (1.0 / wdx), qq = q * q, vg = vol * g, weighted = vg * (1.0 + 0.2 * (qq * qq));
       for (int d = 0; d < D; d++) {
         sum[d] += weighted * x_ij[d];
         sum[D + d] += vg * x_ij[d];

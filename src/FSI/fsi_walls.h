@@ -186,21 +186,27 @@ namespace FSI {
     }
   };
 
-  // A reflection in walls without extent as what it makes of a point and its velocity, axis by axis: image = x + sign * original.
+  // A reflection as what it makes of a point and its velocity, axis by axis: image = x + sign * original; for viscous forces no-slip
+  // walls turn the velocity around (see Walls::reflect_velocity).
   struct Mirror {
-    double sign[3], x[3], v[3];
+    double sign[3], x[3], v[3], rubbing_sign[3], rubbing_v[3];
     Mirror() = default;
     Mirror(const Walls &walls, const Walls::Reflection &s)
     {
       for (int d = 0; d < 3; d++) {
-        sign[d] = 1.0;
-        x[d] = v[d] = 0.0;
+        sign[d] = rubbing_sign[d] = 1.0;
+        x[d] = v[d] = rubbing_v[d] = 0.0;
       }
       for (int k = 0; k < s.n; k++) {
         const Wall &w = walls.wall[s.w[k]];
         sign[w.axis] = -1.0;
         x[w.axis] = 2.0 * w.position;
         v[w.axis] = 2.0 * w.velocity[w.axis];
+        for (int d = 0; d < 3; d++)
+          if (w.noslip || d == w.axis) {
+            rubbing_sign[d] = -rubbing_sign[d];
+            rubbing_v[d] = 2.0 * w.velocity[d] - rubbing_v[d];
+          }
       }
     }
   };

@@ -20,11 +20,12 @@ PairStyle(fsi/fluid,PairFSIFluid);
 #ifndef LMP_PAIR_FSI_FLUID_H
 #define LMP_PAIR_FSI_FLUID_H
 
-#include "fsi_fluid_rows.h"
+#include "fsi_contact.h"
+#include "fsi_fluid_loops.h"
 #include "fsi_walls.h"
 #include "pair_fsi.h"
 
-#include <utility>
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -52,6 +53,8 @@ class PairFSIFluid : public PairFSI {
 
   double shifting;    // coefficient C of particle shifting; 0 = off
 
+  // at the start of a step's loops: with new neighbor lists new rows
+  void begin_step();
   // adds the density rate (continuity) of fluids to fix fsi's rate, and the sums of particle shifting to its shift, at the
   // positions dt/2 ago, to which the velocities belong
   void density_rate(double dt);
@@ -80,31 +83,25 @@ class PairFSIFluid : public PairFSI {
   int tait, laminar, couple, extrapolate, tension;
   std::vector<class ComputeFSIForce *> force_computes;
 
-  // local and ghost, gathered at the start of each loop
-  std::vector<double> points;
-  std::vector<double> forces;    // sums of loops that have them in rows of their own
-  template <int D, class Rest> FSI::Point<D> *gather(double t, Rest);    // positions a time t later; what else a loop needs
-  // rows of the neighbor list: of one fluid, for loops over four pairs at a time (fsi_fluid_rows.h), and the others
-  std::vector<int> rows, other_rows;
-  bool mixed;    // there is more than one fluid, or something else
+  std::unique_ptr<FSI::FluidLoops> loops;
+  // rows of the neighbor list by what fluids meet: fluids, walls, solids
+  enum { FLUIDS, WALLS, SOLIDS, NROWS };
+  FSI::RowList rows[NROWS];
+  FSI::PairKind kinds[NROWS];
   void find_rows();
-  template <class Position, class F>
-  void for_images(const std::vector<int> &rows, bool pairs, const FSI::Walls &, double cutsq, Position, F) const;
-  std::vector<int> near;    // those of rows that are near mirror walls, in the step near_step
-  bigint near_step;
-  const std::vector<int> &near_walls();
-  template <class F> void for_reflections(const std::vector<int> &rows, const FSI::Walls &, F) const;
-  template <class Term, class Collect> void distance_sums(bool pairs_of_rows, Term, Collect);
+  // rows of images by reflection; walls of particles have none
+  std::vector<FSI::RowList> images[NROWS];
+  bigint images_step;
+  template <class Position> void find_images(const FSI::Walls &, Position);
+  template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
 
-  enum { ARTIFICIAL = 1, LAMINAR = 2, MIRROR = 4, SOLIDS = 8, LEDGER = 16, NFORCE = 32 };
-  enum { DIFFUSION = 1, IMAGES = 2, MIXED = 4, TALLY = 8, SHIFT = 16, NRATE = 32 };
-  void (PairFSIFluid::*force_loop)();
-  void (PairFSIFluid::*rate_loop)(double);
-  template <class K, int FLAGS> void force_pairs();
-  template <class K, int FLAGS> void rate_pairs(double);
-  template <class K> void select();
-  template <class K, int... F> void pick_force(int, std::integer_sequence<int, F...>);
-  template <class K, int... F> void pick_rate(int, std::integer_sequence<int, F...>);
+  // local and ghost, gathered at the start of each loop
+  std::vector<double> points, forces, pressure_over_density;
+  template <int D, class Rest> FSI::FluidParticles gather(double t, Rest);    // positions a time t later; what else a loop needs
+  template <int D> void density_rate_of(double dt);
+  template <int D> void compute_forces();
+  std::vector<FSI::Contact> guards;    // per type
+  template <class Sum> void distance_sums(bool others_too, Sum);
 };
 
 }    // namespace LAMMPS_NS

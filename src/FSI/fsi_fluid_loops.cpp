@@ -1,0 +1,28 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_fluid_loops.h"
+
+#include "fsi_kernel.h"
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+std::unique_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h)
+{
+  if (kernel == CUBIC) return make_fluid_loops_cubic(dim, h);
+  if (kernel == QUINTIC) return make_fluid_loops_quintic(dim, h);
+  return make_fluid_loops_wendland(dim, h);
+}

@@ -1,0 +1,151 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// The loops of pair_style fsi/fluid over pairs: what they read and write, and the choice among them by kernel and dimension.
+//
+// Pairs come as rows: a fluid particle i and neighbours j of one atom type, so that whatever depends on types is constant in a row.
+// The images of neighbours in a mirror wall are rows of their own. One text serves numbers one by one and several side by side
+// (fsi_pack.h); it is compiled once per kernel (fsi_fluid_loops_*.cpp).
+
+#ifndef LMP_FSI_FLUID_LOOPS_H
+#define LMP_FSI_FLUID_LOOPS_H
+
+#include "fsi_material.h"
+#include "fsi_walls.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  // A fluid particle i (local or ghost) and n neighbours j of one type, each pair of particles in one row. In a row of images the last
+  // neighbour may be i itself.
+  struct Row {
+    int i, n;
+    const int *j;
+  };
+
+  // Rows and, where they are not those of LAMMPS' neighbour list, their neighbours.
+  class RowList {
+   public:
+    std::vector<Row> rows;
+    void clear()
+    {
+      rows.clear();
+      used = 0;
+    }
+    // a row of i with the n of the neighbours that choose(j) holds for, and then i itself if with_own; none if it would be empty
+    template <class Choose> void add(int i, const int *neighbors, int n, bool with_own, bool even_empty, Choose choose)
+    {
+      if (used + n + 1 > pool.size()) pool.resize(2 * (used + n + 1));
+      int *const first = pool.data() + used, *last = first;
+      for (int k = 0; k < n; k++) {
+        *last = neighbors[k];
+        last += choose(neighbors[k]) ? 1 : 0;
+      }
+      if (with_own) *last++ = i;
+      const int found = last - first;
+      if (found || even_empty) rows.push_back({i, found, nullptr});
+      used += found;
+    }
+    // no more rows: points them at their neighbours
+    void end()
+    {
+      const int *first = pool.data();
+      for (auto &row : rows) {
+        row.j = first;
+        first += row.n;
+      }
+    }
+    double memory_usage() const { return (double) rows.capacity() * sizeof(Row) + (double) pool.capacity() * sizeof(int); }
+
+   private:
+    std::vector<int> pool;
+    size_t used = 0;
+  };
+
+  // What a fluid particle meets, and by which rule: couple wall; the paper's rules, couple pressure and full.
+  enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_PRESSURE, WITH_SOLID_FULL };
+
+  // What a loop needs of a particle, side by side (in 2D a cache line).
+  template <int D> struct Point {
+    double x[D], v[D], rho, vol;
+    // force loop: pressure, p V^2; rate loop: 1 where there is pressure, else 0, and the hydrostatic part of the density
+    double p, pv2;
+    std::array<double, 3> position(const double *atom_x) const { return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]}; }
+  };
+
+  // Doubles from the force on a particle to that on the next.
+  constexpr int row_of_forces(int dim) { return dim == 3 ? 4 : 2; }
+
+  // Powers that terms take from the particles of all pairs visited, and their virial xx yy zz xy xz yz.
+  struct PairSums {
+    double artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, diffusion = 0.0, virial[6] = {};
+  };
+
+  // Of all loops: by local and ghost particle.
+  struct FluidParticles {
+    const double *points;    // Point<D>
+    const int *type;
+    const State *state;
+    int nlocal;
+    bool newton;    // else a pair across ranks is visited on both: each counts half of powers and forces on walls
+  };
+
+  struct RateLaws {
+    double delta;                         // of density diffusion; 0: none
+    const double *gravity;
+    const double *pressure_over_density;  // per particle, with sums
+  };
+
+  struct ForceLaws {
+    double alpha, beta;      // artificial viscosity
+    int laminar;             // 0: none, 1: plain, 2: central
+    double extrapolate[3];   // gravity, where the pressure at a solid is extrapolated to it; else 0
+    double stored;           // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0
+    const struct Contact *guard;           // per type: of walls
+    const double (*wall_velocity)[3];      // per particle, that no-slip walls of particles have in viscous forces
+    const double *const *stress;           // per particle, of solids (couple full); null: they have none
+  };
+
+  class FluidLoops {
+   public:
+    virtual ~FluidLoops() = default;
+
+    // adds m_i dpsi_i/dt, with density diffusion, to rate; mirror: the rows' neighbours are images in it; sums: or null
+    virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, const RateLaws &, double *rate,
+                       PairSums *sums) const = 0;
+    // adds pressure, viscosity and what keeps fluid out of walls to force, rows of row_of_forces(D); with mirror the sum of the
+    // forces on all particles to total[D]
+    virtual void forces(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, const ForceLaws &, double *force,
+                        double *total, PairSums *sums) const = 0;
+    // adds the sums of particle shifting of fluids to shift, rows of Shift<D>::N
+    virtual void shifts(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, double wdx, double *shift) const = 0;
+    // adds W_ij to sum; of the neighbours only if both
+    virtual void number_density(const std::vector<Row> &, bool both, const Mirror *mirror, const double (*x)[3], double *sum) const = 0;
+    // adds V_j x_ji.grad_i W_ij to sum, likewise
+    virtual void position_divergence(const std::vector<Row> &, bool both, const Mirror *mirror, const double (*x)[3], const double *vol,
+                                     double *sum) const = 0;
+  };
+
+  std::unique_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h);
+  std::unique_ptr<FluidLoops> make_fluid_loops_cubic(int dim, double h);
+  std::unique_ptr<FluidLoops> make_fluid_loops_quintic(int dim, double h);
+  std::unique_ptr<FluidLoops> make_fluid_loops_wendland(int dim, double h);
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
