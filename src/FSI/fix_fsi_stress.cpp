@@ -22,6 +22,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "pair_fsi_solid.h"
+#include "update.h"
 
 #include <cmath>
 #include <cstring>
@@ -79,6 +80,15 @@ void FixFSIStress::init()
   const FixFSI *hub = FixFSI::find(lmp, "Fix fsi/stress");
   if (hourglass != wants_hourglass(force))
     error->all(FLERR, "Fix fsi/stress must be defined after the pair_style command that says whether there is hourglass control");
+  // what had a stress keeps it, what had none never gets the right one
+  for (int i = 0; i < atom->nlocal && update->whichflag == 1; i++) {
+    double &first = stress[i][0];
+    const bool solid = hub->state[atom->type[i]].species == FSI::SOLID;
+    if (solid ? first == FOREIGN : first != FOREIGN && first != 0.0)
+      error->one(FLERR, "Atom {} of type {} is {} solid{} when a run began: delete it and create another in its place", atom->tag[i],
+                 atom->type[i], solid ? "a" : "no", solid ? " now and was none" : " any more, as it was");
+    if (!solid) first = FOREIGN;
+  }
   bool yields = false;
   for (const auto &s : hub->state) yields = yields || s.yield > 0.0;
   if (comm->me == 0 && plastic && !yields)

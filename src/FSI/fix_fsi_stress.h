@@ -68,12 +68,15 @@ class FixFSIStress : public Fix {
     return work;
   }
 
+  // equivalent plastic strain of atom i
+  double plastic_strain(int i) const { return plastic ? stress[i][ns] : 0.0; }
   // von Mises stress of atom i with pressure p
   double von_mises(int i, double p) const;
 
  private:
   FSI::Keywords keywords;
   static bool wants_hourglass(class Force *);
+  static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a run began
   int ns;    // components of the deviator
   int n;     // values per atom
   int dim;
