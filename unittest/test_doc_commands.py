@@ -165,7 +165,7 @@ class Reader:
 
     def fsi(self, command, words):
         """Of files that a run left: in its folder."""
-        self.execute(command, cwd=self.home if "results/" in command else self.home / "results/beam")
+        self.execute(command, cwd=self.home if re.search("results/|doc/", command) else self.home / "results/beam")
 
     def python3(self, command, words):
         module, arguments = words[1], words[2:]

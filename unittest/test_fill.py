@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from conftest import run
 
-from fsi import fill
+from fsi import cli, fill
 
 
 def circle(radius, n=400, centre=(0.0, 0.0)):
@@ -127,6 +127,41 @@ run 5
 print "WATER $(count(water)) BOWL $(count(bowl))"
 """)
     assert f"WATER {counts[0]} BOWL {counts[1]}" in result.output
+
+
+@pytest.mark.parametrize("scale, dx, says", [
+    (100.0, "0.05", "100 x 100 x 100, in spacings 2000 x 2000 x 2000: too many particles. If it is in millimetres: --scale 0.001"),
+    (1e-4, "0.01", "0.0001 x 0.0001 x 0.0001, in spacings 0.01 x 0.01 x 0.01: no particle fits. If it is in metres, DX in millimetres: --scale 1000"),
+    (1e6, "0.05", "too many particles. Mind its units"), (1e-9, "0.05", "no particle fits. Mind its units")])
+def test_scale_that_is_off(tmp_path, scale, dx, says):
+    surface = write_stl(tmp_path / "box.stl", scale * box((0, 0, 0), (1, 1, 1)))
+    with pytest.raises(SystemExit) as stop:
+        cli.main(["fill", surface, dx, str(tmp_path / "out.data")])
+    assert says in str(stop.value) and not (tmp_path / "out.data").exists()
+
+
+def test_size_is_said(tmp_path, capsys):
+    surface = write_stl(tmp_path / "box.stl", box((0, 0, 0), (100, 200, 20)))
+    cli.main(["fill", surface, "0.01", str(tmp_path / "out.data"), "--scale", "0.001"])
+    text = capsys.readouterr().out
+    assert "0.1 x 0.2 x 0.02, in spacings 10 x 20 x 2; 400 particles" in text and "only 2 particles across" in text
+
+
+def test_turned(tmp_path):
+    """A quarter turn about z, then one about x of a box of 2 x 3 x 4 particles, and one in the plane: where the corners go by hand."""
+    surface = write_stl(tmp_path / "box.stl", box((0, 0, 0), (0.2, 0.3, 0.4)))
+    fill.main([surface, "0.1", str(tmp_path / "a.data"), "--turn", "0", "0", "90"])  # x, y, z -> -y, x, z
+    x = atoms(tmp_path / "a.data")[:, 5:]
+    assert len(x) == 24 and np.allclose(x.min(0), (-0.25, 0.05, 0.05)) and np.allclose(x.max(0), (-0.05, 0.15, 0.35))
+    fill.main([surface, "0.1", str(tmp_path / "a.data"), "--turn", "90", "0", "90"])  # about x first: x, -z, y; then z, x, y
+    x = atoms(tmp_path / "a.data")[:, 5:]
+    assert len(x) == 24 and np.allclose(x.min(0), (0.05, 0.05, 0.05)) and np.allclose(x.max(0), (0.35, 0.15, 0.25))
+    outline = write_outline(tmp_path / "o.csv", np.array([(0, 0), (0.2, 0), (0.2, 0.3), (0, 0.3)], float))
+    fill.main([outline, "0.1", str(tmp_path / "a.data"), "--turn", "90", "--origin", "1", "0"])
+    x = atoms(tmp_path / "a.data")[:, 5:7]
+    assert len(x) == 6 and np.allclose(x.min(0), (0.75, 0.05)) and np.allclose(x.max(0), (0.95, 0.15))
+    with pytest.raises(SystemExit):
+        fill.main([outline, "0.1", str(tmp_path / "a.data"), "--turn", "1", "2", "3"])
 
 
 @pytest.mark.parametrize("name, content, says", [

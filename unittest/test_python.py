@@ -2,6 +2,7 @@
 
 import base64
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -11,8 +12,7 @@ import numpy as np
 import pytest
 from conftest import run
 
-from fsi import __main__ as cli
-from fsi import animate, dump, paths, series, vtk
+from fsi import animate, cli, dump, paths, plot, report, series, vtk
 
 DUMP = """ITEM: TIMESTEP
 {step}
@@ -141,7 +141,7 @@ def test_animation(frames, tmp_path, monkeypatch, capsys):
     tools = tmp_path / "bin"
     tools.mkdir()
     monkeypatch.setenv("PATH", str(tools))
-    animate.main([str(frames)])
+    cli.main(["animate", str(frames)])
     pictures = sorted((tmp_path / "some").glob("*.png"))
     assert [p.name for p in pictures] == ["00000.png", "00001.png"]
     assert "ffmpeg is not here" in capsys.readouterr().err
@@ -152,7 +152,7 @@ def test_animation(frames, tmp_path, monkeypatch, capsys):
                     "source = Path(sys.argv[sys.argv.index('-i') + 1])\nassert source.name == '%05d.png'\n"
                     "Path(sys.argv[-1]).write_text(sys.argv[sys.argv.index('-framerate') + 1] + ' ' + str(len(list(source.parent.glob('*.png')))))\n")
     fake.chmod(0o755)
-    animate.main([str(frames), str(tmp_path / "a.mp4"), "rate=5"])
+    cli.main(["animate", str(frames), str(tmp_path / "a.mp4"), "rate=5"])
     assert (tmp_path / "a.mp4").read_text() == "5.0 2"
 
 
@@ -170,10 +170,117 @@ def test_command_line(frames, tmp_path, capsys):
     says("log", path, "time", "Step", f"plot={tmp_path / 'log.png'}")
     says("dump", frames, f"plot={tmp_path / 'dump.png'}")
     assert all((tmp_path / name).read_bytes().startswith(b"\x89PNG") for name in ("log.png", "dump.png"))
+    assert "view=" in says("dump", "--help") and "fsi check" in says("--help")
     for words, message in (([], "Usage"), (["log", path, "speed"], "no column speed; it has Step, v_time"), (["dump", path], "no frames"),
-                           (["log", tmp_path / "none"], "No such file")):
+                           (["log", tmp_path / "none"], "No such file"), (["lag", path], "no command lag; there are log"), (["vtk"], "fsi vtk DUMP"),
+                           (["log", path, "plt=a.png"], "options are plot"), (["log", path, "plot="], "value is missing"),
+                           (["dump", frames, "view=x"], "only with plot")):
         with pytest.raises(SystemExit, match=message):
             cli.main([str(w) for w in words])
+
+
+def test_one_column_is_drawn_over_the_time(tmp_path, monkeypatch, capsys):
+    drawn = []
+    monkeypatch.setattr(plot, "lines", lambda path, label, value, curves: drawn.append((label, value, [list(c[0]) for c in curves], [list(c[1]) for c in curves])))
+    (tmp_path / "log.lammps").write_text(LOG.replace("v_time\n", "v_time v_tip\n").replace("0   0\n", "0   0  3\n").replace("0.5\n", "0.5  4\n"))
+    (tmp_path / "tip.csv").write_text("t,tip\n0,1\n2,3\n")
+    cli.main(["log", str(tmp_path / "log.lammps"), "tip", "plot=a.png"])
+    cli.main(["series", str(tmp_path / "tip.csv"), "tip", "plot=a.png"])
+    assert drawn == [("time", "tip", [[0, 0.5]], [[3, 4]]), ("t", "tip", [[0, 2]], [[1, 3]])]
+    (tmp_path / "one.csv").write_text("t\n0\n2\n")
+    with pytest.raises(SystemExit, match="one column only"):
+        cli.main(["series", str(tmp_path / "one.csv"), "plot=a.png"])
+
+
+def test_another_python_goes_on_where_the_first_lacks_numpy(frames, tmp_path):
+    """A python without packages first on the PATH: the one that is found beside it does the work; where there is none the message says what to install."""
+    bare = tmp_path / "bare/python3"
+    bare.parent.mkdir()
+    bare.write_text(f'#!/bin/sh\nexec {sys.executable} -S "$@"\n')  # knows no site-packages
+    bare.chmod(0o755)
+    env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"PYTHONPATH": str(paths.ROOT / "python")}
+    main = "import sys; from fsi import __main__ as m; m.able_python = lambda: {}; sys.argv = ['fsi', 'dump', {!r}]; m.main()"
+    found = subprocess.run([bare, "-c", main.format(repr(sys.executable), str(frames))], env=env, capture_output=True, text=True, check=False)
+    assert found.returncode == 0 and "2 frames" in found.stdout, found.stderr
+    none = subprocess.run([bare, "-c", main.format(None, str(frames))], env=env, capture_output=True, text=True, check=False)
+    assert none.returncode != 0 and "has no numpy and no matplotlib" in none.stderr and "python3-numpy" in none.stderr
+    real = subprocess.run([sys.executable, "-c", "from fsi.__main__ import able_python; print(able_python())"], env=env, capture_output=True, text=True, check=True)
+    assert real.stdout.strip() != "None"
+
+
+def test_views():
+    """Corners of a box where drawing says they are: the nearer hides the farther."""
+    box = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    frame = dump.Frame(0, 0.0, None, {"x": box[:, 0], "y": box[:, 1], "z": box[:, 2]})
+
+    def look(view):
+        (found,), labels = plot.seen([frame], view)
+        return np.column_stack([found["x"], found["y"], found["depth"]]), labels
+
+    for view, across, up, near in (("z", box[:, 0], box[:, 1], box[:, 2]), ("y", box[:, 0], box[:, 2], -box[:, 1]), ("x", box[:, 1], box[:, 2], box[:, 0]),
+                                   ("0,0", box[:, 0], box[:, 2], -box[:, 1]), ("90,0", box[:, 1], box[:, 2], box[:, 0]),
+                                   ("0,90", box[:, 0], box[:, 1], box[:, 2]), ("0,0,y", box[:, 0], box[:, 1], box[:, 2]), ("0,0,x", box[:, 1], box[:, 0], -box[:, 2])):
+        np.testing.assert_allclose(look(view)[0], np.column_stack([across, up, near]), atol=1e-15, err_msg=view)
+    turned, labels = look("30,20")
+    assert labels is None and look("x")[1] == ("y [m]", "z [m]")
+    assert turned[7, 1] > turned[6, 1]  # z is up
+    np.testing.assert_allclose(turned @ turned.T, box @ box.T, atol=1e-14)  # a rotation
+    for view in ("w", "1", "1,2,w", "1,2,z,3", "a,b"):
+        with pytest.raises(ValueError, match="AZIMUTH"):
+            plot.seen([frame], view)
+
+
+def test_pictures_in_three_dimensions(tmp_path, capsys):
+    path = tmp_path / "cube.dump"
+    path.write_text("".join(DUMP.format(step=k, time=k, p=k).replace("x y vx vy sxx sxy p", "x y z vx vy vz p") for k in range(9)))
+    for words in (["view=30,20"], ["view=y", "colour=speed", "types=1"], ["frames=2", "solid=1,2", "colour=vx"]):
+        cli.main(["dump", str(path), f"plot={tmp_path / 'a.png'}", *words])
+        assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert [frame.step for frame in dump.some(path, 3)] == [0, 4, 8]
+    for words, message in ((["types=7"], "no such particles"), (["types=a"], "atom types are needed"), (["colour=q"], "no column q"), (["view=w"], "AZIMUTH"),
+                           (["frames=0"], "whole number")):
+        with pytest.raises(SystemExit, match=message):
+            cli.main(["dump", str(path), f"plot={tmp_path / 'a.png'}", *words])
+
+
+def test_depth_decides_who_is_seen():
+    """Two particles at one place of the picture: the colour of the nearer is drawn last, as it is; the farther is darkened."""
+    frame = dump.Frame(0, 0.0, None, {"type": np.array([1, 2, 1]), "x": np.zeros(3), "y": np.zeros(3), "depth": np.array([2.0, 1.0, 0.0]),
+                                      "p": np.array([0.0, 0.0, 1.0]), "vonmises": np.zeros(3)})
+    scales = plot._scales([frame], (1,), (2,))
+    with plot.matplotlib.rc_context():
+        axes = plot.Figure().add_subplot()
+        plot._particles(axes, frame, scales, 0.1)
+    colours = axes.collections[0].get_facecolors()
+    viridis = plot.matplotlib.colormaps["viridis"]
+    np.testing.assert_allclose(colours[2], viridis(0.0))
+    np.testing.assert_allclose(colours[0][:3], 0.55 * np.array(viridis(1.0)[:3]))
+
+
+def test_report(tmp_path, frames):
+    """All of a folder in one file: figures, warnings, pictures, curves and costs, nothing from elsewhere."""
+    folder = tmp_path / "run"
+    folder.mkdir()
+    log = LOG.replace("Per MPI", "FSI: Wendland C2, h = 1.5 dx\n  on: \n    diffusion <0.1>\nPer MPI") + (
+        "Performance: 1\nMPI task timing breakdown:\nSection |  min time\n-----\nPair    | 1.5\nOther   | 0.5\n\nNlocal: 1\n")
+    (folder / "log.lammps").write_text(log.replace("         0   0\n", "         0   0\n        50   0.25\n"))
+    (folder / "tip.csv").write_text("time,tip\n0,1\n1,2\n2,3\n")
+    shutil.copyfile(frames, folder / "some.dump")
+    cli.main(["report", str(folder)])
+    page = (folder / "report.html").read_text()
+    for text in ("400 particles, 100 steps", "<td>peak</td>", "mind the gap", "diffusion &lt;0.1&gt;", "Pair    | 1.5", "tip (tip.csv)",
+                 "some.dump"):
+        assert text in page, text
+    assert not [source for source in re.findall(r'(?:src|href)="([^"]{0,30})', page) if not source.startswith("data:image/png;base64")]
+    for data in re.findall(r'src="data:image/png;base64,([^"]*)"', page):
+        assert base64.b64decode(data).startswith(b"\x89PNG")
+    (folder / "summary.json").write_text('{"scene": "x", "figures": [{"name": "peak", "value": 4.5, "unit": "mm", "reference": 4.0, "source": "theory", '
+                                         '"relative_error": 0.125, "target": 0.1, "met": false}], "cases": {"fine": {"particles": 7, "steps": 8, "wall_seconds": 9.0}}}')
+    (folder / "shot.png").write_bytes(b"\x89PNGmine")
+    page = report.write(folder, tmp_path / "other.html").read_text()
+    assert '+12.5 %' in page and "missed" in page and base64.b64encode(b"\x89PNGmine").decode() in page and "some.dump" not in page and "<td>fine</td>" in page
+    with pytest.raises(SystemExit, match="neither log.lammps nor summary.json"):
+        cli.main(["report", str(tmp_path)])
 
 
 def test_frequency(tmp_path, capsys):
@@ -184,7 +291,9 @@ def test_frequency(tmp_path, capsys):
         assert series.frequency(t, y) == pytest.approx(f, rel=0.01)
     (tmp_path / "tip.csv").write_text("time,tip\n" + "".join(f"{a},{b}\n" for a, b in zip(t, y)))
     cli.main(["frequency", str(tmp_path / "tip.csv"), "tip", "0.2"])
-    assert float(capsys.readouterr().out.split()[0]) == pytest.approx(3.7, rel=0.01)
+    text = capsys.readouterr().out
+    assert float(text.split()[0]) == pytest.approx(3.7, rel=0.01)
+    assert "last 3 of " in text
     for words, message in ((["tip", "0", "0.01"], "has 2 rows"), ([], "takes a column"), (["speed"], "no column speed")):
         with pytest.raises(SystemExit, match=message):
             cli.main(["frequency", str(tmp_path / "tip.csv"), *words])
@@ -192,11 +301,36 @@ def test_frequency(tmp_path, capsys):
         series.frequency(t, np.ones(len(t)))
 
 
+def test_periods():
+    """Mean and amplitude of a triangle wave are those of its corners, whatever its past; noise of a tenth makes no periods, and moves corners by no more."""
+    t = np.arange(0.0, 10.0, 1e-3)
+    wave = 1.5 + 2.0 * np.abs(2.0 * ((1.25 * t) % 1.0) - 1.0) * np.where(t < 3.0, 0.2, 1.0)
+    found = series.periodic(t, wave, 4)
+    assert found["count"] >= 8 and [len(found[name]) for name in ("mean", "amplitude", "frequency")] == [4, 4, 4]
+    np.testing.assert_allclose(found["mean"], 2.5, atol=2e-3)  # corners lie between samples: 2 x 2.5/s x 1e-3 s / 2
+    np.testing.assert_allclose(found["amplitude"], 1.0, atol=3e-3)
+    np.testing.assert_allclose(found["frequency"], 1.25, rtol=1e-3)
+    noisy = series.periodic(t, wave + np.random.default_rng(1).uniform(-0.1, 0.1, len(t)), 4)
+    np.testing.assert_allclose(noisy["frequency"], 1.25, rtol=0.02)  # 0.1 / slope 5 at both ends of 0.8 s is 5 %, averaged over some 40 crossings
+    np.testing.assert_allclose(noisy["mean"], 2.5, atol=0.1)
+    np.testing.assert_allclose(noisy["amplitude"], 1.0, atol=0.11)
+    assert series.periodic(t, 3.0 + 0.0 * t) is None
+    assert series.periodic(t, np.exp(-t)) is None
+
+
+def test_swing_that_has_not_settled(tmp_path, capsys):
+    t = np.arange(0.0, 5.0, 0.01)
+    (tmp_path / "tip.csv").write_text("time,tip\n" + "".join(f"{a},{np.exp(0.1 * a) * np.sin(6.0 * a)}\n" for a in t))
+    cli.main(["frequency", str(tmp_path / "tip.csv"), "tip", "periods=2"])
+    text = capsys.readouterr().out
+    assert "last 2 of " in text and "not settled" in text
+
+
 def test_animation_says_what_the_dump_lacks(tmp_path):
     path = tmp_path / "bare.dump"
     path.write_text(DUMP.format(step=0, time=0, p=1).replace(" p\n", " c_1[1]\n"))
     with pytest.raises(SystemExit, match="colname"):
-        animate.main([str(path)])
+        cli.main(["animate", str(path)])
 
 
 def test_files_of_fix_ave_time_and_print(tmp_path):

@@ -98,6 +98,8 @@ def test_scene_without_variables_runs_all_cases(examples, capsys):
     assert (study["lammps"], list(study["cases"]), study["failed_cases"]) == ("4 Feb 2025", ["coarse", "fine"], [])
     output = capsys.readouterr().out
     assert "case coarse (1 of 2)" in output and "case fine (2 of 2)" in output
+    pages = [(paths.RESULTS / "toy" / place / "report.html").read_text() for place in ("", "coarse", "fine")]
+    assert "fine/report.html" in pages[0] and "change" in pages[0] and "rubber = hard" in pages[2] and "met" in pages[2]
 
 
 def test_one_case(examples):

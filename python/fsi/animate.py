@@ -1,9 +1,4 @@
-"""An animation of a 2D dump (.mp4, .gif), by ffmpeg: fluid coloured by pressure, solids by von Mises stress.
-
-    python3 -m fsi.animate particles.dump [animation.mp4] [rate=25] [solid=TYPES]      solid=2,3; default: types with a molecule ID
-
-Without ffmpeg the pictures are left in a folder beside the animation's place.
-"""
+"""Pictures and animations of dumps: fluid coloured by pressure, solids by von Mises stress, or all by a column; in 3D seen from somewhere."""
 
 import shutil
 import subprocess
@@ -14,6 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from . import dump, plot
+from .progress import Progress
+
+OPTIONS = ("solid", "view", "colour", "types")  # of pictures, as the command line has them
 
 
 def spacing(frame, samples=200):
@@ -29,9 +27,6 @@ def spacing(frame, samples=200):
 
 def species(frames, solid=None):
     """(types of fluids, types of solids); solid is what has a molecule ID, unless given."""
-    if not any("p" in frame or "vonmises" in frame for frame in frames):
-        raise ValueError("the dump has neither column p nor vonmises: dump_modify ... colname c_ID[1] p colname c_ID[2] vonmises, "
-                         "with ID that of compute fsi/atom p vonmises")
     types = sorted({int(t) for frame in frames for t in np.unique(frame["type"])})
     if solid is None:
         bodies = [frame["type"][frame["mol"] != 0] for frame in frames if "mol" in frame]
@@ -39,46 +34,65 @@ def species(frames, solid=None):
     return tuple(t for t in types if t not in solid), tuple(t for t in types if t in solid)
 
 
-def pictures(frames, folder, solid=None):
-    """One picture per frame, all with the same colours and limits; returns their number."""
+def prepared(frames, options):
+    """(frames, arguments of plot's functions) with what `options` say of view, colour and types."""
+    colour, solid = options.get("colour"), _types(options, "solid")
+    wanted = _types(options, "types")
+    if wanted:
+        frames = [frame.of_types(*wanted) for frame in frames]
+        if not all(map(len, frames)):
+            raise ValueError(f"types={options['types']}: the dump has no such particles")
+    if colour == "speed":
+        for frame in frames:
+            frame.columns["speed"] = np.linalg.norm(frame.vector(("vx", "vy", "vz")), axis=1)
+    elif colour and not all(colour in frame for frame in frames):
+        raise ValueError(f"the dump has no column {colour}; it has {', '.join(frames[0].columns)}")
+    elif not colour and not any("p" in frame or "vonmises" in frame for frame in frames):
+        raise ValueError("the dump has neither column p nor vonmises: dump_modify ... colname c_ID[1] p colname c_ID[2] vonmises, "
+                         "with ID that of compute fsi/atom p vonmises; or colour=COLUMN")
     fluid, solid = species(frames, solid)
-    plot.movie(Path(folder), frames, spacing(frames[0]), fluid, solid)
-    return len(frames)
+    distance = spacing(frames[0])
+    labels = plot.LABELS
+    if "view" in options or any("z" in frame and np.ptp(frame["z"]) > 0.0 for frame in frames):
+        frames, labels = plot.seen(frames, options.get("view", "30,20"))
+    return frames, {"spacing": distance, "fluid": fluid, "solid": solid, "colour": colour, "labels": labels}
 
 
-def animate(path, out=None, rate=25, solid=None):
+def _types(options, name):
+    """Atom types of an option, None without it."""
+    try:
+        return {int(t) for t in options[name].split(",")} if name in options else None
+    except ValueError:
+        raise ValueError(f"{name}={options[name]}: atom types are needed, such as {name}=1,2") from None
+
+
+def draw(path, frames, options):
+    """Snapshots of some frames."""
+    frames, how = prepared(frames, options)
+    plot.snapshots(path, frames, **how)
+
+
+def animate(path, out=None, options=None):
     """Returns where the animation is, or without ffmpeg the folder of pictures."""
+    options = options or {}
     out = Path(out or Path(path).with_suffix(".mp4"))
-    frames = dump.read(path)
+    rate = float(options.get("rate", 25))
+    frames = list(dump.frames(path, progress=Progress(f"reading {path}")))
     if not frames:
         raise ValueError(f"{path} has no frames")
+    frames, how = prepared(frames, options)
     ffmpeg = shutil.which("ffmpeg")
     if ffmpeg is None:
         folder = out.with_suffix("")
         folder.mkdir(parents=True, exist_ok=True)
-        print(f"fsi.animate: ffmpeg is not here (Debian: apt-get install ffmpeg); {pictures(frames, folder, solid)} pictures", file=sys.stderr)
+        plot.movie(folder, frames, progress=Progress("drawing"), **how)
+        print(f"fsi animate: ffmpeg is not here (Debian: apt-get install ffmpeg); {len(frames)} pictures", file=sys.stderr)
         return folder
     with tempfile.TemporaryDirectory() as folder:
-        pictures(frames, folder, solid)
+        plot.movie(Path(folder), frames, progress=Progress("drawing"), **how)
         # even numbers of pixels, and colours that every player knows
         mp4 = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"] if out.suffix == ".mp4" else []
         command = [ffmpeg, "-y", "-loglevel", "error", "-framerate", str(rate), "-i", str(Path(folder) / "%05d.png"), *mp4, str(out)]
-        subprocess.run(command, stdin=subprocess.DEVNULL, check=True)
+        if subprocess.run(command, stdin=subprocess.DEVNULL, check=False).returncode:
+            raise ValueError(f"ffmpeg could not make {out}")
     return out
-
-
-def main(arguments):
-    """Command line."""
-    options = dict(a.split("=", 1) for a in arguments if "=" in a)
-    files = [a for a in arguments if "=" not in a]
-    if not 1 <= len(files) <= 2 or files[0].startswith("-") or set(options) - {"rate", "solid"}:
-        sys.exit(__doc__)
-    solid = {int(t) for t in options["solid"].split(",")} if "solid" in options else None
-    try:
-        print(animate(*files, rate=float(options.get("rate", 25)), solid=solid))
-    except (OSError, ValueError, subprocess.CalledProcessError) as error:
-        sys.exit(f"fsi.animate: {error}")
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

@@ -1,6 +1,8 @@
 """Reads the text files of LAMMPS' `dump custom`, plain or gzipped."""
 
 import gzip
+import io
+import os
 import warnings
 from dataclasses import dataclass
 from itertools import islice
@@ -41,13 +43,19 @@ class Frame:
         return np.column_stack([self[name] for name in names if name in self])
 
 
-def frames(path):
-    """Yields the frames of a dump one by one, so that a long one need not fit in memory."""
-    with (gzip.open if str(path).endswith(".gz") else open)(path, "rt") as file:
-        step, time, count, box = None, None, None, None
+def frames(path, only=None, progress=None):
+    """Yields the frames of a dump one by one, so that a long one need not fit in memory.
+
+    only: numbers of the frames, from 0, that are wanted; progress(share of the file that is read) is called before each frame.
+    """
+    with open(path, "rb") as raw, io.TextIOWrapper(gzip.open(raw) if str(path).endswith(".gz") else raw) as file:
+        step, time, count, box, number = None, None, None, None, -1
+        size = os.fstat(raw.fileno()).st_size
         for line in file:
             if line.startswith("ITEM: TIMESTEP"):
-                step = int(next(file))
+                step, number = int(next(file)), number + 1
+                if progress:
+                    progress(raw.tell() / size)
             elif line.startswith("ITEM: TIME"):
                 time = float(next(file))
             elif line.startswith("ITEM: NUMBER"):
@@ -57,12 +65,26 @@ def frames(path):
             elif line.startswith("ITEM: ATOMS"):
                 if time is None:
                     raise ValueError(f"{path} has no times: the deck needs `dump_modify ... time yes`")
+                if only is not None and number not in only:
+                    for _ in islice(file, count):
+                        pass
+                    continue
                 names = line.split()[2:]
                 values = np.fromstring("".join(islice(file, count)), sep=" ")
                 if values.size != count * len(names):
                     warnings.warn(f"{path}: the frame of step {step} is incomplete and left out", stacklevel=2)
                     return
                 yield _frame(step, time, box, names, values.reshape(count, len(names)))
+
+
+def some(path, number, progress=None):
+    """So many frames, evenly chosen from the first to the last; all if there are fewer. An error if there is none."""
+    with (gzip.open if str(path).endswith(".gz") else open)(path, "rt") as file:
+        total = sum(line.startswith("ITEM: ATOMS") for line in file)
+    found = list(frames(path, {round(k) for k in np.linspace(0, total - 1, min(number, total))}, progress)) if total else []
+    if not found:
+        raise ValueError(f"{path} has no frames")
+    return found
 
 
 def read(path):

@@ -1,12 +1,8 @@
 """Fills closed surfaces with particles: an STL file in 3D, an outline in 2D.
 
-usage: python -m fsi.fill SURFACE DX OUT.data [--shell N] [--type T] [--mol M] [--scale S] [--origin X Y [Z]] [--box N]
-
-SURFACE is an STL file (ASCII or binary), or a text file of an outline: one point "x y" per line, closed of itself, a blank
-line between outlines. Where outlines or surfaces nest, every second one is a hole. OUT.data is a LAMMPS data file of atom style
-fsi with particles on the cubic (2D: square) lattice of spacing DX whose cell faces go through the origin. `--shell N` takes,
-instead of what is inside, N layers around it: the wall particles of a vessel of this shape. `--box N`: the simulation box ends N spacings
-beyond the particles.
+SURFACE is an STL file (ASCII or binary), or a text file of an outline: one point "x y" per line, closed of itself, a blank line between
+outlines. Where outlines or surfaces nest, every second one is a hole. OUT.data is a LAMMPS data file of atom style fsi, for read_data, with
+particles on the cubic (2D: square) lattice of spacing DX whose cell faces go through the origin.
 """
 
 import argparse
@@ -19,6 +15,7 @@ import numpy as np
 
 # rays of lattice points would meet the vertices of surfaces that fit the lattice: they go so much beside them, in spacings
 BESIDE = np.array([3.1e-6, 1.7e-6])
+LARGEST = 2e8  # points of the lattice that covers a surface
 
 
 def read_outline(path):
@@ -124,7 +121,7 @@ def write(path, points, dx, kind=1, mol=0, box=4.0):
     low, high = points.min(0) - (box + 0.5) * dx, points.max(0) + (box + 0.5) * dx
     if dim == 2:
         low, high = np.append(low, -0.5 * dx), np.append(high, 0.5 * dx)
-    lines = ["particles of fsi.fill, atom style fsi", "", f"{len(points)} atoms", f"{kind} atom types", ""]
+    lines = ["particles of fsi fill, atom style fsi", "", f"{len(points)} atoms", f"{kind} atom types", ""]
     lines += [f"{a:.10g} {b:.10g} {name}lo {name}hi" for a, b, name in zip(low, high, "xyz")]
     lines += ["", "Atoms # fsi", ""]
     place = " 0" if dim == 2 else ""
@@ -132,34 +129,75 @@ def write(path, points, dx, kind=1, mol=0, box=4.0):
     Path(path).write_text("\n".join(lines) + "\n")
 
 
+def measure(simplices, dx, given):
+    """What is said about the size of a surface in spacings; an error where no computer holds the particles, or none fits."""
+    extent = np.ptp(simplices.reshape(-1, simplices.shape[-1]), axis=0)
+    across = extent / dx
+    size = " x ".join(f"{value:.4g}" for value in extent) + ", in spacings " + " x ".join(f"{value:.4g}" for value in across)
+    if np.prod(np.ceil(across) + 2.0 * given.shell) > LARGEST:
+        raise SystemExit(f"{given.surface} is {size}: too many particles. " + _hint(across / 1000.0, given.scale * 1e-3, "in millimetres"))
+    if across.max() < 1.0:
+        raise SystemExit(f"{given.surface} is {size}: no particle fits. " + _hint(across * 1000.0, given.scale * 1e3, "in metres, DX in millimetres"))
+    return size, across
+
+
+def _hint(across, scale, units):
+    """What to do about a wrong size: mind the units, if with these it would be a sound one."""
+    return f"If it is {units}: --scale {scale:g}" if 1.0 <= across.max() and np.prod(np.ceil(across)) < LARGEST else "Mind its units (--scale) and DX"
+
+
 def main(arguments=None):
-    """See the top of this file."""
-    parser = argparse.ArgumentParser(prog="python -m fsi.fill", description=__doc__.split("\n\n")[0], epilog=__doc__.split("\n\n")[2])
-    parser.add_argument("surface")
-    parser.add_argument("dx", type=float)
-    parser.add_argument("out")
-    parser.add_argument("--shell", type=int, default=0)
-    parser.add_argument("--type", type=int, default=1)
-    parser.add_argument("--mol", type=int, default=0)
-    parser.add_argument("--scale", type=float, default=1.0)
-    parser.add_argument("--origin", type=float, nargs="+")
-    parser.add_argument("--box", type=float, default=4.0)
+    """The command line of `fsi fill`."""
+    parser = argparse.ArgumentParser(
+        prog="fsi fill", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="fsi fill tank.stl 0.01 tank.data --scale 0.001 --shell 4 --type 2       the walls of a tank that was drawn in millimetres")
+    parser.add_argument("surface", metavar="SURFACE", help="STL file (NAME.stl) or text file of an outline")
+    parser.add_argument("dx", metavar="DX", type=float, help="spacing of the particles, that of fix fsi")
+    parser.add_argument("out", metavar="OUT.data", help="data file to write")
+    parser.add_argument("--scale", metavar="S", type=float, default=1.0, help="factor of the surface's coordinates: 0.001 for millimetres in a scene in metres")
+    parser.add_argument("--origin", metavar="X", type=float, nargs="+", help="X Y [Z]: moves the surface so far, after scaling")
+    parser.add_argument("--turn", metavar="DEGREES", type=float, nargs="+",
+                        help="turns the surface about the origin before it is moved: one angle in 2D, angles about x, y and z, in this order, in 3D")
+    parser.add_argument("--shell", metavar="N", type=int, default=0,
+                        help="instead of what is inside N layers around it: the wall particles of a vessel of this shape")
+    parser.add_argument("--type", metavar="T", type=int, default=1, help="atom type (default 1)")
+    parser.add_argument("--mol", metavar="M", type=int, default=0, help="molecule ID: that of the body (default 0: none, as for fluids and walls)")
+    parser.add_argument("--box", metavar="N", type=float, default=4.0, help="the simulation box ends N spacings beyond the particles (default 4)")
     given = parser.parse_args(arguments)
-    if not given.dx > 0.0 or given.shell < 0 or given.type < 1:
-        parser.error("DX must be > 0, --shell >= 0, --type >= 1")
+    if not given.dx > 0.0 or given.shell < 0 or given.type < 1 or given.mol < 0 or given.scale == 0.0:
+        parser.error("DX must be > 0, --shell and --mol >= 0, --type >= 1, --scale not 0")
     if not Path(given.surface).is_file():
         parser.error(f"{given.surface} is not a file")
     simplices = given.scale * (read_stl if given.surface.lower().endswith(".stl") else read_outline)(given.surface)
     dim = simplices.shape[-1]
+    for name, wanted in (("origin", dim), ("turn", 1 if dim == 2 else 3)):
+        if getattr(given, name) and len(getattr(given, name)) != wanted:
+            parser.error(f"--{name} needs {wanted} number{'s' * (wanted > 1)}")
+    if given.turn:
+        simplices = simplices @ rotation(given.turn).T
     if given.origin:
-        if len(given.origin) != dim:
-            parser.error(f"--origin needs {dim} numbers")
         simplices = simplices + given.origin
+    size, across = measure(simplices, given.dx, given)
     points = fill(simplices, given.dx, given.shell)
     if not len(points):
-        parser.error(f"no particle fits: the surface is {np.ptp(simplices.reshape(-1, dim), axis=0)} wide, the spacing is {given.dx}")
+        raise SystemExit(f"{given.surface} is {size}: no particle fits")
     write(given.out, points, given.dx, given.type, given.mol, given.box)
-    print(f"{len(points)} particles in {given.out}")
+    print(f"{given.surface} is {size}; {len(points)} particles in {given.out}")
+    if not given.shell and across.min() < 3.0:
+        print(f"fsi fill: only {across.min():.2g} particles across: a body or a jet wants three or more")
+
+
+def rotation(degrees):
+    """The matrix of a turn in the plane (one angle), or about x, then y, then z."""
+    if len(degrees) == 1:
+        c, s = np.cos(np.radians(degrees[0])), np.sin(np.radians(degrees[0]))
+        return np.array([[c, -s], [s, c]])
+    matrix = np.eye(3)
+    for k, angle in enumerate(degrees):
+        one, (i, j) = np.eye(3), ((k + 1) % 3, (k + 2) % 3)
+        one[np.ix_((i, j), (i, j))] = rotation([angle])
+        matrix = one @ matrix
+    return matrix
 
 
 if __name__ == "__main__":

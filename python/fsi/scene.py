@@ -17,7 +17,7 @@ import traceback
 from contextlib import contextmanager
 from pathlib import Path
 
-from . import launch, paths, results
+from . import launch, paths, report, results
 from .command import Refusal, split, start, whole
 from .paths import scenes
 from .summary import RUN_FILE
@@ -111,16 +111,18 @@ def run(scene, folder, ranks, variables, case=None, borrowed=None, may_fail=Fals
         if status != 0:
             _explain(folder, status, output)
             if not may_fail:
+                _report(folder)
                 return status
         _write_run(folder, {"scene": scene, **({"case": case} if case else {}), "ranks": ranks,
                             "wall_seconds": round(wall, 3), "given": variables, **({"status": status} if status else {}),
                             "variables": {**deck_variables(path), **variables}})
         print(f"run: LAMMPS took {wall:.1f} s; analysing", flush=True)
         module = analysis(scene)
-        if module is not None and not _calls(module.main, folder):
-            return 1
-        print(f"run: figures, pictures and log are in {folder}", flush=True)
-        return 0
+        good = module is None or _calls(module.main, folder)
+        _report(folder)
+        if good:
+            print(f"run: figures, pictures and log are in {folder}; all on one page: {folder / report.OUT}", flush=True)
+        return 0 if good else 1
 
 
 def run_cases(scene, folder, ranks=None):
@@ -143,6 +145,7 @@ def run_cases(scene, folder, ranks=None):
         module = analysis(scene)
         if ran and hasattr(module, "study"):
             good &= _calls(module.study, folder, ran)
+        _report(folder)
         print(f"run: {scene}: {len(ran)} of {len(wanted)} cases ran" +
               (f"; failed: {', '.join(failed)}" if failed else ""), flush=True)
         return 0 if good else 1
@@ -176,6 +179,12 @@ def _calls(function, *arguments):
         traceback.print_exc()
         return False
     return True
+
+
+def _report(folder):
+    """The page of a run or of a study, if there is something to be said."""
+    if (folder / "log.lammps").exists() or (folder / "summary.json").exists():
+        _calls(report.write, folder)
 
 
 @contextmanager

@@ -79,6 +79,39 @@ def frequency(time, values):
     return float(rate[k] + 0.5 * (a - c) / (a - 2.0 * b + c) * rate[1])
 
 
+def periodic(time, values, periods=3):
+    """Each of the last whole periods of a signal: {"mean": (max+min)/2, "amplitude": (max-min)/2, "frequency", "count": of all whole periods}.
+
+    A period goes from one rise through the middle between the extremes of the end to the next; a rise comes from below a quarter of the
+    amplitude under the middle to above a quarter over it, so that noise makes none. None if there is no whole period.
+    """
+    try:
+        recent = time >= time[-1] - (periods + 1.0) / frequency(time, values)
+    except ValueError:
+        return None
+    low, high = values[recent].min(), values[recent].max()
+    middle, quarter = 0.5 * (low + high), 0.125 * (high - low)
+    rises, below = [], None
+    for k, value in enumerate(values):
+        if value < middle - quarter:
+            below = k
+        elif value > middle + quarter and below is not None:
+            part = slice(below, k + 1)
+            up = np.flatnonzero(np.diff(np.sign(values[part] - middle)))  # through the middle, perhaps to and fro
+            i = below + up
+            rises.append(np.mean(time[i] + (middle - values[i]) / (values[i + 1] - values[i]) * (time[i + 1] - time[i])))
+            below = None
+    if len(rises) < 2:
+        return None
+    found = {"mean": [], "amplitude": [], "frequency": [], "count": len(rises) - 1}
+    for start, end in list(zip(rises, rises[1:]))[-periods:]:
+        part = values[(time >= start) & (time <= end)]
+        found["mean"].append(0.5 * (part.max() + part.min()))
+        found["amplitude"].append(0.5 * (part.max() - part.min()))
+        found["frequency"].append(1.0 / (end - start))
+    return {name: np.array(value) if name != "count" else value for name, value in found.items()}
+
+
 def read_ave(path):
     """Reads a file of fix ave/time: columns over TimeStep, each (steps,); of mode vector (steps, rows)."""
     titles, data = [], []

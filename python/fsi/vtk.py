@@ -1,10 +1,6 @@
-"""Converts a dump for ParaView: one .vtu file per frame, and a .pvd file that lists them with their times.
-
-    python3 -m fsi.vtk particles.dump [FOLDER]      default: a folder named as the dump without its ending
-"""
+"""Converts a dump for ParaView: one .vtu file per frame, and a .pvd file that lists them with their times."""
 
 import base64
-import sys
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -30,14 +26,14 @@ def write(path, frame):
         f'<Points>\n{_array("points", points)}</Points>\n<Cells>\n{cells}</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n')
 
 
-def convert(path, folder=None):
-    """Converts a dump, frame by frame; returns the path of the .pvd file."""
+def convert(path, folder=None, progress=None):
+    """Converts a dump, frame by frame, into a folder named as the dump without its ending; returns the path of the .pvd file."""
     path = Path(path)
     name = path.name.removesuffix(".gz").rsplit(".", 1)[0]
     folder = Path(folder) if folder else path.parent / name
     folder.mkdir(parents=True, exist_ok=True)
     listed = []
-    for frame in dump.frames(path):
+    for frame in dump.frames(path, progress=progress):
         file = f"{name}.{frame.step:09d}.vtu"
         write(folder / file, frame)
         listed.append(f'<DataSet timestep="{frame.time!r}" file={quoteattr(file)}/>\n')
@@ -68,16 +64,3 @@ def _array(name, values):
     return (f'<DataArray type="{_TYPES[values.dtype.kind]}" Name={quoteattr(name)} NumberOfComponents="{components}" format="binary">'
             f"{content}</DataArray>\n")
 
-
-def main(arguments):
-    """Command line."""
-    if not 1 <= len(arguments) <= 2 or arguments[0].startswith("-"):
-        sys.exit(__doc__)
-    try:
-        print(convert(*arguments))
-    except (OSError, ValueError) as error:
-        sys.exit(f"fsi.vtk: {error}")
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

@@ -392,38 +392,9 @@ namespace FSI {
     }
   }
 
-  // calls f with the flags among ALL that are set, as a constant
-  template <int ALL, int SET = 0, class F> void with_flags(int flags, F &&f)
-  {
-    if constexpr (ALL == 0) f(std::integral_constant<int, SET>());
-    else {
-      constexpr int LOWEST = ALL & -ALL;
-      if (flags & LOWEST) with_flags<(ALL & ~LOWEST), (SET | LOWEST)>(flags, f);
-      else with_flags<(ALL & ~LOWEST), SET>(flags, f);
-    }
-  }
-
-#if FSI_PACKS
-  // calls a loop as compiled for a processor that has packs
-  template <class Loop> FSI_AVX2 inline void packed(Loop loop)
-  {
-    loop(Pack());
-  }
-#endif
-
   template <class K> class FluidLoopsOf : public FluidLoops {
     static constexpr int D = K::DIM;
     const K kernel;
-
-    // loop(number type): with packs, if the processor has them
-    template <bool PACKS = true, class Loop> static void run(Loop loop)
-    {
-#if FSI_PACKS
-      if constexpr (PACKS)
-        if (have_packs()) return packed(loop);
-#endif
-      loop(0.0);
-    }
 
    public:
     explicit FluidLoopsOf(double h) : kernel(h) {}
@@ -434,7 +405,7 @@ namespace FSI {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       const auto loop = [&](auto kind_is, auto flags) {
-        run([&](auto number) __attribute__((always_inline)) {
+        run_loop([&](auto number) __attribute__((always_inline)) {
           rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate, sums);
         });
       };
@@ -457,9 +428,11 @@ namespace FSI {
       PairSums unused;
       if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL)) sums = &unused;
       const auto loop = [&](auto packs, auto kind_is, auto flags) {
-        run<packs()>([&](auto number) __attribute__((always_inline)) {
+        const auto rows_of = [&](auto number) __attribute__((always_inline)) {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
-        });
+        };
+        if constexpr (packs()) run_loop(rows_of);
+        else rows_of(0.0);
       };
       const std::true_type packs;
       const std::false_type no_packs;
@@ -485,7 +458,7 @@ namespace FSI {
     {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::IMAGES | Flag::BOTH>((image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0), [&](auto flags) {
-        run([&](auto number) __attribute__((always_inline)) {
+        run_loop([&](auto number) __attribute__((always_inline)) {
           shift_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, wdx, shift);
         });
       });
@@ -509,7 +482,7 @@ namespace FSI {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH>(
           what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
-            run([&](auto number) __attribute__((always_inline)) {
+            run_loop([&](auto number) __attribute__((always_inline)) {
               distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, x, vol, sum);
             });
           });

@@ -22,6 +22,7 @@
 #define LMP_FSI_PACK_H
 
 #include <cmath>
+#include <type_traits>
 
 #if defined(__GNUC__) && defined(__x86_64__)
 #define FSI_PACKS 1
@@ -208,6 +209,32 @@ namespace FSI {
     }
   };
 #endif
+
+  // calls f with the flags among ALL that are set, as a constant
+  template <int ALL, int SET = 0, class F> void with_flags(int flags, F &&f)
+  {
+    if constexpr (ALL == 0) f(std::integral_constant<int, SET>());
+    else {
+      constexpr int LOWEST = ALL & -ALL;
+      if (flags & LOWEST) with_flags<(ALL & ~LOWEST), (SET | LOWEST)>(flags, f);
+      else with_flags<(ALL & ~LOWEST), SET>(flags, f);
+    }
+  }
+
+  // loop(T()) with T = Pack where the processor has packs, compiled for it, else with T = double
+#if FSI_PACKS
+  template <class Loop> FSI_AVX2 inline void run_packed(Loop loop)
+  {
+    loop(Pack());
+  }
+#endif
+  template <class Loop> void run_loop(Loop loop, bool packs = true)
+  {
+#if FSI_PACKS
+    if (packs && have_packs()) return run_packed(loop);
+#endif
+    loop(0.0);
+  }
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

@@ -28,6 +28,7 @@
 #include "neigh_list.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -41,7 +42,7 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
-    reference(nullptr), fsolid(nullptr), nmax(0), bond_loop{nullptr, nullptr}
+    reference(nullptr), fsolid(nullptr), nmax(0)
 {
   no_virial_fdotr_compute = 1;
 }
@@ -160,25 +161,6 @@ void PairFSISolidTL::init_style()
     neohookean.emplace_back(K, G, false);
     hypo.emplace_back(is && plane_stress ? m.plane_stress_modulus() : K, G, plane_stress);
   }
-
-  const int flags = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0) |
-      (modify->get_compute_by_style("^fsi/energy$").empty() ? 0 : LEDGER);
-  if (law == SVK) dim == 2 ? select<StVenantKirchhoff, 2>(flags) : select<StVenantKirchhoff, 3>(flags);
-  else if (law == NEOHOOKEAN) dim == 2 ? select<NeoHookean, 2>(flags) : select<NeoHookean, 3>(flags);
-  else dim == 2 ? select<HypoElastic, 2>(flags) : select<HypoElastic, 3>(flags);
-}
-
-template <class L, int D> void PairFSISolidTL::select(int flags)
-{
-  pick<L, D>(flags, std::make_integer_sequence<int, NFLAGS>());
-}
-
-template <class L, int D, int... F> void PairFSISolidTL::pick(int flags, std::integer_sequence<int, F...>)
-{
-  using Loop = void (PairFSISolidTL::*)();
-  static constexpr Loop table[] = {&PairFSISolidTL::bond_forces<L, D, F>...};
-  bond_loop[0] = table[flags];
-  bond_loop[1] = table[flags | VIRIAL];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -211,11 +193,17 @@ void PairFSISolidTL::internal_forces()
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
     memory->destroy(fsolid);
-    memory->create(fsolid, nmax, 3, "pair:fsolid");
+    memory->create(fsolid, nmax, row_of_bond_forces(hub->dim), "pair:fsolid");
   }
   for (const auto *set : {&reference->solids, &reference->ghosts})
-    for (const int i : *set) fsolid[i][0] = fsolid[i][1] = fsolid[i][2] = 0.0;
-  (this->*bond_loop[vflag_global ? 1 : 0])();
+    for (const int i : *set) std::fill_n(fsolid[i], hub->dim, 0.0);
+  const auto forces_of = [&](auto law_of) {
+    using L = decltype(law_of);
+    hub->dim == 2 ? bond_forces<L, 2>() : bond_forces<L, 3>();
+  };
+  if (law == SVK) forces_of(svk[0]);
+  else if (law == NEOHOOKEAN) forces_of(neohookean[0]);
+  else forces_of(hypo[0]);
   if (list) {
     if (hub->dim == 2) contact_forces<2>();
     else contact_forces<3>();
@@ -224,126 +212,48 @@ void PairFSISolidTL::internal_forces()
 }
 
 /* ----------------------------------------------------------------------
-   per bond of i: F_i; hourglass control; forces; artificial viscosity
-
-   Hourglass control (after Ganzenmueller 2015, in energy form): psi_i gains sum_j zeta E V_i V_j W/|X|^2 |r_ij|^2/2,
-   r_ij = (x_j - x_i) - F_i X_ij: what the linear field F_i does not explain of its neighbours' positions.
-   Artificial viscosity (fsi_viscosity_artificial.h) with the reference kernel; each particle of a pair does half.
+   fsi_bond_rows.h
 ------------------------------------------------------------------------- */
 
-template <class L, int D, int FLAGS> void PairFSISolidTL::bond_forces()
+template <class L, int D> void PairFSISolidTL::bond_forces()
 {
-  constexpr int NV = 2 * D + 2;
-  double **x = atom->x;
-  double **v = atom->v;
+  using namespace BondFlag;
+  constexpr int NP = row_of_points(D), ALL = HOURGLASS | VISCOSITY | SUMS;
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   const int *const type = atom->type;
-  const double *const rmass = atom->rmass;
   const State *const state = hub->state.data();
-  const L *const law_of = laws<L>();
-  double **stress_of = hypoelastic() ? hub->fix_stress->stress : nullptr;
-  const ArtificialViscosity viscosity(alpha, beta, hub->h);
-  strain_energy = 0.0;
-
+  if (points.size() < (size_t) NP * atom->nmax) points.assign((size_t) NP * atom->nmax, 0.0);
+  for (const auto *set : {&reference->solids, &reference->ghosts})
+    for (const int i : *set)
+      for (int d = 0; d < D; d++) {
+        points[NP * i + d] = x[i][d];
+        points[NP * i + D + d] = v[i][d];
+      }
+  rows.clear();
+  bool one_material = true;
   for (const int i : reference->solids) {
-    const int n = reference->count(i), *const partner = reference->partners(i);
-    if (n == 0) continue;    // torn off by damage
-    const double *const values = reference->values(i);
-    const State &si = state[type[i]];
-    const double vol = rmass[i] / si.rho0 * reference->weight(i);
-
-    double F[D * D] = {};
-    const double *b = values;
-    for (int k = 0; k < n; k++, b += NV) {
-      const double *const xj = x[partner[k]];
-      for (int a = 0; a < D; a++) {
-        const double d = xj[a] - x[i][a];
-        for (int c = 0; c < D; c++) F[a * D + c] += d * b[c];
-      }
-    }
-    const auto piola = law_of[type[i]].template operator()<D>(F, stress_of ? stress_of[i] : nullptr);
-    if (FLAGS & LEDGER) strain_energy += vol * piola.energy;
-    double t[D * D];    // derivative of the energy of i with respect to F_i
-    for (int a = 0; a < D * D; a++) t[a] = vol * piola.P[a];
-
-    const double stiffness = zeta * material[type[i]].young;
-    if (FLAGS & HOURGLASS) {
-      b = values;
-      for (int k = 0; k < n; k++, b += NV) {
-        const double *const xj = x[partner[k]], *const X = b + D;
-        const double kr = stiffness * b[2 * D];
-        for (int a = 0; a < D; a++) {
-          double r = xj[a] - x[i][a];
-          for (int c = 0; c < D; c++) r -= F[a * D + c] * X[c];
-          if (FLAGS & LEDGER) strain_energy += 0.5 * kr * r * r;
-          for (int c = 0; c < D; c++) t[a * D + c] -= kr * r * X[c];
-        }
-      }
-    }
-    if (FLAGS & VIRIAL) {
-      const auto component = [&](int a, int c) {
-        double s = 0.0;
-        for (int k = 0; k < D; k++) s += t[a * D + k] * F[c * D + k];
-        return s;
-      };
-      virial[0] -= component(0, 0);
-      virial[1] -= component(1, 1);
-      virial[3] -= component(0, 1);
-      if (D == 3) {
-        virial[2] -= component(D - 1, D - 1);
-        virial[4] -= component(0, D - 1);
-        virial[5] -= component(1, D - 1);
-      }
-    }
-
-    double fi[D] = {};
-    b = values;
-    for (int k = 0; k < n; k++, b += NV) {
-      const int j = partner[k];
-      double xji[D], fj[D];
-      for (int a = 0; a < D; a++) {
-        xji[a] = x[j][a] - x[i][a];
-        fj[a] = 0.0;
-        for (int c = 0; c < D; c++) fj[a] -= t[a * D + c] * b[c];
-      }
-      double extra[D] = {};    // on j, beyond what acts through F_i
-      if (FLAGS & HOURGLASS) {
-        const double kr = stiffness * b[2 * D];
-        for (int a = 0; a < D; a++) {
-          double r = xji[a];
-          for (int c = 0; c < D; c++) r -= F[a * D + c] * b[D + c];
-          extra[a] -= kr * r;
-        }
-      }
-      if (FLAGS & VISCOSITY) {
-        double vdotx = 0.0, rsq = 0.0;
-        for (int a = 0; a < D; a++) {
-          vdotx += (v[j][a] - v[i][a]) * xji[a];
-          rsq += xji[a] * xji[a];
-        }
-        const State &sj = state[type[j]];
-        const double q = 0.5 * b[2 * D + 1] * viscosity(vdotx, rsq, 0.5 * (si.rho0 + sj.rho0), 0.5 * (si.c + sj.c), 1.0);
-        for (int a = 0; a < D; a++) extra[a] -= q * xji[a];
-        if (FLAGS & LEDGER) hub->tally(FixFSI::ARTIFICIAL, q * vdotx);
-      }
-      if (FLAGS & VIRIAL) {
-        virial[0] += xji[0] * extra[0];
-        virial[1] += xji[1] * extra[1];
-        virial[3] += xji[0] * extra[1];
-        if (D == 3) {
-          virial[2] += xji[D - 1] * extra[D - 1];
-          virial[4] += xji[0] * extra[D - 1];
-          virial[5] += xji[1] * extra[D - 1];
-        }
-      }
-      double *const f = fsolid[j];
-      for (int a = 0; a < D; a++) {
-        fj[a] += extra[a];
-        f[a] += fj[a];
-        fi[a] -= fj[a];
-      }
-    }
-    for (int a = 0; a < D; a++) fsolid[i][a] += fi[a];
+    const State &s = state[type[i]], &first = state[type[reference->solids[0]]];
+    one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
+    if (reference->count(i) == 0) continue;    // torn off by damage
+    rows.push_back({i, reference->count(i), reference->partners(i), reference->values(i), atom->rmass[i] / s.rho0 * reference->weight(i),
+                    zeta * material[type[i]].young});
   }
+
+  BondSums sums;
+  const BondArguments in = {points.data(), type, state, hypoelastic() ? hub->fix_stress->stress : nullptr, alpha, beta, hub->h, one_material, &sums};
+  const L *const law_of = laws<L>();
+  auto *const f = reinterpret_cast<double(*)[row_of_bond_forces(D)]>(fsolid ? fsolid[0] : nullptr);
+  const int flags = hub->ledger || vflag_global ? ALL : (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
+  with_flags<ALL>(flags, [&](auto which) {
+    // with sums there is one loop for all effects: those that are off have coefficients of zero
+    if constexpr (!(which() & SUMS) || which() == ALL)
+      run_loop([&](auto number) __attribute__((always_inline)) { bond_rows<decltype(number), L, D, which()>(rows, law_of, in, f); },
+               one_material || !has_artificial());
+  });
+  strain_energy = sums.energy;
+  hub->tally(FixFSI::ARTIFICIAL, sums.artificial);
+  if (vflag_global)
+    for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
 
 /* ----------------------------------------------------------------------
@@ -606,5 +516,6 @@ void PairFSISolidTL::read_restart_settings(FILE *fp)
 
 double PairFSISolidTL::memory_usage()
 {
-  return (double) nmax * 3 * sizeof(double);
+  return (double) nmax * row_of_bond_forces(domain->dimension) * sizeof(double) + (double) points.capacity() * sizeof(double) +
+      (double) rows.capacity() * sizeof(BondRow);
 }

@@ -21,10 +21,9 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 #ifndef LMP_PAIR_FSI_SOLID_TL_H
 #define LMP_PAIR_FSI_SOLID_TL_H
 
-#include "fsi_elastic.h"
+#include "fsi_bond_rows.h"
 #include "pair_fsi.h"
 
-#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -91,11 +90,9 @@ class PairFSISolidTL : public PairFSI {
   int nmax;
 
   template <class L> const L *laws() const;
-  enum { HOURGLASS = 1, VISCOSITY = 2, LEDGER = 4, VIRIAL = 8, NFLAGS = 16 };
-  void (PairFSISolidTL::*bond_loop[2])();    // without and with virial
-  template <class L, int D, int FLAGS> void bond_forces();
-  template <class L, int D> void select(int flags);
-  template <class L, int D, int... F> void pick(int flags, std::integer_sequence<int, F...>);
+  std::vector<FSI::BondRow> rows;
+  std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
+  template <class L, int D> void bond_forces();
   template <int D> void contact_forces();
   template <int D> void deformation(int i, double *F) const;
   template <int D> void advance_stress_of_all(double dt);

@@ -1,0 +1,241 @@
+"""Looks into what a run left, and before it. Usage, as `fsi` where it is installed (pip install ./python), else as `python3 -m fsi`:
+
+    fsi log log.lammps                        what was run, how fast, figures, warnings
+    fsi log log.lammps COLUMN ...             columns of the thermo output as CSV
+    fsi series FILE [COLUMN ...]              the same of files of fix print (CSV) and fix ave/time
+    fsi frequency FILE COLUMN [FROM [TO]]     of a column that swings; mean and amplitude over its last periods
+    fsi dump particles.dump                   frames, particles, columns and their ranges
+    fsi vtk particles.dump [FOLDER]           for ParaView
+    fsi animate particles.dump [FILE.mp4]     by ffmpeg
+    fsi report [FOLDER]                       one page, report.html, of all that a run left
+    fsi check DECK [NAME=VALUE ...]           what the package says about a deck before its first step
+    fsi fill SURFACE DX OUT.data              particles inside an outline (2D) or an STL surface (3D)
+
+plot=FILE.png behind log, series or dump draws instead: columns over time; snapshots. fsi COMMAND --help says more.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from . import animate, check, dump, fill, log, plot, report, series, vtk
+from .command import Refusal, whole
+from .progress import Progress
+
+COLOURS = (plot.BLUE, plot.ORANGE, plot.GREY, plot.GREEN, plot.RED)
+TIME = ("time", "Time", "t")  # names of columns that others are drawn over
+
+
+def show_log(files, options):
+    """fsi log LOG [COLUMN ...] [plot=FILE.png]
+
+    Without columns: runs, speed, figures that the deck printed, warnings. With columns: these as CSV, or drawn over the first
+    of them; a single one is drawn over the time if there is a column of it, else over Step. v_, c_ and f_ may be left out.
+    """
+    path, *wanted = files
+    found = log.read(path)
+    if wanted or options:
+        names = dict.fromkeys(name for run in found.runs for name in run.thermo)
+        table = {name: found.column(name) for name in names}
+        if wanted and len({len(c) for c in _columns(table, wanted, path).values()}) > 1:
+            raise ValueError(f"{path}: not every run has these columns")
+        if not wanted:
+            table = {name: values for name, values in table.items() if len(values) == max(map(len, table.values()))}
+        return _show(table, wanted, path, options)
+    print(f"LAMMPS {found.version or 'of unknown version'}, {len(found.runs)} runs, {len(found.finished)} finished")
+    for k, run in enumerate(found.finished, start=1):
+        print(f"run {k}: {run.atoms} atoms, {run.steps} steps on {run.ranks} ranks in {run.loop_seconds:.4g} s"
+              + (f", {run.atoms * run.steps / run.loop_seconds:.3g} particle-steps/s" if run.loop_seconds else ""))
+        print("  columns: " + " ".join(run.thermo))
+    for name, value in found.values.items():
+        print(f"{name} = {value}")
+    for line in found.warnings + found.errors:
+        print(line)
+
+
+def show_series(files, options):
+    """fsi series FILE [COLUMN ...] [plot=FILE.png]
+
+    FILE is of fix print (CSV with a header line) or of fix ave/time. Its columns as CSV, or drawn over the first wanted; a single
+    one is drawn over the first of the file.
+    """
+    path, *wanted = files
+    table = series.read_any(path).columns
+    if any(values.ndim > 1 for values in table.values()):
+        table = series.rows(table)
+    _show(table, wanted, path, options)
+
+
+def show_frequency(files, options):
+    """fsi frequency FILE COLUMN [FROM [TO]] [periods=3]
+
+    First the frequency of the largest peak of the column's spectrum between two times. Then, as Turek and Hron define them for
+    their benchmark, over the last whole periods: mean = (max+min)/2, amplitude = (max-min)/2, frequency = 1/period, each averaged
+    over so many periods, in brackets the smallest and largest. A signal that has not settled is said to be so.
+    """
+    path, *wanted = files
+    if not 1 <= len(wanted) <= 3:
+        raise ValueError("frequency takes a column and perhaps two times")
+    periods = whole("periods", options.get("periods", "3"))
+    table = series.read_any(path).columns
+    (first, time), *_ = table.items()
+    column = _columns(table, wanted[:1], path)[wanted[0]]
+    low, high = [*map(float, wanted[1:]), *(time[0], time[-1])[len(wanted) - 1:]]
+    inside = (time >= low) & (time <= high)
+    if inside.sum() < 8:
+        raise ValueError(f"{path} has {inside.sum()} rows between {first} = {low:g} and {high:g}")
+    time, column = time[inside], column[inside]
+    print(f"{series.frequency(time, column):.6g} per unit of {first}")
+    found = series.periodic(time, column, periods)
+    if found is None:
+        print("no whole period, so neither mean nor amplitude")
+        return
+    print(f"last {len(found['mean'])} of {found.pop('count')} whole periods:")
+    for name, values in found.items():
+        print(f"  {name:9}  {np.mean(values):.6g}  ({np.min(values):.6g} to {np.max(values):.6g})")
+    size = found["amplitude"]
+    if np.ptp(size) > 0.05 * np.mean(size):
+        print("  not settled: the amplitude changes by more than 5 %")
+
+
+def show_dump(files, options):
+    """fsi dump DUMP [plot=FILE.png] [view=...] [colour=COLUMN] [types=1,2] [frames=6]
+
+    Without plot: frames, particles, columns and their ranges in the last frame. plot draws up to six frames (frames=N), coloured by
+    pressure and von Mises stress, or by the column of colour=; colour=speed is made of vx, vy, vz. types= leaves other particles out.
+    view= is for three dimensions: x, y or z looks along that axis; AZIMUTH,ELEVATION (degrees; default 30,20) from there, with z up;
+    AZIMUTH,ELEVATION,y with y up.
+    """
+    path, *rest = files
+    if rest:
+        raise ValueError("dump takes no columns")
+    if "plot" in options:
+        some = dump.some(path, whole("frames", options.get("frames", "6")), Progress(f"reading {path}"))
+        animate.draw(options["plot"], some, options)
+        print(options["plot"])
+        return
+    if options:
+        raise ValueError(f"{', '.join(options)}: only with plot=")
+    first, last, count = None, None, 0
+    for last in dump.frames(path, progress=Progress(f"reading {path}")):
+        first, count = first or last, count + 1
+    if not count:
+        raise ValueError(f"{path} has no frames")
+    print(f"{count} frames from t = {first.time:g} to {last.time:g}, {len(first)} particles at first, {len(last)} at last")
+    for name, values in last.columns.items():
+        print(f"  {name:12} {np.nanmin(values):.6g} to {np.nanmax(values):.6g}")
+
+
+def make_vtk(files, _):
+    """fsi vtk DUMP [FOLDER]
+
+    One .vtu file per frame, and a .pvd file that lists them with their times, in a folder named as the dump without its ending.
+    """
+    print(vtk.convert(*files, progress=Progress(f"converting {files[0]}")))
+
+
+def make_animation(files, options):
+    """fsi animate DUMP [FILE.mp4 or FILE.gif] [rate=25] [solid=TYPES] [view=...] [colour=COLUMN] [types=1,2]
+
+    By ffmpeg; without it the numbered pictures stay, in a folder beside the animation's place. Fluids are coloured by pressure, solids
+    by von Mises stress. solid=2,3: the types of solids; default: those with a molecule ID. view, colour, types: as for fsi dump.
+    """
+    print(animate.animate(*files, options=options))
+
+
+def make_report(files, options):
+    """fsi report [FOLDER] [out=FILE.html]
+
+    One page, readable without the folder and without a network: figures, pictures, curves, what the run cost, the effects that were on,
+    warnings. FOLDER (default: this one) is what tools/run or LAMMPS left: log.lammps, and what there is of summary.json, *.csv, *.png.
+    """
+    print(report.write(*files, **options))
+
+
+def make_check(files, options):
+    """fsi check DECK [NAME=VALUE ...]
+
+    Reads the whole deck and sets every run up, but computes no step: prints the effects that are on and the advice of the package. NAME=VALUE
+    as for lmp -var. Nothing in the folder is overwritten: the deck runs in a copy of what it names. Status 1 if there is advice or an error.
+    """
+    sys.exit(check.main(files[0], options))
+
+
+# name: (function, fewest and most files and columns, options; None: any)
+COMMANDS = {
+    "log": (show_log, 1, 99, {"plot"}),
+    "series": (show_series, 1, 99, {"plot"}),
+    "frequency": (show_frequency, 1, 4, {"periods"}),
+    "dump": (show_dump, 1, 99, {"plot", "frames", *animate.OPTIONS}),
+    "vtk": (make_vtk, 1, 2, set()),
+    "animate": (make_animation, 1, 2, {"rate", *animate.OPTIONS}),
+    "report": (make_report, 0, 1, {"out"}),
+    "check": (make_check, 1, 1, None),
+}
+
+
+def _columns(table, wanted, source):
+    """The wanted columns of {name: array}, by their own names or as LAMMPS variables (v_NAME); all if none is wanted."""
+    found = {}
+    for name in wanted or table:
+        key = _key(table, name)
+        if key is None:
+            raise ValueError(f"{source} has no column {name}; it has {', '.join(table)}")
+        found[name] = table[key]
+    return found
+
+
+def _key(table, name):
+    return next((k for k in (name, f"v_{name}", f"c_{name}", f"f_{name}") if k in table), None)
+
+
+def _show(table, wanted, source, options):
+    """Prints columns as CSV, or draws the others over the first; a single one over the time, or over the table's first."""
+    if "plot" in options and len(wanted) == 1:
+        time = next((name for name in TIME if _key(table, name)), next(iter(table)))
+        wanted = [time, *wanted]
+    columns = _columns(table, wanted, source)
+    if "plot" not in options:
+        print(",".join(columns))
+        for row in zip(*columns.values()):
+            print(",".join(f"{value:.10g}" for value in row))
+        return
+    (first, x), *rest = columns.items()
+    if not rest:
+        raise ValueError(f"{source} has one column only: there is nothing to draw it over")
+    plot.lines(options["plot"], first, rest[0][0] if len(rest) == 1 else "",
+               [(x, y, name, COLOURS[k % len(COLOURS)]) for k, (name, y) in enumerate(rest)])
+    print(options["plot"])
+
+
+def main(arguments=None):
+    """Command line."""
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    name, *words = arguments or [""]
+    if name == "fill":
+        return fill.main(words)
+    if name in ("-h", "--help", "help"):
+        print(__doc__)
+        return None
+    if name not in COMMANDS:
+        sys.exit(__doc__ if not name else f"fsi: there is no command {name}; there are {', '.join([*COMMANDS, 'fill'])}")
+    function, fewest, most, known = COMMANDS[name]
+    if "-h" in words or "--help" in words:
+        print(function.__doc__)
+        return None
+    files, options = [], {}
+    for word in words:
+        key, equals, value = word.partition("=")
+        if equals and key.isidentifier() and not Path(word).exists():
+            if not value or known is not None and key not in known:
+                sys.exit(f"fsi {name}: {word}: " + ("a value is missing" if not value else f"options are {', '.join(sorted(known)) or 'none'}"))
+            options[key] = value
+        else:
+            files.append(word)
+    if not fewest <= len(files) <= most:
+        sys.exit("Usage: " + function.__doc__.split("\n")[0])
+    try:
+        return function(files, options)
+    except (OSError, ValueError, Refusal) as error:
+        sys.exit(f"fsi {name}: {error}")

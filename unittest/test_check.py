@@ -1,0 +1,100 @@
+"""fsi check: advice without a step, in a copy that leaves the user's files alone."""
+
+import pytest
+
+from fsi import check, cli
+from fsi.command import Refusal
+
+DECK = """variable dx index 0.01
+variable n index 100
+units si
+dimension 2
+boundary f f p
+atom_style fsi
+region box block 0 0.3 0 0.3 -0.005 0.005
+create_box 1 box
+lattice sq ${dx} origin 0.5 0.5 0
+include bodies.in
+pair_style fsi/fluid sound 20
+pair_coeff * * materials.fsi water
+fix sph all fsi ${dx} wendland 1.5
+fix walls all fsi/wall/mirror ylo 0
+fix g all gravity 9.81 vector 0 -1 0
+timestep 1e-4
+dump 1 all custom 10 mine.dump id x y
+fix p all print 1 "$(step)" file mine.csv
+run $n every 10 "print 'hello'" &
+   post no
+if "${n} > 5" then "run 50"
+write_data out/mine.data
+print "steps done: $(step)"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A deck with an include, outputs of an earlier run, and a folder to write into."""
+    (tmp_path / "in.deck").write_text(DECK)
+    (tmp_path / "bodies.in").write_text("region water block 0 0.1 0 0.1 INF INF units box\ncreate_atoms 1 region water\n")
+    (tmp_path / "out").mkdir()
+    for name in ("mine.dump", "mine.csv", "log.lammps", "out/mine.data"):
+        (tmp_path / name).write_text("of an earlier run")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def says(capsys, *words):
+    with pytest.raises(SystemExit) as stop:
+        cli.main(["check", "in.deck", *words])
+    return stop.value.code, capsys.readouterr().out
+
+
+def test_sound_deck(folder, capsys):
+    status, text = says(capsys)
+    assert status == 0 and "100 particles, 100 steps; nothing to warn of" in text
+    assert "density of the fluid by continuity" in text and "2 mirror walls" not in text and "1 mirror wall" in text
+    assert all((folder / name).read_text() == "of an earlier run" for name in ("mine.dump", "mine.csv", "log.lammps", "out/mine.data"))
+    assert sorted(path.name for path in folder.iterdir()) == ["bodies.in", "in.deck", "log.lammps", "mine.csv", "mine.dump", "out"]
+
+
+def test_advice(folder, capsys):
+    """A spacing that is not the lattice's; variables of the command line."""
+    (folder / "in.deck").write_text(DECK.replace("fsi ${dx} wendland", "fsi 0.02 wendland"))
+    status, text = says(capsys, "n=30")
+    assert status == 1 and "WARNING: Fix fsi" in text and "30 steps; " in text and "nothing to warn" not in text
+
+
+def test_no_step_is_computed(folder):
+    status, output, _ = check.run("in.deck", {})
+    assert status == 0 and "steps done: 0" in output
+
+
+def test_deck_that_does_not_run(folder, capsys):
+    (folder / "bodies.in").write_text("create_atoms 2 region water\n")
+    status, text = says(capsys)
+    assert status == 1 and "ERROR" in text and "does not run" in text
+    (folder / "in.deck").write_text(DECK + "nonsense\n")
+    (folder / "bodies.in").write_text("create_atoms 1 single 0.1 0.1 0\n")
+    status, text = says(capsys)
+    assert status == 1 and "Unknown command" in text and "fails after 2 of its runs were set up" in text
+
+
+def test_what_a_deck_may_read(folder):
+    """Included decks and files that are named, with variables; not what is written."""
+    (folder / "shape_0.01.data").write_text("")
+    (folder / "more.in").write_text("read_data shape_${dx}.data add append\nread_data other_${unknown}.data\nmolecule m body.mol # not.this\n")
+    for name in ("other_7.data", "body.mol", "not.this"):
+        (folder / name).write_text("")
+    (folder / "in.deck").write_text(DECK + "include more.in\n")
+    files, decks = check.inputs(folder / "in.deck", {"n": "1"}, folder)
+    assert {path.name for path in files} == {"bodies.in", "more.in", "shape_0.01.data", "other_7.data", "body.mol"}
+    assert {path.name for path in decks} == {"in.deck", "bodies.in", "more.in"}
+
+
+def test_no_deck_and_no_lammps(folder, monkeypatch):
+    with pytest.raises(SystemExit, match="none is not a file|none.in is not a file"):
+        cli.main(["check", "none.in"])
+    monkeypatch.setattr(check.paths, "BUILD", folder / "nowhere")
+    monkeypatch.setenv("PATH", str(folder))
+    with pytest.raises(Refusal, match="there is no LAMMPS"):
+        check.lammps()
