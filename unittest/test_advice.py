@@ -125,7 +125,7 @@ def test_what_artificial_viscosity_is_worth(tmp_path, dim, expected):
     """In the log, without a warning: alpha h c/4(d+2), and the Reynolds number with sqrt(2gH) and the water's 0.05 m."""
     text = DECK.replace("sound 12.53", "sound 12.53 artificial/visc 0.1 0")
     if dim == 3:
-        text = text.replace("dimension 2", "dimension 3").replace("f f p", "f f f").replace("lattice sq", "lattice sc")
+        text = text.replace("dimension 2", "dimension 3").replace("f f p", "f f f").replace("lattice sq", "lattice sc").replace("create_atoms 2 region plate", "")
     output = run(tmp_path, text).output
     found = re.search(r"alpha 0.1, of type 1 acts like a kinematic viscosity of about (\S+): Reynolds number (\S+) with speed (\S+) and the fluid's least width (\S+)", output)
     nu, reynolds, speed, width = map(float, found.groups())
