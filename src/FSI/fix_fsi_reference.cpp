@@ -125,7 +125,7 @@ static std::vector<tagint> gather(const std::vector<tagint> &mine, MPI_Comm worl
   MPI_Allgather(&n, 1, MPI_INT, count.data(), 1, MPI_INT, world);
   for (int k = 1; k < nprocs; k++) first[k] = first[k - 1] + count[k - 1];
   std::vector<tagint> all(first.back() + count.back());
-  MPI_Allgatherv(mine.data(), n, MPI_LMP_TAGINT, all.data(), count.data(), first.data(), MPI_LMP_TAGINT, world);
+  MPI_Allgatherv(const_cast<tagint *>(mine.data()), n, MPI_LMP_TAGINT, all.data(), count.data(), first.data(), MPI_LMP_TAGINT, world);
   return all;
 }
 
