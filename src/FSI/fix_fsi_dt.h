@@ -21,6 +21,7 @@ FixStyle(fsi/dt,FixFSIDt);
 #define LMP_FIX_FSI_DT_H
 
 #include "fix.h"
+#include "fsi_keywords.h"
 #include "fsi_limits.h"
 
 #include <string>
@@ -42,6 +43,7 @@ class FixFSIDt : public Fix {
   void restart(char *) override;
 
   void start_of_step();    // called by fix fsi before anything moves
+  bool chooses_substeps() const { return automatic; }
 
  private:
   static constexpr int NLIMIT = FSI::Limits::NLIMIT;
@@ -49,8 +51,9 @@ class FixFSIDt : public Fix {
   enum Check { NO, WARN, STOP };
   class FixFSI *hub;
 
+  FSI::Keywords keywords;
   double cfl, low, high, growth;
-  bool automatic;    // number of sub-steps
+  int automatic;    // number of sub-steps
   int check;
 
   FSI::Limits limits;
