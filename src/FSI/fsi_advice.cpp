@@ -375,11 +375,14 @@ class Adviser : protected Pointers {
 
   void speeds() const
   {
+    std::array<double, 3> gravity = {0.0, 0.0, 0.0};
     double g = 0.0;
-    for (int d = 0; d < hub.dim; d++) g += hub.gravity[d] * hub.gravity[d];
+    for (int t = atom->ntypes; t > 0; t--)
+      if (present[t] && hub.state[t].species == FLUID) gravity = hub.gravity[t];
+    for (int d = 0; d < hub.dim; d++) g += gravity[d] * gravity[d];
     g = std::sqrt(g);
     for (int d = 0; d < hub.dim; d++)
-      if (hub.gravity[d] != 0.0 && domain->periodicity[d]) g = 0.0;    // drives a flow in a channel
+      if (gravity[d] != 0.0 && domain->periodicity[d]) g = 0.0;    // drives a flow in a channel
     // speed, both ends along gravity, upper ends, lower ends with the sign changed
     double mine[9] = {0.0, -BIG, -BIG, -BIG, -BIG, -BIG, -BIG, -BIG, -BIG}, most[9];
     for (int i = 0; i < atom->nlocal; i++) {
@@ -391,7 +394,7 @@ class Adviser : protected Pointers {
         mine[6 + d] = std::max(mine[6 + d], -x[d]);
       }
       if (g == 0.0) continue;
-      const double z = (x[0] * hub.gravity[0] + x[1] * hub.gravity[1] + (hub.dim == 3 ? x[2] * hub.gravity[2] : 0.0)) / g;
+      const double z = (x[0] * gravity[0] + x[1] * gravity[1] + (hub.dim == 3 ? x[2] * gravity[2] : 0.0)) / g;
       mine[1] = std::max(mine[1], z);
       mine[2] = std::max(mine[2], -z);
     }
