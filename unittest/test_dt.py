@@ -258,7 +258,7 @@ def test_prints_the_cause_when_it_changes(tmp_path):
 
 BAD = [
     ("fix dt all fsi/dt", r"fix fsi/dt command: missing"),
-    ("fix dt all fsi/dt 0", r"interval 0 must be > 0"),
+    ("fix dt all fsi/dt 0", r"interval 0 must be >= 1"),
     ("fix dt all fsi/dt ten", r"ten"),
     ("fix dt all fsi/dt 10 cfl", r"fix fsi/dt cfl command: missing"),
     ("fix dt all fsi/dt 10 cfl 0", r"cfl 0 must be > 0"),
@@ -271,6 +271,9 @@ BAD = [
     ("fix dt all fsi/dt 10 colour red", r"keyword colour"),
     ("fix dt all fsi/dt 10 substeps auto", r"substeps auto requires pair_style fsi/solid/tl"),
     ("fix dt all fsi/dt 10 substeps auto check warn", r"cannot be combined with check"),
+    ("fix dt all fsi/dt 10\ntimestep 0", r"Fix fsi/dt: timestep 0 must be > 0"),
+    ("fix dt all fsi/dt 10\ntimestep -1e-5", r"timestep -1e-05 must be >= 0"),
+    ("fix dt all fsi/dt 10\ntimestep 1e308", r"Fix fsi/dt: timestep 1e\+308 must be > 0 and below"),
     ("fix dt all fsi/dt 10\nfix dt2 all fsi/dt 10", r"only one fix fsi/dt"),
     ("fix dt all fsi/dt 10\nfix reset all dt/reset 1 NULL NULL 0.1", r"fix dt/reset cannot both"),
     ("fix dt all fsi/dt 10 min 1e-3", r"on step 0 the limit .* of (elastic waves|sound|acceleration).* is below the smallest time step 0.001"),

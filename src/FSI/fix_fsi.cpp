@@ -49,49 +49,22 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi"), psi(nullptr), rate(nullptr),
     shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
-    solid(nullptr), solid_tl(nullptr), substeps(1), surface_every(1), fix_dt(nullptr), profile(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
+    solid(nullptr), solid_tl(nullptr), fix_dt(nullptr), profile(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
     tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false), keep_psi(false), send_psi(true)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
-  if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
 
-  dx = utils::numeric(FLERR, arg[3], false, lmp);
-  if (dx <= 0.0) error->all(FLERR, "Fix fsi particle spacing {} must be > 0", arg[3]);
-
-  if (strcmp(arg[4], "cubic") == 0) kernel = CUBIC;
-  else if (strcmp(arg[4], "quintic") == 0) kernel = QUINTIC;
-  else if (strcmp(arg[4], "wendland") == 0) kernel = WENDLAND;
-  else error->all(FLERR, "Unknown fix fsi kernel {}: expected cubic, quintic or wendland", arg[4]);
-
-  const double hdx = utils::numeric(FLERR, arg[5], false, lmp);
-  if (hdx < 0.9 || hdx > 4.0)
-    error->all(FLERR, "Fix fsi smoothing length over spacing {} must be between 0.9 and 4", arg[5]);
-
-  int iarg = 6;
-  while (iarg < narg) {
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi {}", arg[iarg]), error);
-    const bool sub = strcmp(arg[iarg], "substeps") == 0;
-    if (sub || strcmp(arg[iarg], "surface/every") == 0) {
-      int &n = sub ? substeps : surface_every;
-      n = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (n < 1) error->all(FLERR, "Fix fsi {} {} must be >= 1", arg[iarg], arg[iarg + 1]);
-      iarg += 2;
-      continue;
-    }
-    int mode;
-    if (strcmp(arg[iarg + 1], "continuity") == 0) mode = CONTINUITY;
-    else if (strcmp(arg[iarg + 1], "summation") == 0) mode = SUMMATION;
-    else if (strcmp(arg[iarg + 1], "ratio") == 0) mode = RATIO;
-    else
-      error->all(FLERR, "Unknown fix fsi {} density {}: expected continuity, summation or ratio", arg[iarg],
-                 arg[iarg + 1]);
-    if (strcmp(arg[iarg], "fluid") == 0) density_fluid = mode;
-    else if (strcmp(arg[iarg], "solid") == 0) density_solid = mode;
-    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid, solid, substeps or surface/every", arg[iarg]);
-    iarg += 2;
-  }
+  static const std::vector<std::string> modes = {"continuity", "summation", "ratio"};
+  keywords.argument("particle spacing").number(dx, 0.0, Range::above(0.0));
+  keywords.argument("kernel").choice(kernel, CUBIC, {"cubic", "quintic", "wendland"});
+  keywords.argument("smoothing length over spacing").number(hdx, 0.0, Range::between(0.9, 4.0));
+  keywords.key("fluid").choice(density_fluid, CONTINUITY, modes, "density");
+  keywords.key("solid").choice(density_solid, CONTINUITY, modes, "density");
+  keywords.key("substeps").integer(substeps, 1, 1, 10000);
+  keywords.key("surface/every").integer(surface_every, 1, 1);
+  keywords.parse(narg - 3, arg + 3);
 
   dim = domain->dimension;
   h = hdx * dx;
@@ -157,6 +130,7 @@ void FixFSI::init()
   if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix fsi does not support run_style respa");
+  if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
   if (comm->cutghostuser > 0.0 && comm->cutghostuser < cut)
     error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", cut, comm->cutghostuser);
   if (domain->dimension != dim)
@@ -245,7 +219,7 @@ void FixFSI::setup(int)
   if (fluid) effects.push_back({fmt::format("{} mirror walls", walls.wall.size()), "fix fsi/wall/mirror", !wall_fixes.empty()});
   if (fluid && fluid->surface_ratio > 0.0)
     effects.push_back({fmt::format("surface looked for every {} steps", surface_every), "fix fsi surface/every", keep_psi});
-  if (fix_stress) effects.push_back({"plasticity", "fix fsi/stress plastic", fix_stress->plastic});
+  if (fix_stress) effects.push_back({"plasticity", "fix fsi/stress plastic", fix_stress->plastic != 0});
   if (solid_tl) effects.push_back({fmt::format("{} solid sub-steps", substeps), "fix fsi substeps", substeps > 1});
   if (fluid) effects.push_back({fmt::format("{} groups of wall particles", particle_walls.size()), "fix fsi/wall/particle", !particle_walls.empty()});
   effects.push_back({"energy ledger", "compute fsi/energy", ledger});

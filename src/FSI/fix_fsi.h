@@ -22,6 +22,7 @@ FixStyle(fsi,FixFSI);
 
 #include "atom.h"
 #include "fix.h"
+#include "fsi_keywords.h"
 #include "fsi_material.h"
 #include "fsi_profile.h"
 #include "fsi_walls.h"
@@ -77,6 +78,7 @@ class FixFSI : public Fix {
   double psi_bulk;     // number density inside the lattice: the volume of a particle is 1/psi_bulk
   double wdx;          // W(dx)
   int density_fluid, density_solid;    // Density
+  FSI::Keywords keywords;
 
   // state per atom type; pair styles enter theirs in init_style()
   std::vector<FSI::State> state;
@@ -145,6 +147,7 @@ class FixFSI : public Fix {
   double *summed;    // per-atom scalar whose ghost parts a reverse communication adds up; null: rate and grad
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
   int nmax;
+  double hdx;    // h over dx
   double tally_dt;
   bool need_psi, need_grad, need_ratio, need_shift;
   bool keep_psi;    // number density is that of some steps only: it travels with its atom and through restarts

@@ -21,6 +21,7 @@ FixStyle(fsi/dt,FixFSIDt);
 #define LMP_FIX_FSI_DT_H
 
 #include "fix.h"
+#include "fsi_keywords.h"
 #include "fsi_limits.h"
 
 #include <string>
@@ -49,8 +50,9 @@ class FixFSIDt : public Fix {
   enum Check { NO, WARN, STOP };
   class FixFSI *hub;
 
+  FSI::Keywords keywords;
   double cfl, low, high, growth;
-  bool automatic;    // number of sub-steps
+  int automatic;    // number of sub-steps
   int check;
 
   FSI::Limits limits;

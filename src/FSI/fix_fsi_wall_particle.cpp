@@ -39,19 +39,12 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), slip(true), guard(0.9), before(nullptr), hub(nullptr), sum(nullptr), nmax(0), nsum(0), force_on{}
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), hub(nullptr), sum(nullptr), nmax(0), nsum(0), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
-  for (int iarg = 3; iarg < narg; iarg += 2) {
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi/wall/particle {}", arg[iarg]), error);
-    if (strcmp(arg[iarg], "slip") == 0) slip = utils::logical(FLERR, arg[iarg + 1], false, lmp);
-    else if (strcmp(arg[iarg], "guard") == 0) {
-      guard = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(guard >= 0.0 && guard <= 1.0))
-        error->all(FLERR, "Fix fsi/wall/particle guard {} must be between 0 and 1", arg[iarg + 1]);
-    } else
-      error->all(FLERR, "Unknown fix fsi/wall/particle keyword {}: expected slip or guard", arg[iarg]);
-  }
+  keywords.key("slip").logical(slip, true);
+  keywords.key("guard").number(guard, 0.9, Range::between(0.0, 1.0));
+  keywords.parse(narg - 3, arg + 3);
   scalar_flag = vector_flag = 1;
   size_vector = 3;
   extscalar = extvector = 1;

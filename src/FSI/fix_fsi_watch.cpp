@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
+#include "fsi_keywords.h"
 #include "fsi_pack.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -78,50 +79,27 @@ FSI_AVX2 static bool all_small(int n, const double *v, const double *f, const do
 /* ---------------------------------------------------------------------- */
 
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), hub(nullptr), warn(false), restart_file("fsi_watch.restart"), dump_file("fsi_watch.dump"),
-    nearest(BIG), energy_before(-1.0), reflected_before(-1.0), warned(0), violations(0)
+    Fix(lmp, narg, arg), nearest(BIG), hub(nullptr), energy_before(-1.0), reflected_before(-1.0), warned(0), violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/watch", error);
   nevery = 1;
-  interval = utils::inumeric(FLERR, arg[3], false, lmp);
-  if (interval <= 0) error->all(FLERR, "Fix fsi/watch interval {} must be > 0", arg[3]);
-
+  Keywords keywords(lmp, "fix fsi/watch");
+  keywords.argument("interval").integer(interval, 1, 1);
   limit[FINITE] = BIG;
-  limit[MACH] = 0.5;
-  limit[DISTANCE] = 0.1;
-  limit[DENSITY] = 0.3;
-  limit[COURANT] = 0.45;
-  limit[ENERGY] = 10.0;
-  limit[LOST] = 0.0;
-  limit[REFLECTED] = BIG;
-
-  for (int iarg = 4; iarg < narg; iarg += 2) {
-    const std::string key = arg[iarg];
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/watch " + key, error);
-    const char *const value = arg[iarg + 1];
-    const bool off = strcmp(value, "off") == 0;
-    if (key == "action") {
-      if (strcmp(value, "warn") == 0) warn = true;
-      else if (strcmp(value, "stop") == 0) warn = false;
-      else error->all(FLERR, "Unknown fix fsi/watch action {}: expected stop or warn", value);
-    } else if (key == "restart") restart_file = off ? "" : value;
-    else if (key == "dump") dump_file = off ? "" : value;
-    else {
-      int q = MACH;
-      while (q < NQUANTITY && key != about[q].key) q++;
-      if (q == NQUANTITY)
-        error->all(FLERR, "Unknown fix fsi/watch keyword {}: expected mach, distance, density, courant, energy, lost, reflected, "
-                          "action, restart or dump", key);
-      limit[q] = q == DISTANCE ? 0.0 : BIG;
-      if (off) continue;
-      limit[q] = utils::numeric(FLERR, value, false, lmp);
-      if (!(limit[q] >= 0.0 && limit[q] < BIG) || (limit[q] == 0.0 && q != LOST && q != REFLECTED))
-        error->all(FLERR, "Fix fsi/watch {} {} must be > 0, or off", key, value);
-      if (q == DISTANCE && limit[q] >= 1.0) error->all(FLERR, "Fix fsi/watch distance {} must be below 1 spacing", value);
-      if (q == ENERGY && limit[q] <= 1.0) error->all(FLERR, "Fix fsi/watch energy {} must be > 1", value);
-    }
-  }
+  const auto row = [&](Quantity q, double start, const Range &range) {
+    keywords.key(about[q].key).number(limit[q], start, range).or_word("off", q == DISTANCE ? 0.0 : BIG);
+  };
+  row(MACH, 0.5, Range::above(0.0));
+  row(DISTANCE, 0.1, Range::inside(0.0, 1.0));
+  row(DENSITY, 0.3, Range::above(0.0));
+  row(COURANT, 0.45, Range::above(0.0));
+  row(ENERGY, 10.0, Range::above(1.0));
+  row(LOST, 0.0, Range::from(0.0));
+  row(REFLECTED, BIG, Range::from(0.0));
+  keywords.key("action").choice(warn, 0, {"stop", "warn"});
+  keywords.key("restart").word(restart_file, "fsi_watch.restart").or_word("off");
+  keywords.key("dump").word(dump_file, "fsi_watch.dump").or_word("off");
+  keywords.parse(narg - 3, arg + 3);
   if (restart_file.find_first_of("*%") != std::string::npos)
     error->all(FLERR, "Fix fsi/watch restart {} must be the name of one file, without * and %", restart_file);
 

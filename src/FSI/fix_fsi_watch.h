@@ -54,7 +54,7 @@ class FixFSIWatch : public Fix {
 
   int interval;
   double limit[NQUANTITY];    // BIG, for DISTANCE 0, = off
-  bool warn;
+  int warn;
   std::string restart_file, dump_file;
   double speed_sq_of(int type) const;
   std::vector<double> speed_sq;    // per type: largest square of the speed

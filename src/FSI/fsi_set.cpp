@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_keywords.h"
 #include "group.h"
 #include "input.h"
 #include "variable.h"
@@ -57,7 +58,7 @@ void FSISet::command(int narg, char **arg)
     if (variable < 0 || !input->variable->atomstyle(variable))
       error->all(FLERR, "Fsi_set {} {} is not an atom-style variable", arg[1], arg[2]);
   }
-  const double number = variable < 0 ? utils::numeric(FLERR, arg[2], false, lmp) : 0.0;
+  const double number = variable < 0 ? numeric(lmp, std::string("Fsi_set ") + arg[1], arg[2]) : 0.0;
 
   const FixFSI *hub = FixFSI::find(lmp, "Fsi_set");
 
@@ -82,7 +83,8 @@ void FSISet::command(int narg, char **arg)
       rho = s.density(s.rho0 * size * (value - height) + s.p0);
     } else if (pressure)
       rho = s.density(value);
-    if (!(rho > 0.0)) error->one(FLERR, "Fsi_set {} {} must be > 0", pressure ? "pressure: density" : "density", rho);
+    if (!(rho > 0.0 && rho < Range::LARGEST))
+      error->one(FLERR, "Fsi_set {} {} must be > 0", pressure || hydrostatic ? std::string(arg[1]) + ": density" : "density", rho);
     atom->rmass[i] *= rho / atom->rho[i];
     atom->rho[i] = rho;
     count++;

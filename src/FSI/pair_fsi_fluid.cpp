@@ -36,75 +36,28 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), surface_ratio(0.0), surface_max(0), shifting(0.0), sound(0.0), background(0.0), delta(0.0),
-    tait(0), laminar(0), couple(WALL), extrapolate(0), tension(0), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1)
 {
+  keywords.key("sound").number(sound, 0.0, Range::above(0.0));
+  keywords.key("eos").choice(tait, 0, {"linear", "tait"});
+  artificial_row("fluid");
+  keywords.key("laminar/visc").set(laminar, PLAIN).effect("laminar viscosity");
+  keywords.key("laminar/visc/central").set(laminar, CENTRAL);
+  keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
+  keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
+  keywords.key("surface")
+      .number(surface_ratio, 0.0, Range::from_to_below(0.0, 1.0), "ratio")
+      .choice(surface_max, 0, {"bulk", "max"}, "reference")
+      .effect("free surface where psi is below {}");
+  keywords.key("tension").logical(tension, false).effect("tension in the fluid");
+  keywords.key("background").number(background, 0.0).effect("background pressure {}");
+  keywords.key("couple").choice(couple, WALL, {"wall", "pressure", "full"});
+  keywords.key("extrapolate").logical(extrapolate, false);
 }
 
-/* ----------------------------------------------------------------------
-   pair_style fsi/fluid keyword value ...
-------------------------------------------------------------------------- */
-
-void PairFSIFluid::settings(int narg, char **arg)
+void PairFSIFluid::check_settings()
 {
-  int iarg = 0;
-  while (iarg < narg) {
-    if (artificial_keyword(narg, arg, iarg)) continue;
-    if (strcmp(arg[iarg], "sound") == 0) {
-      need(narg, arg, iarg, 1);
-      sound = number(arg[iarg + 1], "sound speed");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "eos") == 0) {
-      need(narg, arg, iarg, 1);
-      if (strcmp(arg[iarg + 1], "linear") == 0) tait = 0;
-      else if (strcmp(arg[iarg + 1], "tait") == 0) tait = 1;
-      else error->all(FLERR, "Unknown pair_style fsi/fluid eos {}: expected linear or tait", arg[iarg + 1]);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "background") == 0) {
-      need(narg, arg, iarg, 1);
-      background = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "tension") == 0) {
-      need(narg, arg, iarg, 1);
-      tension = utils::logical(FLERR, arg[iarg + 1], false, lmp);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "laminar/visc") == 0 || strcmp(arg[iarg], "laminar/visc/central") == 0) {
-      laminar = strcmp(arg[iarg], "laminar/visc") == 0 ? PLAIN : CENTRAL;
-      iarg += 1;
-    } else if (strcmp(arg[iarg], "density/diffusion") == 0) {
-      need(narg, arg, iarg, 1);
-      delta = number(arg[iarg + 1], "density/diffusion");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "shift") == 0) {
-      need(narg, arg, iarg, 1);
-      shifting = number(arg[iarg + 1], "shift");
-      if (shifting > 1.0) error->all(FLERR, "Pair style fsi/fluid shift {} must be at most 1", arg[iarg + 1]);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "couple") == 0) {
-      need(narg, arg, iarg, 1);
-      if (strcmp(arg[iarg + 1], "wall") == 0) couple = WALL;
-      else if (strcmp(arg[iarg + 1], "pressure") == 0) couple = PRESSURE;
-      else if (strcmp(arg[iarg + 1], "full") == 0) couple = FULL;
-      else error->all(FLERR, "Unknown pair_style fsi/fluid couple {}: expected wall, pressure or full", arg[iarg + 1]);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "extrapolate") == 0) {
-      need(narg, arg, iarg, 1);
-      extrapolate = utils::logical(FLERR, arg[iarg + 1], false, lmp);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "surface") == 0) {
-      need(narg, arg, iarg, 2);
-      surface_ratio = number(arg[iarg + 1], "surface ratio");
-      if (surface_ratio >= 1.0)
-        error->all(FLERR, "Pair style fsi/fluid surface ratio {} must be below 1", arg[iarg + 1]);
-      if (strcmp(arg[iarg + 2], "bulk") == 0) surface_max = 0;
-      else if (strcmp(arg[iarg + 2], "max") == 0) surface_max = 1;
-      else error->all(FLERR, "Unknown pair_style fsi/fluid surface reference {}: expected bulk or max", arg[iarg + 2]);
-      iarg += 3;
-    } else
-      error->all(FLERR, "Unknown pair_style fsi/fluid keyword {}: expected sound, eos, background, tension, artificial/visc, "
-                        "laminar/visc, laminar/visc/central, density/diffusion, shift, couple, extrapolate or surface", arg[iarg]);
-  }
-  if (sound <= 0.0) error->all(FLERR, "Pair style fsi/fluid needs keyword sound with a speed of sound > 0");
+  if (sound == 0.0) error->all(FLERR, "Pair style fsi/fluid needs keyword sound with a speed of sound > 0");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -483,49 +436,10 @@ bool PairFSIFluid::has_solids() const
 
 std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 {
-  const auto given = [](const std::string &name, double value) { return fmt::format("{} {:g}", name, value); };
   static const char *const modes[] = {"wall", "pressure", "full"};
-  return {artificial_effect("fluid"),
-          {"laminar viscosity", "laminar/visc", laminar != 0},
-          {given("density diffusion", delta), "density/diffusion", delta > 0.0},
-          {given("particle shifting", shifting), "shift", shifting > 0.0},
-          {given("free surface where psi is below", surface_ratio), "surface", surface_ratio > 0.0},
-          {"tension in the fluid", "tension", tension != 0},
-          {given("background pressure", background), "background", background != 0.0},
-          {fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()}};
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSIFluid::write_restart_settings(FILE *fp)
-{
-  double d[] = {sound, background, alpha, beta, delta, surface_ratio, shifting};
-  int n[] = {tait, laminar, couple, extrapolate, tension, surface_max};
-  restart_value(fp, d, true);
-  restart_value(fp, n, true);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSIFluid::read_restart_settings(FILE *fp)
-{
-  double d[7];
-  int n[6];
-  restart_value(fp, d, false);
-  restart_value(fp, n, false);
-  sound = d[0];
-  background = d[1];
-  alpha = d[2];
-  beta = d[3];
-  delta = d[4];
-  surface_ratio = d[5];
-  shifting = d[6];
-  tait = n[0];
-  laminar = n[1];
-  couple = n[2];
-  extrapolate = n[3];
-  tension = n[4];
-  surface_max = n[5];
+  auto list = keywords.effects();
+  list.push_back({fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
+  return list;
 }
 
 /* ---------------------------------------------------------------------- */

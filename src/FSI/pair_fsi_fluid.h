@@ -38,13 +38,10 @@ class PairFSIFluid : public PairFSI {
   enum Laminar { INVISCID, PLAIN, CENTRAL };
 
   PairFSIFluid(class LAMMPS *);
-  void settings(int, char **) override;
   void init_style() override;
   void compute(int, int) override;
   bool has_solids() const;
   bool shares_stress() const { return couple != WALL; }    // of a solid with the fluid
-  void write_restart_settings(FILE *) override;
-  void read_restart_settings(FILE *) override;
   std::vector<Effect> effects() const override;
   double memory_usage() override;
   bool has_laminar() const { return laminar; }
@@ -69,6 +66,7 @@ class PairFSIFluid : public PairFSI {
   void position_divergence(double *div);
 
  protected:
+  void check_settings() override;
   bool handles(int, int) const override;
   // walls of held solid particles need no pair style of their own; wall particles act on fluids only
   bool leaves_alone(int a, int b, bool alone) const override

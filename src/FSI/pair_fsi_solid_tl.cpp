@@ -41,10 +41,17 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
-    reference(nullptr), fsolid(nullptr), nmax(0)
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fsolid(nullptr), nmax(0)
 {
   no_virial_fdotr_compute = 1;
+  artificial_row("solid");
+  keywords.key("hourglass").number(zeta, 0.0, Range::from(0.0)).effect("hourglass control of the solid {}");
+  keywords.key("law").choice(law, SVK, {"svk", "neohookean", "hypo"});
+  keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"});
+  keywords.key("gradient").choice(linear, 0, {"quadratic", "linear"});
+  keywords.key("volumes").choice(plain, 0, {"corrected", "plain"});
+  contact_row();
+  keywords.key("damage").number(damage, 0.0, Range::from(0.0), "strain").effect("damage at strain {}");
 }
 
 PairFSISolidTL::~PairFSISolidTL()
@@ -66,51 +73,10 @@ template <> const HypoElastic *PairFSISolidTL::laws<HypoElastic>() const
   return hypo.data();
 }
 
-/* ----------------------------------------------------------------------
-   pair_style fsi/solid/tl keyword value ...
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void PairFSISolidTL::settings(int narg, char **arg)
+void PairFSISolidTL::check_settings()
 {
-  const auto choice = [&](int iarg, std::initializer_list<const char *> words) {
-    need(narg, arg, iarg, 1);
-    int n = 0;
-    std::string expected;
-    for (const char *word : words) {
-      if (strcmp(arg[iarg + 1], word) == 0) return n;
-      expected += (n++ ? " or " : "") + std::string(word);
-    }
-    error->all(FLERR, "Unknown pair_style fsi/solid/tl {} {}: expected {}", arg[iarg], arg[iarg + 1], expected);
-    return 0;
-  };
-  int iarg = 0;
-  while (iarg < narg) {
-    if (artificial_keyword(narg, arg, iarg) || contact_keyword(narg, arg, iarg)) continue;
-    if (strcmp(arg[iarg], "volumes") == 0) {
-      plain = choice(iarg, {"corrected", "plain"});
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "hourglass") == 0) {
-      need(narg, arg, iarg, 1);
-      zeta = number(arg[iarg + 1], "hourglass");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "damage") == 0) {
-      need(narg, arg, iarg, 1);
-      damage = number(arg[iarg + 1], "damage strain");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "law") == 0) {
-      law = choice(iarg, {"svk", "neohookean", "hypo"});
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "plane") == 0) {
-      plane_stress = choice(iarg, {"strain", "stress"});
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "gradient") == 0) {
-      linear = choice(iarg, {"quadratic", "linear"});
-      iarg += 2;
-    } else
-      error->all(FLERR, "Unknown pair_style fsi/solid/tl keyword {}: expected artificial/visc, hourglass, law, plane, gradient, "
-                        "volumes, contact or damage",
-                 arg[iarg]);
-  }
   if (plane_stress && law == NEOHOOKEAN) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
 }
 
@@ -476,40 +442,10 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 {
   static const char *const names[] = {"St. Venant-Kirchhoff", "neo-Hookean", "hypoelastic"};
-  return {{fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"), "law",
-           true},
-          artificial_effect("solid"),
-          {fmt::format("hourglass control of the solid {:g}", zeta), "hourglass", zeta > 0.0},
-          {fmt::format("damage at strain {:g}", damage), "damage", damage > 0.0}};
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSISolidTL::write_restart_settings(FILE *fp)
-{
-  double d[] = {alpha, beta, zeta, damage, contact_range};
-  int n[] = {law, plane_stress, linear, plain};
-  restart_value(fp, d, true);
-  restart_value(fp, n, true);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSISolidTL::read_restart_settings(FILE *fp)
-{
-  double d[5];
-  int n[4];
-  restart_value(fp, d, false);
-  restart_value(fp, n, false);
-  alpha = d[0];
-  beta = d[1];
-  zeta = d[2];
-  damage = d[3];
-  contact_range = d[4];
-  law = n[0];
-  plane_stress = n[1];
-  linear = n[2];
-  plain = n[3];
+  auto list = keywords.effects();
+  list.insert(list.begin(), {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"),
+                             "law", true});
+  return list;
 }
 
 /* ---------------------------------------------------------------------- */
