@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_lattice.h"
 #include "fsi_limits.h"
 #include "group.h"
 #include "math_eigen.h"
@@ -132,6 +133,7 @@ class Adviser : protected Pointers {
     }
     if (hub.fluid) {
       idle_fluid();
+      lattice();
       speeds();
     }
     if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
@@ -369,6 +371,22 @@ class Adviser : protected Pointers {
     if (all)
       warn(fmt::format("{} fluid particles, the first of them atom {}, are not in group {} of fix {}: they stay where they are", all, first,
                        group->names[hub.igroup], hub.id));
+  }
+
+  /* A kernel that makes a solid of the fluid's lattice. In water a quarter as deep as a wave is long, linear theory with such a solid
+     changes the period by the part below (doc/choosing.md). */
+
+  void lattice() const
+  {
+    LatticeStiffness s = {0.0, 0.0};
+    with_kernel(hub.kernel, hub.dim, hub.h, [&](const auto &k) { s = lattice_stiffness(k, hub.dx); });
+    const double period = 0.18 * s.stretch + 0.27 * s.shear;
+    if (std::fabs(period) < 0.03) return;
+    const double free = lattice_free_ratio(hub.kernel, hub.dim, hub.h / hub.dx);
+    warn(fmt::format("with this kernel and h = {:g} dx a lattice of the fluid is elastic, by {:.2f} of the pressure when stretched and {:.2f} in shear: "
+                     "waves are some {:.0f} % too {} at any resolution. {}quintic 0.94 has next to none",
+                     hub.h / hub.dx, s.stretch, s.shear, 100.0 * std::fabs(period), period > 0.0 ? "fast" : "slow",
+                     free > 0.0 ? fmt::format("When stretched it has none at h = {:.2f} dx; ", free) : ""));
   }
 
   /* speed of sound against what the fluid has, or gets by falling through its own height */
