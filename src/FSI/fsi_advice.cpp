@@ -288,7 +288,7 @@ class Adviser : protected Pointers {
     }
     for_bodies(bodies, {}, [&](tagint body, const std::array<double, ENOUGH> &mine) {
       std::array<double, ENOUGH> sum;
-      MPI_Allreduce(mine.data(), sum.data(), ENOUGH, MPI_DOUBLE, MPI_SUM, world);
+      MPI_Allreduce(const_cast<double *>(mine.data()), sum.data(), ENOUGH, MPI_DOUBLE, MPI_SUM, world);
       if (sum[0] + sum[1] <= sum[2]) return true;
       // a plate 2 across swings 12 % too fast (fsi/solid/tl), 8 to 16 % with the corrected gradients of fsi/solid
       const char *const how = hub.solid && hub.solid->terms() == 0 ? "it will bend too easily" : "it will bend too little, some 25 %";
@@ -315,7 +315,7 @@ class Adviser : protected Pointers {
     }
     for_bodies(bodies, none, [&](tagint body, const std::array<double, 6> &mine) {
       std::array<double, 6> ends;
-      MPI_Allreduce(mine.data(), ends.data(), 6, MPI_DOUBLE, MPI_MAX, world);
+      MPI_Allreduce(const_cast<double *>(mine.data()), ends.data(), 6, MPI_DOUBLE, MPI_MAX, world);
       for (const auto &region : domain->get_region_list()) {
         if (strcmp(region->style, "block") != 0 || !region->interior || region->dynamic) continue;
         const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
