@@ -395,7 +395,7 @@ template <int D> void PairFSIFluid::compute_forces()
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
   // newton off, or a hybrid style with solids that need it, or images, which are no particles: like LAMMPS' own walls they do not count
   // in the virial, and forces times positions would have them
-  const bool tally_pairs = evflag && (!vflag_fdotr || hub->walls.any());
+  const bool tally_pairs = vflag_fdotr ? hub->walls.any() : evflag != 0;
   const bool own_pressure = surface_ratio > 0.0 || hub->wall_stiffness;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
     p.p = own_pressure ? hub->pressure(i) : hub->state[type[i]].pressure(p.rho);
@@ -430,7 +430,7 @@ template <int D> void PairFSIFluid::compute_forces()
   hub->tally(FixFSI::LAMINAR, sums.laminar);
   hub->tally(FixFSI::COUPLING, sums.coupling);
   hub->tally(FixFSI::WALLS, sums.walls);
-  if (tally_pairs && vflag_global)
+  if (tally_pairs && (vflag_global || vflag_fdotr))
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
 
