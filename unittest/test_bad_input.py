@@ -6,10 +6,12 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
-
 from conftest import dam_gate, lammps
-from fsi import launch
+from fsi import launch, paths
+
+SOURCES = paths.ROOT / "src/FSI"
 
 PLATE = "plate solid rho 1000 young 2e6 poisson 0.4"
 WATER = "water fluid rho 1000"
@@ -93,8 +95,8 @@ CASES = [
     ("value missing", *coeff("cut.fsi water plate"), r"cut\.fsi"),
     ("keyword of a solid", *coeff("key.fsi water plate"), r"Unknown keyword young of fluid water"),
     ("density missing", *coeff("norho.fsi water plate"), r"water .*needs rho > 0"),
-    ("viscosity negative", *coeff("visc.fsi water plate"), r"water .*needs viscosity >= 0"),
-    ("Poisson ratio 1/2", *coeff("half.fsi water plate"), r"plate .*needs poisson"),
+    ("viscosity negative", *coeff("visc.fsi water plate"), r"water .*viscosity -1 must be >= 0"),
+    ("Poisson ratio 1/2", *coeff("half.fsi water plate"), r"plate .*poisson 0\.5 must be > -1 and < 0\.5"),
     ("modulus missing", *coeff("soft.fsi water plate"), r"plate .*needs young > 0"),
     ("name too long", *coeff("long.fsi water plate"), r"name w+ .*longer"),
     ("line with a name only", *coeff("name.fsi water plate"), r"name\.fsi"),
@@ -122,6 +124,9 @@ CASES = [
     ("pair without fix fsi", "fix sph", "# fix sph", r"requires fix fsi"),
     ("other atom style", re.compile("atom_style fsi.*read_data scene.data", re.S),
      "atom_style atomic\nregion box block 0 1 0 1 -0.1 0.1\ncreate_box 2 box", r"requires atom_style fsi"),
+    ("minimize", RUN, "minimize 0 1e-6 10 10", r"Fix fsi does not support minimize"),
+    ("minimize fluid", re.compile(HYBRID.pattern + r"([\s\S]*)fix stress.*([\s\S]*)\nrun 0"),
+     r"pair_style fsi/fluid sound 10\npair_coeff * * materials.fsi water water\n\1\2\nminimize 0 1e-6 10 10", r"Fix fsi does not support minimize"),
     ("respa", RUN, "run_style respa 2 2\nrun 0", r"does not support run_style respa"),
     ("communication cutoff small", RUN, "comm_modify cutoff 0.02\nrun 0",
      r"support 0\.03 of fix fsi is larger than the comm_modify cutoff 0\.02"),
@@ -144,15 +149,15 @@ CASES = [
     ("solid without fix fsi/stress", STRESS, "", r"fsi/solid requires fix fsi/stress"),
     ("two fix fsi/stress", STRESS, STRESS + "\nfix stress2 all fsi/stress", r"only one fix fsi/stress"),
     ("fix fsi/stress keyword unknown", STRESS, STRESS + " plain stress", r"keyword plain"),
-    ("plane value unknown", STRESS, STRESS + " plane flat", r"plane value flat"),
+    ("plane value unknown", STRESS, STRESS + " plane flat", r"fix fsi/stress plane flat: expected strain or stress"),
     ("plane value missing", STRESS, STRESS + " plane", r"fix fsi/stress plane command: missing"),
     ("plane stress in 3D", STRESS, STRESS + " plane stress", r"plane .*dimension 2", 3),
     # pair_style fsi/fluid
     ("sound missing", *fluid("", ""), r"keyword sound"),
     ("sound without value", *fluid("couple wall artificial/visc 0.05 0.1 laminar/visc density/diffusion 0.1", "sound"),
      r"fsi/fluid sound command: missing"),
-    ("sound negative", *fluid("", "sound -10 "), r"sound speed -10 must be >= 0"),
-    ("sound zero", *fluid("", "sound 0 "), r"speed of sound > 0"),
+    ("sound negative", *fluid("", "sound -10 "), r"sound -10 must be > 0"),
+    ("sound zero", *fluid("", "sound 0 "), r"sound 0 must be > 0"),
     ("sound not a number", *fluid("", "sound fast "), r"fast"),
     ("fluid keyword unknown", *fluid("", "sound 10 colour 3 "), r"keyword colour"),
     ("eos unknown", *fluid("", "sound 10 eos cubic "), r"eos cubic"),
@@ -163,11 +168,11 @@ CASES = [
     ("beta negative", "visc 0.05 0.1", "visc 0.05 -0.1", r"artificial/visc beta -0\.1 must be >= 0"),
     ("diffusion negative", "density/diffusion 0.1", "density/diffusion -0.1", r"density/diffusion -0\.1 must be >= 0"),
     ("diffusion without value", "density/diffusion 0.1", "density/diffusion", r"density/diffusion command: missing"),
-    ("surface ratio large", *fluid("", "sound 10 surface 1.5 bulk "), r"surface ratio 1\.5 must be below 1"),
+    ("surface ratio large", *fluid("", "sound 10 surface 1.5 bulk "), r"surface ratio 1\.5 must be >= 0 and < 1"),
     ("surface reference unknown", *fluid("", "sound 10 surface 0.9 mean "), r"surface reference mean"),
     ("diffusion with summation", "fluid continuity", "fluid summation", r"density/diffusion requires .*fluid continuity"),
-    ("shift negative", "density/diffusion 0.1", "shift -0.1", r"shift -0\.1 must be >= 0"),
-    ("shift large", "density/diffusion 0.1", "shift 2", r"shift 2 must be at most 1"),
+    ("shift negative", "density/diffusion 0.1", "shift -0.1", r"shift -0\.1 must be between 0 and 1"),
+    ("shift large", "density/diffusion 0.1", "shift 2", r"shift 2 must be between 0 and 1"),
     ("shift with ratio", re.compile("density/diffusion 0.1(.*)fluid continuity", re.S), r"shift 0.5\1fluid ratio",
      r"shift requires .*fluid continuity"),
     *[(f"{key} without value", "density/diffusion 0.1", key, rf"fsi/fluid {key.split()[0]} command: missing")
@@ -206,7 +211,7 @@ CASES = [
     ("wall velocity no number", "velocity 0.1", "velocity fast", r"fast"),
     # pair_style fsi/solid/tl, sub-steps
     ("tl keyword unknown", *tl("gradient linear colour 3"), r"fsi/solid/tl keyword colour"),
-    ("tl law unknown", *tl("law hooke"), r"fsi/solid/tl law hooke: expected svk or neohookean"),
+    ("tl law unknown", *tl("law hooke"), r"fsi/solid/tl law hooke: expected svk, neohookean or hypo"),
     ("tl law without value", *tl("law"), r"fsi/solid/tl law command: missing"),
     ("tl plane unknown", *tl("plane flat"), r"fsi/solid/tl plane flat: expected strain or stress"),
     ("tl plane without value", *tl("plane"), r"fsi/solid/tl plane command: missing"),
@@ -234,7 +239,7 @@ CASES = [
     ("tl density summation", re.compile(HYBRID.pattern + r"\nfix sph .*\n"), tl()[1] + "fix sph all fsi 0.01 wendland 1.5 solid summation\n",
      r"solid density .*fsi/solid/tl"),
     ("substeps without tl", SPH, SPH + " substeps 4", r"substeps requires pair_style fsi/solid/tl"),
-    ("substeps zero", SPH, SPH + " substeps 0", r"substeps 0 must be >= 1"),
+    ("substeps zero", SPH, SPH + " substeps 0", r"substeps 0 must be between 1 and 10000"),
     ("surface/every zero", SPH, SPH + " surface/every 0", r"surface/every 0 must be >= 1"),
     ("substeps no integer", SPH, SPH + " substeps 2.5", r"2\.5"),
     ("substeps without value", SPH, SPH + " substeps", r"fix fsi substeps command: missing"),
@@ -243,7 +248,7 @@ CASES = [
     # fix fsi/report
     ("report of a group", RUN, "group water type 1\nfix r water fsi/report", r"fsi/report must use group all"),
     ("report keyword unknown", RUN, "fix r all fsi/report often 10", r"Unknown fix fsi/report keyword often: expected every or file"),
-    ("report interval zero", RUN, "fix r all fsi/report every 0", r"every 0 must be > 0"),
+    ("report interval zero", RUN, "fix r all fsi/report every 0", r"every 0 must be >= 1"),
     ("report interval no integer", RUN, "fix r all fsi/report every 2.5", r"2\.5"),
     ("report without value", RUN, "fix r all fsi/report every", r"fix fsi/report every command: missing"),
     ("report file that cannot be", RUN, "fix r all fsi/report file nowhere/report.txt", r"cannot write file nowhere/report\.txt"),
@@ -264,11 +269,12 @@ CASES = [
     ("fsi_set without fix fsi", RUN, "unfix sph\nfsi_set all density 1000", r"requires fix fsi"),
     # computes
     ("quantity unknown", RUN, "compute c all fsi/atom rho heat", r"quantity heat"),
+    ("plastic strain without plasticity", RUN, "compute c all fsi/atom plastic/strain\nrun 0", r"plastic/strain requires fix fsi/stress plastic"),
     ("quantity missing", RUN, "compute c all fsi/atom", r"compute fsi/atom command: missing"),
     ("compute without fix fsi", RUN, NO_FSI + "compute c all fsi/atom rho\nrun 0", r"Compute fsi/atom requires fix fsi"),
-    ("surface rule unknown", RUN, "compute c all fsi/surface/atom colour 0.7", r"rule colour"),
+    ("surface rule unknown", RUN, "compute c all fsi/surface/atom colour 0.7", r"keyword colour: expected number/density or divergence"),
     ("surface threshold missing", RUN, "compute c all fsi/surface/atom divergence", r"divergence command: missing"),
-    ("surface threshold large", RUN, "compute c all fsi/surface/atom divergence 1.5", r"threshold 1\.5 must be between"),
+    ("surface threshold large", RUN, "compute c all fsi/surface/atom divergence 1.5", r"divergence threshold 1\.5 must be > 0 and < 1"),
     ("probe argument unknown", *probe("q point 0 0 0"), r"fsi/probe argument q: expected p, rho"),
     ("probe without quantity", *probe("point 0 0 0"), r"fsi/probe needs a quantity"),
     ("probe without place", *probe("p rho"), r"fsi/probe needs a place"),
@@ -305,7 +311,7 @@ CASES = [
     ("spectrum keyword without value", *spectrum("10 v_x window"), r"fix fsi/spectrum window command: missing"),
     ("spectrum window unknown", *spectrum("10 v_x window box"), r"window box: expected none, hann or hann2"),
     ("spectrum detrend unknown", *spectrum("10 v_x detrend cubic"), r"detrend cubic: expected none, mean or linear"),
-    ("spectrum peaks zero", *spectrum("10 v_x peaks 0"), r"peaks 0 must be >= 1"),
+    ("spectrum peaks zero", *spectrum("10 v_x peaks 0"), r"peaks 0 must be between 1 and 1000"),
     ("spectrum every negative", *spectrum("10 v_x every -1"), r"every -1 must be >= 0"),
     ("spectrum file elsewhere", *spectrum("10 v_x file nowhere/s.csv"), r"Cannot open fix fsi/spectrum file nowhere/s\.csv: No such file"),
     ("virial of atoms", RUN, "compute c all stress/atom NULL\ncompute m all reduce max c_c[1]\n"
@@ -318,6 +324,57 @@ CASES = [
     ("data with short lines", "read_data scene.data", "read_data short.data", r"[Ii]ncorrect .*[Aa]toms|[Aa]tom format"),
 ]
 NAMES = [case[0] for case in CASES]
+
+# Every number that a command takes: what an error calls it, the change of the input that gives it, {} the value
+NUMBERS = [
+    ("particle spacing", "fsi 0.01", "fsi {}"),
+    ("smoothing length over spacing", "wendland 1.5", "wendland {}"),
+    ("fsi substeps", *tl("", more="fix more all fsi 0.01 wendland 1.5 substeps {}\nunfix more\n")),
+    ("surface/every", SPH, SPH + " surface/every {}"),
+    *[(word, *fluid("", f"sound {keyword} ".replace("sound sound", "sound"))) for word, keyword in (
+        ("sound", "sound {}"), ("background", "10 background {}"), ("artificial/visc alpha", "10 artificial/visc {} 0"),
+        ("artificial/visc beta", "10 artificial/visc 0 {}"), ("density/diffusion", "10 density/diffusion {}"), ("shift", "10 shift {}"),
+        ("surface ratio", "10 surface {} bulk"))],
+    *[(word, "artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected", keyword) for word, keyword in (
+        ("artificial/visc alpha", "artificial/visc {} 0"), ("artificial/visc beta", "artificial/visc 0 {}"),
+        ("artificial/stress", "artificial/stress {}"), ("hourglass", "hourglass {}"), ("contact", "contact {}"))],
+    *[(word, *tl(keyword)) for word, keyword in (
+        ("artificial/visc alpha", "artificial/visc {} 0"), ("hourglass", "hourglass {}"), ("contact", "contact {}"), ("damage strain", "damage {}"))],
+    *[(word, *coeff("{}.fsi water plate")) for word in ("rho", "viscosity", "young", "poisson", "yield", "hardening")],
+    *[(word, WALLS, f"fix walls all fsi/wall/mirror {keyword}") for word, keyword in (
+        ("xlo", "xlo {}"), ("range", "xlo 0 range y {} INF"), ("range", "xlo 0 range y INF {}"), ("velocity", "xlo 0 velocity {} 0 0"),
+        ("velocity", "xlo 0 velocity 0 0 {}"), ("guard", "xlo 0 guard {}"))],
+    ("fsi/wall/particle guard", RUN, "fix w all fsi/wall/particle guard {}\nunfix w\nrun 0"),
+    *[(word, RUN, f"fix dt all fsi/dt {keyword}\nrun 0") for word, keyword in (
+        ("interval", "{}"), ("cfl", "10 cfl {}"), ("min", "10 min {}"), ("max", "10 max {}"), ("growth", "10 growth {}"))],
+    *[(f"watch {word}", RUN, f"fix w all fsi/watch {keyword}\nunfix w\nrun 0") for word, keyword in (
+        ("interval", "{}"), *[(q, f"10 {q} {{}}") for q in ("mach", "distance", "density", "courant", "energy", "lost", "reflected")])],
+    ("report every", RUN, "fix r all fsi/report every {}\nrun 0"),
+    *[(word, *spectrum(keyword)) for word, keyword in (("Nevery", "{} v_x"), ("peaks", "10 v_x peaks {}"), ("every", "10 v_x every {}"))],
+    *[(f"probe {keyword.split()[1]}", *probe(keyword)) for keyword in ("p point {} 0 0", "p patch 0 0 0 {} 1 0", "level line 0 0 0 0 {} 0")],
+    *[(f"{rule} threshold", RUN, f"compute c all fsi/surface/atom {rule} {{}}\nrun 0") for rule in ("number/density", "divergence")],
+    *[(f"Fsi_set {what}", RUN, f"fsi_set all {what} {{}}\nrun 0") for what in ("density", "pressure", "hydrostatic")],
+]
+VALUES = ("0", "-1", "1e308", "-1e308", "1e-308", "1e999", "nan", "inf", "-inf")
+MATERIAL = {  # a material file per value of a property
+    "rho": ("water fluid rho {}", PLATE), "viscosity": ("water fluid rho 1000 viscosity {}", PLATE),
+    **{key: (WATER, f"plate solid rho 1000 {keys}") for key, keys in (
+        ("young", "young {} poisson 0.4"), ("poisson", "young 2e6 poisson {}"), ("yield", "young 2e6 poisson 0.4 yield {}"),
+        ("hardening", "young 2e6 poisson 0.4 yield 1e3 hardening {}"))}}
+
+
+def numbers():
+    """name, text to replace, replacement, what an error must say: the argument and its value"""
+    for k, (word, old, new) in enumerate(NUMBERS):
+        for value in VALUES:
+            content = f"{word}{value}" if new.endswith("{}.fsi water plate") else value
+            yield f"{k} {word} {value}", old, new.replace("{}", content), rf"{re.escape(word)}.* {re.escape(value)}\b|no extent"
+
+
+for _word, _lines in MATERIAL.items():
+    for _value in VALUES:
+        FILES[f"{_word}{_value}.fsi"] = materials(*(line.replace("{}", _value) for line in _lines))
+NUMBER_CASES = list(numbers())
 # errors that one rank finds, or that all find, before and after the box exists
 ON_TWO_RANKS = ["material unknown", "file missing", "value no number", "material twice", "spacing negative",
                 "solid without fix fsi/stress", "communication cutoff small", "fluid behind wall", "fsi_set keyword unknown",
@@ -354,9 +411,9 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def answers(folder):
-    """What LAMMPS says to each case: its error, '' if it accepted the input, None if the process died or hung."""
+    """What LAMMPS says to each case: its error, '' if it accepted the input and all is finite, None if the process died or hung."""
     todo = [("valid", dam_gate(2).text() + RUN + "\n", 2), *[(case[0], text(case), case[4] if len(case) > 4 else 2)
-                                                           for case in CASES]]
+                                                           for case in CASES + NUMBER_CASES]]
     found = {}
     while todo:
         jobs = [(name, content.replace("scene.data", f"scene{dim}.data")) for name, content, dim in todo]
@@ -391,6 +448,28 @@ def test_error_names_what_is_wrong(answers, case):
     assert re.search(case[3], answer, re.S), answer
 
 
+@pytest.mark.parametrize("word", dict.fromkeys(row[0] for row in NUMBERS))
+def test_numbers(answers, word):
+    """0, negative, beyond all measure, not a number: an error that names the argument, or a run in which all is finite."""
+    wrong = {}
+    for name, _, _, message in NUMBER_CASES:
+        value = name.split()[-1]
+        if name.split(" ", 1)[1] != f"{word} {value}":
+            continue
+        answer = answers[name] and answers[name].split("\nLast input line")[0]  # which has the word, too
+        accepts = answer == "" and value in ("0", "-1")
+        if not accepts and (answer is None or not re.search(message, answer)):
+            wrong[name] = answer
+    assert not wrong
+
+
+def test_every_number_is_tried():
+    """Rows of the sources' tables with a number or an integer."""
+    words = " ".join(row[0] for row in NUMBERS)
+    rows = re.findall(r'\.(?:key|argument)\("([^"]+)"\)\s*\.[^;]*?(?:number|integer)\(', "".join(p.read_text() for p in SOURCES.glob("*.cpp")))
+    assert len(rows) > 25 and not [row for row in rows if row not in words]
+
+
 @pytest.mark.parametrize("name", ON_TWO_RANKS)
 def test_two_ranks_end(folder, tmp_path, name):
     """The whole program: exit status, message on the screen, no signal, no rank left waiting."""
@@ -415,6 +494,8 @@ def _answer(jobs):
         message = ctypes.create_string_buffer(4096)
         if lmp.lib.lammps_has_error(lmp.lmp):
             lmp.lib.lammps_get_last_error_message(lmp.lmp, message, len(message))
+        elif not all(np.isfinite(lmp.numpy.extract_atom(q)).all() for q in ("x", "v", "f", "rho", "rmass")):
+            message.value = b"not finite"
         lmp.close()
         print("CASE " + json.dumps([name, message.value.decode(errors="replace")]), flush=True)
 

@@ -94,7 +94,8 @@ def test_page_has_every_keyword(page, name):
     code = source.read_text()
     words = set(re.findall(r'strcmp\(arg\[[^\]]*\](?:, | \+ \d\], )"([^"]+)"\)', code)) | set(re.findall(r'key == "([^"]+)"', code))
     words |= set(re.findall(r'^    \{"(\w+)", "', code, re.M))  # fix fsi/watch
-    for choice in re.findall(r"(?:choice\(iarg, |names = )\{([^}]*)\}", code):
+    words |= set(re.findall(r'(?:\.key|or_word)\("([^"]+)"', code))
+    for choice in re.findall(r"(?:choice\([^{};]*|names = |modes = )\{([^}]*)\}", code):
         words |= set(re.findall(r'"([^"]+)"', choice))
     words -= {"*", "NULL"}
     missing = sorted(w for w in words if w not in text)

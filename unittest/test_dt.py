@@ -378,7 +378,7 @@ def test_a_run_to_a_time_restarts_bit_for_bit(tmp_path):
 
 BAD = [
     ("fix dt all fsi/dt", r"fix fsi/dt command: missing"),
-    ("fix dt all fsi/dt 0", r"interval 0 must be > 0"),
+    ("fix dt all fsi/dt 0", r"interval 0 must be >= 1"),
     ("fix dt all fsi/dt ten", r"ten"),
     ("fix dt all fsi/dt 10 cfl", r"fix fsi/dt cfl command: missing"),
     ("fix dt all fsi/dt 10 cfl 0", r"cfl 0 must be > 0"),
@@ -395,6 +395,9 @@ BAD = [
     ("fix dt all fsi/dt 10 check yes", r"check yes: expected no, warn or error"),
     ("fix dt all fsi/dt 10 colour red", r"keyword colour"),
     ("fix dt all fsi/dt 10 substeps auto check warn", r"cannot be combined with check"),
+    ("fix dt all fsi/dt 10\ntimestep 0", r"Fix fsi/dt: timestep 0 must be > 0"),
+    ("fix dt all fsi/dt 10\ntimestep -1e-5", r"timestep -1e-05 must be >= 0"),
+    ("fix dt all fsi/dt 10\ntimestep 1e308", r"Fix fsi/dt: timestep 1e\+308 must be > 0 and below"),
     ("fix dt all fsi/dt 10\nfix dt2 all fsi/dt 10", r"only one fix fsi/dt"),
     ("fix dt all fsi/dt 10\nfix reset all dt/reset 1 NULL NULL 0.1", r"fix dt/reset cannot both"),
     ("fix dt all fsi/dt 10 min 1e-3", r"on step 0 the limit .* of (elastic waves|sound|acceleration).* is below the smallest time step 0.001"),

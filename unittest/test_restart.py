@@ -257,3 +257,16 @@ create_atoms 2 region plate
     assert len(plate) == 70
     for name in ("sxx", "syy", "sxy"):
         assert not plate[name].any(), name
+
+
+@pytest.mark.parametrize("first, again", [
+    ("sound 10 shift 0.5 tension yes density/diffusion 0.1 background 50 surface 0.9 max laminar/visc extrapolate yes couple full eos tait", "sound 10"),
+    ("sound 10 artificial/visc 0.1 1", "sound 10 eos tait"), ("sound 10 laminar/visc/central", "sound 10 laminar/visc")])
+def test_pair_style_given_again(tmp_path, first, again):
+    """Only the keywords of the last command count."""
+    scene = fluid_box(2, fluid=again)
+    text = scene.text() + watch(every=20) + "run 20\n"
+    twice = text.replace(f"pair_style fsi/fluid {again}", f"pair_style fsi/fluid {first}\npair_style fsi/fluid {again}")
+    assert twice != text
+    frames = [run(tmp_path / name, deck, scene_data=scene.data()).frames()[-1] for name, deck in (("once", text), ("twice", twice))]
+    assert differing(*frames) == []

@@ -207,41 +207,8 @@ def test_the_cause_is_told_even_if_nothing_can_be_written(tmp_path):
     assert "Mach number 1.2" in message and "fsi_stop.restart cannot be written: Is a directory" in message
 
 
-# ---- fluid that nobody moves ---------------------------------------------------------------------------------------
-
-DRIP = """
-region drip block 0.02 0.18 0.145 0.155 -0.004 0.004 units box
-group water type 1
-fix sph {} fsi 0.01 wendland 1.5
-fix rain {} deposit 3 1 5 7 region drip near 0.005
-"""
-
-
-@pytest.mark.parametrize("ranks", (1, 2))
-@pytest.mark.parametrize("of, stray", [("water water", 0), ("water all", 1), ("all all", 0)])
-def test_water_that_is_made_in_a_run(tmp_path, ranks, of, stray):
-    """In no group that a fix moves it would hang in the air: a warning, once, with its number and what to do."""
-    scene = fluid_box(2)
-    sph, rain = of.split()
-    text = re.sub("fix sph .*", DRIP.format(sph, rain), scene.text())
-    done = run(tmp_path, text + "run 40\n", ranks, scene_data=scene.data())
-    warnings = [line for line in done.output.splitlines() if "in no group that a fix moves" in line]
-    assert len(warnings) == stray
-    assert not stray or re.search(r"Fix fsi: 1 fluid particles \(as atom 281\) are on step \d+ in no .*: put them into group water of fix sph", warnings[0])
-
-
-def test_water_left_out_at_the_start(tmp_path):
-    scene = fluid_box(2)
-    text = scene.text().replace("fix sph all", "group water id <> 1 270\nfix sph water")
-    done = run(tmp_path, text + "run 1\nrun 1\n", scene_data=scene.data())
-    assert len(re.findall(r"WARNING: Fix fsi: 10 fluid particles \(as atom 280\) are on step 0 in no group", done.output)) == 1
-    # what another fix moves is not left out
-    moved = run(tmp_path, text + "group rest subtract all water\nfix drive rest move linear 0 1 0\nrun 1\n", scene_data=scene.data())
-    assert "in no group" not in moved.output
-
-
-BAD = [("mach", r"fix fsi mach command: missing"), ("mach 0", r"mach 0 must be > 0, or off"), ("mach -1", r"mach -1 must be > 0, or off"),
-       ("mach nan", r"floating point parameter instead of .nan"), ("mach 1e30", r"mach 1e30 must be > 0, or off"), ("mach fast", r"fast")]
+BAD = [("mach", r"fix fsi mach command: missing"), ("mach 0", r"mach 0 must be > 0"), ("mach -1", r"mach -1 must be > 0"),
+       ("mach nan", r"mach nan"), ("mach 1e30", r"mach 1e30 must be"), ("mach fast", r"fast")]
 
 
 @pytest.mark.parametrize("words, message", BAD, ids=[words for words, _ in BAD])

@@ -253,13 +253,13 @@ def test_off_and_names(tmp_path):
 
 BAD = [
     ("fix watch all fsi/watch", r"fix fsi/watch command: missing"),
-    ("fix watch all fsi/watch 0", r"interval 0 must be > 0"),
+    ("fix watch all fsi/watch 0", r"interval 0 must be >= 1"),
     ("fix watch all fsi/watch often", r"often"),
     ("fix watch all fsi/watch 10 mach", r"fix fsi/watch mach command: missing"),
     ("fix watch all fsi/watch 10 mach 0", r"mach 0 must be > 0, or off"),
     ("fix watch all fsi/watch 10 density -1", r"density -1 must be > 0, or off"),
-    ("fix watch all fsi/watch 10 lost -1", r"lost -1 must be > 0, or off"),
-    ("fix watch all fsi/watch 10 distance 1.5", r"distance 1.5 must be below 1 spacing"),
+    ("fix watch all fsi/watch 10 lost -1", r"lost -1 must be >= 0, or off"),
+    ("fix watch all fsi/watch 10 distance 1.5", r"distance 1.5 must be > 0 and < 1, or off"),
     ("fix watch all fsi/watch 10 energy 1", r"energy 1 must be > 1"),
     ("fix watch all fsi/watch 10 courant high", r"high"),
     ("fix watch all fsi/watch 10 action cry", r"action cry: expected stop or warn"),

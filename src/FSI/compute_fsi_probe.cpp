@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
 #include "memory.h"
 #include "neighbor.h"
 #include "update.h"
@@ -28,6 +29,8 @@
 
 using namespace LAMMPS_NS;
 using namespace FSI;
+
+static constexpr double MOST = 1.0e7;    // points of one place
 
 /* ---------------------------------------------------------------------- */
 
@@ -56,8 +59,9 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
       place.line = strcmp(arg[iarg], "line") == 0;
       double length = 0.0;
       for (int d = 0; d < domain->dimension; d++) {
-        place.from[d] = utils::numeric(FLERR, arg[iarg + 1 + d], false, lmp);
-        place.to[d] = point ? place.from[d] : utils::numeric(FLERR, arg[iarg + 4 + d], false, lmp);
+        const auto what = std::string("Compute fsi/probe ") + arg[iarg];
+        place.from[d] = numeric(lmp, what, arg[iarg + 1 + d]);
+        place.to[d] = point ? place.from[d] : numeric(lmp, what, arg[iarg + 4 + d]);
         if (!place.line && place.to[d] < place.from[d])
           error->all(FLERR, "Compute fsi/probe patch ends at {} = {} below its start {}", "xyz"[d], arg[iarg + 4 + d], arg[iarg + 1 + d]);
         length += std::fabs(place.to[d] - place.from[d]);
@@ -122,14 +126,17 @@ void ComputeFSIProbe::init()
       place.origin[d] = place.from[d];
       if (place.line) continue;
       // the tolerance: 0.1/0.005 is not 21 cells
-      place.n[d] = std::max(1, static_cast<int>(std::ceil(2.0 * extent / hub->dx - 1.0e-6)));
+      place.n[d] = std::max(1, static_cast<int>(std::min(std::ceil(2.0 * extent / hub->dx - 1.0e-6), MOST + 1.0)));
       place.step[d][d] = extent / place.n[d];
       place.origin[d] += 0.5 * place.step[d][d];
     }
     if (place.line) {
-      place.n[0] = 1 + static_cast<int>(std::ceil(4.0 * std::sqrt(length) / hub->dx - 1.0e-6));
+      place.n[0] = 1 + static_cast<int>(std::min(std::ceil(4.0 * std::sqrt(length) / hub->dx - 1.0e-6), MOST));
       for (int d = 0; d < 3; d++) place.step[0][d] = (place.to[d] - place.from[d]) / (place.n[0] - 1);
     }
+    double n = 1.0;
+    for (const int k : place.n) n *= k;
+    if (n > MOST) error->all(FLERR, "Compute fsi/probe {} has {:g} points, more than {:g}", place.line ? "line" : "patch", n, MOST);
     place.first = points.size() / 3;
     for (int a = 0; a < place.n[0]; a++)
       for (int b = 0; b < place.n[1]; b++)
@@ -211,7 +218,6 @@ void ComputeFSIProbe::sum_up()
     }
 
   double *const *const v = atom->v;
-  const double *const g = hub->gravity;
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
     for (const auto &place : places)
       for (const auto &p : place.near) {
@@ -219,6 +225,7 @@ void ComputeFSIProbe::sum_up()
         double x[3];
         for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
         const State &state = hub->state[atom->type[i]];
+        const auto &g = hub->gravity[atom->type[i]];
         const bool fluid = state.species == FLUID;
         const double rho = atom->rho[i], vol = atom->rmass[i] / rho, pressure = fluid ? hub->pressure(i) : 0.0;
         const int mask_i = walls.any() ? walls.near(x, hub->cut) : 0;

@@ -18,11 +18,10 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_keywords.h"
 #include "memory.h"
 #include "pair_fsi_fluid.h"
 #include "update.h"
-
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -30,20 +29,12 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 ComputeFSISurfaceAtom::ComputeFSISurfaceAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), rule(DIVERGENCE), threshold(0.75), nmax(0), hub(nullptr)
+    Compute(lmp, narg, arg), nmax(0), hub(nullptr)
 {
-  int iarg = 3;
-  while (iarg < narg) {
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("compute fsi/surface/atom {}", arg[iarg]), error);
-    if (strcmp(arg[iarg], "number/density") == 0) rule = NUMBER_DENSITY;
-    else if (strcmp(arg[iarg], "divergence") == 0) rule = DIVERGENCE;
-    else
-      error->all(FLERR, "Unknown compute fsi/surface/atom rule {}: expected number/density or divergence", arg[iarg]);
-    threshold = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-    if (threshold <= 0.0 || threshold >= 1.0)
-      error->all(FLERR, "Compute fsi/surface/atom threshold {} must be between 0 and 1", arg[iarg + 1]);
-    iarg += 2;
-  }
+  Keywords keywords(lmp, "compute fsi/surface/atom");
+  keywords.key("number/density").set(rule, NUMBER_DENSITY).number(threshold, 0.75, Range::inside(0.0, 1.0), "threshold");
+  keywords.key("divergence").set(rule, DIVERGENCE).number(threshold, 0.75, Range::inside(0.0, 1.0), "threshold");
+  keywords.parse(narg - 3, arg + 3);
   peratom_flag = 1;
   size_peratom_cols = 0;
 }

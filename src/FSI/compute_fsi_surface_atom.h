@@ -37,7 +37,8 @@ class ComputeFSISurfaceAtom : public Compute {
   double memory_usage() override;
 
  private:
-  enum Rule { NUMBER_DENSITY, DIVERGENCE } rule;
+  enum { DIVERGENCE, NUMBER_DENSITY };
+  int rule;
   double threshold;
   int nmax;
   std::vector<double> sum;

@@ -23,6 +23,7 @@
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_wall_particle.h"
+#include "fix_gravity.h"
 #include "force.h"
 #include "fsi_advice.h"
 #include "fsi_check.h"
@@ -30,6 +31,7 @@
 #include "fsi_kernel.h"
 #include "fsi_lattice.h"
 #include "fsi_tensor.h"
+#include "group.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -50,57 +52,23 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), density_fluid(CONTINUITY), density_solid(CONTINUITY), psi(nullptr), rate(nullptr),
-    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
-    solid(nullptr), solid_tl(nullptr), substeps(1), surface_every(1), fix_dt(nullptr), profile(nullptr), check(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi"), psi(nullptr), rate(nullptr),
+    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), wall_stiffness(nullptr), fix_stress(nullptr), fluid(nullptr),
+    solid(nullptr), solid_tl(nullptr), fix_dt(nullptr), profile(nullptr), check(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
     tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false), keep_psi(false), send_psi(true)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
-  if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi", error);
 
-  dx = utils::numeric(FLERR, arg[3], false, lmp);
-  if (dx <= 0.0) error->all(FLERR, "Fix fsi particle spacing {} must be > 0", arg[3]);
-
-  if (strcmp(arg[4], "cubic") == 0) kernel = CUBIC;
-  else if (strcmp(arg[4], "quintic") == 0) kernel = QUINTIC;
-  else if (strcmp(arg[4], "wendland") == 0) kernel = WENDLAND;
-  else error->all(FLERR, "Unknown fix fsi kernel {}: expected cubic, quintic or wendland", arg[4]);
-
-  const double hdx = utils::numeric(FLERR, arg[5], false, lmp);
-  if (hdx < 0.9 || hdx > 4.0)
-    error->all(FLERR, "Fix fsi smoothing length over spacing {} must be between 0.9 and 4", arg[5]);
-
-  double mach = 1.0;
-  int iarg = 6;
-  while (iarg < narg) {
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi {}", arg[iarg]), error);
-    const bool sub = strcmp(arg[iarg], "substeps") == 0;
-    if (sub || strcmp(arg[iarg], "surface/every") == 0) {
-      int &n = sub ? substeps : surface_every;
-      n = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (n < 1) error->all(FLERR, "Fix fsi {} {} must be >= 1", arg[iarg], arg[iarg + 1]);
-      iarg += 2;
-      continue;
-    }
-    if (strcmp(arg[iarg], "mach") == 0) {
-      mach = Check::OFF;
-      if (strcmp(arg[iarg + 1], "off") != 0) mach = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(mach > 0.0 && mach <= Check::OFF)) error->all(FLERR, "Fix fsi mach {} must be > 0, or off", arg[iarg + 1]);
-      iarg += 2;
-      continue;
-    }
-    int mode;
-    if (strcmp(arg[iarg + 1], "continuity") == 0) mode = CONTINUITY;
-    else if (strcmp(arg[iarg + 1], "summation") == 0) mode = SUMMATION;
-    else if (strcmp(arg[iarg + 1], "ratio") == 0) mode = RATIO;
-    else
-      error->all(FLERR, "Unknown fix fsi {} density {}: expected continuity, summation or ratio", arg[iarg],
-                 arg[iarg + 1]);
-    if (strcmp(arg[iarg], "fluid") == 0) density_fluid = mode;
-    else if (strcmp(arg[iarg], "solid") == 0) density_solid = mode;
-    else error->all(FLERR, "Unknown fix fsi keyword {}: expected fluid, solid, substeps, surface/every or mach", arg[iarg]);
-    iarg += 2;
-  }
+  static const std::vector<std::string> modes = {"continuity", "summation", "ratio"};
+  keywords.argument("particle spacing").number(dx, 0.0, Range::above(0.0));
+  keywords.argument("kernel").choice(kernel, CUBIC, {"cubic", "quintic", "wendland"});
+  keywords.argument("smoothing length over spacing").number(hdx, 0.0, Range::between(0.9, 4.0));
+  keywords.key("fluid").choice(density_fluid, CONTINUITY, modes, "density");
+  keywords.key("solid").choice(density_solid, CONTINUITY, modes, "density");
+  keywords.key("substeps").integer(substeps, 1, 1, 10000);
+  keywords.key("surface/every").integer(surface_every, 1, 1);
+  keywords.key("mach").number(mach, 1.0, Range::above(0.0)).or_word("off", Check::OFF);
+  keywords.parse(narg - 3, arg + 3);
 
   dim = domain->dimension;
   h = hdx * dx;
@@ -108,9 +76,10 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     cut = k.cut;
     psi_bulk = lattice_number_density(k, dx);
     wdx = k.W(dx);
+    w0 = k.W(0.0);
   });
   state.resize(atom->ntypes + 1);
-  check = new Check(lmp, this, mach);
+  check = new Check(lmp, this);
 
   time_integrate = 1;
   force_reneighbor = 1;
@@ -142,6 +111,7 @@ FixFSI::~FixFSI()
   memory->destroy(grad);
   memory->destroy(wmask);
   memory->destroy(wall_velocity);
+  memory->destroy(wall_stiffness);
   delete check;
 }
 
@@ -166,8 +136,11 @@ int FixFSI::setmask()
 void FixFSI::init()
 {
   if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
+  if (update->whichflag == 2)
+    error->all(FLERR, "Fix fsi does not support minimize: there is no energy of all particles; run with fix viscous or artificial/visc to a state of rest");
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix fsi does not support run_style respa");
+  if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
   if (comm->cutghostuser > 0.0 && comm->cutghostuser < cut)
     error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", cut, comm->cutghostuser);
   if (domain->dimension != dim)
@@ -265,7 +238,7 @@ void FixFSI::announce()
   if (fluid) effects.push_back({fmt::format("{} mirror walls", walls.wall.size()), "fix fsi/wall/mirror", !wall_fixes.empty()});
   if (fluid && fluid->surface_ratio > 0.0)
     effects.push_back({fmt::format("surface looked for every {} steps", surface_every), "fix fsi surface/every", keep_psi});
-  if (fix_stress) effects.push_back({"plasticity", "fix fsi/stress plastic", fix_stress->plastic});
+  if (fix_stress) effects.push_back({"plasticity", "fix fsi/stress plastic", fix_stress->plastic != 0});
   if (solid_tl) effects.push_back({fmt::format("{} solid sub-steps", substeps), "fix fsi substeps", substeps > 1});
   if (fluid) effects.push_back({fmt::format("{} groups of wall particles", particle_walls.size()), "fix fsi/wall/particle", !particle_walls.empty()});
   effects.push_back({"energy ledger", "compute fsi/energy", ledger});
@@ -326,6 +299,16 @@ void FixFSI::give_defaults(int i)
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
 }
 
+/* ---------------------------------------------------------------------- */
+
+bool FixFSI::is_moved(int i) const
+{
+  if (atom->mask[i] & groupbit) return true;
+  for (auto &fix : modify->get_fix_list())
+    if (fix->time_integrate && atom->mask[i] & fix->groupbit) return true;
+  return false;
+}
+
 /* ----------------------------------------------------------------------
    what a pair style knows of an atom type
 ------------------------------------------------------------------------- */
@@ -336,18 +319,99 @@ void FixFSI::enter_state(int type, const State &s)
 }
 
 /* ----------------------------------------------------------------------
-   body force per mass: the sum of all fix gravity commands
+   all fix gravity commands, and which of them act on all particles of a type: only then two neighbours are pushed alike, and what is
+   hydrostatic between them has a meaning
 ------------------------------------------------------------------------- */
+
+namespace {
+struct Peek : FixGravity {
+  static bool is_disabled(const FixGravity *fix) { return fix->*&Peek::disable; }
+  static bool has_variable(const FixGravity *fix) { return fix->*&Peek::varflag != CONSTANT; }
+};
+}    // namespace
 
 void FixFSI::find_gravity()
 {
-  gravity[0] = gravity[1] = gravity[2] = 0.0;
-  for (auto &fix : modify->get_fix_by_style("^gravity")) {
-    int d;
-    const auto *g = static_cast<double *>(fix->extract("gvec", d));
-    if (g)
-      for (int k = 0; k < 3; k++) gravity[k] += g[k];
+  fields.clear();
+  for (auto &fix : modify->get_fix_by_style("^gravity"))
+    if (auto *g = dynamic_cast<FixGravity *>(fix)) {
+      fields.push_back({g, Peek::is_disabled(g) ? 0 : g->groupbit, Peek::has_variable(g), {0.0, 0.0, 0.0}});
+      g->init();    // its variables are looked up
+    }
+  const int ntypes = atom->ntypes, nfields = fields.size();
+  const auto at = [ntypes](int field, int type) { return (size_t) field * (ntypes + 1) + type; };
+  std::vector<int> without(nfields * (ntypes + 1), 0), with(without), some(without);
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int k = 0; k < nfields; k++) (atom->mask[i] & fields[k].mask ? with : without)[at(k, atom->type[i])] = 1;
+  acts_on_all.resize(without.size());
+  MPI_Allreduce(without.data(), acts_on_all.data(), (int) without.size(), MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(with.data(), some.data(), (int) with.size(), MPI_INT, MPI_MAX, world);
+  for (int k = 0; k < nfields; k++)
+    for (int t = 1; t <= ntypes; t++) {
+      if (some[at(k, t)] && acts_on_all[at(k, t)] && state[t].species == FLUID && comm->me == 0)
+        error->warning(FLERR, "Fix gravity {} acts on a part of the particles of type {} only: for what is hydrostatic between them, as in "
+                              "density diffusion, it does not count", fields[k].fix->id, t);
+      acts_on_all[at(k, t)] = fields[k].mask && !acts_on_all[at(k, t)];
+    }
+  gravity.assign(ntypes + 1, {0.0, 0.0, 0.0});
+}
+
+/* ----------------------------------------------------------------------
+   Body forces of this step. Fix gravity evaluates its variables when it acts, after the pair styles: it is asked to do so earlier, with
+   nothing to act on. Where the field changes, so does the potential energy of what is there, which the ledger has to know; taken in
+   the middle between two steps, positions are those of whole steps.
+------------------------------------------------------------------------- */
+
+void FixFSI::update_gravity(bool advance)
+{
+  gravity.assign(atom->ntypes + 1, {0.0, 0.0, 0.0});
+  size_t on = 0;
+  for (auto &field : fields) {
+    if (field.varies) {
+      const int groupbit = field.fix->groupbit;
+      field.fix->groupbit = 0;
+      field.fix->post_force(0);
+      field.fix->groupbit = groupbit;
+    }
+    int dim_of_extract;
+    const auto *now = static_cast<double *>(field.fix->extract("gvec", dim_of_extract));
+    if (field.varies && ledger && advance) {
+      const double dth = 0.5 * update->dt;
+      for (int i = 0; i < atom->nlocal; i++)
+        if ((atom->mask[i] & field.mask) && state[atom->type[i]].species != RIGID)
+          for (int d = 0; d < dim; d++)
+            taken[FIELDS] += atom->rmass[i] * (now[d] - field.g[d]) * (atom->x[i][d] - (atom->mask[i] & groupbit ? dth * atom->v[i][d] : 0.0));
+    }
+    std::copy_n(now, 3, field.g);
+    for (int t = 0; t <= atom->ntypes; t++, on++)
+      if (t > 0 && acts_on_all[on])
+        for (int d = 0; d < 3; d++) gravity[t][d] += field.g[d];
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::array<double, 3> FixFSI::body_force(int i) const
+{
+  std::array<double, 3> g = {0.0, 0.0, 0.0};
+  for (const auto &field : fields)
+    if (atom->mask[i] & field.mask)
+      for (int d = 0; d < 3; d++) g[d] += field.g[d];
+  return g;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixFSI::several_stiffnesses() const
+{
+  double first = 0.0;
+  for (const auto &s : state) {
+    if (s.species != FLUID) continue;
+    const double K = s.rho0 * s.csq;
+    if (first == 0.0) first = K;
+    else if (std::abs(K - first) > 1.0e-12 * first) return true;
+  }
+  return false;
 }
 
 /* ----------------------------------------------------------------------
@@ -578,9 +642,12 @@ void FixFSI::update_state(bool advance)
       memory->grow(wall_velocity, nmax, 3, "fsi:wall_velocity");
       memset(wall_velocity[0], 0, (size_t) nmax * 3 * sizeof(double));
     }
+    if (!particle_walls.empty() && several_stiffnesses()) memory->grow(wall_stiffness, nmax, "fsi:wall_stiffness");
+    else memory->destroy(wall_stiffness);
   }
 
   tally_dt = (ledger && advance) ? update->dt : 0.0;
+  update_gravity(advance);
   Phase phase(profile);
   if (!wall_fixes.empty()) {
     phase.next(Profile::WALLS);
@@ -663,8 +730,6 @@ bool FixFSI::psi_is_due(bool advance) const
 void FixFSI::number_density(double *n)
 {
   memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
-  double w0 = 0.0;
-  with_kernel(kernel, dim, h, [&](const auto &k) { w0 = k.W(0.0); });
   for (int i = 0; i < atom->nlocal; i++) n[i] = w0;
   if (fluid) fluid->number_density(n, density_solid == SUMMATION);
   if (solid) solid->number_density(n, density_solid == SUMMATION);
@@ -697,6 +762,7 @@ double FixFSI::pressure(int i) const
 {
   const State &s = state[atom->type[i]];
   if (s.species == FLUID && fluid->surface_ratio > 0.0 && psi[i] <= fluid->surface_ratio * psi_reference) return 0.0;
+  if (s.species == RIGID && wall_stiffness) return std::max(s.floor, s.p0 + wall_stiffness[i] * (atom->rho[i] / s.rho0 - 1.0));
   return s.pressure(atom->rho[i]);
 }
 
@@ -722,7 +788,8 @@ void FixFSI::density_from_psi()
 }
 
 /* ----------------------------------------------------------------------
-   fluids, continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n
+   fluids, continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; nobody is thinner than he would be alone (with diffusion in particles that
+   are shot out of a crowd)
 ------------------------------------------------------------------------- */
 
 void FixFSI::advance_density()
@@ -732,7 +799,7 @@ void FixFSI::advance_density()
   const int *const type = atom->type;
   const double dt = update->dt + stagger;
   for (int i = 0; i < atom->nlocal; i++)
-    if (state[type[i]].species == FLUID) rho[i] += dt * rate[i];
+    if (state[type[i]].species == FLUID) rho[i] = std::max(rho[i] + dt * rate[i], atom->rmass[i] * w0);
 }
 
 /* ----------------------------------------------------------------------
@@ -742,7 +809,8 @@ void FixFSI::advance_density()
 double FixFSI::potential(int i) const
 {
   const double *x = atom->x[i];
-  return -atom->rmass[i] * (gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
+  const auto g = body_force(i);
+  return -atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
 }
 
 double FixFSI::stored(int i) const
@@ -921,6 +989,9 @@ void FixFSI::set_arrays(int i)
 {
   if (need_ratio || keep_psi) travels()[i] = 0.0;
   give_defaults(i);
+  if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
+    error->one(FLERR, "Fluid atom {} was made during a run and is not in group {} of fix {}: it would hang in the air. Give the fix that "
+                      "makes it that group", atom->tag[i], group->names[igroup], id);
 }
 
 int FixFSI::pack_exchange(int i, double *buf)
@@ -973,6 +1044,8 @@ double FixFSI::memory_usage()
   if (shift) bytes += (double) nmax * nshift() * sizeof(double);
   if (grad) bytes += (double) nmax * ngrad() * sizeof(double);
   if (wmask) bytes += (double) nmax * sizeof(int);
+  if (wall_velocity) bytes += (double) nmax * 3 * sizeof(double);
+  if (wall_stiffness) bytes += (double) nmax * sizeof(double);
   if (ratio) bytes += (double) atom->nmax * sizeof(double);
   return bytes;
 }

@@ -22,10 +22,12 @@ FixStyle(fsi,FixFSI);
 
 #include "atom.h"
 #include "fix.h"
+#include "fsi_keywords.h"
 #include "fsi_material.h"
 #include "fsi_profile.h"
 #include "fsi_walls.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -78,8 +80,9 @@ class FixFSI : public Fix {
   double dx, h;        // spacing of the initial lattice, smoothing length
   double cut;          // support radius of the kernel
   double psi_bulk;     // number density inside the lattice: the volume of a particle is 1/psi_bulk
-  double wdx;          // W(dx)
+  double wdx, w0;      // W(dx), W(0)
   int density_fluid, density_solid;    // Density
+  FSI::Keywords keywords;
 
   // state per atom type; pair styles enter theirs in init_style()
   std::vector<FSI::State> state;
@@ -97,7 +100,7 @@ class FixFSI : public Fix {
 
   // energy ledger (compute fsi/energy): what each term took from the particles' energy since the fix was defined, this
   // rank's part; kept only while such a compute exists
-  enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, NTERM };
+  enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, FIELDS, NTERM };
   bool ledger;
   double taken[NTERM];
   // adds a power of the pair loops, which counts only in steps, not in setup
@@ -109,9 +112,22 @@ class FixFSI : public Fix {
 
   // viscous velocity of no-slip walls of particles (fix fsi/wall/particle); null: there are none
   double **wall_velocity;
+  // rho dp/drho of wall particles, that of the fluid around them; null: it is the same for all fluids, and in the wall's state
+  double *wall_stiffness;
 
   FSI::Walls walls;     // at the time of the positions in atom->x
-  double gravity[3];
+
+  // body forces per mass: each fix gravity as it acts in this step, and for each type the sum of those that act on all its particles
+  struct Field {
+    Fix *fix;
+    int mask;    // of its group; 0 if it is disabled
+    bool varies;
+    double g[3];
+  };
+  std::vector<Field> fields;
+  std::vector<std::array<double, 3>> gravity;
+  void update_gravity(bool advance);
+  std::array<double, 3> body_force(int i) const;    // on atom i, over its mass
   class FixFSIStress *fix_stress;
   std::vector<class FixFSIWallMirror *> wall_fixes;
   std::vector<class FixFSIWallParticle *> particle_walls;
@@ -123,6 +139,7 @@ class FixFSI : public Fix {
   class FixFSIDt *fix_dt;    // changes the time step; null: nothing does
   FSI::Profile *profile;     // of fix fsi/report; null: there is none
   FSI::Check *check;         // stops a run that has lost its meaning
+  double mach;               // largest Mach number of fluids
   std::vector<std::string> effects_on;    // what is simulated, in words; from setup on
   // what moves by rates between the middles of two steps takes update->dt + stagger: their distance, if dt changes
   double stagger;
@@ -132,29 +149,32 @@ class FixFSI : public Fix {
   double psi_reference;    // of the free-surface rule
 
   bool is_total_lagrangian(int i) const { return solid_tl && state[atom->type[i]].species == FSI::SOLID; }
+  bool is_moved(int i) const;    // by this fix or by another that integrates
   // does atom i have a deviatoric stress?
   bool has_stress(int i) const { return solid && state[atom->type[i]].species == FSI::SOLID; }
 
   // sums of the velocity gradient per solid particle, and what replaces them: L, then the coefficients of its weights
   int ngrad() const;
   int nshift() const { return 2 * dim + 1; }
-  void find_gravity();
   // number density of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
   void number_density(double *n);
   // sum of position_divergence() of pair_style fsi/fluid, likewise
   void position_divergence(double *n);
+  bool several_stiffnesses() const;    // do fluids differ in rho0 c^2?
   void add_wall_force(int wall, int axis, double f);    // f on the fluid; counted by the wall's fix
 
  private:
   double *summed;    // per-atom scalar whose ghost parts a reverse communication adds up; null: rate and grad
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
   int nmax;
+  double hdx;    // h over dx
   double tally_dt;
   bool need_psi, need_grad, need_ratio, need_shift;
   bool keep_psi;    // number density is that of some steps only: it travels with its atom and through restarts
   bool send_psi;    // in this step
   double *&travels() { return keep_psi ? psi : ratio; }
   bool psi_is_due(bool advance) const;
+  bool restores_volumes() const;
 
   template <int D> void drift();
   template <int D> void kick();
@@ -163,9 +183,13 @@ class FixFSI : public Fix {
   template <int D, int TERMS> void advance_solids(bool advance);
   void advance_density();
   void density_from_psi();
+  std::vector<double> crowd;    // number density of the steps in which volumes are restored
+  void restore_volumes();
   void update_state(bool);
   void gather_walls();
   void announce();
+  void find_gravity();
+  std::vector<int> acts_on_all;    // each field, type by type
   bool fresh_start() const;
   void give_defaults(int);
   void sort_by_tag();

@@ -26,7 +26,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -40,45 +39,23 @@ static constexpr double PRINT = 0.95;    // causes whose limits differ by less t
 /* ---------------------------------------------------------------------- */
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), hub(nullptr), of_fluid(1.0), of_solid(1.0), low(0.0), high(BIG), growth(1.1), end(BIG), cut(false), automatic(false),
-    check(NO), limits(lmp), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false), atime(0.0),
-    atimestep(0)
+    Fix(lmp, narg, arg), hub(nullptr), keywords(lmp, "fix fsi/dt"), cut(false), limits(lmp), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0),
+    next_substeps(0), warned(0), restored(false), atime(0.0), atimestep(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/dt", error);
-  interval = utils::inumeric(FLERR, arg[3], false, lmp);
-  if (interval <= 0) error->all(FLERR, "Fix fsi/dt interval {} must be > 0", arg[3]);
-
-  for (int iarg = 4; iarg < narg; iarg += 2) {
-    const std::string key = arg[iarg];
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/dt " + key, error);
-    const char *const value = arg[iarg + 1];
-    const auto positive = [&]() {
-      const double x = utils::numeric(FLERR, value, false, lmp);
-      if (!(x > 0.0 && x < BIG)) error->all(FLERR, "Fix fsi/dt {} {} must be > 0", key, value);
-      return x;
-    };
-    if (key == "cfl") of_fluid = of_solid = positive();
-    else if (key == "cfl/fluid") of_fluid = positive();
-    else if (key == "cfl/solid") of_solid = positive();
-    else if (key == "stop") end = positive();
-    else if (key == "min") low = positive();
-    else if (key == "max") high = positive();
-    else if (key == "growth") {
-      growth = positive();
-      if (growth <= 1.0) error->all(FLERR, "Fix fsi/dt growth {} must be > 1", value);
-    } else if (key == "substeps") {
-      if (strcmp(value, "auto") == 0) automatic = true;
-      else if (strcmp(value, "keep") == 0) automatic = false;
-      else error->all(FLERR, "Unknown fix fsi/dt substeps {}: expected keep or auto", value);
-    } else if (key == "check") {
-      if (strcmp(value, "no") == 0) check = NO;
-      else if (strcmp(value, "warn") == 0) check = WARN;
-      else if (strcmp(value, "error") == 0) check = STOP;
-      else error->all(FLERR, "Unknown fix fsi/dt check {}: expected no, warn or error", value);
-    } else
-      error->all(FLERR, "Unknown fix fsi/dt keyword {}: expected cfl, cfl/fluid, cfl/solid, min, max, growth, substeps, stop or check", key);
-  }
+  keywords.argument("interval").integer(interval, 1, 1);
+  keywords.key("cfl").number(cfl, 1.0, Range::above(0.0));
+  keywords.key("cfl/fluid").number(of_fluid, 0.0, Range::above(0.0));
+  keywords.key("cfl/solid").number(of_solid, 0.0, Range::above(0.0));
+  keywords.key("min").number(low, 0.0, Range::above(0.0));
+  keywords.key("max").number(high, BIG, Range::above(0.0));
+  keywords.key("growth").number(growth, 1.1, Range::above(1.0));
+  keywords.key("substeps").choice(automatic, 0, {"keep", "auto"});
+  keywords.key("stop").number(end, BIG, Range::above(0.0));
+  keywords.key("check").choice(check, NO, {"no", "warn", "error"});
+  keywords.parse(narg - 3, arg + 3);
+  if (of_fluid == 0.0) of_fluid = cfl;
+  if (of_solid == 0.0) of_solid = cfl;
   if (low >= high) error->all(FLERR, "Fix fsi/dt min {} must be below max {}", low, high);
   if (automatic && check) error->all(FLERR, "Fix fsi/dt substeps auto cannot be combined with check: a check changes nothing");
   if (end < BIG && check) error->all(FLERR, "Fix fsi/dt stop cannot be combined with check: a check changes nothing");
@@ -106,6 +83,7 @@ void FixFSIDt::init()
 {
   hub = FixFSI::find(lmp, "Fix fsi/dt");
   if (modify->get_fix_by_style("^fsi/dt$").size() > 1) error->all(FLERR, "There can be only one fix fsi/dt");
+  if (update->dt <= 0.0 || update->dt >= BIG) error->all(FLERR, "Fix fsi/dt: timestep {} must be > 0 and below {:g}", update->dt, BIG);
   if (check) return;
   if (!modify->get_fix_by_style("^dt/reset$").empty())
     error->all(FLERR, "Fix fsi/dt and fix dt/reset cannot both set the time step");

@@ -21,6 +21,7 @@ FixStyle(fsi/dt,FixFSIDt);
 #define LMP_FIX_FSI_DT_H
 
 #include "fix.h"
+#include "fsi_keywords.h"
 #include "fsi_limits.h"
 
 #include <string>
@@ -53,11 +54,12 @@ class FixFSIDt : public Fix {
   enum Check { NO, WARN, STOP };
   class FixFSI *hub;
 
+  FSI::Keywords keywords;
   int interval;
-  double of_fluid, of_solid, low, high, growth;
+  double cfl, of_fluid, of_solid, low, high, growth;
   double end;    // of the run
   bool cut;      // it was
-  bool automatic;    // number of sub-steps
+  int automatic;    // number of sub-steps
   int check;
 
   FSI::Limits limits;

@@ -22,6 +22,7 @@
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_watch.h"
 #include "force.h"
+#include "fsi_keywords.h"
 #include "group.h"
 #include "info.h"
 #include "modify.h"
@@ -60,15 +61,10 @@ FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
   if (igroup) error->all(FLERR, "Fix fsi/report must use group all: times, messages and energies have no group");
 
   std::string file;
-  for (int iarg = 3; iarg < narg; iarg += 2) {
-    const std::string key = arg[iarg];
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/report " + key, error);
-    if (key == "every") {
-      every = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (every <= 0) error->all(FLERR, "Fix fsi/report every {} must be > 0", arg[iarg + 1]);
-    } else if (key == "file") file = arg[iarg + 1];
-    else error->all(FLERR, "Unknown fix fsi/report keyword {}: expected every or file", key);
-  }
+  Keywords keywords(lmp, "fix fsi/report");
+  keywords.key("every").integer(every, 100, 1);
+  keywords.key("file").word(file, "");
+  keywords.parse(narg - 3, arg + 3);
   if (!file.empty() && comm->me == 0) {
     fp = fopen(file.c_str(), "w");
     if (!fp) error->one(FLERR, "Fix fsi/report cannot write file {}: {}", file, utils::getsyserror());
@@ -132,10 +128,8 @@ void FixFSIReport::begin()
   by_gravity = by_walls = by_held = {};
   momentum = momentum_of_moving();
   fields.clear();
-  for (auto &fix : modify->get_fix_by_style("^gravity")) {
-    int n;
-    if (const auto *g = static_cast<double *>(fix->extract("gvec", n))) fields.push_back({g, group->mass(fix->igroup)});
-  }
+  for (const auto &field : hub->fields)
+    if (field.mask) fields.push_back({field.g, group->mass(field.fix->igroup)});
   int held = 0, any;
   for (int i = 0; i < atom->nlocal; i++)
     if (!(atom->mask[i] & hub->groupbit)) held = 1;

@@ -17,6 +17,7 @@
 #include "comm.h"
 #include "compute.h"
 #include "error.h"
+#include "fsi_keywords.h"
 #include "input.h"
 #include "modify.h"
 #include "update.h"
@@ -24,7 +25,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 // set by this package's CMake files where it found FFTW; inside a LAMMPS tree, LAMMPS' own with KSPACE
 #if defined(FSI_FFTW3) || (defined(FFT_FFTW3) && !defined(FFT_SINGLE))
@@ -34,6 +34,7 @@
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+using namespace FSI;
 
 static constexpr double PI = 3.14159265358979323846;
 static constexpr int LEAST = 8;    // samples that make a spectrum
@@ -41,44 +42,22 @@ static constexpr int LEAST = 8;    // samples that make a spectrum
 /* ---------------------------------------------------------------------- */
 
 FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), input_kind(0), input_index(0), input_variable(-1), input_compute(nullptr), input_fix(nullptr), order(1),
-    detrend(MEAN), analyse_every(0), peaks(3), last(-1)
+    Fix(lmp, narg, arg), input_kind(0), input_index(0), input_variable(-1), input_compute(nullptr), input_fix(nullptr), last(-1)
 {
 #if !defined(FSI_HAS_FFTW)
   error->all(FLERR, "Fix fsi/spectrum is not in this build, which did not find FFTW3: install it (Debian: libfftw3-dev) and configure again");
 #endif
-  if (narg < 5) utils::missing_cmd_args(FLERR, "fix fsi/spectrum", error);
-  nevery = utils::inumeric(FLERR, arg[3], false, lmp);
-  if (nevery < 1) error->all(FLERR, "Fix fsi/spectrum Nevery {} must be >= 1", arg[3]);
-  argument = arg[4];
-
-  int iarg = 5;
-  while (iarg < narg) {
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi/spectrum {}", arg[iarg]), error);
-    const char *const value = arg[iarg + 1];
-    if (strcmp(arg[iarg], "window") == 0) {
-      if (strcmp(arg[iarg + 1], "none") == 0) order = 0;
-      else if (strcmp(arg[iarg + 1], "hann") == 0) order = 1;
-      else if (strcmp(arg[iarg + 1], "hann2") == 0) order = 2;
-      else error->all(FLERR, "Unknown fix fsi/spectrum window {}: expected none, hann or hann2", value);
-    } else if (strcmp(arg[iarg], "detrend") == 0) {
-      if (strcmp(arg[iarg + 1], "none") == 0) detrend = NONE;
-      else if (strcmp(arg[iarg + 1], "mean") == 0) detrend = MEAN;
-      else if (strcmp(arg[iarg + 1], "linear") == 0) detrend = LINEAR;
-      else error->all(FLERR, "Unknown fix fsi/spectrum detrend {}: expected none, mean or linear", value);
-    } else if (strcmp(arg[iarg], "peaks") == 0) {
-      const int n = utils::inumeric(FLERR, value, false, lmp);
-      if (n < 1) error->all(FLERR, "Fix fsi/spectrum peaks {} must be >= 1", value);
-      peaks.resize(n);
-    } else if (strcmp(arg[iarg], "every") == 0) {
-      analyse_every = utils::inumeric(FLERR, value, false, lmp);
-      if (analyse_every < 0) error->all(FLERR, "Fix fsi/spectrum every {} must be >= 0", value);
-    } else if (strcmp(arg[iarg], "file") == 0) {
-      file = value;
-    } else
-      error->all(FLERR, "Unknown fix fsi/spectrum keyword {}: expected window, detrend, peaks, every or file", arg[iarg]);
-    iarg += 2;
-  }
+  int npeaks;
+  Keywords keywords(lmp, "fix fsi/spectrum");
+  keywords.argument("Nevery").integer(nevery, 1, 1);
+  keywords.argument("input").word(argument, "");
+  keywords.key("window").choice(order, 1, {"none", "hann", "hann2"});
+  keywords.key("detrend").choice(detrend, MEAN, {"none", "mean", "linear"});
+  keywords.key("peaks").integer(npeaks, 3, 1, 1000);
+  keywords.key("every").integer(analyse_every, 0, 0);
+  keywords.key("file").word(file, "");
+  keywords.parse(narg - 3, arg + 3);
+  peaks.resize(npeaks);
   find_input();
   if (!file.empty() && comm->me == 0) {    // not only at the end of the run
     FILE *fp = fopen(file.c_str(), "a");

@@ -22,6 +22,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "pair_fsi_solid.h"
+#include "update.h"
 
 #include <cmath>
 #include <cstring>
@@ -31,26 +32,15 @@ using namespace LAMMPS_NS;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), stress(nullptr), plane_stress(false), plastic(false), hourglass(false),
+    Fix(lmp, narg, arg), stress(nullptr), hourglass(false), keywords(lmp, "fix fsi/stress"),
     ns(domain->dimension == 2 ? 3 : 6), n(ns), dim(domain->dimension)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
-  int iarg = 3;
-  while (iarg < narg) {
-    if (strcmp(arg[iarg], "plane") == 0) {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/stress plane", error);
-      if (strcmp(arg[iarg + 1], "stress") == 0) plane_stress = true;
-      else if (strcmp(arg[iarg + 1], "strain") == 0) plane_stress = false;
-      else error->all(FLERR, "Unknown fix fsi/stress plane value {}: expected strain or stress", arg[iarg + 1]);
-      if (domain->dimension == 3) error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "plastic") == 0) {
-      plastic = true;
-      iarg += 1;
-    } else
-      error->all(FLERR, "Unknown fix fsi/stress keyword {}: expected plane or plastic", arg[iarg]);
-  }
+  keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"});
+  keywords.key("plastic").set(plastic, 1);
+  keywords.parse(narg - 3, arg + 3);
+  if (plane_stress && domain->dimension == 3) error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
   if (plastic && plane_stress) error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
   hourglass = wants_hourglass(force);
   n = ns + (plastic ? 1 : 0) + (hourglass ? dim : 0);
@@ -90,6 +80,15 @@ void FixFSIStress::init()
   const FixFSI *hub = FixFSI::find(lmp, "Fix fsi/stress");
   if (hourglass != wants_hourglass(force))
     error->all(FLERR, "Fix fsi/stress must be defined after the pair_style command that says whether there is hourglass control");
+  // what had a stress keeps it, what had none never gets the right one
+  for (int i = 0; i < atom->nlocal && update->whichflag == 1; i++) {
+    double &first = stress[i][0];
+    const bool solid = hub->state[atom->type[i]].species == FSI::SOLID;
+    if (solid ? first == FOREIGN : first != FOREIGN && first != 0.0)
+      error->one(FLERR, "Atom {} of type {} is {} solid{} when a run began: delete it and create another in its place", atom->tag[i],
+                 atom->type[i], solid ? "a" : "no", solid ? " now and was none" : " any more, as it was");
+    if (!solid) first = FOREIGN;
+  }
   bool yields = false;
   for (const auto &s : hub->state) yields = yields || s.yield > 0.0;
   if (comm->me == 0 && plastic && !yields)

@@ -22,6 +22,7 @@ FixStyle(fsi/stress,FixFSIStress);
 
 #include "fix.h"
 #include "fsi_jaumann.h"
+#include "fsi_keywords.h"
 #include "fsi_material.h"
 #include "fsi_plasticity.h"
 
@@ -49,8 +50,8 @@ class FixFSIStress : public Fix {
 
   // deviatoric stress per atom, in-plane in 2D; see fsi_tensor.h for the order
   double **stress;
-  bool plane_stress;
-  bool plastic;    // materials yield; stress[i] is followed by the equivalent plastic strain
+  int plane_stress;
+  int plastic;    // materials yield; stress[i] is followed by the equivalent plastic strain
   bool hourglass;    // pair_style fsi/solid keeps a force per particle in stress[i], last
   double *hourglass_force(int i) { return stress[i] + n - dim; }
 
@@ -67,11 +68,15 @@ class FixFSIStress : public Fix {
     return work;
   }
 
+  // equivalent plastic strain of atom i
+  double plastic_strain(int i) const { return plastic ? stress[i][ns] : 0.0; }
   // von Mises stress of atom i with pressure p
   double von_mises(int i, double p) const;
 
  private:
+  FSI::Keywords keywords;
   static bool wants_hourglass(class Force *);
+  static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a run began
   int ns;    // components of the deviator
   int n;     // values per atom
   int dim;

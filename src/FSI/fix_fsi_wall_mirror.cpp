@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_keywords.h"
 #include "update.h"
 
 #include <cmath>
@@ -39,6 +40,9 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   int iarg = 3;
   while (iarg < narg) {
     const std::string key = arg[iarg];
+    const auto number = [&](const char *value, const Range &range = {}) {
+      return numeric(lmp, "Fix fsi/wall/mirror " + key, value, range, false, key == "range" ? "INF" : key == "guard" || key == "velocity" ? "" : "EDGE");
+    };
     if (key.size() == 3 && strchr("xyz", key[0]) && (key.substr(1) == "lo" || key.substr(1) == "hi")) {
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror " + key, error);
       Wall w = {};
@@ -49,7 +53,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
       if (strcmp(arg[iarg + 1], "EDGE") == 0) {
         w.position = key[1] == 'l' ? domain->boxlo[w.axis] : domain->boxhi[w.axis];
       } else
-        w.position = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+        w.position = number(arg[iarg + 1]);
       if (domain->periodicity[w.axis])
         error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", key, "xyz"[w.axis]);
       for (int b = 0; b < 3; b++) {
@@ -67,8 +71,8 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
         error->all(FLERR, "Unknown fix fsi/wall/mirror range axis {}: expected x, y or z", arg[iarg + 1]);
       const int b = a - axes;
       if (b == w.axis) error->all(FLERR, "Fix fsi/wall/mirror range axis {} is the normal of its wall", arg[iarg + 1]);
-      if (strcmp(arg[iarg + 2], "INF") != 0) w.lo[b] = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
-      if (strcmp(arg[iarg + 3], "INF") != 0) w.hi[b] = utils::numeric(FLERR, arg[iarg + 3], false, lmp);
+      if (strcmp(arg[iarg + 2], "INF") != 0) w.lo[b] = number(arg[iarg + 2]);
+      if (strcmp(arg[iarg + 3], "INF") != 0) w.hi[b] = number(arg[iarg + 3]);
       if (w.lo[b] >= w.hi[b])
         error->all(FLERR, "Fix fsi/wall/mirror range {} {} is empty", arg[iarg + 2], arg[iarg + 3]);
       w.finite = true;
@@ -76,7 +80,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
     } else if (key == "velocity") {
       if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror velocity", error);
       if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror velocity must follow the wall that it belongs to");
-      for (int b = 0; b < 3; b++) walls.back().velocity[b] = utils::numeric(FLERR, arg[iarg + 1 + b], false, lmp);
+      for (int b = 0; b < 3; b++) walls.back().velocity[b] = number(arg[iarg + 1 + b]);
       iarg += 4;
     } else if (key == "slip") {
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror slip", error);
@@ -85,9 +89,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
       iarg += 2;
     } else if (key == "guard") {
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror guard", error);
-      guard = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (guard < 0.0 || guard > 0.45)
-        error->all(FLERR, "Fix fsi/wall/mirror guard {} must be between 0 and 0.45 spacings", arg[iarg + 1]);
+      guard = number(arg[iarg + 1], Range::between(0.0, 0.45));
       iarg += 2;
     } else
       error->all(FLERR, "Unknown fix fsi/wall/mirror keyword {}: expected xlo, xhi, ylo, yhi, zlo, zhi, range, "

@@ -40,19 +40,12 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), slip(true), guard(0.9), before(nullptr), hub(nullptr), sum(nullptr), nmax(0), nsum(0), force_on{}
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), hub(nullptr), sum(nullptr), nmax(0), nsum(0), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
-  for (int iarg = 3; iarg < narg; iarg += 2) {
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, fmt::format("fix fsi/wall/particle {}", arg[iarg]), error);
-    if (strcmp(arg[iarg], "slip") == 0) slip = utils::logical(FLERR, arg[iarg + 1], false, lmp);
-    else if (strcmp(arg[iarg], "guard") == 0) {
-      guard = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(guard >= 0.0 && guard <= 1.0))
-        error->all(FLERR, "Fix fsi/wall/particle guard {} must be between 0 and 1", arg[iarg + 1]);
-    } else
-      error->all(FLERR, "Unknown fix fsi/wall/particle keyword {}: expected slip or guard", arg[iarg]);
-  }
+  keywords.key("slip").logical(slip, true);
+  keywords.key("guard").number(guard, 0.9, Range::between(0.0, 1.0));
+  keywords.parse(narg - 3, arg + 3);
   scalar_flag = vector_flag = 1;
   size_vector = 3;
   extscalar = extvector = 1;
@@ -118,9 +111,11 @@ void FixFSIWallParticle::init()
 
   movers.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/move$")) movers.push_back(dynamic_cast<FixFSIMove *>(fix));
-  nsum = 2 + hub->dim * (slip ? 1 : 2);
+  const bool stiffness = hub->several_stiffnesses();
+  nsum = 2 + hub->dim * (slip ? 1 : 2) + stiffness;
   comm_reverse = nsum;
-  comm_forward = 1 + (slip ? 0 : hub->dim);
+  comm_forward = 1 + (slip ? 0 : hub->dim) + stiffness;
+  nmax = 0;    // sums of another size than in the last run
 }
 
 /* ----------------------------------------------------------------------
@@ -149,7 +144,7 @@ void FixFSIWallParticle::find_pairs()
 
 /* ----------------------------------------------------------------------
    p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq. 27), a_w: acceleration of the
-   wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23)
+   wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of fluids of different rho c^2 the wall has the mean, likewise
 ------------------------------------------------------------------------- */
 
 void FixFSIWallParticle::extrapolate(bool advance)
@@ -160,6 +155,7 @@ void FixFSIWallParticle::extrapolate(bool advance)
   double **v = atom->v;
   double *rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
+  const bool stiffness = hub->wall_stiffness;
   if (neighbor->ago == 0) find_pairs();
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
@@ -178,8 +174,14 @@ void FixFSIWallParticle::extrapolate(bool advance)
       const double W = kernel.W(std::sqrt(rsq));
       double *const s = sum[w];
       s[0] += W;
-      s[1] += W * hub->pressure(j);
-      for (int k = 0; k < dim; k++) s[2 + k] += W * rho[j] * d[k];
+      const auto &g = hub->gravity[type[j]];
+      double p = hub->pressure(j);
+      for (int k = 0; k < dim; k++) {
+        p += rho[j] * g[k] * d[k];
+        s[2 + k] += W * rho[j] * d[k];
+      }
+      s[1] += W * p;
+      if (stiffness) s[nsum - 1] += W * hub->state[type[j]].rho0 * hub->state[type[j]].csq;
       if (!slip)
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     }
@@ -204,11 +206,16 @@ void FixFSIWallParticle::extrapolate(bool advance)
     double p = s[1];
     for (int k = 0; k < dim; k++) {
       const double a = advance && known > 0.0 ? (to[k] - from[k]) / span : 0.0;
-      p += (hub->gravity[k] - a) * s[2 + k];
+      p -= a * s[2 + k];
       if (!slip) hub->wall_velocity[i][k] = 2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
     }
     p = s[0] > 0.0 ? p / s[0] : state.p0;
-    rho[i] = state.density(std::max(p, state.floor));
+    p = std::max(p, state.floor);
+    if (stiffness) {
+      const double K = hub->wall_stiffness[i] = s[0] > 0.0 ? s[nsum - 1] / s[0] : state.rho0 * state.csq;
+      rho[i] = state.rho0 * (1.0 + (p - state.p0) / K);
+    } else
+      rho[i] = state.density(p);
     if (advance) {
       std::copy_n(v[i], 3, old);
       old[3] = 1.0;
@@ -271,6 +278,7 @@ int FixFSIWallParticle::pack_forward_comm(int n, int *list, double *buf, int, in
     const int i = list[ii];
     if (!(atom->mask[i] & groupbit)) continue;
     buf[m++] = atom->rho[i];
+    if (hub->wall_stiffness) buf[m++] = hub->wall_stiffness[i];
     if (!slip)
       for (int d = 0; d < hub->dim; d++) buf[m++] = hub->wall_velocity[i][d];
   }
@@ -285,6 +293,7 @@ void FixFSIWallParticle::unpack_forward_comm(int n, int first, double *buf)
   for (int i = first; i < first + n; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     atom->rho[i] = buf[m++];
+    if (hub->wall_stiffness) hub->wall_stiffness[i] = buf[m++];
     if (!slip)
       for (int d = 0; d < hub->dim; d++) hub->wall_velocity[i][d] = buf[m++];
   }

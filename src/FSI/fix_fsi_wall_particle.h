@@ -21,6 +21,7 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 #define LMP_FIX_FSI_WALL_PARTICLE_H
 
 #include "fix.h"
+#include "fsi_keywords.h"
 
 #include <string>
 #include <utility>
@@ -50,11 +51,12 @@ class FixFSIWallParticle : public Fix {
   double compute_vector(int) override;
   double memory_usage() override;
 
-  bool slip;
+  int slip;
   // called by fix fsi when the fluid's densities and the positions are those at which forces are computed
   void extrapolate(bool advance);
 
  private:
+  FSI::Keywords keywords;
   double guard;    // distance of a fluid particle below which it is pushed off, in spacings
   std::string id_store;
   std::vector<class FixFSIMove *> movers;

@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
 #include "fix_fsi_wall_mirror.h"
+#include "fsi_keywords.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "output.h"
@@ -55,53 +56,33 @@ static constexpr About about[] = {
 /* ---------------------------------------------------------------------- */
 
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), nearest(BIG), hub(nullptr), halt(lmp, "Fix fsi/watch"), given{}, warn(false), distances(true), energy_before(-1.0),
-    reflected_before(-1.0), warned(0), violations(0)
+    Fix(lmp, narg, arg), nearest(BIG), hub(nullptr), halt(lmp, "Fix fsi/watch"), energy_before(-1.0), reflected_before(-1.0), warned(0),
+    violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/watch", error);
-  interval = utils::inumeric(FLERR, arg[3], false, lmp);
-  if (interval <= 0) error->all(FLERR, "Fix fsi/watch interval {} must be > 0", arg[3]);
-
-  halt.restart_file = "fsi_watch.restart";
-  halt.dump_file = "fsi_watch.dump";
+  static constexpr double FOLLOWS = -1.0;    // the scene, see allowed()
+  Keywords keywords(lmp, "fix fsi/watch");
+  keywords.argument("interval").integer(interval, 1, 1);
+  const auto row = [&](Trouble q, double start, const Range &range, double off = BIG) {
+    keywords.key(about[q].key).number(limit[q], start, range).or_word("off", off);
+  };
+  row(MACH, 0.5, Range::above(0.0));
+  row(DISTANCE, 0.0, Range::inside(0.0, 1.0), FOLLOWS);
+  row(DENSITY, 0.3, Range::above(0.0));
+  row(COURANT, FOLLOWS, Range::above(0.0));
+  row(ENERGY, 10.0, Range::above(1.0));
+  row(LOST, FOLLOWS, Range::from(0.0));
+  row(REFLECTED, BIG, Range::from(0.0));
+  keywords.key("action").choice(warn, 0, {"stop", "warn"});
+  keywords.key("restart").word(halt.restart_file, "fsi_watch.restart").or_word("off");
+  keywords.key("dump").word(halt.dump_file, "fsi_watch.dump").or_word("off");
+  keywords.parse(narg - 3, arg + 3);
+  distances = limit[DISTANCE] != FOLLOWS;
+  if (!distances) limit[DISTANCE] = 0.0;
+  for (int q = 0; q < NTROUBLE; q++) given[q] = limit[q] != FOLLOWS;
+  if (!given[COURANT]) limit[COURANT] = 0.45;
+  if (!given[LOST]) limit[LOST] = 0.0;
   limit[FINITE] = BIG;
-  limit[MACH] = 0.5;
-  limit[DISTANCE] = 0.0;
-  limit[DENSITY] = 0.3;
-  limit[COURANT] = 0.45;
-  limit[ENERGY] = 10.0;
-  limit[LOST] = 0.0;
-  limit[REFLECTED] = BIG;
-
-  for (int iarg = 4; iarg < narg; iarg += 2) {
-    const std::string key = arg[iarg];
-    if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/watch " + key, error);
-    const char *const value = arg[iarg + 1];
-    const bool off = strcmp(value, "off") == 0;
-    if (key == "action") {
-      if (strcmp(value, "warn") == 0) warn = true;
-      else if (strcmp(value, "stop") == 0) warn = false;
-      else error->all(FLERR, "Unknown fix fsi/watch action {}: expected stop or warn", value);
-    } else if (key == "restart") halt.restart_file = off ? "" : value;
-    else if (key == "dump") halt.dump_file = off ? "" : value;
-    else {
-      int q = MACH;
-      while (q < NTROUBLE && key != about[q].key) q++;
-      if (q == NTROUBLE)
-        error->all(FLERR, "Unknown fix fsi/watch keyword {}: expected mach, distance, density, courant, energy, lost, reflected, "
-                          "action, restart or dump", key);
-      limit[q] = q == DISTANCE ? 0.0 : BIG;
-      given[q] = true;
-      if (q == DISTANCE) distances = !off;
-      if (off) continue;
-      limit[q] = utils::numeric(FLERR, value, false, lmp);
-      if (!(limit[q] >= 0.0 && limit[q] < BIG) || (limit[q] == 0.0 && q != LOST && q != REFLECTED))
-        error->all(FLERR, "Fix fsi/watch {} {} must be > 0, or off", key, value);
-      if (q == DISTANCE && limit[q] >= 1.0) error->all(FLERR, "Fix fsi/watch distance {} must be below 1 spacing", value);
-      if (q == ENERGY && limit[q] <= 1.0) error->all(FLERR, "Fix fsi/watch energy {} must be > 1", value);
-    }
-  }
   if (halt.restart_file.find_first_of("*%") != std::string::npos)
     error->all(FLERR, "Fix fsi/watch restart {} must be the name of one file, without * and %", halt.restart_file);
 

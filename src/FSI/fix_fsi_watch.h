@@ -48,7 +48,8 @@ class FixFSIWatch : public Fix {
   int interval;
   double limit[FSI::NTROUBLE];    // BIG, for DISTANCE 0, = off
   bool given[FSI::NTROUBLE];      // by the script
-  bool warn, distances;           // distances: found, whether there is a limit or not
+  int warn;
+  bool distances;    // found, whether there is a limit or not
 
   FSI::Finding worst[FSI::NTROUBLE];     // on this rank
   double total[FSI::NTROUBLE];      // of all ranks: ENERGY, LOST, REFLECTED

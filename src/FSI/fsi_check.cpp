@@ -19,8 +19,6 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_pack.h"
-#include "group.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "pair_fsi_solid_tl.h"
 #include "update.h"
@@ -62,9 +60,8 @@ static bool all_below(int n, const double *a, double most)
 
 /* ---------------------------------------------------------------------- */
 
-Check::Check(LAMMPS *lmp, FixFSI *hub, double mach) :
-    Pointers(lmp), hub(hub), mach(mach), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), found{}, moved(0), stray(false),
-    told(false)
+Check::Check(LAMMPS *lmp, FixFSI *hub) :
+    Pointers(lmp), hub(hub), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), found{}
 {
   stop.restart_file = "fsi_stop.restart";
   stop.dump_file = "fsi_stop.dump";
@@ -79,17 +76,14 @@ void Check::init()
   limit_sq.assign(atom->ntypes + 1, HUGE_SQUARE);
   for (int t = 1; t <= atom->ntypes; t++) {
     const State &s = hub->state[t];
-    if (mach == OFF || (s.species != FLUID && s.species != SOLID)) continue;
-    const double most = mach * (s.species == SOLID ? SOLID_OVER_FLUID : 1.0);
+    if (hub->mach == OFF || (s.species != FLUID && s.species != SOLID)) continue;
+    const double most = hub->mach * (s.species == SOLID ? SOLID_OVER_FLUID : 1.0);
     limit_sq[t] = most * most * s.wave_speed_sq();
   }
   // |v + dv| is below a limit if no component of v is above 0.9, and none of dv above 0.1, of it over the root of 3
   const double component = std::sqrt(*std::min_element(limit_sq.begin() + 1, limit_sq.end()) / 3.0);
   calm_speed = 0.9 * component;
   calm_kick = 0.1 * component;
-  moved = 0;
-  for (const auto &fix : modify->get_fix_list())
-    if (fix->time_integrate) moved |= fix->groupbit;
 
   found = {};
   for (int i = 0; i < atom->nlocal; i++) enter(stop.not_finite(i, false));
@@ -101,7 +95,6 @@ void Check::init()
 void Check::setup()
 {
   look(true, 0.0);
-  look_for_strays();
   judge(Stop::START);
 }
 
@@ -127,7 +120,6 @@ void Check::positions()
 void Check::before_kick()
 {
   look(neighbor->ago == 0 || update->ntimestep % EVERY == 0, update->dt * force->ftm2v);
-  if (neighbor->ago == 0) look_for_strays();
   if (hub->substeps == 1) judge(Stop::MIDDLE);
 }
 
@@ -223,34 +215,14 @@ void Check::enter(const Finding &one)
 }
 
 /* ----------------------------------------------------------------------
-   fluid that no fix moves: made in a run, or left out at its start
-------------------------------------------------------------------------- */
-
-void Check::look_for_strays()
-{
-  stray = false;
-  if (told) return;
-  const int *const mask = atom->mask;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (!(mask[i] & moved) && hub->state[atom->type[i]].species == FLUID) {
-      stray = true;
-      return;
-    }
-}
-
-/* ----------------------------------------------------------------------
    all ranks stop together
 ------------------------------------------------------------------------- */
 
 void Check::judge(Stop::When when)
 {
-  int mine = found.tag ? 2 : stray, all;
+  int mine = found.tag != 0, all;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
-  if (all == 0) return;
-  if (all == 1) {
-    warn_of_strays();
-    return;
-  }
+  if (!all) return;
   // back to before the sub-steps, if there were any
   if (when == Stop::MIDDLE && hub->substeps > 1) {
     const double *from = kept.data();
@@ -265,25 +237,6 @@ void Check::judge(Stop::When when)
   if (worst.trouble == DENSITY) what = fmt::format("density {:.4g} is not above 0", worst.value);
   if (worst.trouble == MACH)
     what = fmt::format("Mach number {:.4g} is above the limit {:g}", worst.value,
-                       mach * (hub->state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
+                       hub->mach * (hub->state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
   stop.stop(hub, stop.describe(hub, what, worst, when), worst, when);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void Check::warn_of_strays()
-{
-  told = true;
-  stray = false;
-  bigint mine[2] = {0, 0}, all[2];
-  for (int i = 0; i < atom->nlocal; i++)
-    if (!(atom->mask[i] & moved) && hub->state[atom->type[i]].species == FLUID) {
-      mine[0]++;
-      mine[1] = std::max(mine[1], (bigint) atom->tag[i]);
-    }
-  MPI_Allreduce(&mine[0], &all[0], 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  MPI_Allreduce(&mine[1], &all[1], 1, MPI_LMP_BIGINT, MPI_MAX, world);
-  if (comm->me == 0)
-    error->warning(FLERR, "Fix fsi: {} fluid particles (as atom {}) are on step {} in no group that a fix moves, so they stay where they are: put them "
-                   "into group {} of fix {}", all[0], all[1], update->ntimestep, group->names[hub->igroup], hub->id);
 }

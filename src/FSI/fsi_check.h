@@ -28,7 +28,7 @@ namespace FSI {
    public:
     static constexpr double OFF = 1.0e20;
 
-    Check(class LAMMPS *, FixFSI *, double mach);
+    Check(class LAMMPS *, FixFSI *);
     void init();              // of a run: what a restart file or a script has put there
     void setup();             // after the first forces
     void positions();         // before lists are built
@@ -38,7 +38,6 @@ namespace FSI {
 
    private:
     FixFSI *const hub;
-    const double mach;    // largest Mach number of fluids
     Stop stop;
     std::vector<double> limit_sq;    // per type: of the speed
     double calm_speed, calm_kick;    // components of velocities and of their change in a step from which no limit is in reach
@@ -46,14 +45,9 @@ namespace FSI {
     std::vector<double> kept;        // positions and velocities of solids before their sub-steps
     Finding found;                   // the first thing that is not finite, or the worst of this rank
 
-    int moved;       // bits of the groups of all fixes that move particles
-    bool stray, told;    // there is a fluid particle in none of them; it was said
-
     void enter(const Finding &);
     void examine(int i, double kick);
     void look(bool closely, double kick);
-    void look_for_strays();
-    void warn_of_strays();
     void judge(Stop::When);
   };
 

@@ -15,13 +15,16 @@
 
 #include "comm.h"
 #include "error.h"
+#include "fsi_keywords.h"
 #include "lammps.h"
 #include "pointers.h"
 #include "potential_file_reader.h"
 #include "tokenizer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -56,6 +59,28 @@ double State::energy(double rho) const
 }
 
 namespace {
+
+const char *const SPECIES[] = {"NULL", "fluid", "solid", "wall"};
+
+// what follows the name and the species
+const struct Property {
+  const char *name;
+  double Material::*value;
+  std::vector<int> species;    // which have it
+  bool needed;
+  Range range;
+} properties[] = {{"rho", &Material::rho0, {FLUID, SOLID, RIGID}, true, Range::above(0.0)},
+                  {"viscosity", &Material::viscosity, {FLUID}, false, Range::from(0.0)},
+                  {"sound", &Material::sound, {FLUID}, false, Range::from(0.0)},
+                  {"young", &Material::young, {SOLID}, true, Range::above(0.0)},
+                  {"poisson", &Material::poisson, {SOLID}, true, Range::inside(-1.0, 0.5)},
+                  {"yield", &Material::yield, {SOLID}, false, Range::from(0.0)},
+                  {"hardening", &Material::hardening, {SOLID}, false, Range::from(0.0)}};
+
+bool has(int species, const Property &p)
+{
+  return std::find(p.species.begin(), p.species.end(), species) != p.species.end();
+}
 
 // gives free functions the LAMMPS pointers that error->one() and friends need
 class MaterialReader : protected Pointers {
@@ -93,7 +118,6 @@ class MaterialReader : protected Pointers {
     return found;
   }
 
- private:
   Material parse(const std::string &file, const char *line)
   {
     Material m = {};
@@ -105,40 +129,25 @@ class MaterialReader : protected Pointers {
       strcpy(m.name, name.c_str());
 
       const std::string species = values.next_string();
-      if (species == "fluid") m.species = FLUID;
-      else if (species == "solid") m.species = SOLID;
-      else if (species == "wall") m.species = RIGID;
-      else
+      m.species = std::find(std::begin(SPECIES), std::end(SPECIES), species) - std::begin(SPECIES);
+      if (m.species == NONE || m.species > RIGID)
         error->one(FLERR, "Material {} in file {} is of unknown species {}: expected fluid, solid or wall", name, file, species);
 
-      bool has_young = false, has_poisson = false;
+      std::string known, given = " ";
+      for (const auto &p : properties)
+        if (has(m.species, p)) known += (known.empty() ? "" : ", ") + std::string(p.name);
       while (values.has_next()) {
         const std::string key = values.next_string();
-        const double value = values.next_double();
-        if (key == "rho") m.rho0 = value;
-        else if (key == "viscosity" && m.species == FLUID) m.viscosity = value;
-        else if (key == "young" && m.species == SOLID) {
-          m.young = value;
-          has_young = true;
-        } else if (key == "poisson" && m.species == SOLID) {
-          m.poisson = value;
-          has_poisson = true;
-        } else if (key == "yield" && m.species == SOLID) m.yield = value;
-        else if (key == "hardening" && m.species == SOLID) m.hardening = value;
-        else
-          error->one(FLERR, "Unknown keyword {} of {} {} in file {}: expected {}", key, species, name, file,
-                     m.species == FLUID ? "rho, viscosity" : m.species == RIGID ? "rho" : "rho, young, poisson, yield, hardening");
-        if (!std::isfinite(value)) error->one(FLERR, "Value of {} of material {} in file {} is not finite", key, name, file);
+        const auto p = std::find_if(std::begin(properties), std::end(properties),
+                                    [&](const Property &q) { return key == q.name && has(m.species, q); });
+        if (p == std::end(properties))
+          error->one(FLERR, "Unknown keyword {} of {} {} in file {}: expected {}", key, species, name, file, known);
+        m.*p->value = numeric(lmp, fmt::format("Material {} in file {}: {}", name, file, key), values.next_string(), p->range, true);
+        given += key + " ";
       }
-      if (m.rho0 <= 0.0) error->one(FLERR, "Material {} in file {} needs rho > 0", name, file);
-      if (m.viscosity < 0.0) error->one(FLERR, "Material {} in file {} needs viscosity >= 0", name, file);
-      if (m.species == SOLID) {
-        if (!has_young || m.young <= 0.0) error->one(FLERR, "Material {} in file {} needs young > 0", name, file);
-        if (!has_poisson || m.poisson <= -1.0 || m.poisson >= 0.5)
-          error->one(FLERR, "Material {} in file {} needs poisson between -1 and 0.5", name, file);
-        if (m.yield < 0.0 || m.hardening < 0.0)
-          error->one(FLERR, "Material {} in file {} needs yield and hardening >= 0", name, file);
-      }
+      for (const auto &p : properties)
+        if (p.needed && has(m.species, p) && given.find(std::string(" ") + p.name + " ") == std::string::npos)
+          error->one(FLERR, "Material {} in file {} needs {} {}", name, file, p.name, p.range.text());
     } catch (TokenizerException &e) {
       error->one(FLERR, "Cannot read a line of material file {}: {}", file, e.what());
     }
@@ -156,4 +165,20 @@ std::vector<Material> FSI::read_materials(LAMMPS *lmp, const std::string &file, 
   if (lmp->comm->me == 0) found = MaterialReader(lmp).read(file, names);
   MPI_Bcast(found.data(), static_cast<int>(found.size() * sizeof(Material)), MPI_BYTE, 0, lmp->world);
   return found;
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string FSI::describe(const Material &m)
+{
+  if (m.species == NONE) return SPECIES[NONE];
+  std::string line = fmt::format("{} {}", m.name, SPECIES[m.species]);
+  for (const auto &p : properties)
+    if (has(m.species, p)) line += fmt::format(" {} {}", p.name, m.*p.value);
+  return line;
+}
+
+Material FSI::read_material(LAMMPS *lmp, const std::string &file, const std::string &line)
+{
+  return line == SPECIES[NONE] ? Material{} : MaterialReader(lmp).parse(file, line.c_str());
 }

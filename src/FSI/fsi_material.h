@@ -26,12 +26,13 @@ namespace FSI {
 
   enum Species { NONE, FLUID, SOLID, RIGID };
 
-  // Trivially copyable: pair styles write it to restart files as it is.
+  // Trivially copyable: it is sent to other ranks as it is.
   struct Material {
     char name[64];
     int species;         // FLUID, SOLID or RIGID (wall)
     double rho0;         // reference density
     double viscosity;    // fluid: dynamic viscosity
+    double sound;        // fluid: numerical speed of sound, 0 = that of its pair style
     double young;        // solid: Young's modulus
     double poisson;      // solid: Poisson's ratio
     double yield;        // solid: yield stress, 0 = elastic
@@ -79,6 +80,10 @@ namespace FSI {
   // material per line: name, fluid, solid or wall, keyword-value pairs). Every rank gets the result. "NULL" gives species NONE.
   // Errors name the file, the material and the keyword.
   std::vector<Material> read_materials(LAMMPS *lmp, const std::string &file, const std::vector<std::string> &names);
+
+  // a line of such a file; what it says. "NULL" is a material, too: of species NONE
+  std::string describe(const Material &);
+  Material read_material(LAMMPS *lmp, const std::string &file, const std::string &line);
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

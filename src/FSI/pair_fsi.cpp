@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_record.h"
 #include "memory.h"
 #include "neighbor.h"
 
@@ -30,7 +31,8 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) : Pair(lmp), style(style_in), hub(nullptr), alpha(0.0), beta(0.0), contact_range(1.0)
+PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
+    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), hub(nullptr), alpha(0.0), beta(0.0), contact_range(1.0)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -58,6 +60,14 @@ void PairFSI::allocate()
   memory->create(setflag, n, n, "pair:setflag");
   memory->create(cutsq, n, n, "pair:cutsq");
   material.assign(n, Material{});
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSI::settings(int narg, char **arg)
+{
+  keywords.parse(narg, arg);
+  check_settings();
 }
 
 /* ----------------------------------------------------------------------
@@ -102,6 +112,9 @@ void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
   hub = FixFSI::find(lmp, "Pair style " + style);
+  if (force->pair_match(style, 1, 1) != force->pair_match(style, 1, 2))
+    error->all(FLERR, "Pair style hybrid has {} more than once: one is for the materials of all atom types{}", style,
+               style == "fsi/fluid" ? ", and a speed of sound of its own is keyword sound of a fluid in the material file" : "");
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) hub->enter_state(t, make_state(material[t]));
   if (needs_neighbors()) neighbor->add_request(this);
@@ -135,58 +148,26 @@ double PairFSI::init_one(int i, int j)
 }
 
 /* ----------------------------------------------------------------------
-   arguments of settings(): n values must follow keyword iarg; a value must be a number >= 0
+   keywords that several styles have
 ------------------------------------------------------------------------- */
 
-void PairFSI::need(int narg, char **arg, int iarg, int n)
+void PairFSI::artificial_row(const std::string &of)
 {
-  if (iarg + n >= narg) utils::missing_cmd_args(FLERR, fmt::format("pair_style {} {}", style, arg[iarg]), error);
+  keywords.key("artificial/visc")
+      .number(alpha, 0.0, Range::from(0.0), "alpha")
+      .number(beta, 0.0, Range::from(0.0), "beta")
+      .effect("artificial viscosity of the " + of + ", alpha {}");
 }
 
-double PairFSI::number(const char *value, const char *what)
+void PairFSI::contact_row()
 {
-  const double x = utils::numeric(FLERR, value, false, lmp);
-  if (!(x >= 0.0)) error->all(FLERR, "Pair style {} {} {} must be >= 0", style, what, value);
-  return x;
-}
-
-/* ----------------------------------------------------------------------
-   keyword contact of solids, if that is what stands at iarg
-------------------------------------------------------------------------- */
-
-bool PairFSI::contact_keyword(int narg, char **arg, int &iarg)
-{
-  if (strcmp(arg[iarg], "contact") != 0) return false;
-  need(narg, arg, iarg, 1);
-  contact_range = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-  if (!(contact_range >= 1.0)) error->all(FLERR, "Pair style {} contact {} must be >= 1 spacing", style, arg[iarg + 1]);
-  iarg += 2;
-  return true;
+  keywords.key("contact").number(contact_range, 1.0, Range::from(1.0));
 }
 
 void PairFSI::check_contact() const
 {
   if (contact_range * hub->dx > hub->cut * (1.0 + 1.0e-12))
     error->all(FLERR, "Pair style {} contact {} must not exceed the kernel's support, {:g} spacings", style, contact_range, hub->cut / hub->dx);
-}
-
-/* ----------------------------------------------------------------------
-   keyword artificial/visc, if that is what stands at iarg
-------------------------------------------------------------------------- */
-
-bool PairFSI::artificial_keyword(int narg, char **arg, int &iarg)
-{
-  if (strcmp(arg[iarg], "artificial/visc") != 0) return false;
-  need(narg, arg, iarg, 2);
-  alpha = number(arg[iarg + 1], "artificial/visc alpha");
-  beta = number(arg[iarg + 2], "artificial/visc beta");
-  iarg += 3;
-  return true;
-}
-
-PairFSI::Effect PairFSI::artificial_effect(const char *of) const
-{
-  return {fmt::format("artificial viscosity of the {}, alpha {:g}", of, alpha), "artificial/visc", has_artificial()};
 }
 
 /* ----------------------------------------------------------------------
@@ -215,32 +196,35 @@ void PairFSI::check_tally()
     error->all(FLERR, "Pair style {} has no per-atom virial or energy: use compute fsi/atom for stress and pressure", style);
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   restart files: keywords, and materials as they stand in their file
+------------------------------------------------------------------------- */
+
+void PairFSI::write_restart_settings(FILE *fp)
+{
+  Record record(lmp, "pair_style " + style);
+  keywords.write(record);
+  record.write(fp);
+}
+
+void PairFSI::read_restart_settings(FILE *fp)
+{
+  keywords.read(Record::read(lmp, "pair_style " + style, fp));
+}
 
 void PairFSI::write_restart(FILE *fp)
 {
   write_restart_settings(fp);
-  for (int t = 1; t <= atom->ntypes; t++) restart_value(fp, material[t], true);
+  Record record(lmp, "pair_coeff " + style);
+  for (int t = 1; t <= atom->ntypes; t++) record.add(std::to_string(t), describe(material[t]));
+  record.write(fp);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSI::read_restart(FILE *fp)
 {
   read_restart_settings(fp);
   allocate();
-  for (int t = 1; t <= atom->ntypes; t++) restart_value(fp, material[t], false);
+  const auto record = Record::read(lmp, "pair_coeff " + style, fp);
+  for (int t = 1; t <= atom->ntypes; t++) material[t] = read_material(lmp, "the restart file", record.value(std::to_string(t)));
   set_flags();
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSI::restart_bytes(FILE *fp, void *value, size_t size, bool write)
-{
-  if (write) {
-    fwrite(value, size, 1, fp);
-    return;
-  }
-  if (comm->me == 0) utils::sfread(FLERR, value, size, 1, fp, nullptr, error);
-  MPI_Bcast(value, static_cast<int>(size), MPI_BYTE, 0, world);
 }

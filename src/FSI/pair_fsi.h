@@ -17,6 +17,7 @@
 #define LMP_PAIR_FSI_H
 
 #include "atom.h"
+#include "fsi_keywords.h"
 #include "fsi_material.h"
 #include "pair.h"
 
@@ -29,22 +30,23 @@ class PairFSI : public Pair {
  public:
   PairFSI(class LAMMPS *, const char *style);
   ~PairFSI() override;
+  void settings(int, char **) override;
   void coeff(int, char **) override;
   void init_style() override;
   double init_one(int, int) override;
   void write_restart(FILE *) override;
   void read_restart(FILE *) override;
+  void write_restart_settings(FILE *) override;
+  void read_restart_settings(FILE *) override;
 
   // an effect that the style offers: what it is called, the keyword that turns it on, and whether it is on
-  struct Effect {
-    std::string name, keyword;
-    bool on;
-  };
+  using Effect = FSI::Keywords::Effect;
   virtual std::vector<Effect> effects() const = 0;
   double artificial_alpha() const { return alpha; }
 
  protected:
   const std::string style;    // for messages
+  FSI::Keywords keywords;     // of settings()
   class FixFSI *hub;
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
   double alpha, beta;    // artificial/visc (fsi_viscosity_artificial.h)
@@ -63,13 +65,11 @@ class PairFSI : public Pair {
 
   FSI::State solid_state(const FSI::Material &, bool plane_stress) const;
   bool several_bodies() const;
-  void need(int narg, char **arg, int iarg, int n);
-  double number(const char *value, const char *what);
-  bool contact_keyword(int narg, char **arg, int &iarg);
+  virtual void check_settings() {}    // what a row of keywords cannot say
+  void artificial_row(const std::string &of);
+  void contact_row();
   void check_contact() const;
-  bool artificial_keyword(int narg, char **arg, int &iarg);
   bool has_artificial() const { return alpha > 0.0 || beta > 0.0; }
-  Effect artificial_effect(const char *of) const;
   void set_flags();
   void allocate();
   void check_tally();
@@ -82,14 +82,6 @@ class PairFSI : public Pair {
       if (material[atom->type[i]].species == FSI::SOLID) visit(i);
     }
   }
-
-  template <class T> void restart_value(FILE *fp, T &value, bool write)
-  {
-    restart_bytes(fp, &value, sizeof(T), write);
-  }
-
- private:
-  void restart_bytes(FILE *, void *, size_t, bool);
 };
 
 }    // namespace LAMMPS_NS

@@ -28,6 +28,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -36,78 +37,24 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), surface_ratio(0.0), surface_max(0), shifting(0.0), sound(0.0), background(0.0), delta(0.0),
-    tait(0), laminar(0), couple(WALL), extrapolate(0), tension(0), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1)
 {
+  keywords.key("sound").number(sound, 0.0, Range::above(0.0));
+  keywords.key("eos").choice(tait, 0, {"linear", "tait"});
+  artificial_row("fluid");
+  keywords.key("laminar/visc").set(laminar, PLAIN).effect("laminar viscosity");
+  keywords.key("laminar/visc/central").set(laminar, CENTRAL);
+  keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
+  keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
+  keywords.key("surface")
+      .number(surface_ratio, 0.0, Range::from_to_below(0.0, 1.0), "ratio")
+      .choice(surface_max, 0, {"bulk", "max"}, "reference")
+      .effect("free surface where psi is below {}");
+  keywords.key("tension").logical(tension, false).effect("tension in the fluid");
+  keywords.key("background").number(background, 0.0).effect("background pressure {}");
+  keywords.key("couple").choice(couple, WALL, {"wall", "pressure", "full"});
+  keywords.key("extrapolate").logical(extrapolate, false);
 }
-
-/* ----------------------------------------------------------------------
-   pair_style fsi/fluid keyword value ...
-------------------------------------------------------------------------- */
-
-void PairFSIFluid::settings(int narg, char **arg)
-{
-  int iarg = 0;
-  while (iarg < narg) {
-    if (artificial_keyword(narg, arg, iarg)) continue;
-    if (strcmp(arg[iarg], "sound") == 0) {
-      need(narg, arg, iarg, 1);
-      sound = number(arg[iarg + 1], "sound speed");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "eos") == 0) {
-      need(narg, arg, iarg, 1);
-      if (strcmp(arg[iarg + 1], "linear") == 0) tait = 0;
-      else if (strcmp(arg[iarg + 1], "tait") == 0) tait = 1;
-      else error->all(FLERR, "Unknown pair_style fsi/fluid eos {}: expected linear or tait", arg[iarg + 1]);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "background") == 0) {
-      need(narg, arg, iarg, 1);
-      background = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "tension") == 0) {
-      need(narg, arg, iarg, 1);
-      tension = utils::logical(FLERR, arg[iarg + 1], false, lmp);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "laminar/visc") == 0 || strcmp(arg[iarg], "laminar/visc/central") == 0) {
-      laminar = strcmp(arg[iarg], "laminar/visc") == 0 ? PLAIN : CENTRAL;
-      iarg += 1;
-    } else if (strcmp(arg[iarg], "density/diffusion") == 0) {
-      need(narg, arg, iarg, 1);
-      delta = number(arg[iarg + 1], "density/diffusion");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "shift") == 0) {
-      need(narg, arg, iarg, 1);
-      shifting = number(arg[iarg + 1], "shift");
-      if (shifting > 1.0) error->all(FLERR, "Pair style fsi/fluid shift {} must be at most 1", arg[iarg + 1]);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "couple") == 0) {
-      need(narg, arg, iarg, 1);
-      if (strcmp(arg[iarg + 1], "wall") == 0) couple = WALL;
-      else if (strcmp(arg[iarg + 1], "pressure") == 0) couple = PRESSURE;
-      else if (strcmp(arg[iarg + 1], "full") == 0) couple = FULL;
-      else error->all(FLERR, "Unknown pair_style fsi/fluid couple {}: expected wall, pressure or full", arg[iarg + 1]);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "extrapolate") == 0) {
-      need(narg, arg, iarg, 1);
-      extrapolate = utils::logical(FLERR, arg[iarg + 1], false, lmp);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "surface") == 0) {
-      need(narg, arg, iarg, 2);
-      surface_ratio = number(arg[iarg + 1], "surface ratio");
-      if (surface_ratio >= 1.0)
-        error->all(FLERR, "Pair style fsi/fluid surface ratio {} must be below 1", arg[iarg + 1]);
-      if (strcmp(arg[iarg + 2], "bulk") == 0) surface_max = 0;
-      else if (strcmp(arg[iarg + 2], "max") == 0) surface_max = 1;
-      else error->all(FLERR, "Unknown pair_style fsi/fluid surface reference {}: expected bulk or max", arg[iarg + 2]);
-      iarg += 3;
-    } else
-      error->all(FLERR, "Unknown pair_style fsi/fluid keyword {}: expected sound, eos, background, tension, artificial/visc, "
-                        "laminar/visc, laminar/visc/central, density/diffusion, shift, couple, extrapolate or surface", arg[iarg]);
-  }
-  if (sound <= 0.0) error->all(FLERR, "Pair style fsi/fluid needs keyword sound with a speed of sound > 0");
-}
-
-/* ---------------------------------------------------------------------- */
 
 bool PairFSIFluid::handles(int a, int b) const
 {
@@ -123,19 +70,33 @@ State PairFSIFluid::make_state(const Material &m) const
   State s;
   s.species = m.species;
   s.rho0 = m.rho0;
-  s.c = sound;
-  s.csq = sound * sound;
   if (m.species == RIGID) {
-    // its density is what says its pressure, its volume should be that of fluid under this pressure
-    for (const auto &other : material)
-      if (other.species == FLUID) s.csq = sound * sound * other.rho0 / m.rho0;
-  } else
+    // its density is what says its pressure, its volume should be that of fluid under this pressure; if fluids differ in this, that
+    // of the fluid that is near (fix fsi/wall/particle)
+    const auto first = std::find_if(material.begin(), material.end(), [](const Material &other) { return other.species == FLUID; });
+    s.csq = sound_of(*first) * sound_of(*first) * first->rho0 / m.rho0;
+    s.c = std::sqrt(s.csq);
+  } else {
+    s.c = sound_of(m);
+    s.csq = s.c * s.c;
     s.tait = tait;
+  }
   s.inv_csq = 1.0 / s.csq;
   s.p0 = background;
   if (!tension) s.floor = 0.0;
   s.viscosity = m.viscosity;
   return s;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double PairFSIFluid::sound_of(const Material &m) const
+{
+  if (m.sound > 0.0) return m.sound;
+  if (sound == 0.0)
+    error->all(FLERR, "Fluid {} has no speed of sound: give it keyword sound in its material file, or pair_style fsi/fluid one for all "
+                      "fluids that have none of their own", m.name);
+  return sound;
 }
 
 /* ----------------------------------------------------------------------
@@ -161,6 +122,8 @@ void PairFSIFluid::init_style()
     error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
                    has_solids() ? "it is for couple wall" : "there is no solid");
   loops = make_fluid_loops(hub->kernel, hub->dim, hub->h);
+  // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
+  if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
   kinds[SOLIDS] = couple == WALL ? WITH_SOLID : couple == PRESSURE ? WITH_SOLID_PRESSURE : WITH_SOLID_FULL;
 }
 
@@ -332,20 +295,20 @@ template <int D> void PairFSIFluid::density_rate_of(double dt)
   double **x = atom->x;
   const int *const type = atom->type;
   const Walls walls = hub->walls.moved(-dth);
-  const DensityDiffusion diffusion(delta, hub->h, sound, hub->gravity);
   const FluidParticles particles = gather<D>(-dth, [&](int i, Point<D> &p) {
-    // who has pressure: without it on either side nothing is hydrostatic, and diffusion would push apart particles that fly free
+    // Diffusion smooths pressures, so both of a pair must have one. What has none, spray and surfaces, has the density that its few
+    // neighbours leave: their exchange would empty the spray, beyond zero, and take volume from the rest.
     if (delta == 0.0) return;
     const State &s = hub->state[type[i]];
     p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
-    p.pv2 = diffusion.hydrostatic(p.position(x[i]).data(), s.rho0 * s.inv_csq);
+    p.pv2 = DensityDiffusion::hydrostatic(hub->gravity[type[i]].data(), p.position(x[i]).data(), s.rho0 * s.inv_csq);
   });
   if (hub->ledger) {
     pressure_over_density.resize(atom->nmax);
     for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = hub->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, hub->gravity, pressure_over_density.data()};
+  const RateLaws laws = {delta, pressure_over_density.data()};
   double *const shift = shifting > 0.0 ? hub->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror) {
@@ -414,7 +377,7 @@ void PairFSIFluid::compute(int eflag, int vflag)
   hub->dim == 2 ? compute_forces<2>() : compute_forces<3>();
   for (auto *measure : force_computes) measure->tally(1.0);
 
-  if (vflag_fdotr) virial_fdotr_compute();
+  if (vflag_fdotr && !hub->walls.any()) virial_fdotr_compute();
 }
 
 /* ----------------------------------------------------------------------
@@ -430,16 +393,17 @@ template <int D> void PairFSIFluid::compute_forces()
   constexpr int ROW = row_of_forces(D);
   double **x = atom->x;
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
-  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off, or a hybrid style with solids that need it
-  const bool surface_rule = surface_ratio > 0.0;
+  // newton off, or a hybrid style with solids that need it, or images, which are no particles: like LAMMPS' own walls they do not count
+  // in the virial, and forces times positions would have them
+  const bool tally_pairs = vflag_fdotr ? hub->walls.any() : evflag != 0;
+  const bool own_pressure = surface_ratio > 0.0 || hub->wall_stiffness;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
-    p.p = surface_rule ? hub->pressure(i) : hub->state[type[i]].pressure(p.rho);
+    p.p = own_pressure ? hub->pressure(i) : hub->state[type[i]].pressure(p.rho);
     p.pv2 = p.p * p.vol * p.vol;
   });
 
-  ForceLaws laws = {alpha, beta, laminar, {}, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(),
+  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? hub->gravity.data() : nullptr, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(),
                     FixFSI::rows(hub->wall_velocity ? hub->wall_velocity : atom->v), hub->fix_stress ? hub->fix_stress->stress : nullptr};
-  if (extrapolate) std::copy_n(hub->gravity, 3, laws.extrapolate);
   PairSums sums, *const of_pairs = hub->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   for (int kind = 0; kind < NROWS; kind++)
@@ -466,7 +430,7 @@ template <int D> void PairFSIFluid::compute_forces()
   hub->tally(FixFSI::LAMINAR, sums.laminar);
   hub->tally(FixFSI::COUPLING, sums.coupling);
   hub->tally(FixFSI::WALLS, sums.walls);
-  if (tally_pairs && vflag_global)
+  if (tally_pairs && (vflag_global || vflag_fdotr))
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
 
@@ -483,49 +447,10 @@ bool PairFSIFluid::has_solids() const
 
 std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 {
-  const auto given = [](const std::string &name, double value) { return fmt::format("{} {:g}", name, value); };
   static const char *const modes[] = {"wall", "pressure", "full"};
-  return {artificial_effect("fluid"),
-          {"laminar viscosity", "laminar/visc", laminar != 0},
-          {given("density diffusion", delta), "density/diffusion", delta > 0.0},
-          {given("particle shifting", shifting), "shift", shifting > 0.0},
-          {given("free surface where psi is below", surface_ratio), "surface", surface_ratio > 0.0},
-          {"tension in the fluid", "tension", tension != 0},
-          {given("background pressure", background), "background", background != 0.0},
-          {fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()}};
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSIFluid::write_restart_settings(FILE *fp)
-{
-  double d[] = {sound, background, alpha, beta, delta, surface_ratio, shifting};
-  int n[] = {tait, laminar, couple, extrapolate, tension, surface_max};
-  restart_value(fp, d, true);
-  restart_value(fp, n, true);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSIFluid::read_restart_settings(FILE *fp)
-{
-  double d[7];
-  int n[6];
-  restart_value(fp, d, false);
-  restart_value(fp, n, false);
-  sound = d[0];
-  background = d[1];
-  alpha = d[2];
-  beta = d[3];
-  delta = d[4];
-  surface_ratio = d[5];
-  shifting = d[6];
-  tait = n[0];
-  laminar = n[1];
-  couple = n[2];
-  extrapolate = n[3];
-  tension = n[4];
-  surface_max = n[5];
+  auto list = keywords.effects();
+  list.push_back({fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
+  return list;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -38,16 +38,14 @@ class PairFSIFluid : public PairFSI {
   enum Laminar { INVISCID, PLAIN, CENTRAL };
 
   PairFSIFluid(class LAMMPS *);
-  void settings(int, char **) override;
   void init_style() override;
   void compute(int, int) override;
   bool has_solids() const;
   bool shares_stress() const { return couple != WALL; }    // of a solid with the fluid
-  void write_restart_settings(FILE *) override;
-  void read_restart_settings(FILE *) override;
   std::vector<Effect> effects() const override;
   double memory_usage() override;
   bool has_laminar() const { return laminar; }
+  double sound_of(const FSI::Material &) const;
 
   // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi
   // of all fluid particles); 0 = off
@@ -81,7 +79,7 @@ class PairFSIFluid : public PairFSI {
 
  private:
   // settings
-  double sound, background, delta;
+  double sound, background, delta;    // sound: of fluids whose material has none; 0: there is no default
   int tait, laminar, couple, extrapolate, tension;
   std::vector<class ComputeFSIForce *> force_computes;
 

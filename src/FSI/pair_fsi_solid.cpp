@@ -41,8 +41,13 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), epsilon(0.0), xi(0.0), gradient(PLAIN), force_loop(nullptr), gradient_loop(nullptr)
+    PairFSI(lmp, "fsi/solid"), force_loop(nullptr), gradient_loop(nullptr)
 {
+  artificial_row("solid");
+  keywords.key("artificial/stress").number(epsilon, 0.0, Range::from(0.0)).effect("artificial stress {}");
+  keywords.key("hourglass").number(xi, 0.0, Range::from(0.0)).effect("hourglass control of the solid {}");
+  contact_row();
+  keywords.key("gradient").choice(gradient, PLAIN, {"plain", "corrected", "quadratic"});
 }
 
 template <> std::vector<PairFSISolid::Aux<2>> &PairFSISolid::get_aux<2>()
@@ -52,37 +57,6 @@ template <> std::vector<PairFSISolid::Aux<2>> &PairFSISolid::get_aux<2>()
 template <> std::vector<PairFSISolid::Aux<3>> &PairFSISolid::get_aux<3>()
 {
   return aux3;
-}
-
-/* ----------------------------------------------------------------------
-   pair_style fsi/solid keyword value ...
-------------------------------------------------------------------------- */
-
-void PairFSISolid::settings(int narg, char **arg)
-{
-  int iarg = 0;
-  while (iarg < narg) {
-    if (artificial_keyword(narg, arg, iarg) || contact_keyword(narg, arg, iarg)) continue;
-    if (strcmp(arg[iarg], "artificial/stress") == 0) {
-      need(narg, arg, iarg, 1);
-      epsilon = number(arg[iarg + 1], "artificial/stress");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "hourglass") == 0) {
-      need(narg, arg, iarg, 1);
-      xi = number(arg[iarg + 1], "hourglass");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "gradient") == 0) {
-      need(narg, arg, iarg, 1);
-      if (strcmp(arg[iarg + 1], "plain") == 0) gradient = PLAIN;
-      else if (strcmp(arg[iarg + 1], "corrected") == 0) gradient = CORRECTED_LINEAR;
-      else if (strcmp(arg[iarg + 1], "quadratic") == 0) gradient = CORRECTED_QUADRATIC;
-      else error->all(FLERR, "Unknown pair_style fsi/solid gradient {}: expected plain, corrected or quadratic", arg[iarg + 1]);
-      iarg += 2;
-    } else
-      error->all(FLERR, "Unknown pair_style fsi/solid keyword {}: expected artificial/visc, artificial/stress, hourglass, "
-                        "contact or gradient",
-                 arg[iarg]);
-  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -443,9 +417,10 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       const double r = std::sqrt(rsq), g = kernel.gradient(r);
       const Aux<D> &aj = aux[j];
       Sym<D> t;
+      double push = 0.0;    // of contact, along x_ij: it does not go with the kernel's gradient, which may vanish here
       if ((FLAGS & BODIES) && molecule[i] != molecule[j]) {
         const State &si = state[type[i]], &sj = state[type[j]];
-        t = Sym<D>::identity(contact(rsq, si.csq * si.rho0, sj.csq * sj.rho0) / g);
+        push = contact(rsq, si.csq * si.rho0, sj.csq * sj.rho0);
       } else {
         if constexpr (TERMS == 0) {
           t = ai.stress;
@@ -483,8 +458,8 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       }
       if (FLAGS & LEDGER) {
         double power = 0.0;
-        for (int d = 0; d < D; d++) power += tx[d] * (v[i][d] - v[j][d]);
-        hub->tally(FixFSI::GRADIENT, -share(j) * g * power);
+        for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (v[i][d] - v[j][d]);
+        hub->tally(FixFSI::GRADIENT, -share(j) * power);
       }
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
         for (int d = 0; d < D; d++) {
@@ -496,12 +471,15 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
         for (int d = 0; d < D; d++) tx[d] -= q * xij[d];
         if (FLAGS & LEDGER) hub->tally(FixFSI::ARTIFICIAL, share(j) * q * g * vdotx);
       }
-      for (int d = 0; d < D; d++) fi[d] += g * tx[d];
+      for (int d = 0; d < D; d++) {
+        tx[d] *= g;
+        if (FLAGS & BODIES) tx[d] += push * xij[d];
+        fi[d] += tx[d];
+      }
       if (newton || j < nlocal)
-        for (int d = 0; d < D; d++) f[j][d] -= g * tx[d];
+        for (int d = 0; d < D; d++) f[j][d] -= tx[d];
       if (tally_pairs)
-        ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, g * tx[0], g * tx[1], D == 3 ? g * tx[D - 1] : 0.0, xij[0], xij[1],
-                     D == 3 ? xij[D - 1] : 0.0);
+        ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, tx[0], tx[1], D == 3 ? tx[D - 1] : 0.0, xij[0], xij[1], D == 3 ? xij[D - 1] : 0.0);
     }
     for (int d = 0; d < D; d++) f[i][d] += fi[d];
   }
@@ -512,33 +490,9 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
 std::vector<PairFSI::Effect> PairFSISolid::effects() const
 {
   static const char *const orders[] = {"plain", "exact for linear fields", "exact for quadratic fields"};
-  return {{fmt::format("updated-Lagrangian solid, gradients {}", orders[gradient]), "gradient", true},
-          artificial_effect("solid"),
-          {fmt::format("artificial stress {:g}", epsilon), "artificial/stress", epsilon > 0.0},
-          {fmt::format("hourglass control of the solid {:g}", xi), "hourglass", xi > 0.0}};
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSISolid::write_restart_settings(FILE *fp)
-{
-  double d[] = {alpha, beta, epsilon, xi, contact_range};
-  restart_value(fp, d, true);
-  restart_value(fp, gradient, true);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSISolid::read_restart_settings(FILE *fp)
-{
-  double d[5];
-  restart_value(fp, d, false);
-  restart_value(fp, gradient, false);
-  alpha = d[0];
-  beta = d[1];
-  epsilon = d[2];
-  xi = d[3];
-  contact_range = d[4];
+  auto list = keywords.effects();
+  list.insert(list.begin(), {fmt::format("updated-Lagrangian solid, gradients {}", orders[gradient]), "gradient", true});
+  return list;
 }
 
 /* ---------------------------------------------------------------------- */

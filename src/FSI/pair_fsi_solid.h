@@ -34,11 +34,8 @@ namespace LAMMPS_NS {
 class PairFSISolid : public PairFSI {
  public:
   PairFSISolid(class LAMMPS *);
-  void settings(int, char **) override;
   void init_style() override;
   void compute(int, int) override;
-  void write_restart_settings(FILE *) override;
-  void read_restart_settings(FILE *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;

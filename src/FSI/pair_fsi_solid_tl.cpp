@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_dt.h"
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
@@ -41,10 +42,27 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), zeta(0.0), damage(0.0), law(SVK), plane_stress(0), linear(0), plain(0),
-    reference(nullptr), fsolid(nullptr), nmax(0)
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fsolid(nullptr), nmax(0)
 {
   no_virial_fdotr_compute = 1;
+  artificial_row("solid");
+  keywords.key("hourglass").number(zeta, 0.0, Range::from(0.0)).effect("hourglass control of the solid {}");
+  keywords.key("law").choice(law, SVK, {"svk", "neohookean", "hypo"});
+  keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"});
+  keywords.key("gradient").choice(linear, 0, {"quadratic", "linear"});
+  keywords.key("volumes").choice(plain, 0, {"corrected", "plain"});
+  contact_row();
+  keywords.key("damage").number(damage, 0.0, Range::from(0.0), "strain").effect("damage at strain {}");
+
+  // bonds find their partners by atom ID. Not later than here: fix balance keeps, from when it is defined, whether there is a map to clear
+  if (atom->map_style != Atom::MAP_NONE) return;
+  if (!modify->get_fix_by_style("^balance").empty())
+    error->all(FLERR, "Pair style fsi/solid/tl must come before fix balance, or give atom_modify map yes first");
+  if (domain->box_exist) {
+    atom->map_init();
+    atom->map_set();
+  } else
+    atom->map_style = Atom::MAP_YES;
 }
 
 PairFSISolidTL::~PairFSISolidTL()
@@ -66,51 +84,10 @@ template <> const HypoElastic *PairFSISolidTL::laws<HypoElastic>() const
   return hypo.data();
 }
 
-/* ----------------------------------------------------------------------
-   pair_style fsi/solid/tl keyword value ...
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void PairFSISolidTL::settings(int narg, char **arg)
+void PairFSISolidTL::check_settings()
 {
-  const auto choice = [&](int iarg, std::initializer_list<const char *> words) {
-    need(narg, arg, iarg, 1);
-    int n = 0;
-    std::string expected;
-    for (const char *word : words) {
-      if (strcmp(arg[iarg + 1], word) == 0) return n;
-      expected += (n++ ? " or " : "") + std::string(word);
-    }
-    error->all(FLERR, "Unknown pair_style fsi/solid/tl {} {}: expected {}", arg[iarg], arg[iarg + 1], expected);
-    return 0;
-  };
-  int iarg = 0;
-  while (iarg < narg) {
-    if (artificial_keyword(narg, arg, iarg) || contact_keyword(narg, arg, iarg)) continue;
-    if (strcmp(arg[iarg], "volumes") == 0) {
-      plain = choice(iarg, {"corrected", "plain"});
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "hourglass") == 0) {
-      need(narg, arg, iarg, 1);
-      zeta = number(arg[iarg + 1], "hourglass");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "damage") == 0) {
-      need(narg, arg, iarg, 1);
-      damage = number(arg[iarg + 1], "damage strain");
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "law") == 0) {
-      law = choice(iarg, {"svk", "neohookean", "hypo"});
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "plane") == 0) {
-      plane_stress = choice(iarg, {"strain", "stress"});
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "gradient") == 0) {
-      linear = choice(iarg, {"quadratic", "linear"});
-      iarg += 2;
-    } else
-      error->all(FLERR, "Unknown pair_style fsi/solid/tl keyword {}: expected artificial/visc, hourglass, law, plane, gradient, "
-                        "volumes, contact or damage",
-                 arg[iarg]);
-  }
   if (plane_stress && law == NEOHOOKEAN) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
 }
 
@@ -137,12 +114,8 @@ void PairFSISolidTL::init_style()
   const int dim = hub->dim;
   if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
   if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
+  refuse_constraints();
 
-  // bonds find their partners by atom ID
-  if (atom->map_style == Atom::MAP_NONE) {
-    atom->map_init();
-    atom->map_set();
-  }
   reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(REFERENCE));
   if (!reference)
     reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", REFERENCE)));
@@ -161,6 +134,32 @@ void PairFSISolidTL::init_style()
     neohookean.emplace_back(K, G, false);
     hypo.emplace_back(is && plane_stress ? m.plane_stress_modulus() : K, G, plane_stress);
   }
+}
+
+/* ----------------------------------------------------------------------
+   With sub-steps forces inside the solid come after all fixes have seen those from outside. What adds to these, as fix addforce, is
+   right; what sets or projects the whole force is not.
+------------------------------------------------------------------------- */
+
+void PairFSISolidTL::refuse_constraints() const
+{
+  static const char *const styles[] = {"setforce", "aveforce", "lineforce", "planeforce", "freeze", "manifoldforce", "damping/cundall",
+                                       "shake", "rattle"};
+  auto dt = modify->get_fix_by_style("^fsi/dt$");
+  if (hub->substeps == 1 && (dt.empty() || !dynamic_cast<FixFSIDt *>(dt[0])->chooses_substeps())) return;
+  for (auto &fix : modify->get_fix_list())
+    for (const char *style : styles) {
+      const std::string name = style;
+      if (fix->style != name && !utils::strmatch(fix->style, "^" + name + "/")) continue;
+      tagint mine = MAXTAGINT, first;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (material[atom->type[i]].species == SOLID && atom->mask[i] & hub->groupbit && atom->mask[i] & fix->groupbit)
+          mine = std::min(mine, atom->tag[i]);
+      MPI_Allreduce(&mine, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+      if (first < MAXTAGINT)
+        error->all(FLERR, "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see forces inside the solid: to hold "
+                          "particles leave them out of the group of fix {}", fix->id, fix->style, first, hub->id);
+    }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -476,40 +475,10 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 {
   static const char *const names[] = {"St. Venant-Kirchhoff", "neo-Hookean", "hypoelastic"};
-  return {{fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"), "law",
-           true},
-          artificial_effect("solid"),
-          {fmt::format("hourglass control of the solid {:g}", zeta), "hourglass", zeta > 0.0},
-          {fmt::format("damage at strain {:g}", damage), "damage", damage > 0.0}};
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSISolidTL::write_restart_settings(FILE *fp)
-{
-  double d[] = {alpha, beta, zeta, damage, contact_range};
-  int n[] = {law, plane_stress, linear, plain};
-  restart_value(fp, d, true);
-  restart_value(fp, n, true);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void PairFSISolidTL::read_restart_settings(FILE *fp)
-{
-  double d[5];
-  int n[4];
-  restart_value(fp, d, false);
-  restart_value(fp, n, false);
-  alpha = d[0];
-  beta = d[1];
-  zeta = d[2];
-  damage = d[3];
-  contact_range = d[4];
-  law = n[0];
-  plane_stress = n[1];
-  linear = n[2];
-  plain = n[3];
+  auto list = keywords.effects();
+  list.insert(list.begin(), {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"),
+                             "law", true});
+  return list;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -39,11 +39,8 @@ class PairFSISolidTL : public PairFSI {
  public:
   PairFSISolidTL(class LAMMPS *);
   ~PairFSISolidTL() override;
-  void settings(int, char **) override;
   void init_style() override;
   void compute(int, int) override;
-  void write_restart_settings(FILE *) override;
-  void read_restart_settings(FILE *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;
@@ -73,6 +70,7 @@ class PairFSISolidTL : public PairFSI {
   double volume_ratio(int i) const;    // det F, likewise
 
  protected:
+  void check_settings() override;
   bool handles(int, int) const override;
   bool defines(int species) const override { return species == FSI::SOLID; }
   bool needs_neighbors() override { return several_bodies(); }
@@ -89,6 +87,7 @@ class PairFSISolidTL : public PairFSI {
   double **fsolid;
   int nmax;
 
+  void refuse_constraints() const;
   template <class L> const L *laws() const;
   std::vector<FSI::BondRow> rows;
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds

@@ -1,0 +1,353 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_keywords.h"
+
+#include "comm.h"
+#include "error.h"
+#include "fsi_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+std::string Range::text() const
+{
+  if (low > -LARGEST && high < LARGEST && !low_open && !high_open) return fmt::format("between {:g} and {:g}", low, high);
+  std::string text;
+  if (low > -LARGEST) text = fmt::format("{} {:g}", low_open ? ">" : ">=", low);
+  if (high < LARGEST) text += fmt::format("{}{} {:g}", text.empty() ? "" : " and ", high_open ? "<" : "<=", high);
+  return text.empty() ? "a number" : text;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FSI::numeric(LAMMPS *lmp, const std::string &what, const std::string &value, const Range &range, bool alone, const std::string &other)
+{
+  const double x = std::strtod(value.c_str(), nullptr), size = std::fabs(x);
+  const auto expected = range.text() + (other.empty() ? "" : ", or " + other);
+  std::string wrong;
+  if (!utils::is_double(value)) wrong = "is not a number: expected " + expected;
+  else if (size >= Range::LARGEST) wrong = fmt::format("is too large: expected {}, below {:g}", expected, Range::LARGEST);
+  else if (!range.holds(x)) wrong = "must be " + expected;
+  else if (x != 0.0 && size < Range::SMALLEST) wrong = fmt::format("is too small: expected {}, above {:g}", expected, Range::SMALLEST);
+  if (wrong.empty()) return x;
+  if (alone) lmp->error->one(FLERR, "{} {} {}", what, value, wrong);
+  lmp->error->all(FLERR, "{} {} {}", what, value, wrong);
+  return 0.0;
+}
+
+int FSI::integer(LAMMPS *lmp, const std::string &what, const std::string &value, int least, int most)
+{
+  const auto expected = most == MAXSMALLINT ? fmt::format(">= {}", least) : fmt::format("between {} and {}", least, most);
+  if (!utils::is_integer(value)) lmp->error->all(FLERR, "{} {} is not an integer: expected {}", what, value, expected);
+  const double x = std::strtod(value.c_str(), nullptr);    // of any length
+  if (x < least || x > most) lmp->error->all(FLERR, "{} {} must be {}", what, value, expected);
+  return static_cast<int>(x);
+}
+
+// one, two or three
+static std::string list_of(const std::vector<std::string> &words)
+{
+  std::string text;
+  for (size_t k = 0; k < words.size(); k++) text += (k == 0 ? "" : k + 1 < words.size() ? ", " : " or ") + words[k];
+  return text;
+}
+
+/* ----------------------------------------------------------------------
+   building the rows
+------------------------------------------------------------------------- */
+
+// pair_style name -> Pair style name, fix name -> Fix name
+static std::string sentence(const std::string &command)
+{
+  std::string text = command;
+  text[0] = toupper(text[0]);
+  std::replace(text.begin(), text.begin() + text.find(' '), '_', ' ');
+  return text;
+}
+
+Keywords::Keywords(LAMMPS *lmp, const std::string &command_in) : Pointers(lmp), command(command_in), who(sentence(command_in)) {}
+
+Keywords &Keywords::argument(const std::string &name)
+{
+  rows.emplace_back();
+  rows.back().name = name;
+  return *this;
+}
+
+Keywords &Keywords::key(const std::string &name)
+{
+  argument(name);
+  rows.back().keyword = true;
+  return *this;
+}
+
+Keywords::Value &Keywords::add(Value::Kind kind, double start, const std::string &what)
+{
+  auto &values = rows.back().values;
+  values.emplace_back();
+  values.back().kind = kind;
+  values.back().start = start;
+  values.back().what = what;
+  return values.back();
+}
+
+Keywords &Keywords::number(double &where, double start, const Range &range, const std::string &what)
+{
+  Value &v = add(Value::NUMBER, start, what);
+  v.range = range;
+  v.number = &where;
+  v.begin();
+  return *this;
+}
+
+Keywords &Keywords::integer(int &where, int start, int least, int most)
+{
+  Value &v = add(Value::INTEGER, start);
+  v.least = least;
+  v.most = most;
+  v.n = &where;
+  v.begin();
+  return *this;
+}
+
+Keywords &Keywords::choice(int &where, int start, const std::vector<std::string> &words, const std::string &what)
+{
+  Value &v = add(Value::CHOICE, start, what);
+  v.words = words;
+  v.n = &where;
+  v.begin();
+  return *this;
+}
+
+Keywords &Keywords::logical(int &where, bool start)
+{
+  Value &v = add(Value::LOGICAL, start);
+  v.n = &where;
+  v.begin();
+  return *this;
+}
+
+Keywords &Keywords::word(std::string &where, const std::string &start)
+{
+  Value &v = add(Value::WORD);
+  v.start_word = start;
+  v.word = &where;
+  v.begin();
+  return *this;
+}
+
+Keywords &Keywords::set(int &where, int value)
+{
+  Value &v = add(Value::SET, value);
+  v.n = &where;
+  v.begin();
+  return *this;
+}
+
+Keywords &Keywords::or_word(const std::string &word, double number)
+{
+  Value &v = rows.back().values.back();
+  v.other = word;
+  v.other_number = number;
+  return *this;
+}
+
+Keywords &Keywords::effect(const std::string &text)
+{
+  rows.back().effect = text;
+  return *this;
+}
+
+Keywords &Keywords::kept(const std::string &why)
+{
+  rows.back().restart = why;
+  rows.back().must_not_change = true;
+  return *this;
+}
+
+Keywords &Keywords::changes(const std::string &what_happens)
+{
+  rows.back().restart = what_happens;
+  return *this;
+}
+
+/* ----------------------------------------------------------------------
+   one value
+------------------------------------------------------------------------- */
+
+void Keywords::Value::begin() const
+{
+  if (number) *number = start;
+  else if (word) *word = start_word;
+  else *n = kind == SET ? 0 : static_cast<int>(start);
+}
+
+bool Keywords::Value::at_start() const
+{
+  if (number) return *number == start;
+  if (word) return *word == start_word;
+  return *n == (kind == SET ? 0 : static_cast<int>(start));
+}
+
+// as a user would write it
+std::string Keywords::Value::text() const
+{
+  switch (kind) {
+    case NUMBER: return !other.empty() && *number == other_number ? other : fmt::format("{}", *number);
+    case INTEGER: return std::to_string(*n);
+    case CHOICE: return words[*n];
+    case WORD: return !other.empty() && word->empty() ? other : *word;
+    default: return (kind == SET ? *n == static_cast<int>(start) : *n) ? "yes" : "no";
+  }
+}
+
+void Keywords::take(const Row &row, const Value &v, const std::string &text) const
+{
+  const auto name = row.name + (v.what.empty() ? "" : " " + v.what);
+  const bool other = !v.other.empty() && text == v.other;
+  switch (v.kind) {
+    case Value::NUMBER: *v.number = other ? v.other_number : FSI::numeric(lmp, who + " " + name, text, v.range, false, v.other); break;
+    case Value::INTEGER: *v.n = FSI::integer(lmp, who + " " + name, text, v.least, v.most); break;
+    case Value::WORD: *v.word = other ? "" : text; break;
+    case Value::SET: *v.n = static_cast<int>(v.start); break;
+    case Value::LOGICAL:
+      for (const char *yes : {"yes", "on", "true"})
+        if (text == yes) return void(*v.n = 1);
+      for (const char *no : {"no", "off", "false"})
+        if (text == no) return void(*v.n = 0);
+      error->all(FLERR, "Unknown {} {} {}: expected yes or no", command, name, text);
+      break;
+    case Value::CHOICE: {
+      const auto it = std::find(v.words.begin(), v.words.end(), text);
+      if (it == v.words.end()) error->all(FLERR, "Unknown {} {} {}: expected {}", command, name, text, list_of(v.words));
+      *v.n = it - v.words.begin();
+    }
+  }
+}
+
+int Keywords::Row::count() const
+{
+  int n = 0;
+  for (const auto &v : values) n += v.kind != Value::SET;
+  return n;
+}
+
+std::string Keywords::Row::text() const
+{
+  std::string text;
+  for (const auto &v : values) text += (text.empty() ? "" : " ") + v.text();
+  return text;
+}
+
+/* ----------------------------------------------------------------------
+   the command
+------------------------------------------------------------------------- */
+
+void Keywords::begin() const
+{
+  for (const auto &row : rows)
+    for (const auto &v : row.values) v.begin();
+}
+
+void Keywords::parse(int narg, char **arg)
+{
+  std::vector<std::string> known;
+  for (const auto &row : rows)
+    if (row.keyword) known.push_back(row.name);
+  begin();
+  int iarg = 0;
+  auto row = rows.begin();
+  while (iarg < narg || (row != rows.end() && !row->keyword)) {
+    const bool keyword = row == rows.end() || row->keyword;
+    auto it = row;
+    if (keyword) {
+      it = std::find_if(rows.begin(), rows.end(), [&](const Row &r) { return r.keyword && r.name == arg[iarg]; });
+      if (it == rows.end()) {
+        if (known.empty()) error->all(FLERR, "{} takes no argument {}", who, arg[iarg]);
+        error->all(FLERR, "Unknown {} keyword {}: expected {}", command, arg[iarg], list_of(known));
+      }
+      iarg++;
+    } else
+      row++;
+    if (iarg + it->count() > narg) utils::missing_cmd_args(FLERR, keyword ? command + " " + it->name : command, error);
+    for (const auto &v : it->values) {
+      take(*it, v, v.kind == Value::SET ? "" : arg[iarg]);
+      iarg += v.kind != Value::SET;
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   restart
+------------------------------------------------------------------------- */
+
+void Keywords::write(Record &record) const
+{
+  for (const auto &row : rows) record.add(row.name, row.text());
+}
+
+void Keywords::read(const Record &record)
+{
+  begin();
+  for (const auto &row : rows) {
+    const auto words = utils::split_words(record.value(row.name));
+    if (words.size() != row.values.size()) error->all(FLERR, "The restart file is damaged in {} of {}", row.name, record.style);
+    for (size_t k = 0; k < words.size(); k++)
+      if (row.values[k].kind != Value::SET || words[k] == "yes") take(row, row.values[k], words[k]);
+  }
+}
+
+bool Keywords::differs(const Row &row, const Record &record) const
+{
+  return record.has(row.name) && record.value(row.name) != row.text();
+}
+
+bool Keywords::compare(const Record &record, const std::string &name) const
+{
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row &r) { return r.name == name; });
+  if (!differs(*row, record)) return false;
+  const auto text = fmt::format("{}: {} was {} when the restart file was written, and is {} now{}", who, name, record.value(name),
+                                row->text(), row->restart.empty() ? "" : ": " + row->restart);
+  if (row->must_not_change) error->all(FLERR, text);
+  if (comm->me == 0) error->warning(FLERR, text);
+  return true;
+}
+
+void Keywords::compare(const Record &record) const
+{
+  for (const auto &row : rows) compare(record, row.name);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<Keywords::Effect> Keywords::effects() const
+{
+  std::vector<Effect> list;
+  for (const auto &row : rows) {
+    if (row.effect.empty()) continue;
+    bool on = false;
+    for (const auto &v : row.values) on = on || (v.kind != Value::CHOICE && !v.at_start());
+    std::string name = row.effect;
+    const size_t gap = name.find("{}");
+    if (gap != std::string::npos) name.replace(gap, 2, fmt::format("{:g}", *row.values[0].number));
+    list.push_back({name, row.name, on});
+  }
+  return list;
+}

@@ -1,0 +1,131 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+
+// The arguments of a command, one row each: what it is called, what values follow, where they go, what they are if nothing is said, what
+// they may be. Parsing, messages, the list of effects and what stands in restart files come from these rows.
+
+#ifndef LMP_FSI_KEYWORDS_H
+#define LMP_FSI_KEYWORDS_H
+
+#include "pointers.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  class Record;
+
+  // What a number may be. All are 0 or of a size between SMALLEST and LARGEST, so that products of some of them are numbers.
+  struct Range {
+    static constexpr double SMALLEST = 1.0e-20, LARGEST = 1.0e20;
+    double low = -LARGEST, high = LARGEST;
+    bool low_open = true, high_open = true;    // without the end itself
+
+    static constexpr Range above(double low) { return {low, LARGEST, true, true}; }
+    static constexpr Range from(double low) { return {low, LARGEST, false, true}; }
+    static constexpr Range between(double low, double high) { return {low, high, false, false}; }
+    static constexpr Range from_to_below(double low, double high) { return {low, high, false, true}; }
+    static constexpr Range inside(double low, double high) { return {low, high, true, true}; }
+
+    bool holds(double x) const { return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high); }
+    std::string text() const;
+  };
+
+  // A number, or an integer, that stands in a command; else an error that says what it is and what was expected. Alone: on this rank
+  // only; other: a word that may stand there, too
+  double numeric(LAMMPS *, const std::string &what, const std::string &value, const Range & = {}, bool alone = false,
+                 const std::string &other = "");
+  int integer(LAMMPS *, const std::string &what, const std::string &value, int least, int most = MAXSMALLINT);
+
+  class Keywords : protected Pointers {
+   public:
+    Keywords(LAMMPS *, const std::string &command);    // as a user writes it
+
+    // a row: an argument that stands before all keywords, or a keyword. Its values follow in the order in which they are described;
+    // what: their names in messages, where there is more than one
+    Keywords &argument(const std::string &name);
+    Keywords &key(const std::string &name);
+    Keywords &number(double &where, double start, const Range & = {}, const std::string &what = "");
+    Keywords &integer(int &where, int start, int least, int most = MAXSMALLINT);
+    Keywords &choice(int &where, int start, const std::vector<std::string> &words, const std::string &what = "");
+    Keywords &logical(int &where, bool start);
+    Keywords &word(std::string &where, const std::string &start);    // any
+    Keywords &set(int &where, int value);                            // no value follows: the keyword sets it; 0 without
+    // of the last value: a word that stands for a number, or for no word
+    Keywords &or_word(const std::string &word, double number = 0.0);
+    // of the last row: the effect in words, {} stands for its first value; on if that is not the one at the start
+    Keywords &effect(const std::string &text);
+    // of the last row: a run that goes on from a restart file must not change it, or may, and what that does
+    Keywords &kept(const std::string &why);
+    Keywords &changes(const std::string &what_happens);
+
+    void parse(int narg, char **arg);    // what is not named gets what it has at the start
+
+    void write(Record &) const;
+    void read(const Record &);
+    // what differs from a restart file: an error, or a warning that names both sides and says what happens. True if this did
+    bool compare(const Record &, const std::string &name) const;
+    void compare(const Record &) const;
+
+    struct Effect {
+      std::string name, keyword;
+      bool on;
+    };
+    std::vector<Effect> effects() const;
+
+   private:
+    struct Value {
+      enum Kind { NUMBER, INTEGER, CHOICE, LOGICAL, WORD, SET };
+      Kind kind = NUMBER;
+      double *number = nullptr;
+      int *n = nullptr;
+      std::string *word = nullptr;
+      double start = 0.0;    // number, integer, index of a choice, what a keyword sets
+      std::string start_word;
+      Range range;
+      int least = 0, most = 0;
+      std::vector<std::string> words;
+      std::string what;
+      std::string other;    // a word that stands for other_number
+      double other_number = 0.0;
+
+      void begin() const;
+      bool at_start() const;
+      std::string text() const;
+    };
+    struct Row {
+      std::string name;
+      bool keyword = false;
+      std::vector<Value> values;
+      std::string effect, restart;
+      bool must_not_change = false;
+
+      int count() const;    // words that follow
+      std::string text() const;
+    };
+    const std::string command, who;
+    std::vector<Row> rows;
+
+    Value &add(Value::Kind, double start = 0.0, const std::string &what = "");
+    void begin() const;
+    void take(const Row &, const Value &, const std::string &) const;
+    bool differs(const Row &, const Record &) const;
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,107 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_record.h"
+
+#include "comm.h"
+#include "error.h"
+
+#include <cstdlib>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+static constexpr char MAGIC[] = "FSI 2 ";    // of the format
+
+/* ---------------------------------------------------------------------- */
+
+Record::Record(LAMMPS *lmp, const std::string &style_in) : Pointers(lmp), style(style_in) {}
+
+Record::Record(LAMMPS *lmp, const std::string &style_in, const char *text) : Pointers(lmp), style(style_in)
+{
+  const std::string first = MAGIC + style + "\n";
+  if (strncmp(text, first.c_str(), first.size()) != 0)
+    error->all(FLERR, "The restart file was written by another version of the FSI package: {} cannot read what is its own in it", style);
+  for (text += first.size(); *text;) {
+    const char *const tab = strchr(text, '\t'), *const end = strchr(text, '\n');
+    if (!tab || !end || tab > end) error->all(FLERR, "The restart file is damaged in what {} keeps", style);
+    lines.emplace_back(std::string(text, tab), std::string(tab + 1, end));
+    text = end + 1;
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Record::add(const std::string &name, const std::vector<double> &numbers)
+{
+  std::string text;
+  for (const double x : numbers) text += fmt::format("{}{}", text.empty() ? "" : " ", x);    // shortest that gives the same number
+  add(name, text);
+}
+
+const std::string *Record::find(const std::string &name) const
+{
+  for (const auto &line : lines)
+    if (line.first == name) return &line.second;
+  return nullptr;
+}
+
+const std::string &Record::value(const std::string &name) const
+{
+  const std::string *const text = find(name);
+  if (!text) error->all(FLERR, "The restart file has no {} of {}", name, style);
+  return *text;
+}
+
+std::vector<double> Record::numbers(const std::string &name) const
+{
+  std::vector<double> list;
+  for (const auto &word : utils::split_words(value(name))) list.push_back(std::strtod(word.c_str(), nullptr));
+  return list;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Record::write(FILE *fp) const
+{
+  if (comm->me) return;
+  std::string text = MAGIC + style + "\n";
+  for (const auto &line : lines) text += line.first + "\t" + line.second + "\n";
+  const int size = text.size() + 1;
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(text.c_str(), size, 1, fp);
+}
+
+Record Record::read(LAMMPS *lmp, const std::string &style, FILE *fp)
+{
+  Comm *const comm = lmp->comm;
+  constexpr int FIRST = sizeof(MAGIC) - 1;
+  int size = 0;
+  std::vector<char> text(FIRST + 1, '\0');
+  if (comm->me == 0) {
+    // of another version anything may stand here
+    utils::sfread(FLERR, &size, sizeof(int), 1, fp, nullptr, lmp->error);
+    utils::sfread(FLERR, text.data(), 1, FIRST, fp, nullptr, lmp->error);
+    if (strcmp(text.data(), MAGIC) != 0 || size <= FIRST) size = FIRST + 1;
+    else {
+      text.resize(size);
+      utils::sfread(FLERR, &text[FIRST], 1, size - FIRST, fp, nullptr, lmp->error);
+    }
+  }
+  MPI_Bcast(&size, 1, MPI_INT, 0, lmp->world);
+  text.resize(size);
+  MPI_Bcast(text.data(), size, MPI_CHAR, 0, lmp->world);
+  text.back() = '\0';
+  return {lmp, style, text.data()};
+}
