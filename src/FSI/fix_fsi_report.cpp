@@ -310,6 +310,7 @@ FixFSIReport::Balance FixFSIReport::balance() const
 
 double FixFSIReport::compute_vector(int k)
 {
+  if (!hub) return 0.0;    // before the first run
   if (collected != update->ntimestep) {
     Worst all[NWORST];
     gather(all);

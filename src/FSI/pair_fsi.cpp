@@ -112,6 +112,7 @@ void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
   hub = FixFSI::find(lmp, "Pair style " + style);
+  hub->check_restart_ids();
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) hub->enter_state(t, make_state(material[t]));
   if (needs_neighbors()) neighbor->add_request(this);
