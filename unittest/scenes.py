@@ -78,11 +78,12 @@ class Scene:
     solid_style             fsi/solid or fsi/solid/tl, which needs no fix fsi/stress
     held                    per particle: left out of fix fsi's group, so that it does not move
     box, boundary           ((xlo, ylo, zlo), (xhi, yhi, zhi)); default: far from all particles, fixed
+    id_map                  LAMMPS' map of atom IDs, whether the styles need one or not
     commands                run before the first run, after all else
     """
 
     def __init__(self, x, v=None, *, dim=2, dx=1.0, kernel="wendland", hdx=1.5, type=1, mol=1, materials=(WATER,),
-                 fluid="", solid="", density="", stress="", solid_style="fsi/solid", held=None, box=None, boundary=None, dt=1e-3, skin=0.3, commands=()):
+                 fluid="", solid="", density="", stress="", solid_style="fsi/solid", held=None, box=None, boundary=None, dt=1e-3, skin=0.3, id_map=True, commands=()):
         x = np.asarray(x, float)
         self.n, self.dim, self.dx = len(x), dim, dx
         self.kernel = Kernel(kernel, dim, hdx * dx)
@@ -104,7 +105,7 @@ class Scene:
                 dimension {dim}
                 boundary {boundary or ('f f p' if dim == 2 else 'f f f')}
                 atom_style fsi
-                atom_modify map array sort 0 0
+                atom_modify {'map array ' if id_map else ''}sort 0 0
                 newton on
                 region box block {lo[0]} {hi[0]} {lo[1]} {hi[1]} {lo[2]} {hi[2]}
                 create_box {len(materials)} box""")

@@ -45,7 +45,20 @@ CASES = {
     "spacing": ([("fsi 0.01", "fsi 0.0085"), ("4e-5", "3e-5")], None, r"nearest neighbors are 0.01 apart on average, but the spacing is 0.0085"),
     "coarse": ([("sq 0.01", "sq 0.013")], None, r"most particles have no neighbor within 0.0125: is 0.01 the spacing"),
     "overlap": ([("run 0", "create_atoms 1 single 0.028 0.025 0 units box\nrun 0")], None, r"atoms 13 and 65 are 0.3 spacings apart"),
-    "thin": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF")], None, r"body 1 is 2 particles across"),
+    "thin": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF")], None, r"body 1 is 2 particles across: it will bend too little, some 25 %"),
+    "thin, plain": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF"), ("fsi/solid/tl", "fsi/solid"),
+                     ("fix g all", "fix s all fsi/stress\nfix g all")], None, r"body 1 is 2 particles across: it will bend too easily"),
+    # 3.3 spacings; 3 spacings with lattice points on both edges
+    "rows": ([("plate block 0.05 0.08", "plate block 0.05 0.083")], None,
+             r"body 1 has 3 rows along x, but region plate, 0.033 wide, holds 3.3 spacings: the body is 0.91 times as thick"),
+    "edges": ([("origin 0.5 0.5 0", "origin 0 0.5 0"), ("water block 0 0.05", "water block 0.005 0.045")], None,
+              r"body 1 has 4 rows along x, but region plate, 0.03 wide, holds 3 spacings: the body is 1.3 times as thick"),
+    "idle": ([("fix sph all", "group moving type 2\ngroup some id 1:20\ngroup moving union moving some\nfix sph moving")], None,
+             r"20 fluid particles, the first of them atom 21, are not in group moving of fix sph"),
+    # alpha h c/16 = 2.9e-3 against 1e-3/1000*1000
+    "alpha": ([("sound 12.53", "sound 12.53 artificial/visc 0.25 0 laminar/visc"), ("water_inviscid", "sirup"), ("materials.fsi", "mine.fsi")],
+              MATERIALS.format(rho=1000, young=2e6).replace("water_inviscid", "sirup").replace("fluid rho 1000", "fluid rho 1000 viscosity 1.0"),
+              r"artificial viscosity of type 1 is worth 0.0029, 2.9 times its laminar viscosity 0.001: take alpha 0.009 or less"),
     "periodic": ([("boundary f f p", "boundary p f p"), ("box block -0.05 0.15", "box block 0 0.05"), ("walls all fsi/wall/mirror xlo 0", "walls all fsi/wall/mirror"),
                   ("create_atoms 2 region plate", "")], None, r"periodic box is 0.05 long in x, less than twice the kernel's support 0.03"),
     # 0.4 h/c_l = 9.25e-5, 0.5 h/c = 6.0e-4
@@ -81,7 +94,7 @@ def test_sound_deck_is_not_criticised(tmp_path):
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
 
 
-ON_TWO_RANKS = ("sound", "spacing", "overlap", "thin", "long fluid")  # what is summed over ranks
+ON_TWO_RANKS = ("sound", "spacing", "overlap", "thin", "rows", "idle", "long fluid")  # what is summed over ranks
 
 
 @pytest.mark.parametrize("name, ranks", [(name, 1) for name in CASES] + [(name, 2) for name in ON_TWO_RANKS])
@@ -92,6 +105,33 @@ def test_warning(tmp_path, name, ranks):
     assert len(matching) == 1, found
     others = [line for line in found if line not in matching]
     assert all(name in ALSO and re.search(ALSO[name], line) for line in others), others
+
+
+@pytest.mark.parametrize("angle", [-3, -9, -20, -45])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_turned_bodies(tmp_path, angle, dim):
+    """A plate counts as many particles across however it lies."""
+    turn = ("run 0", f"displace_atoms plate rotate 0.08 0 0 0 0 1 {angle} units box\nrun 0")
+    deep = [] if dim == 2 else [("dimension 2", "dimension 3"), ("boundary f f p", "boundary f f f"), ("-0.005 0.005", "-0.05 0.1"), ("lattice sq", "lattice sc"),
+                                ("0.05 0 0.08 INF INF", "0.05 0 0.08 0 0.05"), ("0.08 0 0.08 INF INF", "0.08 0 0.08 0 0.05"), ("origin 0.5 0.5 0", "origin 0.5 0.5 0.5"),
+                                ("xlo 0 ylo 0", "xlo 0 ylo 0 zlo 0 zhi 0.05")]
+    assert advice(tmp_path / "3", [turn, *deep]) == []
+    found = advice(tmp_path / "2", [turn, *deep, ("0.08 0 0.08", "0.07 0 0.08")])
+    assert len(found) == 1 and "body 1 is 2 particles across" in found[0]
+
+
+@pytest.mark.parametrize("dim, expected", [(2, 16), (3, 20)])
+def test_what_artificial_viscosity_is_worth(tmp_path, dim, expected):
+    """In the log, without a warning: alpha h c/4(d+2), and the Reynolds number with sqrt(2gH) and the water's 0.05 m."""
+    text = DECK.replace("sound 12.53", "sound 12.53 artificial/visc 0.1 0")
+    if dim == 3:
+        text = text.replace("dimension 2", "dimension 3").replace("f f p", "f f f").replace("lattice sq", "lattice sc").replace("create_atoms 2 region plate", "")
+    output = run(tmp_path, text).output
+    found = re.search(r"alpha 0.1, of type 1 acts like a kinematic viscosity of about (\S+): Reynolds number (\S+) with speed (\S+) and the fluid's least width (\S+)", output)
+    nu, reynolds, speed, width = map(float, found.groups())
+    assert nu == pytest.approx(0.1 * 0.015 * 12.53 / expected, rel=0.05)
+    assert speed == pytest.approx((2 * 9.81 * 0.08)**0.5, rel=0.01)
+    assert width == pytest.approx(0.05 if dim == 2 else 0.01, rel=0.01) and reynolds == pytest.approx(speed * width / nu, rel=0.06)
 
 
 def test_thin_sub_domains(tmp_path):

@@ -124,6 +124,9 @@ CASES = [
     ("pair without fix fsi", "fix sph", "# fix sph", r"requires fix fsi"),
     ("other atom style", re.compile("atom_style fsi.*read_data scene.data", re.S),
      "atom_style atomic\nregion box block 0 1 0 1 -0.1 0.1\ncreate_box 2 box", r"requires atom_style fsi"),
+    ("minimize", RUN, "minimize 0 1e-6 10 10", r"Fix fsi does not support minimize"),
+    ("minimize fluid", re.compile(HYBRID.pattern + r"([\s\S]*)fix stress.*([\s\S]*)\nrun 0"),
+     r"pair_style fsi/fluid sound 10\npair_coeff * * materials.fsi water water\n\1\2\nminimize 0 1e-6 10 10", r"Fix fsi does not support minimize"),
     ("respa", RUN, "run_style respa 2 2\nrun 0", r"does not support run_style respa"),
     ("communication cutoff small", RUN, "comm_modify cutoff 0.02\nrun 0",
      r"support 0\.03 of fix fsi is larger than the comm_modify cutoff 0\.02"),
@@ -266,6 +269,7 @@ CASES = [
     ("fsi_set without fix fsi", RUN, "unfix sph\nfsi_set all density 1000", r"requires fix fsi"),
     # computes
     ("quantity unknown", RUN, "compute c all fsi/atom rho heat", r"quantity heat"),
+    ("plastic strain without plasticity", RUN, "compute c all fsi/atom plastic/strain\nrun 0", r"plastic/strain requires fix fsi/stress plastic"),
     ("quantity missing", RUN, "compute c all fsi/atom", r"compute fsi/atom command: missing"),
     ("compute without fix fsi", RUN, NO_FSI + "compute c all fsi/atom rho\nrun 0", r"Compute fsi/atom requires fix fsi"),
     ("surface rule unknown", RUN, "compute c all fsi/surface/atom colour 0.7", r"keyword colour: expected number/density or divergence"),

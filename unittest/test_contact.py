@@ -107,6 +107,25 @@ def test_bodies_apart_by_the_range_do_not_push():
     assert np.abs(forces("fsi/solid/tl", x, mol, 2.5, 2)).max() < 1e-9 * E * DX
 
 
+@pytest.mark.parametrize("kernel, hdx", [("wendland", 1.5), ("cubic", 1.0), ("quintic", 1.0)])
+def test_at_the_edge_of_the_support(kernel, hdx):
+    """Bodies as far apart as the kernel reaches, less round-off, where its gradient vanishes, with contact as short and as long as it may
+    be: forces, and those of viscosity, are finite and vanish with the distance that is left."""
+    support = (3 if kernel == "quintic" else 2) * hdx
+    for reach in (1.0, support):
+        x, mol = two_blocks([6, 5], 0.0)
+        size = {}
+        for left in [k * 1e-16 for k in range(9)] + [1e-7, 1e-4]:
+            y = x + (mol == 2)[:, None] * [0, support * DX * (1 - left), 0]
+            v = np.where(mol == 2, -1.0, 0.0)[:, None] * [0, 1.0, 0]
+            with Scene(y, v, dx=DX, kernel=kernel, hdx=hdx, mol=mol, materials=(MATERIAL,),
+                       solid=f"contact {reach} artificial/visc 0.1 0.1") as s:
+                size[left] = np.abs(s.run().get("f")).max()
+        assert all(size[left] < 1e-9 * E * DX for left in size if left < 1e-9), size
+        if reach > 1.0:
+            assert size[1e-4] == pytest.approx(1e3 * size[1e-7], rel=0.01)
+
+
 @STYLES
 def test_range_is_kept_in_restart_files(style, tmp_path):
     x, mol = two_blocks([7, 5], 0.9 * DX, 0.2 * DX)

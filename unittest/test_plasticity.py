@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR
 from scenes import Scene, lattice
 
 E, NU, YIELD, HARDENING = 1e5, 0.3, 500.0, 2e4
@@ -10,7 +11,8 @@ MATERIAL = f"solid rho 1000 young {E} poisson {NU} yield {YIELD} hardening {HARD
 
 
 def sheared(style, dim, gamma, steps=200):
-    """Von Mises stress inside a block whose velocity field is a simple shear up to `gamma`, all particles held to that field."""
+    """Von Mises stress and equivalent plastic strain inside a block whose velocity field is a simple shear up to `gamma`, all particles held
+    to that field; and the plastic work of the ledger over the block's volume."""
     x = lattice([7] * dim, 0.1)
     rate, dt = 1.0, gamma / steps
     v = np.zeros_like(x)
@@ -19,11 +21,13 @@ def sheared(style, dim, gamma, steps=200):
     with Scene(x, v, dim=dim, dx=0.1, dt=dt, materials=(MATERIAL,), solid_style=style,
                solid="law hypo" if tl else "gradient corrected", stress="plastic", commands=("fix hold all setforce 0 0 0",)) as s:
         if tl:
-            s.run_lines(f"fix plastic all fsi/stress plastic")
+            s.run_lines("fix plastic all fsi/stress plastic")
+        s.run_lines("compute strain all fsi/atom plastic/strain", "compute e all fsi/energy")
         s.run(steps)
-        sigma = s.sigma
+        sigma, strain = s.sigma, s.compute("strain", columns=False)
+        work = s.lmp.extract_compute("e", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR)[11] / (s.get("rmass").sum() / 1000)
     deviator = sigma - np.einsum("naa->n", sigma)[:, None, None] / 3 * np.eye(3)
-    return np.sqrt(1.5 * (deviator**2).sum((1, 2)))
+    return np.sqrt(1.5 * (deviator**2).sum((1, 2))), strain, work
 
 
 @pytest.mark.parametrize("style", ["fsi/solid", "fsi/solid/tl"])
@@ -32,11 +36,15 @@ def test_shear_beyond_yield(style, dim):
     # von Mises stress of small shear: sqrt(3) G gamma up to yield; beyond, with linear hardening,
     # sigma = (3 G YIELD + H sqrt(3) G gamma)/(3 G + H), of radial return and flow along the shear. Terms of second order in
     # the shear (Jaumann rotation) are gamma^2.
+    # The plastic strain is what the stress lacks of the trial, over 3 G, its work that of the mean stress since yield.
     for gamma in (0.5 * YIELD / (np.sqrt(3) * G), 0.05):
         trial = np.sqrt(3) * G * gamma
         expected = trial if trial < YIELD else (3 * G * YIELD + HARDENING * trial) / (3 * G + HARDENING)
-        stress = sheared(style, dim, gamma)
+        strain = (trial - expected) / (3 * G)
+        stress, plastic, work = sheared(style, dim, gamma)
         np.testing.assert_allclose(stress, expected, rtol=5e-3)
+        np.testing.assert_allclose(plastic, strain, rtol=5e-3, atol=1e-15)
+        assert work == pytest.approx(strain * (YIELD + expected) / 2, rel=0.01, abs=1e-12)
 
 
 @pytest.mark.parametrize("dim", [2, 3])

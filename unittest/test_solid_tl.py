@@ -521,6 +521,16 @@ def test_two_layers_are_enough_and_one_is_not():
         s.run()
 
 
+@DIMS
+def test_two_layers_off_their_lattice(dim):
+    """Particles 0.01 dx off: quadratic terms across the layers, which such noise alone would carry, are left out. With them weights are a
+    hundred times as large, and the usual time step forty times too long."""
+    x, v = cloud([2, 14] if dim == 2 else [2, 7, 7], DX, jitter=0.01, vmax=0.05)
+    with solid(x, "", v, dim=dim, dt=0.25 * 0.15 / np.sqrt((K + 4 * G / 3) / RHO), commands=["compute e all fsi/energy"]) as s:
+        start = entry(s.run()).sum()
+        assert entry(s.run(300)).sum() == pytest.approx(start, rel=0.05)
+
+
 def test_atoms_made_later_take_their_reference_then():
     """A second body that appears between runs gets its own reference; the first keeps its own."""
     x = lattice([6, 5], DX)
@@ -538,12 +548,92 @@ def test_atoms_made_later_take_their_reference_then():
         assert np.abs(s.get("f")[len(x):]).max() < 1e-9 * np.abs(f).max()
 
 
-def test_lost_partner_is_an_error():
+@DIMS
+@pytest.mark.parametrize("compress", ["yes", "no"])
+def test_part_of_a_body_is_deleted(dim, compress, tmp_path):
+    """Between runs, with and without new IDs for those that stay: the stretched rest goes on with gradients of the bonds that are left, in
+    numpy, and corrected volumes of its new faces; so do a restart file, and a second deletion."""
+    n = [8, 6] if dim == 2 else [6, 5, 5]
+    x = lattice(n, DX)
+    y = deformed(x, dim)
+    far = np.vstack([x, x + [3.0, 0, 0]])  # a second body, whole
+    places = np.vstack([y, y + [3.0, 0, 0]])
+    mol = np.repeat([1, 2], len(x))
+    keep = np.ones(len(far), bool)
+
+    def here(s):
+        """which of the places each atom has, in the order of IDs"""
+        return np.abs(s.get("x")[:, None] - places).max(2).argmin(1)
+
+    with solid(far, "gradient quadratic hourglass 0.1", mol=mol) as s:
+        s.run()
+        s.put("x", places)
+        f = s.run().get("f")
+        for end in (1, 2):  # columns from the left face, which leave a block
+            gone = keep & (mol == 1) & (far[:, 0] < end * DX)
+            ids = s.get("id")[gone[here(s)]]
+            s.run_lines("group part clear" if end > 1 else "", "group part id " + " ".join(map(str, ids)), f"delete_atoms group part compress {compress}")
+            keep &= ~gone
+            s.n = int(keep.sum())
+            if end == 2 and compress == "no":  # cut after the restart
+                s.run_lines(f"write_restart {tmp_path / 'cut'}", "clear", f"read_restart {tmp_path / 'cut'}", f"fix sph all fsi {DX} wendland 1.5")
+            s.run()
+            left = keep[mol == 1]
+            reference = Reference(x[left], s.kernel, dim, np.full(left.sum(), s.get("rmass")[0]), weight=tensor([n[0] - end, *n[1:]]))
+            f[:len(x)][left] = reference(y[left], zeta=0.1)[1]
+            close(s.get("f"), f[here(s)], 3e-12)
+        s.run(20)
+        assert np.isfinite(s.get("x")).all()
+
+
+def test_deleting_on_ranks(tmp_path):
+    """A slice is cut out of two bodies in flight, on 1 and 4 ranks: the same motion of what is left."""
+    ends = []
+    for ranks, grid in ((1, "1 1 1"), (4, "2 2 1")):
+        box, pair, rest = bodies(2, grid=grid)
+        text = box + pair + rest + "run 40\nregion slice block 0.75 0.95 INF INF INF INF units box\ndelete_atoms region slice compress yes\n"
+        done = run(tmp_path / grid[0], text + watch(every=40) + "run 40\n", ranks, **files(2))
+        assert "bonds to deleted particles are cut" in done.output
+        frame = done.frames()[-1]
+        ends.append(frame.vector()[np.lexsort(frame.vector().T)])
+    assert 20 < len(ends[0]) < 40
+    np.testing.assert_allclose(*ends, atol=1e-10)
+
+
+def test_restart_file_after_new_ids_needs_a_run(tmp_path):
     with solid(lattice([6, 5], DX)) as s:
         s.run(2)
-        s.run_lines("group one id 7", "delete_atoms group one compress no")
-        with pytest.raises(Exception, match="Bond of solid atoms .* and 7|one of them was lost"):
-            s.run(2)
+        s.run_lines("group one id 7", "delete_atoms group one compress yes")
+        with pytest.raises(Exception, match="Solid atom 7 was atom 30 in the last run"):
+            s.run_lines(f"write_restart {tmp_path / 'file'}")
+
+
+FLUID = "fluid rho 1000"
+SPECIES = [("fsi/solid/tl", "set atom 1 type 2", "Atom 1 of type 2 is a solid now and was none when a run began"),
+           ("fsi/solid", "set atom 1 type 2", "Atom 1 of type 2 is a solid now and was none when a run began"),
+           ("fsi/solid/tl", "set atom 43 type 1", "Atom 43 of type 1 is bonded to body 2 and no solid any more"),
+           ("fsi/solid", "set atom 43 type 1", "Atom 43 of type 1 is no solid any more, as it was when a run began"),
+           ("fsi/solid/tl", "create_atoms 2 single 1.0 1.0 0.0\nset type 2 mol 2", "Solid atom 73 has no bonds to body 2, which took them"),
+           ("fsi/solid/tl", "create_atoms 2 single 2.05 0.05 0.0\nset atom 73 mol 5\nset atom 37*72 mol 5", "Solid atom 73 has no bonds to body 5")]
+
+
+@pytest.mark.parametrize("style, command, message", SPECIES)
+def test_species_is_for_life(style, command, message):
+    """A particle that is made a solid between runs, or stops to be one, and a particle added to a body: refused, with its ID."""
+    x = lattice([6, 6], DX)
+    both = np.vstack([x, x + [2.0, 0, 0]])
+    kind = np.repeat([1, 2], len(x))
+    with Scene(both, 0.1 * np.sin(7 * both), dx=DX, type=kind, mol=kind, materials=(FLUID, MATERIAL), solid_style=style, dt=1e-4) as s:
+        s.run(2)
+        s.run_lines("lattice none 1.0", command)
+        with pytest.raises(Exception, match=message):
+            s.run(1)
+
+
+def test_particles_at_one_place_are_refused():
+    x = lattice([6, 5], DX)
+    with solid(np.vstack([x, x[7]])) as s, pytest.raises(Exception, match="Solid atoms 8 and 31 of body 1 are at the same place"):
+        s.run()
 
 
 def test_ids_must_stay():
@@ -676,6 +766,26 @@ def test_bodies_migrate_through_ranks_and_boundaries(tmp_path, one_rank, dim, ra
     # round-off of the elastic part: 1e-16 of a deformation gradient of terms up to 10 each, times E dx^(D-1)
     assert np.abs(f - g).max() < 1e-13 * 3e5 * 0.1**(dim - 1)
     same_state(end, got[-1], 1e-10, box)
+
+
+def test_energy_of_contact_on_ranks(tmp_path):
+    """Two unstrained blocks overlap at the border of two ranks: each pair counts once, with newton off too."""
+    x = lattice([4, 5], DX, origin=[0.2, 0.3])
+    one, both = len(x), np.vstack([x, x + [3.7 * DX, 0, 0]])
+    head, _, tail = files(2)["bodies_data"].partition("Atoms # fsi\n\n")
+    assert head.count("40 atoms") == 1 and one == 20
+    lines = [f"{k + 1} {1 + k // one} 1 0 0 {p[0]!r} {p[1]!r} {p[2]!r}" for k, p in enumerate(both.tolist())]
+    data = head + "Atoms # fsi\n\n" + "\n".join(lines) + "\n"
+    energies = []
+    for ranks, newton in ((1, "on"), (1, "off"), (2, "on"), (2, "off")):
+        box, pair, rest = bodies(2, newton, f"{ranks} 1 1", keywords="")
+        output = run(tmp_path / f"{ranks}{newton}", box + pair + rest + "compute e all fsi/energy\nthermo_style custom step c_e[4]\nthermo_modify format float %.15g\n"
+                     "run 0\n", ranks, rubber_fsi=RUBBER, bodies_data=data).output
+        energies.append(float(output.split("c_e[4]")[1].split()[1]))
+    # five pairs 0.7 dx apart, and no other nearer than dx: K dx^2 (1 - 0.7)^2/2 each
+    bulk = 3e5 / (3 * (1 - 2 * 0.3))
+    # round-off of a body's own bonds is some 1e-28
+    assert energies == pytest.approx([5 * 0.5 * bulk * DX**2 * 0.3**2] * 4, rel=1e-10)
 
 
 @pytest.mark.parametrize("ranks, substeps", [(1, 1), (2, 3)])
@@ -812,9 +922,37 @@ def test_cantilever_tip_under_its_weight():
     assert -slope == pytest.approx(expected, rel=0.02)
 
 
-@pytest.mark.parametrize("line,what", [("fix a all viscous 1.0", "drag"), ("fix a all setforce 0 NULL NULL", "does not hold")])
+@pytest.mark.parametrize("line", ["viscous 1.0", "langevin 1.0 1.0 1.0 4711"])
 @pytest.mark.parametrize("substeps,warns", [(1, False), (4, True)])
-def test_forces_that_substeps_hold_are_warned_of(tmp_path, line, what, substeps, warns):
+def test_drag_that_substeps_hold_is_warned_of(tmp_path, line, substeps, warns):
     scene = dam_gate(2, solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0", sph=f"substeps {substeps}")
-    output = run(tmp_path, scene.text() + f"{line}\nrun 0\n", scene_data=scene.data()).output
-    assert (f"fix a (style {line.split()[3]}) acts on solids with sub-steps" in output and what in output) == warns
+    output = run(tmp_path, scene.text() + f"fix a all {line}\nrun 0\n", scene_data=scene.data()).output
+    assert (f"fix a (style {line.split()[0]}) acts on solids with sub-steps: its drag is held" in output) == warns
+
+
+CONSTRAINTS = ["setforce 0 NULL NULL", "aveforce 0.0 0.0 NULL", "lineforce 1 0 0", "planeforce 0 1 0"]
+
+
+@pytest.mark.parametrize("line", CONSTRAINTS)
+@pytest.mark.parametrize("how, refused", [("fix sph all fsi substeps 4", True), ("fix d all fsi/dt 1 substeps auto", True), ("fix d all fsi/dt 1", False),
+                                          ("group held", False)])
+def test_constraints_on_substepped_solids_are_refused(line, how, refused):
+    """What sets the whole force does not see that inside a solid with sub-steps; particles that are held anyway may be constrained."""
+    x = lattice([6, 5], DX)
+    held = x[:, 0] < DX if how == "group held" else None
+    with solid(x, held=held, density="substeps 4" if "substeps 4" in how or held is not None else "",
+               commands=[how if how.startswith("fix d") else "", f"fix a {'held' if held is not None else 'all'} {line}"]) as s:
+        if refused:
+            with pytest.raises(Exception, match=f"style {line.split()[0]}. constrains atom 1 of a solid with sub-steps"):
+                s.run()
+        else:
+            s.run()
+
+
+def test_added_forces_and_substeps():
+    """Fix addforce on one side of a solid with sub-steps gives it its momentum."""
+    x = lattice([6, 5], DX)
+    with solid(x, density="substeps 4", dt=4e-4, commands=["group side id 1:5", "fix a side addforce 1.0 0 0"]) as s:
+        s.run(10)
+        assert s.momentum()[0] == pytest.approx(5 * 1.0 * 4e-3, rel=1e-12)
+        assert s.get("v")[:5, 0].min() > 10 * np.abs(s.get("v")[-5:, 0]).max()

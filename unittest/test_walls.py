@@ -230,6 +230,25 @@ def test_segment_leaves_alone_what_flows_behind(dim):
         assert s.fix_scalar("walls") == 0
 
 
+@pytest.mark.parametrize("dim", [2, 3])
+def test_segment_catches_what_comes_through(dim):
+    """Fast particles, 0.4 dx in a step: those that were before the segment a step ago bounce, wherever behind it they are now; those that
+    were behind it fly on."""
+    dt, speed = 0.04, 1.0
+    middle = np.array([0.011, 0.02, 0.03, 0.039, -0.045, -0.06])  # height in the middle of the first step
+    x = np.zeros((len(middle), 3))
+    x[:, 0], x[:, 1] = np.arange(len(middle)), middle + 0.5 * dt * speed
+    v = np.tile([0.0, -speed, 0.0], (len(middle), 1))
+    with Scene(x, v, dim=dim, dx=0.1, dt=dt, fluid="sound 1e-6 tension yes", box=((-1,) * 3, (7, 1, 1)),
+               commands=["fix walls all fsi/wall/mirror ylo 0 range x -0.5 6.5"]) as s:
+        s.run(2)
+        bounced = middle > 0
+        close(s.get("v")[:, 1], np.where(bounced, speed, -speed), 1e-9)
+        # mirrored about the plane 0.1 dx before the wall
+        close(s.get("x")[:, 1], np.where(bounced, 0.02 - middle + 1.5 * dt * speed, middle - 1.5 * dt * speed), 1e-9)
+        assert s.fix_scalar("walls") == bounced.sum()
+
+
 def test_wall_that_comes_after_a_run():
     """The same forces as if it had been there from the start."""
     x, v = cloud((6, 5), DX, vmax=0.3)

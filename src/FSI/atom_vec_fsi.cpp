@@ -29,10 +29,6 @@ AtomVecFSI::AtomVecFSI(LAMMPS *lmp) : AtomVec(lmp), rmass(nullptr), rho(nullptr)
   atom->rmass_flag = 1;
   atom->rho_flag = 1;
 
-  // total-Lagrangian solids find their bonds' partners by ID. Not later than here: fix balance keeps, from when it is defined, whether
-  // there is a map to clear
-  atom->map_style = Atom::MAP_YES;
-
   // strings with peratom variables to include in each AtomVec method
   // strings cannot contain fields in corresponding AtomVec default strings
   // order of fields in a string does not matter
@@ -61,6 +57,14 @@ void AtomVecFSI::grow_pointers()
 {
   rmass = atom->rmass;
   rho = atom->rho;
+  // create_atoms, fix deposit ... take the mass of a molecule without Masses from a radius, which is not there: here from the mass
+  // that it still is, create_atom_post()'s 0
+  if (!atom->radius_flag) atom->radius = rmass;
+}
+
+AtomVecFSI::~AtomVecFSI()
+{
+  if (!atom->radius_flag) atom->radius = nullptr;
 }
 
 /* ----------------------------------------------------------------------

@@ -31,6 +31,7 @@ namespace LAMMPS_NS {
 class AtomVecFSI : virtual public AtomVec {
  public:
   AtomVecFSI(class LAMMPS *);
+  ~AtomVecFSI() override;
 
   void grow_pointers() override;
   void create_atom_post(int) override;

@@ -20,6 +20,7 @@
 #include "fix_fsi_stress.h"
 #include "fsi_tensor.h"
 #include "memory.h"
+#include "modify.h"
 #include "pair_fsi_solid_tl.h"
 #include "update.h"
 
@@ -36,12 +37,12 @@ ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) : Compute(lmp,
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "compute fsi/atom", error);
   static const std::vector<std::string> names = {"p",   "rho", "psi", "volume", "vonmises", "sxx",
-                                                 "syy", "szz", "sxy", "sxz",    "syz"};
+                                                 "syy", "szz", "sxy", "sxz",    "syz",      "plastic/strain"};
   for (int iarg = 3; iarg < narg; iarg++) {
     const auto it = std::find(names.begin(), names.end(), arg[iarg]);
     if (it == names.end())
       error->all(FLERR, "Unknown compute fsi/atom quantity {}: expected p, rho, psi, volume, vonmises, sxx, syy, szz, "
-                        "sxy, sxz or syz", arg[iarg]);
+                        "sxy, sxz, syz or plastic/strain", arg[iarg]);
     quantity.push_back(it - names.begin());
   }
   peratom_flag = 1;
@@ -61,6 +62,10 @@ ComputeFSIAtom::~ComputeFSIAtom()
 void ComputeFSIAtom::init()
 {
   hub = FixFSI::find(lmp, "Compute fsi/atom");
+  auto stress = modify->get_fix_by_style("^fsi/stress$");
+  if (std::find(quantity.begin(), quantity.end(), PLASTIC) != quantity.end() &&
+      (stress.empty() || !dynamic_cast<FixFSIStress *>(stress[0])->plastic))
+    error->all(FLERR, "Compute fsi/atom plastic/strain requires fix fsi/stress plastic");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -101,6 +106,7 @@ void ComputeFSIAtom::compute_peratom()
           case PSI: value = psi[i]; break;
           case VOLUME: value = atom->rmass[i] * tl.J / hub->state[atom->type[i]].rho0; break;
           case VONMISES: value = tl.von_mises(); break;
+          case PLASTIC: value = hub->fix_stress->plastic_strain(i); break;
           default: value = tl.sigma[quantity[k] - SXX];
         }
       } else if (mask[i] & groupbit) {
@@ -111,6 +117,9 @@ void ComputeFSIAtom::compute_peratom()
           case VOLUME: value = atom->rmass[i] / atom->rho[i]; break;
           case VONMISES:
             if (hub->has_stress(i)) value = hub->fix_stress->von_mises(i, hub->pressure(i));
+            break;
+          case PLASTIC:
+            if (hub->has_stress(i)) value = hub->fix_stress->plastic_strain(i);
             break;
           default: value = cauchy(i, quantity[k]);
         }

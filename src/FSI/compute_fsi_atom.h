@@ -37,7 +37,7 @@ class ComputeFSIAtom : public Compute {
   double memory_usage() override;
 
  private:
-  enum Quantity { PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ };
+  enum Quantity { PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ, PLASTIC };
   std::vector<int> quantity;
   std::vector<double> psi;
   int nmax;

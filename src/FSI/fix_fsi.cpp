@@ -30,6 +30,7 @@
 #include "fsi_lattice.h"
 #include "fsi_record.h"
 #include "fsi_tensor.h"
+#include "group.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -153,6 +154,8 @@ int FixFSI::setmask()
 void FixFSI::init()
 {
   if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
+  if (update->whichflag == 2)
+    error->all(FLERR, "Fix fsi does not support minimize: there is no energy of all particles; run with fix viscous or artificial/visc to a state of rest");
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix fsi does not support run_style respa");
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
@@ -303,6 +306,16 @@ void FixFSI::give_defaults(int i)
   if (s.species == NONE) return;    // before init()
   if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / psi_bulk;
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixFSI::is_moved(int i) const
+{
+  if (atom->mask[i] & groupbit) return true;
+  for (auto &fix : modify->get_fix_list())
+    if (fix->time_integrate && atom->mask[i] & fix->groupbit) return true;
+  return false;
 }
 
 /* ----------------------------------------------------------------------
@@ -815,6 +828,9 @@ void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   give_defaults(i);
+  if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
+    error->one(FLERR, "Fluid atom {} was made during a run and is not in group {} of fix {}: it would hang in the air. Give the fix that "
+                      "makes it that group", atom->tag[i], group->names[igroup], id);
 }
 
 /* ----------------------------------------------------------------------

@@ -124,6 +124,7 @@ class FixFSI : public FSI::FixFields {
   double psi_reference;    // of the free-surface rule
 
   bool is_total_lagrangian(int i) const { return solid_tl && state[atom->type[i]].species == FSI::SOLID; }
+  bool is_moved(int i) const;    // by this fix or by another that integrates
   // does atom i have a deviatoric stress?
   bool has_stress(int i) const { return solid && state[atom->type[i]].species == FSI::SOLID; }
 

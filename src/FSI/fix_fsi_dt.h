@@ -43,6 +43,7 @@ class FixFSIDt : public Fix {
   void restart(char *) override;
 
   void start_of_step();    // called by fix fsi before anything moves
+  bool chooses_substeps() const { return automatic; }
 
  private:
   static constexpr int NLIMIT = FSI::Limits::NLIMIT;

@@ -31,7 +31,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <type_traits>
+#include <unordered_map>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -47,7 +49,7 @@ FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
   restart_peratom = restart_global = 1;
   create_attribute = 1;
   stores_ids = 1;
-  maxexchange = 1;
+  maxexchange = 2;
   maxexchange_dynamic = 1;
   comm_forward = 2 * domain->dimension;
   grow_arrays(atom->nmax);
@@ -96,12 +98,15 @@ void FixFSIReference::init_list(int, NeighList *ptr)
 
 void FixFSIReference::setup_post_neighbor()
 {
+  follow_commands();
   take();
   // a restart file, which rank 0 describes, needs the same largest size everywhere
   int all;
   MPI_Allreduce(&maxbond, &all, 1, MPI_INT, MPI_MAX, world);
   reserve(all);
   resolve();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (slot[i] == NONE) slot[i] = FOREIGN;
 }
 
 void FixFSIReference::post_neighbor()
@@ -114,6 +119,101 @@ void FixFSIReference::post_neighbor()
 bool FixFSIReference::is_solid(int i) const
 {
   return hub->state[atom->type[i]].species == SOLID;
+}
+
+/* ---------------------------------------------------------------------- */
+
+// of all ranks
+static std::vector<tagint> gather(const std::vector<tagint> &mine, MPI_Comm world)
+{
+  int nprocs;
+  MPI_Comm_size(world, &nprocs);
+  int n = mine.size();
+  std::vector<int> count(nprocs), first(nprocs, 0);
+  MPI_Allgather(&n, 1, MPI_INT, count.data(), 1, MPI_INT, world);
+  for (int k = 1; k < nprocs; k++) first[k] = first[k - 1] + count[k - 1];
+  std::vector<tagint> all(first.back() + count.back());
+  MPI_Allgatherv(const_cast<tagint *>(mine.data()), n, MPI_LMP_TAGINT, all.data(), count.data(), first.data(), MPI_LMP_TAGINT, world);
+  return all;
+}
+
+static std::set<tagint> gather(const std::set<tagint> &mine, MPI_Comm world)
+{
+  const auto all = gather(std::vector<tagint>(mine.begin(), mine.end()), world);
+  return {all.begin(), all.end()};
+}
+
+/* ----------------------------------------------------------------------
+   What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless told not to: each bonded atom knows
+   its old one. Bonds to those that are gone are cut, as by damage. Solids cannot become something else, nor the reverse.
+------------------------------------------------------------------------- */
+
+void FixFSIReference::follow_commands()
+{
+  const tagint *const tag = atom->tag;
+  int mine = 0, any;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (slot[i] == FOREIGN && is_solid(i))
+      error->one(FLERR, "Atom {} of type {} is a solid now and was none when a run began: delete it and create a solid in its place",
+                 tag[i], atom->type[i]);
+    if (slot[i] < 0) continue;
+    if (!is_solid(i))
+      error->one(FLERR, "Atom {} of type {} is bonded to body {} and no solid any more: delete it and create another in its place", tag[i],
+                 atom->type[i], atom->molecule[i]);
+    if (owner[slot[i]] != tag[i]) mine = 1;
+    for (int k = 0; k < nbond[slot[i]] && !mine; k++) {
+      const tagint t = partner[(size_t) slot[i] * maxbond + k];
+      mine = t > atom->map_tag_max || atom->map(t) < 0;
+    }
+  }
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
+
+  std::vector<tagint> ids;    // old and new
+  for (int i = 0; i < atom->nlocal; i++)
+    if (slot[i] >= 0) {
+      ids.push_back(owner[slot[i]]);
+      ids.push_back(tag[i]);
+    }
+  ids = gather(ids, world);
+  std::unordered_map<tagint, tagint> now;
+  for (size_t k = 0; k < ids.size(); k += 2) now[ids[k]] = ids[k + 1];
+
+  bigint cut[3] = {0, 0, 0}, all[3];    // bonds, atoms that lost some, atoms that lost all
+  std::set<tagint> bodies;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (slot[i] < 0) continue;
+    const int s = slot[i];
+    const size_t first = (size_t) s * maxbond;
+    int kept = 0;
+    for (int k = 0; k < nbond[s]; k++) {
+      const auto it = now.find(partner[first + k]);
+      if (it == now.end()) continue;
+      partner[first + kept] = it->second;
+      std::copy_n(&data[(first + k) * nvalue], nvalue, &data[(first + kept) * nvalue]);
+      kept++;
+    }
+    owner[s] = tag[i];
+    if (kept == nbond[s]) continue;
+    cut[0] += nbond[s] - kept;
+    cut[1]++;
+    bodies.insert(atom->molecule[i]);
+    nbond[s] = kept;
+    if (domain->dimension == 2 ? !renew<2>(s) : !renew<3>(s)) cut[2]++;
+  }
+  MPI_Allreduce(cut, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[0] == 0) return;
+  if (end_corrected) {
+    const auto changed = gather(bodies, world);
+    std::vector<int> of_them;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (slot[i] >= 0 && changed.count(atom->molecule[i])) of_them.push_back(i);
+    if (domain->dimension == 2) find_quadrature<2>(of_them);
+    else find_quadrature<3>(of_them);
+  }
+  if (comm->me == 0)
+    utils::logmesg(lmp, "  fsi/solid/tl: {} bonds to deleted particles are cut, gradients of {} particles made anew, {} have no bonds left\n",
+                   all[0], all[1], all[2]);
 }
 
 /* ----------------------------------------------------------------------
@@ -129,6 +229,17 @@ void FixFSIReference::take()
   bigint all;
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all == 0) return;
+
+  // a body is bonded at once
+  std::set<tagint> bonded;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (slot[i] >= 0) bonded.insert(atom->molecule[i]);
+  bonded = gather(bonded, world);
+  for (const int i : bare)
+    if (bonded.count(atom->molecule[i]))
+      error->one(FLERR, "Solid atom {} has no bonds to body {}, which took them when an earlier run began: make a body at once, or give "
+                        "the atom a molecule ID of its own", atom->tag[i], atom->molecule[i]);
+
   made = as_now();
   neighbor->build_one(list);
   if (domain->dimension == 2) take_reference<2>(bare);
@@ -227,6 +338,7 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
             rsq += d[a] * d[a];
           }
           if (rsq >= kernel.cutsq) continue;
+          if (rsq == 0.0) error->one(FLERR, "Solid atoms {} and {} of body {} are at the same place", tag[i], tag[j], molecule[i]);
           if (domain->closest_image(i, j) != j)
             error->one(FLERR, "Solid atoms {} and {} are neighbors through more than one image: a periodic box must be wider than two "
                               "supports, {}, of the kernel", tag[i], tag[j], 2.0 * kernel.cut);
@@ -246,6 +358,7 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
         mine[2 + order]++;
 
         slot[i] = new_slot(n);
+        owner[slot[i]] = tag[i];
         const size_t first = (size_t) slot[i] * maxbond;
         double *value = &data[first * nvalue];
         for (int k = 0; k < n; k++, value += nvalue) {
@@ -313,8 +426,6 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
 {
   double **x = atom->x;
   const double limit = stretch * stretch;
-  GradientWeights<D> weights;
-  std::vector<double> dX, w, G;
   if (solids.empty()) return;
   move_apart<D>();
   for (const int i : solids) {
@@ -346,25 +457,33 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
     }
     if (kept == n) continue;
     n = kept;
-    dX.resize((size_t) n * D);
-    w.resize(n);
-    G.resize((size_t) n * D);
-    for (int k = 0; k < n; k++) {
-      const double *const value = &data[(first + k) * nvalue];
-      double Rsq = 0.0;
-      for (int a = 0; a < D; a++) {
-        dX[k * D + a] = value[D + a];
-        Rsq += value[D + a] * value[D + a];
-      }
-      w[k] = value[2 * D] * Rsq;    // V_i V_j W: the factor V_i does not matter
-    }
-    if (weights(n, dX.data(), w.data(), hub->h, quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
-      n = 0;
-      continue;
-    }
-    for (int k = 0; k < n; k++)
-      for (int a = 0; a < D; a++) data[(first + k) * nvalue + a] = G[k * D + a];
+    renew<D>(slot[i]);
   }
+}
+
+// the gradient's weights from the bonds that are left; if they do not suffice, none is
+template <int D> bool FixFSIReference::renew(int s)
+{
+  const size_t first = (size_t) s * maxbond;
+  int &n = nbond[s];
+  GradientWeights<D> weights;
+  std::vector<double> dX((size_t) n * D), w(n), G((size_t) n * D);
+  for (int k = 0; k < n; k++) {
+    const double *const value = &data[(first + k) * nvalue];
+    double Rsq = 0.0;
+    for (int a = 0; a < D; a++) {
+      dX[k * D + a] = value[D + a];
+      Rsq += value[D + a] * value[D + a];
+    }
+    w[k] = value[2 * D] * Rsq;    // V_i V_j W: the factor V_i does not matter
+  }
+  if (weights(n, dX.data(), w.data(), hub->h, quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
+    n = 0;
+    return false;
+  }
+  for (int k = 0; k < n; k++)
+    for (int a = 0; a < D; a++) data[(first + k) * nvalue + a] = G[k * D + a];
+  return true;
 }
 
 /* ----------------------------------------------------------------------
@@ -416,7 +535,7 @@ void FixFSIReference::reserve(int n)
   if (n <= maxbond) return;
   const int old = maxbond, slots = nbond.size();
   maxbond = n;
-  maxexchange = 2 + maxbond * (nvalue + 1);
+  maxexchange = 3 + maxbond * (nvalue + 1);
   const auto widen = [&](auto &list, int width) {
     std::decay_t<decltype(list)> wider((size_t) slots * maxbond * width);
     for (int s = 0; s < slots; s++)
@@ -436,6 +555,7 @@ int FixFSIReference::new_slot(int n)
   if (unused.empty()) {
     s = nbond.size();
     nbond.push_back(n);
+    owner.push_back(0);
     quadrature.push_back(1.0);
     const size_t size = (size_t) nbond.size() * maxbond;
     local.resize(size);
@@ -466,7 +586,7 @@ void FixFSIReference::copy_arrays(int i, int j, int delflag)
 
 void FixFSIReference::set_arrays(int i)
 {
-  slot[i] = -1;
+  slot[i] = NONE;
 }
 
 /* ----------------------------------------------------------------------
@@ -476,7 +596,7 @@ void FixFSIReference::set_arrays(int i)
 int FixFSIReference::pack(int i, double *buf) const
 {
   int m = 0;
-  const int n = slot[i] < 0 ? -1 : nbond[slot[i]];
+  const int n = slot[i] < 0 ? slot[i] : nbond[slot[i]];
   buf[m++] = ubuf(n).d;
   if (n < 0) return m;
   buf[m++] = quadrature[slot[i]];
@@ -490,9 +610,10 @@ int FixFSIReference::unpack(int i, const double *buf)
 {
   int m = 0;
   const int n = (int) ubuf(buf[m++]).i;
-  slot[i] = -1;
+  slot[i] = n;
   if (n < 0) return m;
   slot[i] = new_slot(n);
+  owner[slot[i]] = atom->tag[i];
   quadrature[slot[i]] = buf[m++];
   const size_t first = (size_t) slot[i] * maxbond;
   for (int k = 0; k < n; k++) partner[first + k] = (tagint) ubuf(buf[m++]).i;
@@ -500,18 +621,25 @@ int FixFSIReference::unpack(int i, const double *buf)
   return m + n * nvalue;
 }
 
+// delete_atoms may have given the atom another ID since its bonds were looked at
 int FixFSIReference::pack_exchange(int i, double *buf)
 {
-  return pack(i, buf);
+  buf[0] = ubuf(slot[i] < 0 ? 0 : owner[slot[i]]).d;
+  return 1 + pack(i, buf + 1);
 }
 
 int FixFSIReference::unpack_exchange(int i, double *buf)
 {
-  return unpack(i, buf);
+  const int n = 1 + unpack(i, buf + 1);
+  if (slot[i] >= 0) owner[slot[i]] = (tagint) ubuf(buf[0]).i;
+  return n;
 }
 
 int FixFSIReference::pack_restart(int i, double *buf)
 {
+  if (slot[i] >= 0 && owner[slot[i]] != atom->tag[i])
+    error->one(FLERR, "Solid atom {} was atom {} in the last run: after delete_atoms give run 0 before a restart file is written",
+               atom->tag[i], owner[slot[i]]);
   buf[0] = 1 + pack(i, buf + 1);
   return (int) buf[0];
 }
@@ -559,6 +687,6 @@ int FixFSIReference::maxsize_restart()
 
 double FixFSIReference::memory_usage()
 {
-  return (double) atom->nmax * sizeof(int) + (double) local.capacity() * sizeof(int) + (double) partner.capacity() * sizeof(tagint) +
+  return (double) atom->nmax * sizeof(int) + (double) local.capacity() * sizeof(int) + (double) (partner.capacity() + owner.capacity()) * sizeof(tagint) +
       (double) (data.capacity() + quadrature.capacity() + seen.capacity() + slack.capacity()) * sizeof(double);
 }

@@ -82,10 +82,11 @@ class FixFSIReference : public Fix {
   std::string as_now() const;
   bool has_record;
   class NeighList *list;
-  int *slot;    // per local atom: where its bonds are, -1 = not a solid, or none yet
+  int *slot;    // per local atom: where its bonds are, or NONE or FOREIGN
+  enum { NONE = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began
   int maxbond;
   std::vector<int> nbond, local, unused;
-  std::vector<tagint> partner;
+  std::vector<tagint> partner, owner;    // owner: ID of the slot's atom when its bonds were last looked at
   std::vector<double> data, quadrature;
   // damage: positions of solids and ghosts at the last look, empty = indices have changed; how far particles have moved apart since
   // indices changed, at most; per slot, how far they may before one of its bonds can be too long
@@ -93,12 +94,14 @@ class FixFSIReference : public Fix {
   double apart;
   double *layer;    // while the reference is taken: layers to the face ahead, by direction
 
+  void follow_commands();
   void take();
   template <int D> void take_reference(const std::vector<int> &);
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
   bool is_solid(int i) const;
   template <int D> void break_bonds_of_all(double stretch);
+  template <int D> bool renew(int slot);
   template <int D> void move_apart();
   void reserve(int n);
   int new_slot(int n);

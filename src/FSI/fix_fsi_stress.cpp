@@ -22,6 +22,7 @@
 #include "fsi_record.h"
 #include "modify.h"
 #include "pair_fsi_solid.h"
+#include "update.h"
 
 #include <cmath>
 
@@ -31,8 +32,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), stress(nullptr), plastic_strain(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
-    ns(domain->dimension == 2 ? 3 : 6)
+    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
+    ns(domain->dimension == 2 ? 3 : 6), strain(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
@@ -52,7 +53,7 @@ void FixFSIStress::set_fields()
 {
   const auto *pair = force->pair ? dynamic_cast<PairFSISolid *>(force->pair_match("^fsi/solid$", 0)) : nullptr;
   fields.set("stress", Fields::FILE, true, stress, ns);
-  fields.set("plastic strain", Fields::FILE, plastic, plastic_strain);
+  fields.set("plastic strain", Fields::FILE, plastic, strain);
   fields.set("hourglass force", Fields::FILE, pair && pair->has_hourglass(), hourglass, domain->dimension);
 }
 
@@ -62,6 +63,15 @@ void FixFSIStress::init()
 {
   const FixFSI *hub = FixFSI::find(lmp, "Fix fsi/stress");
   set_fields();    // another pair_style command may have changed what is kept
+  // what had a stress keeps it, what had none never gets the right one
+  for (int i = 0; i < atom->nlocal && update->whichflag == 1; i++) {
+    double &first = stress[i][0];
+    const bool solid = hub->state[atom->type[i]].species == FSI::SOLID;
+    if (solid ? first == FOREIGN : first != FOREIGN && first != 0.0)
+      error->one(FLERR, "Atom {} of type {} is {} solid{} when a run began: delete it and create another in its place", atom->tag[i],
+                 atom->type[i], solid ? "a" : "no", solid ? " now and was none" : " any more, as it was");
+    if (!solid) first = FOREIGN;
+  }
   bool yields = false;
   for (const auto &s : hub->state) yields = yields || s.yield > 0.0;
   if (comm->me == 0 && plastic && !yields)

@@ -41,7 +41,6 @@ class FixFSIStress : public FSI::FixFields {
 
   // deviatoric stress per atom, in-plane in 2D; see fsi_tensor.h for the order
   double **stress;
-  double *plastic_strain;    // equivalent; null without plastic
   double **hourglass;        // force per atom that pair_style fsi/solid keeps here; null without its hourglass control
   int plane_stress;
   int plastic;    // materials yield
@@ -55,17 +54,21 @@ class FixFSIStress : public FSI::FixFields {
     double work = 0.0;
     FSI::jaumann_update<D>(s, L, dt, material.shear, plane_stress);
     if (plastic && material.yield > 0.0)
-      work = FSI::radial_return<D>(s, plastic_strain[i], material.shear, material.yield, material.hardening);
+      work = FSI::radial_return<D>(s, strain[i], material.shear, material.yield, material.hardening);
     s.store(stress[i]);
     return work;
   }
 
+  // equivalent plastic strain of atom i
+  double plastic_strain(int i) const { return plastic ? strain[i] : 0.0; }
   // von Mises stress of atom i with pressure p
   double von_mises(int i, double p) const;
 
  private:
   FSI::Keywords keywords;
+  static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a run began
   int ns;    // components of the deviator
+  double *strain;    // equivalent plastic strain; null without plastic
   void set_fields();
 };
 

@@ -51,9 +51,11 @@ namespace FSI {
   // or plane (3D) or are too few.
   template <int D, int TERMS> inline typename Gradient<D>::Order gradient_coefficients(const double *A, double *C)
   {
-    // part of a term's own square that must be independent of earlier terms. Round-off would allow 1e-12; nearly dependent
-    // terms give large weights of both signs, which cost time step and amplify particle noise.
-    constexpr double TOLERANCE = 1.0e-4;
+    // part of a term's own square that must be independent of earlier terms. Nearly dependent terms give large weights of both
+    // signs, which amplify particle noise and cost time step: a body two particles thick whose particles are 0.01 dx off their
+    // lattice would have 1/40 of the usual one. Quadratic terms have 0.05 or more on lattices (Wendland, h = 1.3 to 2 dx; 0.03 for
+    // quintic, h = 0.9 dx), 0.02 or less in such a body up to 0.1 dx.
+    constexpr double TOLERANCE = 1.0e-4, QUADRATIC_TOLERANCE = 0.025;
     const auto at = [](int a, int b) { return packed_size(a) + b; };
 
     // A = L d L^T
@@ -68,7 +70,7 @@ namespace FSI {
       }
       d[a] = A[at(a, a)];
       for (int k = 0; k < a; k++) d[a] -= L[a][k] * L[a][k] * d[k];
-      if (!(d[a] > TOLERANCE * A[at(a, a)])) {
+      if (!(d[a] > (a < D ? TOLERANCE : QUADRATIC_TOLERANCE) * A[at(a, a)])) {
         if (a < D) return Gradient<D>::DEFICIENT;
         d[a] = 0.0;
         for (int k = 0; k < a; k++) L[a][k] = 0.0;

@@ -417,9 +417,10 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       const double r = std::sqrt(rsq), g = kernel.gradient(r);
       const Aux<D> &aj = aux[j];
       Sym<D> t;
+      double push = 0.0;    // of contact, along x_ij: it does not go with the kernel's gradient, which may vanish here
       if ((FLAGS & BODIES) && molecule[i] != molecule[j]) {
         const State &si = state[type[i]], &sj = state[type[j]];
-        t = Sym<D>::identity(contact(rsq, si.csq * si.rho0, sj.csq * sj.rho0) / g);
+        push = contact(rsq, si.csq * si.rho0, sj.csq * sj.rho0);
       } else {
         if constexpr (TERMS == 0) {
           t = ai.stress;
@@ -457,8 +458,8 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       }
       if (FLAGS & LEDGER) {
         double power = 0.0;
-        for (int d = 0; d < D; d++) power += tx[d] * (v[i][d] - v[j][d]);
-        hub->tally(FixFSI::GRADIENT, -share(j) * g * power);
+        for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (v[i][d] - v[j][d]);
+        hub->tally(FixFSI::GRADIENT, -share(j) * power);
       }
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
         for (int d = 0; d < D; d++) {
@@ -470,12 +471,15 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
         for (int d = 0; d < D; d++) tx[d] -= q * xij[d];
         if (FLAGS & LEDGER) hub->tally(FixFSI::ARTIFICIAL, share(j) * q * g * vdotx);
       }
-      for (int d = 0; d < D; d++) fi[d] += g * tx[d];
+      for (int d = 0; d < D; d++) {
+        tx[d] *= g;
+        if (FLAGS & BODIES) tx[d] += push * xij[d];
+        fi[d] += tx[d];
+      }
       if (newton || j < nlocal)
-        for (int d = 0; d < D; d++) f[j][d] -= g * tx[d];
+        for (int d = 0; d < D; d++) f[j][d] -= tx[d];
       if (tally_pairs)
-        ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, g * tx[0], g * tx[1], D == 3 ? g * tx[D - 1] : 0.0, xij[0], xij[1],
-                     D == 3 ? xij[D - 1] : 0.0);
+        ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, tx[0], tx[1], D == 3 ? tx[D - 1] : 0.0, xij[0], xij[1], D == 3 ? xij[D - 1] : 0.0);
     }
     for (int d = 0; d < D; d++) f[i][d] += fi[d];
   }

@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_dt.h"
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
@@ -52,6 +53,16 @@ PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
   keywords.key("volumes").choice(plain, 0, {"corrected", "plain"});
   contact_row();
   keywords.key("damage").number(damage, 0.0, Range::from(0.0), "strain").effect("damage at strain {}");
+
+  // bonds find their partners by atom ID. Not later than here: fix balance keeps, from when it is defined, whether there is a map to clear
+  if (atom->map_style != Atom::MAP_NONE) return;
+  if (!modify->get_fix_by_style("^balance").empty())
+    error->all(FLERR, "Pair style fsi/solid/tl must come before fix balance, or give atom_modify map yes first");
+  if (domain->box_exist) {
+    atom->map_init();
+    atom->map_set();
+  } else
+    atom->map_style = Atom::MAP_YES;
 }
 
 PairFSISolidTL::~PairFSISolidTL()
@@ -103,12 +114,8 @@ void PairFSISolidTL::init_style()
   const int dim = hub->dim;
   if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
   if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
+  refuse_constraints();
 
-  // bonds find their partners by atom ID
-  if (atom->map_style == Atom::MAP_NONE) {
-    atom->map_init();
-    atom->map_set();
-  }
   reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(REFERENCE));
   if (!reference)
     reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", REFERENCE)));
@@ -127,6 +134,32 @@ void PairFSISolidTL::init_style()
     neohookean.emplace_back(K, G, false);
     hypo.emplace_back(is && plane_stress ? m.plane_stress_modulus() : K, G, plane_stress);
   }
+}
+
+/* ----------------------------------------------------------------------
+   With sub-steps forces inside the solid come after all fixes have seen those from outside. What adds to these, as fix addforce, is
+   right; what sets or projects the whole force is not.
+------------------------------------------------------------------------- */
+
+void PairFSISolidTL::refuse_constraints() const
+{
+  static const char *const styles[] = {"setforce", "aveforce", "lineforce", "planeforce", "freeze", "manifoldforce", "damping/cundall",
+                                       "shake", "rattle"};
+  auto dt = modify->get_fix_by_style("^fsi/dt$");
+  if (hub->substeps == 1 && (dt.empty() || !dynamic_cast<FixFSIDt *>(dt[0])->chooses_substeps())) return;
+  for (auto &fix : modify->get_fix_list())
+    for (const char *style : styles) {
+      const std::string name = style;
+      if (fix->style != name && !utils::strmatch(fix->style, "^" + name + "/")) continue;
+      tagint mine = MAXTAGINT, first;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (material[atom->type[i]].species == SOLID && atom->mask[i] & hub->groupbit && atom->mask[i] & fix->groupbit)
+          mine = std::min(mine, atom->tag[i]);
+      MPI_Allreduce(&mine, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+      if (first < MAXTAGINT)
+        error->all(FLERR, "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see forces inside the solid: to hold "
+                          "particles leave them out of the group of fix {}", fix->id, fix->style, first, hub->id);
+    }
 }
 
 /* ---------------------------------------------------------------------- */

@@ -87,6 +87,7 @@ class PairFSISolidTL : public PairFSI {
   double **fsolid;
   int nmax;
 
+  void refuse_constraints() const;
   template <class L> const L *laws() const;
   std::vector<FSI::BondRow> rows;
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
