@@ -512,3 +512,89 @@ def test_fixes_that_keep_the_time_step(tmp_path):
     rest = run(tmp_path, "read_restart mid\ngroup water type 1\ngroup body type 2\ntimestep 1e-4\n" + RIGID_FIXES + "run 50\n")
     place = [float(next(w for w in reversed(list(map(str.split, r.output.splitlines()))) if w[:1] == ["100"] and len(w) == 2)[1]) for r in (whole, rest)]
     assert place[0] == pytest.approx(0.225 + 100 * 5e-5, abs=1e-9) and place[1] == pytest.approx(place[0], rel=1e-13)
+
+
+def test_ledger_goes_on(tmp_path):
+    """What the terms have taken is in the file: the sum of the restarted run is that of the uninterrupted one."""
+    more = "compute e all fsi/energy\nthermo_style custom step time c_e c_e[5] c_e[9] dt time"
+    whole = rows(first_part(tmp_path, "0.01 wendland 1.5", "timestep 1e-4\n" + more).output)
+    rest = rows(second_part(tmp_path, "0.01 wendland 1.5", more).output)
+    assert whole[60][2] != 0.0
+    for step, row in rest.items():
+        assert row == pytest.approx(whole[step], rel=1e-12), step
+
+
+WALLS_GONE = FLUID + """region box block -0.03 2.43 -0.03 2.33 -0.005 0.005 units box
+create_box 1 box
+lattice sq 0.01 origin 0.5 0.5 0
+region one block 0 0.05 0 0.05 INF INF units box
+region two block 0.2 0.9 0 0.8 INF INF units box
+create_atoms 1 region one
+pair_style fsi/fluid sound 20
+pair_coeff * * water.fsi water
+fix sph all fsi 0.01 wendland 1.5
+fix w all fsi/wall/mirror ylo 0
+timestep 1e-5
+neighbor 0.003 bin
+run 1
+unfix w
+create_atoms 1 region two
+run 1
+"""
+FLUID_GONE = FLUID + """region box block -0.03 0.43 -0.03 0.33 -0.005 0.005 units box
+create_box 2 box
+lattice sq 0.01 origin 0.5 0.5 0
+region one block 0 0.1 0 0.2 INF INF units box
+region three block 0.3 0.4 0 0.1 INF INF units box
+create_atoms 1 region one
+create_atoms 2 region three
+set type 2 mol 1
+pair_style hybrid fsi/fluid sound 20 shift 0.2 fsi/solid artificial/visc 0.1 0
+pair_coeff * * fsi/fluid water.fsi water plate
+pair_coeff * * fsi/solid water.fsi NULL plate
+fix sph all fsi 0.01 wendland 1.5
+fix s all fsi/stress
+timestep 1e-5
+neighbor 0.003 bin
+run 2
+group water type 1
+delete_atoms group water
+pair_style fsi/solid artificial/visc 0.1 0
+pair_coeff * * water.fsi plate plate
+run 2
+"""
+
+
+@pytest.mark.parametrize("text", (WALLS_GONE, FLUID_GONE), ids=("walls", "fluid"))
+def test_effects_that_are_gone(tmp_path, text):
+    """Arrays of walls and fluids are gone with them, whatever the number of atoms becomes."""
+    done = run(tmp_path, text, water_fsi=MATERIALS + "plate solid rho 1000 young 2e6 poisson 0.4\n")
+    assert "Loop time" in done.output
+
+
+BEFORE_A_RUN = FLUID + WATER.replace(" laminar", "") + """fix 1 all fsi 0.01 wendland 1.5
+fix 2 all gravity 9.81 vector 0 -1 0
+timestep 1e-5
+"""
+OUTPUTS = {"atom": "compute c all fsi/atom p", "surface": "compute c all fsi/surface/atom", "energy": "compute c all fsi/energy",
+           "probe": "compute c all fsi/probe p point 0.1 0.1 0", "force": "compute c all fsi/force"}
+
+
+@pytest.mark.parametrize("when", ("before", "created"))
+@pytest.mark.parametrize("kind", OUTPUTS)
+def test_computes_between_runs(tmp_path, kind, when):
+    """After fsi_set and before a run, or after atoms are created: an error that says what is needed."""
+    show = {"atom": "write_dump all custom a.dump id c_c", "surface": "write_dump all custom a.dump id c_c", "energy": 'print "$(c_c)"',
+            "probe": 'print "$(c_c)"', "force": 'print "$(c_c[1])"'}[kind]
+    start = "fsi_set all hydrostatic 0.1\n" if when == "before" else "run 1\ncreate_atoms 1 single 0.4 0.4 0 units box\n"
+    done = lammps(tmp_path, f"{BEFORE_A_RUN}{OUTPUTS[kind]}\n{start}{show}\n", water_fsi=MATERIALS)
+    assert done.status != 0 and any("needs a run before it" in e for e in done.errors), done.output[-1500:]
+
+
+def test_fixes_before_a_run(tmp_path):
+    """Outputs of fixes that know nothing yet are 0, not a crash."""
+    text = BEFORE_A_RUN + "fix 5 all fsi/dt 10\nfix 6 all fsi/report\nfix 7 all fsi/watch 10\nfix 8 all fsi/wall/mirror xlo 0\nfix 9 all fsi/wall/particle\n" \
+        'print "VALUES $(f_5) $(f_5[7]) $(f_6[1]) $(f_6[10]) $(f_7) $(f_8) $(f_8[1][1]) $(f_9) $(f_9[1])"\n'
+    done = run(tmp_path, text, water_fsi=MATERIALS)
+    values = list(map(float, re.search(r"^VALUES (.*)$", done.output, re.M)[1].split()))
+    assert values[0] == 1e-5 and not any(values[1:])

@@ -116,7 +116,7 @@ void FixFSI::set_fields()
   }
   back.clear();
   if (need_grad) back.add(grad, 0, ngrad(), {SOLID});
-  if (rate) back.add(rate, {FLUID, RIGID});
+  if (fluid && density_fluid == CONTINUITY) back.add(rate, {FLUID, RIGID});
   if (need_shift) back.add(shift, 0, nshift(), {FLUID, RIGID});
   scalar_back.clear();
   scalar_back.add(summed, {NONE, FLUID, SOLID, RIGID});
