@@ -71,6 +71,9 @@ CASES = {
     "default": ([("timestep 4e-5\n", "")], None, r"time step 1e-08, LAMMPS' default, is"),
     "grams": (*mine(rho=1.0e-3), r"density 0.001 of type 2 is that of no material in units si, in which water has 1000"),
     "megapascal": (*mine(young=2.0), r"elastic waves in type 2 run at 0.065 m/s only: moduli are in pascal"),
+    # 0.18 stretch + 0.27 shear = 0.079; 0.042 for the cubic spline; none for 1.5: 0.014
+    "elastic lattice": ([("wendland 1.5", "wendland 1.3")], None, r"h = 1.3 dx a lattice .* by 0.43 .* and 0.00 in shear: waves are some 8 % too fast .* at h = 1.53 dx; quintic 0.94"),
+    "elastic lattice, cubic": ([("wendland 1.5", "cubic 1.3"), ("4e-5", "3.5e-5")], None, r"by 0.13 .* 0.07 in shear: waves are some 4 % too fast .* h = 1.34 dx"),
     "skin": ([("neighbor 0.003", "neighbor 0.016")], None, r"skin 0.016 is 1.6 spacings wide, .*: neighbor 0.003 bin"),
 }
 ALSO = {  # what follows from the mistake as well

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import re
 import numpy as np
 import pytest
 
@@ -211,3 +212,13 @@ def test_what_a_particle_keeps_goes_with_it(tmp_path, kept):
     assert ((one[0]["x"] < middle) & (one[1]["x"] > middle)).sum() > 50
     agree(one, two)
     assert np.array_equal(one[1]["p"] == 0.0, two[1]["p"] == 0.0)
+
+
+def test_pressure_is_of_pairs(tmp_path):
+    """Images in mirror walls are no particles: with newton on and off the virial is that of pairs."""
+    found = []
+    for newton in ("on", "off"):
+        scene = fluid_box(2, newton=newton)
+        output = run(tmp_path / newton, scene.text() + "thermo_style custom step press\nrun 0\n", scene_data=scene.data()).output
+        found.append(float(re.search(r"Press\s*\n\s*0\s+(\S+)", output)[1]))
+    assert found[0] != 0.0 and found[0] == pytest.approx(found[1], rel=1e-9)

@@ -108,7 +108,6 @@ def test_headlines(tree, monkeypatch):
     monkeypatch.setattr(results, "HEADLINES", (("How fast", "stone", "speed", None), ("Order | slope", "study", "order", "large"),
                                                ("Gone", "stone", "gone", None), ("Not run", "lost", "x", None)))
     monkeypatch.setattr(paths, "ROOT", tree)
-    monkeypatch.setattr(paths, "PAGE", tree / "doc" / "results")
     write(tree / "README.md", f"# Title\n{results.MARKS[0]}old\n{results.MARKS[1]}## Rest\n")
     summary = json.loads((tree / "results/study/summary.json").read_text())
     summary["cases"]["large"] |= {"wall_seconds": 200.0, "ranks": 3}

@@ -211,7 +211,7 @@ def write(results, page):
     for name, picture in _listed(page):
         shutil.copyfile(results / name / picture["file"], page / copied(name, picture))
     (page / "README.md").write_text(render(found, Path(os.path.relpath(paths.EXAMPLES, page)).as_posix()))
-    if page.resolve() == paths.PAGE.resolve():
+    if page.resolve() == (paths.ROOT / "doc/results").resolve():
         write_readme(found)
     print(f"results: {page / 'README.md'}")
     return found

@@ -54,7 +54,7 @@ const char *ComputeFSIEnergy::name(int k)
 {
   static const char *const names[NHAVE + FixFSI::NTERM] = {
       "kinetic",           "gravitational",     "compressive", "shear",    "artificial viscosity", "laminar viscosity",
-      "density diffusion", "artificial stress", "walls",       "coupling", "gradient",             "plastic"};
+      "density diffusion", "artificial stress", "walls",       "coupling", "gradient",             "plastic", "changing gravity"};
   return names[k];
 }
 
@@ -90,10 +90,11 @@ void ComputeFSIEnergy::compute_vector()
     const bool tl = hub->is_total_lagrangian(i);
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it
     const double dth = !(atom->mask[i] & hub->groupbit) ? 0.0 : tl ? half / hub->substeps : half;
+    const auto g = hub->body_force(i);
     for (int d = 0; d < hub->dim; d++) {
       const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;
       mine[0] += 0.5 * m * vmid * vmid;
-      mine[1] += m * hub->gravity[d] * dth * v[i][d];    // back from the end of the step
+      mine[1] += m * g[d] * dth * v[i][d];    // back from the end of the step
     }
     mine[1] += hub->potential(i);
     if (tl) continue;

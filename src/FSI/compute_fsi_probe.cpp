@@ -219,7 +219,6 @@ void ComputeFSIProbe::sum_up()
     }
 
   double *const *const v = atom->v;
-  const double *const g = hub->gravity;
   with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
     for (const auto &place : places)
       for (const auto &p : place.near) {
@@ -227,6 +226,7 @@ void ComputeFSIProbe::sum_up()
         double x[3];
         for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
         const State &state = hub->state[atom->type[i]];
+        const auto &g = hub->gravity[atom->type[i]];
         const bool fluid = state.species == FLUID;
         const double rho = atom->rho[i], vol = atom->rmass[i] / rho, pressure = fluid ? hub->pressure(i) : 0.0;
         const int mask_i = walls.any() ? walls.near(x, hub->cut) : 0;

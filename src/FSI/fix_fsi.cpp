@@ -23,6 +23,7 @@
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_wall_particle.h"
+#include "fix_gravity.h"
 #include "force.h"
 #include "fsi_advice.h"
 #include "fsi_gradient.h"
@@ -52,7 +53,7 @@ using namespace FSI;
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), keywords(lmp, "fix fsi"), psi(nullptr), rate(nullptr),
-    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), gravity{0.0, 0.0, 0.0}, fix_stress(nullptr), fluid(nullptr),
+    shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), wall_stiffness(nullptr), fix_stress(nullptr), fluid(nullptr),
     solid(nullptr), solid_tl(nullptr), fix_dt(nullptr), profile(nullptr), stagger(0.0), forward(lmp, state), back(lmp, state),
     scalar_back(lmp, state), summed(nullptr), ratio(nullptr), tally_dt(0.0), need_psi(false), need_grad(false), need_shift(false), keep_psi(false),
     send_psi(true), nlocal_ready(-1), ids_checked(false)
@@ -78,6 +79,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     cut = k.cut;
     psi_bulk = lattice_number_density(k, dx);
     wdx = k.W(dx);
+    w0 = k.W(0.0);
   });
   state.resize(atom->ntypes + 1);
 
@@ -106,6 +108,7 @@ void FixFSI::set_fields()
   fields.set("velocity gradient", Fields::STEP, need_grad, grad, need_grad ? ngrad() : 0);
   fields.set("walls near", Fields::STEP, !wall_fixes.empty(), wmask);
   fields.set("wall velocity", Fields::STEP, noslip, wall_velocity, 3);
+  fields.set("wall stiffness", Fields::STEP, !particle_walls.empty() && several_stiffnesses(), wall_stiffness);
 
   forward.clear();
   forward.add(atom->rho, {NONE, FLUID, SOLID, RIGID});
@@ -328,18 +331,99 @@ void FixFSI::enter_state(int type, const State &s)
 }
 
 /* ----------------------------------------------------------------------
-   body force per mass: the sum of all fix gravity commands
+   all fix gravity commands, and which of them act on all particles of a type: only then two neighbours are pushed alike, and what is
+   hydrostatic between them has a meaning
 ------------------------------------------------------------------------- */
+
+namespace {
+struct Peek : FixGravity {
+  static bool is_disabled(const FixGravity *fix) { return fix->*&Peek::disable; }
+  static bool has_variable(const FixGravity *fix) { return fix->*&Peek::varflag != CONSTANT; }
+};
+}    // namespace
 
 void FixFSI::find_gravity()
 {
-  gravity[0] = gravity[1] = gravity[2] = 0.0;
-  for (auto &fix : modify->get_fix_by_style("^gravity")) {
-    int d;
-    const auto *g = static_cast<double *>(fix->extract("gvec", d));
-    if (g)
-      for (int k = 0; k < 3; k++) gravity[k] += g[k];
+  body_forces.clear();
+  for (auto &fix : modify->get_fix_by_style("^gravity"))
+    if (auto *g = dynamic_cast<FixGravity *>(fix)) {
+      body_forces.push_back({g, Peek::is_disabled(g) ? 0 : g->groupbit, Peek::has_variable(g), {0.0, 0.0, 0.0}});
+      g->init();    // its variables are looked up
+    }
+  const int ntypes = atom->ntypes, nfields = body_forces.size();
+  const auto at = [ntypes](int field, int type) { return (size_t) field * (ntypes + 1) + type; };
+  std::vector<int> without(nfields * (ntypes + 1), 0), with(without), some(without);
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int k = 0; k < nfields; k++) (atom->mask[i] & body_forces[k].mask ? with : without)[at(k, atom->type[i])] = 1;
+  acts_on_all.resize(without.size());
+  MPI_Allreduce(without.data(), acts_on_all.data(), (int) without.size(), MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(with.data(), some.data(), (int) with.size(), MPI_INT, MPI_MAX, world);
+  for (int k = 0; k < nfields; k++)
+    for (int t = 1; t <= ntypes; t++) {
+      if (some[at(k, t)] && acts_on_all[at(k, t)] && state[t].species == FLUID && comm->me == 0)
+        error->warning(FLERR, "Fix gravity {} acts on a part of the particles of type {} only: for what is hydrostatic between them, as in "
+                              "density diffusion, it does not count", body_forces[k].fix->id, t);
+      acts_on_all[at(k, t)] = body_forces[k].mask && !acts_on_all[at(k, t)];
+    }
+  gravity.assign(ntypes + 1, {0.0, 0.0, 0.0});
+}
+
+/* ----------------------------------------------------------------------
+   Body forces of this step. Fix gravity evaluates its variables when it acts, after the pair styles: it is asked to do so earlier, with
+   nothing to act on. Where the field changes, so does the potential energy of what is there, which the ledger has to know; taken in
+   the middle between two steps, positions are those of whole steps.
+------------------------------------------------------------------------- */
+
+void FixFSI::update_gravity(bool advance)
+{
+  gravity.assign(atom->ntypes + 1, {0.0, 0.0, 0.0});
+  size_t on = 0;
+  for (auto &field : body_forces) {
+    if (field.varies) {
+      const int groupbit = field.fix->groupbit;
+      field.fix->groupbit = 0;
+      field.fix->post_force(0);
+      field.fix->groupbit = groupbit;
+    }
+    int dim_of_extract;
+    const auto *now = static_cast<double *>(field.fix->extract("gvec", dim_of_extract));
+    if (field.varies && ledger && advance) {
+      const double dth = 0.5 * update->dt;
+      for (int i = 0; i < atom->nlocal; i++)
+        if ((atom->mask[i] & field.mask) && state[atom->type[i]].species != RIGID)
+          for (int d = 0; d < dim; d++)
+            taken[FIELDS] += atom->rmass[i] * (now[d] - field.g[d]) * (atom->x[i][d] - (atom->mask[i] & groupbit ? dth * atom->v[i][d] : 0.0));
+    }
+    std::copy_n(now, 3, field.g);
+    for (int t = 0; t <= atom->ntypes; t++, on++)
+      if (t > 0 && acts_on_all[on])
+        for (int d = 0; d < 3; d++) gravity[t][d] += field.g[d];
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::array<double, 3> FixFSI::body_force(int i) const
+{
+  std::array<double, 3> g = {0.0, 0.0, 0.0};
+  for (const auto &field : body_forces)
+    if (atom->mask[i] & field.mask)
+      for (int d = 0; d < 3; d++) g[d] += field.g[d];
+  return g;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixFSI::several_stiffnesses() const
+{
+  double first = 0.0;
+  for (const auto &s : state) {
+    if (s.species != FLUID) continue;
+    const double K = s.rho0 * s.csq;
+    if (first == 0.0) first = K;
+    else if (std::abs(K - first) > 1.0e-12 * first) return true;
+  }
+  return false;
 }
 
 /* ----------------------------------------------------------------------
@@ -559,6 +643,7 @@ void FixFSI::update_state(bool advance)
   nlocal_ready = atom->nlocal;
 
   tally_dt = (ledger && advance) ? update->dt : 0.0;
+  update_gravity(advance);
   Phase phase(profile);
   if (!wall_fixes.empty()) {
     phase.next(Profile::WALLS);
@@ -641,8 +726,6 @@ bool FixFSI::psi_is_due(bool advance) const
 void FixFSI::number_density(double *n)
 {
   memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
-  double w0 = 0.0;
-  with_kernel(kernel, dim, h, [&](const auto &k) { w0 = k.W(0.0); });
   for (int i = 0; i < atom->nlocal; i++) n[i] = w0;
   if (fluid) fluid->number_density(n, density_solid == SUMMATION);
   if (solid) solid->number_density(n, density_solid == SUMMATION);
@@ -675,6 +758,7 @@ double FixFSI::pressure(int i) const
 {
   const State &s = state[atom->type[i]];
   if (s.species == FLUID && fluid->surface_ratio > 0.0 && psi[i] <= fluid->surface_ratio * psi_reference) return 0.0;
+  if (s.species == RIGID && wall_stiffness) return std::max(s.floor, s.p0 + wall_stiffness[i] * (atom->rho[i] / s.rho0 - 1.0));
   return s.pressure(atom->rho[i]);
 }
 
@@ -700,7 +784,8 @@ void FixFSI::density_from_psi()
 }
 
 /* ----------------------------------------------------------------------
-   fluids, continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n
+   fluids, continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; nobody is thinner than he would be alone (with diffusion in particles that
+   are shot out of a crowd)
 ------------------------------------------------------------------------- */
 
 void FixFSI::advance_density()
@@ -710,7 +795,7 @@ void FixFSI::advance_density()
   const int *const type = atom->type;
   const double dt = update->dt + stagger;
   for (int i = 0; i < atom->nlocal; i++)
-    if (state[type[i]].species == FLUID) rho[i] += dt * rate[i];
+    if (state[type[i]].species == FLUID) rho[i] = std::max(rho[i] + dt * rate[i], atom->rmass[i] * w0);
 }
 
 /* ----------------------------------------------------------------------
@@ -720,7 +805,8 @@ void FixFSI::advance_density()
 double FixFSI::potential(int i) const
 {
   const double *x = atom->x[i];
-  return -atom->rmass[i] * (gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
+  const auto g = body_force(i);
+  return -atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
 }
 
 double FixFSI::stored(int i) const

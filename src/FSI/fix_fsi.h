@@ -27,6 +27,7 @@ FixStyle(fsi,FixFSI);
 #include "fsi_profile.h"
 #include "fsi_walls.h"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,7 +74,7 @@ class FixFSI : public FSI::FixFields {
   double dx, h;        // spacing of the initial lattice, smoothing length
   double cut;          // support radius of the kernel
   double psi_bulk;     // number density inside the lattice: the volume of a particle is 1/psi_bulk
-  double wdx;          // W(dx)
+  double wdx, w0;      // W(dx), W(0)
   int density_fluid, density_solid;    // Density
   FSI::Keywords keywords;
 
@@ -90,7 +91,7 @@ class FixFSI : public FSI::FixFields {
 
   // energy ledger (compute fsi/energy): what each term took from the particles' energy since the fix was defined, this
   // rank's part; kept only while such a compute exists
-  enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, NTERM };
+  enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, FIELDS, NTERM };
   bool ledger;
   double taken[NTERM];
   // adds a power of the pair loops, which counts only in steps, not in setup
@@ -102,9 +103,22 @@ class FixFSI : public FSI::FixFields {
 
   // viscous velocity of no-slip walls of particles (fix fsi/wall/particle); null: there are none
   double **wall_velocity;
+  // rho dp/drho of wall particles, that of the fluid around them; null: it is the same for all fluids, and in the wall's state
+  double *wall_stiffness;
 
   FSI::Walls walls;     // at the time of the positions in atom->x
-  double gravity[3];
+
+  // body forces per mass: each fix gravity as it acts in this step, and for each type the sum of those that act on all its particles
+  struct BodyForce {
+    Fix *fix;
+    int mask;    // of its group; 0 if it is disabled
+    bool varies;
+    double g[3];
+  };
+  std::vector<BodyForce> body_forces;
+  std::vector<std::array<double, 3>> gravity;
+  void update_gravity(bool advance);
+  std::array<double, 3> body_force(int i) const;    // on atom i, over its mass
   class FixFSIStress *fix_stress;
   std::vector<class FixFSIWallMirror *> wall_fixes;
   std::vector<class FixFSIWallParticle *> particle_walls;
@@ -131,11 +145,11 @@ class FixFSI : public FSI::FixFields {
   // sums of the velocity gradient per solid particle, and what replaces them: L, then the coefficients of its weights
   int ngrad() const;
   int nshift() const { return 2 * dim + 1; }
-  void find_gravity();
   // number density of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
   void number_density(double *n);
   // sum of position_divergence() of pair_style fsi/fluid, likewise
   void position_divergence(double *n);
+  bool several_stiffnesses() const;    // do fluids differ in rho0 c^2?
   void add_wall_force(int wall, int axis, double f);    // f on the fluid; counted by the wall's fix
 
  private:
@@ -163,6 +177,7 @@ class FixFSI : public FSI::FixFields {
 
  private:
   bool psi_is_due(bool advance) const;
+  bool restores_volumes() const;
 
   template <int D> void drift();
   template <int D> void kick();
@@ -171,8 +186,12 @@ class FixFSI : public FSI::FixFields {
   template <int D, int TERMS> void advance_solids(bool advance);
   void advance_density();
   void density_from_psi();
+  std::vector<double> crowd;    // number density of the steps in which volumes are restored
+  void restore_volumes();
   void update_state(bool);
   void gather_walls();
+  void find_gravity();
+  std::vector<int> acts_on_all;    // each field, type by type
   bool fresh_start() const;
   void give_defaults(int);
   void sort_by_tag();

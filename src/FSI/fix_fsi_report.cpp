@@ -128,10 +128,8 @@ void FixFSIReport::begin()
   by_gravity = by_walls = by_held = {};
   momentum = momentum_of_moving();
   fields.clear();
-  for (auto &fix : modify->get_fix_by_style("^gravity")) {
-    int n;
-    if (const auto *g = static_cast<double *>(fix->extract("gvec", n))) fields.push_back({g, group->mass(fix->igroup)});
-  }
+  for (const auto &field : hub->body_forces)
+    if (field.mask) fields.push_back({field.g, group->mass(field.fix->igroup)});
   int held = 0, any;
   for (int i = 0; i < atom->nlocal; i++)
     if (!(atom->mask[i] & hub->groupbit)) held = 1;

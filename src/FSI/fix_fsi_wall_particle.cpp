@@ -108,9 +108,11 @@ void FixFSIWallParticle::init()
   if (!slip && !fluid->has_laminar() && comm->me == 0)
     error->warning(FLERR, "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has no laminar/visc");
 
-  nsum = 2 + hub->dim * (slip ? 1 : 2);
+  const bool stiffness = hub->several_stiffnesses();
+  nsum = 2 + hub->dim * (slip ? 1 : 2) + stiffness;
   comm_reverse = nsum;
-  comm_forward = 1 + (slip ? 0 : hub->dim);
+  comm_forward = 1 + (slip ? 0 : hub->dim) + stiffness;
+  nmax = 0;    // sums of another size than in the last run
 }
 
 /* ----------------------------------------------------------------------
@@ -139,7 +141,7 @@ void FixFSIWallParticle::find_pairs()
 
 /* ----------------------------------------------------------------------
    p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq. 27), a_w: acceleration of the
-   wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23)
+   wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of fluids of different rho c^2 the wall has the mean, likewise
 ------------------------------------------------------------------------- */
 
 void FixFSIWallParticle::extrapolate(bool advance)
@@ -150,6 +152,7 @@ void FixFSIWallParticle::extrapolate(bool advance)
   double **v = atom->v;
   double *rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
+  const bool stiffness = hub->wall_stiffness;
   if (neighbor->ago == 0) find_pairs();
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
@@ -168,8 +171,14 @@ void FixFSIWallParticle::extrapolate(bool advance)
       const double W = kernel.W(std::sqrt(rsq));
       double *const s = sum[w];
       s[0] += W;
-      s[1] += W * hub->pressure(j);
-      for (int k = 0; k < dim; k++) s[2 + k] += W * rho[j] * d[k];
+      const auto &g = hub->gravity[type[j]];
+      double p = hub->pressure(j);
+      for (int k = 0; k < dim; k++) {
+        p += rho[j] * g[k] * d[k];
+        s[2 + k] += W * rho[j] * d[k];
+      }
+      s[1] += W * p;
+      if (stiffness) s[nsum - 1] += W * hub->state[type[j]].rho0 * hub->state[type[j]].csq;
       if (!slip)
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     }
@@ -185,11 +194,16 @@ void FixFSIWallParticle::extrapolate(bool advance)
     for (int k = 0; k < dim; k++) {
       // a wall that is set in motion has no acceleration in its first step
       const double a = (advance && old[3] > 0.0) ? (v[i][k] - old[k]) / update->dt : 0.0;
-      p += (hub->gravity[k] - a) * s[2 + k];
+      p -= a * s[2 + k];
       if (!slip) hub->wall_velocity[i][k] = 2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
     }
     p = s[0] > 0.0 ? p / s[0] : state.p0;
-    rho[i] = state.density(std::max(p, state.floor));
+    p = std::max(p, state.floor);
+    if (stiffness) {
+      const double K = hub->wall_stiffness[i] = s[0] > 0.0 ? s[nsum - 1] / s[0] : state.rho0 * state.csq;
+      rho[i] = state.rho0 * (1.0 + (p - state.p0) / K);
+    } else
+      rho[i] = state.density(p);
     if (advance) {
       std::copy_n(v[i], 3, old);
       old[3] = 1.0;
@@ -253,6 +267,7 @@ int FixFSIWallParticle::pack_forward_comm(int n, int *list, double *buf, int, in
     const int i = list[ii];
     if (!(atom->mask[i] & groupbit)) continue;
     buf[m++] = atom->rho[i];
+    if (hub->wall_stiffness) buf[m++] = hub->wall_stiffness[i];
     if (!slip)
       for (int d = 0; d < hub->dim; d++) buf[m++] = hub->wall_velocity[i][d];
   }
@@ -267,6 +282,7 @@ void FixFSIWallParticle::unpack_forward_comm(int n, int first, double *buf)
   for (int i = first; i < first + n; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     atom->rho[i] = buf[m++];
+    if (hub->wall_stiffness) hub->wall_stiffness[i] = buf[m++];
     if (!slip)
       for (int d = 0; d < hub->dim; d++) hub->wall_velocity[i][d] = buf[m++];
   }

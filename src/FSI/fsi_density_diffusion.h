@@ -25,10 +25,9 @@ namespace FSI {
 
   struct DensityDiffusion {
     double scale;    // 2 delta h c
-    const double *gravity;
-    DensityDiffusion(double delta, double h, double c, const double *g) : scale(2.0 * delta * h * c), gravity(g) {}
+    DensityDiffusion(double delta, double h, double c) : scale(2.0 * delta * h * c) {}
     // hydrostatic part of the density at x, but for a constant
-    double hydrostatic(const double *x, double rho0_over_csq) const
+    static double hydrostatic(const double *gravity, const double *x, double rho0_over_csq)
     {
       return rho0_over_csq * (gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
     }

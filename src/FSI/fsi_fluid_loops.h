@@ -106,14 +106,13 @@ namespace FSI {
 
   struct RateLaws {
     double delta;                         // of density diffusion; 0: none
-    const double *gravity;
     const double *pressure_over_density;  // per particle, with sums
   };
 
   struct ForceLaws {
     double alpha, beta;      // artificial viscosity
     int laminar;             // 0: none, 1: plain, 2: central
-    double extrapolate[3];   // gravity, where the pressure at a solid is extrapolated to it; else 0
+    const std::array<double, 3> *extrapolate;    // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
     double stored;           // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0
     const struct Contact *guard;           // per type: of walls
     const double (*wall_velocity)[3];      // per particle, that no-slip walls of particles have in viscous forces

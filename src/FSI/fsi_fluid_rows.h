@@ -142,7 +142,7 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
       const Particle<T, D> pi(point[i]);
-      const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c, laws.gravity);
+      const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
       T sum = 0.0, flux = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
@@ -157,7 +157,7 @@ namespace FSI {
         if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
         T rate_j = pj.rho * pj.vol * s;
         if (FLAGS & Flag::DIFFUSION) {
-          const T k = diffusion(pi.rho, pj.rho, greater(pi.p, pj.p) * (pi.pv2 - pj.pv2), g);
+          const T k = lesser(pi.p, pj.p) * diffusion(pi.rho, pj.rho, pi.pv2 - pj.pv2, g);
           flux += k * pj.vol;
           rate_j -= k * pi.vol;
           // m p/rho^2 of what diffusion adds to rho
@@ -206,10 +206,13 @@ namespace FSI {
       const int i = row.i, type_j = in.type[row.j[0]];
       const State &fluid = in.state[in.type[i]], &other = in.state[type_j];
       const Particle<T, D> pi(point[i]);
-      const double c = fluid.c < other.c ? fluid.c : other.c, bulk = fluid.rho0 * fluid.csq, floor = fluid.floor;
+      const double c = KIND == WITH_FLUID ? 0.5 * (fluid.c + other.c) : KIND == WITH_WALL || fluid.c < other.c ? fluid.c : other.c, bulk = fluid.rho0 * fluid.csq, floor = fluid.floor;
       // beyond a wall with no slip there is fluid, where a wall slips it does not rub
       const double rubs = KIND != WITH_WALL || other.noslip ? 1.0 : 0.0;
       const double visc = laws.laminar ? (KIND == WITH_WALL ? 2.0 * rubs : 1.0) * (fluid.viscosity + other.viscosity) : 0.0;
+      double extrapolate[3] = {};
+      if (KIND == WITH_SOLID && laws.extrapolate)
+        for (int d = 0; d < D; d++) extrapolate[d] = laws.extrapolate[in.type[i]][d];
       T sum[D];
       for (T &s : sum) s = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -224,7 +227,7 @@ namespace FSI {
         if (FLAGS & Flag::IMAGES) g = weight * g;
         const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
 
-        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, laws.extrapolate, floor);
+        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, extrapolate, floor);
         // beyond the compression of the fluid and, in density mode summation, of the solid
         T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
         if (FLAGS & Flag::ARTIFICIAL) {

@@ -104,6 +104,37 @@ namespace FSI {
     return softest;
   }
 
+  // h/dx nearest to a given one, with a support of 2.6 dx at least, at which stretching meets no stiffness and no wave is soft to speak
+  // of; 0: none
+  inline double lattice_free_ratio(int kind, int dim, double ratio)
+  {
+    constexpr double STEP = 0.01, HIGHEST = 2.5, SOFT = -0.02;
+    const double lowest = 2.6 / kernel_support(kind);
+    const auto stretch = [&](double r) {
+      double s = 0.0;
+      with_kernel(kind, dim, r, [&s](const auto &k) { s = lattice_stiffness(k, 1.0).stretch; });
+      return s;
+    };
+    double best = 0.0;
+    for (const double step : {-STEP, STEP}) {
+      double last = stretch(ratio);
+      for (double r = ratio + step; r > lowest && r < HIGHEST; r += step) {
+        const double next = stretch(r);
+        if (last * next <= 0.0 && last != next) {
+          const double found = r - step * next / (next - last);
+          double soft = 0.0;
+          with_kernel(kind, dim, found, [&soft](const auto &k) { soft = lattice_softest_wave(k, 1.0); });
+          if (soft > SOFT) {
+            if (best == 0.0 || std::fabs(found - ratio) < std::fabs(best - ratio)) best = found;
+            break;
+          }
+        }
+        last = next;
+      }
+    }
+    return best;
+  }
+
 }    // namespace FSI
 }    // namespace LAMMPS_NS
 

@@ -71,6 +71,7 @@ const struct Property {
   Range range;
 } properties[] = {{"rho", &Material::rho0, {FLUID, SOLID, RIGID}, true, Range::above(0.0)},
                   {"viscosity", &Material::viscosity, {FLUID}, false, Range::from(0.0)},
+                  {"sound", &Material::sound, {FLUID}, false, Range::from(0.0)},
                   {"young", &Material::young, {SOLID}, true, Range::above(0.0)},
                   {"poisson", &Material::poisson, {SOLID}, true, Range::inside(-1.0, 0.5)},
                   {"yield", &Material::yield, {SOLID}, false, Range::from(0.0)},

@@ -32,6 +32,7 @@ namespace FSI {
     int species;         // FLUID, SOLID or RIGID (wall)
     double rho0;         // reference density
     double viscosity;    // fluid: dynamic viscosity
+    double sound;        // fluid: numerical speed of sound, 0 = that of its pair style
     double young;        // solid: Young's modulus
     double poisson;      // solid: Poisson's ratio
     double yield;        // solid: yield stress, 0 = elastic

@@ -16,15 +16,19 @@
 // Formulas are templates over the number, double or Pack, and written once: lesser, greater and where are what they use for
 // branches. FSI_INLINE makes them part of the loop that calls them, a function marked FSI_AVX2, which is compiled for a
 // processor that has AVX2 and fused multiply-add whatever the rest is compiled for: ask have_packs() before calling it. Sums
-// differ from those of other processors by round-off. Where the compiler is another, FSI_PACKS is 0 and loops go pair by pair.
+// differ from those of other processors by round-off. Where the compiler is another, FSI_PACKS is 0 and loops go pair by pair; with
+// the environment variable FSI_PACKS=no they do on any processor.
 
 #ifndef LMP_FSI_PACK_H
 #define LMP_FSI_PACK_H
 
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <type_traits>
 
-#if defined(__GNUC__) && defined(__x86_64__)
+// compilers with the front end of EDG (nvc++, icpc) call themselves GNU C without having its vectors
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(__EDG__) && !defined(__NVCOMPILER) && !defined(__INTEL_COMPILER)
 #define FSI_PACKS 1
 #define FSI_INLINE inline __attribute__((always_inline))
 #define FSI_AVX2 __attribute__((target("avx2,fma")))
@@ -161,7 +165,11 @@ namespace FSI {
     }
   };
 
-  inline bool have_packs() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+  inline bool have_packs()
+  {
+    const char *const wanted = std::getenv("FSI_PACKS");
+    return !(wanted && std::strcmp(wanted, "no") == 0) && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  }
 #else
   inline bool have_packs() { return false; }
 #endif

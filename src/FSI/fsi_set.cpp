@@ -23,6 +23,7 @@
 #include "input.h"
 #include "variable.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -60,12 +61,13 @@ void FSISet::command(int narg, char **arg)
   }
   const double number = variable < 0 ? numeric(lmp, std::string("Fsi_set ") + arg[1], arg[2]) : 0.0;
 
-  const FixFSI *hub = FixFSI::find(lmp, "Fsi_set");
+  FixFSI *hub = FixFSI::find(lmp, "Fsi_set");
 
   // materials, masses and gravity are entered in init()
   lmp->init();
-  const double *g = hub->gravity, size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-  if (hydrostatic && size == 0.0) error->all(FLERR, "Fsi_set hydrostatic requires fix gravity");
+  hub->update_gravity(false);
+  if (hydrostatic && std::none_of(hub->body_forces.begin(), hub->body_forces.end(), [](const FixFSI::BodyForce &f) { return f.mask; }))
+    error->all(FLERR, "Fsi_set hydrostatic requires fix gravity");
 
   std::vector<double> each(atom->nlocal, number);
   if (variable >= 0) input->variable->compute_atom(variable, igroup, each.data(), 1, 0);
@@ -78,7 +80,10 @@ void FSISet::command(int narg, char **arg)
     const double value = each[i];
     double rho = value;
     if (hydrostatic) {
-      const double *x = atom->x[i], height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
+      const auto g = hub->body_force(i);
+      const double *x = atom->x[i], size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+      if (size == 0.0) error->one(FLERR, "Fsi_set hydrostatic: no fix gravity acts on atom {}", atom->tag[i]);
+      const double height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
       if (height > value) continue;
       rho = s.density(s.rho0 * size * (value - height) + s.p0);
     } else if (pressure)

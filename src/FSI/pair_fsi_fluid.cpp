@@ -28,6 +28,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -55,13 +56,6 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("extrapolate").logical(extrapolate, false);
 }
 
-void PairFSIFluid::check_settings()
-{
-  if (sound == 0.0) error->all(FLERR, "Pair style fsi/fluid needs keyword sound with a speed of sound > 0");
-}
-
-/* ---------------------------------------------------------------------- */
-
 bool PairFSIFluid::handles(int a, int b) const
 {
   return a == FLUID || b == FLUID;
@@ -76,19 +70,33 @@ State PairFSIFluid::make_state(const Material &m) const
   State s;
   s.species = m.species;
   s.rho0 = m.rho0;
-  s.c = sound;
-  s.csq = sound * sound;
   if (m.species == RIGID) {
-    // its density is what says its pressure, its volume should be that of fluid under this pressure
-    for (const auto &other : material)
-      if (other.species == FLUID) s.csq = sound * sound * other.rho0 / m.rho0;
-  } else
+    // its density is what says its pressure, its volume should be that of fluid under this pressure; if fluids differ in this, that
+    // of the fluid that is near (fix fsi/wall/particle)
+    const auto first = std::find_if(material.begin(), material.end(), [](const Material &other) { return other.species == FLUID; });
+    s.csq = sound_of(*first) * sound_of(*first) * first->rho0 / m.rho0;
+    s.c = std::sqrt(s.csq);
+  } else {
+    s.c = sound_of(m);
+    s.csq = s.c * s.c;
     s.tait = tait;
+  }
   s.inv_csq = 1.0 / s.csq;
   s.p0 = background;
   if (!tension) s.floor = 0.0;
   s.viscosity = m.viscosity;
   return s;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double PairFSIFluid::sound_of(const Material &m) const
+{
+  if (m.sound > 0.0) return m.sound;
+  if (sound == 0.0)
+    error->all(FLERR, "Fluid {} has no speed of sound: give it keyword sound in its material file, or pair_style fsi/fluid one for all "
+                      "fluids that have none of their own", m.name);
+  return sound;
 }
 
 /* ----------------------------------------------------------------------
@@ -114,6 +122,8 @@ void PairFSIFluid::init_style()
     error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
                    has_solids() ? "it is for couple wall" : "there is no solid");
   loops = make_fluid_loops(hub->kernel, hub->dim, hub->h);
+  // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
+  if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
   kinds[SOLIDS] = couple == WALL ? WITH_SOLID : couple == PRESSURE ? WITH_SOLID_PRESSURE : WITH_SOLID_FULL;
 }
 
@@ -285,20 +295,20 @@ template <int D> void PairFSIFluid::density_rate_of(double dt)
   double **x = atom->x;
   const int *const type = atom->type;
   const Walls walls = hub->walls.moved(-dth);
-  const DensityDiffusion diffusion(delta, hub->h, sound, hub->gravity);
   const FluidParticles particles = gather<D>(-dth, [&](int i, Point<D> &p) {
-    // who has pressure: without it on either side nothing is hydrostatic, and diffusion would push apart particles that fly free
+    // Diffusion smooths pressures, so both of a pair must have one. What has none, spray and surfaces, has the density that its few
+    // neighbours leave: their exchange would empty the spray, beyond zero, and take volume from the rest.
     if (delta == 0.0) return;
     const State &s = hub->state[type[i]];
     p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
-    p.pv2 = diffusion.hydrostatic(p.position(x[i]).data(), s.rho0 * s.inv_csq);
+    p.pv2 = DensityDiffusion::hydrostatic(hub->gravity[type[i]].data(), p.position(x[i]).data(), s.rho0 * s.inv_csq);
   });
   if (hub->ledger) {
     pressure_over_density.resize(atom->nmax);
     for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = hub->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, hub->gravity, pressure_over_density.data()};
+  const RateLaws laws = {delta, pressure_over_density.data()};
   double *const shift = shifting > 0.0 ? hub->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror) {
@@ -367,7 +377,7 @@ void PairFSIFluid::compute(int eflag, int vflag)
   hub->dim == 2 ? compute_forces<2>() : compute_forces<3>();
   for (auto *measure : force_computes) measure->tally(1.0);
 
-  if (vflag_fdotr) virial_fdotr_compute();
+  if (vflag_fdotr && !hub->walls.any()) virial_fdotr_compute();
 }
 
 /* ----------------------------------------------------------------------
@@ -383,16 +393,17 @@ template <int D> void PairFSIFluid::compute_forces()
   constexpr int ROW = row_of_forces(D);
   double **x = atom->x;
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
-  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off, or a hybrid style with solids that need it
-  const bool surface_rule = surface_ratio > 0.0;
+  // newton off, or a hybrid style with solids that need it, or images, which are no particles: like LAMMPS' own walls they do not count
+  // in the virial, and forces times positions would have them
+  const bool tally_pairs = vflag_fdotr ? hub->walls.any() : evflag != 0;
+  const bool own_pressure = surface_ratio > 0.0 || hub->wall_stiffness;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
-    p.p = surface_rule ? hub->pressure(i) : hub->state[type[i]].pressure(p.rho);
+    p.p = own_pressure ? hub->pressure(i) : hub->state[type[i]].pressure(p.rho);
     p.pv2 = p.p * p.vol * p.vol;
   });
 
-  ForceLaws laws = {alpha, beta, laminar, {}, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(),
+  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? hub->gravity.data() : nullptr, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(),
                     FixFSI::rows(hub->wall_velocity ? hub->wall_velocity : atom->v), hub->fix_stress ? hub->fix_stress->stress : nullptr};
-  if (extrapolate) std::copy_n(hub->gravity, 3, laws.extrapolate);
   PairSums sums, *const of_pairs = hub->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   for (int kind = 0; kind < NROWS; kind++)
@@ -419,7 +430,7 @@ template <int D> void PairFSIFluid::compute_forces()
   hub->tally(FixFSI::LAMINAR, sums.laminar);
   hub->tally(FixFSI::COUPLING, sums.coupling);
   hub->tally(FixFSI::WALLS, sums.walls);
-  if (tally_pairs && vflag_global)
+  if (tally_pairs && (vflag_global || vflag_fdotr))
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
 

@@ -45,6 +45,7 @@ class PairFSIFluid : public PairFSI {
   std::vector<Effect> effects() const override;
   double memory_usage() override;
   bool has_laminar() const { return laminar; }
+  double sound_of(const FSI::Material &) const;
 
   // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi
   // of all fluid particles); 0 = off
@@ -66,7 +67,6 @@ class PairFSIFluid : public PairFSI {
   void position_divergence(double *div);
 
  protected:
-  void check_settings() override;
   bool handles(int, int) const override;
   // walls of held solid particles need no pair style of their own; wall particles act on fluids only
   bool leaves_alone(int a, int b, bool alone) const override
@@ -79,7 +79,7 @@ class PairFSIFluid : public PairFSI {
 
  private:
   // settings
-  double sound, background, delta;
+  double sound, background, delta;    // sound: of fluids whose material has none; 0: there is no default
   int tait, laminar, couple, extrapolate, tension;
   std::vector<class ComputeFSIForce *> force_computes;
 

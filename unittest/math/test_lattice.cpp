@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 using namespace LAMMPS_NS::FSI;
@@ -154,6 +155,19 @@ TEST_P(Lattice, NoWaveIsSofterThanTheSoftest)
     EXPECT_LT(softest, least + 1e-4 + 0.1 * std::fabs(least));
     EXPECT_GT(softest, least - 5e-4 - 0.1 * std::fabs(least));
   });
+}
+
+TEST(LatticeFreeRatio, IsTheNearestZero)
+{
+  // between neighbours of the table above that differ in sign; the zeros that are nearer to Wendland 1.3, 1.16 and (3D) 1.23, are those
+  // of lattices that shear by themselves
+  for (const auto &[kind, dim, from, low, high] : {std::tuple(WENDLAND, 2, 1.5, 1.53, 1.54), {WENDLAND, 3, 1.5, 1.56, 1.57}, {WENDLAND, 2, 1.6, 1.53, 1.54}, {WENDLAND, 2, 1.3, 1.53, 1.54},
+                                                   {WENDLAND, 3, 1.3, 1.56, 1.57}, {CUBIC, 2, 1.3, 1.34, 1.345}}) {
+    const double found = lattice_free_ratio(kind, dim, from);
+    EXPECT_GT(found, low);
+    EXPECT_LT(found, high);
+    with_kernel(kind, dim, found * SPACING, [](const auto &k) { EXPECT_NEAR(lattice_stiffness(k, SPACING).stretch, 0.0, 1e-3); });
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, Lattice, ::testing::ValuesIn(CASES), [](const auto &info) { return std::string(info.param.name); });

@@ -80,14 +80,13 @@ template <class T> struct Values {
 template <class K, class T> FSI_INLINE Values<T> evaluate(const T &q, const T &u, bool central)
 {
   const K kernel(0.1);
-  const double b[3] = {0.3, -9.81, 0.0};
   Values<T> r;
   const T x[2] = {0.1 * q * 0.6, 0.1 * q * 0.8}, v[2] = {u, 0.5 * u};
   const T rsq = x[0] * x[0] + x[1] * x[1];
   r.W = kernel.W(root(rsq));
   r.gradient = kernel.gradient(root(rsq));
   r.artificial = ArtificialViscosity(0.3, 0.7, 0.1)(T(x[0] * v[0] + x[1] * v[1]), rsq, T(1000.0 + u), 20.0, T(1e-4));
-  r.flux = DensityDiffusion(0.1, 0.1, 20.0, b)(T(1000.0), T(1000.0 + u), greater(u, T(0.0)), r.gradient);
+  r.flux = DensityDiffusion(0.1, 0.1, 20.0)(T(1000.0), T(1000.0 + u), greater(u, T(0.0)), r.gradient);
   r.f[0] = r.f[1] = 0.0;
   r.loss = LaminarViscosity<2>(0.1, central)(r.gradient, rsq, 0.02, T(1e-4), x, v, r.f);
   r.sum = q;

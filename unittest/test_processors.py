@@ -1,0 +1,51 @@
+"""Processors without AVX2: they go pair by pair, and never into a function that is compiled for it."""
+
+import re
+import sys
+
+import numpy as np
+import pytest
+from scenes import RUBBER, WATER, Scene, cloud
+
+from fsi import paths
+
+sys.path.insert(0, str(paths.ROOT / "bench"))
+import effects  # noqa: E402
+import measure  # noqa: E402
+
+COMPILED_FOR_AVX2 = {name for file in (paths.ROOT / "src/FSI").iterdir()
+                     for name in re.findall(r"\bFSI_AVX2\s+(?:static\s+|inline\s+)?\w+\s+(\w+)\(", file.read_text())}
+DECKS = {"water": {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1", "walls": "yes"},
+         "number density": {"hub": "fluid summation"}, "bare": {}, "watched": {"commands": "fix watch all fsi/watch 1"}}
+
+
+def entered():
+    """The functions compiled for AVX2 that some scenes run through, with what is left of their names."""
+    found = set()
+    for _, counts in measure.profiles([effects.write_materials(effects.fluid(12, 8, **deck)) for deck in DECKS.values()]):
+        found |= {name for name in COMPILED_FOR_AVX2 for function in counts if re.search(rf"\b{name}\b", function)}
+    return found
+
+
+def test_without_avx2_nothing_compiled_for_it_is_entered(monkeypatch):
+    """FSI_PACKS=no is what a processor without it says; there one instruction of such a function ends the run, in a loop over nothing, too."""
+    assert len(COMPILED_FOR_AVX2) >= 2
+    assert entered() == COMPILED_FOR_AVX2  # they would be seen
+    monkeypatch.setenv("FSI_PACKS", "no")
+    assert not entered()
+
+
+@pytest.mark.parametrize("n", [(12, 10), (6, 5, 5)])
+def test_both_ways_agree(monkeypatch, n):
+    """Sums of some 30 pairs in another order, over 20 steps of a cloud in which round-off does not grow yet."""
+    x, v = cloud(n, 0.1, seed=4, vmax=1.0)
+    kind = np.where(x[:, 0] > 0.9 * x[:, 0].max(), 2, 1)
+    found = []
+    for packs in ("yes", "no"):
+        monkeypatch.setenv("FSI_PACKS", packs)
+        with Scene(x, v, dim=len(n), dx=0.1, type=kind, materials=(WATER, RUBBER), fluid="artificial/visc 0.1 0.1 density/diffusion 0.1", dt=1e-4,
+                   solid_style="fsi/solid/tl", commands=["fix w all fsi/wall/mirror ylo -0.1", "fix g all gravity 9.81 vector 0 -1 0"]) as s:
+            s.run(20)
+            found.append(np.hstack([s.get("x"), s.get("v"), s.get("rho")[:, None] / 1000.0]))
+    assert np.any(found[0] != found[1])  # two ways they are
+    np.testing.assert_allclose(found[0], found[1], rtol=0, atol=1e-11)
