@@ -129,7 +129,7 @@ def test_nan_force_in_the_run(tmp_path):
 
 
 CHANGES = [("v", 11.0, "Mach number", 20), ("v", np.nan, "(velocity|force) is not finite", 20), ("rho", 0.0, "density \\S+ is not above 0|Mach|not finite", 20),
-           ("rho", -1e3, "density \\S+ is not above 0|Mach|not finite", 20), ("rho", np.nan, "(density|force) is not finite", 20), ("rho", 1e21, "not finite", 20),
+           ("rho", np.nan, "(density|force) is not finite", 20), ("rho", 1e21, "not finite", 20),
            ("x", np.nan, "(position|force) is not finite", 20),
            ("f", 1e12, "Mach number", 13), ("f", np.inf, "force is not finite", 13), ("f", 1e280, "not finite", 13)]
 
@@ -208,7 +208,7 @@ def test_the_cause_is_told_even_if_nothing_can_be_written(tmp_path):
 
 
 BAD = [("mach", r"fix fsi mach command: missing"), ("mach 0", r"mach 0 must be > 0"), ("mach -1", r"mach -1 must be > 0"),
-       ("mach nan", r"mach nan"), ("mach 1e30", r"mach 1e30 must be"), ("mach fast", r"fast")]
+       ("mach nan", r"mach nan"), ("mach 1e30", r"mach 1e30 is too large"), ("mach fast", r"fast")]
 
 
 @pytest.mark.parametrize("words, message", BAD, ids=[words for words, _ in BAD])

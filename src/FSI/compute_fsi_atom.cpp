@@ -73,6 +73,7 @@ void ComputeFSIAtom::init()
 void ComputeFSIAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
+  hub = FixFSI::ready(lmp, "Compute fsi/atom");
   const int n = quantity.size();
   if (atom->nmax > nmax) {
     nmax = atom->nmax;

@@ -78,6 +78,7 @@ double ComputeFSIEnergy::compute_scalar()
 void ComputeFSIEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
+  hub = FixFSI::ready(lmp, "Compute fsi/energy");
   double mine[NHAVE + FixFSI::NTERM] = {};
   double **v = atom->v;
   double **f = atom->f;

@@ -102,6 +102,7 @@ void ComputeFSIForce::tally(double sign)
 void ComputeFSIForce::compute_vector()
 {
   invoked_vector = update->ntimestep;
+  hub = FixFSI::ready(lmp, "Compute fsi/force");
   if (reduced) return;
   reduced = true;
   double all[NSUM];

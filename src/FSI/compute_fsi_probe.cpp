@@ -199,6 +199,7 @@ void ComputeFSIProbe::find_near()
 
 void ComputeFSIProbe::sum_up()
 {
+  hub = FixFSI::ready(lmp, "Compute fsi/probe");
   if (listed != neighbor->lastcall || update->whichflag == 0) find_near();
 
   const int npoints = points.size() / 3;

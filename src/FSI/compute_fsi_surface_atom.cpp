@@ -63,6 +63,7 @@ void ComputeFSISurfaceAtom::init()
 void ComputeFSISurfaceAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
+  hub = FixFSI::ready(lmp, "Compute fsi/surface/atom");
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
     memory->destroy(vector_atom);

@@ -30,6 +30,7 @@
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_lattice.h"
+#include "fsi_record.h"
 #include "fsi_tensor.h"
 #include "group.h"
 #include "memory.h"
@@ -52,23 +53,27 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi"), psi(nullptr), rate(nullptr),
+    FixFields(lmp, narg, arg), keywords(lmp, "fix fsi"), psi(nullptr), rate(nullptr),
     shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), wall_stiffness(nullptr), fix_stress(nullptr), fluid(nullptr),
-    solid(nullptr), solid_tl(nullptr), fix_dt(nullptr), profile(nullptr), check(nullptr), stagger(0.0), summed(nullptr), ratio(nullptr), nmax(0),
-    tally_dt(0.0), need_psi(false), need_grad(false), need_ratio(false), need_shift(false), keep_psi(false), send_psi(true)
+    solid(nullptr), solid_tl(nullptr), fix_dt(nullptr), profile(nullptr), check(nullptr), stagger(0.0), forward(lmp, state), back(lmp, state),
+    scalar_back(lmp, state), summed(nullptr), ratio(nullptr), tally_dt(0.0), need_psi(false), need_grad(false), need_shift(false), keep_psi(false),
+    send_psi(true), nlocal_ready(-1), ids_checked(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
   static const std::vector<std::string> modes = {"continuity", "summation", "ratio"};
-  keywords.argument("particle spacing").number(dx, 0.0, Range::above(0.0));
-  keywords.argument("kernel").choice(kernel, CUBIC, {"cubic", "quintic", "wendland"});
-  keywords.argument("smoothing length over spacing").number(hdx, 0.0, Range::between(0.9, 4.0));
-  keywords.key("fluid").choice(density_fluid, CONTINUITY, modes, "density");
-  keywords.key("solid").choice(density_solid, CONTINUITY, modes, "density");
-  keywords.key("substeps").integer(substeps, 1, 1, 10000);
+  static const char *const other_kernel = "masses of particles and bonds of total-Lagrangian solids are still those of the old one";
+  static const char *const other_mode = "continuity and ratio go on from the density that there is, summation makes it anew";
+  keywords.argument("particle spacing").number(dx, 0.0, Range::above(0.0)).kept("that of the particles cannot change");
+  keywords.argument("kernel").choice(kernel, CUBIC, {"cubic", "quintic", "wendland"}).changes(other_kernel);
+  keywords.argument("smoothing length over spacing").number(hdx, 0.0, Range::between(0.9, 4.0)).changes(other_kernel);
+  keywords.key("fluid").choice(density_fluid, CONTINUITY, modes, "density").changes(other_mode);
+  keywords.key("solid").choice(density_solid, CONTINUITY, modes, "density").changes(other_mode);
+  keywords.key("substeps").integer(given_substeps, 1, 1, 10000);
   keywords.key("surface/every").integer(surface_every, 1, 1);
   keywords.key("mach").number(mach, 1.0, Range::above(0.0)).or_word("off", Check::OFF);
   keywords.parse(narg - 3, arg + 3);
+  substeps = given_substeps;
 
   dim = domain->dimension;
   h = hdx * dx;
@@ -84,15 +89,10 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   time_integrate = 1;
   force_reneighbor = 1;
   create_attribute = 1;
-  need_ratio = density_fluid == RATIO || density_solid == RATIO;
+  restart_global = 1;
   keep_psi = surface_every > 1 && density_fluid == CONTINUITY && density_solid == CONTINUITY;
-  if (need_ratio || keep_psi) {
-    restart_peratom = 1;
-    grow_arrays(atom->nmax);
-    for (int i = 0; i < atom->nlocal; i++) travels()[i] = 0.0;
-    atom->add_callback(Atom::GROW);
-    atom->add_callback(Atom::RESTART);
-  }
+  set_fields();
+  register_fields();
   comm_reverse = 1;    // more with solids, see init()
 }
 
@@ -100,19 +100,41 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
 FixFSI::~FixFSI()
 {
-  if ((need_ratio || keep_psi) && modify->get_fix_by_id(id)) {
-    atom->delete_callback(id, Atom::GROW);
-    atom->delete_callback(id, Atom::RESTART);
-  }
-  memory->destroy(ratio);
-  memory->destroy(psi);
-  memory->destroy(rate);
-  memory->destroy(shift);
-  memory->destroy(grad);
-  memory->destroy(wmask);
-  memory->destroy(wall_velocity);
-  memory->destroy(wall_stiffness);
   delete check;
+}
+
+/* ----------------------------------------------------------------------
+   the arrays that the effects need which there are now
+------------------------------------------------------------------------- */
+
+void FixFSI::set_fields()
+{
+  const bool ratios = density_fluid == RATIO || density_solid == RATIO;
+  const bool noslip = std::any_of(particle_walls.begin(), particle_walls.end(), [](const auto *fix) { return !fix->slip; });
+  fields.set("reference of ratio", Fields::FILE, ratios, ratio);
+  fields.set("number density", keep_psi ? Fields::FILE : Fields::STEP, keep_psi || need_psi, psi);
+  fields.set("density rate", Fields::STEP, fluid && density_fluid == CONTINUITY, rate);
+  fields.set("shift", Fields::STEP, need_shift, shift, nshift());
+  fields.set("velocity gradient", Fields::STEP, need_grad, grad, need_grad ? ngrad() : 0);
+  fields.set("walls near", Fields::STEP, !wall_fixes.empty(), wmask);
+  fields.set("wall velocity", Fields::STEP, noslip, wall_velocity, 3);
+  fields.set("wall stiffness", Fields::STEP, !particle_walls.empty() && several_stiffnesses(), wall_stiffness);
+
+  forward.clear();
+  forward.add(atom->rho, {NONE, FLUID, SOLID, RIGID});
+  if (need_psi) forward.add(psi, {NONE, FLUID, SOLID, RIGID}, &send_psi);
+  if (solid) {
+    forward.add(fix_stress->stress, 0, dim == 2 ? 3 : 6, {SOLID});
+    forward.add(grad, dim * dim, dim * solid->terms(), {SOLID});
+  }
+  back.clear();
+  if (need_grad) back.add(grad, 0, ngrad(), {SOLID});
+  if (fluid && density_fluid == CONTINUITY) back.add(rate, {FLUID, RIGID});
+  if (need_shift) back.add(shift, 0, nshift(), {FLUID, RIGID});
+  scalar_back.clear();
+  scalar_back.add(summed, {NONE, FLUID, SOLID, RIGID});
+  comm_forward = forward.size();
+  comm_reverse = std::max(1, back.size());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -122,6 +144,15 @@ FixFSI *FixFSI::find(LAMMPS *lmp, const std::string &who)
   auto fixes = lmp->modify->get_fix_by_style("^fsi$");
   if (fixes.empty()) lmp->error->all(FLERR, "{} requires fix fsi, which holds particle spacing and kernel", who);
   return dynamic_cast<FixFSI *>(fixes[0]);
+}
+
+FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
+{
+  FixFSI *const hub = find(lmp, who);
+  int mine = hub->nlocal_ready != lmp->atom->nlocal, any = 0;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
+  if (any) lmp->error->all(FLERR, "{} needs a run before it, if only run 0, and after atoms are made or deleted", who);
+  return hub;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -174,7 +205,8 @@ void FixFSI::init()
   auto dt = modify->get_fix_by_style("^fsi/dt$");
   fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
   stagger = 0.0;
-  nmax = 0;    // effects that came since the last run need their arrays
+  nlocal_ready = -1;
+  restore_clock();
   auto report = modify->get_fix_by_style("^fsi/report$");
   profile = report.empty() ? nullptr : &dynamic_cast<FixFSIReport *>(report[0])->profile;
 
@@ -190,9 +222,7 @@ void FixFSI::init()
       (solid && density_solid != CONTINUITY);
   need_grad = solid != nullptr;
   need_shift = fluid && fluid->shifting > 0.0;
-  // most that is sent for one atom: number density, density, stress and the gradient's coefficients; sums of gradient and shift back
-  comm_forward = 2 + (solid ? (dim == 2 ? 3 : 6) + dim * solid->terms() : 0);
-  comm_reverse = std::max(solid ? ngrad() : 1, 1 + (need_shift ? nshift() : 0));
+  set_fields();
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
 
@@ -216,6 +246,7 @@ void FixFSI::init()
 
 void FixFSI::setup(int)
 {
+  clock.reset();
   announce();
   check->setup();
 }
@@ -271,7 +302,7 @@ void FixFSI::announce()
   const int both = 1 + send * (1 + newton);
   const int fluid_ghost = fluid ? both + newton * (density_fluid == CONTINUITY) * (1 + ns) : 0;
   int solid_ghost = both;
-  if (solid) solid_ghost += comm_forward - 2 + newton * ng + hourglass * (dim * dim + newton * dim);
+  if (solid) solid_ghost += (dim == 2 ? 3 : 6) + dim * solid->terms() + newton * ng + hourglass * (dim * dim + newton * dim);
   if (solid_tl) solid_ghost += substeps * dim + (substeps > 1 ? substeps * solid_tl->comm_forward : 0);
   text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", forward, back,
                       !solid_tl ? "" : substeps > 1 ? fmt::format("; {} each way for solid sub-steps, where they carry solids", substeps) : "; 1 back for solid forces");
@@ -332,17 +363,17 @@ struct Peek : FixGravity {
 
 void FixFSI::find_gravity()
 {
-  fields.clear();
+  body_forces.clear();
   for (auto &fix : modify->get_fix_by_style("^gravity"))
     if (auto *g = dynamic_cast<FixGravity *>(fix)) {
-      fields.push_back({g, Peek::is_disabled(g) ? 0 : g->groupbit, Peek::has_variable(g), {0.0, 0.0, 0.0}});
+      body_forces.push_back({g, Peek::is_disabled(g) ? 0 : g->groupbit, Peek::has_variable(g), {0.0, 0.0, 0.0}});
       g->init();    // its variables are looked up
     }
-  const int ntypes = atom->ntypes, nfields = fields.size();
+  const int ntypes = atom->ntypes, nfields = body_forces.size();
   const auto at = [ntypes](int field, int type) { return (size_t) field * (ntypes + 1) + type; };
   std::vector<int> without(nfields * (ntypes + 1), 0), with(without), some(without);
   for (int i = 0; i < atom->nlocal; i++)
-    for (int k = 0; k < nfields; k++) (atom->mask[i] & fields[k].mask ? with : without)[at(k, atom->type[i])] = 1;
+    for (int k = 0; k < nfields; k++) (atom->mask[i] & body_forces[k].mask ? with : without)[at(k, atom->type[i])] = 1;
   acts_on_all.resize(without.size());
   MPI_Allreduce(without.data(), acts_on_all.data(), (int) without.size(), MPI_INT, MPI_MAX, world);
   MPI_Allreduce(with.data(), some.data(), (int) with.size(), MPI_INT, MPI_MAX, world);
@@ -350,8 +381,8 @@ void FixFSI::find_gravity()
     for (int t = 1; t <= ntypes; t++) {
       if (some[at(k, t)] && acts_on_all[at(k, t)] && state[t].species == FLUID && comm->me == 0)
         error->warning(FLERR, "Fix gravity {} acts on a part of the particles of type {} only: for what is hydrostatic between them, as in "
-                              "density diffusion, it does not count", fields[k].fix->id, t);
-      acts_on_all[at(k, t)] = fields[k].mask && !acts_on_all[at(k, t)];
+                              "density diffusion, it does not count", body_forces[k].fix->id, t);
+      acts_on_all[at(k, t)] = body_forces[k].mask && !acts_on_all[at(k, t)];
     }
   gravity.assign(ntypes + 1, {0.0, 0.0, 0.0});
 }
@@ -366,7 +397,7 @@ void FixFSI::update_gravity(bool advance)
 {
   gravity.assign(atom->ntypes + 1, {0.0, 0.0, 0.0});
   size_t on = 0;
-  for (auto &field : fields) {
+  for (auto &field : body_forces) {
     if (field.varies) {
       const int groupbit = field.fix->groupbit;
       field.fix->groupbit = 0;
@@ -394,7 +425,7 @@ void FixFSI::update_gravity(bool advance)
 std::array<double, 3> FixFSI::body_force(int i) const
 {
   std::array<double, 3> g = {0.0, 0.0, 0.0};
-  for (const auto &field : fields)
+  for (const auto &field : body_forces)
     if (atom->mask[i] & field.mask)
       for (int d = 0; d < 3; d++) g[d] += field.g[d];
   return g;
@@ -631,20 +662,8 @@ void FixFSI::substep_solids()
 void FixFSI::update_state(bool advance)
 {
   const int nall = atom->nlocal + atom->nghost;
-  if (atom->nmax > nmax) {
-    nmax = atom->nmax;
-    if (need_psi) memory->grow(psi, nmax, "fsi:psi");
-    if (fluid && density_fluid == CONTINUITY) memory->grow(rate, nmax, "fsi:rate");
-    if (need_shift) memory->grow(shift, nmax, nshift(), "fsi:shift");
-    if (need_grad) memory->grow(grad, nmax, ngrad(), "fsi:grad");
-    if (!wall_fixes.empty()) memory->grow(wmask, nmax, "fsi:wmask");
-    if (std::any_of(particle_walls.begin(), particle_walls.end(), [](const auto *fix) { return !fix->slip; })) {
-      memory->grow(wall_velocity, nmax, 3, "fsi:wall_velocity");
-      memset(wall_velocity[0], 0, (size_t) nmax * 3 * sizeof(double));
-    }
-    if (!particle_walls.empty() && several_stiffnesses()) memory->grow(wall_stiffness, nmax, "fsi:wall_stiffness");
-    else memory->destroy(wall_stiffness);
-  }
+  fields.grow();
+  nlocal_ready = atom->nlocal;
 
   tally_dt = (ledger && advance) ? update->dt : 0.0;
   update_gravity(advance);
@@ -888,164 +907,126 @@ template <int D, int TERMS> void FixFSI::advance_solids(bool advance)
 }
 
 /* ----------------------------------------------------------------------
-   ghosts get density, number density where in use, and stress where they are solid
+   ghosts get density, number density where in use, stress and the gradient's coefficients where they are solid; back come the sums that
+   pairs left on them
 ------------------------------------------------------------------------- */
 
 int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
-  const double *const rho = atom->rho;
-  const int *const type = atom->type;
-  const int ns = (dim == 2) ? 3 : 6;
-  int m = 0;
-  for (int ii = 0; ii < n; ii++) {
-    const int i = list[ii];
-    buf[m++] = rho[i];
-    if (send_psi) buf[m++] = psi[i];
-    if (solid && state[type[i]].species == SOLID) {
-      for (int k = 0; k < ns; k++) buf[m++] = fix_stress->stress[i][k];
-      for (int k = 0; k < dim * solid->terms(); k++) buf[m++] = grad[i][dim * dim + k];
-    }
-  }
-  return m;
+  return forward.pack(n, list, buf);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSI::unpack_forward_comm(int n, int first, double *buf)
 {
-  double *rho = atom->rho;
-  const int *const type = atom->type;
-  const int ns = (dim == 2) ? 3 : 6;
-  int m = 0;
-  for (int i = first; i < first + n; i++) {
-    rho[i] = buf[m++];
-    if (send_psi) psi[i] = buf[m++];
-    if (solid && state[type[i]].species == SOLID) {
-      for (int k = 0; k < ns; k++) fix_stress->stress[i][k] = buf[m++];
-      for (int k = 0; k < dim * solid->terms(); k++) grad[i][dim * dim + k] = buf[m++];
-    }
-  }
+  forward.unpack(n, first, buf);
 }
-
-/* ----------------------------------------------------------------------
-   sums that pairs left on ghosts: one value for a fluid atom, the gradient sums for a solid one
-------------------------------------------------------------------------- */
 
 int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 {
-  const int *const type = atom->type;
-  const int ng = grad ? ngrad() : 0, ns = nshift();    // without solids there is no gradient
-  int m = 0;
-  for (int i = first; i < first + n; i++) {
-    if (summed) buf[m++] = summed[i];
-    else if (state[type[i]].species == SOLID) {
-      if (grad)
-        for (int k = 0; k < ng; k++) buf[m++] = grad[i][k];
-    } else if (rate) {
-      buf[m++] = rate[i];
-      if (need_shift)
-        for (int k = 0; k < ns; k++) buf[m++] = shift[i][k];
-    }
-  }
-  return m;
+  return (summed ? scalar_back : back).pack_back(n, first, buf);
+}
+
+void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  (summed ? scalar_back : back).add_up(n, list, buf);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  const int *const type = atom->type;
-  const int ng = grad ? ngrad() : 0, ns = nshift();    // without solids there is no gradient
-  int m = 0;
-  for (int ii = 0; ii < n; ii++) {
-    const int i = list[ii];
-    if (summed) summed[i] += buf[m++];
-    else if (state[type[i]].species == SOLID) {
-      if (grad)
-        for (int k = 0; k < ng; k++) grad[i][k] += buf[m++];
-    } else if (rate) {
-      rate[i] += buf[m++];
-      if (need_shift)
-        for (int k = 0; k < ns; k++) shift[i][k] += buf[m++];
-    }
-  }
-}
-
-/* ----------------------------------------------------------------------
-   the reference of density mode ratio, or the number density that is kept, travels with the atom and through restarts
-------------------------------------------------------------------------- */
-
-void FixFSI::grow_arrays(int n)
-{
-  memory->grow(travels(), n, "fsi:travels");
-}
-
-void FixFSI::copy_arrays(int i, int j, int)
-{
-  travels()[j] = travels()[i];
-}
-
 void FixFSI::set_arrays(int i)
 {
-  if (need_ratio || keep_psi) travels()[i] = 0.0;
+  fields.begin(i);
   give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
     error->one(FLERR, "Fluid atom {} was made during a run and is not in group {} of fix {}: it would hang in the air. Give the fix that "
                       "makes it that group", atom->tag[i], group->names[igroup], id);
 }
 
-int FixFSI::pack_exchange(int i, double *buf)
+/* ----------------------------------------------------------------------
+   Restart files: the command, the clock, what the ledger's terms have taken; per atom the reference of density mode ratio, or the
+   number density that is kept.
+------------------------------------------------------------------------- */
+
+void FixFSI::write_restart(FILE *fp)
 {
-  buf[0] = travels()[i];
-  return 1;
+  double all[NTERM];
+  MPI_Allreduce(taken, all, NTERM, MPI_DOUBLE, MPI_SUM, world);
+  Record record(lmp, "fix fsi");
+  keywords.write(record);
+  record.add("step", std::to_string(update->ntimestep));
+  record.add("clock's step", std::to_string(update->atimestep));
+  record.add("clock", std::vector<double>{update->dt, update->atime});
+  if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
+  fields.write(record);
+  record.write(fp);
 }
 
-int FixFSI::unpack_exchange(int i, double *buf)
+void FixFSI::restart(char *buf)
 {
-  travels()[i] = buf[0];
-  return 1;
+  const Record record(lmp, "fix fsi", buf);
+  keywords.compare(record);
+  const bool other_kernel = keywords.differs(record, "kernel") || keywords.differs(record, "smoothing length over spacing");
+  if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))
+    error->all(FLERR, "Fix fsi: density mode summation must keep kernel and smoothing length of the restart file, for which its masses were made");
+  if (other_kernel) fields.read(record, {"reference of ratio", "number density"});
+  else fields.read(record);
+
+  const auto at = record.numbers("clock");
+  clock = Clock{std::stoll(record.value("step")), std::stoll(record.value("clock's step")), at[0], at[1]};
+  if (record.has("ledger") && comm->me == 0) {
+    const auto terms = record.numbers("ledger");
+    std::copy_n(terms.begin(), std::min(terms.size(), (size_t) NTERM), taken);
+  }
 }
 
-int FixFSI::pack_restart(int i, double *buf)
-{
-  buf[0] = 2;
-  buf[1] = travels()[i];
-  return 2;
-}
+/* ----------------------------------------------------------------------
+   LAMMPS counts time from a step on, and forgets that step at each init: in a run that goes on without a timestep command the time
+   since then is lost. With the numbers of the file it is that of the uninterrupted run, bit for bit. Where a command has set another
+   time or step, that holds.
+------------------------------------------------------------------------- */
 
-void FixFSI::unpack_restart(int i, int nth)
+void FixFSI::restore_clock()
 {
-  travels()[i] = restart_values(atom->extra[i], nth)[0];
-}
-
-const double *FixFSI::restart_values(const double *extra, int nth)
-{
-  while (nth-- > 0) extra += static_cast<int>(extra[0]);
-  return extra + 1;
-}
-
-int FixFSI::size_restart(int)
-{
-  return 2;
-}
-
-int FixFSI::maxsize_restart()
-{
-  return 2;
+  if (!clock) return;
+  const Clock &c = *clock;
+  const double elapsed = c.time + (c.step - c.first_step) * c.dt, now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  const bool forgotten = update->atime == c.time || std::fabs(now - elapsed) <= 1.0e-12 * std::fabs(elapsed);
+  if (update->ntimestep != c.step || !forgotten) return;
+  if (update->dt == c.dt) {
+    update->atime = c.time;
+    update->atimestep = c.first_step;
+  } else {
+    update->atime = elapsed;
+    update->atimestep = c.step;
+  }
 }
 
 /* ---------------------------------------------------------------------- */
 
-double FixFSI::memory_usage()
+// LAMMPS shows what it has read to classes derived from its own only
+namespace {
+struct Stored : public Modify {
+  static constexpr auto global_id = &Stored::id_restart_global, global_style = &Stored::style_restart_global;
+  static constexpr auto global_used = &Stored::used_restart_global;
+};
+}    // namespace
+
+void FixFSI::check_restart_ids()
 {
-  double bytes = 0.0;
-  if (psi) bytes += (double) nmax * sizeof(double);
-  if (rate) bytes += (double) nmax * sizeof(double);
-  if (shift) bytes += (double) nmax * nshift() * sizeof(double);
-  if (grad) bytes += (double) nmax * ngrad() * sizeof(double);
-  if (wmask) bytes += (double) nmax * sizeof(int);
-  if (wall_velocity) bytes += (double) nmax * 3 * sizeof(double);
-  if (wall_stiffness) bytes += (double) nmax * sizeof(double);
-  if (ratio) bytes += (double) atom->nmax * sizeof(double);
-  return bytes;
+  if (ids_checked) return;
+  ids_checked = true;
+  for (int k = 0; k < modify->nfix_restart_global; k++) {
+    if ((modify->*Stored::global_used)[k]) continue;
+    const std::string style_before = (modify->*Stored::global_style)[k], id_before = (modify->*Stored::global_id)[k];
+    if (!utils::strmatch(style_before, "^fsi")) continue;
+    for (const auto *fix : modify->get_fix_by_style("^" + style_before + "$")) {
+      if (fix->restart_reset) continue;
+      const auto text = fmt::format("Fix {} (style {}) takes nothing from the restart file, in which it had the ID {}: give it that ID",
+                                    fix->id, style_before, id_before);
+      if (style_before == "fsi" || style_before == "fsi/stress") error->all(FLERR, text);
+      if (comm->me == 0) error->warning(FLERR, text);
+    }
+    if (style_before == "fsi/reference" && force->pair_match("^fsi/solid$", 0) && comm->me == 0)
+      error->warning(FLERR, "The strain of total-Lagrangian solids in the restart file is lost: they go on in pair_style fsi/solid");
+  }
 }

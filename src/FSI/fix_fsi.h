@@ -21,13 +21,14 @@ FixStyle(fsi,FixFSI);
 #define LMP_FIX_FSI_H
 
 #include "atom.h"
-#include "fix.h"
+#include "fsi_fields.h"
 #include "fsi_keywords.h"
 #include "fsi_material.h"
 #include "fsi_profile.h"
 #include "fsi_walls.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,14 +40,18 @@ namespace FSI {
 // The centre of the package: holds the discretisation (spacing, kernel), integrates in time (position Verlet) and
 // brings density and stress of every particle to the middle of the step before forces are computed.
 
-class FixFSI : public Fix {
+class FixFSI : public FSI::FixFields {
  public:
   enum Density { CONTINUITY, SUMMATION, RATIO };
 
   FixFSI(class LAMMPS *, int, char **);
+  ~FixFSI() override;
   // the fix fsi of this LAMMPS; an error that names who needs it if there is none
   static FixFSI *find(class LAMMPS *, const std::string &who);
-  ~FixFSI() override;
+  // the same, for who needs what the setup of a run finds: an error if there was none since atoms were made or deleted
+  static FixFSI *ready(class LAMMPS *, const std::string &who);
+  // once, before the first run after a restart file was read: what the file keeps for fixes that go by another ID now
+  void check_restart_ids();
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -59,16 +64,9 @@ class FixFSI : public Fix {
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;
   void unpack_reverse_comm(int, int *, double *) override;
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
   void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
-  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
 
   // the rows of a per-atom array, which LAMMPS allocates in one piece, without the way through its pointers to them
   typedef double Row[3];
@@ -87,9 +85,6 @@ class FixFSI : public Fix {
   // state per atom type; pair styles enter theirs in init_style()
   std::vector<FSI::State> state;
   void enter_state(int type, const FSI::State &);
-
-  // the values that a fix left in a restart file for an atom: the nth set of its atom->extra, each preceded by its length
-  static const double *restart_values(const double *extra, int nth);
 
   // per atom, local and ghost; valid from pre_force on
   double *psi;      // number density, if any mode or rule needs it
@@ -118,13 +113,13 @@ class FixFSI : public Fix {
   FSI::Walls walls;     // at the time of the positions in atom->x
 
   // body forces per mass: each fix gravity as it acts in this step, and for each type the sum of those that act on all its particles
-  struct Field {
+  struct BodyForce {
     Fix *fix;
     int mask;    // of its group; 0 if it is disabled
     bool varies;
     double g[3];
   };
-  std::vector<Field> fields;
+  std::vector<BodyForce> body_forces;
   std::vector<std::array<double, 3>> gravity;
   void update_gravity(bool advance);
   std::array<double, 3> body_force(int i) const;    // on atom i, over its mass
@@ -134,7 +129,7 @@ class FixFSI : public Fix {
   class PairFSIFluid *fluid;
   class PairFSISolid *solid;
   class PairFSISolidTL *solid_tl;
-  int substeps;    // of total-Lagrangian solids in each step
+  int substeps;    // of total-Lagrangian solids in each step: as given, or as fix fsi/dt has chosen
   int surface_every;    // steps from one number density to the next of the free-surface rule
   class FixFSIDt *fix_dt;    // changes the time step; null: nothing does
   FSI::Profile *profile;     // of fix fsi/report; null: there is none
@@ -164,15 +159,29 @@ class FixFSI : public Fix {
   void add_wall_force(int wall, int axis, double f);    // f on the fluid; counted by the wall's fix
 
  private:
-  double *summed;    // per-atom scalar whose ghost parts a reverse communication adds up; null: rate and grad
+  FSI::Message forward, back, scalar_back;    // to ghosts, and sums from them; of one array of numbers per atom
+  double *summed;                             // that array; null: the other
+  void set_fields();
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
-  int nmax;
   double hdx;    // h over dx
+  int given_substeps;
   double tally_dt;
-  bool need_psi, need_grad, need_ratio, need_shift;
+  bool need_psi, need_grad, need_shift;
   bool keep_psi;    // number density is that of some steps only: it travels with its atom and through restarts
   bool send_psi;    // in this step
-  double *&travels() { return keep_psi ? psi : ratio; }
+  // simulated time as the restart file has it, which LAMMPS forgets where it has no timestep command after reading
+  struct Clock {
+    bigint step, first_step;
+    double dt, time;
+  };
+  std::optional<Clock> clock;    // until the first run
+  int nlocal_ready;            // atoms when the state was last brought up to date; -1: not since init()
+  bool ids_checked;
+
+ public:
+  void restore_clock();
+
+ private:
   bool psi_is_due(bool advance) const;
   bool restores_volumes() const;
 

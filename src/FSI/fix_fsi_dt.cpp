@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_record.h"
 #include "modify.h"
 #include "output.h"
 #include "pair.h"
@@ -40,7 +41,7 @@ static constexpr double PRINT = 0.95;    // causes whose limits differ by less t
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), hub(nullptr), keywords(lmp, "fix fsi/dt"), cut(false), limits(lmp), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0),
-    next_substeps(0), warned(0), restored(false), atime(0.0), atimestep(0)
+    next_substeps(0), warned(0), restored(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   keywords.argument("interval").integer(interval, 1, 1);
@@ -97,11 +98,19 @@ void FixFSIDt::init()
                  fix->style, hub->id);
   }
   if (restored) {
-    // whatever a timestep command between read_restart and here has said; without one LAMMPS forgets the time since atimestep
-    update->atime = atime;
-    update->atimestep = atimestep;
+    // whatever a timestep command between read_restart and here has said
+    dt = std::min(dt, high);
+    next_dt = std::min(next_dt, high);
+    update->update_time();
     update->dt = dt;
     update->dt_default = 0;
+    // who was asked before has taken the other one
+    if (force->pair) force->pair->reset_dt();
+    for (auto &fix : modify->get_fix_list()) {
+      if (fix == this) break;
+      fix->reset_dt();
+    }
+    hub->restore_clock();
   }
 }
 
@@ -312,30 +321,29 @@ double FixFSIDt::compute_vector(int k)
 {
   if (k < NLIMIT) return limit[k];
   if (k == NLIMIT) return cause + 1;
-  return next_substeps ? next_substeps : hub->substeps;
+  return next_substeps ? next_substeps : hub ? hub->substeps : 0;
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixFSIDt::write_restart(FILE *fp)
 {
-  if (comm->me) return;
-  const double list[] = {dt, next_dt, (double) next_substeps, (double) ruling, update->atime, (double) update->atimestep};
-  const int size = sizeof(list);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list, size, 1, fp);
+  Record record(lmp, "fix fsi/dt");
+  keywords.write(record);
+  record.add("steps", std::vector<double>{dt, next_dt, (double) next_substeps, (double) ruling});
+  record.write(fp);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixFSIDt::restart(char *buf)
 {
-  const auto *const list = (double *) buf;
+  const Record record(lmp, "fix fsi/dt", buf);
+  keywords.compare(record);
+  const auto list = record.numbers("steps");
   dt = list[0];
   next_dt = list[1];
   if (automatic) next_substeps = static_cast<int>(list[2]);
   ruling = static_cast<int>(list[3]);
-  atime = list[4];
-  atimestep = static_cast<bigint>(list[5]);
   restored = dt > 0.0;
 }

@@ -71,8 +71,6 @@ class FixFSIDt : public Fix {
   int next_substeps;
   int warned;    // bits of causes
   bool restored;
-  double atime;    // clock of the restart file
-  bigint atimestep;
 
   void find_limits();
   void choose(double most);

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_record.h"
 #include "input.h"
 #include "lattice.h"
 #include "math_const.h"
@@ -33,11 +34,12 @@
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
+using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), source{FREE, FREE, FREE}, of_velocity{FREE, FREE, FREE}, origin(now()),
+    FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), source{FREE, FREE, FREE}, of_velocity{FREE, FREE, FREE}, origin(now()),
     original(nullptr), values(nullptr), nmax(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
@@ -129,12 +131,9 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
   }
 
   time_integrate = 1;
-  create_attribute = 1;
   restart_global = 1;
-  restart_peratom = 1;
-  FixFSIMove::grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
+  fields.set("place before the motion", Fields::FILE, true, original, 3);
+  register_fields();
   for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], original[i]);
 }
 
@@ -142,12 +141,6 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
 
 FixFSIMove::~FixFSIMove()
 {
-  if (copymode) return;
-  if (modify->get_fix_by_id(id)) {
-    atom->delete_callback(id, Atom::GROW);
-    atom->delete_callback(id, Atom::RESTART);
-  }
-  memory->destroy(original);
   memory->destroy(values);
 }
 
@@ -314,34 +307,24 @@ void FixFSIMove::move(When when)
 
 double FixFSIMove::memory_usage()
 {
-  return (3.0 * atom->nmax + 6.0 * nmax) * sizeof(double);
+  return FixFields::memory_usage() + 6.0 * nmax * sizeof(double);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixFSIMove::write_restart(FILE *fp)
 {
-  if (comm->me) return;
-  const int size = sizeof(origin);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&origin, size, 1, fp);
+  Record record(lmp, "fix fsi/move");
+  record.add("origin", std::vector<double>{origin});
+  fields.write(record);
+  record.write(fp);
 }
 
 void FixFSIMove::restart(char *buf)
 {
-  memcpy(&origin, buf, sizeof(origin));
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSIMove::grow_arrays(int n)
-{
-  memory->grow(original, n, 3, "fsi/move:original");
-}
-
-void FixFSIMove::copy_arrays(int i, int j, int)
-{
-  for (int k = 0; k < 3; k++) original[j][k] = original[i][k];
+  const Record record(lmp, "fix fsi/move", buf);
+  origin = record.numbers("origin")[0];
+  fields.read(record);
 }
 
 /* ----------------------------------------------------------------------
@@ -369,41 +352,4 @@ void FixFSIMove::set_arrays(int i)
     for (int k = 0; k < 3; k++) shift[k] = rate[k] * (style == LINEAR ? t : std::sin(omega * t));
   for (int k = 0; k < 3; k++)
     if (source[k] != FREE) original[i][k] -= shift[k];
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIMove::pack_exchange(int i, double *buf)
-{
-  for (int k = 0; k < 3; k++) buf[k] = original[i][k];
-  return 3;
-}
-
-int FixFSIMove::unpack_exchange(int i, double *buf)
-{
-  for (int k = 0; k < 3; k++) original[i][k] = buf[k];
-  return 3;
-}
-
-int FixFSIMove::pack_restart(int i, double *buf)
-{
-  buf[0] = 4;
-  for (int k = 0; k < 3; k++) buf[1 + k] = original[i][k];
-  return 4;
-}
-
-void FixFSIMove::unpack_restart(int i, int nth)
-{
-  const double *const saved = FixFSI::restart_values(atom->extra[i], nth);
-  for (int k = 0; k < 3; k++) original[i][k] = saved[k];
-}
-
-int FixFSIMove::maxsize_restart()
-{
-  return 4;
-}
-
-int FixFSIMove::size_restart(int)
-{
-  return 4;
 }

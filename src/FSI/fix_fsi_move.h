@@ -20,7 +20,7 @@ FixStyle(fsi/move,FixFSIMove);
 #ifndef LMP_FIX_FSI_MOVE_H
 #define LMP_FIX_FSI_MOVE_H
 
-#include "fix.h"
+#include "fsi_fields.h"
 
 #include <string>
 
@@ -29,7 +29,7 @@ namespace LAMMPS_NS {
 // Prescribed motion of walls and held solids as a function of time: fix move of LAMMPS for time steps that change, with
 // positions at the middle of the step where fix fsi has its forces.
 
-class FixFSIMove : public Fix {
+class FixFSIMove : public FSI::FixFields {
  public:
   FixFSIMove(class LAMMPS *, int, char **);
   ~FixFSIMove() override;
@@ -45,15 +45,7 @@ class FixFSIMove : public Fix {
   double memory_usage() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
   void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int maxsize_restart() override;
-  int size_restart(int) override;
 
  private:
   enum Style { LINEAR, WIGGLE, ROTATE, TRANSROT, VARIABLE };

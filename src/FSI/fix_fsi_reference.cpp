@@ -18,8 +18,10 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_fields.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
+#include "fsi_record.h"
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -43,7 +45,8 @@ FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), swaps(lmp), hub(nullptr), list(nullptr), slot(nullptr),
     maxbond(0), apart(0.0), layer(nullptr)
 {
-  restart_peratom = 1;
+  has_record = false;
+  restart_peratom = restart_global = 1;
   create_attribute = 1;
   stores_ids = 1;
   maxexchange = 2;
@@ -78,6 +81,11 @@ int FixFSIReference::setmask()
 void FixFSIReference::init()
 {
   hub = FixFSI::find(lmp, "Fix fsi/reference");
+  int mine = std::any_of(slot, slot + atom->nlocal, [](int s) { return s >= 0; }), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) made.clear();
+  else if (made != as_now())
+    error->all(FLERR, "Pair style fsi/solid/tl {}: the bonds of its bodies were made with {}, and stay so", as_now(), made);
   neighbor->add_request(this, NeighConst::REQ_FULL | NeighConst::REQ_OCCASIONAL);
 }
 
@@ -232,6 +240,7 @@ void FixFSIReference::take()
       error->one(FLERR, "Solid atom {} has no bonds to body {}, which took them when an earlier run began: make a body at once, or give "
                         "the atom a molecule ID of its own", atom->tag[i], atom->molecule[i]);
 
+  made = as_now();
   neighbor->build_one(list);
   if (domain->dimension == 2) take_reference<2>(bare);
   else take_reference<3>(bare);
@@ -635,9 +644,33 @@ int FixFSIReference::pack_restart(int i, double *buf)
   return (int) buf[0];
 }
 
+std::string FixFSIReference::as_now() const
+{
+  return fmt::format("gradient {} volumes {}", quadratic ? "quadratic" : "linear", end_corrected ? "corrected" : "plain");
+}
+
+void FixFSIReference::write_restart(FILE *fp)
+{
+  Record record(lmp, "fix fsi/reference");
+  record.add("bonds", made.empty() ? as_now() : made);
+  record.add("numbers of a bond", std::to_string(nvalue));
+  record.write(fp);
+}
+
+void FixFSIReference::restart(char *buf)
+{
+  const Record record(lmp, "fix fsi/reference", buf);
+  made = record.value("bonds");
+  if (record.value("numbers of a bond") != std::to_string(nvalue))
+    error->all(FLERR, "The restart file has bonds of {} numbers, this version of pair_style fsi/solid/tl needs {}",
+               record.value("numbers of a bond"), nvalue);
+  has_record = true;
+}
+
 void FixFSIReference::unpack_restart(int i, int nth)
 {
-  unpack(i, FixFSI::restart_values(atom->extra[i], nth));
+  if (!has_record) error->one(FLERR, "The restart file was written by another version of the FSI package: it does not say what its bonds are");
+  unpack(i, restart_values(atom->extra[i], nth) + 1);
 }
 
 int FixFSIReference::size_restart(int i)

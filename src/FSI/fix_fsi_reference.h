@@ -24,6 +24,7 @@ FixStyle(fsi/reference,FixFSIReference);
 #include "fix.h"
 #include "fsi_swaps.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -50,6 +51,8 @@ class FixFSIReference : public Fix {
   void unpack_forward_comm(int, int, double *) override;
   int pack_restart(int, double *) override;
   void unpack_restart(int, int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
   int size_restart(int) override;
   int maxsize_restart() override;
   double memory_usage() override;
@@ -75,6 +78,9 @@ class FixFSIReference : public Fix {
 
  private:
   class FixFSI *hub;
+  std::string made;    // how the bonds were: keywords of pair_style fsi/solid/tl; empty: none yet
+  std::string as_now() const;
+  bool has_record;
   class NeighList *list;
   int *slot;    // per local atom: where its bonds are, or NONE or FOREIGN
   enum { NONE = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began

@@ -128,7 +128,7 @@ void FixFSIReport::begin()
   by_gravity = by_walls = by_held = {};
   momentum = momentum_of_moving();
   fields.clear();
-  for (const auto &field : hub->fields)
+  for (const auto &field : hub->body_forces)
     if (field.mask) fields.push_back({field.g, group->mass(field.fix->igroup)});
   int held = 0, any;
   for (int i = 0; i < atom->nlocal; i++)
@@ -308,6 +308,7 @@ FixFSIReport::Balance FixFSIReport::balance() const
 
 double FixFSIReport::compute_vector(int k)
 {
+  if (!hub) return 0.0;    // before the first run
   if (collected != update->ntimestep) {
     Worst all[NWORST];
     gather(all);

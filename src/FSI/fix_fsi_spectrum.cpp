@@ -18,6 +18,7 @@
 #include "compute.h"
 #include "error.h"
 #include "fsi_keywords.h"
+#include "fsi_record.h"
 #include "input.h"
 #include "modify.h"
 #include "update.h"
@@ -284,24 +285,25 @@ double FixFSISpectrum::compute_array(int i, int j)
 
 void FixFSISpectrum::write_restart(FILE *fp)
 {
-  if (comm->me) return;
-  std::vector<double> list = {(double) value.size(), ubuf(last).d};
-  list.insert(list.end(), time.begin(), time.end());
-  list.insert(list.end(), value.begin(), value.end());
-  const int size = list.size() * sizeof(double);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list.data(), sizeof(double), list.size(), fp);
+  Record record(lmp, "fix fsi/spectrum");
+  record.add("input", argument);
+  record.add("last", std::to_string(last));
+  record.add("times", time);
+  record.add("values", value);
+  record.write(fp);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixFSISpectrum::restart(char *buf)
 {
-  const auto *list = (double *) buf;
-  const int n = static_cast<int>(list[0]);
-  last = (bigint) ubuf(list[1]).i;
-  time.assign(list + 2, list + 2 + n);
-  value.assign(list + 2 + n, list + 2 + 2 * n);
+  const Record record(lmp, "fix fsi/spectrum", buf);
+  if (record.value("input") != argument)
+    error->all(FLERR, "Fix fsi/spectrum {} is of {}, the restart file has samples of {}: give it another ID to begin anew", id, argument,
+               record.value("input"));
+  last = std::stoll(record.value("last"));
+  time = record.numbers("times");
+  value = record.numbers("values");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -19,58 +19,42 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
-#include "memory.h"
+#include "fsi_record.h"
 #include "modify.h"
 #include "pair_fsi_solid.h"
 #include "update.h"
 
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
+using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), stress(nullptr), hourglass(false), keywords(lmp, "fix fsi/stress"),
-    ns(domain->dimension == 2 ? 3 : 6), n(ns), dim(domain->dimension)
+    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
+    ns(domain->dimension == 2 ? 3 : 6), strain(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
-  keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"});
-  keywords.key("plastic").set(plastic, 1);
+  keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"}).kept("the deviator in the file is that of the other");
+  keywords.key("plastic").set(plastic, 1).changes("the plastic strain begins with 0, or is forgotten");
   keywords.parse(narg - 3, arg + 3);
   if (plane_stress && domain->dimension == 3) error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
   if (plastic && plane_stress) error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
-  hourglass = wants_hourglass(force);
-  n = ns + (plastic ? 1 : 0) + (hourglass ? dim : 0);
-
-  restart_peratom = 1;
-  create_attribute = 1;
-  grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-  atom->add_callback(Atom::RESTART);
-  for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
+  restart_global = 1;
+  set_fields();
+  register_fields();
 }
 
 /* ---------------------------------------------------------------------- */
 
-bool FixFSIStress::wants_hourglass(Force *force)
+void FixFSIStress::set_fields()
 {
-  if (!force->pair) return false;
-  const auto *pair = dynamic_cast<PairFSISolid *>(force->pair_match("^fsi/solid$", 0));
-  return pair && pair->has_hourglass();
-}
-
-/* ---------------------------------------------------------------------- */
-
-FixFSIStress::~FixFSIStress()
-{
-  if (modify->get_fix_by_id(id)) {
-    atom->delete_callback(id, Atom::GROW);
-    atom->delete_callback(id, Atom::RESTART);
-  }
-  memory->destroy(stress);
+  const auto *pair = force->pair ? dynamic_cast<PairFSISolid *>(force->pair_match("^fsi/solid$", 0)) : nullptr;
+  fields.set("stress", Fields::FILE, true, stress, ns);
+  fields.set("plastic strain", Fields::FILE, plastic, strain);
+  fields.set("hourglass force", Fields::FILE, pair && pair->has_hourglass(), hourglass, domain->dimension);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -78,8 +62,7 @@ FixFSIStress::~FixFSIStress()
 void FixFSIStress::init()
 {
   const FixFSI *hub = FixFSI::find(lmp, "Fix fsi/stress");
-  if (hourglass != wants_hourglass(force))
-    error->all(FLERR, "Fix fsi/stress must be defined after the pair_style command that says whether there is hourglass control");
+  set_fields();    // another pair_style command may have changed what is kept
   // what had a stress keeps it, what had none never gets the right one
   for (int i = 0; i < atom->nlocal && update->whichflag == 1; i++) {
     double &first = stress[i][0];
@@ -116,56 +99,17 @@ double FixFSIStress::von_mises(int i, double p) const
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSIStress::grow_arrays(int nmax)
+void FixFSIStress::write_restart(FILE *fp)
 {
-  memory->grow(stress, nmax, n, "fsi/stress:stress");
+  Record record(lmp, "fix fsi/stress");
+  keywords.write(record);
+  fields.write(record);
+  record.write(fp);
 }
 
-void FixFSIStress::copy_arrays(int i, int j, int)
+void FixFSIStress::restart(char *buf)
 {
-  memcpy(stress[j], stress[i], n * sizeof(double));
-}
-
-void FixFSIStress::set_arrays(int i)
-{
-  memset(stress[i], 0, n * sizeof(double));
-}
-
-int FixFSIStress::pack_exchange(int i, double *buf)
-{
-  memcpy(buf, stress[i], n * sizeof(double));
-  return n;
-}
-
-int FixFSIStress::unpack_exchange(int i, double *buf)
-{
-  memcpy(stress[i], buf, n * sizeof(double));
-  return n;
-}
-
-int FixFSIStress::pack_restart(int i, double *buf)
-{
-  buf[0] = n + 1;
-  memcpy(buf + 1, stress[i], n * sizeof(double));
-  return n + 1;
-}
-
-void FixFSIStress::unpack_restart(int i, int nth)
-{
-  memcpy(stress[i], FixFSI::restart_values(atom->extra[i], nth), n * sizeof(double));
-}
-
-int FixFSIStress::size_restart(int)
-{
-  return n + 1;
-}
-
-int FixFSIStress::maxsize_restart()
-{
-  return n + 1;
-}
-
-double FixFSIStress::memory_usage()
-{
-  return (double) atom->nmax * n * sizeof(double);
+  const Record record(lmp, "fix fsi/stress", buf);
+  keywords.compare(record);
+  fields.read(record);
 }

@@ -20,7 +20,7 @@ FixStyle(fsi/stress,FixFSIStress);
 #ifndef LMP_FIX_FSI_STRESS_H
 #define LMP_FIX_FSI_STRESS_H
 
-#include "fix.h"
+#include "fsi_fields.h"
 #include "fsi_jaumann.h"
 #include "fsi_keywords.h"
 #include "fsi_material.h"
@@ -31,29 +31,20 @@ namespace LAMMPS_NS {
 // Deviatoric stress of hypoelastic solids: owns it, evolves it by the Jaumann rate (paper eq. 3). Driven by fix fsi,
 // which forms the velocity gradient.
 
-class FixFSIStress : public Fix {
+class FixFSIStress : public FSI::FixFields {
  public:
   FixFSIStress(class LAMMPS *, int, char **);
-  ~FixFSIStress() override;
   int setmask() override { return 0; }
   void init() override;
-  void grow_arrays(int) override;
-  void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
-  int pack_exchange(int, double *) override;
-  int unpack_exchange(int, double *) override;
-  int pack_restart(int, double *) override;
-  void unpack_restart(int, int) override;
-  int size_restart(int) override;
-  int maxsize_restart() override;
-  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
 
   // deviatoric stress per atom, in-plane in 2D; see fsi_tensor.h for the order
   double **stress;
+  double **hourglass;        // force per atom that pair_style fsi/solid keeps here; null without its hourglass control
   int plane_stress;
-  int plastic;    // materials yield; stress[i] is followed by the equivalent plastic strain
-  bool hourglass;    // pair_style fsi/solid keeps a force per particle in stress[i], last
-  double *hourglass_force(int i) { return stress[i] + n - dim; }
+  int plastic;    // materials yield
+  double *hourglass_force(int i) { return hourglass[i]; }
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between (fsi_jaumann.h)
   // returns the plastic work per volume
@@ -63,23 +54,22 @@ class FixFSIStress : public Fix {
     double work = 0.0;
     FSI::jaumann_update<D>(s, L, dt, material.shear, plane_stress);
     if (plastic && material.yield > 0.0)
-      work = FSI::radial_return<D>(s, stress[i][ns], material.shear, material.yield, material.hardening);
+      work = FSI::radial_return<D>(s, strain[i], material.shear, material.yield, material.hardening);
     s.store(stress[i]);
     return work;
   }
 
   // equivalent plastic strain of atom i
-  double plastic_strain(int i) const { return plastic ? stress[i][ns] : 0.0; }
+  double plastic_strain(int i) const { return plastic ? strain[i] : 0.0; }
   // von Mises stress of atom i with pressure p
   double von_mises(int i, double p) const;
 
  private:
   FSI::Keywords keywords;
-  static bool wants_hourglass(class Force *);
   static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a run began
   int ns;    // components of the deviator
-  int n;     // values per atom
-  int dim;
+  double *strain;    // equivalent plastic strain; null without plastic
+  void set_fields();
 };
 
 }    // namespace LAMMPS_NS

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_keywords.h"
+#include "fsi_record.h"
 #include "update.h"
 
 #include <cmath>
@@ -97,6 +98,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   }
   if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror needs at least one of xlo, xhi, ylo, yhi, zlo, zhi");
 
+  for (const auto &w : walls) start.push_back(w.position);
   force.resize(walls.size());
   clear_force();
   dynamic_group_allow = 1;
@@ -218,25 +220,57 @@ double FixFSIWallMirror::compute_array(int i, int j)
 }
 
 /* ----------------------------------------------------------------------
-   restart: count of reflections and where the walls are
+   restart: count of reflections and where the walls are; a wall that the command puts elsewhere than before stands there
 ------------------------------------------------------------------------- */
+
+static std::string face(const Wall &w)
+{
+  return std::string(1, "xyz"[w.axis]) + (w.side > 0.0 ? "lo" : "hi");
+}
+
+std::string FixFSIWallMirror::settings(int k) const
+{
+  const Wall &w = walls[k];
+  std::string text = fmt::format("velocity {} {} {} slip {} guard {}", w.velocity[0], w.velocity[1], w.velocity[2], w.noslip ? "no" : "yes", guard);
+  for (int b = 0; b < 3; b++)
+    if (w.lo[b] > -BIG || w.hi[b] < BIG) text += fmt::format(" range {} {} {}", "xyz"[b], w.lo[b], w.hi[b]);
+  return text;
+}
 
 void FixFSIWallMirror::write_restart(FILE *fp)
 {
-  const double count = compute_scalar();
-  if (comm->me) return;
-  const int n = walls.size() + 1, size = n * sizeof(double);
-  std::vector<double> list = {count};
-  for (const auto &w : walls) list.push_back(w.position);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list.data(), sizeof(double), n, fp);
+  Record record(lmp, "fix fsi/wall/mirror");
+  record.add("reflections", std::vector<double>{compute_scalar()});
+  std::string faces;
+  for (const auto &w : walls) faces += (faces.empty() ? "" : " ") + face(w);
+  record.add("walls", faces);
+  for (size_t k = 0; k < walls.size(); k++) {
+    record.add(fmt::format("place {}", k), std::vector<double>{start[k], walls[k].position});
+    record.add(fmt::format("settings {}", k), settings(k));
+  }
+  record.write(fp);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixFSIWallMirror::restart(char *buf)
 {
-  const auto *list = (double *) buf;
-  reflected = (comm->me == 0) ? static_cast<bigint>(list[0]) : 0;
-  for (size_t k = 0; k < walls.size(); k++) walls[k].position = list[k + 1];
+  const Record record(lmp, "fix fsi/wall/mirror", buf);
+  std::string faces;
+  for (const auto &w : walls) faces += (faces.empty() ? "" : " ") + face(w);
+  if (faces != record.value("walls"))
+    error->all(FLERR, "Fix fsi/wall/mirror {} has the walls {}, the restart file {} of it: give it another ID to place all walls anew", id, faces,
+               record.value("walls"));
+  reflected = (comm->me == 0) ? static_cast<bigint>(record.numbers("reflections")[0]) : 0;
+  for (size_t k = 0; k < walls.size(); k++) {
+    const auto place = record.numbers(fmt::format("place {}", k));
+    const auto &before = record.value(fmt::format("settings {}", k));
+    if (place[0] == start[k]) walls[k].position = place[1];
+    else if (comm->me == 0)
+      error->warning(FLERR, "Fix fsi/wall/mirror {}: wall {} was put at {} when the restart file was written, and is at {} now", id,
+                     face(walls[k]), place[0], start[k]);
+    if (before != settings(k) && comm->me == 0)
+      error->warning(FLERR, "Fix fsi/wall/mirror {}: wall {} had {} when the restart file was written, and has {} now", id, face(walls[k]),
+                     before, settings(k));
+  }
 }

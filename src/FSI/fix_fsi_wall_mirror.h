@@ -24,6 +24,7 @@ FixStyle(fsi/wall/mirror,FixFSIWallMirror);
 #include "fsi_walls.h"
 
 #include <array>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -50,6 +51,8 @@ class FixFSIWallMirror : public Fix {
   void clear_force();
 
  private:
+  std::vector<double> start;    // positions in the command
+  std::string settings(int) const;
   double guard;    // smallest distance to a wall, in spacings
   bigint reflected;
   class FixFSI *hub;

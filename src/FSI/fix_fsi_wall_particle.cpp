@@ -257,6 +257,7 @@ double FixFSIWallParticle::compute_vector(int n)
 
 double FixFSIWallParticle::compute_scalar()
 {
+  if (!hub) return 0.0;    // before the first run
   const double limit = guard * hub->dx;
   double mine = 0.0, all;
   for (const auto &[w, j] : pairs) {

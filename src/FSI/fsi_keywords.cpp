@@ -314,25 +314,22 @@ void Keywords::read(const Record &record)
   }
 }
 
-bool Keywords::differs(const Row &row, const Record &record) const
+bool Keywords::differs(const Record &record, const std::string &name) const
 {
-  return record.has(row.name) && record.value(row.name) != row.text();
-}
-
-bool Keywords::compare(const Record &record, const std::string &name) const
-{
-  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row &r) { return r.name == name; });
-  if (!differs(*row, record)) return false;
-  const auto text = fmt::format("{}: {} was {} when the restart file was written, and is {} now{}", who, name, record.value(name),
-                                row->text(), row->restart.empty() ? "" : ": " + row->restart);
-  if (row->must_not_change) error->all(FLERR, text);
-  if (comm->me == 0) error->warning(FLERR, text);
-  return true;
+  for (const auto &row : rows)
+    if (row.name == name) return record.has(name) && record.value(name) != row.text();
+  return false;
 }
 
 void Keywords::compare(const Record &record) const
 {
-  for (const auto &row : rows) compare(record, row.name);
+  for (const auto &row : rows) {
+    if (!differs(record, row.name)) continue;
+    const auto text = fmt::format("{}: {} was {} when the restart file was written, and is {} now{}", who, row.name, record.value(row.name),
+                                  row.text(), row.restart.empty() ? "" : ": " + row.restart);
+    if (row.must_not_change) error->all(FLERR, text);
+    if (comm->me == 0) error->warning(FLERR, text);
+  }
 }
 
 /* ---------------------------------------------------------------------- */

@@ -76,9 +76,9 @@ namespace FSI {
 
     void write(Record &) const;
     void read(const Record &);
-    // what differs from a restart file: an error, or a warning that names both sides and says what happens. True if this did
-    bool compare(const Record &, const std::string &name) const;
+    // rows that differ from a restart file: an error, or a warning that names both sides and says what happens
     void compare(const Record &) const;
+    bool differs(const Record &, const std::string &name) const;
 
     struct Effect {
       std::string name, keyword;
@@ -122,7 +122,6 @@ namespace FSI {
     Value &add(Value::Kind, double start = 0.0, const std::string &what = "");
     void begin() const;
     void take(const Row &, const Value &, const std::string &) const;
-    bool differs(const Row &, const Record &) const;
   };
 
 }    // namespace FSI

@@ -68,7 +68,7 @@ void FSISet::command(int narg, char **arg)
   // materials, masses and gravity are entered in init()
   lmp->init();
   hub->update_gravity(false);
-  if (hydrostatic && std::none_of(hub->fields.begin(), hub->fields.end(), [](const FixFSI::Field &f) { return f.mask; }))
+  if (hydrostatic && std::none_of(hub->body_forces.begin(), hub->body_forces.end(), [](const FixFSI::BodyForce &f) { return f.mask; }))
     error->all(FLERR, "Fsi_set hydrostatic requires fix gravity");
 
   std::vector<double> each(atom->nlocal, number);

@@ -112,6 +112,7 @@ void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
   hub = FixFSI::find(lmp, "Pair style " + style);
+  hub->check_restart_ids();
   if (force->pair_match(style, 1, 1) != force->pair_match(style, 1, 2))
     error->all(FLERR, "Pair style hybrid has {} more than once: one is for the materials of all atom types{}", style,
                style == "fsi/fluid" ? ", and a speed of sound of its own is keyword sound of a fluid in the material file" : "");

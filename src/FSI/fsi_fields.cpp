@@ -1,0 +1,383 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_fields.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fsi_record.h"
+#include "memory.h"
+#include "modify.h"
+
+#include <algorithm>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+Fields::~Fields()
+{
+  for (auto &f : fields) {
+    memory->destroy(f.one);
+    memory->destroy(f.many);
+    memory->destroy(f.integers);
+  }
+}
+
+void Fields::set(const std::string &name, Life life, bool wanted, double *&array)
+{
+  Field f;
+  f.name = name;
+  f.life = life;
+  f.columns = 1;
+  f.one_of = &array;
+  set(f, wanted);
+}
+
+void Fields::set(const std::string &name, Life life, bool wanted, double **&array, int columns)
+{
+  Field f;
+  f.name = name;
+  f.life = life;
+  f.columns = columns;
+  f.many_of = &array;
+  set(f, wanted);
+}
+
+void Fields::set(const std::string &name, Life life, bool wanted, int *&array)
+{
+  Field f;
+  f.name = name;
+  f.life = life;
+  f.columns = 1;
+  f.integers_of = &array;
+  set(f, wanted);
+}
+
+/* ---------------------------------------------------------------------- */
+
+Fields::Field *Fields::find(const std::string &name)
+{
+  for (auto &f : fields)
+    if (f.name == name) return &f;
+  return nullptr;
+}
+
+void Fields::set(const Field &f, bool wanted)
+{
+  Field *old = find(f.name);
+  if (old && wanted && old->columns == f.columns && old->life == f.life) return;
+  if (old) {
+    free(*old);
+    fields.erase(fields.begin() + (old - fields.data()));
+  } else {
+    if (f.one_of) *f.one_of = nullptr;
+    if (f.many_of) *f.many_of = nullptr;
+    if (f.integers_of) *f.integers_of = nullptr;
+  }
+  if (!wanted) return;
+  fields.push_back(f);
+  if (f.life == STEP) return;
+  resize(fields.back(), atom->nmax);
+  for (int i = 0; i < atom->nlocal; i++) std::fill_n(fields.back().at(i), f.columns, 0.0);
+}
+
+void Fields::free(Field &f)
+{
+  memory->destroy(f.one);
+  memory->destroy(f.many);
+  memory->destroy(f.integers);
+  if (f.one_of) *f.one_of = nullptr;
+  if (f.many_of) *f.many_of = nullptr;
+  if (f.integers_of) *f.integers_of = nullptr;
+}
+
+void Fields::resize(Field &f, int rows)
+{
+  const std::string name = "fsi:" + f.name;
+  f.rows = rows;
+  if (f.one_of) *f.one_of = memory->grow(f.one, rows, name.c_str());
+  if (f.many_of) *f.many_of = memory->grow(f.many, rows, f.columns, name.c_str());
+  if (f.integers_of) *f.integers_of = memory->grow(f.integers, rows, name.c_str());
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool Fields::any(Life life) const
+{
+  return std::any_of(fields.begin(), fields.end(), [=](const Field &f) { return f.life >= life; });
+}
+
+void Fields::grow()
+{
+  for (auto &f : fields) {
+    if (f.life != STEP || f.rows >= atom->nmax) continue;
+    resize(f, atom->nmax);
+    if (f.integers) memset(f.integers, 0, f.rows * sizeof(int));
+    else memset(f.at(0), 0, (size_t) f.rows * f.columns * sizeof(double));
+  }
+}
+
+double Fields::memory_usage() const
+{
+  double bytes = 0.0;
+  for (const auto &f : fields) bytes += (double) f.rows * f.columns * (f.integers ? sizeof(int) : sizeof(double));
+  return bytes;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Fields::grow_lasting(int nmax)
+{
+  for (auto &f : fields)
+    if (f.life != STEP) resize(f, nmax);
+}
+
+void Fields::copy(int i, int j)
+{
+  for (auto &f : fields)
+    if (f.life != STEP) std::copy_n(f.at(i), f.columns, f.at(j));
+}
+
+void Fields::begin(int i)
+{
+  for (auto &f : fields)
+    if (f.life != STEP) std::fill_n(f.at(i), f.columns, 0.0);
+}
+
+int Fields::pack(int i, double *buf) const
+{
+  double *const first = buf;
+  for (const auto &f : fields)
+    if (f.life != STEP) buf = std::copy_n(f.at(i), f.columns, buf);
+  return buf - first;
+}
+
+int Fields::unpack(int i, const double *buf)
+{
+  const double *const first = buf;
+  for (auto &f : fields)
+    if (f.life != STEP) {
+      std::copy_n(buf, f.columns, f.at(i));
+      buf += f.columns;
+    }
+  return buf - first;
+}
+
+/* ----------------------------------------------------------------------
+   restart files
+------------------------------------------------------------------------- */
+
+static const std::string FIELD = "field ";
+
+void Fields::write(Record &record) const
+{
+  for (const auto &f : fields)
+    if (f.life == FILE) record.add(FIELD + f.name, std::to_string(f.columns));
+}
+
+void Fields::read(const Record &record, const std::vector<std::string> &forget)
+{
+  has_record = true;
+  for (auto &f : fields) f.in_file = -1;
+  int place = 1;
+  for (const auto &line : record.all()) {
+    if (line.first.compare(0, FIELD.size(), FIELD) != 0) continue;
+    const std::string name = line.first.substr(FIELD.size());
+    const int columns = std::stoi(line.second);
+    Field *const f = find(name);
+    if (f && f->life == FILE && std::find(forget.begin(), forget.end(), name) == forget.end()) {
+      if (f->columns != columns)
+        error->all(FLERR, "The restart file has {} numbers of {} for each atom, this script's {} needs {}", columns, name, record.style,
+                   f->columns);
+      f->in_file = place;
+    }
+    place += columns;
+  }
+}
+
+int Fields::restart_size() const
+{
+  int n = 1;
+  for (const auto &f : fields)
+    if (f.life == FILE) n += f.columns;
+  return n;
+}
+
+int Fields::pack_restart(int i, double *buf) const
+{
+  double *const first = buf++;
+  for (const auto &f : fields)
+    if (f.life == FILE) buf = std::copy_n(f.at(i), f.columns, buf);
+  first[0] = buf - first;
+  return buf - first;
+}
+
+void Fields::unpack_restart(int i, int nth)
+{
+  if (!has_record)
+    error->one(FLERR, "The restart file was written by another version of the FSI package: it does not say what it has of each atom");
+  const double *const values = restart_values(atom->extra[i], nth);
+  for (auto &f : fields)
+    if (f.in_file > 0) std::copy_n(values + f.in_file, f.columns, f.at(i));
+}
+
+const double *FSI::restart_values(const double *extra, int nth)
+{
+  while (nth-- > 0) extra += static_cast<int>(extra[0]);
+  return extra;
+}
+
+/* ----------------------------------------------------------------------
+   a fix with fields
+------------------------------------------------------------------------- */
+
+FixFields::FixFields(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), fields(lmp) {}
+
+FixFields::~FixFields()
+{
+  if (!modify->get_fix_by_id(id)) return;
+  if (fields.any(Fields::ATOM)) atom->delete_callback(id, Atom::GROW);
+  if (restart_peratom) atom->delete_callback(id, Atom::RESTART);
+}
+
+void FixFields::register_fields()
+{
+  create_attribute = 1;
+  restart_peratom = fields.any(Fields::FILE);
+  if (fields.any(Fields::ATOM)) atom->add_callback(Atom::GROW);
+  if (restart_peratom) atom->add_callback(Atom::RESTART);
+}
+
+void FixFields::grow_arrays(int nmax)
+{
+  fields.grow_lasting(nmax);
+}
+
+void FixFields::copy_arrays(int i, int j, int)
+{
+  fields.copy(i, j);
+}
+
+void FixFields::set_arrays(int i)
+{
+  fields.begin(i);
+}
+
+int FixFields::pack_exchange(int i, double *buf)
+{
+  return fields.pack(i, buf);
+}
+
+int FixFields::unpack_exchange(int i, double *buf)
+{
+  return fields.unpack(i, buf);
+}
+
+int FixFields::pack_restart(int i, double *buf)
+{
+  return fields.pack_restart(i, buf);
+}
+
+void FixFields::unpack_restart(int i, int nth)
+{
+  fields.unpack_restart(i, nth);
+}
+
+int FixFields::size_restart(int)
+{
+  return fields.restart_size();
+}
+
+int FixFields::maxsize_restart()
+{
+  return fields.restart_size();
+}
+
+double FixFields::memory_usage()
+{
+  return fields.memory_usage();
+}
+
+/* ----------------------------------------------------------------------
+   messages
+------------------------------------------------------------------------- */
+
+static int mask_of(std::initializer_list<int> species)
+{
+  int mask = 0;
+  for (const int s : species) mask |= 1 << s;
+  return mask;
+}
+
+void Message::add(double *&array, std::initializer_list<int> species, const bool *when)
+{
+  parts.push_back({&array, nullptr, 0, 1, mask_of(species), when});
+}
+
+void Message::add(double **&array, int first, int n, std::initializer_list<int> species)
+{
+  if (n > 0) parts.push_back({nullptr, &array, first, n, mask_of(species), nullptr});
+}
+
+int Message::size() const
+{
+  int most = 0;
+  for (int s = NONE; s <= RIGID; s++) {
+    int n = 0;
+    for (const auto &p : parts)
+      if (p.species & 1 << s) n += p.n;
+    most = std::max(most, n);
+  }
+  return most;
+}
+
+template <class Visit> void Message::visit(int i, Visit visit) const
+{
+  const int kind = 1 << state[atom->type[i]].species;
+  for (const auto &p : parts)
+    if ((p.species & kind) && (!p.when || *p.when)) visit(p.at(i), p.n);
+}
+
+int Message::pack(int n, const int *list, double *buf) const
+{
+  double *const first = buf;
+  for (int k = 0; k < n; k++) visit(list[k], [&](const double *a, int m) { buf = std::copy_n(a, m, buf); });
+  return buf - first;
+}
+
+void Message::unpack(int n, int first, const double *buf) const
+{
+  for (int i = first; i < first + n; i++)
+    visit(i, [&](double *a, int m) {
+      std::copy_n(buf, m, a);
+      buf += m;
+    });
+}
+
+int Message::pack_back(int n, int first, double *buf) const
+{
+  double *const begin = buf;
+  for (int i = first; i < first + n; i++) visit(i, [&](const double *a, int m) { buf = std::copy_n(a, m, buf); });
+  return buf - begin;
+}
+
+void Message::add_up(int n, const int *list, const double *buf) const
+{
+  for (int k = 0; k < n; k++)
+    visit(list[k], [&](double *a, int m) {
+      for (int c = 0; c < m; c++) a[c] += *buf++;
+    });
+}

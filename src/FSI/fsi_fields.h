@@ -1,0 +1,142 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+
+// Per-atom arrays, each described once: memory, migration, restart files and messages to ghosts follow from that.
+
+#ifndef LMP_FSI_FIELDS_H
+#define LMP_FSI_FIELDS_H
+
+#include "fix.h"
+#include "fsi_material.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  class Record;
+
+  class Fields : protected Pointers {
+   public:
+    // how long its numbers last: until the next step finds them anew, for local and ghost atoms; or as long as the (local) atom, with
+    // which they go from rank to rank; or that and in restart files
+    enum Life { STEP, ATOM, FILE };
+
+    Fields(LAMMPS *lmp) : Pointers(lmp) {}
+    Fields(const Fields &) = delete;
+    ~Fields();
+
+    // The array is there while it is wanted, else null. One that lasts begins with 0 for every atom. May be said again at any time.
+    void set(const std::string &name, Life, bool wanted, double *&array);
+    void set(const std::string &name, Life, bool wanted, double **&array, int columns);
+    void set(const std::string &name, Life, bool wanted, int *&array);
+
+    bool any(Life) const;    // that last as long or longer
+    void grow();             // those of a step, to atom->nmax
+    double memory_usage() const;
+
+    // for LAMMPS' callbacks: those that last
+    void grow_lasting(int nmax);
+    void copy(int i, int j);
+    void begin(int i);
+    int pack(int i, double *buf) const;
+    int unpack(int i, const double *buf);
+
+    // Restart files. The record says which numbers of an atom are whose; those that it does not know begin anew, as do the ones to
+    // forget.
+    void write(Record &) const;
+    void read(const Record &, const std::vector<std::string> &forget = {});
+    int restart_size() const;
+    int pack_restart(int i, double *buf) const;
+    void unpack_restart(int i, int nth);
+
+   private:
+    struct Field {
+      std::string name;
+      Life life = STEP;
+      int columns = 0, rows = 0;
+      double *one = nullptr, **many = nullptr;    // one column, more
+      int *integers = nullptr;
+      double **one_of = nullptr, ***many_of = nullptr;    // where its owner has it
+      int **integers_of = nullptr;
+      int in_file = -1;    // where its numbers begin in those of a restart file
+
+      double *at(int i) const { return one ? one + i : many[i]; }
+    };
+    std::vector<Field> fields;
+    bool has_record = false;
+
+    Field *find(const std::string &name);
+    void set(const Field &, bool wanted);
+    void resize(Field &, int rows);
+    void free(Field &);
+  };
+
+  // A fix with fields.
+  class FixFields : public Fix {
+   public:
+    FixFields(LAMMPS *, int, char **);
+    ~FixFields() override;
+    void grow_arrays(int) override;
+    void copy_arrays(int, int, int) override;
+    void set_arrays(int) override;
+    int pack_exchange(int, double *) override;
+    int unpack_exchange(int, double *) override;
+    int pack_restart(int, double *) override;
+    void unpack_restart(int, int) override;
+    int size_restart(int) override;
+    int maxsize_restart() override;
+    double memory_usage() override;
+
+   protected:
+    Fields fields;
+    void register_fields();    // once, when those that last are set
+  };
+
+  // The numbers of atom i that the nth fix of a restart file left there; all begin with their length.
+  const double *restart_values(const double *extra, int nth);
+
+  // What a message between ranks carries of an atom: columns of arrays, of atoms of some species.
+  class Message : protected Pointers {
+   public:
+    Message(LAMMPS *lmp, const std::vector<State> &state) : Pointers(lmp), state(state) {}
+    void clear() { parts.clear(); }
+    // when: null, or whether it is carried now
+    void add(double *&array, std::initializer_list<int> species, const bool *when = nullptr);
+    void add(double **&array, int first, int n, std::initializer_list<int> species);
+    int size() const;    // at most, of an atom
+
+    int pack(int n, const int *list, double *buf) const;
+    void unpack(int n, int first, const double *buf) const;
+    // back to their owners, who add them up
+    int pack_back(int n, int first, double *buf) const;
+    void add_up(int n, const int *list, const double *buf) const;
+
+   private:
+    struct Part {
+      double **one, ***many;
+      int first, n, species;
+      const bool *when;
+      double *at(int i) const { return one ? *one + i : (*many)[i] + first; }
+    };
+    std::vector<Part> parts;
+    const std::vector<State> &state;
+    template <class Visit> void visit(int i, Visit) const;
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
