@@ -31,7 +31,7 @@ ALTERNATIVES = {  # what else crosses ranks: options of the scene, in 2D and 3D
     "plain": {"kernel": "cubic 1.3", "fluid": "sound 10 eos tait couple pressure artificial/visc 0.1 0",
               "solid": "artificial/visc 0.5 0"},
     "full": {"kernel": "quintic 1.0", "fluid": "sound 10 couple full tension yes artificial/visc 0.1 0",
-             "solid": "artificial/visc 0.1 0 artificial/stress 0.3"},
+             "solid": "artificial/visc 0.1 0 artificial/stress 0.3", "sph": "mach off"},  # it does not stay sound in 3D: ranks agree all the same
     "hourglass": {"solid": "artificial/visc 0.1 0 hourglass 0.5 gradient quadratic"},
     "quadratic": {"solid": "artificial/visc 0.1 0 artificial/stress 0.2 gradient quadratic"},
     "no slip": {"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.1 0", "fluid": "sound 10 laminar/visc"},
@@ -200,8 +200,8 @@ def test_sums_over_pairs(tmp_path, dim, ranks, newton):
     assert np.abs(one[walls + 4:] - other[walls + 4:]).max() < 1e-9 * np.abs(one[walls + 4:]).max()
 
 
-@pytest.mark.parametrize("kept", [{"sph": "surface/every 1000", "fluid": NO_DIFFUSION + " surface 0.9 bulk"},
-                                  {"density": "fluid ratio solid continuity", "fluid": NO_DIFFUSION}], ids=["surface", "ratio"])
+@pytest.mark.parametrize("kept", [{"sph": "surface/every 1000 mach off", "fluid": NO_DIFFUSION + " surface 0.9 bulk"},
+                                  {"density": "fluid ratio solid continuity", "fluid": NO_DIFFUSION, "sph": "mach off"}], ids=["surface", "ratio"])
 def test_what_a_particle_keeps_goes_with_it(tmp_path, kept):
     """Water flies from one rank to the other: its number density or density reference, found at the start, too."""
     scene = fluid_box(2, gravity=np.array([0.0, -1e-9, 0.0]), **kept)

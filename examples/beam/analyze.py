@@ -25,7 +25,7 @@ def main(folder):
     summary.add("energy_error", float(np.abs(energy / energy[0] - 1.0).max()), target=1e-3)
     plot.lines(Path(folder) / "tip.png", "t [s]", "tip [mm]", [(s.time, 1000.0 * s["tip"], "tip", plot.BLUE)])
     frames = dump.read(Path(folder) / "particles.dump")
-    plot.snapshots(Path(folder) / "snapshots.png", frames[:5:2], spacing(frames[0]), fluid=(), solid=(1,), limits=((-0.03, 0.22), (-0.04, 0.06)))
+    plot.snapshots(Path(folder) / "snapshots.png", frames[:3], spacing(frames[0]), fluid=(), solid=(1,), limits=((-0.03, 0.22), (-0.04, 0.06)))
     summary.write()
 
 

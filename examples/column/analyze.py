@@ -23,7 +23,7 @@ def main(folder):
     energy = summary.log.column("c_energy")
     summary.add("energy_error", float(np.abs(energy / energy[0] - 1.0).max()), target=1e-3)
     frames = dump.read(Path(folder) / "particles.dump")
-    plot.snapshots(Path(folder) / "snapshots.png", frames[::2][:6], spacing(frames[0]))
+    plot.snapshots(Path(folder) / "snapshots.png", frames[::3][:6], spacing(frames[0]))
     summary.write()
 
 

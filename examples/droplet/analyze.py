@@ -23,7 +23,7 @@ def main(folder):
     energy = summary.log.column("c_energy")
     summary.add("energy_error", float(np.abs(energy / energy[0] - 1.0).max()), target=2e-3)
     frames = dump.read(Path(folder) / "particles.dump")
-    plot.snapshots(Path(folder) / "snapshots.png", frames[3:9:2], spacing(frames[0]), limits=((-0.3, 0.3), (0.0, 0.2)))
+    plot.snapshots(Path(folder) / "snapshots.png", frames[7:17:4], spacing(frames[0]), limits=((-0.3, 0.3), (0.0, 0.2)))
     summary.write()
 
 

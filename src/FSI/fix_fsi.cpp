@@ -493,7 +493,7 @@ void FixFSI::setup_pre_force(int)
 /* ----------------------------------------------------------------------
    A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must keep their order, which is
    that of atoms and neighbour lists. So the first step of a run, and the one after a restart was written, do the same: wrap
-   positions, rebuild, and put the atoms of each rank in the order of their IDs.
+   positions, rebuild, and put the atoms of each rank in an order that depends on nothing but where they are and their IDs.
 ------------------------------------------------------------------------- */
 
 bool FixFSI::fresh_start() const
@@ -515,19 +515,33 @@ void FixFSI::pre_exchange()
     if (neighbor->style) neighbor->setup_bins();
   }
   comm->exchange();
-  sort_by_tag();
+  sort_by_place();
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   By cells of space, by ID in each: what is near in space is near in memory, whatever IDs are like. Cells as wide as the support (half and
+   double that made no difference), which do not depend on the box, whose bounds may follow the particles.
+------------------------------------------------------------------------- */
 
-void FixFSI::sort_by_tag()
+void FixFSI::sort_by_place()
 {
   const int n = atom->nlocal;
   if (n == atom->nmax) atom->avec->grow(0);    // room for the atom in hand
-  const tagint *const tag = atom->tag;
+  struct Place {
+    std::array<bigint, 3> cell;    // slowest first
+    tagint tag;
+    int i;
+    bool operator<(const Place &other) const { return cell != other.cell ? cell < other.cell : tag < other.tag; }
+  };
+  const double per_length = 1.0 / cut;
+  std::vector<Place> places(n);
+  for (int i = 0; i < n; i++) {
+    const double *const x = atom->x[i];
+    places[i] = {{(bigint) std::floor(x[2] * per_length), (bigint) std::floor(x[1] * per_length), (bigint) std::floor(x[0] * per_length)}, atom->tag[i], i};
+  }
+  std::sort(places.begin(), places.end());
   std::vector<int> order(n);    // new place i gets the atom that is now at order[i]
-  for (int i = 0; i < n; i++) order[i] = i;
-  std::sort(order.begin(), order.end(), [tag](int i, int j) { return tag[i] < tag[j]; });
+  for (int i = 0; i < n; i++) order[i] = places[i].i;
   for (int start = 0; start < n; start++) {
     if (order[start] == start) continue;
     atom->avec->copy(start, n, 0);

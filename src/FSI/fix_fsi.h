@@ -203,7 +203,7 @@ class FixFSI : public FSI::FixFields {
   std::vector<int> acts_on_all;    // each field, type by type
   bool fresh_start() const;
   void give_defaults(int);
-  void sort_by_tag();
+  void sort_by_place();
   void warn_idle() const;    // fix_fsi_idle.cpp
   void add_ghosts(double *);
 };
