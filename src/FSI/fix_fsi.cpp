@@ -56,7 +56,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), keywords(lmp, "fix fsi"), psi(nullptr), rate(nullptr),
     shift(nullptr), grad(nullptr), wmask(nullptr), ledger(false), taken{}, wall_velocity(nullptr), wall_stiffness(nullptr), fix_stress(nullptr), fluid(nullptr),
     solid(nullptr), solid_tl(nullptr), fix_dt(nullptr), profile(nullptr), check(nullptr), stagger(0.0), forward(lmp, state), back(lmp, state),
-    scalar_back(lmp, state), summed(nullptr), ratio(nullptr), tally_dt(0.0), need_psi(false), need_grad(false), need_shift(false), keep_psi(false),
+    scalar_back(lmp, state), summed(nullptr), beyond(nullptr), ratio(nullptr), tally_dt(0.0), need_psi(false), need_grad(false), need_shift(false), keep_psi(false),
     send_psi(true), nlocal_ready(-1), ids_checked(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
@@ -111,13 +111,15 @@ void FixFSI::set_fields()
 {
   const bool ratios = density_fluid == RATIO || density_solid == RATIO;
   const bool noslip = std::any_of(particle_walls.begin(), particle_walls.end(), [](const auto *fix) { return !fix->slip; });
+  const bool sticks = fluid && fluid->sticks_to_solids();
   fields.set("reference of ratio", Fields::FILE, ratios, ratio);
   fields.set("number density", keep_psi ? Fields::FILE : Fields::STEP, keep_psi || need_psi, psi);
   fields.set("density rate", Fields::STEP, fluid && density_fluid == CONTINUITY, rate);
   fields.set("shift", Fields::STEP, need_shift, shift, nshift());
   fields.set("velocity gradient", Fields::STEP, need_grad, grad, need_grad ? ngrad() : 0);
   fields.set("walls near", Fields::STEP, !wall_fixes.empty(), wmask);
-  fields.set("wall velocity", Fields::STEP, noslip, wall_velocity, 3);
+  fields.set("wall velocity", Fields::STEP, noslip || sticks, wall_velocity, 3);
+  fields.set("velocity beyond solids", Fields::STEP, sticks, beyond, dim + 1);
   fields.set("wall stiffness", Fields::STEP, !particle_walls.empty() && several_stiffnesses(), wall_stiffness);
 
   forward.clear();
@@ -127,7 +129,9 @@ void FixFSI::set_fields()
     forward.add(fix_stress->stress, 0, dim == 2 ? 3 : 6, {SOLID});
     forward.add(grad, dim * dim, dim * solid->terms(), {SOLID});
   }
+  if (sticks) forward.add(wall_velocity, 0, dim, {SOLID});
   back.clear();
+  if (sticks) back.add(beyond, 0, dim + 1, {SOLID});
   if (need_grad) back.add(grad, 0, ngrad(), {SOLID});
   if (fluid && density_fluid == CONTINUITY) back.add(rate, {FLUID, RIGID});
   if (need_shift) back.add(shift, 0, nshift(), {FLUID, RIGID});
@@ -303,6 +307,7 @@ void FixFSI::announce()
   const int fluid_ghost = fluid ? both + newton * (density_fluid == CONTINUITY) * (1 + ns) : 0;
   int solid_ghost = both;
   if (solid) solid_ghost += (dim == 2 ? 3 : 6) + dim * solid->terms() + newton * ng + hourglass * (dim * dim + newton * dim);
+  if (beyond) solid_ghost += dim + newton * (dim + 1);
   if (solid_tl) solid_ghost += substeps * dim + (substeps > 1 ? substeps * solid_tl->comm_forward : 0);
   text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", forward, back,
                       !solid_tl ? "" : substeps > 1 ? fmt::format("; {} each way for solid sub-steps, where they carry solids", substeps) : "; 1 back for solid forces");
@@ -696,18 +701,23 @@ void FixFSI::update_state(bool advance)
   if (fluid) fluid->begin_step();
 
   // the gradient's coefficients are needed by forces, so in setup too
-  const bool gradient = need_grad && (advance || solid->terms());
-  if ((advance && rate) || gradient) {
+  const bool gradient = need_grad && (advance || solid->terms() || beyond);
+  if ((advance && rate) || gradient || beyond) {
     if (rate) memset(rate, 0, nall * sizeof(double));
     if (need_shift && nall) memset(shift[0], 0, (size_t) nall * nshift() * sizeof(double));
     if (gradient && nall) memset(grad[0], 0, (size_t) nall * ngrad() * sizeof(double));
     phase.next(Profile::DENSITY);
     if (rate && advance) fluid->density_rate(update->dt);
+    if (beyond) {
+      if (nall) memset(beyond[0], 0, (size_t) nall * (dim + 1) * sizeof(double));
+      fluid->velocity_at_solids(beyond);
+    }
     if (gradient) {
       phase.next(Profile::STRESS);
       solid->velocity_gradient(advance ? update->dt : 0.0);
     }
     if (force->newton_pair) reverse_comm(profile, comm, this);
+    if (beyond) extrapolate_velocities();
     if (advance) advance_density();
     if (need_shift && advance) fluid->displacements(update->dt);
     if (gradient) {
@@ -740,6 +750,20 @@ void FixFSI::update_state(bool advance)
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
   forward_comm(profile, comm, this);
   for (auto *fix : particle_walls) fix->extrapolate(advance);
+}
+
+/* ----------------------------------------------------------------------
+   velocity of solids in viscous forces: where fluid would be inside the solid, that with which the face has the solid's,
+   2 v_s - sum v W/sum W, as for walls of particles
+------------------------------------------------------------------------- */
+
+void FixFSI::extrapolate_velocities()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (state[atom->type[i]].species != SOLID) continue;
+    const double *const s = beyond[i], *const v = atom->v[i];
+    for (int d = 0; d < dim; d++) wall_velocity[i][d] = s[dim] > 0.0 ? 2.0 * v[d] - s[d] / s[dim] : v[d];
+  }
 }
 
 /* ----------------------------------------------------------------------

@@ -105,7 +105,7 @@ class FixFSI : public FSI::FixFields {
   double shear_energy(int i) const;
   double density_ratio(int i) const;    // rho/rho0; that of a total-Lagrangian solid is in its deformation
 
-  // viscous velocity of no-slip walls of particles (fix fsi/wall/particle); null: there are none
+  // viscous velocity of no-slip walls of particles (fix fsi/wall/particle) and solids; null: there are none
   double **wall_velocity;
   // rho dp/drho of wall particles, that of the fluid around them; null: it is the same for all fluids, and in the wall's state
   double *wall_stiffness;
@@ -162,6 +162,7 @@ class FixFSI : public FSI::FixFields {
   FSI::Message forward, back, scalar_back;    // to ghosts, and sums from them; of one array of numbers per atom
   double *summed;                             // that array; null: the other
   void set_fields();
+  double **beyond;    // solids with no slip: sums of v W and W over the fluid around
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
   double hdx;    // h over dx
   int given_substeps;
@@ -194,6 +195,7 @@ class FixFSI : public FSI::FixFields {
   void density_from_psi();
   std::vector<double> crowd;    // number density of the steps in which volumes are restored
   void restore_volumes();
+  void extrapolate_velocities();
   void update_state(bool);
   void gather_walls();
   void announce();

@@ -21,6 +21,7 @@
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_density_diffusion.h"
+#include "fsi_kernel.h"
 #include "fsi_shift.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -44,6 +45,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   artificial_row("fluid");
   keywords.key("laminar/visc").set(laminar, PLAIN).effect("laminar viscosity");
   keywords.key("laminar/visc/central").set(laminar, CENTRAL);
+  keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
   keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
   keywords.key("surface")
@@ -121,6 +123,9 @@ void PairFSIFluid::init_style()
   if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
     error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
                    has_solids() ? "it is for couple wall" : "there is no solid");
+  if (solids_slip && (!laminar || !has_solids()) && comm->me == 0)
+    error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
+                   has_solids() ? "there is no laminar/visc" : "there is no solid");
   loops = make_fluid_loops(hub->kernel, hub->dim, hub->h);
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
@@ -367,6 +372,26 @@ void PairFSIFluid::position_divergence(double *div)
 
 /* ---------------------------------------------------------------------- */
 
+void PairFSIFluid::velocity_at_solids(double **sum)
+{
+  const int dim = hub->dim;
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  with_kernel(hub->kernel, dim, hub->h, [&](const auto &kernel) {
+    for (const Row &row : rows[SOLIDS].rows)
+      for (int k = 0; k < row.n; k++) {
+        const int i = row.i, j = row.j[k];
+        double rsq = 0.0;
+        for (int d = 0; d < dim; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+        if (rsq >= kernel.cutsq) continue;
+        const double W = kernel.W(std::sqrt(rsq));
+        for (int d = 0; d < dim; d++) sum[j][d] += W * v[i][d];
+        sum[j][dim] += W;
+      }
+  });
+}
+
+/* ---------------------------------------------------------------------- */
+
 void PairFSIFluid::compute(int eflag, int vflag)
 {
   const Phase phase(hub->profile, Profile::FLUID);
@@ -402,7 +427,7 @@ template <int D> void PairFSIFluid::compute_forces()
     p.pv2 = p.p * p.vol * p.vol;
   });
 
-  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? hub->gravity.data() : nullptr, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(),
+  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? hub->gravity.data() : nullptr, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
                     FixFSI::rows(hub->wall_velocity ? hub->wall_velocity : atom->v), hub->fix_stress ? hub->fix_stress->stress : nullptr};
   PairSums sums, *const of_pairs = hub->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
@@ -450,6 +475,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
   static const char *const modes[] = {"wall", "pressure", "full"};
   auto list = keywords.effects();
   list.push_back({fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
+  list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});
   return list;
 }
 

@@ -45,6 +45,7 @@ class PairFSIFluid : public PairFSI {
   std::vector<Effect> effects() const override;
   double memory_usage() override;
   bool has_laminar() const { return laminar; }
+  bool sticks_to_solids() const { return laminar && !solids_slip && has_solids(); }
   double sound_of(const FSI::Material &) const;
 
   // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi
@@ -56,6 +57,8 @@ class PairFSIFluid : public PairFSI {
 
   // at the start of a step's loops: with new neighbor lists new rows
   void begin_step();
+  // adds v W, then W, of the fluid around each solid particle to rows of dim + 1
+  void velocity_at_solids(double **sum);
   // adds the density rate (continuity) of fluids to fix fsi's rate, and the sums of particle shifting to its shift, at the
   // positions dt/2 ago, to which the velocities belong
   void density_rate(double dt);
@@ -80,7 +83,7 @@ class PairFSIFluid : public PairFSI {
  private:
   // settings
   double sound, background, delta;    // sound: of fluids whose material has none; 0: there is no default
-  int tait, laminar, couple, extrapolate, tension;
+  int tait, laminar, couple, extrapolate, tension, solids_slip;
   std::vector<class ComputeFSIForce *> force_computes;
 
   std::unique_ptr<FSI::FluidLoops> loops;
