@@ -20,6 +20,7 @@
 #include "error.h"
 #include "fix_fsi_dt.h"
 #include "fix_fsi_report.h"
+#include "fix_fsi_stream.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_wall_particle.h"
@@ -221,6 +222,9 @@ void FixFSI::init()
   particle_walls.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/wall/particle$"))
     particle_walls.push_back(dynamic_cast<FixFSIWallParticle *>(fix));
+
+  streams.clear();
+  for (auto &fix : modify->get_fix_by_style("^fsi/stream$")) streams.push_back(dynamic_cast<FixFSIStream *>(fix));
 
   need_psi = density_fluid != CONTINUITY || (fluid && fluid->surface_ratio > 0.0) ||
       (solid && density_solid != CONTINUITY);
@@ -747,6 +751,8 @@ void FixFSI::update_state(bool advance)
     solid_tl->break_bonds();
     if (substeps == 1) solid_tl->advance_stress(update->dt);
   }
+  if (advance)
+    for (auto *fix : streams) fix->damp(update->dt + stagger);
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
   forward_comm(profile, comm, this);
   for (auto *fix : particle_walls) fix->extrapolate(advance);

@@ -126,6 +126,7 @@ class FixFSI : public FSI::FixFields {
   class FixFSIStress *fix_stress;
   std::vector<class FixFSIWallMirror *> wall_fixes;
   std::vector<class FixFSIWallParticle *> particle_walls;
+  std::vector<class FixFSIStream *> streams;
   class PairFSIFluid *fluid;
   class PairFSISolid *solid;
   class PairFSISolidTL *solid_tl;
