@@ -15,7 +15,7 @@ from pathlib import Path
 
 from tool import say
 
-from fsi import launch, log, paths, scene
+from fsi import launch, log, paths, scene, sweep
 from fsi.command import Refusal, split, start
 
 PAGE = paths.ROOT / "doc" / "hard" / "robustness.md"
@@ -33,7 +33,7 @@ SCENES = {  # scene: (variable of the resolution, its value, whether it is a num
     "elliptical_drop": ("dx", 0.05, False, {}),
     "floating_blocks": ("dx", 0.02, False, {}),
     "gate_static": ("dx", 0.00125, False, {}),
-    "hydrostatic_plate": ("across", 4, True, {}),
+    "hydrostatic_plate": ("across", 4, True, {"depth": 0.5}),
     "oscillating_plate": ("n", 4, True, {"spectrum": "no"}),
     "rolling_tank": ("dx", 0.002, False, {}),
     "rotating_square_patch": ("dx", 0.05, False, {}),
@@ -74,15 +74,16 @@ def variables(name, young, spacing):
 
 def run(name, young, poisson, spacing):
     """(steps, particles, verdict, good) of one run."""
-    text = scene.deck(name).read_text()
-    text, count = re.subn(r"^run  .*", f"run {STEPS}", text, flags=re.M)
-    if not count:
+    text, given = sweep.Deck(scene.deck(name)).instance(variables(name, young, spacing))
+    runs = re.findall(r"^run  .*", text, flags=re.M)
+    if not runs:
         raise Refusal(f"{name}'s deck has no run")
+    text = re.sub(r"^run  .*", f"run {STEPS // len(runs)}", text, flags=re.M)
     with tempfile.TemporaryDirectory(prefix="fsi_robust_") as folder:
         folder = Path(folder)
         (folder / "materials.fsi").write_text(solids((paths.POTENTIALS / "materials.fsi").read_text(), young, poisson))
         (folder / "in.deck").write_text(solids(text, 1, poisson) + END)
-        done = subprocess.run(launch.lammps("in.deck", 0, variables(name, young, spacing)), cwd=folder, env=launch.environment(),
+        done = subprocess.run(launch.lammps("in.deck", 0, given), cwd=folder, env=launch.environment(),
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT + 1)))
         found = log.read(folder / "log.lammps")
