@@ -332,6 +332,19 @@ def test_stops_at_a_time(tmp_path, ranks, stop):
     assert times[0] == 0.0 and times[-1] == pytest.approx(stop, rel=1e-12)
 
 
+def test_output_goes_on_beyond_the_first_guess_of_the_end(tmp_path):
+    """Falling water needs shorter and shorter steps, 9 % more than the first one lets expect: all is written until the end."""
+    text = re.sub("timestep .*", "", fluid_box(2).text()) + "fix fall all gravity 100 vector 0 -1 0\nfix dt all fsi/dt 10 stop 0.1\n" \
+        + END.format(every=0.01)
+    done = run(tmp_path, text, scene_data=fluid_box(2).data())
+    table, steps = rows_of(done.output), int(re.search(r"^END \S+ (\d+)", done.output, re.M)[1])
+    dt = table[1, 2]
+    assert steps > 1.05 * 0.1 / dt  # the guess was wrong
+    assert table[-1][:2].tolist() == [steps, 0.1] and np.diff(table[:-1, 0]).max() == 7
+    times = [frame.time for frame in done.frames("d.dump")]
+    np.testing.assert_allclose(times, 0.01 * np.arange(11), atol=1.01 * dt)
+
+
 def test_the_time_that_remains_is_told(tmp_path):
     """thermo's cpuremain is that of the steps to the end, not of run's million."""
     scene = fluid_box(2)

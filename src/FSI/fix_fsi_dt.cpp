@@ -164,7 +164,9 @@ void FixFSIDt::approach_end()
   }
   const double steps = std::ceil(left / next * (1.0 - ROUNDING));
   if (steps <= 2.0) next_dt = left / steps;
-  update->laststep = steps < last - now ? now + static_cast<bigint>(steps) : last;
+  // not from the first guess: what LAMMPS never writes, restarts or dumps, it puts one step behind the last when a run is set up
+  // and would write nothing more beyond
+  if (now > update->firststep || steps <= 2.0) update->laststep = steps < last - now ? now + static_cast<bigint>(steps) : last;
   if (steps > 1.0 || output->next_thermo <= now || now == update->firststep) return;    // output will see to it
   output->next_thermo = update->laststep;
   output->next = std::min(output->next, output->next_thermo);
