@@ -43,6 +43,8 @@ class FixFSIWatch : public Fix {
 
  private:
   class FixFSI *hub;
+  class FixFSIDt *fix_dt;    // that chooses the time step; null: none does
+  class PairFSISolidTL *solid_tl;
   FSI::Stop halt;
 
   int interval;
