@@ -163,6 +163,7 @@ CASES = [
     ("eos unknown", *fluid("", "sound 10 eos cubic "), r"eos cubic"),
     ("couple unknown", "couple wall", "couple half", r"couple half"),
     ("tension no logical", *fluid("", "sound 10 tension maybe "), r"maybe"),
+    ("solid/slip no logical", *fluid("", "sound 10 solid/slip 2 "), r"\b2\b"),
     ("extrapolate no logical", *fluid("", "sound 10 extrapolate 2 "), r"\b2\b"),
     ("alpha negative", "visc 0.05", "visc -0.05", r"artificial/visc alpha -0\.05 must be >= 0"),
     ("beta negative", "visc 0.05 0.1", "visc 0.05 -0.1", r"artificial/visc beta -0\.1 must be >= 0"),

@@ -9,7 +9,7 @@ import pytest
 from fsi import paths, scene
 
 ROWS = scene.analysis("hard").ROWS
-GOOD = ("drop", "spin", "spray", "tear", "empty", "jump_plate")  # rows whose runs take a second or two
+GOOD = ("drop", "spin", "spray", "splash", "tear", "empty", "jump_plate")  # rows whose runs take a second or two
 
 
 def short(*names):
@@ -35,24 +35,24 @@ def test_every_case_belongs_to_a_row():
 def test_short_form(monkeypatch, tmp_path):
     """Best passes what it must; the paper's recipe clumps the drop and breaks the spinning plate; both are told."""
     status, table = run(monkeypatch, tmp_path, short(
-        "drop.best", "drop.paper", "spin.best", "spin.paper", "spray_1.best", "spray_2.best", "spray_3.best",
+        "drop.best", "drop.paper", "spin.best", "spin.paper", "spray_1.best", "spray_2.best", "spray_3.best", "splash_2.best",
         "tear_serial.best", "tear.best", "empty.best", "jump_plate.best"))
     assert status == 0 and set(table) == set(GOOD)
     assert all(table[name]["best"]["pass"] for name in GOOD)
     assert not table["drop"]["paper"]["pass"] and not table["spin"]["paper"]["pass"]
     assert table["drop"]["best"]["worst"]["distance"] > 0.7 > 0.3 > table["drop"]["paper"]["worst"]["distance"]
     page = (tmp_path / "README.md").read_text()
-    assert "passes 6 of 6 rows" in page and "fails 2 of the 2" in page and (tmp_path / "hard.png").exists()
+    assert "passes 7 of 7 rows" in page and "fails 2 of the 2" in page and (tmp_path / "hard.png").exists()
     assert "FAIL" in page and (tmp_path / "hard.csv").read_text().count("\n") > 15
 
 
 def test_a_run_that_is_stopped_is_a_result(monkeypatch, tmp_path, capsys):
-    """Twenty times the stable step: fix fsi/watch ends the run, its words are in the table, the row is missed, so is the suite."""
+    """Twenty times the stable step: fix fsi ends the run, its words are in the table, the row is missed, so is the suite."""
     cases = short("spin.best")
     cases["spin.best"]["variables"]["cfl"] = "6"
     status, table = run(monkeypatch, tmp_path, cases)
     assert status == 1 and not table["spin"]["best"]["pass"]
-    assert "Fix fsi/watch: Mach number" in table["spin"]["best"]["stopped"]
+    assert "Fix fsi: Mach number" in table["spin"]["best"]["stopped"]
     assert "hard: the best recipe misses spin" in capsys.readouterr().err
     cases["spin.best"]["may_fail"] = False
     monkeypatch.setattr(scene, "cases", lambda name: cases)

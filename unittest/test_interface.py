@@ -87,7 +87,7 @@ def coupled_cloud(dim, couple, more=""):
     x, v = cloud([6] * dim, 0.1, vmax=1.0)
     solid = x[:, 0] > 0.3
     rho = np.random.default_rng(9).uniform(950, 1050, len(x))
-    s = Scene(x, v, dim=dim, dx=0.1, hdx=1.3, type=1 + solid, mol=1 + solid, materials=(WATER, RUBBER), dt=0.01,
+    s = Scene(x, v, dim=dim, dx=0.1, hdx=1.3, type=1 + solid, mol=1 + solid, materials=(WATER + " viscosity 20", RUBBER), dt=0.01,
               fluid=f"sound 10 couple {couple} {more}", commands=["fix g all gravity 9.81 vector 0.6 -0.8 0"])
     s.run(1)
     s.put("x", x), s.put("v", v), s.put("rho", rho)
@@ -96,7 +96,8 @@ def coupled_cloud(dim, couple, more=""):
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("couple,more", [("wall", ""), ("wall", "extrapolate yes"), ("pressure", ""), ("full", ""),
-                                         ("wall", "artificial/visc 0.3 0.5"), ("full", "artificial/visc 0.3 0.5")])
+                                         ("wall", "artificial/visc 0.3 0.5"), ("full", "artificial/visc 0.3 0.5"),
+                                         ("wall", "laminar/visc"), ("full", "laminar/visc/central"), ("wall", "laminar/visc solid/slip yes")])
 def test_pair_law(dim, couple, more):
     """Force of the solid on every fluid particle, DESIGN 3.3, 3.4 and 3.10."""
     s, x, v, rho, solid = coupled_cloud(dim, couple, more)
@@ -125,6 +126,15 @@ def test_pair_law(dim, couple, more):
         if couple == "full":
             S = sigma[j] + p[j][:, None, None] * np.diag([1, 1, dim == 3])
             pair += (V[j]**2 * solid[j])[:, None] * np.einsum("nab,nb->na", S, d)
+        if "laminar" in more:
+            # to viscosity a solid is fluid, with the velocity that makes the mean of both sides its own
+            W = s.kernel.W(r)[:, None]
+            of_fluid = sum_over(j, W * v[i], s.n) / np.maximum(sum_over(j, W, s.n), 1e-300)
+            seen = np.where(solid[:, None] & of_fluid.any(1, keepdims=True), 2 * v - of_fluid, v)
+            u, k = v[i] - seen[j], (V[i] * V[j] * 2 * 20 / (r**2 + 0.01 * s.kernel.h**2))[:, None]
+            if "slip" in more:
+                k = np.where(solid[j][:, None], 0.0, k)
+            pair += k * ((dim + 2) * (u * d).sum(1)[:, None] * d if "central" in more else r[:, None]**2 * u)
         expected = sum_over(i, pair * s.kernel.g(r)[:, None], s.n) + s.get("rmass")[:, None] * g
         close(s.get("f")[~solid], expected[~solid], 1e-12)    # sums of 20 to 60 terms
 

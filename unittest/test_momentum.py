@@ -5,12 +5,12 @@ import pytest
 from scenes import RUBBER, WATER, Scene, cloud
 
 
-def build(dim, couple, more=""):
+def build(dim, couple, more="", viscosity=0):
     dx = 0.1
     x, v = cloud([10, 10] if dim == 2 else [6, 6, 6], dx, jitter=0.1, vmax=0.5)
     v[:, 0] += 0.3
     solid = x[:, 0] > x[:, 0].mean()
-    return Scene(x, v, dim=dim, dx=dx, hdx=1.3, dt=5e-4, type=1 + solid, mol=1 + solid, materials=(WATER, RUBBER),
+    return Scene(x, v, dim=dim, dx=dx, hdx=1.3, dt=5e-4, type=1 + solid, mol=1 + solid, materials=(f"{WATER} viscosity {viscosity}", RUBBER),
                  box=((-20,) * 3, (20,) * 3),
                  fluid=f"sound 10 couple {couple} artificial/visc 0.1 0.1 density/diffusion 0.1 {more}",
                  solid="artificial/visc 0.2 0 artificial/stress 0.3 gradient " + ("corrected" if couple == "wall" else "plain"))
@@ -43,7 +43,7 @@ def test_kept(dim, couple):
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_laminar_and_extrapolation_too(dim):
-    with build(dim, "wall", "laminar/visc extrapolate yes") as s:
+    with build(dim, "wall", "laminar/visc extrapolate yes", viscosity=20) as s:
         s.run()
         scale, p0 = np.abs(s.get("rmass")[:, None] * s.get("v")).sum(), s.momentum()
         s.run(300)

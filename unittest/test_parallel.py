@@ -34,6 +34,7 @@ ALTERNATIVES = {  # what else crosses ranks: options of the scene, in 2D and 3D
              "solid": "artificial/visc 0.1 0 artificial/stress 0.3", "sph": "mach off"},  # it does not stay sound in 3D: ranks agree all the same
     "hourglass": {"solid": "artificial/visc 0.1 0 hourglass 0.5 gradient quadratic"},
     "quadratic": {"solid": "artificial/visc 0.1 0 artificial/stress 0.2 gradient quadratic"},
+    "no slip": {"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.1 0", "fluid": "sound 10 laminar/visc"},
     "shift": {"fluid": "sound 10 laminar/visc/central shift 0.5"},
     "extrapolate": {"fluid": NO_DIFFUSION + " extrapolate yes"},
     "tl": {"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.1 0.1 hourglass 0.1"},

@@ -23,7 +23,7 @@ from fsi.geometry import min_pair_distance  # noqa: E402
 from fsi.leaks import Leaks  # noqa: E402
 from fsi.summary import RUN_FILE, Summary, number  # noqa: E402
 
-CAUSES = r"Fix fsi/watch: .*(Mach number|distance over|density error|Courant number|kinetic energy|not finite)"
+CAUSES = r"Fix fsi(?:/watch)?: .*(Mach number|distance over|density error|Courant number|kinetic energy|not finite)"
 LINK = 1.5  # [dx] farther apart, two particles do not hang together
 
 
@@ -156,6 +156,20 @@ def jet(folder):
     return {**impact(folder), "impulse_error": balance.max()}
 
 
+def splash(folder):
+    """Change of the energy ledger's sum over the kinetic energy at the start, smallest density over that at rest, particles lost."""
+    table, energy = (series.read(Path(folder) / name) for name in ("series.csv", "energy.csv"))
+    return {"energy_error": np.abs(energy["energy"] - energy["energy"][0]).max() / energy["kinetic"][0],
+            "smallest_density": table["density"].min() / 1000.0, "lost": int(table["atoms"][0] - table["atoms"].min())}
+
+
+def settled(folder):
+    """Volume of the water at rest over that of the start, less one: by the height of its middle, mean of the last tenth of the run."""
+    table = series.read(Path(folder) / "series.csv")
+    late = table.time > 0.9 * table.time[-1]
+    return {"volume_error": abs(2.0 * table["mean"][late].mean() / values_of(folder)["rest"] - 1.0)}
+
+
 def ballistic(folder):
     """Largest distance from the parabola of a particle without air, over the way that it made."""
     frames = frames_of(folder)
@@ -265,6 +279,9 @@ ROWS = {
     "still_jitter": Row("the same from a jittered lattice", r"still_\d+_jitter", still, STILL, "continuity, density diffusion, Wendland kernel"),
     "corner": Row("still water, 10 s, obstacle with corners", r"still_corner_\d+", still, STILL, "continuity, density diffusion, couple wall"),
     "spray": Row("spray of 1, 2, 3 particles", "spray_.*", ballistic, {"off_parabola": ("<", 1e-12)}, "no tension"),
+    "splash": Row("cube of water falls on a floor at 1, 2, 3, 5 m/s, until at rest (3D)", r"splash_.*", splash,
+                  {"energy_error": ("<", 0.01), "smallest_density": (">", 0.1), "lost": ("<=", 0)}, "density diffusion within water under pressure"),
+    "settle": Row("volume after a dam break, at rest", r"settle_.*", settled, {"volume_error": ("<", 0.01)}, "density diffusion within water under pressure"),
     "wall": Row("a million steps against a wall: a particle, and a drop of nine", "wall.*", wall, {"leaked": ("<=", 0), "steps": (">=", 1000000)}, "guard of 0.4 dx, continuity"),
     "pull": Row("plate pulled out of water", "pull", pull, {"hanging": ("<=", 0), "pull": ("<", 1e-12)}, "couple wall: no suction"),
     "tear": Row("solid torn between two ranks", "tear.*", tear, {"pieces": ("==", 2), "ranks_differ": ("<", 1e-6)}, "damage"),

@@ -104,7 +104,7 @@ class FixFSI : public FSI::FixFields {
   double potential(int i) const;    // gravitational energy of atom i at the positions in atom->x
   double stored(int i) const;       // compressive energy of atom i
 
-  // viscous velocity of no-slip walls of particles (fix fsi/wall/particle); null: there are none
+  // viscous velocity of no-slip walls of particles (fix fsi/wall/particle) and solids; null: there are none
   double **wall_velocity;
   bool noslip_walls;
   // rho dp/drho of wall particles, that of the fluid around them; null: it is the same for all fluids, and in the wall's state

@@ -148,6 +148,8 @@ void FixFSIWallMirror::setup(int)
 /* ----------------------------------------------------------------------
    after the first drift: walls move along, and a fluid particle nearer than the guard distance, or behind the wall, is
    reflected. A segment acts on what has come through it in this step, not on what flows behind it.
+   The ledger has velocities of the middle of a step, half a kick on, of which the kick of gravity is not reflected. What that of the other
+   forces differs by, density takes up.
 ------------------------------------------------------------------------- */
 
 void FixFSIWallMirror::post_integrate()
@@ -173,6 +175,8 @@ void FixFSIWallMirror::post_integrate()
       if (hub->ledger) hub->taken[FixFSI::WALLS] += before - hub->potential(i);
       const double vn = v[i][w.axis] - w.velocity[w.axis];
       if (vn * w.side < 0.0) {
+        if (hub->ledger)
+          hub->taken[FixFSI::WALLS] += 2.0 * vn * atom->rmass[i] * (v[i][w.axis] - vn + dth * hub->body_forces.on(i)[w.axis]);
         v[i][w.axis] -= 2.0 * vn;
         if (hub->profile) hub->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
       }

@@ -18,15 +18,13 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "force.h"
 #include "fix_fsi_dt.h"
-#include "fix_fsi_wall_mirror.h"
+#include "force.h"
 #include "fsi_keywords.h"
+#include "group.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "output.h"
-#include "pair_fsi_fluid.h"
-#include "pair_fsi_solid.h"
 #include "pair_fsi_solid_tl.h"
 #include "thermo.h"
 #include "update.h"
@@ -116,6 +114,13 @@ void FixFSIWatch::init()
   for (auto &fix : modify->get_fix_by_style("^fsi/watch$"))
     if (fix != this && static_cast<FixFSIWatch *>(fix)->halt.restart_file == file && !file.empty())
       error->all(FLERR, "Two fixes fsi/watch ({} and {}) would write the same file {}", id, fix->id, file);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWatch::find_idle(const Census &, const Idle &nothing) const
+{
+  if (group->count(igroup) == 0) nothing("Fix fsi/watch", fmt::format("group {} is empty", group->names[igroup]));
 }
 
 /* ---------------------------------------------------------------------- */

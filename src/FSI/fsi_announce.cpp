@@ -49,6 +49,8 @@ static void say_effects(LAMMPS *lmp, FixFSI &hub, std::string &text)
     const int n = lmp->modify->get_fix_by_style("^fsi/wall/particle$").size();
     effects.push_back({fmt::format("{} groups of wall particles", n), "fix fsi/wall/particle", n > 0});
   }
+  if (lmp->force->pair_match("fsi/solid/tl", 1))
+    effects.push_back({fmt::format("{} solid sub-steps", hub.substeps), "fix fsi substeps", hub.substeps > 1});
   if (hub.surface_ratio > 0.0)
     effects.push_back({fmt::format("surface looked for every {} steps", hub.surface_every), "fix fsi surface/every", hub.number_density_is_kept()});
   effects.push_back({"energy ledger", "compute fsi/energy", hub.ledger});

@@ -115,7 +115,8 @@ namespace FSI {
     const std::array<double, 3> *extrapolate;    // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
     double stored;           // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0
     const struct Contact *guard;           // per type: of walls
-    const double (*wall_velocity)[3];      // per particle, that no-slip walls of particles have in viscous forces
+    bool solids_slip;
+    const double (*wall_velocity)[3];      // per particle, that no-slip walls of particles and solids have in viscous forces
     const double *const *stress;           // per particle, of solids (couple full); null: they have none
   };
 

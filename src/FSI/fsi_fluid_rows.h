@@ -207,9 +207,10 @@ namespace FSI {
       const State &fluid = in.state[in.type[i]], &other = in.state[type_j];
       const Particle<T, D> pi(point[i]);
       const double c = KIND == WITH_FLUID ? 0.5 * (fluid.c + other.c) : KIND == WITH_WALL || fluid.c < other.c ? fluid.c : other.c, bulk = fluid.rho0 * fluid.csq, floor = fluid.floor;
-      // beyond a wall with no slip there is fluid, where a wall slips it does not rub
-      const double rubs = KIND != WITH_WALL || other.noslip ? 1.0 : 0.0;
-      const double visc = laws.laminar ? (KIND == WITH_WALL ? 2.0 * rubs : 1.0) * (fluid.viscosity + other.viscosity) : 0.0;
+      // beyond a wall or solid with no slip there is fluid, where it slips it does not rub
+      const bool slips = KIND == WITH_FLUID ? false : KIND == WITH_WALL ? !other.noslip : laws.solids_slip;
+      const double rubs = KIND == WITH_WALL && slips ? 0.0 : 1.0;
+      const double visc = !laws.laminar || slips ? 0.0 : fluid.viscosity + (KIND == WITH_FLUID ? other : fluid).viscosity;
       double extrapolate[3] = {};
       if (KIND == WITH_SOLID && laws.extrapolate)
         for (int d = 0; d < D; d++) extrapolate[d] = laws.extrapolate[in.type[i]][d];
@@ -267,16 +268,27 @@ namespace FSI {
           for (T &r : rubbing) r = 0.0;
           if (FLAGS & Flag::IMAGES) {
             // of both, each relative to the other's image, which a no-slip wall turns around
-            T w[D], seen[D], back[D];
+            T w[D], seen[D], back[D], of_j[D];
             for (int d = 0; d < D; d++) {
-              w[d] = pi.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * original.v[d]);
-              back[d] = original.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * pi.v[d]);
+              const T vj = KIND == WITH_FLUID ? original.v[d] : L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
+              w[d] = pi.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * vj);
+              back[d] = vj - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * pi.v[d]);
               seen[d] = -mirror.sign[d] * x[d];
+              of_j[d] = 0.0;
             }
-            const T vv = pi.vol * pj.vol, loss = viscous(g, rsq, visc, vv, x, w, rubbing) + viscous(g, rsq, visc, vv, seen, back, on_j);
+            const T vv = pi.vol * pj.vol;
+            T loss = viscous(g, rsq, visc, vv, x, w, rubbing) + viscous(g, rsq, visc, vv, seen, back, of_j);
+            if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) {
+              // the power is that of the solid's own velocity
+              loss = 0.0;
+              for (int d = 0; d < D; d++)
+                loss -= rubbing[d] * (pi.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * original.v[d])) +
+                    of_j[d] * (original.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * pi.v[d]));
+            }
+            for (int d = 0; d < D; d++) on_j[d] += of_j[d];
             if (FLAGS & Flag::SUMS) by_laminar += 0.5 * share * loss;
-          } else if (KIND == WITH_WALL) {
-            // fluid beyond the wall, with the velocity extrapolated
+          } else if (KIND != WITH_FLUID) {
+            // fluid beyond the wall or inside the solid, with the velocity extrapolated
             T w[D];
             for (int d = 0; d < D; d++) w[d] = pi.v[d] - L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
             viscous(g, rsq, visc, pi.vol * pj.vol, x, w, rubbing);

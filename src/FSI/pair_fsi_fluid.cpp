@@ -21,6 +21,7 @@
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_density_diffusion.h"
+#include "fsi_kernel.h"
 #include "fsi_shift.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -37,13 +38,14 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), rate(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
   artificial_row("fluid");
   keywords.key("laminar/visc").set(laminar, PLAIN).effect("laminar viscosity");
   keywords.key("laminar/visc/central").set(laminar, CENTRAL);
+  keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
   keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
   keywords.key("surface")
@@ -121,6 +123,9 @@ void PairFSIFluid::init_style()
   if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
     error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
                    has_solids() ? "it is for couple wall" : "there is no solid");
+  if (solids_slip && (!laminar || !has_solids()) && comm->me == 0)
+    error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
+                   has_solids() ? "there is no laminar/visc" : "there is no solid");
   loops = make_fluid_loops(hub->kernel, hub->dim, hub->h);
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
@@ -160,13 +165,17 @@ void PairFSIFluid::set_fields(FixFSI &fsi)
 {
   fields.set("density rate", Fields::STEP, fsi.density_fluid == FixFSI::CONTINUITY, rate);
   fields.set("shift", Fields::STEP, shifting > 0.0, fsi.shift, nshift());
+  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, fsi.dim + 1);
+  fsi.noslip_walls = fsi.noslip_walls || sticks_to_solids();
   fsi.surface_ratio = surface_ratio;
   fsi.surface_max = surface_max;
 }
 
-void PairFSIFluid::add_messages(Message &, Message &back)
+void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 {
-  if (rate) back.add(rate, {FLUID, RIGID});
+  if (sticks_to_solids()) to_ghosts.add(hub->wall_velocity, 0, hub->dim, {SOLID});
+  if (sticks_to_solids()) back.add(beyond, 0, hub->dim + 1, {SOLID});
+  if (hub->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
   if (shifting > 0.0) back.add(hub->shift, 0, nshift(), {FLUID, RIGID});
 }
 
@@ -176,6 +185,7 @@ void PairFSIFluid::add_costs(Costs &costs) const
   costs.bytes += 8 * (2 * hub->dim + 4 + continuity + ns);
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
+  if (sticks_to_solids()) costs.solid_ghost += hub->dim + newton * (hub->dim + 1);
 }
 
 void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
@@ -197,17 +207,23 @@ bool PairFSIFluid::add_rates(bool advance)
   const size_t nall = atom->nlocal + atom->nghost;
   if (rate) std::fill_n(rate, nall, 0.0);
   if (shifting > 0.0 && nall) std::fill_n(hub->shift[0], nall * nshift(), 0.0);
-  if (!rate || !advance) return false;
   const Phase phase(hub->profile, Profile::DENSITY);
-  if (hub->dim == 2) add_density_rate<2>(update->dt);
-  else add_density_rate<3>(update->dt);
-  return true;
+  if (rate && advance) {
+    if (hub->dim == 2) add_density_rate<2>(update->dt);
+    else add_density_rate<3>(update->dt);
+  }
+  if (beyond) {
+    if (nall) std::fill_n(beyond[0], nall * (hub->dim + 1), 0.0);
+    add_velocities_at_solids();
+  }
+  return (rate && advance) || beyond;
 }
 
 void PairFSIFluid::advance(bool advance)
 {
-  if (!rate || !advance) return;
   const Phase phase(hub->profile, Profile::DENSITY);
+  if (beyond) extrapolate_velocities();
+  if (!rate || !advance) return;
   advance_density();
   if (shifting > 0.0) displacements(update->dt);
 }
@@ -461,6 +477,41 @@ void PairFSIFluid::add_position_divergence(double *div)
 
 /* ---------------------------------------------------------------------- */
 
+void PairFSIFluid::add_velocities_at_solids()
+{
+  const int dim = hub->dim;
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  with_kernel(hub->kernel, dim, hub->h, [&](const auto &kernel) {
+    for (const Row &row : rows[SOLIDS].rows)
+      for (int k = 0; k < row.n; k++) {
+        const int i = row.i, j = row.j[k];
+        double rsq = 0.0;
+        for (int d = 0; d < dim; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+        if (rsq >= kernel.cutsq) continue;
+        const double W = kernel.W(std::sqrt(rsq));
+        for (int d = 0; d < dim; d++) beyond[j][d] += W * v[i][d];
+        beyond[j][dim] += W;
+      }
+  });
+}
+
+/* ----------------------------------------------------------------------
+   velocity of solids in viscous forces: where fluid would be inside the solid, that with which the face has the solid's,
+   2 v_s - sum v W/sum W, as for walls of particles
+------------------------------------------------------------------------- */
+
+void PairFSIFluid::extrapolate_velocities()
+{
+  const int dim = hub->dim;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (hub->state[atom->type[i]].species != SOLID) continue;
+    const double *const s = beyond[i], *const v = atom->v[i];
+    for (int d = 0; d < dim; d++) hub->wall_velocity[i][d] = s[dim] > 0.0 ? 2.0 * v[d] - s[d] / s[dim] : v[d];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
 void PairFSIFluid::compute(int eflag, int vflag)
 {
   const Phase phase(hub->profile, Profile::FLUID);
@@ -496,7 +547,7 @@ template <int D> void PairFSIFluid::compute_forces()
     p.pv2 = p.p * p.vol * p.vol;
   });
 
-  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? hub->body_forces.of_type.data() : nullptr, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(),
+  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? hub->body_forces.of_type.data() : nullptr, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
                     FixFSI::rows(hub->wall_velocity ? hub->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr};
   PairSums sums, *const of_pairs = hub->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
@@ -544,6 +595,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
   static const char *const modes[] = {"wall", "pressure", "full"};
   auto list = keywords.effects();
   list.push_back({fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
+  list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});
   return list;
 }
 

@@ -48,6 +48,7 @@ class PairFSIFluid : public PairFSI {
   void find_idle(const Census &, const Idle &) const override;
   double memory_usage() override;
   bool has_laminar() const { return laminar; }
+  bool sticks_to_solids() const { return laminar && !solids_slip && has_solids(); }
   double sound_of(const FSI::Material &) const;
 
   void set_fields(FixFSI &) override;
@@ -79,7 +80,7 @@ class PairFSIFluid : public PairFSI {
   // particles); 0 = off
   double surface_ratio;
   int surface_max;
-  int tait, laminar, couple, extrapolate, tension;
+  int tait, laminar, couple, extrapolate, tension, solids_slip;
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
@@ -103,6 +104,9 @@ class PairFSIFluid : public PairFSI {
   double *rate;      // local after the reverse communication
   double **shift;    // its sums; afterwards the displacement at the end of the step
   int nshift() const;
+  double **beyond;    // of solids that fluid sticks to: the sums of v W, and of W, of the fluid around
+  void add_velocities_at_solids();
+  void extrapolate_velocities();
   template <int D> void add_density_rate(double dt);
   void advance_density();
   void displacements(double dt);    // turns the sums of particle shifting of local fluid atoms into displacements

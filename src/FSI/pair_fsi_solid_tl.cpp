@@ -573,7 +573,6 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   auto list = keywords.effects();
   list.insert(list.begin(), {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"),
                              "law", true});
-  list.push_back({fmt::format("{} solid sub-steps", hub ? hub->substeps : 1), "fix fsi substeps", hub && hub->substeps > 1});
   return list;
 }
 
