@@ -65,6 +65,9 @@ def deck(page, example):
                                                                       "create_atoms 3 region wall\ngroup wall type 3\ngroup water")
         pairs = PAIRS.replace("water plate", "water plate wall").replace("NULL plate", "NULL plate NULL")
         return walls + pairs + FIX.replace("all", "fluid").replace("fix", "group fluid subtract all wall\nfix", 1) + STRESS + GRAVITY + example + "\nrun 1\n"
+    if page == "fix_fsi_stream":
+        lines = examples(page)    # region and variable stand before the fix that has them
+        return SETUP + PAIRS + FIX + STRESS + "\n".join(line for line in lines if not line.startswith("fix") and line != example) + f"\n{example}\nrun 1\n"
     if page == "fix_fsi_move":
         moves = FIX.replace("all", "water") + "group wall type 2\ngroup blades type 2\n"
         lines = examples(page)  # variables stand before the fix that has them

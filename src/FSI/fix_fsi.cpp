@@ -251,10 +251,10 @@ void FixFSI::enter_state(int type, const State &s)
 void FixFSI::find_parts()
 {
   parts.clear();
-  for (auto &fix : modify->get_fix_list())
-    if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
   for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"})
     if (auto *p = dynamic_cast<Part *>(force->pair_match(style, 1))) parts.push_back(p);
+  for (auto &fix : modify->get_fix_list())
+    if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
 }
 
 /* ---------------------------------------------------------------------- */

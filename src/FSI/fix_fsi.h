@@ -113,7 +113,7 @@ class FixFSI : public FSI::FixFields {
   FSI::Walls walls;     // at the time of the positions in atom->x
 
   FSI::BodyForces body_forces;
-  // what takes part in a step, in the order of its calls: fixes as they are defined, then pair styles; from init() on
+  // what takes part in a step, in the order of its calls: pair styles, then fixes as they are defined; from init() on
   std::vector<FSI::Part *> parts;
   int substeps;    // of total-Lagrangian solids in each step: as given, or as fix fsi/dt has chosen
   int surface_every;    // steps from one number density to the next of the free-surface rule

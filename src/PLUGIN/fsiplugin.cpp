@@ -29,6 +29,7 @@
 #include "fix_fsi_reference.h"
 #include "fix_fsi_spectrum.h"
 #include "fix_fsi_report.h"
+#include "fix_fsi_stream.h"
 #include "fix_fsi_stress.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_wall_particle.h"
@@ -135,6 +136,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi/watch", &create_with_arguments<FixFSIWatch>);
   two("fix", "fsi/dt", &create_with_arguments<FixFSIDt>);
   two("fix", "fsi/move", &create_with_arguments<FixFSIMove>);
+  two("fix", "fsi/stream", &create_with_arguments<FixFSIStream>);
   two("fix", "fsi/report", &create_with_arguments<FixFSIReport>);
   two("fix", "fsi/stress", &create_with_arguments<FixFSIStress>);
   two("fix", "fsi/reference", &create_with_arguments<FixFSIReference>);

@@ -1,0 +1,267 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+#include "fix_fsi_stream.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "fsi_record.h"
+#include "group.h"
+#include "input.h"
+#include "math_const.h"
+#include "memory.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "region.h"
+#include "update.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"), source{FREE, FREE, FREE}, value{}, variable{-1, -1, -1}, low(0.0), high(0.0),
+    region(nullptr), hub(nullptr), step(-1), target(nullptr), nmax(0), given{}, work(0.0)
+{
+  if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stream requires atom_style fsi");
+  if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi/stream", error);
+  for (int d = 0; d < 3; d++) {
+    const std::string word = arg[3 + d];
+    if (word == "NULL") continue;
+    if (d >= domain->dimension) error->all(FLERR, "Fix fsi/stream velocity along z must be NULL in 2D, not {}", word);
+    if (utils::strmatch(word, "^v_")) {
+      name[d] = word.substr(2);
+      source[d] = EQUAL;
+    } else {
+      value[d] = numeric(lmp, "Fix fsi/stream velocity", word, {}, false, "NULL or v_name");
+      source[d] = NUMBER;
+    }
+  }
+  keywords.key("region").word(region_id, "");
+  keywords.key("rate").number(rate, 0.0, Range::above(0.0));
+  keywords.key("density").number(density_rate, -1.0, Range::from(0.0));
+  keywords.key("along").choice(along, 0, {"x", "y", "z"});
+  keywords.parse(narg - 6, arg + 6);
+  if (region_id.empty()) error->all(FLERR, "Fix fsi/stream requires keyword region: the zone in which it acts");
+  if (rate == 0.0) error->all(FLERR, "Fix fsi/stream requires keyword rate: of the fluid's approach to the velocity, 1/time");
+  if (density_rate < 0.0) density_rate = rate;
+  if (along >= domain->dimension) error->all(FLERR, "Fix fsi/stream along z: there is no flow along z in 2D");
+  if (!domain->get_region_by_id(region_id)) error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
+
+  scalar_flag = vector_flag = 1;
+  size_vector = 4;
+  extscalar = extvector = 1;
+  global_freq = 1;
+  restart_global = 1;
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIStream::~FixFSIStream()
+{
+  memory->destroy(target);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSIStream::setmask()
+{
+  return POST_FORCE;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIStream::init()
+{
+  hub = FixFSI::find(lmp, "Fix fsi/stream");
+  if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
+  if (density_rate > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
+    error->all(FLERR, "Fix fsi/stream requires fix fsi with fluid continuity, or density 0: what is summed cannot be damped");
+  region = domain->get_region_by_id(region_id);
+  if (!region) error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
+  if (region->dynamic_check()) error->all(FLERR, "Region {} of fix fsi/stream must not move nor change", region_id);
+  if (!region->bboxflag) error->all(FLERR, "Region {} of fix fsi/stream must be inside of its faces: it has no ends along {}", region_id, "xyz"[along]);
+  const double lo[] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
+  const double hi[] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
+  low = lo[along];
+  high = hi[along];
+  // a number in a script may be that of the box but for its last digits
+  const double little = 1.0e-9 * domain->prd[along];
+  if (low < domain->boxlo[along] - little || high > domain->boxhi[along] + little)
+    error->all(FLERR, "Region {} of fix fsi/stream, from {} to {} along {}, must be inside the box, from {} to {}", region_id, low, high, "xyz"[along],
+               domain->boxlo[along], domain->boxhi[along]);
+
+  for (int d = 0; d < 3; d++) {
+    if (name[d].empty()) continue;
+    variable[d] = input->variable->find(name[d].c_str());
+    if (variable[d] < 0) error->all(FLERR, "Variable {} of fix fsi/stream does not exist", name[d]);
+    if (input->variable->equalstyle(variable[d])) source[d] = EQUAL;
+    else if (input->variable->atomstyle(variable[d])) source[d] = ATOM;
+    else error->all(FLERR, "Variable {} of fix fsi/stream must be equal-style or atom-style", name[d]);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIStream::setup(int vflag)
+{
+  step = -1;
+  find_weights();
+  int mine = std::any_of(weight.begin(), weight.end(), [](double w) { return w > 0.0; }), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) error->all(FLERR, "Region {} of fix fsi/stream has no fluid of group {}", region_id, group->names[igroup]);
+  post_force(vflag);
+}
+
+/* ----------------------------------------------------------------------
+   sin^2 along the axis: smooth, 0 at the ends. Solids would be torn by what drives the fluid around them
+------------------------------------------------------------------------- */
+
+void FixFSIStream::find_weights()
+{
+  if (step == update->ntimestep) return;
+  step = update->ntimestep;
+  weight.assign(atom->nlocal, 0.0);
+  region->prematch();
+  const int *const mask = atom->mask, *const type = atom->type;
+  const bool look_for_solids = neighbor->ago == 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int species = hub->state[type[i]].species;
+    const bool fluid = species == FLUID && (mask[i] & groupbit);
+    if (!fluid && !(species == SOLID && look_for_solids)) continue;
+    double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+    domain->remap(x);
+    if (x[along] <= low || x[along] >= high || !region->match(x[0], x[1], x[2])) continue;
+    if (!fluid) error->one(FLERR, "Atom {} of a solid is in region {} of fix fsi/stream, which is for fluid alone", atom->tag[i], region_id);
+    const double s = std::sin(MathConst::MY_PI * (x[along] - low) / (high - low));
+    weight[i] = s * s;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   d rho/dt = -k w (rho - mean), the mean with the same weights, of each type: the mean stays
+------------------------------------------------------------------------- */
+
+void FixFSIStream::advance(bool advance)
+{
+  if (!advance) return;
+  const double dt = update->dt + hub->stagger;
+  find_weights();
+  if (density_rate == 0.0) return;
+  const int *const type = atom->type, n = atom->ntypes + 1;
+  double *const rho = atom->rho;
+  std::vector<double> mine(2 * n, 0.0), all(2 * n);
+  const auto part = [&](int i) { return -std::expm1(-density_rate * weight[i] * dt); };
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (weight[i] == 0.0) continue;
+    const double a = part(i);
+    mine[2 * type[i]] += a;
+    mine[2 * type[i] + 1] += a * rho[i];
+  }
+  MPI_Allreduce(mine.data(), all.data(), 2 * n, MPI_DOUBLE, MPI_SUM, world);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (weight[i] == 0.0) continue;
+    const double before = hub->ledger ? hub->stored(i) : 0.0;
+    rho[i] += part(i) * (all[2 * type[i] + 1] / all[2 * type[i]] - rho[i]);
+    if (hub->ledger) hub->taken[FixFSI::FIELDS] += before - hub->stored(i);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the force that brings v to u(1 - a) + a v in this step, a = exp(-k w dt): stable for any rate
+------------------------------------------------------------------------- */
+
+void FixFSIStream::post_force(int)
+{
+  find_weights();    // in setup
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    memory->destroy(target);
+    memory->create(target, nmax, 3, "fsi/stream:target");
+  }
+  modify->clearstep_compute();
+  for (int d = 0; d < 3; d++) {
+    if (source[d] == EQUAL) value[d] = input->variable->compute_equal(variable[d]);
+    if (source[d] == ATOM) input->variable->compute_atom(variable[d], igroup, &target[0][d], 3, 0);
+  }
+  modify->addstep_compute(update->ntimestep + 1);
+
+  std::fill_n(given, 4, 0.0);
+  const double dt = update->dt;
+  if (dt == 0.0) return;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (weight[i] == 0.0) continue;
+    const double m = atom->rmass[i], part = -std::expm1(-rate * weight[i] * dt);
+    double *const f = atom->f[i], *const v = atom->v[i];
+    for (int d = 0; d < 3; d++) {
+      if (source[d] == FREE) continue;
+      const double u = source[d] == ATOM ? target[i][d] : value[d];
+      if (!std::isfinite(u)) error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u, "xyz"[d], atom->tag[i],
+                                        name[d].empty() ? "" : ", see variable " + name[d]);
+      const double push = m * part * (u - v[d]) / (dt * force->ftm2v);
+      f[d] += push;
+      given[d] += push;
+      given[3] += push * (v[d] + 0.5 * dt * force->ftm2v * f[d] / m);    // in the middle of the kick
+    }
+  }
+  hub->tally(FixFSI::FIELDS, -given[3]);
+  if (update->ntimestep > update->firststep) work += dt * given[3];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSIStream::compute_scalar()
+{
+  double all;
+  MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixFSIStream::compute_vector(int n)
+{
+  double all;
+  MPI_Allreduce(&given[n], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIStream::write_restart(FILE *fp)
+{
+  const double all = compute_scalar();
+  Record record(lmp, "fix fsi/stream");
+  record.add("work", std::vector<double>{all});
+  record.write(fp);
+}
+
+void FixFSIStream::restart(char *buf)
+{
+  const Record record(lmp, "fix fsi/stream", buf);
+  work = comm->me == 0 ? record.numbers("work")[0] : 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSIStream::memory_usage()
+{
+  return (double) weight.capacity() * sizeof(double) + 3.0 * nmax * sizeof(double);
+}

@@ -1,0 +1,76 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(fsi/stream,FixFSIStream);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_FSI_STREAM_H
+#define LMP_FIX_FSI_STREAM_H
+
+#include "fix.h"
+#include "fsi_keywords.h"
+#include "fsi_part.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Brings the fluid of a zone to a given velocity, and its density to the zone's mean: with one rate for both a sound wave that passes
+// decays without a reflection.
+
+class FixFSIStream : public Fix, public FSI::Part {
+ public:
+  FixFSIStream(class LAMMPS *, int, char **);
+  ~FixFSIStream() override;
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double memory_usage() override;
+
+  void advance(bool) override;    // density, after that of the fluid
+
+ private:
+  enum Source { FREE, NUMBER, EQUAL, ATOM };
+  FSI::Keywords keywords;
+  std::string name[3], region_id;
+  Source source[3];
+  double value[3];
+  int variable[3];
+  int along;                     // axis
+  double rate, density_rate;     // 1/time, in the middle of the zone
+  double low, high;              // ends of the zone along the axis
+  class Region *region;
+  class FixFSI *hub;
+  bigint step;                   // of the weights
+  std::vector<double> weight;    // of local atoms: 0 outside of the zone and at its ends, 1 in its middle
+  double **target;
+  int nmax;
+  double given[4];               // force on the fluid and its power, this rank's part
+  double work;                   // since the fix was defined, likewise
+
+  void find_weights();
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif
