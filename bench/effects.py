@@ -77,10 +77,10 @@ def gate(n, _, without=(), water="", rubber="", commands=""):
     cut = {"viscosity": r" artificial/visc 0.05 0", "diffusion": r" density/diffusion 0.1", "walls": r"^fix +walls .*$",
            "rubber viscosity": r"(?<=fsi/solid/tl) artificial/visc 0.1 0", "output": r"^(dump|fix +tip|compute +(disp|last|previous|front|fields)|print"
            r"|variable +(tip_x|tip_y|front|reflected)|run|fix +balance|thermo_style|thermo_modify|dump_modify|thermo) .*(\n[^\n]*title.*|\n +id type.*)?$"}
-    for part in ("output", *without):
-        if part == "substeps":
-            text = re.sub(r'^if .*"variable n equal.*$', "variable n equal 1", text, flags=re.M)
-            continue
+    # the time step of the start, with a number of sub-steps that does not change: one run's instructions are another's
+    dx, n_sub = 1 / n, 1 if "substeps" in without else 8
+    text = re.sub(r"^fix +dt .*$", f"timestep {0.375 * dx * n_sub / 153!r}", re.sub(r"^(fix +sph .*)$", rf"\1 substeps {n_sub}", text, flags=re.M), flags=re.M)
+    for part in ("output", *(part for part in without if part != "substeps")):
         text, count = re.subn(cut[part], "", text, flags=re.M)
         if not count:
             raise Refusal(f"the gate's deck has no '{cut[part]}' any more")

@@ -28,6 +28,8 @@ steel            solid rho 7850.0 young 210.0e9 poisson 0.3 yield 235.0e6
 # ---- benchmarks ----
 # Taylor-Green vortices with U = L = 1 at Re = 100
 vortex_Re100     fluid rho 1000.0 viscosity 10.0
+# Channel of Schaefer and Turek, and of Turek and Hron: nu = 1e-3 m^2/s
+channel_water    fluid rho 1000.0 viscosity 1.0
 
 # Rubber gate of Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879: 12 MPa as the
 # stiffness used there, 10 MPa as in later papers on the same experiment

@@ -161,6 +161,12 @@ def test_pair_visits(tmp_path, atoms, half, visits):
     assert found.pair_visits() == visits and (found.solid_particles, found.substeps) == (100, 8)
 
 
+def test_substeps_that_fix_dt_chooses(tmp_path):
+    text = LOG.format(atoms=1000, half="").replace(" substeps 8", "").replace("  fsi/solid", "fix dt all fsi/dt 10 cfl 1 substeps auto stop 0.4\n  fsi/solid")
+    (tmp_path / "log.lammps").write_text(text.replace("Mbytes\n", "Mbytes\n Step f_dt[7]\n 0 7\n 50 9\n"))
+    assert log.read(tmp_path / "log.lammps").pair_visits() == 50 * (0.5 * (31950 - 950) + 8 * 950)
+
+
 def test_runs_that_do_not_count():
     run = {"status": "ok", "figures": {"period": 2.0, "scatter": 0.03}}
     for limits, value in (([], 2.0), (["scatter"], None), (["stopped"], 2.0), ({"scatter": 0.02}, None), ({"scatter": 0.04}, 2.0)):

@@ -43,17 +43,22 @@ def test_plate_dams_water_as_a_beam_does(tmp_path):
 
 
 def test_full_width_is_the_section(tmp_path):
-    # Periodic across, no Poisson's ratio: 3D and 2D are the same problem, so only the kernels' sums over a cubic and over a square lattice differ, by
-    # 1 to 2 % (doc/choosing.md). The plate is on its way: a surge that is 1 % late, 2 ms, is 2 % of the way by root mean square and 10 % of it at the end
+    # Periodic across, no Poisson's ratio: 3D and 2D are the same problem, so only the kernels' sums over a cubic and over a square lattice differ.
+    # Until it strikes the plate the surge is smooth: its front comes within 0.5 ms of 0.17 s, and has the same energy to 1 %. The splash is chaotic:
+    # 1 % of viscosity changes the tip's way by 15 % and the plate's momentum, of load over time, by up to 4 %: twice that between two runs
+    width = 0.028
     (_, full), (_, section) = (run(tmp_path / name, **SMALL, tend=0.24, frames=4, **more) for name, more in
-                               (("full", {"gap": 0, "width": 0.028}), ("section", {"dim": 2})))
-    size = section["tip_x"].max()
-    assert size > 0.004  # more than the spacing
-    times = section.time[:-1]
-    assert np.sqrt(np.mean((full.at("tip_x", times) - section["tip_x"][:-1])**2)) < 0.03 * size
-    assert full["tip_x"].max() == pytest.approx(size, rel=0.1)
+                               (("full", {"gap": 0, "width": width}), ("section", {"dim": 2})))
+    assert section["tip_x"].max() > 0.004  # more than the spacing
+
+    def arrival(series):
+        return np.interp(0.28, series["front"][series["front"] < 0.285], series.time[series["front"] < 0.285])
+    assert arrival(full) == pytest.approx(arrival(section), abs=5e-4)
+    assert full.at("kinetic", 0.18) / width == pytest.approx(section.at("kinetic", 0.18), rel=0.01)
+    times = np.linspace(0.0, 0.239, 500)
+    assert full.at("fx", times).mean() / width == pytest.approx(section.at("fx", times).mean(), rel=0.08)
     # uniform across to round-off
-    assert np.abs(full["near"] - full["far"]).max() < 1e-8 * size
+    assert np.abs(full["near"] - full["far"]).max() < 1e-8 * full["tip_x"].max()
 
 
 def test_flow_around_the_plate_is_symmetric(tmp_path):

@@ -67,8 +67,8 @@ def test_sound_is_absorbed():
     """Velocity and density decay with the same rate k w, so by exp(-k L/2c) on the way through, and little comes back."""
     rate, L = 10.0, 2.0
     through, lag, c = pulse("1e-9")    # the group's speed: waves of 20 spacings are slower than long ones
-    absorbed, back, _ = pulse(f"{rate}")
-    half = pulse(f"{rate} density 0")[0]
+    absorbed, back, _ = pulse(f"{rate} density {rate}")
+    half = pulse(f"{rate}")[0]
     law = np.exp(-rate * L / (2 * c))
     print(f"stream: sound, {c:.2f} m/s, passes with {absorbed / through:.4f}, law {law:.4f}; without damping of density {half / through:.4f}, law {law**0.5:.4f}; "
           f"behind it {back / through:.1e}, without stream {lag / through:.1e}")
@@ -103,7 +103,7 @@ region water block INF INF 0 1 INF INF units box
 create_atoms 1 region water
 """
 ZONE = "region zone block 1 3 INF INF INF INF units box"
-STREAM = "fix s all fsi/stream v_u v_w NULL region zone rate 20"
+STREAM = "fix s all fsi/stream v_u v_w NULL region zone rate 20 density 20"
 
 
 def deck(start=ATOMS, newton="on", moving="all", materials="water water", zone=ZONE, stream=STREAM):
@@ -129,9 +129,9 @@ def test_ranks_agree(tmp_path, ranks, newton):
 
 BAD = [
     ("no region", {"stream": STREAM.replace("region zone ", "")}, r"requires keyword region"),
-    ("no rate", {"stream": STREAM.replace("rate 20", "")}, r"requires keyword rate"),
-    ("rate", {"stream": STREAM.replace("20", "-1")}, r"rate -1 must be > 0"),
-    ("density", {"stream": STREAM + " density -1"}, r"density -1 must be >= 0"),
+    ("no rate", {"stream": STREAM.replace("rate 20 density 20", "")}, r"requires keyword rate"),
+    ("rate", {"stream": STREAM.replace("rate 20", "rate -1")}, r"rate -1 must be > 0"),
+    ("density", {"stream": STREAM.replace("density 20", "density -1")}, r"density -1 must be >= 0"),
     ("along", {"stream": STREAM + " along u"}, r"along u: expected x, y or z"),
     ("along z in 2D", {"stream": STREAM + " along z"}, r"no flow along z in 2D"),
     ("vz in 2D", {"stream": STREAM.replace("NULL", "0")}, r"along z must be NULL in 2D"),

@@ -15,6 +15,7 @@ _USE = re.compile(r"(\S+)% CPU use with")
 _NEIGHBOURS = re.compile(r"(Neighs|FullNghs):\s+(\S+) ave")
 _BONDS = re.compile(r"\s*fsi/solid/tl: reference of (\d+) particles taken, (\S+) bonds each")
 _SUBSTEPS = re.compile(r"fix\s+\S+\s+\S+\s+fsi\s.*\ssubsteps\s+(\d+)")
+_CHOSEN = re.compile(r"fix\s+(\S+)\s+\S+\s+fsi/dt\s.*\ssubsteps\s+auto")  # their number is in thermo output where that has it
 _BUILDS = re.compile(r"Neighbor list builds = (\d+)")
 _VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
 _REPORT = re.compile(r"^FSI report (\w+) (.+)$")  # of fix fsi/report
@@ -56,13 +57,19 @@ class Log:
     version: str = None  # of LAMMPS: "4 Feb 2025"
     solid_particles: int = 0  # of total-Lagrangian solids
     bonds: float = 0.0  # of all of them, each seen from both ends
-    substeps: int = 1  # steps of total-Lagrangian solids in each step
+    substeps: int = 1  # steps of total-Lagrangian solids in each step, as fix fsi is told
+    chosen: str = None  # column of thermo output with those that fix fsi/dt chooses
     effects: list = field(default_factory=list)  # the lists of effects that are on, as fix fsi printed them
 
     @property
     def finished(self):
         """Runs that came to their end."""
         return [run for run in self.runs if run.loop_seconds is not None]
+
+    def substeps_of(self, run):
+        """Steps of total-Lagrangian solids in each step of a run, the mean where they change."""
+        found = run.thermo.get(self.chosen)
+        return self.substeps if found is None or len(found) == 0 else float(np.mean(found))
 
     def pair_visits(self):
         """Entries of the neighbour list, each pair once, and bonds of total-Lagrangian solids, from both ends, times (sub-)steps.
@@ -74,7 +81,7 @@ class Log:
             listed = run.neighbours or 0.5 * max(0.0, (run.full_neighbours or 0) - self.bonds)
             if self.solid_particles == run.atoms:  # one body alone needs no list
                 listed = 0.0
-            visits += run.steps * (listed + self.substeps * self.bonds)
+            visits += run.steps * (listed + self.substeps_of(run) * self.bonds)
         return visits or None
 
     def column(self, *names):
@@ -127,6 +134,8 @@ def read(path):
             log.solid_particles, log.bonds = int(match[1]), int(match[1]) * float(match[2])
         elif match := _SUBSTEPS.match(line):
             log.substeps = int(match[1])
+        elif match := _CHOSEN.match(line):
+            log.chosen = f"f_{match[1]}[7]"
         elif log.runs and (match := _REPORT.match(line)):
             log.runs[-1].report[match[1]] = _number(match[2])
         elif match := _VALUE.match(line):

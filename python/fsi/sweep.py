@@ -187,7 +187,7 @@ class Store:
         return cost | {
             "dx": found.values.get("dx"), "particles": runs[0].atoms, "steps": sum(run.steps for run in runs),
             # a sub-step moves the solid's particles only, and visits its bonds
-            "particle_steps": sum(run.steps * (run.atoms + (found.substeps - 1) * found.solid_particles) for run in runs),
+            "particle_steps": round(sum(run.steps * (run.atoms + (found.substeps_of(run) - 1) * found.solid_particles) for run in runs)),
             "pair_visits": found.pair_visits(),
             "neighbour_builds": sum(run.builds or 0 for run in runs)}
 

@@ -58,12 +58,11 @@ FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
   }
   keywords.key("region").word(region_id, "");
   keywords.key("rate").number(rate, 0.0, Range::above(0.0));
-  keywords.key("density").number(density_rate, -1.0, Range::from(0.0));
+  keywords.key("density").number(density_rate, 0.0, Range::from(0.0));
   keywords.key("along").choice(along, 0, {"x", "y", "z"});
   keywords.parse(narg - 6, arg + 6);
   if (region_id.empty()) error->all(FLERR, "Fix fsi/stream requires keyword region: the zone in which it acts");
   if (rate == 0.0) error->all(FLERR, "Fix fsi/stream requires keyword rate: of the fluid's approach to the velocity, 1/time");
-  if (density_rate < 0.0) density_rate = rate;
   if (along >= domain->dimension) error->all(FLERR, "Fix fsi/stream along z: there is no flow along z in 2D");
   if (!domain->get_region_by_id(region_id)) error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
 
@@ -95,7 +94,7 @@ void FixFSIStream::init()
   hub = FixFSI::find(lmp, "Fix fsi/stream");
   if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
   if (density_rate > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
-    error->all(FLERR, "Fix fsi/stream requires fix fsi with fluid continuity, or density 0: what is summed cannot be damped");
+    error->all(FLERR, "Fix fsi/stream density requires fix fsi with fluid continuity: a density that is summed cannot be damped");
   region = domain->get_region_by_id(region_id);
   if (!region) error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
   if (region->dynamic_check()) error->all(FLERR, "Region {} of fix fsi/stream must not move nor change", region_id);

@@ -29,8 +29,8 @@ FixStyle(fsi/stream,FixFSIStream);
 
 namespace LAMMPS_NS {
 
-// Brings the fluid of a zone to a given velocity, and its density to the zone's mean: with one rate for both a sound wave that passes
-// decays without a reflection.
+// Brings the fluid of a zone to a given velocity, and, where asked, its density to the zone's mean: with one rate for both a sound wave
+// that passes decays without a reflection.
 
 class FixFSIStream : public Fix, public FSI::Part {
  public:
