@@ -6,7 +6,10 @@ set(FSI_INSTRUMENT "" CACHE STRING "Extra compile options for src/FSI alone, e.g
 set(FSI_SANITIZE "" CACHE STRING "Sanitizers to build with, e.g. address,undefined")
 
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
-  set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG -fno-math-errno -fno-trapping-math" CACHE STRING "" FORCE)
+  # CMake's own choice is replaced, a user's is not
+  if(CMAKE_CXX_FLAGS_RELEASE STREQUAL "-O3 -DNDEBUG")
+    set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG -fno-math-errno -fno-trapping-math" CACHE STRING "" FORCE)
+  endif()
   # liblammps is shared (Python, plugin): let calls inside it be inlined all the same
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     string(APPEND CMAKE_CXX_FLAGS_RELEASE " -fno-semantic-interposition")

@@ -346,8 +346,11 @@ NUMBERS = [
         ("xlo", "xlo {}"), ("range", "xlo 0 range y {} INF"), ("range", "xlo 0 range y INF {}"), ("velocity", "xlo 0 velocity {} 0 0"),
         ("velocity", "xlo 0 velocity 0 0 {}"), ("guard", "xlo 0 guard {}"))],
     ("fsi/wall/particle guard", RUN, "fix w all fsi/wall/particle guard {}\nunfix w\nrun 0"),
+    *[(f"stream {word}", RUN, f"region zone block 0 1 INF INF INF INF\nfix s all fsi/stream {keyword}\nunfix s\nrun 0") for word, keyword in (
+        ("velocity", "{} NULL NULL region zone rate 1"), ("rate", "1 NULL NULL region zone rate {}"),
+        ("density", "1 NULL NULL region zone rate 1 density {}"))],
     *[(word, RUN, f"fix dt all fsi/dt {keyword}\nrun 0") for word, keyword in (
-        ("interval", "{}"), ("cfl", "10 cfl {}"), ("min", "10 min {}"), ("max", "10 max {}"), ("growth", "10 growth {}"))],
+        ("interval", "{}"), ("cfl", "10 cfl {}"), ("cfl/fluid", "10 cfl/fluid {}"), ("cfl/solid", "10 cfl/solid {}"), ("stop", "10 stop {}"), ("min", "10 min {}"), ("max", "10 max {}"), ("growth", "10 growth {}"))],
     *[(f"watch {word}", RUN, f"fix w all fsi/watch {keyword}\nunfix w\nrun 0") for word, keyword in (
         ("interval", "{}"), *[(q, f"10 {q} {{}}") for q in ("mach", "distance", "density", "courant", "energy", "lost", "reflected")])],
     ("report every", RUN, "fix r all fsi/report every {}\nrun 0"),

@@ -604,7 +604,7 @@ def test_restart_file_after_new_ids_needs_a_run(tmp_path):
     with solid(lattice([6, 5], DX)) as s:
         s.run(2)
         s.run_lines("group one id 7", "delete_atoms group one compress yes")
-        with pytest.raises(Exception, match="Solid atom 7 was atom 30 in the last run"):
+        with pytest.raises(Exception, match=r"Solid atom \d+ was atom \d+ in the last run"):
             s.run_lines(f"write_restart {tmp_path / 'file'}")
 
 

@@ -37,8 +37,9 @@ def pytest(arguments):
     """(passed, failed) of the tests in unittest/; an error in collecting or setting up counts as a failure."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
-        command = [sys.executable, "-m", "pytest", "-q", f"--junitxml={report}", *arguments,
-                   str(paths.ROOT / "unittest")]
+        # files side by side, since most tests run on one core; a file's tests share what its fixtures have run
+        command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist", "loadfile", f"--junitxml={report}",
+                   *arguments, str(paths.ROOT / "unittest")]
         status = subprocess.run(command, cwd=paths.ROOT, env=launch.environment(), check=False).returncode
         passed = failed = 0
         if report.exists():

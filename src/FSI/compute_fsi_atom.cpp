@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
+#include "force.h"
 #include "fsi_tensor.h"
 #include "memory.h"
 #include "modify.h"
@@ -90,13 +91,17 @@ void ComputeFSIAtom::compute_peratom()
     comm->forward_comm();    // ghosts still stand where they were in the middle of the step
     hub->number_density(psi.data());
   }
-  if (hub->solid_tl) hub->solid_tl->forward_positions();    // likewise
+  auto *const solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1));
+  if (solid_tl) solid_tl->forward_positions();    // likewise
+  const auto stress_fixes = modify->get_fix_by_style("^fsi/stress$");
+  fix_stress = stress_fixes.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress_fixes[0]);
+  const auto has_stress = [this](int i) { return hub->state[atom->type[i]].form == UPDATED_LAGRANGIAN; };
 
   const int *const mask = atom->mask;
   PairFSISolidTL::Stress tl;
   for (int i = 0; i < atom->nlocal; i++) {
     const bool lagrangian = (mask[i] & groupbit) && hub->is_total_lagrangian(i);
-    if (lagrangian) tl = hub->solid_tl->stress(i);
+    if (lagrangian) tl = solid_tl->stress(i);
     for (int k = 0; k < n; k++) {
       double value = 0.0;
       if (lagrangian) {
@@ -106,7 +111,7 @@ void ComputeFSIAtom::compute_peratom()
           case PSI: value = psi[i]; break;
           case VOLUME: value = atom->rmass[i] * tl.J / hub->state[atom->type[i]].rho0; break;
           case VONMISES: value = tl.von_mises(); break;
-          case PLASTIC: value = hub->fix_stress->plastic_strain(i); break;
+          case PLASTIC: value = fix_stress->plastic_strain(i); break;
           default: value = tl.sigma[quantity[k] - SXX];
         }
       } else if (mask[i] & groupbit) {
@@ -116,10 +121,10 @@ void ComputeFSIAtom::compute_peratom()
           case PSI: value = psi[i]; break;
           case VOLUME: value = atom->rmass[i] / atom->rho[i]; break;
           case VONMISES:
-            if (hub->has_stress(i)) value = hub->fix_stress->von_mises(i, hub->pressure(i));
+            if (has_stress(i)) value = fix_stress->von_mises(i, hub->pressure(i));
             break;
           case PLASTIC:
-            if (hub->has_stress(i)) value = hub->fix_stress->plastic_strain(i);
+            if (has_stress(i)) value = fix_stress->plastic_strain(i);
             break;
           default: value = cauchy(i, quantity[k]);
         }
@@ -137,14 +142,14 @@ void ComputeFSIAtom::compute_peratom()
 double ComputeFSIAtom::cauchy(int i, int component) const
 {
   const double p = hub->pressure(i);
-  const bool stress = hub->has_stress(i);
-  const double *s = stress ? hub->fix_stress->stress[i] : nullptr;
+  const bool stress = hub->state[atom->type[i]].form == UPDATED_LAGRANGIAN;
+  const double *s = stress ? fix_stress->stress[i] : nullptr;
   const bool flat = hub->dim == 2;
   switch (component) {
     case SXX: return -p + (s ? s[0] : 0.0);
     case SYY: return -p + (s ? s[1] : 0.0);
     case SZZ:
-      if (s && flat) return hub->fix_stress->plane_stress ? 0.0 : -p - s[0] - s[1];
+      if (s && flat) return fix_stress->plane_stress ? 0.0 : -p - s[0] - s[1];
       return -p + (s ? s[2] : 0.0);
     case SXY: return s ? s[flat ? 2 : 3] : 0.0;
     case SXZ: return (s && !flat) ? s[4] : 0.0;

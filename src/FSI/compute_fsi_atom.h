@@ -42,6 +42,7 @@ class ComputeFSIAtom : public Compute {
   std::vector<double> psi;
   int nmax;
   class FixFSI *hub;
+  class FixFSIStress *fix_stress;    // null: no solid has one
 
   double cauchy(int i, int component) const;
 };

@@ -16,11 +16,14 @@
 #include "atom.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_stress.h"
 #include "force.h"
+#include "modify.h"
 #include "pair_fsi_solid_tl.h"
 #include "update.h"
 
 using namespace LAMMPS_NS;
+using namespace FSI;
 
 static constexpr int NHAVE = 4;    // kinetic, gravitational, compressive, shear
 
@@ -84,13 +87,16 @@ void ComputeFSIEnergy::compute_vector()
   double **f = atom->f;
   // in the setup of a run positions and velocities are of one time
   const double half = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
+  const auto stress_fixes = modify->get_fix_by_style("^fsi/stress$");
+  const auto *const stress = stress_fixes.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress_fixes[0]);
   for (int i = 0; i < atom->nlocal; i++) {
-    if (hub->state[atom->type[i]].species == FSI::RIGID) continue;    // what it gets is in the term of walls
+    const State &s = hub->state[atom->type[i]];
+    if (s.species == RIGID) continue;    // what it gets is in the term of walls
     const double m = atom->rmass[i];
     const bool tl = hub->is_total_lagrangian(i);
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it
     const double dth = !(atom->mask[i] & hub->groupbit) ? 0.0 : tl ? half / hub->substeps : half;
-    const auto g = hub->body_force(i);
+    const auto g = hub->body_forces.on(i);
     for (int d = 0; d < hub->dim; d++) {
       const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;
       mine[0] += 0.5 * m * vmid * vmid;
@@ -99,9 +105,9 @@ void ComputeFSIEnergy::compute_vector()
     mine[1] += hub->potential(i);
     if (tl) continue;
     mine[2] += hub->stored(i);
-    mine[3] += hub->shear_energy(i);
+    if (s.form == UPDATED_LAGRANGIAN) mine[3] += stress->shear_energy(i, s.shear);
   }
-  if (hub->solid_tl) mine[3] += hub->solid_tl->strain_energy;
+  if (const auto *solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1))) mine[3] += solid_tl->strain_energy;
   for (int k = 0; k < FixFSI::NTERM; k++) mine[NHAVE + k] = hub->taken[k];
   MPI_Allreduce(mine, vector, size_vector, MPI_DOUBLE, MPI_SUM, world);
 }

@@ -226,7 +226,7 @@ void ComputeFSIProbe::sum_up()
         double x[3];
         for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
         const State &state = hub->state[atom->type[i]];
-        const auto &g = hub->gravity[atom->type[i]];
+        const auto &g = hub->body_forces.of_type[atom->type[i]];
         const bool fluid = state.species == FLUID;
         const double rho = atom->rho[i], vol = atom->rmass[i] / rho, pressure = fluid ? hub->pressure(i) : 0.0;
         const int mask_i = walls.any() ? walls.near(x, hub->cut) : 0;

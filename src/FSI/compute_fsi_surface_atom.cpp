@@ -23,6 +23,8 @@
 #include "pair_fsi_fluid.h"
 #include "update.h"
 
+#include <algorithm>
+
 using namespace LAMMPS_NS;
 using namespace FSI;
 
@@ -76,7 +78,9 @@ void ComputeFSISurfaceAtom::compute_peratom()
     hub->number_density(sum.data());
     limit = threshold * hub->psi_bulk;
   } else {
-    hub->position_divergence(sum.data());
+    std::fill(sum.begin(), sum.end(), 0.0);
+    dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1))->add_position_divergence(sum.data());
+    hub->add_ghosts(sum.data());
     limit = threshold * hub->dim;
   }
   const int *const mask = atom->mask, *const type = atom->type;

@@ -21,6 +21,7 @@ FixStyle(fsi,FixFSI);
 #define LMP_FIX_FSI_H
 
 #include "atom.h"
+#include "fsi_body_forces.h"
 #include "fsi_fields.h"
 #include "fsi_keywords.h"
 #include "fsi_material.h"
@@ -35,6 +36,7 @@ FixStyle(fsi,FixFSI);
 namespace LAMMPS_NS {
 namespace FSI {
   class Check;
+  class Part;
 }
 
 // The centre of the package: holds the discretisation (spacing, kernel), integrates in time (position Verlet) and
@@ -88,9 +90,7 @@ class FixFSI : public FSI::FixFields {
 
   // per atom, local and ghost; valid from pre_force on
   double *psi;      // number density, if any mode or rule needs it
-  double *rate;     // density rate of fluids (continuity), local after the reverse communication
-  double **shift;   // fluids, pair_style fsi/fluid shift: its sums; afterwards the displacement at the end of the step
-  double **grad;    // solids: the sums of pair_style fsi/solid's velocity_gradient(); afterwards L and coefficients (fsi_gradient.h)
+  double **shift;   // fluids, pair_style fsi/fluid shift: displacement at the end of the step; null: there is none
   int *wmask;       // bits of the mirror walls that an atom is near
 
   // energy ledger (compute fsi/energy): what each term took from the particles' energy since the fix was defined, this
@@ -100,62 +100,47 @@ class FixFSI : public FSI::FixFields {
   double taken[NTERM];
   // adds a power of the pair loops, which counts only in steps, not in setup
   void tally(Term term, double power) { taken[term] += tally_dt * power; }
+  void set_tally(double dt) { tally_dt = ledger ? dt : 0.0; }    // time that powers act for
   double potential(int i) const;    // gravitational energy of atom i at the positions in atom->x
   double stored(int i) const;       // compressive energy of atom i
-  double shear_energy(int i) const;
-  double density_ratio(int i) const;    // rho/rho0; that of a total-Lagrangian solid is in its deformation
 
   // viscous velocity of no-slip walls of particles (fix fsi/wall/particle) and solids; null: there are none
   double **wall_velocity;
+  bool noslip_walls;
   // rho dp/drho of wall particles, that of the fluid around them; null: it is the same for all fluids, and in the wall's state
   double *wall_stiffness;
 
   FSI::Walls walls;     // at the time of the positions in atom->x
 
-  // body forces per mass: each fix gravity as it acts in this step, and for each type the sum of those that act on all its particles
-  struct BodyForce {
-    Fix *fix;
-    int mask;    // of its group; 0 if it is disabled
-    bool varies;
-    double g[3];
-  };
-  std::vector<BodyForce> body_forces;
-  std::vector<std::array<double, 3>> gravity;
-  void update_gravity(bool advance);
-  std::array<double, 3> body_force(int i) const;    // on atom i, over its mass
-  class FixFSIStress *fix_stress;
-  std::vector<class FixFSIWallMirror *> wall_fixes;
-  std::vector<class FixFSIWallParticle *> particle_walls;
-  std::vector<class FixFSIStream *> streams;
-  class PairFSIFluid *fluid;
-  class PairFSISolid *solid;
-  class PairFSISolidTL *solid_tl;
+  FSI::BodyForces body_forces;
+  // what takes part in a step, in the order of its calls: pair styles, then fixes as they are defined; from init() on
+  std::vector<FSI::Part *> parts;
   int substeps;    // of total-Lagrangian solids in each step: as given, or as fix fsi/dt has chosen
   int surface_every;    // steps from one number density to the next of the free-surface rule
-  class FixFSIDt *fix_dt;    // changes the time step; null: nothing does
   FSI::Profile *profile;     // of fix fsi/report; null: there is none
   FSI::Check *check;         // stops a run that has lost its meaning
   double mach;               // largest Mach number of fluids
   std::vector<std::string> effects_on;    // what is simulated, in words; from setup on
+  std::string announced;                  // the list of effects as last printed
   // what moves by rates between the middles of two steps takes update->dt + stagger: their distance, if dt changes
   double stagger;
 
   // pressure of a local or ghost atom from its density (paper eq. 16), 0 at a free surface if that rule is on
   double pressure(int i) const;
-  double psi_reference;    // of the free-surface rule
+  // free-surface rule of pair_style fsi/fluid: p = 0 where psi is below this part of a reference; 0: off. The largest psi of fluids, or the lattice's
+  double surface_ratio;
+  bool surface_max;
+  double psi_reference;
+  bool has_number_density() const { return need_psi; }
+  bool number_density_is_kept() const { return keep_psi; }    // from one surface/every to the next
 
-  bool is_total_lagrangian(int i) const { return solid_tl && state[atom->type[i]].species == FSI::SOLID; }
+  double density_ratio(int i) const { return atom->rho[i] / state[atom->type[i]].rho0; }    // not of a total-Lagrangian solid
+  bool is_total_lagrangian(int i) const { return state[atom->type[i]].form == FSI::TOTAL_LAGRANGIAN; }
   bool is_moved(int i) const;    // by this fix or by another that integrates
-  // does atom i have a deviatoric stress?
-  bool has_stress(int i) const { return solid && state[atom->type[i]].species == FSI::SOLID; }
 
-  // sums of the velocity gradient per solid particle, and what replaces them: L, then the coefficients of its weights
-  int ngrad() const;
-  int nshift() const { return 2 * dim + 1; }
   // number density of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
   void number_density(double *n);
-  // sum of position_divergence() of pair_style fsi/fluid, likewise
-  void position_divergence(double *n);
+  void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
   bool several_stiffnesses() const;    // do fluids differ in rho0 c^2?
   void add_wall_force(int wall, int axis, double f);    // f on the fluid; counted by the wall's fix
 
@@ -163,12 +148,11 @@ class FixFSI : public FSI::FixFields {
   FSI::Message forward, back, scalar_back;    // to ghosts, and sums from them; of one array of numbers per atom
   double *summed;                             // that array; null: the other
   void set_fields();
-  double **beyond;    // solids with no slip: sums of v W and W over the fluid around
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
   double hdx;    // h over dx
   int given_substeps;
   double tally_dt;
-  bool need_psi, need_grad, need_shift;
+  bool need_psi;
   bool keep_psi;    // number density is that of some steps only: it travels with its atom and through restarts
   bool send_psi;    // in this step
   // simulated time as the restart file has it, which LAMMPS forgets where it has no timestep command after reading
@@ -177,6 +161,7 @@ class FixFSI : public FSI::FixFields {
     double dt, time;
   };
   std::optional<Clock> clock;    // until the first run
+  bool states_entered;    // since the last init()
   int nlocal_ready;            // atoms when the state was last brought up to date; -1: not since init()
   bool ids_checked;
 
@@ -185,28 +170,16 @@ class FixFSI : public FSI::FixFields {
 
  private:
   bool psi_is_due(bool advance) const;
-  bool restores_volumes() const;
 
   template <int D> void drift();
   template <int D> void kick();
-  void substep_solids();
-  std::string announced;    // the list of effects as last printed
-  template <int D, int TERMS> void advance_solids(bool advance);
-  void advance_density();
+  void find_parts();
   void density_from_psi();
-  std::vector<double> crowd;    // number density of the steps in which volumes are restored
-  void restore_volumes();
-  void extrapolate_velocities();
   void update_state(bool);
   void gather_walls();
-  void announce();
-  void find_gravity();
-  std::vector<int> acts_on_all;    // each field, type by type
+  std::vector<FSI::WallForce> wall_forces;    // on each mirror wall
   bool fresh_start() const;
   void give_defaults(int);
-  void sort_by_place();
-  void warn_idle() const;    // fix_fsi_idle.cpp
-  void add_ghosts(double *);
 };
 
 }    // namespace LAMMPS_NS

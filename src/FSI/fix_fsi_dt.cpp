@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_record.h"
+#include "group.h"
 #include "modify.h"
 #include "output.h"
 #include "pair.h"
@@ -27,6 +28,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -192,7 +194,7 @@ void FixFSIDt::post_run()
    Other styles hear of it as from fix dt/reset; the clock and the dumps by time count from the end of the last step.
 ------------------------------------------------------------------------- */
 
-void FixFSIDt::start_of_step()
+void FixFSIDt::start_step()
 {
   if (check) return;
   if (next_substeps) hub->substeps = next_substeps;
@@ -216,7 +218,7 @@ void FixFSIDt::start_of_step()
 
 void FixFSIDt::find_limits()
 {
-  limits.find(hub, groupbit, hub->solid_tl && (automatic || hub->substeps > 1), of_fluid, of_solid);
+  limits.find(hub, groupbit, force->pair_match("fsi/solid/tl", 1) && (automatic || hub->substeps > 1), of_fluid, of_solid);
   limits.reduce();
   std::copy_n(limits.step, NLIMIT, step);
   std::copy_n(limits.sub, NLIMIT, sub);
@@ -348,4 +350,20 @@ void FixFSIDt::restart(char *buf)
   if (automatic) next_substeps = static_cast<int>(list[2]);
   ruling = static_cast<int>(list[3]);
   restored = dt > 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void *FixFSIDt::extract(const char *name, int &dim_of_extract)
+{
+  dim_of_extract = 0;
+  if (strcmp(name, "step") == 0) return chooses() ? this : nullptr;
+  if (strcmp(name, "substeps") == 0) return automatic ? this : nullptr;
+  return nullptr;
+}
+
+void FixFSIDt::find_idle(const Census &, const Idle &nothing) const
+{
+  if (automatic && !force->pair_match("fsi/solid/tl", 1)) nothing("Fix fsi/dt substeps auto", "there is no pair_style fsi/solid/tl");
+  if (group->count(igroup) == 0) nothing("Fix fsi/dt", fmt::format("group {} is empty", group->names[igroup]));
 }

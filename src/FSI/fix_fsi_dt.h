@@ -23,6 +23,7 @@ FixStyle(fsi/dt,FixFSIDt);
 #include "fix.h"
 #include "fsi_keywords.h"
 #include "fsi_limits.h"
+#include "fsi_part.h"
 
 #include <string>
 
@@ -30,7 +31,7 @@ namespace LAMMPS_NS {
 
 // Time step, and number of sub-steps of total-Lagrangian solids, from what the particles do.
 
-class FixFSIDt : public Fix {
+class FixFSIDt : public Fix, public FSI::Part {
  public:
   FixFSIDt(class LAMMPS *, int, char **);
   int setmask() override;
@@ -43,7 +44,9 @@ class FixFSIDt : public Fix {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  void start_of_step();    // called by fix fsi before anything moves
+  void start_step() override;
+  void *extract(const char *, int &) override;    // "step", "substeps": null where it does not choose them
+  void find_idle(const Census &, const Idle &) const override;
   bool chooses() const { return check == NO; }
   bool chooses_substeps() const { return automatic; }
   double largest_courant() const;    // that it allows

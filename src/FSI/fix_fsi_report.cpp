@@ -21,6 +21,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_watch.h"
+#include "pair_fsi_solid_tl.h"
 #include "force.h"
 #include "fsi_keywords.h"
 #include "group.h"
@@ -128,7 +129,7 @@ void FixFSIReport::begin()
   by_gravity = by_walls = by_held = {};
   momentum = momentum_of_moving();
   fields.clear();
-  for (const auto &field : hub->body_forces)
+  for (const auto &field : hub->body_forces.all)
     if (field.mask) fields.push_back({field.g, group->mass(field.fix->igroup)});
   int held = 0, any;
   for (int i = 0; i < atom->nlocal; i++)
@@ -161,8 +162,8 @@ void FixFSIReport::end_of_step()
   const double dtf = update->dt * force->ftm2v;
   for (const auto &field : fields)
     for (int d = 0; d < 3; d++) by_gravity[d] += dtf * field.mass * field.g[d];
-  for (const auto *fix : hub->wall_fixes)
-    for (const auto &f : fix->force)
+  for (const auto *mirror : modify->get_fix_by_style("^fsi/wall/mirror$"))
+    for (const auto &f : dynamic_cast<const FixFSIWallMirror *>(mirror)->force_on)
       for (int d = 0; d < 3; d++) by_walls[d] -= dtf * f[d];
   if (any_held) {
     if (listed != neighbor->lastcall) {
@@ -224,11 +225,13 @@ void FixFSIReport::sample()
     }
 
   double **v = atom->v;
+  const auto *const solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1));
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = hub->state[atom->type[i]];
     if (s.species == RIGID) continue;
     const bool fluid = s.species == FLUID;
-    enter(fluid ? FLUID_DENSITY : SOLID_DENSITY, std::abs(hub->density_ratio(i) - 1.0), 0.0, atom->tag[i]);
+    const double ratio = hub->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i) : hub->density_ratio(i);
+    enter(fluid ? FLUID_DENSITY : SOLID_DENSITY, std::abs(ratio - 1.0), 0.0, atom->tag[i]);
     if (fluid) enter(MACH, std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]) / s.c, 0.0, atom->tag[i]);
   }
 }
@@ -354,7 +357,7 @@ void FixFSIReport::post_run()
                                  loop);
   std::string line = "  on:", effects;
   auto on = hub->effects_on;
-  if (hub->fix_dt && hub->substeps > 1) on.push_back(fmt::format("{} solid sub-steps at the end", hub->substeps));
+  if (hub->substeps > 1 && !modify->get_fix_by_style("^fsi/dt$").empty()) on.push_back(fmt::format("{} solid sub-steps at the end", hub->substeps));
   for (const auto &e : on) {
     if (line.size() + e.size() + 2 > WIDTH) {
       text += line + "\n";
@@ -521,7 +524,7 @@ std::string FixFSIReport::momentum_table(bool lost)
   };
   row("change", "change", b.change, true);
   row("gravity", "from gravity", b.gravity, !fields.empty());
-  row("walls", "from walls, reflections too", b.walls, !hub->wall_fixes.empty());
+  row("walls", "from walls, reflections too", b.walls, hub->walls.any());
   row("held", "from held particles", b.held, any_held);
   row("rest", others.empty() ? "unaccounted for: error" : fmt::format("unaccounted for:{} error", others), b.rest, true);
   enter_line("momentum_rest_relative", relative);

@@ -22,6 +22,7 @@ FixStyle(fsi/report,FixFSIReport);
 
 #include "fix.h"
 #include "fsi_limits.h"
+#include "fsi_part.h"
 #include "fsi_profile.h"
 
 #include <array>
@@ -32,7 +33,7 @@ namespace LAMMPS_NS {
 
 // At the end of each run, what it cost and how exact it was. Looks and adds up, changes nothing.
 
-class FixFSIReport : public Fix {
+class FixFSIReport : public Fix, public FSI::Part {
  public:
   FixFSIReport(class LAMMPS *, int, char **);
   ~FixFSIReport() override;
@@ -43,6 +44,7 @@ class FixFSIReport : public Fix {
   void post_run() override;
   double compute_vector(int) override;
 
+  FSI::Profile *counters() override { return &profile; }
   FSI::Profile profile;    // filled by fix fsi, pair styles and walls
 
  private:

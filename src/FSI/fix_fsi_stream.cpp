@@ -92,7 +92,7 @@ int FixFSIStream::setmask()
 void FixFSIStream::init()
 {
   hub = FixFSI::find(lmp, "Fix fsi/stream");
-  if (!hub->fluid) error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
+  if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
   if (density_rate > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Fix fsi/stream density requires fix fsi with fluid continuity: a density that is summed cannot be damped");
   region = domain->get_region_by_id(region_id);
@@ -160,8 +160,10 @@ void FixFSIStream::find_weights()
    d rho/dt = -k w (rho - mean), the mean with the same weights, of each type: the mean stays
 ------------------------------------------------------------------------- */
 
-void FixFSIStream::damp(double dt)
+void FixFSIStream::advance(bool advance)
 {
+  if (!advance) return;
+  const double dt = update->dt + hub->stagger;
   find_weights();
   if (density_rate == 0.0) return;
   const int *const type = atom->type, n = atom->ntypes + 1;

@@ -22,6 +22,7 @@ FixStyle(fsi/stream,FixFSIStream);
 
 #include "fix.h"
 #include "fsi_keywords.h"
+#include "fsi_part.h"
 
 #include <string>
 #include <vector>
@@ -31,7 +32,7 @@ namespace LAMMPS_NS {
 // Brings the fluid of a zone to a given velocity, and, where asked, its density to the zone's mean: with one rate for both a sound wave
 // that passes decays without a reflection.
 
-class FixFSIStream : public Fix {
+class FixFSIStream : public Fix, public FSI::Part {
  public:
   FixFSIStream(class LAMMPS *, int, char **);
   ~FixFSIStream() override;
@@ -45,8 +46,7 @@ class FixFSIStream : public Fix {
   void restart(char *) override;
   double memory_usage() override;
 
-  // called by fix fsi when densities and positions are those at which forces are computed, before ghosts get them
-  void damp(double dt);
+  void advance(bool) override;    // density, after that of the fluid
 
  private:
   enum Source { FREE, NUMBER, EQUAL, ATOM };

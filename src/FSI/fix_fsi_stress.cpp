@@ -21,7 +21,7 @@
 #include "force.h"
 #include "fsi_record.h"
 #include "modify.h"
-#include "pair_fsi_solid.h"
+#include "pair.h"
 #include "update.h"
 
 #include <cmath>
@@ -43,26 +43,28 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
   if (plane_stress && domain->dimension == 3) error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
   if (plastic && plane_stress) error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
   restart_global = 1;
-  set_fields();
+  choose_fields();
   register_fields();
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSIStress::set_fields()
+void FixFSIStress::choose_fields()
 {
-  const auto *pair = force->pair ? dynamic_cast<PairFSISolid *>(force->pair_match("^fsi/solid$", 0)) : nullptr;
+  Pair *const pair = force->pair ? force->pair_match("^fsi/solid$", 0) : nullptr;
+  int dim_of_extract;
   fields.set("stress", Fields::FILE, true, stress, ns);
   fields.set("plastic strain", Fields::FILE, plastic, strain);
-  fields.set("hourglass force", Fields::FILE, pair && pair->has_hourglass(), hourglass, domain->dimension);
+  fields.set("hourglass force", Fields::FILE, pair && *static_cast<double *>(pair->extract("hourglass", dim_of_extract)) > 0.0, hourglass, domain->dimension);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixFSIStress::init()
 {
+  if (modify->get_fix_by_style("^fsi/stress$").size() > 1) error->all(FLERR, "There can be only one fix fsi/stress");
   const FixFSI *hub = FixFSI::find(lmp, "Fix fsi/stress");
-  set_fields();    // another pair_style command may have changed what is kept
+  choose_fields();    // another pair_style command may have changed what is kept
   // what had a stress keeps it, what had none never gets the right one
   for (int i = 0; i < atom->nlocal && update->whichflag == 1; i++) {
     double &first = stress[i][0];
@@ -95,6 +97,37 @@ double FixFSIStress::von_mises(int i, double p) const
   }
   const double a = s[0] - mean, b = s[1] - mean, c = szz - mean;
   return sqrt(1.5 * (a * a + b * b + c * c + 2.0 * s[2] * s[2]));
+}
+
+/* ---------------------------------------------------------------------- */
+
+// V S:S/(4G), with S_zz of plane strain
+double FixFSIStress::shear_energy(int i, double shear) const
+{
+  const double *s = stress[i];
+  double ss;
+  if (ns == 3) {
+    ss = Sym<2>::load(s).squared();
+    if (!plane_stress) ss += (s[0] + s[1]) * (s[0] + s[1]);
+  } else
+    ss = Sym<3>::load(s).squared();
+  return atom->rmass[i] / atom->rho[i] * ss / (4.0 * shear);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<FixFSIStress::Effect> FixFSIStress::effects() const
+{
+  return {{"plasticity", "fix fsi/stress plastic", plastic != 0}};
+}
+
+void FixFSIStress::find_idle(const Census &all, const Idle &nothing) const
+{
+  int dim_of_extract;
+  Pair *const tl = force->pair_match("fsi/solid/tl", 1);
+  const bool used = force->pair_match("fsi/solid", 1) || (tl && *static_cast<int *>(tl->extract("hypoelastic", dim_of_extract)));
+  if (!used) nothing("Fix fsi/stress", "no solid is hypoelastic");
+  else if (all.solids == 0) nothing("Fix fsi/stress", "no particle is a solid");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -21,6 +21,7 @@ FixStyle(fsi/stress,FixFSIStress);
 #define LMP_FIX_FSI_STRESS_H
 
 #include "fsi_fields.h"
+#include "fsi_part.h"
 #include "fsi_jaumann.h"
 #include "fsi_keywords.h"
 #include "fsi_material.h"
@@ -31,13 +32,15 @@ namespace LAMMPS_NS {
 // Deviatoric stress of hypoelastic solids: owns it, evolves it by the Jaumann rate (paper eq. 3). Driven by fix fsi,
 // which forms the velocity gradient.
 
-class FixFSIStress : public FSI::FixFields {
+class FixFSIStress : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIStress(class LAMMPS *, int, char **);
   int setmask() override { return 0; }
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  std::vector<Effect> effects() const override;
+  void find_idle(const Census &, const Idle &) const override;
 
   // deviatoric stress per atom, in-plane in 2D; see fsi_tensor.h for the order
   double **stress;
@@ -48,7 +51,7 @@ class FixFSIStress : public FSI::FixFields {
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between (fsi_jaumann.h)
   // returns the plastic work per volume
-  template <int D> double advance(int i, const double *L, double dt, const FSI::State &material)
+  template <int D> double advance_stress(int i, const double *L, double dt, const FSI::State &material)
   {
     auto s = FSI::Sym<D>::load(stress[i]);
     double work = 0.0;
@@ -63,13 +66,14 @@ class FixFSIStress : public FSI::FixFields {
   double plastic_strain(int i) const { return plastic ? strain[i] : 0.0; }
   // von Mises stress of atom i with pressure p
   double von_mises(int i, double p) const;
+  double shear_energy(int i, double shear) const;    // of atom i with this shear modulus
 
  private:
   FSI::Keywords keywords;
   static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a run began
   int ns;    // components of the deviator
   double *strain;    // equivalent plastic strain; null without plastic
-  void set_fields();
+  void choose_fields();
 };
 
 }    // namespace LAMMPS_NS

@@ -18,10 +18,13 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "force.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
+#include "pair.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -34,7 +37,7 @@ static constexpr double BIG = 1.0e300;
 /* ---------------------------------------------------------------------- */
 
 FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), first(0), guard(0.1), reflected(0), hub(nullptr)
+    Fix(lmp, narg, arg), guard(0.1), reflected(0), hub(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/mirror requires atom_style fsi");
 
@@ -99,8 +102,8 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror needs at least one of xlo, xhi, ylo, yhi, zlo, zhi");
 
   for (const auto &w : walls) start.push_back(w.position);
-  force.resize(walls.size());
-  clear_force();
+  force_on.resize(walls.size());
+  begin_state(false);
   dynamic_group_allow = 1;
   scalar_flag = array_flag = 1;
   size_array_rows = walls.size();
@@ -173,7 +176,7 @@ void FixFSIWallMirror::post_integrate()
       const double vn = v[i][w.axis] - w.velocity[w.axis];
       if (vn * w.side < 0.0) {
         if (hub->ledger)
-          hub->taken[FixFSI::WALLS] += 2.0 * vn * atom->rmass[i] * (v[i][w.axis] - vn + dth * hub->body_force(i)[w.axis]);
+          hub->taken[FixFSI::WALLS] += 2.0 * vn * atom->rmass[i] * (v[i][w.axis] - vn + dth * hub->body_forces.on(i)[w.axis]);
         v[i][w.axis] -= 2.0 * vn;
         if (hub->profile) hub->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
       }
@@ -190,15 +193,37 @@ void FixFSIWallMirror::end_of_step()
     Wall &w = walls[k];
     w.position += 0.5 * update->dt * w.velocity[w.axis];
     if (hub->ledger)
-      for (int d = 0; d < 3; d++) hub->taken[FixFSI::WALLS] += update->dt * force[k][d] * w.velocity[d];
+      for (int d = 0; d < 3; d++) hub->taken[FixFSI::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
   }
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSIWallMirror::clear_force()
+void FixFSIWallMirror::add_walls(Walls &all, std::vector<WallForce> &forces)
 {
-  for (auto &f : force) f = {0.0, 0.0, 0.0};
+  all.wall.insert(all.wall.end(), walls.begin(), walls.end());
+  for (auto &f : force_on) forces.push_back(f.data());
+}
+
+void FixFSIWallMirror::begin_state(bool)
+{
+  for (auto &f : force_on) f = {0.0, 0.0, 0.0};
+}
+
+void FixFSIWallMirror::go_back()
+{
+  for (auto &w : walls) w.position -= 0.5 * update->dt * w.velocity[w.axis];
+}
+
+void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
+{
+  Pair *const fluid = force->pair_match("fsi/fluid", 1);
+  int dim_of_extract;
+  if (!fluid) nothing("Fix fsi/wall/mirror", "walls mirror fluids, and there is no pair_style fsi/fluid");
+  else if (all.fluids == 0) nothing("Fix fsi/wall/mirror", "no particle is a fluid");
+  else if (std::any_of(walls.begin(), walls.end(), [](const Wall &w) { return w.noslip; }) &&
+           !*static_cast<int *>(fluid->extract("laminar/visc", dim_of_extract)))
+    nothing("Fix fsi/wall/mirror slip no", "pair_style fsi/fluid has no laminar/visc");
 }
 
 /* ----------------------------------------------------------------------
@@ -219,7 +244,7 @@ double FixFSIWallMirror::compute_scalar()
 double FixFSIWallMirror::compute_array(int i, int j)
 {
   double all;
-  MPI_Allreduce(&force[i][j], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&force_on[i][j], &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 

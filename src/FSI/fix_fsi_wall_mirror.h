@@ -21,6 +21,7 @@ FixStyle(fsi/wall/mirror,FixFSIWallMirror);
 #define LMP_FIX_FSI_WALL_MIRROR_H
 
 #include "fix.h"
+#include "fsi_part.h"
 #include "fsi_walls.h"
 
 #include <array>
@@ -32,7 +33,7 @@ namespace LAMMPS_NS {
 // Planar walls and wall segments by image particles. The images act inside the pair loops (fsi_walls.h); this fix holds
 // the walls, moves them, sums the force on them, and turns back a fluid particle that gets too close.
 
-class FixFSIWallMirror : public Fix {
+class FixFSIWallMirror : public Fix, public FSI::Part {
  public:
   FixFSIWallMirror(class LAMMPS *, int, char **);
   int setmask() override;
@@ -46,9 +47,11 @@ class FixFSIWallMirror : public Fix {
   void restart(char *) override;
 
   std::vector<FSI::Wall> walls;
-  std::vector<std::array<double, 3>> force;    // on each wall, this rank's part
-  int first;                                   // index of walls[0] among all mirror walls; set by fix fsi
-  void clear_force();
+  std::vector<std::array<double, 3>> force_on;    // on each wall, this rank's part
+  void add_walls(FSI::Walls &, std::vector<FSI::WallForce> &) override;
+  void begin_state(bool) override;
+  void go_back() override;
+  void find_idle(const Census &, const Idle &) const override;
 
  private:
   std::vector<double> start;    // positions in the command

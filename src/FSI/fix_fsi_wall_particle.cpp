@@ -118,6 +118,19 @@ void FixFSIWallParticle::init()
   nmax = 0;    // sums of another size than in the last run
 }
 
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWallParticle::set_fields(FixFSI &fsi)
+{
+  fsi.noslip_walls = fsi.noslip_walls || !slip;
+}
+
+void FixFSIWallParticle::add_costs(Costs &costs) const
+{
+  costs.forward++;
+  costs.back += force->newton_pair;
+}
+
 /* ----------------------------------------------------------------------
    those of the group within reach of the neighbour list
 ------------------------------------------------------------------------- */
@@ -125,7 +138,7 @@ void FixFSIWallParticle::init()
 void FixFSIWallParticle::find_pairs()
 {
   pairs.clear();
-  const NeighList *const list = hub->fluid->list;
+  const NeighList *const list = force->pair_match("fsi/fluid", 1)->list;
   const int *const mask = atom->mask, *const type = atom->type;
   const auto is_fluid = [&](int i) { return hub->state[type[i]].species == FLUID; };
   for (int ii = 0; ii < list->inum; ii++) {
@@ -147,7 +160,7 @@ void FixFSIWallParticle::find_pairs()
    wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of fluids of different rho c^2 the wall has the mean, likewise
 ------------------------------------------------------------------------- */
 
-void FixFSIWallParticle::extrapolate(bool advance)
+void FixFSIWallParticle::end_state(bool advance)
 {
   const Phase phase(hub->profile, Profile::WALLS);
   const int dim = hub->dim, nall = atom->nlocal + atom->nghost;
@@ -174,7 +187,7 @@ void FixFSIWallParticle::extrapolate(bool advance)
       const double W = kernel.W(std::sqrt(rsq));
       double *const s = sum[w];
       s[0] += W;
-      const auto &g = hub->gravity[type[j]];
+      const auto &g = hub->body_forces.of_type[type[j]];
       double p = hub->pressure(j);
       for (int k = 0; k < dim; k++) {
         p += rho[j] * g[k] * d[k];

@@ -22,6 +22,7 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 
 #include "fix.h"
 #include "fsi_keywords.h"
+#include "fsi_part.h"
 
 #include <string>
 #include <utility>
@@ -34,7 +35,7 @@ namespace LAMMPS_NS {
 // that has it, so the pair loops treat the particle as fluid. What moves the particles (fix move, fix rigid, nothing) is of no
 // concern here: their acceleration is that of their velocity.
 
-class FixFSIWallParticle : public Fix {
+class FixFSIWallParticle : public Fix, public FSI::Part {
  public:
   FixFSIWallParticle(class LAMMPS *, int, char **);
   ~FixFSIWallParticle() override;
@@ -52,8 +53,9 @@ class FixFSIWallParticle : public Fix {
   double memory_usage() override;
 
   int slip;
-  // called by fix fsi when the fluid's densities and the positions are those at which forces are computed
-  void extrapolate(bool advance);
+  void set_fields(FixFSI &) override;
+  void end_state(bool advance) override;    // the fluid's densities and the positions are those at which forces are computed
+  void add_costs(Costs &) const override;
 
  private:
   FSI::Keywords keywords;

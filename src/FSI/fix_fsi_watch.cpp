@@ -19,13 +19,12 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
-#include "fix_fsi_wall_mirror.h"
+#include "force.h"
 #include "fsi_keywords.h"
+#include "group.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "output.h"
-#include "pair_fsi_fluid.h"
-#include "pair_fsi_solid.h"
 #include "pair_fsi_solid_tl.h"
 #include "thermo.h"
 #include "update.h"
@@ -107,10 +106,21 @@ int FixFSIWatch::setmask()
 void FixFSIWatch::init()
 {
   hub = FixFSI::find(lmp, "Fix fsi/watch");
+  auto dt = modify->get_fix_by_style("^fsi/dt$");
+  fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
+  if (fix_dt && !fix_dt->chooses()) fix_dt = nullptr;
+  solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1));
   const auto &file = halt.restart_file;
   for (auto &fix : modify->get_fix_by_style("^fsi/watch$"))
     if (fix != this && static_cast<FixFSIWatch *>(fix)->halt.restart_file == file && !file.empty())
       error->all(FLERR, "Two fixes fsi/watch ({} and {}) would write the same file {}", id, fix->id, file);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIWatch::find_idle(const Census &, const Idle &nothing) const
+{
+  if (group->count(igroup) == 0) nothing("Fix fsi/watch", fmt::format("group {} is empty", group->names[igroup]));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -139,7 +149,7 @@ void FixFSIWatch::post_force(int)
 double FixFSIWatch::allowed(Trouble q) const
 {
   if (given[q]) return limit[q];
-  if (q == COURANT && hub->fix_dt && hub->fix_dt->chooses()) return std::max(limit[q], 1.5 * hub->fix_dt->largest_courant());
+  if (q == COURANT && fix_dt) return std::max(limit[q], 1.5 * fix_dt->largest_courant());
   if (q == LOST && output->thermo->lostflag == Thermo::IGNORE) return BIG;
   return limit[q];
 }
@@ -200,7 +210,7 @@ void FixFSIWatch::look(Stop::When when)
     }
     // spray without tension loses density, which then means nothing
     if (of.species == FLUID && rho[i] < of.rho0 && hub->pressure(i) == hub->state[type[i]].floor) continue;
-    const double error = std::abs((of.species == FLUID ? rho[i] / of.rho0 : hub->density_ratio(i)) - 1.0);
+    const double error = std::abs((hub->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i) : hub->density_ratio(i)) - 1.0);
     if (error > furthest) {
       furthest = error;
       enter(DENSITY, i, error);
@@ -213,7 +223,8 @@ void FixFSIWatch::look(Stop::When when)
   // pairs whose neighbour lists are at hand: all but those inside one total-Lagrangian body
   if (distances) {
     double smallest = BIG;
-    for (const Pair *pair : {(Pair *) hub->fluid, (Pair *) hub->solid, (Pair *) hub->solid_tl}) {
+    for (const char *style : {"^fsi/fluid", "^fsi/solid"}) {
+        const Pair *const pair = force->pair_match(style, 0);
       if (!pair || !pair->list) continue;
       const NeighList *const list = pair->list;
       for (int ii = 0; ii < list->inum; ii++) {
@@ -237,7 +248,7 @@ void FixFSIWatch::look(Stop::When when)
   energy_before = all[0];
   total[LOST] = (double) atom->natoms - all[2];
   double reflected = 0.0;
-  for (auto *fix : hub->wall_fixes) reflected += fix->compute_scalar();
+  for (auto *fix : modify->get_fix_by_style("^fsi/wall/mirror$")) reflected += fix->compute_scalar();
   total[REFLECTED] = reflected_before >= 0.0 ? reflected - reflected_before : 0.0;
   reflected_before = reflected;
 
@@ -257,7 +268,7 @@ void FixFSIWatch::judge(Stop::When when)
 {
   for (int k = MACH; k < NTROUBLE; k++) {
     const auto q = static_cast<Trouble>(k);
-    if (q == COURANT && when == Stop::START && hub->fix_dt && hub->fix_dt->chooses()) continue;    // its first choice comes later
+    if (q == COURANT && when == Stop::START && fix_dt) continue;    // its first choice comes later
     if (q == DISTANCE ? seen[q] >= allowed(q) : seen[q] <= allowed(q)) continue;
     violations++;
     if (warned & 1 << k) continue;

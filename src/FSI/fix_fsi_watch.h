@@ -21,6 +21,7 @@ FixStyle(fsi/watch,FixFSIWatch);
 #define LMP_FIX_FSI_WATCH_H
 
 #include "fix.h"
+#include "fsi_part.h"
 #include "fsi_stop.h"
 
 #include <string>
@@ -29,9 +30,10 @@ namespace LAMMPS_NS {
 
 // Limits stricter than those of fix fsi itself (fsi_check.h): stops a run that goes wrong, or warns, and says what went wrong where.
 
-class FixFSIWatch : public Fix {
+class FixFSIWatch : public Fix, public FSI::Part {
  public:
   FixFSIWatch(class LAMMPS *, int, char **);
+  void find_idle(const Census &, const Idle &) const override;
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -43,6 +45,8 @@ class FixFSIWatch : public Fix {
 
  private:
   class FixFSI *hub;
+  class FixFSIDt *fix_dt;    // that chooses the time step; null: none does
+  class PairFSISolidTL *solid_tl;
   FSI::Stop halt;
 
   int interval;

@@ -18,14 +18,14 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "force.h"
 #include "fsi_lattice.h"
 #include "fsi_limits.h"
 #include "group.h"
 #include "math_eigen.h"
 #include "modify.h"
 #include "neighbor.h"
-#include "pair_fsi_fluid.h"
-#include "pair_fsi_solid.h"
+#include "pair.h"
 #include "region.h"
 #include "update.h"
 
@@ -127,11 +127,11 @@ class Adviser : protected Pointers {
     units();
     box();
     const Cells cells(atom->x, atom->nlocal + atom->nghost, hub.dim, 1.25 * hub.dx);
-    if (spacing(cells) && (hub.solid || hub.solid_tl)) {
+    if (spacing(cells) && pair("^fsi/solid")) {
       thickness();
       rows();
     }
-    if (hub.fluid) {
+    if (pair("^fsi/fluid")) {
       idle_fluid();
       lattice();
       speeds();
@@ -143,6 +143,14 @@ class Adviser : protected Pointers {
  private:
   const FixFSI &hub;
   std::vector<int> present;    // types that are fluid or move, on any rank
+
+  // a pair style that there may be, and its settings
+  Pair *pair(const char *style) const { return force->pair_match(style, 0); }
+  template <class T> T number(const char *style, const char *setting) const
+  {
+    int dim_of_extract;
+    return *static_cast<T *>(pair(style)->extract(setting, dim_of_extract));
+  }
 
   bool fluid(int i) const { return hub.state[atom->type[i]].species == FLUID; }
   bool solid(int i) const { return hub.state[atom->type[i]].species == SOLID; }
@@ -195,7 +203,7 @@ class Adviser : protected Pointers {
     if (least < 1.0)
       warn(fmt::format("a sub-domain is thinner than what it needs of its neighbors ({:.2g} of {:g}), so messages travel over several "
                        "ranks: use fewer ranks, or processors and balance along the longer sides", least, ghost));
-    if (hub.fluid && neighbor->skin > 1.5 * hub.dx)
+    if (pair("^fsi/fluid") && neighbor->skin > 1.5 * hub.dx)
       warn(fmt::format("the skin {:g} is {:.1f} spacings wide, which only costs time: neighbor {:g} bin", neighbor->skin,
                        neighbor->skin / hub.dx, 0.3 * hub.dx));
   }
@@ -291,7 +299,7 @@ class Adviser : protected Pointers {
       MPI_Allreduce(const_cast<double *>(mine.data()), sum.data(), ENOUGH, MPI_DOUBLE, MPI_SUM, world);
       if (sum[0] + sum[1] <= sum[2]) return true;
       // a plate 2 across swings 12 % too fast (fsi/solid/tl), 8 to 16 % with the corrected gradients of fsi/solid
-      const char *const how = hub.solid && hub.solid->terms() == 0 ? "it will bend too easily" : "it will bend too little, some 25 %";
+      const char *const how = pair("^fsi/solid$") && number<int>("^fsi/solid$", "gradient") == 0 ? "it will bend too easily" : "it will bend too little, some 25 %";
       warn(fmt::format("body {} is {} across: {}, and fluid may leak through; take a spacing of a third of its thickness", body,
                        sum[0] > sum[1] ? "1 particle" : "2 particles", how));
       return false;    // one is enough
@@ -396,7 +404,7 @@ class Adviser : protected Pointers {
     std::array<double, 3> gravity = {0.0, 0.0, 0.0};
     double g = 0.0;
     for (int t = atom->ntypes; t > 0; t--)
-      if (present[t] && hub.state[t].species == FLUID) gravity = hub.gravity[t];
+      if (present[t] && hub.state[t].species == FLUID) gravity = hub.body_forces.of_type[t];
     for (int d = 0; d < hub.dim; d++) g += gravity[d] * gravity[d];
     g = std::sqrt(g);
     for (int d = 0; d < hub.dim; d++)
@@ -446,7 +454,7 @@ class Adviser : protected Pointers {
   void viscosity(int type, double speed, double length) const
   {
     const State &s = hub.state[type];
-    const double alpha = hub.fluid->artificial_alpha(), nu = 0.25 * alpha * hub.h * s.c / (hub.dim + 2);
+    const double alpha = number<double>("^fsi/fluid", "alpha"), nu = 0.25 * alpha * hub.h * s.c / (hub.dim + 2);
     if (alpha == 0.0) return;
     std::string text = fmt::format("  artificial viscosity, alpha {:g}, of type {} acts like a kinematic viscosity of about {:.2g}", alpha, type, nu);
     if (speed > 0.0)
@@ -454,7 +462,7 @@ class Adviser : protected Pointers {
                           length);
     if (comm->me == 0) utils::logmesg(lmp, text + "\n");
     const double own = s.viscosity / s.rho0;
-    if (hub.fluid->has_laminar() && own > 0.0 && nu > own)
+    if (number<int>("^fsi/fluid", "laminar/visc") && own > 0.0 && nu > own)
       warn(fmt::format("artificial viscosity of type {} is worth {:.2g}, {:.2g} times its laminar viscosity {:.2g}: take alpha {:.1g} or less, "
                        "or a finer spacing", type, nu, nu / own, own, 0.1 * alpha * own / nu));
   }

@@ -20,7 +20,6 @@
 #include "force.h"
 #include "fsi_pack.h"
 #include "neighbor.h"
-#include "pair_fsi_solid_tl.h"
 #include "update.h"
 
 #include <algorithm>
@@ -127,9 +126,9 @@ void Check::before_kick()
    sub-steps may take solids anywhere: keep a state to go back to, and look at them before the fluid is kicked
 ------------------------------------------------------------------------- */
 
-void Check::before_substeps()
+void Check::before_substeps(const std::vector<int> &solids)
 {
-  const auto &solids = hub->solid_tl->solids();
+  substepped = solids;
   kept.resize(6 * solids.size());
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   double *to = kept.data();
@@ -142,11 +141,11 @@ void Check::before_substeps()
   }
 }
 
-void Check::after_substeps()
+void Check::after_substeps(const std::vector<int> &solids)
 {
   const auto *const v = FixFSI::rows(atom->v);
   const int *const type = atom->type;
-  for (const int i : hub->solid_tl->solids())
+  for (const int i : solids)
     if (!(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2] <= limit_sq[type[i]])) examine(i, 0.0);
   judge(Stop::MIDDLE);
 }
@@ -226,7 +225,7 @@ void Check::judge(Stop::When when)
   // back to before the sub-steps, if there were any
   if (when == Stop::MIDDLE && hub->substeps > 1) {
     const double *from = kept.data();
-    for (const int i : hub->solid_tl->solids()) {
+    for (const int i : substepped) {
       std::copy_n(from, 3, atom->x[i]);
       std::copy_n(from + 3, 3, atom->v[i]);
       from += 6;

@@ -78,7 +78,14 @@ Fields::Field *Fields::find(const std::string &name)
 void Fields::set(const Field &f, bool wanted)
 {
   Field *old = find(f.name);
-  if (old && wanted && old->columns == f.columns && old->life == f.life) return;
+  if (old && wanted && old->columns == f.columns && old->life == f.life) {
+    // whose array it is may be another one of the same name
+    old->one_of = f.one_of;
+    old->many_of = f.many_of;
+    old->integers_of = f.integers_of;
+    hand_over(*old);
+    return;
+  }
   if (old) {
     free(*old);
     fields.erase(fields.begin() + (old - fields.data()));
@@ -108,9 +115,17 @@ void Fields::resize(Field &f, int rows)
 {
   const std::string name = "fsi:" + f.name;
   f.rows = rows;
-  if (f.one_of) *f.one_of = memory->grow(f.one, rows, name.c_str());
-  if (f.many_of) *f.many_of = memory->grow(f.many, rows, f.columns, name.c_str());
-  if (f.integers_of) *f.integers_of = memory->grow(f.integers, rows, name.c_str());
+  if (f.one_of) memory->grow(f.one, rows, name.c_str());
+  if (f.many_of) memory->grow(f.many, rows, f.columns, name.c_str());
+  if (f.integers_of) memory->grow(f.integers, rows, name.c_str());
+  hand_over(f);
+}
+
+void Fields::hand_over(const Field &f)
+{
+  if (f.one_of) *f.one_of = f.one;
+  if (f.many_of) *f.many_of = f.many;
+  if (f.integers_of) *f.integers_of = f.integers;
 }
 
 /* ---------------------------------------------------------------------- */

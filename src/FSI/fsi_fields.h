@@ -81,6 +81,7 @@ namespace FSI {
     Field *find(const std::string &name);
     void set(const Field &, bool wanted);
     void resize(Field &, int rows);
+    static void hand_over(const Field &);
     void free(Field &);
   };
 

@@ -16,9 +16,7 @@
 #include "atom.h"
 #include "fix_fsi.h"
 #include "force.h"
-#include "pair_fsi_fluid.h"
-#include "pair_fsi_solid.h"
-#include "pair_fsi_solid_tl.h"
+#include "pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,13 +90,12 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_flui
     const State &s = hub->state[t];
     const bool fluid = s.species == FLUID;
     double *const m = mine[substeps && !fluid], own = factor[!fluid];
-    double alpha = 0.0;
-    if (fluid) alpha = hub->fluid->artificial_alpha();
-    else if (hub->solid) alpha = hub->solid->artificial_alpha();
-    else if (hub->solid_tl) alpha = hub->solid_tl->artificial_alpha();
+    Pair *const pair = force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0);    // null: walls of held solids
+    int dim_of_extract;
+    const double alpha = pair ? *static_cast<double *>(pair->extract("alpha", dim_of_extract)) : 0.0;
     if (!fluid) m[ELASTIC] = std::min(m[ELASTIC], own * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
     if (alpha > 0.0) m[ARTIFICIAL] = std::min(m[ARTIFICIAL], own * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
-    if (fluid && hub->fluid->has_laminar() && s.viscosity > 0.0)
+    if (fluid && s.viscosity > 0.0 && *static_cast<int *>(pair->extract("laminar/visc", dim_of_extract)))
       m[LAMINAR] = std::min(m[LAMINAR], own * safe[LAMINAR] * h * h * s.rho0 / s.viscosity);
   }
 }

@@ -47,8 +47,12 @@ namespace FSI {
 
   // Equation of state of one atom type, and what loops need of its material.
   // Linear, paper eq. 16: p = p0 + c^2 (rho - rho0). Tait: p = p0 + rho0 c^2/7 ((rho/rho0)^7 - 1), the same slope at rho0.
+  // of a solid: the configuration that its equations of motion refer to; 0 where no style moves it
+  enum Form { UPDATED_LAGRANGIAN = 1, TOTAL_LAGRANGIAN };
+
   struct State {
     int species = NONE;
+    int form = 0;
     int tait = 0;
     double rho0 = 0.0, c = 0.0, csq = 0.0, inv_csq = 0.0, p0 = 0.0;
     double floor = -1.0e300;    // lowest pressure; 0 where the material carries no tension

@@ -15,6 +15,9 @@
 
 #include "comm.h"
 #include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "modify.h"
 
 #include <cstdlib>
 #include <cstring>
@@ -104,4 +107,35 @@ Record Record::read(LAMMPS *lmp, const std::string &style, FILE *fp)
   MPI_Bcast(text.data(), size, MPI_CHAR, 0, lmp->world);
   text.back() = '\0';
   return {lmp, style, text.data()};
+}
+
+/* ---------------------------------------------------------------------- */
+
+// LAMMPS shows what it has read to classes derived from its own only
+namespace {
+struct Stored : public Modify {
+  static constexpr auto global_id = &Stored::id_restart_global, global_style = &Stored::style_restart_global;
+  static constexpr auto global_used = &Stored::used_restart_global;
+};
+}    // namespace
+
+void FSI::check_ids(LAMMPS *lmp)
+{
+  Modify *const modify = lmp->modify;
+  Error *const error = lmp->error;
+  const bool first = lmp->comm->me == 0;
+  for (int k = 0; k < modify->nfix_restart_global; k++) {
+    if ((modify->*Stored::global_used)[k]) continue;
+    const std::string style_before = (modify->*Stored::global_style)[k], id_before = (modify->*Stored::global_id)[k];
+    if (!utils::strmatch(style_before, "^fsi")) continue;
+    for (const auto *fix : modify->get_fix_by_style("^" + style_before + "$")) {
+      if (fix->restart_reset) continue;
+      const auto text = fmt::format("Fix {} (style {}) takes nothing from the restart file, in which it had the ID {}: give it that ID",
+                                    fix->id, style_before, id_before);
+      if (style_before == "fsi" || style_before == "fsi/stress") error->all(FLERR, text);
+      if (first) error->warning(FLERR, text);
+    }
+    if (style_before == "fsi/reference" && lmp->force->pair_match("^fsi/solid$", 0) && first)
+      error->warning(FLERR, "The strain of total-Lagrangian solids in the restart file is lost: they go on in pair_style fsi/solid");
+  }
 }

@@ -51,6 +51,9 @@ namespace FSI {
     const std::string *find(const std::string &name) const;
   };
 
+  // once, before the first run after a restart file was read: what the file keeps for fixes of the package that go by another ID now
+  void check_ids(LAMMPS *);
+
 }    // namespace FSI
 }    // namespace LAMMPS_NS
 

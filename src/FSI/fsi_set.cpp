@@ -67,8 +67,8 @@ void FSISet::command(int narg, char **arg)
 
   // materials, masses and gravity are entered in init()
   lmp->init();
-  hub->update_gravity(false);
-  if (hydrostatic && std::none_of(hub->body_forces.begin(), hub->body_forces.end(), [](const FixFSI::BodyForce &f) { return f.mask; }))
+  hub->body_forces.evaluate(*hub, false);
+  if (hydrostatic && std::none_of(hub->body_forces.all.begin(), hub->body_forces.all.end(), [](const BodyForces::Field &f) { return f.mask; }))
     error->all(FLERR, "Fsi_set hydrostatic requires fix gravity");
 
   std::vector<double> each(atom->nlocal, number);
@@ -88,7 +88,7 @@ void FSISet::command(int narg, char **arg)
     if (s.species == RIGID) continue;    // has its pressure from the fluid, and its mass
     double rho = value;
     if (hydrostatic) {
-      const auto g = hub->body_force(i);
+      const auto g = hub->body_forces.on(i);
       const double *x = atom->x[i], size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
       if (size == 0.0) error->one(FLERR, "Fsi_set hydrostatic: no fix gravity acts on atom {}", atom->tag[i]);
       const double height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;

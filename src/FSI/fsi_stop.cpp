@@ -18,13 +18,12 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "fix_fsi_dt.h"
-#include "fix_fsi_wall_mirror.h"
+#include "force.h"
 #include "fsi_kernel.h"
+#include "fsi_part.h"
 #include "lmptype.h"
-#include "pair_fsi_fluid.h"
-#include "pair_fsi_solid.h"
-#include "pair_fsi_solid_tl.h"
+#include "modify.h"
+#include "pair.h"
 #include "update.h"
 #include "write_restart.h"
 
@@ -110,7 +109,12 @@ double Stop::courant(const FixFSI *hub, int type) const
 std::string Stop::advice(const FixFSI *hub, const Finding &all, When when) const
 {
   const bool fluid = !all.tag || hub->state[all.type].species == FLUID;
-  const PairFSI *const pair = fluid ? (PairFSI *) hub->fluid : hub->solid ? (PairFSI *) hub->solid : (PairFSI *) hub->solid_tl;
+  const auto *const pair = dynamic_cast<Part *>(force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0));
+  const bool solid_tl = force->pair_match("fsi/solid/tl", 1);
+  // of fix fsi/dt: does it choose the time step, sub-steps, too?
+  int dim_of_extract;
+  auto dt_fixes = modify->get_fix_by_style("^fsi/dt$");
+  const auto chooses = [&](const char *what) { return !dt_fixes.empty() && dt_fixes[0]->extract(what, dim_of_extract); };
   const auto off = [&](const std::string &keyword) {
     if (!pair) return false;
     for (const auto &e : pair->effects())
@@ -125,9 +129,8 @@ std::string Stop::advice(const FixFSI *hub, const Finding &all, When when) const
     const double number = all.tag ? courant(hub, all.type) : 0.0;
     std::string tip;
     if (number > USUAL) tip = fmt::format("a shorter time step (the Courant number is {:.2g}, 0.25 is usual): ", number);
-    const bool chosen = hub->fix_dt && hub->fix_dt->chooses();
-    if (!chosen) tip += std::string("fix fsi/dt") + (hub->solid_tl ? " with substeps auto" : "");
-    else if (!fluid && hub->solid_tl && !hub->fix_dt->chooses_substeps()) tip += "substeps auto of fix fsi/dt";
+    if (!chooses("step")) tip += std::string("fix fsi/dt") + (solid_tl ? " with substeps auto" : "");
+    else if (!fluid && solid_tl && !chooses("substeps")) tip += "substeps auto of fix fsi/dt";
     else tip += fluid ? "a smaller cfl/fluid of fix fsi/dt" : "a smaller cfl/solid of fix fsi/dt";
     tips.insert(number > USUAL ? tips.begin() : tips.end(), tip);
   };
@@ -203,18 +206,7 @@ void Stop::go_back(const FixFSI *hub)
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & hub->groupbit)
       for (int d = 0; d < hub->dim; d++) atom->x[i][d] += back * atom->v[i][d];
-  if (hub->fluid && hub->density_fluid == FixFSI::CONTINUITY)
-    for (int i = 0; i < atom->nlocal; i++)
-      if (hub->state[atom->type[i]].species == FLUID) atom->rho[i] -= dt * hub->rate[i];
-  if (hub->solid && hub->density_solid == FixFSI::CONTINUITY)
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (hub->state[atom->type[i]].species != SOLID) continue;
-      double div = 0.0;
-      for (int k = 0; k < hub->dim; k++) div += hub->grad[i][k * (hub->dim + 1)];
-      atom->rho[i] *= (1.0 + 0.5 * dt * div) / (1.0 - 0.5 * dt * div);
-    }
-  for (auto *fix : hub->wall_fixes)
-    for (auto &w : fix->walls) w.position += back * w.velocity[w.axis];
+  for (auto *p : hub->parts) p->go_back();
   update->ntimestep--;
 }
 

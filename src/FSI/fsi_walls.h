@@ -68,6 +68,8 @@ namespace FSI {
     }
   };
 
+  typedef double *WallForce;    // three components
+
   struct Walls {
     static constexpr int MAXWALL = 31;
     std::vector<Wall> wall;

@@ -122,6 +122,22 @@ void PairFSI::init_style()
   else list = nullptr;    // that of an earlier run is gone
 }
 
+/* ---------------------------------------------------------------------- */
+
+void *PairFSI::extract(const char *name, int &dim_of_extract)
+{
+  dim_of_extract = 0;
+  return strcmp(name, "alpha") == 0 ? &alpha : nullptr;
+}
+
+std::string PairFSI::named_effects() const
+{
+  std::string named;
+  for (const auto &e : effects())
+    if (e.on) named += (named.empty() ? " with " : ", ") + e.keyword;
+  return named;
+}
+
 /* ----------------------------------------------------------------------
    is there more than one solid body? pairs need not ask if there is not
 ------------------------------------------------------------------------- */

@@ -19,6 +19,7 @@
 #include "atom.h"
 #include "fsi_keywords.h"
 #include "fsi_material.h"
+#include "fsi_part.h"
 #include "pair.h"
 
 #include <string>
@@ -26,7 +27,7 @@
 
 namespace LAMMPS_NS {
 
-class PairFSI : public Pair {
+class PairFSI : public Pair, public FSI::Part {
  public:
   PairFSI(class LAMMPS *, const char *style);
   ~PairFSI() override;
@@ -39,9 +40,8 @@ class PairFSI : public Pair {
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
 
-  // an effect that the style offers: what it is called, the keyword that turns it on, and whether it is on
-  using Effect = FSI::Keywords::Effect;
-  virtual std::vector<Effect> effects() const = 0;
+  void *extract(const char *, int &) override;
+  std::vector<Effect> effects() const override = 0;
   double artificial_alpha() const { return alpha; }
 
  protected:
@@ -72,6 +72,7 @@ class PairFSI : public Pair {
   bool has_artificial() const { return alpha > 0.0 || beta > 0.0; }
   void set_flags();
   void allocate();
+  std::string named_effects() const;    // those that the script names, for messages
   void check_tally();
 
   // the solid ones among the atoms of a message: those listed, or n from first on

@@ -38,7 +38,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -129,15 +129,125 @@ void PairFSIFluid::init_style()
   loops = make_fluid_loops(hub->kernel, hub->dim, hub->h);
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
+  if (couple != WALL && force->pair_match("fsi/solid/tl", 1))
+    error->all(FLERR, "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress is not one that crosses to the fluid");
+  // the plain forces of a solid end at its face with half a kernel of neighbours missing, which the fluid's pairs supply; forces with
+  // corrected gradients are complete without them
+  Pair *const solid = force->pair_match("fsi/solid", 1);
+  int dim_of_extract;
+  if (couple != WALL && solid && *static_cast<int *>(solid->extract("gradient", dim_of_extract)) != 0)
+    error->all(FLERR, "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid gradient plain: with corrected gradients "
+                      "use couple wall");
+  auto stress = modify->get_fix_by_style("^fsi/stress$");
+  fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);
   kinds[SOLIDS] = couple == WALL ? WITH_SOLID : couple == PRESSURE ? WITH_SOLID_PRESSURE : WITH_SOLID_FULL;
 }
 
 /* ---------------------------------------------------------------------- */
 
-void PairFSIFluid::begin_step()
+void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
+{
+  if (strcmp(name, "laminar/visc") == 0) {
+    dim_of_extract = 0;
+    return &laminar;
+  }
+  return PairFSI::extract(name, dim_of_extract);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int PairFSIFluid::nshift() const
+{
+  return 2 * hub->dim + 1;
+}
+
+void PairFSIFluid::set_fields(FixFSI &fsi)
+{
+  fields.set("density rate", Fields::STEP, fsi.density_fluid == FixFSI::CONTINUITY, rate);
+  fields.set("shift", Fields::STEP, shifting > 0.0, fsi.shift, nshift());
+  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, fsi.dim + 1);
+  fsi.noslip_walls = fsi.noslip_walls || sticks_to_solids();
+  fsi.surface_ratio = surface_ratio;
+  fsi.surface_max = surface_max;
+}
+
+void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
+{
+  if (sticks_to_solids()) to_ghosts.add(hub->wall_velocity, 0, hub->dim, {SOLID});
+  if (sticks_to_solids()) back.add(beyond, 0, hub->dim + 1, {SOLID});
+  if (hub->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
+  if (shifting > 0.0) back.add(hub->shift, 0, nshift(), {FLUID, RIGID});
+}
+
+void PairFSIFluid::add_costs(Costs &costs) const
+{
+  const int newton = force->newton_pair, continuity = hub->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? nshift() : 0;
+  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + ns);
+  costs.sums = costs.sums || continuity;
+  costs.fluid_ghost += newton * continuity * (1 + ns);
+  if (sticks_to_solids()) costs.solid_ghost += hub->dim + newton * (hub->dim + 1);
+}
+
+void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
+{
+  if (all.fluids == 0) nothing("Pair style fsi/fluid" + named_effects(), "no particle is a fluid");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::begin_state(bool)
 {
   images_step = -1;
   if (neighbor->ago == 0) find_rows();
+}
+
+bool PairFSIFluid::add_rates(bool advance)
+{
+  fields.grow();
+  const size_t nall = atom->nlocal + atom->nghost;
+  if (rate) std::fill_n(rate, nall, 0.0);
+  if (shifting > 0.0 && nall) std::fill_n(hub->shift[0], nall * nshift(), 0.0);
+  const Phase phase(hub->profile, Profile::DENSITY);
+  if (rate && advance) {
+    if (hub->dim == 2) add_density_rate<2>(update->dt);
+    else add_density_rate<3>(update->dt);
+  }
+  if (beyond) {
+    if (nall) std::fill_n(beyond[0], nall * (hub->dim + 1), 0.0);
+    add_velocities_at_solids();
+  }
+  return (rate && advance) || beyond;
+}
+
+void PairFSIFluid::advance(bool advance)
+{
+  const Phase phase(hub->profile, Profile::DENSITY);
+  if (beyond) extrapolate_velocities();
+  if (!rate || !advance) return;
+  advance_density();
+  if (shifting > 0.0) displacements(update->dt);
+}
+
+/* ----------------------------------------------------------------------
+   continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; nobody is thinner than he would be alone (with diffusion in particles that
+   are shot out of a crowd)
+------------------------------------------------------------------------- */
+
+void PairFSIFluid::advance_density()
+{
+  double *const rho = atom->rho;
+  const int *const type = atom->type;
+  const double dt = update->dt + hub->stagger;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (hub->state[type[i]].species == FLUID) rho[i] = std::max(rho[i] + dt * rate[i], atom->rmass[i] * hub->w0);
+}
+
+void PairFSIFluid::go_back()
+{
+  if (!rate) return;
+  const double dt = update->dt + hub->stagger;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (hub->state[atom->type[i]].species == FLUID) atom->rho[i] -= dt * rate[i];
 }
 
 /* ----------------------------------------------------------------------
@@ -289,12 +399,7 @@ template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest 
    n+1/2, second order in time.
 ------------------------------------------------------------------------- */
 
-void PairFSIFluid::density_rate(double dt)
-{
-  hub->dim == 2 ? density_rate_of<2>(dt) : density_rate_of<3>(dt);
-}
-
-template <int D> void PairFSIFluid::density_rate_of(double dt)
+template <int D> void PairFSIFluid::add_density_rate(double dt)
 {
   const double dth = 0.5 * dt;
   double **x = atom->x;
@@ -306,7 +411,7 @@ template <int D> void PairFSIFluid::density_rate_of(double dt)
     if (delta == 0.0) return;
     const State &s = hub->state[type[i]];
     p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
-    p.pv2 = DensityDiffusion::hydrostatic(hub->gravity[type[i]].data(), p.position(x[i]).data(), s.rho0 * s.inv_csq);
+    p.pv2 = DensityDiffusion::hydrostatic(hub->body_forces.of_type[type[i]].data(), p.position(x[i]).data(), s.rho0 * s.inv_csq);
   });
   if (hub->ledger) {
     pressure_over_density.resize(atom->nmax);
@@ -317,7 +422,7 @@ template <int D> void PairFSIFluid::density_rate_of(double dt)
   double *const shift = shifting > 0.0 ? hub->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror) {
-    loops->rates(kinds[kind], which, mirror, particles, laws, hub->rate, hub->ledger ? &sums : nullptr);
+    loops->rates(kinds[kind], which, mirror, particles, laws, rate, hub->ledger ? &sums : nullptr);
     if (shift) loops->shifts(kinds[kind], which, mirror, particles, hub->wdx, shift);
   };
   for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind].rows, nullptr);
@@ -354,14 +459,14 @@ template <class Sum> void PairFSIFluid::distance_sums(bool others_too, Sum sum)
              [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { sum(which, both(kind), mirror); });
 }
 
-void PairFSIFluid::number_density(double *psi, bool solids_too)
+void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
   distance_sums(solids_too, [&](const std::vector<Row> &which, bool both, const Mirror *mirror) {
     loops->number_density(which, both, mirror, FixFSI::rows(atom->x), psi);
   });
 }
 
-void PairFSIFluid::position_divergence(double *div)
+void PairFSIFluid::add_position_divergence(double *div)
 {
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
@@ -372,7 +477,7 @@ void PairFSIFluid::position_divergence(double *div)
 
 /* ---------------------------------------------------------------------- */
 
-void PairFSIFluid::velocity_at_solids(double **sum)
+void PairFSIFluid::add_velocities_at_solids()
 {
   const int dim = hub->dim;
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
@@ -384,10 +489,25 @@ void PairFSIFluid::velocity_at_solids(double **sum)
         for (int d = 0; d < dim; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
         if (rsq >= kernel.cutsq) continue;
         const double W = kernel.W(std::sqrt(rsq));
-        for (int d = 0; d < dim; d++) sum[j][d] += W * v[i][d];
-        sum[j][dim] += W;
+        for (int d = 0; d < dim; d++) beyond[j][d] += W * v[i][d];
+        beyond[j][dim] += W;
       }
   });
+}
+
+/* ----------------------------------------------------------------------
+   velocity of solids in viscous forces: where fluid would be inside the solid, that with which the face has the solid's,
+   2 v_s - sum v W/sum W, as for walls of particles
+------------------------------------------------------------------------- */
+
+void PairFSIFluid::extrapolate_velocities()
+{
+  const int dim = hub->dim;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (hub->state[atom->type[i]].species != SOLID) continue;
+    const double *const s = beyond[i], *const v = atom->v[i];
+    for (int d = 0; d < dim; d++) hub->wall_velocity[i][d] = s[dim] > 0.0 ? 2.0 * v[d] - s[d] / s[dim] : v[d];
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -427,8 +547,8 @@ template <int D> void PairFSIFluid::compute_forces()
     p.pv2 = p.p * p.vol * p.vol;
   });
 
-  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? hub->gravity.data() : nullptr, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
-                    FixFSI::rows(hub->wall_velocity ? hub->wall_velocity : atom->v), hub->fix_stress ? hub->fix_stress->stress : nullptr};
+  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? hub->body_forces.of_type.data() : nullptr, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
+                    FixFSI::rows(hub->wall_velocity ? hub->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr};
   PairSums sums, *const of_pairs = hub->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   for (int kind = 0; kind < NROWS; kind++)
@@ -483,7 +603,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  double bytes = (double) (points.capacity() + forces.capacity() + pressure_over_density.capacity()) * sizeof(double);
+  double bytes = fields.memory_usage() + (double) (points.capacity() + forces.capacity() + pressure_over_density.capacity()) * sizeof(double);
   for (const auto &list_of : rows) bytes += list_of.memory_usage();
   for (const auto &lists : images)
     for (const auto &list_of : lists) bytes += list_of.memory_usage();

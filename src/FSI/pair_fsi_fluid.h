@@ -21,6 +21,7 @@ PairStyle(fsi/fluid,PairFSIFluid);
 #define LMP_PAIR_FSI_FLUID_H
 
 #include "fsi_contact.h"
+#include "fsi_fields.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_walls.h"
 #include "pair_fsi.h"
@@ -40,34 +41,25 @@ class PairFSIFluid : public PairFSI {
   PairFSIFluid(class LAMMPS *);
   void init_style() override;
   void compute(int, int) override;
+  void *extract(const char *, int &) override;
   bool has_solids() const;
-  bool shares_stress() const { return couple != WALL; }    // of a solid with the fluid
   std::vector<Effect> effects() const override;
+  void add_costs(Costs &) const override;
+  void find_idle(const Census &, const Idle &) const override;
   double memory_usage() override;
   bool has_laminar() const { return laminar; }
   bool sticks_to_solids() const { return laminar && !solids_slip && has_solids(); }
   double sound_of(const FSI::Material &) const;
 
-  // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi
-  // of all fluid particles); 0 = off
-  double surface_ratio;
-  int surface_max;
-
-  double shifting;    // coefficient C of particle shifting; 0 = off
-
-  // at the start of a step's loops: with new neighbor lists new rows
-  void begin_step();
-  // adds v W, then W, of the fluid around each solid particle to rows of dim + 1
-  void velocity_at_solids(double **sum);
-  // adds the density rate (continuity) of fluids to fix fsi's rate, and the sums of particle shifting to its shift, at the
-  // positions dt/2 ago, to which the velocities belong
-  void density_rate(double dt);
-  // turns the sums of particle shifting of local fluid atoms into displacements
-  void displacements(double dt);
-  // adds sum_j W_ij of fluid-fluid and fluid-solid pairs to psi; to that of the solid only if solids_too
-  void number_density(double *psi, bool solids_too);
+  void set_fields(FixFSI &) override;
+  void add_messages(FSI::Message &, FSI::Message &) override;
+  void begin_state(bool) override;    // with new neighbor lists new rows
+  bool add_rates(bool) override;
+  void advance(bool) override;
+  void add_number_density(double *, bool of_all_bodies) override;
+  void go_back() override;
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
-  void position_divergence(double *div);
+  void add_position_divergence(double *div);
 
  protected:
   bool handles(int, int) const override;
@@ -83,7 +75,13 @@ class PairFSIFluid : public PairFSI {
  private:
   // settings
   double sound, background, delta;    // sound: of fluids whose material has none; 0: there is no default
+  double shifting;                    // coefficient C of particle shifting; 0 = off
+  // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi of all fluid
+  // particles); 0 = off
+  double surface_ratio;
+  int surface_max;
   int tait, laminar, couple, extrapolate, tension, solids_slip;
+  class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
   std::unique_ptr<FSI::FluidLoops> loops;
@@ -101,7 +99,17 @@ class PairFSIFluid : public PairFSI {
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, pressure_over_density;
   template <int D, class Rest> FSI::FluidParticles gather(double t, Rest);    // positions a time t later; what else a loop needs
-  template <int D> void density_rate_of(double dt);
+  // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
+  FSI::Fields fields;
+  double *rate;      // local after the reverse communication
+  double **shift;    // its sums; afterwards the displacement at the end of the step
+  int nshift() const;
+  double **beyond;    // of solids that fluid sticks to: the sums of v W, and of W, of the fluid around
+  void add_velocities_at_solids();
+  void extrapolate_velocities();
+  template <int D> void add_density_rate(double dt);
+  void advance_density();
+  void displacements(double dt);    // turns the sums of particle shifting of local fluid atoms into displacements
   template <int D> void compute_forces();
   std::vector<FSI::Contact> guards;    // per type
   template <class Sum> void distance_sums(bool others_too, Sum);

@@ -29,6 +29,7 @@
 #include "fsi_viscosity_artificial.h"
 #include "modify.h"
 #include "neigh_list.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +42,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), force_loop(nullptr), gradient_loop(nullptr)
+    PairFSI(lmp, "fsi/solid"), fix_stress(nullptr), fields(lmp), grad(nullptr), any_gradient(false), force_loop(nullptr), gradient_loop(nullptr)
 {
   artificial_row("solid");
   keywords.key("artificial/stress").number(epsilon, 0.0, Range::from(0.0)).effect("artificial stress {}");
@@ -73,7 +74,9 @@ State PairFSISolid::make_state(const Material &m) const
   bool plane_stress = false;
   for (auto &fix : modify->get_fix_by_style("^fsi/stress$"))
     plane_stress = dynamic_cast<FixFSIStress *>(fix)->plane_stress;
-  return solid_state(m, plane_stress);
+  State s = solid_state(m, plane_stress);
+  s.form = UPDATED_LAGRANGIAN;
+  return s;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -82,6 +85,9 @@ void PairFSISolid::init_style()
 {
   PairFSI::init_style();
   check_contact();
+  auto stress = modify->get_fix_by_style("^fsi/stress$");
+  if (stress.empty()) error->all(FLERR, "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
+  fix_stress = dynamic_cast<FixFSIStress *>(stress[0]);
   comm_forward = has_hourglass() ? hub->dim * hub->dim : 0;
   comm_reverse = has_hourglass() ? hub->dim : 0;
   const bool bodies = several_bodies();
@@ -115,6 +121,142 @@ template <class K, int TERMS, int... F> void PairFSISolid::pick_force(int flags,
   using Loop = void (PairFSISolid::*)();
   static constexpr Loop table[] = {&PairFSISolid::force_pairs<K, TERMS, F>...};
   force_loop = table[flags];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void *PairFSISolid::extract(const char *name, int &dim_of_extract)
+{
+  dim_of_extract = 0;
+  if (strcmp(name, "gradient") == 0) return &gradient;    // 0: plain
+  if (strcmp(name, "hourglass") == 0) return &xi;
+  return PairFSI::extract(name, dim_of_extract);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int PairFSISolid::ngrad() const
+{
+  const int dim = hub->dim, n = terms();
+  return n == 0 ? dim * dim : dim * n + 2 * packed_size(n);
+}
+
+void PairFSISolid::set_fields(FixFSI &)
+{
+  fields.set("velocity gradient", Fields::STEP, true, grad, ngrad());
+}
+
+void PairFSISolid::add_messages(Message &to_ghosts, Message &back)
+{
+  const int dim = hub->dim;
+  to_ghosts.add(fix_stress->stress, 0, dim == 2 ? 3 : 6, {SOLID});
+  to_ghosts.add(grad, dim * dim, dim * terms(), {SOLID});
+  back.add(grad, 0, ngrad(), {SOLID});
+}
+
+void PairFSISolid::add_costs(Costs &costs) const
+{
+  const int dim = hub->dim, newton = force->newton_pair, hourglass = has_hourglass();
+  costs.bytes += 8 * ngrad();
+  costs.arrays += ", velocity gradient";
+  costs.sums = true;
+  costs.forward += hourglass;
+  costs.back += newton * hourglass;
+  costs.solid_ghost += (dim == 2 ? 3 : 6) + dim * terms() + newton * ngrad() + hourglass * (dim * dim + newton * dim);
+}
+
+void PairFSISolid::find_idle(const Census &all, const Idle &nothing) const
+{
+  if (all.solids == 0) nothing("Pair style fsi/solid" + named_effects(), "no particle is a solid");
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool PairFSISolid::add_rates(bool advance)
+{
+  fields.grow();
+  any_gradient = advance || terms();
+  if (!any_gradient) return false;
+  const Phase phase(hub->profile, Profile::STRESS);
+  const size_t nall = atom->nlocal + atom->nghost;
+  if (nall) std::fill_n(grad[0], nall * ngrad(), 0.0);
+  velocity_gradient(advance ? update->dt : 0.0);
+  return true;
+}
+
+void PairFSISolid::advance(bool advance)
+{
+  if (!any_gradient) return;
+  const Phase phase(hub->profile, Profile::STRESS);
+  const int dim = hub->dim;
+  if (terms() == 0) dim == 2 ? advance_stress<2, 0>(advance) : advance_stress<3, 0>(advance);
+  else if (terms() == dim) dim == 2 ? advance_stress<2, 2>(advance) : advance_stress<3, 3>(advance);
+  else dim == 2 ? advance_stress<2, 5>(advance) : advance_stress<3, 9>(advance);
+  if (advance && has_hourglass()) advance_hourglass(update->dt);
+}
+
+/* ----------------------------------------------------------------------
+   velocity gradient L from its sums; stress and, in continuity mode, density from L
+------------------------------------------------------------------------- */
+
+template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
+{
+  double *rho = atom->rho;
+  const int *const type = atom->type;
+  const double dt = update->dt + hub->stagger;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const State &s = hub->state[type[i]];
+    if (s.species != SOLID) continue;
+    double *L = grad[i];
+    if constexpr (TERMS > 0) {
+      // L = [sum_j w_ij (v_j - v_i)(x)phi_j] C^T
+      double C[D * TERMS], force_C[D * TERMS], full[D * D] = {};
+      const double *const moments = L + D * TERMS;
+      // hardly any neighbours: torn off, no strain, no stress to share
+      if (gradient_coefficients<D, TERMS>(moments, C) == Gradient<D>::DEFICIENT) std::fill_n(C, D * TERMS, 0.0);
+      if (gradient_coefficients<D, TERMS>(moments + packed_size(TERMS), force_C) == Gradient<D>::DEFICIENT)
+        std::fill_n(force_C, D * TERMS, 0.0);
+      for (int a = 0; a < D; a++)
+        for (int b = 0; b < D; b++)
+          for (int k = 0; k < TERMS; k++) full[a * D + b] += L[a * TERMS + k] * C[b * TERMS + k];
+      const double inv = 1.0 / hub->h;
+      for (int k = 0; k < D * D; k++) L[k] = full[k] * inv;
+      for (int k = 0; k < D * TERMS; k++) L[D * D + k] = force_C[k] * inv;
+    }
+    if (!advance) continue;
+    const double work = fix_stress->advance_stress<D>(i, L, dt, s);
+    if (hub->density_solid == FixFSI::CONTINUITY) {
+      double div = 0.0;
+      for (int a = 0; a < D; a++) div += L[a * D + a];
+      // d rho/dt = -rho div v, centred: second order, and positive for any step
+      rho[i] *= (1.0 - 0.5 * dt * div) / (1.0 + 0.5 * dt * div);
+    }
+    if (hub->ledger) {
+      // what the strain stores; what the pair forces deliver, with the same stress and velocity, is taken off in
+      // force_pairs(): their difference is what the gradient's correction costs
+      auto sigma = Sym<D>::load(fix_stress->stress[i]);
+      sigma += Sym<D>::identity(-s.pressure(rho[i]));
+      double power = 0.0;
+      for (int a = 0; a < D; a++)
+        for (int b = 0; b < D; b++) power += sigma(a, b) * L[a * D + b];
+      hub->tally(FixFSI::GRADIENT, -power * atom->rmass[i] / rho[i]);
+      hub->taken[FixFSI::PLASTIC] += work * atom->rmass[i] / rho[i];
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSISolid::go_back()
+{
+  if (hub->density_solid != FixFSI::CONTINUITY) return;
+  const double dt = update->dt + hub->stagger;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (hub->state[atom->type[i]].species != SOLID) continue;
+    double div = 0.0;
+    for (int k = 0; k < hub->dim; k++) div += grad[i][k * (hub->dim + 1)];
+    atom->rho[i] *= (1.0 + 0.5 * dt * div) / (1.0 - 0.5 * dt * div);
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -153,7 +295,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
   const int *const type = atom->type;
   const State *const state = hub->state.data();
   const tagint *const molecule = atom->molecule;
-  double **grad = hub->grad;
+  double **grad = this->grad;
 
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
@@ -250,7 +392,7 @@ template <class K> void PairFSISolid::hourglass_pairs(double dt)
       if (rsq >= kernel.cutsq) continue;
       const State &sj = state[type[j]];
       hourglass.operator()<D>(0.5 * (si.shear + sj.shear), atom->rmass[i] / si.rho0 * atom->rmass[j] / sj.rho0,
-                              kernel.gradient(std::sqrt(rsq)), xij, vij, hub->grad[i], hub->grad[j], rate);
+                              kernel.gradient(std::sqrt(rsq)), xij, vij, grad[i], grad[j], rate);
       for (int d = 0; d < D; d++) {
         hourglass_rate[i * D + d] += rate[d];
         hourglass_rate[j * D + d] -= rate[d];
@@ -264,9 +406,9 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
   for (int i = 0; i < atom->nlocal; i++) {
     if (material[atom->type[i]].species != SOLID) continue;
     double Q[D * D], Qh[D * D], turned[D] = {};
-    double *const q = hub->fix_stress->hourglass_force(i), *const rate = &hourglass_rate[i * D];
-    rotation<D>(hub->grad[i], dt, Q);
-    rotation<D>(hub->grad[i], 0.5 * dt, Qh);
+    double *const q = fix_stress->hourglass_force(i), *const rate = &hourglass_rate[i * D];
+    rotation<D>(grad[i], dt, Q);
+    rotation<D>(grad[i], 0.5 * dt, Qh);
     for (int a = 0; a < D; a++)
       for (int b = 0; b < D; b++) turned[a] += Q[a * D + b] * q[b] + dt * Qh[a * D + b] * rate[b];
     for (int a = 0; a < D; a++) q[a] = turned[a];
@@ -276,14 +418,14 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
 int PairFSISolid::pack_forward_comm(int n, int *listed, double *buf, int, int *)
 {
   double *const first = buf;
-  for_solids(n, listed, 0, [&](int i) { buf = std::copy_n(hub->grad[i], comm_forward, buf); });
+  for_solids(n, listed, 0, [&](int i) { buf = std::copy_n(grad[i], comm_forward, buf); });
   return buf - first;
 }
 
 void PairFSISolid::unpack_forward_comm(int n, int first, double *buf)
 {
   for_solids(n, nullptr, first, [&](int i) {
-    std::copy_n(buf, comm_forward, hub->grad[i]);
+    std::copy_n(buf, comm_forward, grad[i]);
     buf += comm_forward;
   });
 }
@@ -306,7 +448,7 @@ void PairFSISolid::unpack_reverse_comm(int n, int *listed, double *buf)
 
 /* ---------------------------------------------------------------------- */
 
-void PairFSISolid::number_density(double *psi, bool all_bodies)
+void PairFSISolid::add_number_density(double *psi, bool all_bodies)
 {
   double **x = atom->x;
   const tagint *const molecule = atom->molecule;
@@ -339,7 +481,7 @@ void PairFSISolid::compute(int eflag, int vflag)
     double **f = atom->f;
     for (int i = 0; i < atom->nlocal; i++) {
       if (material[atom->type[i]].species != SOLID) continue;
-      const double *q = hub->fix_stress->hourglass_force(i);
+      const double *q = fix_stress->hourglass_force(i);
       for (int d = 0; d < hub->dim; d++) f[i][d] += q[d];
     }
   }
@@ -368,7 +510,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
   const bool newton = force->newton_pair;
   const bool tally_pairs = evflag && !vflag_fdotr;    // newton off
   const State *const state = hub->state.data();
-  double **S = hub->fix_stress->stress;
+  double **S = fix_stress->stress;
   const ArtificialViscosity viscosity(alpha, beta, hub->h);
   const ArtificialStress artificial(epsilon, hub->wdx);
   const Contact contact(D, hub->dx, contact_range);
@@ -387,7 +529,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
     a.stress += Sym<D>::identity(-a.pv2);
     if (FLAGS & ARTIFICIAL_STRESS) a.artificial = artificial(a.stress);
     if constexpr (TERMS > 0) {
-      a.C = hub->grad[i] + D * D;
+      a.C = grad[i] + D * D;
       a.vstress = a.stress;
       a.vstress *= 1.0 / a.vol;
     }
@@ -499,5 +641,5 @@ std::vector<PairFSI::Effect> PairFSISolid::effects() const
 
 double PairFSISolid::memory_usage()
 {
-  return (double) aux2.capacity() * sizeof(Aux<2>) + (double) aux3.capacity() * sizeof(Aux<3>);
+  return fields.memory_usage() + (double) aux2.capacity() * sizeof(Aux<2>) + (double) aux3.capacity() * sizeof(Aux<3>);
 }

@@ -20,6 +20,7 @@ PairStyle(fsi/solid,PairFSISolid);
 #ifndef LMP_PAIR_FSI_SOLID_H
 #define LMP_PAIR_FSI_SOLID_H
 
+#include "fsi_fields.h"
 #include "fsi_tensor.h"
 #include "pair_fsi.h"
 
@@ -43,19 +44,20 @@ class PairFSISolid : public PairFSI {
   std::vector<Effect> effects() const override;
   double memory_usage() override;
 
+  void *extract(const char *, int &) override;
+  void set_fields(FixFSI &) override;
+  void add_messages(FSI::Message &, FSI::Message &) override;
+  bool add_rates(bool) override;
+  void advance(bool) override;
+  void add_number_density(double *, bool of_all_bodies) override;
+  void go_back() override;
+  void add_costs(Costs &) const override;
+  void find_idle(const Census &, const Idle &) const override;
+
   // gradients: 0 = plain, else the number of terms for which they are exact (fsi_gradient.h): dim linear ones (Bonet and
   // Lok 1999), or the quadratic ones too
   int terms() const;
-  // forces of hourglass control from half a step back to half a step ahead, with fix fsi's L of the time between
   bool has_hourglass() const { return xi > 0.0; }
-  void advance_hourglass(double dt);
-
-  // adds to fix fsi's grad, over the own body, at the positions dt/2 ago, to which the velocities belong: plain,
-  // sum_j V_j (v_j - v_i)(x)grad_i W_ij; else sum_j w (v_j - v_i)(x)phi and, packed, the moments sum_j w phi (x) phi, with
-  // grad_i W_ij = -w x_ij/V_j and the basis phi of x_ji/h; then these moments at the positions of now, for the forces
-  void velocity_gradient(double dt);
-  // adds sum_j W_ij over the own body, or over all solids (density mode summation), to psi
-  void number_density(double *psi, bool all_bodies);
 
  protected:
   bool handles(int, int) const override;
@@ -63,6 +65,20 @@ class PairFSISolid : public PairFSI {
   FSI::State make_state(const FSI::Material &) const override;
 
  private:
+  class FixFSIStress *fix_stress;
+  FSI::Fields fields;
+  // local and ghost: sums of the velocity gradient, afterwards L and the coefficients of its weights (fsi_gradient.h)
+  double **grad;
+  int ngrad() const;
+  bool any_gradient;    // in this step: coefficients are needed by forces, so in setup, too
+  // adds to grad, over the own body, at the positions dt/2 ago, to which the velocities belong: plain,
+  // sum_j V_j (v_j - v_i)(x)grad_i W_ij; else sum_j w (v_j - v_i)(x)phi and, packed, the moments sum_j w phi (x) phi, with
+  // grad_i W_ij = -w x_ij/V_j and the basis phi of x_ji/h; then these moments at the positions of now, for the forces
+  void velocity_gradient(double dt);
+  template <int D, int TERMS> void advance_stress(bool advance);
+  // forces of hourglass control from half a step back to half a step ahead, with L of the time between
+  void advance_hourglass(double dt);
+
   enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };
   double epsilon, xi;
   std::vector<double> hourglass_rate;    // local and ghost

@@ -22,6 +22,7 @@
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_check.h"
 #include "fsi_contact.h"
 #include "fsi_viscosity_artificial.h"
 #include "memory.h"
@@ -102,7 +103,9 @@ bool PairFSISolidTL::handles(int a, int b) const
 
 State PairFSISolidTL::make_state(const Material &m) const
 {
-  return solid_state(m, plane_stress);
+  State s = solid_state(m, plane_stress);
+  s.form = TOTAL_LAGRANGIAN;
+  return s;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -115,6 +118,9 @@ void PairFSISolidTL::init_style()
   if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
   if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
   refuse_constraints();
+  auto stress = modify->get_fix_by_style("^fsi/stress$");
+  fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);
+  if (hypoelastic() && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
 
   reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(REFERENCE));
   if (!reference)
@@ -239,7 +245,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
   }
 
   BondSums sums;
-  const BondArguments in = {points.data(), type, state, hypoelastic() ? hub->fix_stress->stress : nullptr, alpha, beta, hub->h, one_material, &sums};
+  const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr, alpha, beta, hub->h, one_material, &sums};
   const L *const law_of = laws<L>();
   auto *const f = reinterpret_cast<double(*)[row_of_bond_forces(D)]>(fsolid ? fsolid[0] : nullptr);
   const int flags = hub->ledger || vflag_global ? ALL : (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
@@ -354,7 +360,7 @@ template <int D> void PairFSISolidTL::advance_stress_of_all(double dt)
       for (int c = 0; c < D; c++)
         for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
     const State &s = hub->state[atom->type[i]];
-    const double work = hub->fix_stress->advance<D>(i, L, dt, s);
+    const double work = fix_stress->advance_stress<D>(i, L, dt, s);
     if (hub->ledger) hub->taken[FixFSI::PLASTIC] += work * atom->rmass[i] / s.rho0;
   }
 }
@@ -398,7 +404,7 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
     PiolaStress<D> piola;
     if (law == SVK) piola = svk[t].template operator()<D>(F, nullptr);
     else if (law == NEOHOOKEAN) piola = neohookean[t].template operator()<D>(F, nullptr);
-    else piola = hypo[t].template operator()<D>(F, hub->fix_stress->stress[i]);
+    else piola = hypo[t].template operator()<D>(F, fix_stress->stress[i]);
     s.J = determinant<D>(F);
     for (int a = 0; a < D; a++)
       for (int c = a; c < D; c++) {
@@ -468,6 +474,95 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
   for_solids(n, listed, 0, [&](int i) {
     for (int d = 0; d < hub->dim; d++) fsolid[i][d] += *buf++;
   });
+}
+
+/* ----------------------------------------------------------------------
+   Stiff solids: from the state at the start of the step on, position Verlet with a step that many times shorter. What acts on
+   them from outside (f: fluid, gravity, ...), taken at the middle of the step, is held: what the fluid has lost in momentum, the
+   solid gains, to round-off.
+------------------------------------------------------------------------- */
+
+void PairFSISolidTL::integrate_substeps()
+{
+  Profile *const profile = hub->profile;
+  const Phase phase(profile, Profile::SOLID);
+  const int dim = hub->dim, substeps = hub->substeps;
+  double **x = atom->x;
+  double **v = atom->v;
+  double **f = atom->f;
+  double **fs = nullptr;
+  const double *const rmass = atom->rmass;
+  const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
+  std::vector<int> moving, held;
+  for (const int i : solids())
+    if (atom->mask[i] & hub->groupbit) moving.push_back(i);
+    else if (profile) held.push_back(i);
+  const auto hold = [&](double t) {
+    for (const int i : held)
+      for (int d = 0; d < dim; d++) profile->impulse_held[d] += t * fs[i][d];
+  };
+
+  const auto drift = [&](double t) {
+    for (const int i : moving)
+      for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
+  };
+  hub->set_tally(dt);
+  hub->check->before_substeps(solids());
+  drift(back);
+  for (int n = 0; n < substeps; n++) {
+    drift(dth);
+    forward_positions();
+    advance_stress(dt);
+    std::fill_n(virial, 6, 0.0);
+    internal_forces();
+    fs = fsolid;
+    for (const int i : moving) {
+      const double dtfm = dt * force->ftm2v / rmass[i];
+      for (int d = 0; d < dim; d++) v[i][d] += dtfm * (f[i][d] + fs[i][d]);
+    }
+    hold(dt);
+    drift(dth);
+  }
+  hub->check->after_substeps(solids());
+  hold(-update->dt);    // that of the last one is in f from here on
+  // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
+  if (force->pair != this)
+    for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
+  for (const int i : solids())
+    for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSISolidTL::advance(bool advance)
+{
+  if (!advance) return;
+  break_bonds();
+  if (hub->substeps == 1) advance_stress(update->dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void *PairFSISolidTL::extract(const char *name, int &dim_of_extract)
+{
+  if (strcmp(name, "hypoelastic") == 0) {
+    dim_of_extract = 0;
+    is_hypoelastic = hypoelastic();
+    return &is_hypoelastic;
+  }
+  return PairFSI::extract(name, dim_of_extract);
+}
+
+void PairFSISolidTL::add_costs(Costs &costs) const
+{
+  const int n = hub->substeps;
+  costs.solid_ghost += n * hub->dim + (n > 1 ? n * comm_forward : 0);
+  costs.solids = n > 1 ? fmt::format("; {} each way for solid sub-steps, where they carry solids", n) : "; 1 back for solid forces";
+}
+
+void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
+{
+  if (all.solids == 0) nothing("Pair style fsi/solid/tl" + named_effects(), "no particle is a solid");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -45,14 +45,19 @@ class PairFSISolidTL : public PairFSI {
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;
   void unpack_reverse_comm(int, int *, double *) override;
+  void *extract(const char *, int &) override;
   std::vector<Effect> effects() const override;
+  void advance(bool) override;
+  // Stiff solids: after the kick of what acts from outside is known, with a step that many times shorter
+  void integrate_substeps() override;
+  void add_costs(Costs &) const override;
+  void find_idle(const Census &, const Idle &) const override;
   double memory_usage() override;
 
   // all forces of this style, on local atoms, at the positions in atom->x of local and ghost atoms
   void internal_forces();
   // positions, and velocities where a force needs them, of ghost solids from their owners
   void forward_positions();
-  double **force_of_solids() { return fsolid; }
   // law hypo: deviatoric stress from half a step back to half a step ahead, at positions dt/2 ahead of the velocities' time
   bool hypoelastic() const { return law == HYPO; }
   void advance_stress(double dt);
@@ -80,7 +85,9 @@ class PairFSISolidTL : public PairFSI {
   enum Law { SVK, NEOHOOKEAN, HYPO };
   double zeta, damage;
   int law, plane_stress, linear, plain;
+  int is_hypoelastic;    // for extract()
   class FixFSIReference *reference;
+  class FixFSIStress *fix_stress;    // null: no law needs it
   std::vector<FSI::StVenantKirchhoff> svk;    // per type
   std::vector<FSI::NeoHookean> neohookean;
   std::vector<FSI::HypoElastic> hypo;

@@ -1,0 +1,110 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+
+#include "fsi_body_forces.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fix_gravity.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ----------------------------------------------------------------------
+   all fix gravity commands, and which of them act on all particles of a type: only then two neighbours are pushed alike, and what is
+   hydrostatic between them has a meaning
+------------------------------------------------------------------------- */
+
+namespace {
+struct Peek : FixGravity {
+  static bool is_disabled(const FixGravity *fix) { return fix->*&Peek::disable; }
+  static bool has_variable(const FixGravity *fix) { return fix->*&Peek::varflag != CONSTANT; }
+};
+}    // namespace
+
+void BodyForces::find(const FixFSI &hub)
+{
+  all.clear();
+  for (auto &fix : modify->get_fix_by_style("^gravity"))
+    if (auto *g = dynamic_cast<FixGravity *>(fix)) {
+      all.push_back({g, Peek::is_disabled(g) ? 0 : g->groupbit, Peek::has_variable(g), {0.0, 0.0, 0.0}});
+      g->init();    // its variables are looked up
+    }
+  const int ntypes = atom->ntypes, nfields = all.size();
+  const auto at = [ntypes](int field, int type) { return (size_t) field * (ntypes + 1) + type; };
+  std::vector<int> without(nfields * (ntypes + 1), 0), with(without), some(without);
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int k = 0; k < nfields; k++) (atom->mask[i] & all[k].mask ? with : without)[at(k, atom->type[i])] = 1;
+  acts_on_all.resize(without.size());
+  MPI_Allreduce(without.data(), acts_on_all.data(), (int) without.size(), MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(with.data(), some.data(), (int) with.size(), MPI_INT, MPI_MAX, world);
+  for (int k = 0; k < nfields; k++)
+    for (int t = 1; t <= ntypes; t++) {
+      if (some[at(k, t)] && acts_on_all[at(k, t)] && hub.state[t].species == FLUID && comm->me == 0)
+        error->warning(FLERR, "Fix gravity {} acts on a part of the particles of type {} only: for what is hydrostatic between them, as in "
+                              "density diffusion, it does not count", all[k].fix->id, t);
+      acts_on_all[at(k, t)] = all[k].mask && !acts_on_all[at(k, t)];
+    }
+  of_type.assign(ntypes + 1, {0.0, 0.0, 0.0});
+}
+
+/* ----------------------------------------------------------------------
+   Body forces of this step. Fix gravity evaluates its variables when it acts, after the pair styles: it is asked to do so earlier, with
+   nothing to act on. Where the field changes, so does the potential energy of what is there, which the ledger has to know; taken in
+   the middle between two steps, positions are those of whole steps.
+------------------------------------------------------------------------- */
+
+void BodyForces::evaluate(FixFSI &hub, bool advance)
+{
+  of_type.assign(atom->ntypes + 1, {0.0, 0.0, 0.0});
+  size_t on = 0;
+  for (auto &field : all) {
+    if (field.varies) {
+      const int groupbit = field.fix->groupbit;
+      field.fix->groupbit = 0;
+      field.fix->post_force(0);
+      field.fix->groupbit = groupbit;
+    }
+    int dim_of_extract;
+    const auto *now = static_cast<double *>(field.fix->extract("gvec", dim_of_extract));
+    if (field.varies && hub.ledger && advance) {
+      const double dth = 0.5 * update->dt;
+      for (int i = 0; i < atom->nlocal; i++)
+        if ((atom->mask[i] & field.mask) && hub.state[atom->type[i]].species != RIGID)
+          for (int d = 0; d < hub.dim; d++)
+            hub.taken[FixFSI::FIELDS] += atom->rmass[i] * (now[d] - field.g[d]) * (atom->x[i][d] - (atom->mask[i] & hub.groupbit ? dth * atom->v[i][d] : 0.0));
+    }
+    std::copy_n(now, 3, field.g);
+    for (int t = 0; t <= atom->ntypes; t++, on++)
+      if (t > 0 && acts_on_all[on])
+        for (int d = 0; d < 3; d++) of_type[t][d] += field.g[d];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::array<double, 3> BodyForces::on(int i) const
+{
+  std::array<double, 3> g = {0.0, 0.0, 0.0};
+  for (const auto &field : all)
+    if (atom->mask[i] & field.mask)
+      for (int d = 0; d < 3; d++) g[d] += field.g[d];
+  return g;
+}

@@ -1,0 +1,54 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+
+// Body forces per mass: each fix gravity as it acts in this step.
+
+#ifndef LMP_FSI_BODY_FORCES_H
+#define LMP_FSI_BODY_FORCES_H
+
+#include "pointers.h"
+
+#include <array>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Fix;
+class FixFSI;
+
+namespace FSI {
+
+  class BodyForces : protected Pointers {
+   public:
+    explicit BodyForces(LAMMPS *lmp) : Pointers(lmp) {}
+    void find(const FixFSI &);    // before a run
+    void evaluate(FixFSI &, bool advance);    // at the time of the step
+    std::array<double, 3> on(int i) const;    // atom i, over its mass
+
+    struct Field {
+      Fix *fix;
+      int mask;    // of its group; 0 if it is disabled
+      bool varies;
+      double g[3];
+    };
+    std::vector<Field> all;
+    std::vector<std::array<double, 3>> of_type;    // sum of those that act on all its particles
+
+   private:
+    std::vector<int> acts_on_all;    // each field, type by type
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,82 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+
+// What takes part in a step: pair styles, walls, what keeps stress, chooses the time step or writes reports. Fix fsi finds the parts that
+// there are and calls them in turn; it knows none of their styles.
+
+#ifndef LMP_FSI_PART_H
+#define LMP_FSI_PART_H
+
+#include "fsi_keywords.h"
+#include "fsi_walls.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixFSI;
+
+namespace FSI {
+
+  class Message;
+  class Profile;
+
+  class Part {
+   public:
+    // Before a run, when the states of all types are known: arrays per atom for the effects that are on; then what of them goes to
+    // ghosts, and what pairs leave on ghosts and comes back.
+    virtual void set_fields(FixFSI &) {}
+    virtual void add_messages(Message &to_ghosts, Message &back) {}
+
+    // In a step, in this order. Not to advance, in setup: the same for the state that there is, nothing evolves.
+    virtual void start_step() {}                  // before anything moves: may change the time step
+    virtual void add_walls(Walls &, std::vector<WallForce> &) {}    // mirrors, and where the force on each is summed
+    virtual void begin_state(bool advance) {}     // positions are those of the middle of the step, where walls are and pairs meet
+    virtual bool add_rates(bool advance) { return false; }    // sums over pairs, some of them left on ghosts; whether there are any
+    virtual void advance(bool advance) {}         // density, stress, bonds to the middle of the step
+    virtual void add_number_density(double *n, bool of_all_bodies) {}    // psi, of what it has pairs of
+    virtual void end_state(bool advance) {}       // when ghosts have it
+    virtual void integrate_substeps() {}          // what takes shorter steps than the kick of all
+
+    virtual void go_back() {}    // from the middle of a step to its start: a run that stops leaves a state to go on from
+    virtual Profile *counters() { return nullptr; }    // where others enter times and messages
+
+    // Before the first step: what is simulated, and with what it costs
+    using Effect = Keywords::Effect;
+    virtual std::vector<Effect> effects() const { return {}; }
+    struct Costs {
+      int bytes = 0;                               // of arrays of all particles
+      std::string arrays;                          // and what they are, beyond what every fluid needs
+      bool sums = false;                           // pairs leave sums of rates on ghosts: a message back for all of them
+      int forward = 0, back = 0;                   // messages to a neighbor rank, beyond positions and forces
+      int fluid_ghost = 0, solid_ghost = 0;        // numbers that they carry for a ghost
+      std::string solids;                          // messages to neighbors with solids
+    };
+    virtual void add_costs(Costs &) const {}
+    // effects with nothing to act on: what, why
+    using Idle = std::function<void(const std::string &, const std::string &)>;
+    struct Census {
+      bigint fluids, solids;
+    };
+    virtual void find_idle(const Census &, const Idle &) const {}
+
+   protected:
+    ~Part() = default;    // a style is deleted as what LAMMPS knows it as
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
