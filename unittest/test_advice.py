@@ -46,6 +46,9 @@ CASES = {
     "coarse": ([("sq 0.01", "sq 0.013")], None, r"most particles have no neighbor within 0.0125: is 0.01 the spacing"),
     "overlap": ([("run 0", "create_atoms 1 single 0.028 0.025 0 units box\nrun 0")], None, r"atoms 13 and 65 are 0.3 spacings apart"),
     "thin": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF")], None, r"body 1 is 2 particles across: it will bend too little, some 25 %"),
+    "thin, nearly incompressible": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF"), ("materials.fsi", "mine.fsi")],
+                                    MATERIALS.format(rho=1000, young=1e5).replace("poisson 0.4", "poisson 0.49"),
+                                    r"body 1 is 2 particles across: it will hardly bend, since its material is nearly incompressible"),
     "thin, plain": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF"), ("fsi/solid/tl", "fsi/solid"),
                      ("fix g all", "fix s all fsi/stress\nfix g all")], None, r"body 1 is 2 particles across: it will bend too easily"),
     # 3.3 spacings; 3 spacings with lattice points on both edges

@@ -40,6 +40,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr double BIG = 1.0e300;
+static constexpr double NEARLY_INCOMPRESSIBLE = 10.0;    // bulk over shear modulus: Poisson's ratio above 0.45
 static constexpr int ENOUGH = 3;    // particles across a body (doc/choosing.md)
 
 namespace {
@@ -299,7 +300,11 @@ class Adviser : protected Pointers {
       MPI_Allreduce(const_cast<double *>(mine.data()), sum.data(), ENOUGH, MPI_DOUBLE, MPI_SUM, world);
       if (sum[0] + sum[1] <= sum[2]) return true;
       // a plate 2 across swings 12 % too fast (fsi/solid/tl), 8 to 16 % with the corrected gradients of fsi/solid
-      const char *const how = pair("^fsi/solid$") && number<int>("^fsi/solid$", "gradient") == 0 ? "it will bend too easily" : "it will bend too little, some 25 %";
+      // and one that is nearly incompressible locks: the gate with Poisson's ratio 0.49 opens to 6.7 mm, 3 across to 35 mm
+      bool locks = false;
+      for (const auto &s : hub.state) locks = locks || (s.species == SOLID && s.shear > 0.0 && s.rho0 * s.csq > NEARLY_INCOMPRESSIBLE * s.shear);
+      const char *const how = pair("^fsi/solid$") && number<int>("^fsi/solid$", "gradient") == 0 ? "it will bend too easily"
+          : locks ? "it will hardly bend, since its material is nearly incompressible" : "it will bend too little, some 25 %";
       warn(fmt::format("body {} is {} across: {}, and fluid may leak through; take a spacing of a third of its thickness", body,
                        sum[0] > sum[1] ? "1 particle" : "2 particles", how));
       return false;    // one is enough
