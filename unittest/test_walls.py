@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from conftest import fluid_box, run
 from scenes import KERNELS, WATER, Scene, close, cloud, lattice
 
 VISCOUS = "fluid rho 1000 viscosity 20"
@@ -260,3 +261,12 @@ def test_wall_that_comes_after_a_run():
                 s.run().run_lines(wall)
             forces.append(s.run().get("f"))
     close(*forces, 1e-13)
+
+
+@pytest.mark.parametrize("slip, warned", [("ylo -1 yhi 1 slip no", True), ("ylo -1 slip no yhi 1 slip no", False), ("ylo -1 slip yes yhi 1 slip no", False),
+                                          ("xlo -1 ylo -1 slip no", False)])
+def test_slip_is_of_one_wall(tmp_path, slip, warned):
+    """A channel whose script says slip once, as if it were for both walls."""
+    scene = fluid_box(2)
+    output = run(tmp_path, scene.text() + f"fix channel all fsi/wall/mirror {slip}\n", scene_data=scene.data()).output
+    assert ("slip no is of wall yhi alone, wall ylo slips" in output) == warned

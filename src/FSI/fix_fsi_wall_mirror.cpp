@@ -34,6 +34,11 @@ using namespace FSI;
 
 static constexpr double BIG = 1.0e300;
 
+static std::string face(const Wall &w)
+{
+  return std::string(1, "xyz"[w.axis]) + (w.side > 0.0 ? "lo" : "hi");
+}
+
 /* ---------------------------------------------------------------------- */
 
 FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
@@ -41,6 +46,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/mirror requires atom_style fsi");
 
+  std::vector<bool> slip_said;    // of each wall
   int iarg = 3;
   while (iarg < narg) {
     const std::string key = arg[iarg];
@@ -65,6 +71,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
         w.hi[b] = BIG;
       }
       walls.push_back(w);
+      slip_said.push_back(false);
       iarg += 2;
     } else if (key == "range") {
       if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror range", error);
@@ -90,6 +97,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror slip", error);
       if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror slip must follow the wall that it belongs to");
       walls.back().noslip = !utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      slip_said.back() = true;
       iarg += 2;
     } else if (key == "guard") {
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror guard", error);
@@ -100,6 +108,13 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
                         "velocity, slip or guard", key);
   }
   if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror needs at least one of xlo, xhi, ylo, yhi, zlo, zhi");
+
+  // a channel of which one wall slips is most likely one whose script says slip once for both
+  for (size_t a = 0; a < walls.size() && comm->me == 0; a++)
+    for (size_t b = 0; b < walls.size(); b++)
+      if (walls[a].axis == walls[b].axis && walls[a].noslip && !walls[b].noslip && !slip_said[b])
+        error->warning(FLERR, "Fix fsi/wall/mirror {}: slip no is of wall {} alone, wall {} slips: slip belongs to the wall that it follows", id,
+                       face(walls[a]), face(walls[b]));
 
   for (const auto &w : walls) start.push_back(w.position);
   force_on.resize(walls.size());
@@ -251,11 +266,6 @@ double FixFSIWallMirror::compute_array(int i, int j)
 /* ----------------------------------------------------------------------
    restart: count of reflections and where the walls are; a wall that the command puts elsewhere than before stands there
 ------------------------------------------------------------------------- */
-
-static std::string face(const Wall &w)
-{
-  return std::string(1, "xyz"[w.axis]) + (w.side > 0.0 ? "lo" : "hi");
-}
 
 std::string FixFSIWallMirror::settings(int k) const
 {
