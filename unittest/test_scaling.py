@@ -74,5 +74,6 @@ def test_pages_hold_their_rows():
 
 def test_the_gates_deck_can_do_without_each_part():
     whole = effects.gate(400, 0)
-    for part in ("viscosity", "diffusion", "walls", "rubber viscosity", "substeps"):
+    for part in ("viscosity", "diffusion", "walls", "rubber viscosity"):
         assert len(effects.gate(400, 0, without=(part,))) < len(whole)
+    assert " substeps 8\n" in whole and " substeps 1\n" in effects.gate(400, 0, without=("substeps",))
