@@ -60,6 +60,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("solid").choice(density_solid, CONTINUITY, modes, "density").changes(other_mode);
   keywords.key("substeps").integer(given_substeps, 1, 1, 10000);
   keywords.key("surface/every").integer(surface_every, 1, 1);
+  keywords.key("spacing").per_type(given_spacing, Range::above(0.0)).kept("that of the particles cannot change");
   keywords.key("mach").number(mach, 1.0, Range::above(0.0)).or_word("off", Check::OFF);
   keywords.parse(narg - 3, arg + 3);
   substeps = given_substeps;
@@ -72,6 +73,18 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     wdx = k.W(dx);
     w0 = k.W(0.0);
   });
+  resolution.resize(atom->ntypes + 1);
+  largest_cut = cut;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    Resolution &of = resolution[t];
+    of.dx = given_spacing[t] > 0.0 ? given_spacing[t] : dx;
+    of.h = hdx * of.dx;
+    with_kernel(kernel, dim, of.h, [&](const auto &k) {
+      of.cut = k.cut;
+      of.psi_bulk = lattice_number_density(k, of.dx);
+    });
+    largest_cut = std::max(largest_cut, of.cut);
+  }
   state.resize(atom->ntypes + 1);
   check = new Check(lmp, this);
 
@@ -153,8 +166,8 @@ void FixFSI::init()
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix fsi does not support run_style respa");
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
-  if (comm->cutghostuser > 0.0 && comm->cutghostuser < cut)
-    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", cut, comm->cutghostuser);
+  if (comm->cutghostuser > 0.0 && comm->cutghostuser < largest_cut)
+    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", largest_cut, comm->cutghostuser);
   if (domain->dimension != dim)
     error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", dim, domain->dimension);
   if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
@@ -198,8 +211,40 @@ void FixFSI::init()
       error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
     give_defaults(i);
   }
+  check_spacings();
   body_forces.find(*this);
   check->init();
+}
+
+/* ----------------------------------------------------------------------
+   Spacings that styles can do with. The fluid's is dx. Bodies and walls may be finer: a fluid finer than a body would meet it through the
+   body's wider kernel, which pushes less at the face than the fluid itself does, and flow into it.
+------------------------------------------------------------------------- */
+
+void FixFSI::check_spacings() const
+{
+  constexpr double FINEST = 4.0, ROUND = 1.0 + 1.0e-6;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const double own = resolution[t].dx;
+    if (own == dx) continue;
+    const State &s = state[t];
+    const auto what = fmt::format("Fix fsi spacing {:g} of type {}", own, t);
+    if (s.species == NONE) continue;
+    if (s.species == FLUID) error->all(FLERR, "{}, a fluid: fluids have the spacing dx, {:g}", what, dx);
+    if (s.form == UPDATED_LAGRANGIAN)
+      error->all(FLERR, "{}: the sums of pair_style fsi/solid are over whatever is near, with one kernel. Use pair_style fsi/solid/tl, whose "
+                        "bonds are those of one body", what);
+    if (!force->pair_match("fsi/fluid", 1)) continue;
+    if (own > ROUND * dx)
+      error->all(FLERR, "{} is coarser than the fluid's dx {:g}: the fluid would flow between its particles. Make it dx or finer", what, dx);
+    if (ROUND * FINEST * own < dx)
+      error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most", what, dx / own, dx, FINEST);
+  }
+}
+
+bool FixFSI::several_spacings() const
+{
+  return std::any_of(resolution.begin() + 1, resolution.end(), [this](const Resolution &r) { return r.dx != dx; });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -219,7 +264,7 @@ void FixFSI::give_defaults(int i)
 {
   const State &s = state[atom->type[i]];
   if (s.species == NONE) return;    // before init()
-  if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / psi_bulk;
+  if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / resolution[atom->type[i]].psi_bulk;
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
 }
 

@@ -26,6 +26,7 @@ FixStyle(fsi,FixFSI);
 #include "fsi_keywords.h"
 #include "fsi_material.h"
 #include "fsi_profile.h"
+#include "fsi_resolution.h"
 #include "fsi_walls.h"
 
 #include <array>
@@ -81,6 +82,11 @@ class FixFSI : public FSI::FixFields {
   double cut;          // support radius of the kernel
   double psi_bulk;     // number density inside the lattice: the volume of a particle is 1/psi_bulk
   double wdx, w0;      // W(dx), W(0)
+  std::vector<FSI::Resolution> resolution;    // per atom type: that of fluids is the above
+  double largest_cut;                         // support of the coarsest
+  double h_of(int type) const { return resolution[type].h; }
+  double dx_of(int type) const { return resolution[type].dx; }
+  bool several_spacings() const;
   int density_fluid, density_solid;    // Density
   FSI::Keywords keywords;
 
@@ -150,6 +156,8 @@ class FixFSI : public FSI::FixFields {
   void set_fields();
   double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
   double hdx;    // h over dx
+  std::vector<double> given_spacing;    // per type; 0: dx
+  void check_spacings() const;
   int given_substeps;
   double tally_dt;
   bool need_psi;

@@ -63,8 +63,11 @@ static void say_effects(LAMMPS *lmp, FixFSI &hub, std::string &text)
       hub.effects_on.push_back(e.name);
     } else off += (off.empty() ? "" : ", ") + e.keyword;
   }
-  text += fmt::format("FSI: {}, h = {:g} dx, dx = {:g}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[hub.kernel], hub.h / hub.dx,
-                      hub.dx, on, off.empty() ? "none" : off);
+  std::string finer;
+  for (size_t t = 1; t < hub.resolution.size(); t++)
+    if (hub.dx_of(t) != hub.dx) finer += fmt::format("{} {:g} of type {}", finer.empty() ? "," : " and", hub.dx_of(t), t);
+  text += fmt::format("FSI: {}, h = {:g} dx, dx = {:g}{}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[hub.kernel], hub.h / hub.dx,
+                      hub.dx, finer, on, off.empty() ? "none" : off);
   if (fluid)
     with_kernel(hub.kernel, hub.dim, hub.h, [&](const auto &k) {
       const auto s = lattice_stiffness(k, hub.dx);

@@ -167,24 +167,28 @@ namespace FSI {
         }
         L::add(rate_j, rate, j);
       });
-      rate[i] += point[i].rho * point[i].vol * L::sum(sum) + L::sum(flux);
+      // neighbours of another volume count by it
+      const double share = KIND == WITH_FLUID ? 1.0 : in.volume_ratio[type_j];
+      rate[i] += point[i].rho * share * point[i].vol * L::sum(sum) + L::sum(flux);
     }
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(taken);
   }
 
   // Pressure p_i V_i^2 + p_j V_j^2 that fluid particle i and its neighbour share (paper eq. 14), by the rule of the pair; x_j: of the
-  // neighbour itself, not of its image
+  // neighbour itself, not of its image; back: the fluid's volume over the neighbour's
   template <class T, int KIND, int D>
-  FSI_INLINE T shared_pressure(const Particle<T, D> &pi, const Particle<T, D> &pj, const T *x_j, const double *extrapolate, double floor)
+  FSI_INLINE T shared_pressure(const Particle<T, D> &pi, const Particle<T, D> &pj, const T *x_j, const double *extrapolate, double floor,
+                               double back)
   {
     if (KIND == WITH_SOLID) {
       // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
       T p = pi.p;
       for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
-      return pi.pv2 + greater(p, T(floor)) * pj.vol * pj.vol;
+      return pi.pv2 + greater(p, T(floor)) * (back * pj.vol) * pj.vol;
     }
-    if (KIND == WITH_SOLID_PRESSURE) return greater(pi.pv2 + pj.pv2, T(0.0));    // no suction
-    return pi.pv2 + pj.pv2;
+    if (KIND == WITH_FLUID) return pi.pv2 + pj.pv2;
+    const T both = pi.pv2 + back * pj.pv2;
+    return KIND == WITH_SOLID_PRESSURE ? greater(both, T(0.0)) : both;    // no suction
   }
 
   // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14)
@@ -205,7 +209,10 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i, type_j = in.type[row.j[0]];
       const State &fluid = in.state[in.type[i]], &other = in.state[type_j];
-      const Particle<T, D> pi(point[i]);
+      Particle<T, D> pi(point[i]);
+      // neighbours of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i of the lattices
+      const double share = KIND == WITH_FLUID ? 1.0 : in.volume_ratio[type_j], back = 1.0 / share;
+      if (KIND != WITH_FLUID) pi.pv2 = share * pi.pv2;
       const double c = KIND == WITH_FLUID ? 0.5 * (fluid.c + other.c) : KIND == WITH_WALL || fluid.c < other.c ? fluid.c : other.c, bulk = fluid.rho0 * fluid.csq, floor = fluid.floor;
       // beyond a wall or solid with no slip there is fluid, where it slips it does not rub
       const bool slips = KIND == WITH_FLUID ? false : KIND == WITH_WALL ? !other.noslip : laws.solids_slip;
@@ -228,7 +235,7 @@ namespace FSI {
         if (FLAGS & Flag::IMAGES) g = weight * g;
         const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
 
-        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, extrapolate, floor);
+        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, extrapolate, floor, back);
         // beyond the compression of the fluid and, in density mode summation, of the solid
         T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
         if (FLAGS & Flag::ARTIFICIAL) {
@@ -375,8 +382,8 @@ namespace FSI {
 
   // W_ij, or V_j x_ji.grad_i W_ij
   template <class T, class K, int FLAGS>
-  FSI_INLINE void distance_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const double (*const x)[3],
-                                const double *const vol, double *const sum)
+  FSI_INLINE void distance_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
+                                const double (*const x)[3], const double *const vol, double *const sum)
   {
     constexpr int D = K::DIM;
     using L = Lanes<T>;
@@ -403,7 +410,7 @@ namespace FSI {
           if (FLAGS & Flag::BOTH) L::add(w, sum, j);
         }
       });
-      sum[i] += L::sum(of_i);
+      sum[i] += ((FLAGS & Flag::DIVERGENCE) ? 1.0 : in.volume_ratio[in.type[row.j[0]]]) * L::sum(of_i);
     }
   }
 
@@ -479,26 +486,27 @@ namespace FSI {
       });
     }
 
-    void number_density(const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], double *sum) const override
+    void number_density(const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
+                        double *sum) const override
     {
-      distances(0, rows, both, image, x, nullptr, sum);
+      distances(0, rows, both, image, in, x, nullptr, sum);
     }
 
     void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], const double *vol,
                              double *sum) const override
     {
-      distances(Flag::DIVERGENCE, rows, both, image, x, vol, sum);
+      distances(Flag::DIVERGENCE, rows, both, image, FluidParticles(), x, vol, sum);
     }
 
    private:
-    void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], const double *vol,
-                   double *sum) const
+    void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
+                   const double *vol, double *sum) const
     {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH>(
           what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
             run_loop([&](auto number) __attribute__((always_inline)) {
-              distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, x, vol, sum);
+              distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, x, vol, sum);
             });
           });
     }

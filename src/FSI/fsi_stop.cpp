@@ -99,7 +99,7 @@ double Stop::courant(const FixFSI *hub, int type) const
 {
   const State &s = hub->state[type];
   const bool waves = s.species == FLUID || s.species == SOLID;
-  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) / (s.species == SOLID ? hub->substeps : 1) / hub->h : 0.0;
+  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) / (s.species == SOLID ? hub->substeps : 1) / hub->h_of(type) : 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -262,7 +262,7 @@ std::string Stop::write_state(const FixFSI *hub)
 void Stop::write_neighbours(const FixFSI *hub, const Finding &all) const
 {
   static constexpr int NINT = 3, NCOL = 13;
-  const double reach = 3.0 * hub->cut;
+  const double reach = 3.0 * hub->largest_cut;
   std::vector<double> mine;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], *const v = atom->v[i], *const f = atom->f[i];

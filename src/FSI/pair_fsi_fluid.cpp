@@ -127,6 +127,9 @@ void PairFSIFluid::init_style()
     error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
                    has_solids() ? "there is no laminar/visc" : "there is no solid");
   loops = make_fluid_loops(hub->kernel, hub->dim, hub->h);
+  volume_ratio.clear();
+  const Resolution fluids = {hub->dx, hub->h, hub->cut, hub->psi_bulk};
+  for (const auto &r : hub->resolution) volume_ratio.push_back(r.volume_over(fluids, hub->dim));
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
   if (couple != WALL && force->pair_match("fsi/solid/tl", 1))
@@ -372,6 +375,11 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 /* ---------------------------------------------------------------------- */
 
+FluidParticles PairFSIFluid::particles_at(const double *points) const
+{
+  return {points, atom->type, hub->state.data(), atom->nlocal, volume_ratio.data(), force->newton_pair != 0};
+}
+
 template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest rest)
 {
   constexpr size_t SIZE = sizeof(Point<D>) / sizeof(double);
@@ -390,7 +398,7 @@ template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest 
     p.vol = rmass[i] / p.rho;
     rest(i, p);
   }
-  return {points.data(), atom->type, hub->state.data(), atom->nlocal, force->newton_pair != 0};
+  return particles_at(points.data());
 }
 
 /* ----------------------------------------------------------------------
@@ -461,7 +469,7 @@ template <class Sum> void PairFSIFluid::distance_sums(bool others_too, Sum sum)
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
   distance_sums(solids_too, [&](const std::vector<Row> &which, bool both, const Mirror *mirror) {
-    loops->number_density(which, both, mirror, FixFSI::rows(atom->x), psi);
+    loops->number_density(which, both, mirror, particles_at(nullptr), FixFSI::rows(atom->x), psi);
   });
 }
 

@@ -98,6 +98,8 @@ class PairFSIFluid : public PairFSI {
 
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, pressure_over_density;
+  std::vector<double> volume_ratio;    // per type, of the lattices: to that of fluid particles
+  FSI::FluidParticles particles_at(const double *points) const;
   template <int D, class Rest> FSI::FluidParticles gather(double t, Rest);    // positions a time t later; what else a loop needs
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
   FSI::Fields fields;
