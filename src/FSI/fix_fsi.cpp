@@ -24,6 +24,7 @@
 #include "fsi_lattice.h"
 #include "fsi_order.h"
 #include "fsi_part.h"
+#include "fsi_profile.h"
 #include "fsi_record.h"
 #include "group.h"
 #include "modify.h"
@@ -43,10 +44,9 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), keywords(lmp, "fix fsi"), psi(nullptr), shift(nullptr), wmask(nullptr), ledger(false), taken{},
-    wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), body_forces(lmp), profile(nullptr), check(nullptr), stagger(0.0),
-    surface_ratio(0.0), surface_max(false), forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr), ratio(nullptr),
-    tally_dt(0.0), need_psi(false), keep_psi(false), send_psi(true), states_entered(false), nlocal_ready(-1), ids_checked(false)
+    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(nullptr), states_entered(false),
+    nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr), ratio(nullptr),
+    send_psi(true)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -72,8 +72,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     wdx = k.W(dx);
     w0 = k.W(0.0);
   });
-  state.resize(atom->ntypes + 1);
-  check = new Check(lmp, this);
+  check = new Check(lmp, *this);
 
   time_integrate = 1;
   force_reneighbor = 1;
@@ -145,7 +144,7 @@ int FixFSI::setmask()
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSI::init()
+void FixFSI::check_run()
 {
   if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
   if (update->whichflag == 2)
@@ -165,11 +164,17 @@ void FixFSI::init()
   if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
   if (solid_tl && density_solid != CONTINUITY)
     error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
+}
 
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::init()
+{
+  check_run();
   stagger = 0.0;
   nlocal_ready = -1;
   states_entered = false;
-  restore_clock();
+  clock.restore();
   find_parts();
   profile = nullptr;
   shift = nullptr;
@@ -180,7 +185,7 @@ void FixFSI::init()
     p->set_fields(*this);
   }
   gather_walls();
-  need_psi = density_fluid != CONTINUITY || surface_ratio > 0.0 || (solid && density_solid != CONTINUITY);
+  need_psi = density_fluid != CONTINUITY || surface_ratio > 0.0 || (density_solid != CONTINUITY && force->pair_match("fsi/solid", 1));
   set_fields();
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
@@ -198,7 +203,7 @@ void FixFSI::init()
       error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
     give_defaults(i);
   }
-  body_forces.find(*this);
+  body_forces.find(state);
   check->init();
 }
 
@@ -206,7 +211,7 @@ void FixFSI::init()
 
 void FixFSI::setup(int)
 {
-  clock.reset();
+  clock.forget();
   announce(lmp, *this);
   check->setup();
 }
@@ -221,16 +226,6 @@ void FixFSI::give_defaults(int i)
   if (s.species == NONE) return;    // before init()
   if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / psi_bulk;
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool FixFSI::is_moved(int i) const
-{
-  if (atom->mask[i] & groupbit) return true;
-  for (auto &fix : modify->get_fix_list())
-    if (fix->time_integrate && atom->mask[i] & fix->groupbit) return true;
-  return false;
 }
 
 /* ----------------------------------------------------------------------
@@ -255,20 +250,6 @@ void FixFSI::find_parts()
     if (auto *p = dynamic_cast<Part *>(force->pair_match(style, 1))) parts.push_back(p);
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool FixFSI::several_stiffnesses() const
-{
-  double first = 0.0;
-  for (const auto &s : state) {
-    if (s.species != FLUID) continue;
-    const double K = s.rho0 * s.csq;
-    if (first == 0.0) first = K;
-    else if (std::abs(K - first) > 1.0e-12 * first) return true;
-  }
-  return false;
 }
 
 /* ----------------------------------------------------------------------
@@ -402,7 +383,8 @@ void FixFSI::update_state(bool advance)
   nlocal_ready = atom->nlocal;
 
   tally_dt = (ledger && advance) ? update->dt : 0.0;
-  body_forces.evaluate(*this, advance);
+  body_forces.evaluate();
+  if (ledger && advance) taken[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);
   for (auto *p : parts) p->begin_state(advance);
   if (walls.any()) {
@@ -420,9 +402,19 @@ void FixFSI::update_state(bool advance)
   for (auto *p : parts) sums = p->add_rates(advance) || sums;
   if (sums && force->newton_pair) reverse_comm(profile, comm, this);
   for (auto *p : parts) p->advance(advance);
+  update_number_density(advance);
+  if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
+  forward_comm(profile, comm, this);
+  for (auto *p : parts) p->end_state(advance);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSI::update_number_density(bool advance)
+{
   send_psi = need_psi && (!keep_psi || !advance || neighbor->ago == 0);    // or to new ghosts
   if (need_psi && psi_is_due(advance)) {
-    phase.next(Profile::DENSITY);
+    const Phase phase(profile, Profile::DENSITY);
     number_density(psi);
     send_psi = true;
   }
@@ -436,9 +428,6 @@ void FixFSI::update_state(bool advance)
     }
     if (density_fluid != CONTINUITY || density_solid != CONTINUITY) density_from_psi();
   }
-  if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
-  forward_comm(profile, comm, this);
-  for (auto *p : parts) p->end_state(advance);
 }
 
 /* ----------------------------------------------------------------------
@@ -478,16 +467,6 @@ void FixFSI::add_ghosts(double *n)
   summed = nullptr;
 }
 
-/* ---------------------------------------------------------------------- */
-
-double FixFSI::pressure(int i) const
-{
-  const State &s = state[atom->type[i]];
-  if (s.species == FLUID && surface_ratio > 0.0 && psi[i] <= surface_ratio * psi_reference) return 0.0;
-  if (s.species == RIGID && wall_stiffness) return std::max(s.floor, s.p0 + wall_stiffness[i] * (atom->rho[i] / s.rho0 - 1.0));
-  return s.pressure(atom->rho[i]);
-}
-
 /* ----------------------------------------------------------------------
    summation: rho_i = m_i psi_i (paper eq. 12)
    ratio: rho_i = rho_i^0 psi_i/psi_i^0 with the reference taken when the mode starts
@@ -507,22 +486,6 @@ void FixFSI::density_from_psi()
       rho[i] = ratio[i] * psi[i];
     }
   }
-}
-
-/* ----------------------------------------------------------------------
-   energies of the ledger
-------------------------------------------------------------------------- */
-
-double FixFSI::potential(int i) const
-{
-  const double *x = atom->x[i];
-  const auto g = body_forces.on(i);
-  return -atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
-}
-
-double FixFSI::stored(int i) const
-{
-  return atom->rmass[i] * state[atom->type[i]].energy(atom->rho[i]);
 }
 
 /* ----------------------------------------------------------------------
@@ -572,9 +535,7 @@ void FixFSI::write_restart(FILE *fp)
   MPI_Allreduce(taken, all, NTERM, MPI_DOUBLE, MPI_SUM, world);
   Record record(lmp, "fix fsi");
   keywords.write(record);
-  record.add("step", std::to_string(update->ntimestep));
-  record.add("clock's step", std::to_string(update->atimestep));
-  record.add("clock", std::vector<double>{update->dt, update->atime});
+  clock.write(record);
   if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
   fields.write(record);
   record.write(fp);
@@ -590,33 +551,10 @@ void FixFSI::restart(char *buf)
   if (other_kernel) fields.read(record, {"reference of ratio", "number density"});
   else fields.read(record);
 
-  const auto at = record.numbers("clock");
-  clock = Clock{std::stoll(record.value("step")), std::stoll(record.value("clock's step")), at[0], at[1]};
+  clock.read(record);
   if (record.has("ledger") && comm->me == 0) {
     const auto terms = record.numbers("ledger");
     std::copy_n(terms.begin(), std::min(terms.size(), (size_t) NTERM), taken);
-  }
-}
-
-/* ----------------------------------------------------------------------
-   LAMMPS counts time from a step on, and forgets that step at each init: in a run that goes on without a timestep command the time
-   since then is lost. With the numbers of the file it is that of the uninterrupted run, bit for bit. Where a command has set another
-   time or step, that holds.
-------------------------------------------------------------------------- */
-
-void FixFSI::restore_clock()
-{
-  if (!clock) return;
-  const Clock &c = *clock;
-  const double elapsed = c.time + (c.step - c.first_step) * c.dt, now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
-  const bool forgotten = update->atime == c.time || std::fabs(now - elapsed) <= 1.0e-12 * std::fabs(elapsed);
-  if (update->ntimestep != c.step || !forgotten) return;
-  if (update->dt == c.dt) {
-    update->atime = c.time;
-    update->atimestep = c.first_step;
-  } else {
-    update->atime = elapsed;
-    update->atimestep = c.step;
   }
 }
 

@@ -22,6 +22,7 @@
 #include "force.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_kernel.h"
+#include "fsi_profile.h"
 #include "fsi_shift.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -160,14 +161,14 @@ int PairFSIFluid::nshift() const
   return 2 * hub->dim + 1;
 }
 
-void PairFSIFluid::set_fields(FixFSI &fsi)
+void PairFSIFluid::set_fields(Scene &scene)
 {
-  fields.set("density rate", Fields::STEP, fsi.density_fluid == FixFSI::CONTINUITY, rate);
-  fields.set("shift", Fields::STEP, shifting > 0.0, fsi.shift, nshift());
-  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, fsi.dim + 1);
-  fsi.noslip_walls = fsi.noslip_walls || sticks_to_solids();
-  fsi.surface_ratio = surface_ratio;
-  fsi.surface_max = surface_max;
+  fields.set("density rate", Fields::STEP, scene.density_fluid == FixFSI::CONTINUITY, rate);
+  fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
+  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
+  scene.noslip_walls = scene.noslip_walls || sticks_to_solids();
+  scene.surface_ratio = surface_ratio;
+  scene.surface_max = surface_max;
 }
 
 void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)

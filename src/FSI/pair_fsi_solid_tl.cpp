@@ -24,6 +24,7 @@
 #include "force.h"
 #include "fsi_check.h"
 #include "fsi_contact.h"
+#include "fsi_profile.h"
 #include "fsi_viscosity_artificial.h"
 #include "memory.h"
 #include "modify.h"
