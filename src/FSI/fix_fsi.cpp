@@ -19,7 +19,6 @@
 #include "error.h"
 #include "force.h"
 #include "fsi_announce.h"
-#include "fsi_check.h"
 #include "fsi_kernel.h"
 #include "fsi_lattice.h"
 #include "fsi_order.h"
@@ -44,9 +43,9 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(nullptr), states_entered(false),
-    nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr), ratio(nullptr),
-    send_psi(true)
+    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this),
+    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), states_entered(false), nlocal_ready(-1), ids_checked(false),
+    forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -72,23 +71,14 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     wdx = k.W(dx);
     w0 = k.W(0.0);
   });
-  check = new Check(lmp, *this);
 
   time_integrate = 1;
   force_reneighbor = 1;
   create_attribute = 1;
   restart_global = 1;
-  keep_psi = surface_every > 1 && density_fluid == CONTINUITY && density_solid == CONTINUITY;
   set_fields();
   register_fields();
   comm_reverse = 1;    // more with solids, see init()
-}
-
-/* ---------------------------------------------------------------------- */
-
-FixFSI::~FixFSI()
-{
-  delete check;
 }
 
 /* ----------------------------------------------------------------------
@@ -97,17 +87,15 @@ FixFSI::~FixFSI()
 
 void FixFSI::set_fields()
 {
-  const bool ratios = density_fluid == RATIO || density_solid == RATIO;
   const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
-  fields.set("reference of ratio", Fields::FILE, ratios, ratio);
-  fields.set("number density", keep_psi ? Fields::FILE : Fields::STEP, keep_psi || need_psi, psi);
+  number_density.set_fields(fields);
   fields.set("walls near", Fields::STEP, walls.any(), wmask);
   fields.set("wall velocity", Fields::STEP, noslip_walls, wall_velocity, 3);
   fields.set("wall stiffness", Fields::STEP, particle_walls && several_stiffnesses(), wall_stiffness);
 
   forward.clear();
   forward.add(atom->rho, {NONE, FLUID, SOLID, RIGID});
-  if (need_psi) forward.add(psi, {NONE, FLUID, SOLID, RIGID}, &send_psi);
+  number_density.add_messages(forward);
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
   scalar_back.clear();
@@ -144,33 +132,9 @@ int FixFSI::setmask()
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSI::check_run()
-{
-  if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
-  if (update->whichflag == 2)
-    error->all(FLERR, "Fix fsi does not support minimize: there is no energy of all particles; run with fix viscous or artificial/visc to a state of rest");
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "Fix fsi does not support run_style respa");
-  if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
-  if (comm->cutghostuser > 0.0 && comm->cutghostuser < cut)
-    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", cut, comm->cutghostuser);
-  if (domain->dimension != dim)
-    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", dim, domain->dimension);
-  if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
-
-  const bool solid = force->pair_match("fsi/solid", 1), solid_tl = force->pair_match("fsi/solid/tl", 1);
-  if (!solid && !solid_tl && !force->pair_match("fsi/fluid", 1))
-    error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
-  if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
-  if (solid_tl && density_solid != CONTINUITY)
-    error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSI::init()
 {
-  check_run();
+  check.before_init();
   stagger = 0.0;
   nlocal_ready = -1;
   states_entered = false;
@@ -185,7 +149,6 @@ void FixFSI::init()
     p->set_fields(*this);
   }
   gather_walls();
-  need_psi = density_fluid != CONTINUITY || surface_ratio > 0.0 || (density_solid != CONTINUITY && force->pair_match("fsi/solid", 1));
   set_fields();
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
@@ -193,18 +156,10 @@ void FixFSI::init()
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
-  const auto particle_walls = modify->get_fix_by_style("^fsi/wall/particle$");
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (state[atom->type[i]].species == NONE)
-      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i],
-                 atom->type[i]);
-    if (state[atom->type[i]].species == RIGID &&
-        std::none_of(particle_walls.begin(), particle_walls.end(), [&](const Fix *fix) { return atom->mask[i] & fix->groupbit; }))
-      error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
-    give_defaults(i);
-  }
+  check.materials();
+  for (int i = 0; i < atom->nlocal; i++) give_defaults(i);
   body_forces.find(state);
-  check->init();
+  check.init();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -213,7 +168,7 @@ void FixFSI::setup(int)
 {
   clock.forget();
   announce(lmp, *this);
-  check->setup();
+  check.setup();
 }
 
 /* ----------------------------------------------------------------------
@@ -268,13 +223,6 @@ void FixFSI::gather_walls()
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSI::add_wall_force(int wall, int axis, double f)
-{
-  wall_forces[wall][axis] -= f;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSI::setup_pre_force(int)
 {
   update_state(false);
@@ -296,7 +244,7 @@ bool FixFSI::fresh_start() const
 
 void FixFSI::pre_exchange()
 {
-  check->positions();
+  check.positions();
   if (!fresh_start()) return;
   domain->pbc();
   if (domain->box_change) {
@@ -345,7 +293,7 @@ void FixFSI::pre_force(int)
 
 void FixFSI::final_integrate()
 {
-  check->before_kick();
+  check.before_kick();
   if (substeps > 1)
     for (auto *p : parts) p->integrate_substeps();
   dim == 2 ? kick<2>() : kick<3>();
@@ -402,58 +350,10 @@ void FixFSI::update_state(bool advance)
   for (auto *p : parts) sums = p->add_rates(advance) || sums;
   if (sums && force->newton_pair) reverse_comm(profile, comm, this);
   for (auto *p : parts) p->advance(advance);
-  update_number_density(advance);
+  number_density.renew(advance);
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
   forward_comm(profile, comm, this);
   for (auto *p : parts) p->end_state(advance);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSI::update_number_density(bool advance)
-{
-  send_psi = need_psi && (!keep_psi || !advance || neighbor->ago == 0);    // or to new ghosts
-  if (need_psi && psi_is_due(advance)) {
-    const Phase phase(profile, Profile::DENSITY);
-    number_density(psi);
-    send_psi = true;
-  }
-  if (send_psi) {
-    psi_reference = psi_bulk;
-    if (surface_max) {
-      double mine = 0.0;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (state[atom->type[i]].species == FLUID && psi[i] > mine) mine = psi[i];
-      MPI_Allreduce(&mine, &psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
-    }
-    if (density_fluid != CONTINUITY || density_solid != CONTINUITY) density_from_psi();
-  }
-}
-
-/* ----------------------------------------------------------------------
-   setup goes on with what was kept, as a run must that goes on from a restart file
-------------------------------------------------------------------------- */
-
-bool FixFSI::psi_is_due(bool advance) const
-{
-  if (!keep_psi) return true;
-  if (advance) return update->ntimestep % surface_every == 0;
-  int mine = std::count(psi, psi + atom->nlocal, 0.0), all;
-  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
-  return all > 0;
-}
-
-/* ----------------------------------------------------------------------
-   number density psi_i = sum_j W_ij, self included (paper eq. 8): over all neighbours for a fluid; for a solid over
-   its own body, and over all neighbours in density mode summation, the paper's
-------------------------------------------------------------------------- */
-
-void FixFSI::number_density(double *n)
-{
-  memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
-  for (int i = 0; i < atom->nlocal; i++) n[i] = w0;
-  for (auto *p : parts) p->add_number_density(n, density_solid == SUMMATION);
-  add_ghosts(n);
 }
 
 /* ----------------------------------------------------------------------
@@ -465,27 +365,6 @@ void FixFSI::add_ghosts(double *n)
   summed = n;
   if (force->newton_pair) reverse_comm(profile, comm, this);
   summed = nullptr;
-}
-
-/* ----------------------------------------------------------------------
-   summation: rho_i = m_i psi_i (paper eq. 12)
-   ratio: rho_i = rho_i^0 psi_i/psi_i^0 with the reference taken when the mode starts
-------------------------------------------------------------------------- */
-
-void FixFSI::density_from_psi()
-{
-  double *rho = atom->rho;
-  const double *const rmass = atom->rmass;
-  const int *const type = atom->type;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (state[type[i]].species == RIGID) continue;
-    const int mode = state[type[i]].species == FLUID ? density_fluid : density_solid;
-    if (mode == SUMMATION) rho[i] = rmass[i] * psi[i];
-    else if (mode == RATIO) {
-      if (ratio[i] == 0.0) ratio[i] = rho[i] / psi[i];
-      rho[i] = ratio[i] * psi[i];
-    }
-  }
 }
 
 /* ----------------------------------------------------------------------

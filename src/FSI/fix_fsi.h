@@ -21,19 +21,17 @@ FixStyle(fsi,FixFSI);
 #define LMP_FIX_FSI_H
 
 #include "atom.h"
+#include "fsi_check.h"
 #include "fsi_clock.h"
 #include "fsi_fields.h"
 #include "fsi_keywords.h"
+#include "fsi_number_density.h"
 #include "fsi_scene.h"
 
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
-namespace FSI {
-  class Check;
-  class Part;
-}
 
 // The centre of the package: sets the scene (spacing, kernel), integrates in time (position Verlet) and calls what takes part in a
 // step, which brings density and stress of every particle to the middle of the step before forces are computed.
@@ -41,7 +39,6 @@ namespace FSI {
 class FixFSI : public FSI::FixFields, public FSI::Scene {
  public:
   FixFSI(class LAMMPS *, int, char **);
-  ~FixFSI() override;
   // the fix fsi of this LAMMPS; an error that names who needs it if there is none
   static FixFSI *find(class LAMMPS *, const std::string &who);
   // the same, for who needs what the setup of a run finds: an error if there was none since atoms were made or deleted
@@ -67,15 +64,12 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::Keywords keywords;
   FSI::Clock clock;
   void enter_state(int type, const FSI::State &);    // what a pair style knows of an atom type, in its init_style()
-  FSI::Check *check;    // stops a run that has lost its meaning
+  FSI::Check check;    // stops a run that has lost its meaning
 
-  // number density of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
-  void number_density(double *n);
+  FSI::NumberDensity number_density;
   void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
-  void add_wall_force(int wall, int axis, double f);    // f on the fluid; counted by the wall's fix
 
  private:
-  void check_run();    // what no run of this fix may have
   void set_fields();
   void give_defaults(int);
   int given_substeps;
@@ -86,7 +80,6 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
 
   void find_parts();
   void gather_walls();
-  std::vector<FSI::WallForce> wall_forces;    // on each mirror wall
 
   FSI::Message forward, back, scalar_back;    // to ghosts, and sums from them; of one array of numbers per atom
   double *summed;                             // that array; null: the other
@@ -94,12 +87,6 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   template <int D> void drift();
   template <int D> void kick();
   void update_state(bool);
-
-  double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
-  bool send_psi;    // in this step
-  bool psi_is_due(bool advance) const;
-  void update_number_density(bool advance);
-  void density_from_psi();
 };
 
 }    // namespace LAMMPS_NS

@@ -15,11 +15,13 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "fsi_pack.h"
 #include "fsi_scene.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -65,6 +67,44 @@ Check::Check(LAMMPS *lmp, const Scene &scene) :
 {
   stop.restart_file = "fsi_stop.restart";
   stop.dump_file = "fsi_stop.dump";
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Check::before_init()
+{
+  if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
+  if (update->whichflag == 2)
+    error->all(FLERR, "Fix fsi does not support minimize: there is no energy of all particles; run with fix viscous or artificial/visc to a state of rest");
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "Fix fsi does not support run_style respa");
+  if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
+  if (comm->cutghostuser > 0.0 && comm->cutghostuser < scene.cut)
+    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", scene.cut, comm->cutghostuser);
+  if (domain->dimension != scene.dim)
+    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", scene.dim, domain->dimension);
+  if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
+
+  const bool solid = force->pair_match("fsi/solid", 1), solid_tl = force->pair_match("fsi/solid/tl", 1);
+  if (!solid && !solid_tl && !force->pair_match("fsi/fluid", 1))
+    error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
+  if (scene.substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
+  if (solid_tl && scene.density_solid != Scene::CONTINUITY)
+    error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Check::materials()
+{
+  const auto walls = modify->get_fix_by_style("^fsi/wall/particle$");
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int species = scene.state[atom->type[i]].species;
+    if (species == NONE)
+      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i], atom->type[i]);
+    if (species == RIGID && std::none_of(walls.begin(), walls.end(), [&](const Fix *fix) { return atom->mask[i] & fix->groupbit; }))
+      error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
+  }
 }
 
 /* ----------------------------------------------------------------------

@@ -29,6 +29,8 @@ namespace FSI {
     static constexpr double OFF = 1.0e20;
 
     Check(class LAMMPS *, const Scene &);
+    void before_init();       // what no run may have
+    void materials();         // every atom has one
     void init();              // of a run: what a restart file or a script has put there
     void setup();             // after the first forces
     void positions();         // before lists are built

@@ -58,6 +58,8 @@ namespace FSI {
     int substeps;         // of total-Lagrangian solids in each step: as given, or as fix fsi/dt has chosen
     double mach;          // largest Mach number of fluids
     Walls walls;          // at the time of the positions in atom->x
+    std::vector<WallForce> wall_forces;    // on each of them, counted by its fix
+    void add_wall_force(int wall, int axis, double f) { wall_forces[wall][axis] -= f; }    // f on the fluid
     BodyForces body_forces;
     Profile *profile;     // of fix fsi/report; null: there is none
     // what moves by rates between the middles of two steps takes update->dt + stagger: their distance, if dt changes
