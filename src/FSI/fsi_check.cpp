@@ -60,7 +60,7 @@ static bool all_below(int n, const double *a, double most)
 /* ---------------------------------------------------------------------- */
 
 Check::Check(LAMMPS *lmp, FixFSI *hub) :
-    Pointers(lmp), hub(hub), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), found{}
+    Pointers(lmp), hub(hub), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), substepped(nullptr), found{}
 {
   stop.restart_file = "fsi_stop.restart";
   stop.dump_file = "fsi_stop.dump";
@@ -128,7 +128,7 @@ void Check::before_kick()
 
 void Check::before_substeps(const std::vector<int> &solids)
 {
-  substepped = solids;
+  substepped = &solids;
   kept.resize(6 * solids.size());
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   double *to = kept.data();
@@ -141,11 +141,11 @@ void Check::before_substeps(const std::vector<int> &solids)
   }
 }
 
-void Check::after_substeps(const std::vector<int> &solids)
+void Check::after_substeps()
 {
   const auto *const v = FixFSI::rows(atom->v);
   const int *const type = atom->type;
-  for (const int i : solids)
+  for (const int i : *substepped)
     if (!(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2] <= limit_sq[type[i]])) examine(i, 0.0);
   judge(Stop::MIDDLE);
 }
@@ -225,7 +225,7 @@ void Check::judge(Stop::When when)
   // back to before the sub-steps, if there were any
   if (when == Stop::MIDDLE && hub->substeps > 1) {
     const double *from = kept.data();
-    for (const int i : substepped) {
+    for (const int i : *substepped) {
       std::copy_n(from, 3, atom->x[i]);
       std::copy_n(from + 3, 3, atom->v[i]);
       from += 6;

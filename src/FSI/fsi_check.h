@@ -34,7 +34,7 @@ namespace FSI {
     void positions();         // before lists are built
     void before_kick();       // in each step
     void before_substeps(const std::vector<int> &solids);
-    void after_substeps(const std::vector<int> &solids);
+    void after_substeps();
 
    private:
     FixFSI *const hub;
@@ -42,7 +42,7 @@ namespace FSI {
     std::vector<double> limit_sq;    // per type: of the speed
     double calm_speed, calm_kick;    // components of velocities and of their change in a step from which no limit is in reach
     double lightest;                 // mass of this rank's particles
-    std::vector<int> substepped;     // solids with sub-steps,
+    const std::vector<int> *substepped;    // solids with sub-steps,
     std::vector<double> kept;        // and their positions and velocities before them
     Finding found;                   // the first thing that is not finite, or the worst of this rank
 
