@@ -35,9 +35,9 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too
+  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of finer lattices
   namespace Flag {
-    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64 };
+    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, FINER = 128 };
   }
 
   template <class T, int D> struct Particle {
@@ -143,6 +143,7 @@ namespace FSI {
       const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
       const Particle<T, D> pi(point[i]);
       const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
+      const double sharper = (FLAGS & Flag::FINER) ? in.share[type_j].sharper : 0.0;
       T sum = 0.0, flux = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
@@ -150,7 +151,7 @@ namespace FSI {
         T x[D], v[D];
         difference(pi.x, pj.x, x);
         difference(pi.v, pj.v, v);
-        T g = kernel.gradient(root(product(x, x)));
+        T g = (FLAGS & Flag::FINER) ? kernel.sharper_gradient(root(product(x, x)), sharper) : kernel.gradient(root(product(x, x)));
         if (FLAGS & Flag::IMAGES) g = weight * g;
         const T s = g * product(v, x);
         sum += s;
@@ -167,9 +168,8 @@ namespace FSI {
         }
         L::add(rate_j, rate, j);
       });
-      // neighbours of another volume count by it
-      const double share = KIND == WITH_FLUID ? 1.0 : in.volume_ratio[type_j];
-      rate[i] += point[i].rho * share * point[i].vol * L::sum(sum) + L::sum(flux);
+      const double volume = (FLAGS & Flag::FINER) ? in.share[type_j].volume : 1.0;
+      rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
     }
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(taken);
   }
@@ -211,8 +211,9 @@ namespace FSI {
       const State &fluid = in.state[in.type[i]], &other = in.state[type_j];
       Particle<T, D> pi(point[i]);
       // neighbours of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i of the lattices
-      const double share = KIND == WITH_FLUID ? 1.0 : in.volume_ratio[type_j], back = 1.0 / share;
-      if (KIND != WITH_FLUID) pi.pv2 = share * pi.pv2;
+      const double volume = (FLAGS & Flag::FINER) ? in.share[type_j].volume : 1.0, back = 1.0 / volume;
+      const double sharper = (FLAGS & Flag::FINER) ? in.share[type_j].sharper : 0.0;
+      if (FLAGS & Flag::FINER) pi.pv2 = volume * pi.pv2;
       const double c = KIND == WITH_FLUID ? 0.5 * (fluid.c + other.c) : KIND == WITH_WALL || fluid.c < other.c ? fluid.c : other.c, bulk = fluid.rho0 * fluid.csq, floor = fluid.floor;
       // beyond a wall or solid with no slip there is fluid, where it slips it does not rub
       const bool slips = KIND == WITH_FLUID ? false : KIND == WITH_WALL ? !other.noslip : laws.solids_slip;
@@ -233,19 +234,26 @@ namespace FSI {
         const T rsq = product(x, x), vdotx = product(v, x);
         T g = kernel.gradient(root(rsq));
         if (FLAGS & Flag::IMAGES) g = weight * g;
+        T pushing = g;    // of pressures
+        if (FLAGS & Flag::FINER) {
+          pushing = kernel.sharper_gradient(root(rsq), sharper);
+          if (FLAGS & Flag::IMAGES) pushing = weight * pushing;
+        }
         const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
 
+        T viscous_push = 0.0;
         T p = shared_pressure<T, KIND, D>(pi, pj, original.x, extrapolate, floor, back);
         // beyond the compression of the fluid and, in density mode summation, of the solid
         T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
         if (FLAGS & Flag::ARTIFICIAL) {
           T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), c, pi.vol * pj.vol);
           if (KIND == WITH_WALL) q = rubs * q;
-          p += q;
+          if (FLAGS & Flag::FINER) viscous_push = q * g;
+          else p += q;
           if (FLAGS & Flag::SUMS) by_artificial += share * q * g * vdotx;
         }
-        p = -p * g;
-        coupled = coupled * g * vdotx;
+        p = (FLAGS & Flag::FINER) ? -(p * pushing + viscous_push) : -p * g;
+        coupled = coupled * pushing * vdotx;
 
         T force[D];    // on i
         for (int d = 0; d < D; d++) force[d] = p * x[d];
@@ -391,6 +399,9 @@ namespace FSI {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i;
+      // of neighbours on a finer lattice
+      const double volume = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0;
+      const double sharper = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].sharper : 0.0;
       T of_i = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         T rsq = 0.0;
@@ -405,12 +416,12 @@ namespace FSI {
           of_i += w * L::read(vol, j);
           if (FLAGS & Flag::BOTH) L::add(w * vol[i], sum, j);
         } else {
-          const T w = weight * kernel.W(r);
+          const T w = weight * ((FLAGS & Flag::FINER) ? kernel.sharper(r, sharper) : kernel.W(r));
           of_i += w;
           if (FLAGS & Flag::BOTH) L::add(w, sum, j);
         }
       });
-      sum[i] += ((FLAGS & Flag::DIVERGENCE) ? 1.0 : in.volume_ratio[in.type[row.j[0]]]) * L::sum(of_i);
+      sum[i] += volume * L::sum(of_i);
     }
   }
 
@@ -431,12 +442,12 @@ namespace FSI {
           rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate, sums);
         });
       };
-      const int images = image ? IMAGES : 0, diffusion = kind != WITH_FLUID || laws.delta == 0.0 ? 0 : sums ? DIFFUSION | SUMS : DIFFUSION;
-      with_flags<IMAGES | DIFFUSION | SUMS>(images | diffusion, [&](auto flags) {
+      const int images = (image ? IMAGES : 0) | finer(kind, in), diffusion = kind != WITH_FLUID || laws.delta == 0.0 ? 0 : sums ? DIFFUSION | SUMS : DIFFUSION;
+      with_flags<IMAGES | DIFFUSION | SUMS | FINER>(images | diffusion, [&](auto flags) {
         if constexpr ((flags() & DIFFUSION) || !(flags() & SUMS)) {
           if constexpr (!(flags() & DIFFUSION))
             if (kind != WITH_FLUID) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
-          loop(std::integral_constant<int, WITH_FLUID>(), flags);
+          if constexpr (!(flags() & FINER)) loop(std::integral_constant<int, WITH_FLUID>(), flags);
         }
       });
     }
@@ -461,13 +472,14 @@ namespace FSI {
       // with sums there is one loop for all effects: those that are off have coefficients of zero
       constexpr int ALL = ARTIFICIAL | LAMINAR | SUMS;
       const int effects = (laws.alpha > 0.0 || laws.beta > 0.0 ? ARTIFICIAL : 0) | (laws.laminar ? LAMINAR : 0);
-      with_flags<ALL | IMAGES>((sums ? ALL : effects) | (image ? IMAGES : 0), [&](auto flags) {
+      with_flags<ALL | IMAGES | FINER>((sums ? ALL : effects) | (image ? IMAGES : 0) | finer(kind, in), [&](auto flags) {
         if constexpr (!(flags() & SUMS) || (flags() & ALL) == ALL) {
-          if (kind == WITH_FLUID) loop(packs, std::integral_constant<int, WITH_FLUID>(), flags);
+          if constexpr (!(flags() & FINER))
+            if (kind == WITH_FLUID) loop(packs, std::integral_constant<int, WITH_FLUID>(), flags);
           if (kind == WITH_SOLID) loop(packs, std::integral_constant<int, WITH_SOLID>(), flags);
           if constexpr (!(flags() & IMAGES))    // walls of particles have no images
             if (kind == WITH_WALL) loop(packs, std::integral_constant<int, WITH_WALL>(), flags);
-          if constexpr (flags() & SUMS) {
+          if constexpr ((flags() & SUMS) && !(flags() & FINER)) {
             if (kind == WITH_SOLID_PRESSURE) loop(no_packs, std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
             if (kind == WITH_SOLID_FULL) loop(no_packs, std::integral_constant<int, WITH_SOLID_FULL>(), flags);
           }
@@ -486,10 +498,10 @@ namespace FSI {
       });
     }
 
-    void number_density(const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
+    void number_density(PairKind kind, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
                         double *sum) const override
     {
-      distances(0, rows, both, image, in, x, nullptr, sum);
+      distances(finer(kind, in), rows, both, image, in, x, nullptr, sum);
     }
 
     void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], const double *vol,
@@ -499,13 +511,16 @@ namespace FSI {
     }
 
    private:
+    // Rows of solids and walls with finer lattices; those with the fluid's among them have shares that change nothing.
+    static int finer(PairKind kind, const FluidParticles &in) { return in.finer && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::FINER : 0; }
+
     void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
                    const double *vol, double *sum) const
     {
       const Mirror mirror = image ? *image : Mirror();
-      with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH>(
+      with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::FINER>(
           what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
-            run_loop([&](auto number) __attribute__((always_inline)) {
+            if constexpr (!(flags() & Flag::FINER) || !(flags() & (Flag::DIVERGENCE | Flag::BOTH))) run_loop([&](auto number) __attribute__((always_inline)) {
               distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, x, vol, sum);
             });
           });

@@ -14,8 +14,9 @@
 #include "fsi_limits.h"
 
 #include "atom.h"
-#include "fix_fsi.h"
+#include "fix.h"
 #include "force.h"
+#include "fsi_scene.h"
 #include "pair.h"
 
 #include <algorithm>
@@ -37,7 +38,7 @@ Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
    acceleration: sqrt(h/|a|)/4
 ------------------------------------------------------------------------- */
 
-void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_fluid, double of_solid)
+void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_fluid, double of_solid)
 {
   const int *const mask = atom->mask, *const type = atom->type;
   double **v = atom->v;
@@ -51,7 +52,7 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_flui
   std::vector<char> present(atom->ntypes + 1, 0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    const State &s = hub->state[type[i]];
+    const State &s = scene.state[type[i]];
     if (s.species == RIGID) continue;
     present[type[i]] = 1;
     if (s.species == FLUID) {
@@ -64,7 +65,7 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_flui
       }
     }
     // what is held does not follow its force
-    if (!(mask[i] & hub->groupbit)) continue;
+    if (!(mask[i] & scene.mover->groupbit)) continue;
     const double w = force->ftm2v / rmass[i];
     const double asq = w * w * (f[i][0] * f[i][0] + f[i][1] * f[i][1] + f[i][2] * f[i][2]);
     if (asq > asq_max[type[i]]) {
@@ -74,13 +75,13 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_flui
   }
 
   for (double *row : mine) std::fill_n(row, NLIMIT, UNLIMITED);
-  if (fastest > 0.0) mine[0][SOUND] = of_fluid * safe[SOUND] * hub->h / fastest;
+  if (fastest > 0.0) mine[0][SOUND] = of_fluid * safe[SOUND] * scene.h / fastest;
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!present[t]) continue;
-    const State &s = hub->state[t];
+    const State &s = scene.state[t];
     const bool fluid = s.species == FLUID;
     const int in_sub = substeps && !fluid;
-    double *const m = mine[in_sub], own = fluid ? of_fluid : of_solid, h = hub->h_of(t);
+    double *const m = mine[in_sub], own = fluid ? of_fluid : of_solid, h = scene.h_of(t);
     const double pushing = asq_max[t] > 0.0 ? own * safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[t])) : UNLIMITED;
     if (pushing < m[ACCELERATION]) {
       m[ACCELERATION] = pushing;

@@ -24,13 +24,6 @@ namespace FSI {
     double dx = 0.0, h = 0.0;    // spacing, smoothing length
     double cut = 0.0;            // support radius of the kernel
     double psi_bulk = 0.0;       // number density inside the lattice: the volume of a particle is 1/psi_bulk
-
-    // volume of a particle of the lattice over that of one of another
-    double volume_over(const Resolution &other, int dim) const
-    {
-      const double ratio = dx / other.dx;
-      return dim == 3 ? ratio * ratio * ratio : ratio * ratio;
-    }
   };
 
   // distance of neighbours of two lattices that face each other, cell by cell

@@ -22,6 +22,7 @@
 #include "force.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_kernel.h"
+#include "fsi_profile.h"
 #include "fsi_shift.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -127,9 +128,14 @@ void PairFSIFluid::init_style()
     error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
                    has_solids() ? "there is no laminar/visc" : "there is no solid");
   loops = make_fluid_loops(hub->kernel, hub->dim, hub->h);
-  volume_ratio.clear();
-  const Resolution fluids = {hub->dx, hub->h, hub->cut, hub->psi_bulk};
-  for (const auto &r : hub->resolution) volume_ratio.push_back(r.volume_over(fluids, hub->dim));
+  shares.assign(atom->ntypes + 1, Share());
+  finer = false;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const double ratio = hub->dx_of(t) / hub->dx, per_h = hub->dx / hub->h;
+    if (ratio == 1.0) continue;
+    finer = true;
+    shares[t] = {hub->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h};
+  }
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
   if (couple != WALL && force->pair_match("fsi/solid/tl", 1))
@@ -153,6 +159,10 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
     dim_of_extract = 0;
     return &laminar;
   }
+  if (strcmp(name, "couple") == 0) {
+    dim_of_extract = 0;
+    return &couple;
+  }
   return PairFSI::extract(name, dim_of_extract);
 }
 
@@ -163,14 +173,14 @@ int PairFSIFluid::nshift() const
   return 2 * hub->dim + 1;
 }
 
-void PairFSIFluid::set_fields(FixFSI &fsi)
+void PairFSIFluid::set_fields(Scene &scene)
 {
-  fields.set("density rate", Fields::STEP, fsi.density_fluid == FixFSI::CONTINUITY, rate);
-  fields.set("shift", Fields::STEP, shifting > 0.0, fsi.shift, nshift());
-  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, fsi.dim + 1);
-  fsi.noslip_walls = fsi.noslip_walls || sticks_to_solids();
-  fsi.surface_ratio = surface_ratio;
-  fsi.surface_max = surface_max;
+  fields.set("density rate", Fields::STEP, scene.density_fluid == FixFSI::CONTINUITY, rate);
+  fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
+  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
+  scene.noslip_walls = scene.noslip_walls || sticks_to_solids();
+  scene.surface_ratio = surface_ratio;
+  scene.surface_max = surface_max;
 }
 
 void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
@@ -377,7 +387,7 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 FluidParticles PairFSIFluid::particles_at(const double *points) const
 {
-  return {points, atom->type, hub->state.data(), atom->nlocal, volume_ratio.data(), force->newton_pair != 0};
+  return {points, atom->type, hub->state.data(), atom->nlocal, shares.data(), finer, force->newton_pair != 0};
 }
 
 template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest rest)
@@ -456,20 +466,20 @@ void PairFSIFluid::displacements(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-// sums of what depends on the distance of a pair, walls' images included: sum(rows, both, mirror), of neighbors only if both
+// sums of what depends on the distance of a pair, walls' images included: sum(kind, rows, both, mirror), of neighbors only if both
 template <class Sum> void PairFSIFluid::distance_sums(bool others_too, Sum sum)
 {
   const auto both = [&](int kind) { return kind == FLUIDS || others_too; };
-  for (int kind = 0; kind < NROWS; kind++) sum(rows[kind].rows, both(kind), nullptr);
+  for (int kind = 0; kind < NROWS; kind++) sum(kinds[kind], rows[kind].rows, both(kind), nullptr);
   double **x = atom->x;
   for_images(hub->walls, [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
-             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { sum(which, both(kind), mirror); });
+             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { sum(kinds[kind], which, both(kind), mirror); });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
-  distance_sums(solids_too, [&](const std::vector<Row> &which, bool both, const Mirror *mirror) {
-    loops->number_density(which, both, mirror, particles_at(nullptr), FixFSI::rows(atom->x), psi);
+  distance_sums(solids_too, [&](PairKind kind, const std::vector<Row> &which, bool both, const Mirror *mirror) {
+    loops->number_density(kind, which, both, mirror, particles_at(nullptr), FixFSI::rows(atom->x), psi);
   });
 }
 
@@ -477,7 +487,7 @@ void PairFSIFluid::add_position_divergence(double *div)
 {
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
-  distance_sums(false, [&](const std::vector<Row> &which, bool both, const Mirror *mirror) {
+  distance_sums(false, [&](PairKind, const std::vector<Row> &which, bool both, const Mirror *mirror) {
     loops->position_divergence(which, both, mirror, FixFSI::rows(atom->x), volume.data(), div);
   });
 }
@@ -575,6 +585,8 @@ template <int D> void PairFSIFluid::compute_forces()
                }
              });
 
+  split_forces<D>(particles, laws);
+
   auto *const f = FixFSI::rows(atom->f);
   for (int i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) f[i][d] += forces[ROW * i + d];
@@ -584,6 +596,32 @@ template <int D> void PairFSIFluid::compute_forces()
   hub->tally(FixFSI::WALLS, sums.walls);
   if (tally_pairs && (vflag_global || vflag_fdotr))
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
+}
+
+/* ----------------------------------------------------------------------
+   for those who ask for them, forces of viscosity alone on solids and walls: the same loops without pressures, guard and stress
+------------------------------------------------------------------------- */
+
+template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles, ForceLaws laws)
+{
+  if (std::none_of(force_computes.begin(), force_computes.end(), [](const auto *measure) { return measure->split; })) return;
+  constexpr int ROW = row_of_forces(D);
+  const int nall = atom->nlocal + atom->nghost;
+  auto *const point = reinterpret_cast<Point<D> *>(points.data());
+  for (int i = 0; i < nall; i++) point[i].p = point[i].pv2 = 0.0;
+  const std::vector<Contact> no_guards(guards.size(), Contact(D, 0.0));
+  laws.guard = no_guards.data();
+  laws.extrapolate = nullptr;
+  laws.stress = nullptr;
+  viscous_forces.assign((size_t) ROW * nall, 0.0);
+  for (const int kind : {WALLS, SOLIDS}) loops->forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
+  for_images(hub->walls, [&](int i) { return point[i].position(atom->x[i]); },
+             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) {
+               double unused[D] = {};
+               if (kind == SOLIDS) loops->forces(kinds[kind], which, mirror, particles, laws, viscous_forces.data(), unused, nullptr);
+             });
+  for (auto *measure : force_computes)
+    if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -610,7 +648,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  double bytes = fields.memory_usage() + (double) (points.capacity() + forces.capacity() + pressure_over_density.capacity()) * sizeof(double);
+  double bytes = fields.memory_usage() + (double) (points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity()) * sizeof(double);
   for (const auto &list_of : rows) bytes += list_of.memory_usage();
   for (const auto &lists : images)
     for (const auto &list_of : lists) bytes += list_of.memory_usage();

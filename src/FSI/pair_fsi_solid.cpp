@@ -24,6 +24,7 @@
 #include "fsi_gradient.h"
 #include "fsi_hourglass.h"
 #include "fsi_kernel.h"
+#include "fsi_profile.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_tensor.h"
 #include "fsi_viscosity_artificial.h"
@@ -138,7 +139,7 @@ int PairFSISolid::ngrad() const
   return n == 0 ? dim * dim : dim * n + 2 * packed_size(n);
 }
 
-void PairFSISolid::set_fields(FixFSI &)
+void PairFSISolid::set_fields(Scene &)
 {
   fields.set("velocity gradient", Fields::STEP, true, grad, ngrad());
 }
