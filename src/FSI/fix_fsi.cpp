@@ -19,8 +19,6 @@
 #include "error.h"
 #include "force.h"
 #include "fsi_announce.h"
-#include "fsi_kernel.h"
-#include "fsi_lattice.h"
 #include "fsi_order.h"
 #include "fsi_part.h"
 #include "fsi_profile.h"
@@ -65,25 +63,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   substeps = given_substeps;
 
   dim = domain->dimension;
-  h = hdx * dx;
-  with_kernel(kernel, dim, h, [&](const auto &k) {
-    cut = k.cut;
-    psi_bulk = lattice_number_density(k, dx);
-    wdx = k.W(dx);
-    w0 = k.W(0.0);
-  });
-  resolution.resize(atom->ntypes + 1);
-  largest_cut = cut;
-  for (int t = 1; t <= atom->ntypes; t++) {
-    Resolution &of = resolution[t];
-    of.dx = given_spacing[t] > 0.0 ? given_spacing[t] : dx;
-    of.h = hdx * of.dx;
-    with_kernel(kernel, dim, of.h, [&](const auto &k) {
-      of.cut = k.cut;
-      of.psi_bulk = lattice_number_density(k, of.dx);
-    });
-    largest_cut = std::max(largest_cut, of.cut);
-  }
+  resolve(hdx, given_spacing);
 
   time_integrate = 1;
   force_reneighbor = 1;

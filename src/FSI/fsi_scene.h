@@ -113,6 +113,7 @@ namespace FSI {
     static Row *rows(double **a) { return reinterpret_cast<Row *>(a[0]); }
 
    protected:
+    void resolve(double hdx, const std::vector<double> &spacing);    // h over dx; spacings that differ from dx, by type, or 0
     double tally_dt;
 
    private:
