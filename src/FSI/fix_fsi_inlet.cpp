@@ -39,6 +39,7 @@ using namespace FSI;
 
 static constexpr double AUTO = -1.0;
 static constexpr int PRESSURE_COLUMN = 3, NCOLUMNS = 4;    // of the values of variables
+static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with; a column more or less is there at any time
 static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: no fluid to speak of
 static constexpr double TAKEN = 0.5;    // of the spacing: a place is taken by who is as near
 
@@ -46,8 +47,8 @@ static constexpr double TAKEN = 0.5;    // of the spacing: a place is taken by w
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
-    length(0.0), region(nullptr), hub(nullptr), of_buffer(nullptr), target(nullptr), nmax(0), mean{}, supplied(false), filled(false), served(false), wave(0.0),
-    before(0.0), drawn(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), given{}
+    length(0.0), region(nullptr), hub(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0),
+    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), given{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
@@ -91,6 +92,7 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   restart_global = 1;
   fields.set("of the buffer", Fields::FILE, true, of_buffer);
+  fields.set("place of the copy", Fields::FILE, true, behind, 3);
   register_fields();
 }
 
@@ -264,7 +266,7 @@ void FixFSIInlet::setup_pre_exchange()
 
 void FixFSIInlet::fill()
 {
-  enum { BEHIND, AHEAD, WALLS_BEHIND, WALLS_AHEAD, NCOUNT };
+  enum { BEHIND, AHEAD, BEYOND, WALLS_BEHIND, WALLS_AHEAD, NCOUNT };
   bigint own[NCOUNT] = {}, all[NCOUNT];
   std::vector<Copy> copies;
   const auto copy = [&](int i) {
@@ -282,8 +284,8 @@ void FixFSIInlet::fill()
       own[AHEAD]++;
       copy(i);
     } else {
-      own[BEHIND]++;
-      of_buffer[i] = 1.0;
+      own[s > -length - 0.5 * hub->dx ? BEHIND : BEYOND]++;
+      of_buffer[i] = MEMBER;
     }
   }
   MPI_Allreduce(own, all, NCOUNT, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -291,6 +293,9 @@ void FixFSIInlet::fill()
   if (all[BEHIND] == 0 && all[AHEAD] == 0 && !outlet)
     error->all(FLERR, "{} {}: there is no fluid of group {} at its plane {} = {}: fill the buffer, to {} = {:g}, or what is before it", who, id,
                group->names[igroup], "xyz"[axis], position, "xyz"[axis], end);
+  if (all[BEYOND] > 0)
+    error->all(FLERR, "{} {}: {} particles of fluid are beyond the end of its buffer, {} = {:g}: {}{} has the fluid at {} {} {}", who, id, all[BEYOND],
+               "xyz"[axis], end, "xyz"[axis], side > 0.0 ? "lo" : "hi", "xyz"[axis], side > 0.0 ? ">" : "<", position);
   if (all[WALLS_AHEAD] > 0 && 2 * all[WALLS_BEHIND] < all[WALLS_AHEAD] && comm->me == 0)
     error->warning(FLERR, "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls should go on along the buffer, to {} = {:g}", who,
                    id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
@@ -356,7 +361,7 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
   MPI_Allreduce(is_taken.data(), taken.data(), taken.size(), MPI_INT, MPI_MAX, world);
 
   tagint largest = last_id, id_now;
-  for (const auto &fix : modify->get_fix_by_style("^fsi/(in|out)let$")) largest = std::max(largest, dynamic_cast<FixFSIInlet *>(fix)->last_id);
+  for (const auto &fix : modify->get_fix_by_style("^fsi/[inout]+let$")) largest = std::max(largest, dynamic_cast<FixFSIInlet *>(fix)->last_id);
   for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
   MPI_Allreduce(&largest, &id_now, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   for (size_t k = 0; k < copies.size(); k++)
@@ -383,7 +388,7 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
   last_id = id_now;
   atom->data_fix_compute_variable(first, atom->nlocal);
   for (int i = first; i < atom->nlocal; i++) {
-    of_buffer[i] = 1.0;
+    of_buffer[i] = MEMBER;
     if (hub->ledger && !at_start) hub->taken[FixFSI::FIELDS] -= energy(i);
   }
   mine = atom->nlocal - first;
@@ -403,7 +408,7 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
 void FixFSIInlet::pre_exchange()
 {
   if (region) region->prematch();
-  const auto others = modify->get_fix_by_style("^fsi/(in|out)let$");
+  const auto others = modify->get_fix_by_style("^fsi/[inout]+let$");
   std::vector<Copy> copies;
   std::vector<int> gone;
   double own[5] = {}, all[5];    // in, out, net mass, made, deleted
@@ -417,16 +422,18 @@ void FixFSIInlet::pre_exchange()
       continue;
     }
     if (of_buffer[i] && s > 0.0) {
-      of_buffer[i] = 0.0;
+      if (of_buffer[i] == MEMBER) copy_place(i);
+      of_buffer[i] = NOT;
       own[0]++;
       own[2] += atom->rmass[i];
       const double *const v = atom->v[i];
-      copies.push_back({{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i], atom->molecule[i], type[i], atom->mask[i]});
-      copies.back().x[axis] -= side * length;
+      const double *const y = behind[i];
+      copies.push_back({{y[0], y[1], y[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i], atom->molecule[i], type[i], atom->mask[i]});
       continue;
     }
+    if (of_buffer[i]) of_buffer[i] = MEMBER;    // it may have been out and come back
     if (!of_buffer[i] && holds(x)) {
-      of_buffer[i] = 1.0;
+      of_buffer[i] = MEMBER;
       own[1]++;
       own[2] -= atom->rmass[i];
     }
@@ -460,6 +467,18 @@ void FixFSIInlet::pre_exchange()
     atom->map_set();
   }
   if (all[3] > 0.0) make(copies, false);
+}
+
+/* ----------------------------------------------------------------------
+   The copy is made when the next list is built, where it would be had it been made when its parent passed the plane: when lists are built
+   does not matter to what flows in.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::copy_place(int i)
+{
+  of_buffer[i] = PASSED;
+  std::copy_n(atom->x[i], 3, behind[i]);
+  behind[i][axis] -= side * length;
 }
 
 /* ----------------------------------------------------------------------
@@ -575,10 +594,8 @@ void FixFSIInlet::measure()
   std::copy_n(sums.data() + nodes * ncolumns, NMEAN, mean);
 
   // values at nodes: the mean, and the slope where there is fluid on both sides or enough on one
-  double most = 0.0;
   for (int node = 0; node < nodes; node++) {
     double *const c = &sums[node * ncolumns], S = c[0];
-    most = std::max(most, S);
     if (S <= LITTLE * hub->psi_bulk) {
       c[0] = 0.0;
       continue;
@@ -602,7 +619,6 @@ void FixFSIInlet::measure()
     }
     c[0] = 1.0;
   }
-  supplied = most > 0.25 * hub->psi_bulk;    // half of a half space
 }
 
 // fit of a place from the nodes around it: normal velocity, pressure
@@ -646,7 +662,7 @@ void FixFSIInlet::advance(bool advance)
     double c = 0.0;
     for (const auto &s : hub->state)
       if (s.species == FLUID) c = std::max(c, s.c);
-    rate = 0.5 * c / domain->prd[axis];
+    rate = c / domain->prd[axis];
   }
   if (rate > 0.0 && mean[WEIGHT] > 0.0) {
     const double now = (wants_velocity ? mean[SPEED] : mean[OVER_IMPEDANCE]) / mean[WEIGHT];
@@ -657,23 +673,23 @@ void FixFSIInlet::advance(bool advance)
     has_before = false;
   wave *= std::exp(-rate * dt);
 
-  // an empty buffer while fluid is drawn in
-  served = served || mean[BUFFER] > 0.0;
-  if (!served || mean[BUFFER] > 0.0 || !supplied) drawn = 0.0;
-  else drawn = std::max(0.0, drawn + dt * mean[SPEED] / mean[WEIGHT]);
-  if (drawn > hub->dx)
-    error->all(FLERR, "{} {} starves: fluid flows in at {} = {} and its buffer is empty. Move it to where fluid only leaves, or give it a supply with "
-               "fix fsi/inlet pressure", who, id, "xyz"[axis], position);
+  // what has a given velocity goes without the fluid where that does not follow, and has nothing to come back with
+  if (served == 0.0) served = mean[BUFFER];
+  if (!wants_velocity && mean[BUFFER] < STARVED * served)
+    error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. The fluid does not follow the velocity that is given: "
+               "it tears under suction, without keyword tension yes or background of pair_style fsi/fluid", who, id, served, "xyz"[axis], position, mean[BUFFER]);
 
   if (pressure.source == EQUAL || pressure.source == ATOM) evaluate(&pressure, 1, PRESSURE_COLUMN);
   double **const shift = hub->shift;
   for (auto &place : places) {
-    if (place.inside > 0.0) continue;
     const int i = place.i;
+    if (place.inside > 0.0 && of_buffer[i] == MEMBER) copy_place(i);
+    if (place.inside > 0.0 && of_buffer[i] != PASSED) continue;
     const State &state = hub->state[atom->type[i]];
     double values[2] = {0.0, 0.0};
     place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
     place.normal = values[0];
+    if (place.inside > 0.0) continue;
     double p;
     if (wants_pressure)
       p = place.known ? values[wants_velocity] + state.rho0 * hub->body_forces.of_type[atom->type[i]][axis] * side * place.inside : state.p0;
@@ -698,14 +714,17 @@ void FixFSIInlet::prescribe()
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED;
   if (!wants_velocity) evaluate(velocity, 3, 0);
   for (const auto &place : places) {
-    if (place.inside > 0.0) continue;
     const int i = place.i;
+    const bool passed = of_buffer[i] == PASSED;
+    if (place.inside > 0.0 && !passed) continue;
     const double m = atom->rmass[i];
     double *const f = atom->f[i], *const v = atom->v[i];
     for (int d = 0; d < hub->dim; d++) {
       double u;
       if (wants_velocity) u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
       else u = value(velocity[d], i, d) + (d == axis ? side * wave : 0.0);
+      if (passed) behind[i][d] += dt * u;
+      if (place.inside > 0.0) continue;
       const double to = m * (u - v[d]) / (dt * force->ftm2v), push = to - f[d];
       f[d] = to;
       given[d] += push;
@@ -731,7 +750,7 @@ double FixFSIInlet::compute_vector(int n)
     case 3: return mean[MASS_FLOW];
     case 4: return mean[VOLUME_FLOW];
     case 5: return mean[WEIGHT] > 0.0 ? mean[PRESSURE] / mean[WEIGHT] : 0.0;
-    case 0: own = std::count(of_buffer, of_buffer + atom->nlocal, 1.0); break;
+    case 0: own = atom->nlocal - std::count(of_buffer, of_buffer + atom->nlocal, double(NOT)); break;
     default: own = given[n - 6];
   }
   MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_SUM, world);
@@ -743,7 +762,7 @@ double FixFSIInlet::compute_vector(int n)
 void FixFSIInlet::write_restart(FILE *fp)
 {
   Record record(lmp, style);
-  record.add("filled", std::vector<double>{double(filled), double(served), drawn});
+  record.add("filled", std::vector<double>{double(filled), served});
   record.add("absorption", std::vector<double>{wave, before, double(has_before)});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
   record.add("last ID", std::to_string(last_id));
@@ -756,8 +775,7 @@ void FixFSIInlet::restart(char *buf)
   const Record record(lmp, style, buf);
   auto numbers = record.numbers("filled");
   filled = numbers[0] != 0.0;
-  served = numbers[1] != 0.0;
-  drawn = numbers[2];
+  served = numbers[1];
   numbers = record.numbers("absorption");
   wave = numbers[0];
   before = numbers[1];

@@ -87,7 +87,9 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   class Region *region;
   class FixFSI *hub;
 
-  double *of_buffer;    // per atom: 1 in the buffer, 0 in the fluid
+  enum Membership { NOT, MEMBER, PASSED };    // passed the plane since the last list
+  double *of_buffer;     // per atom
+  double **behind;       // of one that has passed: where its copy would be now, had it been made then
   std::vector<Place> places;
   double **target;      // values of atom-style variables: velocity and pressure
   int nmax;
@@ -97,12 +99,11 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double node_distance[2];
   std::vector<double> mine, sums;
   double mean[NMEAN];
-  bool supplied;     // is there fluid at the plane?
 
   // what is kept
-  bool filled, served;
+  bool filled;
   double wave, before;       // of absorption: velocity or pressure over impedance that it adds; the mean from which it has that
-  double drawn;      // way of the fluid inwards since the buffer is empty
+  double served;             // particles near the plane at first
   bool has_before;
   double passed_in, passed_out, mass_in;
   double given[4];           // force on the buffer and its power, this rank's part
@@ -119,6 +120,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void fill();
   void make(std::vector<Copy> &, bool at_start);
   void forget_ghosts();
+  void copy_place(int i);
   void find_places();
   template <class Visit> void at_nodes(const double *x, double reach, Visit) const;
   void measure();
