@@ -89,7 +89,7 @@ void ComputeFSIAtom::compute_peratom()
   if (std::find(quantity.begin(), quantity.end(), PSI) != quantity.end()) {
     psi.resize(atom->nmax);
     comm->forward_comm();    // ghosts still stand where they were in the middle of the step
-    hub->number_density(psi.data());
+    hub->number_density.find(psi.data());
   }
   auto *const solid_tl = PairFSISolidTL::find(lmp);
   if (solid_tl) solid_tl->forward_positions();    // likewise

@@ -214,7 +214,7 @@ void FixFSIReport::sample()
   samples++;
   sampled = update->ntimestep;
   collected = -1;
-  limits.find(hub, groupbit, hub->substeps > 1);
+  limits.find(*hub, groupbit, hub->substeps > 1);
   for (int k = 0; k < Limits::NLIMIT; k++)
     for (const bool sub : {false, true}) {
       const double limit = sub ? limits.sub[k] : limits.step[k];

@@ -276,8 +276,8 @@ void FixFSIWatch::judge(Stop::When when)
     all.trouble = q;
     all.value = seen[q];
     const auto what = fmt::format("{} {:.4g} is {} the limit {:g}", about[q].what, all.value, q == DISTANCE ? "below" : "above", allowed(q));
-    const auto text = halt.describe(hub, what, all, when);
-    if (!warn) halt.stop(hub, text, all, when);
+    const auto text = halt.describe(*hub, what, all, when);
+    if (!warn) halt.stop(*hub, text, all, when);
     warned |= 1 << k;
     if (comm->me == 0) error->warning(FLERR, text);
   }

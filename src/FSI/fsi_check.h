@@ -28,7 +28,9 @@ namespace FSI {
    public:
     static constexpr double OFF = 1.0e20;
 
-    Check(class LAMMPS *, FixFSI *);
+    Check(class LAMMPS *, const Scene &);
+    void before_init();       // what no run may have
+    void materials();         // every atom has one
     void init();              // of a run: what a restart file or a script has put there
     void setup();             // after the first forces
     void positions();         // before lists are built
@@ -37,7 +39,7 @@ namespace FSI {
     void after_substeps();
 
    private:
-    FixFSI *const hub;
+    const Scene &scene;
     Stop stop;
     std::vector<double> limit_sq;    // per type: of the speed
     double calm_speed, calm_kick;    // components of velocities and of their change in a step from which no limit is in reach

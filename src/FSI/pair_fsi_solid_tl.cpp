@@ -22,8 +22,8 @@
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
-#include "fsi_check.h"
 #include "fsi_contact.h"
+#include "fsi_profile.h"
 #include "fsi_viscosity_artificial.h"
 #include "memory.h"
 #include "modify.h"
@@ -511,7 +511,7 @@ void PairFSISolidTL::integrate_substeps()
       for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
   };
   hub->set_tally(dt);
-  hub->check->before_substeps(solids());
+  hub->check.before_substeps(solids());
   drift(back);
   for (int n = 0; n < substeps; n++) {
     drift(dth);
@@ -527,7 +527,7 @@ void PairFSISolidTL::integrate_substeps()
     hold(dt);
     drift(dth);
   }
-  hub->check->after_substeps();
+  hub->check.after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
   if (force->pair != this)
