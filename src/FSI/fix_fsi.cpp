@@ -19,6 +19,7 @@
 #include "error.h"
 #include "force.h"
 #include "fsi_announce.h"
+#include "fsi_kernel.h"
 #include "fsi_order.h"
 #include "fsi_part.h"
 #include "fsi_profile.h"
