@@ -156,9 +156,11 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
 
 /* ---------------------------------------------------------------------- */
 
+// numbers of an atom in the array of shifting
+
 int PairFSIFluid::nshift() const
 {
-  return 2 * hub->dim + 1;
+  return hub->dim == 2 ? Shift<2>::ROW : Shift<3>::ROW;
 }
 
 void PairFSIFluid::set_fields(Scene &scene)
@@ -176,13 +178,13 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
   if (sticks_to_solids()) to_ghosts.add(hub->wall_velocity, 0, hub->dim, {SOLID});
   if (sticks_to_solids()) back.add(beyond, 0, hub->dim + 1, {SOLID});
   if (hub->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
-  if (shifting > 0.0) back.add(hub->shift, 0, nshift(), {FLUID, RIGID});
+  if (shifting > 0.0) back.add(hub->shift, 0, 2 * hub->dim + 1, {FLUID, RIGID});
 }
 
 void PairFSIFluid::add_costs(Costs &costs) const
 {
-  const int newton = force->newton_pair, continuity = hub->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? nshift() : 0;
-  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + ns);
+  const int newton = force->newton_pair, continuity = hub->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? 2 * hub->dim + 1 : 0;
+  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
   if (sticks_to_solids()) costs.solid_ghost += hub->dim + newton * (hub->dim + 1);
