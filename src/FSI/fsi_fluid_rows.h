@@ -191,6 +191,120 @@ namespace FSI {
     return KIND == WITH_SOLID_PRESSURE ? greater(both, T(0.0)) : both;    // no suction
   }
 
+  // What is constant in a row of forces.
+  struct ForceRow {
+    double c, bulk, floor;    // speed of sound of viscosity, modulus of the guard, lowest pressure
+    double rubs, visc;        // does the wall? sum of both viscosities
+    double volume, sharper;    // of neighbours on a finer lattice
+    double extrapolate[3];     // solids: gravity, if pressures beyond them are hydrostatic
+  };
+  template <int D, int KIND, int FLAGS> FSI_INLINE ForceRow force_row(const FluidParticles &in, const ForceLaws &laws, int type_i, int type_j)
+  {
+    const State &fluid = in.state[type_i], &other = in.state[type_j];
+    ForceRow r;
+    r.c = KIND == WITH_FLUID ? 0.5 * (fluid.c + other.c) : KIND == WITH_WALL || fluid.c < other.c ? fluid.c : other.c;
+    r.bulk = fluid.rho0 * fluid.csq;
+    r.floor = fluid.floor;
+    // beyond a wall or solid with no slip there is fluid, where it slips it does not rub
+    const bool slips = KIND == WITH_FLUID ? false : KIND == WITH_WALL ? !other.noslip : laws.solids_slip;
+    r.rubs = KIND == WITH_WALL && slips ? 0.0 : 1.0;
+    r.visc = !laws.laminar || slips ? 0.0 : fluid.viscosity + (KIND == WITH_FLUID ? other : fluid).viscosity;
+    if (FLAGS & Flag::FINER) {
+      r.volume = in.share[type_j].volume;
+      r.sharper = in.share[type_j].sharper;
+    }
+    if (KIND == WITH_SOLID)
+      for (int d = 0; d < D; d++) r.extrapolate[d] = laws.extrapolate ? laws.extrapolate[type_i][d] : 0.0;
+    return r;
+  }
+
+  // Sums of a loop over rows: powers, virial.
+  template <class T> struct Powers {
+    T artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, virial[6];
+    FSI_INLINE Powers()
+    {
+      for (T &w : virial) w = 0.0;
+    }
+    template <int D> FSI_INLINE void add_virial(const T &share, const T (&x)[D], const T (&force)[D])
+    {
+      virial[0] += share * x[0] * force[0];
+      virial[1] += share * x[1] * force[1];
+      virial[3] += share * x[0] * force[1];
+      if (D == 3) {
+        virial[2] += share * x[D - 1] * force[D - 1];
+        virial[4] += share * x[0] * force[D - 1];
+        virial[5] += share * x[1] * force[D - 1];
+      }
+    }
+    FSI_INLINE void add_to(PairSums *sums) const
+    {
+      using L = Lanes<T>;
+      sums->artificial += L::sum(artificial);
+      sums->laminar += L::sum(laminar);
+      sums->coupling += L::sum(coupling);
+      sums->walls += L::sum(walls);
+      for (int k = 0; k < 6; k++) sums->virial[k] += L::sum(virial[k]);
+    }
+  };
+
+  // Adds the stress of the solid j (couple full) to the force on i; its power. It is that of the particle, not of its image, so look from the solid.
+  template <int FLAGS, int D>
+  FSI_INLINE double stress_of_solid(const double *stress, const Mirror &mirror, double v2g, const double (&x)[D], const double (&v)[D], double (&force)[D])
+  {
+    double seen[D], shear[D] = {}, power = 0.0;
+    for (int d = 0; d < D; d++) seen[d] = ((FLAGS & Flag::IMAGES) ? mirror.sign[d] : 1.0) * x[d];
+    dot<D>(Sym<D>::load(stress), seen, shear);
+    for (int d = 0; d < D; d++) {
+      const double s = ((FLAGS & Flag::IMAGES) ? mirror.sign[d] : 1.0) * shear[d] * v2g;
+      force[d] += s;
+      power += s * v[d];
+    }
+    return power;
+  }
+
+  // Adds laminar viscosity to the forces on both; what it takes from their energy, times 2 for images, which each pair meets from both sides.
+  template <class T, int KIND, int FLAGS, int D>
+  FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, const Mirror &mirror, const Particle<T, D> &pi, const Particle<T, D> &pj,
+                   const T (&velocity_of_j)[D], const int *j, double visc, const T &g, const T &rsq, const T (&x)[D], const T (&v)[D], T (&force)[D], T (&on_j)[D])
+  {
+    using L = Lanes<T>;
+    const T vv = pi.vol * pj.vol;
+    T rubbing[D], loss = 0.0;
+    for (T &r : rubbing) r = 0.0;
+    if (FLAGS & Flag::IMAGES) {
+      // of both, each relative to the other's image, which a no-slip wall turns around
+      const auto beyond = [&](int d, const T &u) __attribute__((always_inline)) { return mirror.rubbing_v[d] + mirror.rubbing_sign[d] * u; };
+      T w[D], seen[D], back[D], of_j[D];
+      for (int d = 0; d < D; d++) {
+        const T vj = KIND == WITH_FLUID ? velocity_of_j[d] : L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
+        w[d] = pi.v[d] - beyond(d, vj);
+        back[d] = vj - beyond(d, pi.v[d]);
+        seen[d] = -mirror.sign[d] * x[d];
+        of_j[d] = 0.0;
+      }
+      loss = viscous(g, rsq, visc, vv, x, w, rubbing) + viscous(g, rsq, visc, vv, seen, back, of_j);
+      if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) {
+        // the power is that of the solid's own velocity
+        loss = 0.0;
+        for (int d = 0; d < D; d++)
+          loss -= rubbing[d] * (pi.v[d] - beyond(d, velocity_of_j[d])) + of_j[d] * (velocity_of_j[d] - beyond(d, pi.v[d]));
+      }
+      for (int d = 0; d < D; d++) on_j[d] += of_j[d];
+    } else if (KIND != WITH_FLUID) {
+      // fluid beyond the wall or inside the solid, with the velocity extrapolated
+      T w[D];
+      for (int d = 0; d < D; d++) w[d] = pi.v[d] - L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
+      viscous(g, rsq, visc, vv, x, w, rubbing);
+      if (FLAGS & Flag::SUMS) loss = -product(rubbing, v);
+    } else
+      loss = viscous(g, rsq, visc, vv, x, v, rubbing);
+    for (int d = 0; d < D; d++) {
+      force[d] += rubbing[d];
+      if (!(FLAGS & Flag::IMAGES)) on_j[d] -= rubbing[d];
+    }
+    return loss;
+  }
+
   // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14)
   template <class T, class K, int KIND, int FLAGS>
   FSI_INLINE void force_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
@@ -201,27 +315,18 @@ namespace FSI {
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
     const LaminarViscosity<D> viscous(kernel.h, laws.laminar == 2);
-    T by_artificial = 0.0, by_laminar = 0.0, by_coupling = 0.0, by_walls = 0.0, virial[6], on_all[D];
-    for (T &w : virial) w = 0.0;
+    Powers<T> by;
+    T on_all[D];
     for (T &w : on_all) w = 0.0;
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i, type_j = in.type[row.j[0]];
-      const State &fluid = in.state[in.type[i]], &other = in.state[type_j];
+      const ForceRow of = force_row<D, KIND, FLAGS>(in, laws, in.type[i], type_j);
       Particle<T, D> pi(point[i]);
       // neighbours of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i of the lattices
-      const double volume = (FLAGS & Flag::FINER) ? in.share[type_j].volume : 1.0, back = 1.0 / volume;
-      const double sharper = (FLAGS & Flag::FINER) ? in.share[type_j].sharper : 0.0;
-      if (FLAGS & Flag::FINER) pi.pv2 = volume * pi.pv2;
-      const double c = KIND == WITH_FLUID ? 0.5 * (fluid.c + other.c) : KIND == WITH_WALL || fluid.c < other.c ? fluid.c : other.c, bulk = fluid.rho0 * fluid.csq, floor = fluid.floor;
-      // beyond a wall or solid with no slip there is fluid, where it slips it does not rub
-      const bool slips = KIND == WITH_FLUID ? false : KIND == WITH_WALL ? !other.noslip : laws.solids_slip;
-      const double rubs = KIND == WITH_WALL && slips ? 0.0 : 1.0;
-      const double visc = !laws.laminar || slips ? 0.0 : fluid.viscosity + (KIND == WITH_FLUID ? other : fluid).viscosity;
-      double extrapolate[3] = {};
-      if (KIND == WITH_SOLID && laws.extrapolate)
-        for (int d = 0; d < D; d++) extrapolate[d] = laws.extrapolate[in.type[i]][d];
+      const double back = (FLAGS & Flag::FINER) ? 1.0 / of.volume : 1.0;
+      if (FLAGS & Flag::FINER) pi.pv2 = of.volume * pi.pv2;
       T sum[D];
       for (T &s : sum) s = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -236,99 +341,44 @@ namespace FSI {
         if (FLAGS & Flag::IMAGES) g = weight * g;
         T pushing = g;    // of pressures
         if (FLAGS & Flag::FINER) {
-          pushing = kernel.sharper_gradient(root(rsq), sharper);
+          pushing = kernel.sharper_gradient(root(rsq), of.sharper);
           if (FLAGS & Flag::IMAGES) pushing = weight * pushing;
         }
         const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
 
         T viscous_push = 0.0;
-        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, extrapolate, floor, back);
+        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, of.extrapolate, of.floor, back);
         // beyond the compression of the fluid and, in density mode summation, of the solid
         T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
         if (FLAGS & Flag::ARTIFICIAL) {
-          T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), c, pi.vol * pj.vol);
-          if (KIND == WITH_WALL) q = rubs * q;
+          T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), of.c, pi.vol * pj.vol);
+          if (KIND == WITH_WALL) q = of.rubs * q;
           if (FLAGS & Flag::FINER) viscous_push = q * g;
           else p += q;
-          if (FLAGS & Flag::SUMS) by_artificial += share * q * g * vdotx;
+          if (FLAGS & Flag::SUMS) by.artificial += share * q * g * vdotx;
         }
         p = (FLAGS & Flag::FINER) ? -(p * pushing + viscous_push) : -p * g;
         coupled = coupled * pushing * vdotx;
 
-        T force[D];    // on i
+        T force[D], on_j[D];    // on i, on j
         for (int d = 0; d < D; d++) force[d] = p * x[d];
         if (KIND == WITH_WALL) {
           // the guard keeps out what has no pressure of its own
-          const T k = laws.guard[type_j](rsq, bulk, bulk);
+          const T k = laws.guard[type_j](rsq, of.bulk, of.bulk);
           for (int d = 0; d < D; d++) force[d] += k * x[d];
           coupled -= k * vdotx;
         }
-        if constexpr (KIND == WITH_SOLID_FULL) {
-          // the stress of the solid crosses, too: it is that of the particle, not of its image, so look from the solid
-          double seen[D], shear[D] = {};
-          for (int d = 0; d < D; d++) seen[d] = ((FLAGS & Flag::IMAGES) ? mirror.sign[d] : 1.0) * x[d];
-          if (laws.stress) dot<D>(Sym<D>::load(laws.stress[*j]), seen, shear);
-          for (int d = 0; d < D; d++) {
-            const double s = ((FLAGS & Flag::IMAGES) ? mirror.sign[d] : 1.0) * shear[d] * pj.vol * pj.vol * g;
-            force[d] += s;
-            coupled -= s * v[d];
-          }
-        }
-        if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) by_coupling += share * coupled;
-
-        T on_j[D];
+        if constexpr (KIND == WITH_SOLID_FULL)
+          if (laws.stress) coupled -= stress_of_solid<FLAGS>(laws.stress[*j], mirror, pj.vol * pj.vol * g, x, v, force);
+        if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) by.coupling += share * coupled;
         for (int d = 0; d < D; d++) on_j[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * force[d] : -force[d];
         if (FLAGS & Flag::LAMINAR) {
-          T rubbing[D];
-          for (T &r : rubbing) r = 0.0;
-          if (FLAGS & Flag::IMAGES) {
-            // of both, each relative to the other's image, which a no-slip wall turns around
-            T w[D], seen[D], back[D], of_j[D];
-            for (int d = 0; d < D; d++) {
-              const T vj = KIND == WITH_FLUID ? original.v[d] : L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
-              w[d] = pi.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * vj);
-              back[d] = vj - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * pi.v[d]);
-              seen[d] = -mirror.sign[d] * x[d];
-              of_j[d] = 0.0;
-            }
-            const T vv = pi.vol * pj.vol;
-            T loss = viscous(g, rsq, visc, vv, x, w, rubbing) + viscous(g, rsq, visc, vv, seen, back, of_j);
-            if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) {
-              // the power is that of the solid's own velocity
-              loss = 0.0;
-              for (int d = 0; d < D; d++)
-                loss -= rubbing[d] * (pi.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * original.v[d])) +
-                    of_j[d] * (original.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * pi.v[d]));
-            }
-            for (int d = 0; d < D; d++) on_j[d] += of_j[d];
-            if (FLAGS & Flag::SUMS) by_laminar += 0.5 * share * loss;
-          } else if (KIND != WITH_FLUID) {
-            // fluid beyond the wall or inside the solid, with the velocity extrapolated
-            T w[D];
-            for (int d = 0; d < D; d++) w[d] = pi.v[d] - L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
-            viscous(g, rsq, visc, pi.vol * pj.vol, x, w, rubbing);
-            if (FLAGS & Flag::SUMS) by_laminar -= share * product(rubbing, v);
-          } else {
-            const T loss = viscous(g, rsq, visc, pi.vol * pj.vol, x, v, rubbing);
-            if (FLAGS & Flag::SUMS) by_laminar += share * loss;
-          }
-          for (int d = 0; d < D; d++) {
-            force[d] += rubbing[d];
-            if (!(FLAGS & Flag::IMAGES)) on_j[d] -= rubbing[d];
-          }
+          const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, of.visc, g, rsq, x, v, force, on_j);
+          if (FLAGS & Flag::SUMS) by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * share * loss : share * loss;
         }
         // what wall particles are given: they are not in the sum of energies
-        if ((FLAGS & Flag::SUMS) && KIND == WITH_WALL) by_walls -= share * product(force, pj.v);
-        if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) {
-          virial[0] += share * x[0] * force[0];
-          virial[1] += share * x[1] * force[1];
-          virial[3] += share * x[0] * force[1];
-          if (D == 3) {
-            virial[2] += share * x[D - 1] * force[D - 1];
-            virial[4] += share * x[0] * force[D - 1];
-            virial[5] += share * x[1] * force[D - 1];
-          }
-        }
+        if ((FLAGS & Flag::SUMS) && KIND == WITH_WALL) by.walls -= share * product(force, pj.v);
+        if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) by.add_virial(share, x, force);
         for (int d = 0; d < D; d++) {
           sum[d] += force[d];
           if (FLAGS & Flag::IMAGES) on_all[d] += share * (force[d] + on_j[d]);
@@ -339,13 +389,7 @@ namespace FSI {
     }
     if (FLAGS & Flag::IMAGES)
       for (int d = 0; d < D; d++) total[d] += L::sum(on_all[d]);
-    if (FLAGS & Flag::SUMS) {
-      sums->artificial += L::sum(by_artificial);
-      sums->laminar += L::sum(by_laminar);
-      sums->coupling += L::sum(by_coupling);
-      sums->walls += L::sum(by_walls);
-      for (int k = 0; k < 6; k++) sums->virial[k] += L::sum(virial[k]);
-    }
+    if (FLAGS & Flag::SUMS) by.add_to(sums);
   }
 
   // sums of particle shifting; solids and walls count, but are not shifted
