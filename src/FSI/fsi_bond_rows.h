@@ -140,6 +140,76 @@ namespace FSI {
     return law.template operator()<D>(F, deviator);
   }
 
+  // adds a tensor, by its components, to a virial in LAMMPS' order
+  template <int D, class Component, class T> FSI_INLINE void add_virial(Component component, T *virial)
+  {
+    virial[0] += component(0, 0);
+    virial[1] += component(1, 1);
+    virial[3] += component(0, 1);
+    if (D == 3) {
+      virial[2] += component(D - 1, D - 1);
+      virial[4] += component(0, D - 1);
+      virial[5] += component(1, D - 1);
+    }
+  }
+
+  // takes t F^T from a virial
+  template <int D> FSI_INLINE void subtract_product(const double *t, const double *F, double *virial)
+  {
+    double component[D * D];
+    for (int a = 0; a < D; a++)
+      for (int c = 0; c < D; c++) {
+        component[a * D + c] = 0.0;
+        for (int k = 0; k < D; k++) component[a * D + c] -= t[a * D + k] * F[c * D + k];
+      }
+    add_virial<D>([&](int a, int c) { return component[a * D + c]; }, virial);
+  }
+
+  // takes what hourglass control adds to the derivative of the energy from t: F_i changes the straight lines that bonds are measured by
+  template <class T, int D> FSI_INLINE void subtract_hourglass(double stiffness, const T *A, const T *M, const double *F, double *t)
+  {
+    double Ai[D * D], Mi[D * D];
+    for (int a = 0; a < D; a++)
+      for (int c = 0; c < D; c++) {
+        Ai[a * D + c] = Lanes<T>::sum(A[a * D + c]);
+        if (c <= a) Mi[a * D + c] = Mi[c * D + a] = Lanes<T>::sum(M[a * D + c]);
+      }
+    for (int a = 0; a < D; a++)
+      for (int c = 0; c < D; c++) {
+        double s = Ai[a * D + c];
+        for (int k = 0; k < D; k++) s -= F[a * D + k] * Mi[k * D + c];
+        t[a * D + c] -= stiffness * s;
+      }
+  }
+
+  // adds hourglass control of a bond to the force on j; its energy
+  template <class T, int D> FSI_INLINE T straighten(double stiffness, const double *F, const Bond<T, D> &b, T (&force)[D])
+  {
+    const T k = stiffness * b.hourglass;
+    T energy = 0.0;
+    for (int a = 0; a < D; a++) {
+      T r = b.x[a];
+      for (int c = 0; c < D; c++) r -= F[a * D + c] * b.X[c];
+      force[a] -= k * r;
+      energy += 0.5 * k * r * r;
+    }
+    return energy;
+  }
+
+  // adds artificial viscosity to the force on j; what it takes from their energy
+  template <class T, int D>
+  FSI_INLINE T rub(const ArtificialViscosity &viscosity, const State &si, const State &sj, const Bond<T, D> &b, T (&force)[D])
+  {
+    T vdotx = 0.0, rsq = 0.0;
+    for (int a = 0; a < D; a++) {
+      vdotx += b.v[a] * b.x[a];
+      rsq += b.x[a] * b.x[a];
+    }
+    const T q = 0.5 * b.viscous * viscosity(vdotx, rsq, T(0.5 * (si.rho0 + sj.rho0)), 0.5 * (si.c + sj.c), T(1.0));
+    for (int a = 0; a < D; a++) force[a] -= q * b.x[a];
+    return q * vdotx;
+  }
+
   // f: rows of row_of_bond_forces(D), of local and ghost particles; laws: per type
   template <class T, class Law, int D, int FLAGS>
   FSI_INLINE void bond_rows(const std::vector<BondRow> &rows, const Law *const laws, const BondArguments in,
@@ -151,8 +221,7 @@ namespace FSI {
     // the bonds of a row as read once, kept for the second pass over them; copied, since doubles need not be where packs may be
     constexpr int SIZE = (FLAGS ? sizeof(Bond<T, D>) : sizeof(Bond<T, D>::G)) / sizeof(double);
     std::vector<double> kept;
-    T energy = 0.0, artificial = 0.0, virial[6];
-    for (T &w : virial) w = 0.0;
+    T energy = 0.0, artificial = 0.0, virial[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     for (const BondRow &row : rows) {
       const int i = row.i;
       const ArtificialViscosity viscosity(in.alpha, in.beta, row.h);
@@ -188,36 +257,10 @@ namespace FSI {
       const auto piola = evaluate<Law, D>(laws[in.type[i]], Fi, in.stress ? in.stress[i] : nullptr);
       double t[D * D];    // derivative of the energy of i with respect to F_i
       for (int k = 0; k < D * D; k++) t[k] = row.volume * piola.P[k];
-      if (FLAGS & HOURGLASS) {
-        double Ai[D * D], Mi[D * D];
-        for (int a = 0; a < D; a++)
-          for (int c = 0; c < D; c++) {
-            Ai[a * D + c] = L::sum(A[a * D + c]);
-            if (c <= a) Mi[a * D + c] = Mi[c * D + a] = L::sum(M[a * D + c]);
-          }
-        for (int a = 0; a < D; a++)
-          for (int c = 0; c < D; c++) {
-            double s = Ai[a * D + c];
-            for (int k = 0; k < D; k++) s -= Fi[a * D + k] * Mi[k * D + c];
-            t[a * D + c] -= row.stiffness * s;
-          }
-      }
+      if (FLAGS & HOURGLASS) subtract_hourglass<T, D>(row.stiffness, A, M, Fi, t);
       if (FLAGS & SUMS) {
         in.sums->energy += row.volume * piola.energy;
-        const auto component = [&](int a, int c) {
-          double s = 0.0;
-          for (int k = 0; k < D; k++) s += t[a * D + k] * Fi[c * D + k];
-          return s;
-        };
-        double *const w = in.sums->virial;
-        w[0] -= component(0, 0);
-        w[1] -= component(1, 1);
-        w[3] -= component(0, 1);
-        if (D == 3) {
-          w[2] -= component(D - 1, D - 1);
-          w[4] -= component(0, D - 1);
-          w[5] -= component(1, D - 1);
-        }
+        subtract_product<D>(t, Fi, in.sums->virial);
       }
 
       const State &si = in.state[in.type[i]];
@@ -235,42 +278,15 @@ namespace FSI {
           extra[a] = 0.0;
         }
         if (FLAGS & HOURGLASS) {
-          const T kr = row.stiffness * b.hourglass;
-          for (int a = 0; a < D; a++) {
-            T r = b.x[a];
-            for (int c = 0; c < D; c++) r -= Fi[a * D + c] * b.X[c];
-            extra[a] -= kr * r;
-            if (FLAGS & SUMS) energy += 0.5 * kr * r * r;
-          }
+          const T stored = straighten(row.stiffness, Fi, b, extra);
+          if (FLAGS & SUMS) energy += stored;
         }
         if (FLAGS & VISCOSITY) {
-          T vdotx = 0.0, rsq = 0.0;
-          for (int a = 0; a < D; a++) {
-            vdotx += b.v[a] * b.x[a];
-            rsq += b.x[a] * b.x[a];
-          }
-          T rho = si.rho0;
-          double c = si.c;
-          if (!in.one_material) {
-            // one by one, since the speed of sound is a number
-            const State &sj = in.state[in.type[*partner]];
-            rho = 0.5 * (si.rho0 + sj.rho0);
-            c = 0.5 * (si.c + sj.c);
-          }
-          const T q = 0.5 * b.viscous * viscosity(vdotx, rsq, rho, c, T(1.0));
-          for (int a = 0; a < D; a++) extra[a] -= q * b.x[a];
-          if (FLAGS & SUMS) artificial += q * vdotx;
+          // with several materials one by one, since the speed of sound is a number
+          const T loss = rub(viscosity, si, in.one_material ? si : in.state[in.type[*partner]], b, extra);
+          if (FLAGS & SUMS) artificial += loss;
         }
-        if (FLAGS & SUMS) {
-          virial[0] += b.x[0] * extra[0];
-          virial[1] += b.x[1] * extra[1];
-          virial[3] += b.x[0] * extra[1];
-          if (D == 3) {
-            virial[2] += b.x[D - 1] * extra[D - 1];
-            virial[4] += b.x[0] * extra[D - 1];
-            virial[5] += b.x[1] * extra[D - 1];
-          }
-        }
+        if (FLAGS & SUMS) add_virial<D>([&](int a, int c) __attribute__((always_inline)) { return b.x[a] * extra[c]; }, virial);
         for (int a = 0; a < D; a++) {
           if (FLAGS) force[a] += extra[a];
           sum[a] += force[a];

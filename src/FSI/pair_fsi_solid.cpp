@@ -617,12 +617,9 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       }
       double tx[D];
       dot<D>(t, xij, tx);
-      if constexpr (TERMS > 0) {
-        if (!(FLAGS & BODIES) || molecule[i] == molecule[j]) {
-          const double wi = rmass[j] / state[type[j]].rho0, wj = rmass[i] / state[type[i]].rho0;    // times -g
-          subtract_corrected<D, TERMS>(ai, aj, wi, wj, xij, kernel.hinv, tx);
-        }
-      }
+      if constexpr (TERMS > 0)
+        if (!(FLAGS & BODIES) || molecule[i] == molecule[j])
+          subtract_corrected<D, TERMS>(ai, aj, rmass[j] / state[type[j]].rho0, rmass[i] / state[type[i]].rho0, xij, kernel.hinv, tx);
       if (FLAGS & LEDGER) {
         double power = 0.0;
         for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (v[i][d] - v[j][d]);
