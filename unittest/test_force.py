@@ -65,6 +65,31 @@ def test_held_particles(dim):
                 np.testing.assert_allclose(get(s, name), expected, rtol=1e-11, atol=1e-11 * np.abs(s.get("f")).sum())
 
 
+@pytest.mark.parametrize("couple", ("", "couple full", "couple pressure"))
+@pytest.mark.parametrize("dim", (2, 3))
+def test_split(dim, couple):
+    """What viscosity gives solids and wall particles is what they get less when the same scene has none; a group of both gets the sum."""
+    x, v, solid = immersed(dim)
+    wall = ~solid & (x[:, 0] > 0.75)
+    kind, found = np.where(wall, 3, 1 + solid), []
+    for viscosity in ("artificial/visc 0.1 0.1 laminar/visc", ""):
+        with Scene(x, v, dim=dim, dx=DX, type=kind, mol=kind, materials=(WATER + " viscosity 100", RUBBER, "wall rho 1000"), held=solid | wall,
+                   fluid=f"{viscosity} {couple}", solid_style="fsi/solid" if couple else "fsi/solid/tl", solid="gradient plain" if couple else "",
+                   commands=["group body type 2", "group wall type 3", "group both type 2 3", "fix wall wall fsi/wall/particle slip no",
+                             "fix w all fsi/wall/mirror xlo 0 ylo 0 slip no", *(f"compute {g} {g} fsi/force split yes" for g in ("body", "wall", "both"))]) as s:
+            s.put("rho", np.where(solid, 1000.0, 1010.0))
+            s.run()
+            np.testing.assert_allclose(get(s, "wall")[:dim], s.get("f")[wall][:, :dim].sum(axis=0), rtol=1e-11)  # nothing else acts on them
+            found.append({g: get(s, g).reshape(2, 6) for g in ("body", "wall", "both")})
+    with_it, without = found
+    for group, (total, viscous) in with_it.items():
+        size = np.abs(total).max()
+        assert np.abs(viscous[:2]).min() > 1e-4 * size
+        np.testing.assert_allclose(total - viscous, without[group][0], rtol=1e-11, atol=1e-11 * size)
+        assert not without[group][1].any()
+    np.testing.assert_allclose(with_it["both"][:, :3], with_it["body"][:, :3] + with_it["wall"][:, :3], rtol=1e-11)
+
+
 def test_torque_of_a_moving_body():
     """Internal forces of a total-Lagrangian body have no torque: that of all its forces is the fluid's."""
     x, v, solid = immersed(2)
@@ -123,7 +148,7 @@ def test_ranks_newton_substeps(tmp_path, dim, solid):
         scene.walls, scene.gravity = [], 1e-9 * scene.gravity
         text = scene.text(grid) + """group water type 1
 group body type 2
-compute force body fsi/force
+compute force body fsi/force split yes
 compute reaction water reduce sum fx fy fz
 thermo_style custom step c_force[*] c_reaction[*]
 thermo_modify format float %.17g
@@ -131,9 +156,9 @@ run 50
 """
         result = run(tmp_path / name, text, ranks, scene_data=scene.data())
         rows = [line.split() for line in result.output.splitlines()]
-        answers[name] = rows = np.array([row for row in rows if len(row) == 10 and row[0].isdigit()], float)
+        answers[name] = rows = np.array([row for row in rows if len(row) == 16 and row[0].isdigit()], float)
         assert list(rows[:, 0]) == [0, 50]
-        assert np.abs(rows[:, 1:4] + rows[:, 7:]).max() < 1e-8 * np.abs(rows[:, 1:4]).max()
+        assert np.abs(rows[:, 1:4] + rows[:, 13:]).max() < 1e-8 * np.abs(rows[:, 1:4]).max()
     for rows in answers.values():
-        np.testing.assert_allclose(rows[0, :7], answers["1"][0, :7], rtol=1e-11, atol=1e-11 * np.abs(rows).max())
-        np.testing.assert_allclose(rows[:, :7], answers["1"][:, :7], rtol=1e-8, atol=1e-8 * np.abs(rows).max())
+        np.testing.assert_allclose(rows[0, :13], answers["1"][0, :13], rtol=1e-11, atol=1e-11 * np.abs(rows).max())
+        np.testing.assert_allclose(rows[:, :13], answers["1"][:, :13], rtol=1e-8, atol=1e-8 * np.abs(rows).max())

@@ -63,9 +63,9 @@ ComputeFSIAtom::~ComputeFSIAtom()
 void ComputeFSIAtom::init()
 {
   hub = FixFSI::find(lmp, "Compute fsi/atom");
-  auto stress = modify->get_fix_by_style("^fsi/stress$");
+  const auto *const stress = FixFSIStress::find(lmp);
   if (std::find(quantity.begin(), quantity.end(), PLASTIC) != quantity.end() &&
-      (stress.empty() || !dynamic_cast<FixFSIStress *>(stress[0])->plastic))
+      (!stress || !stress->plastic))
     error->all(FLERR, "Compute fsi/atom plastic/strain requires fix fsi/stress plastic");
 }
 
@@ -89,12 +89,11 @@ void ComputeFSIAtom::compute_peratom()
   if (std::find(quantity.begin(), quantity.end(), PSI) != quantity.end()) {
     psi.resize(atom->nmax);
     comm->forward_comm();    // ghosts still stand where they were in the middle of the step
-    hub->number_density(psi.data());
+    hub->number_density.find(psi.data());
   }
-  auto *const solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1));
+  auto *const solid_tl = PairFSISolidTL::find(lmp);
   if (solid_tl) solid_tl->forward_positions();    // likewise
-  const auto stress_fixes = modify->get_fix_by_style("^fsi/stress$");
-  fix_stress = stress_fixes.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress_fixes[0]);
+  fix_stress = FixFSIStress::find(lmp);
   const auto has_stress = [this](int i) { return hub->state[atom->type[i]].form == UPDATED_LAGRANGIAN; };
 
   const int *const mask = atom->mask;

@@ -18,7 +18,6 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
-#include "modify.h"
 #include "pair_fsi_solid_tl.h"
 #include "update.h"
 
@@ -87,8 +86,7 @@ void ComputeFSIEnergy::compute_vector()
   double **f = atom->f;
   // in the setup of a run positions and velocities are of one time
   const double half = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
-  const auto stress_fixes = modify->get_fix_by_style("^fsi/stress$");
-  const auto *const stress = stress_fixes.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress_fixes[0]);
+  const auto *const stress = FixFSIStress::find(lmp);
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = hub->state[atom->type[i]];
     if (s.species == RIGID) continue;    // what it gets is in the term of walls
@@ -107,7 +105,7 @@ void ComputeFSIEnergy::compute_vector()
     mine[2] += hub->stored(i);
     if (s.form == UPDATED_LAGRANGIAN) mine[3] += stress->shear_energy(i, s.shear);
   }
-  if (const auto *solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1))) mine[3] += solid_tl->strain_energy;
+  if (const auto *solid_tl = PairFSISolidTL::find(lmp)) mine[3] += solid_tl->strain_energy;
   for (int k = 0; k < FixFSI::NTERM; k++) mine[NHAVE + k] = hub->taken[k];
   MPI_Allreduce(mine, vector, size_vector, MPI_DOUBLE, MPI_SUM, world);
 }

@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_keywords.h"
 #include "update.h"
 
 #include <algorithm>
@@ -28,9 +29,11 @@ using namespace LAMMPS_NS;
 
 ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), sum{}, about{}, reduced(false), hub(nullptr)
 {
-  if (narg != 3) error->all(FLERR, "Compute fsi/force takes no arguments");
+  FSI::Keywords keywords(lmp, "compute fsi/force");
+  keywords.key("split").logical(split, false);
+  keywords.parse(narg - 3, arg + 3);
   vector_flag = 1;
-  size_vector = 6;
+  size_vector = split ? 12 : 6;
   extvector = 1;
   vector = new double[size_vector];
 }
@@ -50,6 +53,14 @@ void ComputeFSIForce::init()
   if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Compute fsi/force requires pair_style fsi/fluid");
 }
 
+/* ---------------------------------------------------------------------- */
+
+bool ComputeFSIForce::counts(int i) const
+{
+  const int species = hub->state[atom->type[i]].species;
+  return (atom->mask[i] & groupbit) && (species == FSI::SOLID || species == FSI::RIGID);
+}
+
 /* ----------------------------------------------------------------------
    a point inside the body: where its first particle is; later its centre of mass when it was last asked for
 ------------------------------------------------------------------------- */
@@ -59,7 +70,7 @@ void ComputeFSIForce::find_body()
   tagint mine = MAXTAGINT, first;
   double place[3] = {};
   for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && hub->state[atom->type[i]].species == FSI::SOLID && atom->tag[i] < mine) {
+    if (counts(i) && atom->tag[i] < mine) {
       mine = atom->tag[i];
       std::copy_n(atom->x[i], 3, place);
     }
@@ -73,6 +84,20 @@ void ComputeFSIForce::find_body()
    Lever arms are those of the nearest periodic image, from a point inside the body.
 ------------------------------------------------------------------------- */
 
+void ComputeFSIForce::add(int i, const double *f, double sign, int where)
+{
+  double r[3];
+  for (int d = 0; d < 3; d++) r[d] = atom->x[i][d] - about[d];
+  domain->minimum_image(r);
+  const int dim = hub->dim;
+  for (int d = 0; d < 3; d++) {
+    const int a = (d + 1) % 3, b = (d + 2) % 3;
+    if (d < dim) sum[where + d] += sign * f[d];
+    if (d == 2 || dim == 3) sum[where + 3 + d] += sign * (r[a] * f[b] - r[b] * f[a]);
+    if (where == FORCE && sign < 0.0 && i < atom->nlocal) sum[MOMENT + d] += atom->rmass[i] * r[d];
+  }
+}
+
 void ComputeFSIForce::tally(double sign)
 {
   const int nlocal = atom->nlocal, nall = nlocal + (force->newton_pair ? atom->nghost : 0);
@@ -82,19 +107,17 @@ void ComputeFSIForce::tally(double sign)
     reduced = false;
   }
   for (int i = 0; i < nall; i++) {
-    if (!(atom->mask[i] & groupbit) || hub->state[atom->type[i]].species != FSI::SOLID) continue;
-    const double *const f = atom->f[i];
-    double r[3];
-    for (int d = 0; d < 3; d++) r[d] = atom->x[i][d] - about[d];
-    domain->minimum_image(r);
-    for (int d = 0; d < 3; d++) {
-      const int a = (d + 1) % 3, b = (d + 2) % 3;
-      sum[FORCE + d] += sign * f[d];
-      sum[TORQUE + d] += sign * (r[a] * f[b] - r[b] * f[a]);
-      if (sign < 0.0 && i < nlocal) sum[MOMENT + d] += atom->rmass[i] * r[d];
-    }
+    if (!counts(i)) continue;
+    add(i, atom->f[i], sign, FORCE);
     if (sign < 0.0 && i < nlocal) sum[MASS] += atom->rmass[i];
   }
+}
+
+void ComputeFSIForce::tally_viscosity(const double *forces, int row)
+{
+  const int nall = atom->nlocal + (force->newton_pair ? atom->nghost : 0);
+  for (int i = 0; i < nall; i++)
+    if (counts(i)) add(i, forces + (size_t) i * row, 1.0, VISCOUS);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -107,13 +130,16 @@ void ComputeFSIForce::compute_vector()
   reduced = true;
   double all[NSUM];
   MPI_Allreduce(sum, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
-  for (int d = 0; d < 3; d++) {
-    const int a = (d + 1) % 3, b = (d + 2) % 3;
-    vector[d] = all[FORCE + d];
-    vector[3 + d] = all[TORQUE + d];
-    if (all[MASS] > 0.0) vector[3 + d] -= (all[MOMENT + a] * all[FORCE + b] - all[MOMENT + b] * all[FORCE + a]) / all[MASS];
+  for (int k = 0; k < size_vector; k += 6) {
+    const double *const f = all + k;
+    for (int d = 0; d < 3; d++) {
+      const int a = (d + 1) % 3, b = (d + 2) % 3;
+      vector[k + d] = f[d];
+      vector[k + 3 + d] = f[3 + d];
+      if (all[MASS] > 0.0) vector[k + 3 + d] -= (all[MOMENT + a] * f[b] - all[MOMENT + b] * f[a]) / all[MASS];
+    }
   }
-  if (all[MASS] == 0.0) return;    // no solid particle in the group
+  if (all[MASS] == 0.0) return;    // no such particle in the group
   for (int d = 0; d < 3; d++) about[d] += all[MOMENT + d] / all[MASS];
   domain->remap(about);
 }

@@ -75,7 +75,7 @@ void ComputeFSISurfaceAtom::compute_peratom()
   comm->forward_comm();    // ghosts still stand where they were in the middle of the step
   double limit;
   if (rule == NUMBER_DENSITY) {
-    hub->number_density(sum.data());
+    hub->number_density.find(sum.data());
     limit = threshold * hub->psi_bulk;
   } else {
     std::fill(sum.begin(), sum.end(), 0.0);

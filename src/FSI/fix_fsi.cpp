@@ -19,11 +19,11 @@
 #include "error.h"
 #include "force.h"
 #include "fsi_announce.h"
-#include "fsi_check.h"
 #include "fsi_kernel.h"
 #include "fsi_lattice.h"
 #include "fsi_order.h"
 #include "fsi_part.h"
+#include "fsi_profile.h"
 #include "fsi_record.h"
 #include "group.h"
 #include "modify.h"
@@ -43,10 +43,9 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), keywords(lmp, "fix fsi"), psi(nullptr), shift(nullptr), wmask(nullptr), ledger(false), taken{},
-    wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), body_forces(lmp), profile(nullptr), check(nullptr), stagger(0.0),
-    surface_ratio(0.0), surface_max(false), forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr), ratio(nullptr),
-    tally_dt(0.0), need_psi(false), keep_psi(false), send_psi(true), states_entered(false), nlocal_ready(-1), ids_checked(false)
+    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this),
+    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), states_entered(false), nlocal_ready(-1), ids_checked(false),
+    forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -72,24 +71,14 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     wdx = k.W(dx);
     w0 = k.W(0.0);
   });
-  state.resize(atom->ntypes + 1);
-  check = new Check(lmp, this);
 
   time_integrate = 1;
   force_reneighbor = 1;
   create_attribute = 1;
   restart_global = 1;
-  keep_psi = surface_every > 1 && density_fluid == CONTINUITY && density_solid == CONTINUITY;
   set_fields();
   register_fields();
   comm_reverse = 1;    // more with solids, see init()
-}
-
-/* ---------------------------------------------------------------------- */
-
-FixFSI::~FixFSI()
-{
-  delete check;
 }
 
 /* ----------------------------------------------------------------------
@@ -98,17 +87,15 @@ FixFSI::~FixFSI()
 
 void FixFSI::set_fields()
 {
-  const bool ratios = density_fluid == RATIO || density_solid == RATIO;
   const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
-  fields.set("reference of ratio", Fields::FILE, ratios, ratio);
-  fields.set("number density", keep_psi ? Fields::FILE : Fields::STEP, keep_psi || need_psi, psi);
+  number_density.set_fields(fields);
   fields.set("walls near", Fields::STEP, walls.any(), wmask);
   fields.set("wall velocity", Fields::STEP, noslip_walls, wall_velocity, 3);
   fields.set("wall stiffness", Fields::STEP, particle_walls && several_stiffnesses(), wall_stiffness);
 
   forward.clear();
   forward.add(atom->rho, {NONE, FLUID, SOLID, RIGID});
-  if (need_psi) forward.add(psi, {NONE, FLUID, SOLID, RIGID}, &send_psi);
+  number_density.add_messages(forward);
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
   scalar_back.clear();
@@ -147,29 +134,11 @@ int FixFSI::setmask()
 
 void FixFSI::init()
 {
-  if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
-  if (update->whichflag == 2)
-    error->all(FLERR, "Fix fsi does not support minimize: there is no energy of all particles; run with fix viscous or artificial/visc to a state of rest");
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "Fix fsi does not support run_style respa");
-  if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
-  if (comm->cutghostuser > 0.0 && comm->cutghostuser < cut)
-    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", cut, comm->cutghostuser);
-  if (domain->dimension != dim)
-    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", dim, domain->dimension);
-  if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
-
-  const bool solid = force->pair_match("fsi/solid", 1), solid_tl = force->pair_match("fsi/solid/tl", 1);
-  if (!solid && !solid_tl && !force->pair_match("fsi/fluid", 1))
-    error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
-  if (substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
-  if (solid_tl && density_solid != CONTINUITY)
-    error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
-
+  check.before_init();
   stagger = 0.0;
   nlocal_ready = -1;
   states_entered = false;
-  restore_clock();
+  clock.restore();
   find_parts();
   profile = nullptr;
   shift = nullptr;
@@ -180,7 +149,6 @@ void FixFSI::init()
     p->set_fields(*this);
   }
   gather_walls();
-  need_psi = density_fluid != CONTINUITY || surface_ratio > 0.0 || (solid && density_solid != CONTINUITY);
   set_fields();
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
@@ -188,27 +156,19 @@ void FixFSI::init()
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
-  const auto particle_walls = modify->get_fix_by_style("^fsi/wall/particle$");
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (state[atom->type[i]].species == NONE)
-      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i],
-                 atom->type[i]);
-    if (state[atom->type[i]].species == RIGID &&
-        std::none_of(particle_walls.begin(), particle_walls.end(), [&](const Fix *fix) { return atom->mask[i] & fix->groupbit; }))
-      error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
-    give_defaults(i);
-  }
-  body_forces.find(*this);
-  check->init();
+  check.materials();
+  for (int i = 0; i < atom->nlocal; i++) give_defaults(i);
+  body_forces.find(state);
+  check.init();
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixFSI::setup(int)
 {
-  clock.reset();
+  clock.forget();
   announce(lmp, *this);
-  check->setup();
+  check.setup();
 }
 
 /* ----------------------------------------------------------------------
@@ -221,16 +181,6 @@ void FixFSI::give_defaults(int i)
   if (s.species == NONE) return;    // before init()
   if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / psi_bulk;
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool FixFSI::is_moved(int i) const
-{
-  if (atom->mask[i] & groupbit) return true;
-  for (auto &fix : modify->get_fix_list())
-    if (fix->time_integrate && atom->mask[i] & fix->groupbit) return true;
-  return false;
 }
 
 /* ----------------------------------------------------------------------
@@ -257,20 +207,6 @@ void FixFSI::find_parts()
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
 }
 
-/* ---------------------------------------------------------------------- */
-
-bool FixFSI::several_stiffnesses() const
-{
-  double first = 0.0;
-  for (const auto &s : state) {
-    if (s.species != FLUID) continue;
-    const double K = s.rho0 * s.csq;
-    if (first == 0.0) first = K;
-    else if (std::abs(K - first) > 1.0e-12 * first) return true;
-  }
-  return false;
-}
-
 /* ----------------------------------------------------------------------
    one list of walls from all fixes fsi/wall/mirror
 ------------------------------------------------------------------------- */
@@ -283,13 +219,6 @@ void FixFSI::gather_walls()
   if (walls.wall.size() > Walls::MAXWALL)
     error->all(FLERR, "There are {} mirror walls, more than the {} supported", walls.wall.size(), Walls::MAXWALL);
   walls.find_reflections();
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSI::add_wall_force(int wall, int axis, double f)
-{
-  wall_forces[wall][axis] -= f;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -315,7 +244,7 @@ bool FixFSI::fresh_start() const
 
 void FixFSI::pre_exchange()
 {
-  check->positions();
+  check.positions();
   if (!fresh_start()) return;
   domain->pbc();
   if (domain->box_change) {
@@ -364,7 +293,7 @@ void FixFSI::pre_force(int)
 
 void FixFSI::final_integrate()
 {
-  check->before_kick();
+  check.before_kick();
   if (substeps > 1)
     for (auto *p : parts) p->integrate_substeps();
   dim == 2 ? kick<2>() : kick<3>();
@@ -402,7 +331,8 @@ void FixFSI::update_state(bool advance)
   nlocal_ready = atom->nlocal;
 
   tally_dt = (ledger && advance) ? update->dt : 0.0;
-  body_forces.evaluate(*this, advance);
+  body_forces.evaluate();
+  if (ledger && advance) taken[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);
   for (auto *p : parts) p->begin_state(advance);
   if (walls.any()) {
@@ -420,51 +350,10 @@ void FixFSI::update_state(bool advance)
   for (auto *p : parts) sums = p->add_rates(advance) || sums;
   if (sums && force->newton_pair) reverse_comm(profile, comm, this);
   for (auto *p : parts) p->advance(advance);
-  send_psi = need_psi && (!keep_psi || !advance || neighbor->ago == 0);    // or to new ghosts
-  if (need_psi && psi_is_due(advance)) {
-    phase.next(Profile::DENSITY);
-    number_density(psi);
-    send_psi = true;
-  }
-  if (send_psi) {
-    psi_reference = psi_bulk;
-    if (surface_max) {
-      double mine = 0.0;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (state[atom->type[i]].species == FLUID && psi[i] > mine) mine = psi[i];
-      MPI_Allreduce(&mine, &psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
-    }
-    if (density_fluid != CONTINUITY || density_solid != CONTINUITY) density_from_psi();
-  }
+  number_density.renew(advance);
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
   forward_comm(profile, comm, this);
   for (auto *p : parts) p->end_state(advance);
-}
-
-/* ----------------------------------------------------------------------
-   setup goes on with what was kept, as a run must that goes on from a restart file
-------------------------------------------------------------------------- */
-
-bool FixFSI::psi_is_due(bool advance) const
-{
-  if (!keep_psi) return true;
-  if (advance) return update->ntimestep % surface_every == 0;
-  int mine = std::count(psi, psi + atom->nlocal, 0.0), all;
-  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
-  return all > 0;
-}
-
-/* ----------------------------------------------------------------------
-   number density psi_i = sum_j W_ij, self included (paper eq. 8): over all neighbours for a fluid; for a solid over
-   its own body, and over all neighbours in density mode summation, the paper's
-------------------------------------------------------------------------- */
-
-void FixFSI::number_density(double *n)
-{
-  memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
-  for (int i = 0; i < atom->nlocal; i++) n[i] = w0;
-  for (auto *p : parts) p->add_number_density(n, density_solid == SUMMATION);
-  add_ghosts(n);
 }
 
 /* ----------------------------------------------------------------------
@@ -476,53 +365,6 @@ void FixFSI::add_ghosts(double *n)
   summed = n;
   if (force->newton_pair) reverse_comm(profile, comm, this);
   summed = nullptr;
-}
-
-/* ---------------------------------------------------------------------- */
-
-double FixFSI::pressure(int i) const
-{
-  const State &s = state[atom->type[i]];
-  if (s.species == FLUID && surface_ratio > 0.0 && psi[i] <= surface_ratio * psi_reference) return 0.0;
-  if (s.species == RIGID && wall_stiffness) return std::max(s.floor, s.p0 + wall_stiffness[i] * (atom->rho[i] / s.rho0 - 1.0));
-  return s.pressure(atom->rho[i]);
-}
-
-/* ----------------------------------------------------------------------
-   summation: rho_i = m_i psi_i (paper eq. 12)
-   ratio: rho_i = rho_i^0 psi_i/psi_i^0 with the reference taken when the mode starts
-------------------------------------------------------------------------- */
-
-void FixFSI::density_from_psi()
-{
-  double *rho = atom->rho;
-  const double *const rmass = atom->rmass;
-  const int *const type = atom->type;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (state[type[i]].species == RIGID) continue;
-    const int mode = state[type[i]].species == FLUID ? density_fluid : density_solid;
-    if (mode == SUMMATION) rho[i] = rmass[i] * psi[i];
-    else if (mode == RATIO) {
-      if (ratio[i] == 0.0) ratio[i] = rho[i] / psi[i];
-      rho[i] = ratio[i] * psi[i];
-    }
-  }
-}
-
-/* ----------------------------------------------------------------------
-   energies of the ledger
-------------------------------------------------------------------------- */
-
-double FixFSI::potential(int i) const
-{
-  const double *x = atom->x[i];
-  const auto g = body_forces.on(i);
-  return -atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
-}
-
-double FixFSI::stored(int i) const
-{
-  return atom->rmass[i] * state[atom->type[i]].energy(atom->rho[i]);
 }
 
 /* ----------------------------------------------------------------------
@@ -572,9 +414,7 @@ void FixFSI::write_restart(FILE *fp)
   MPI_Allreduce(taken, all, NTERM, MPI_DOUBLE, MPI_SUM, world);
   Record record(lmp, "fix fsi");
   keywords.write(record);
-  record.add("step", std::to_string(update->ntimestep));
-  record.add("clock's step", std::to_string(update->atimestep));
-  record.add("clock", std::vector<double>{update->dt, update->atime});
+  clock.write(record);
   if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
   fields.write(record);
   record.write(fp);
@@ -590,33 +430,10 @@ void FixFSI::restart(char *buf)
   if (other_kernel) fields.read(record, {"reference of ratio", "number density"});
   else fields.read(record);
 
-  const auto at = record.numbers("clock");
-  clock = Clock{std::stoll(record.value("step")), std::stoll(record.value("clock's step")), at[0], at[1]};
+  clock.read(record);
   if (record.has("ledger") && comm->me == 0) {
     const auto terms = record.numbers("ledger");
     std::copy_n(terms.begin(), std::min(terms.size(), (size_t) NTERM), taken);
-  }
-}
-
-/* ----------------------------------------------------------------------
-   LAMMPS counts time from a step on, and forgets that step at each init: in a run that goes on without a timestep command the time
-   since then is lost. With the numbers of the file it is that of the uninterrupted run, bit for bit. Where a command has set another
-   time or step, that holds.
-------------------------------------------------------------------------- */
-
-void FixFSI::restore_clock()
-{
-  if (!clock) return;
-  const Clock &c = *clock;
-  const double elapsed = c.time + (c.step - c.first_step) * c.dt, now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
-  const bool forgotten = update->atime == c.time || std::fabs(now - elapsed) <= 1.0e-12 * std::fabs(elapsed);
-  if (update->ntimestep != c.step || !forgotten) return;
-  if (update->dt == c.dt) {
-    update->atime = c.time;
-    update->atimestep = c.first_step;
-  } else {
-    update->atime = elapsed;
-    update->atimestep = c.step;
   }
 }
 

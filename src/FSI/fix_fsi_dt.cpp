@@ -112,7 +112,7 @@ void FixFSIDt::init()
       if (fix == this) break;
       fix->reset_dt();
     }
-    hub->restore_clock();
+    hub->clock.restore();
   }
 }
 
@@ -218,7 +218,7 @@ void FixFSIDt::start_step()
 
 void FixFSIDt::find_limits()
 {
-  limits.find(hub, groupbit, force->pair_match("fsi/solid/tl", 1) && (automatic || hub->substeps > 1), of_fluid, of_solid);
+  limits.find(*hub, groupbit, force->pair_match("fsi/solid/tl", 1) && (automatic || hub->substeps > 1), of_fluid, of_solid);
   limits.reduce();
   std::copy_n(limits.step, NLIMIT, step);
   std::copy_n(limits.sub, NLIMIT, sub);

@@ -214,7 +214,7 @@ void FixFSIReport::sample()
   samples++;
   sampled = update->ntimestep;
   collected = -1;
-  limits.find(hub, groupbit, hub->substeps > 1);
+  limits.find(*hub, groupbit, hub->substeps > 1);
   for (int k = 0; k < Limits::NLIMIT; k++)
     for (const bool sub : {false, true}) {
       const double limit = sub ? limits.sub[k] : limits.step[k];
@@ -225,7 +225,7 @@ void FixFSIReport::sample()
     }
 
   double **v = atom->v;
-  const auto *const solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1));
+  const auto *const solid_tl = PairFSISolidTL::find(lmp);
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = hub->state[atom->type[i]];
     if (s.species == RIGID) continue;

@@ -49,6 +49,14 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
 
 /* ---------------------------------------------------------------------- */
 
+FixFSIStress *FixFSIStress::find(LAMMPS *lmp)
+{
+  auto fixes = lmp->modify->get_fix_by_style("^fsi/stress$");
+  return fixes.empty() ? nullptr : dynamic_cast<FixFSIStress *>(fixes[0]);
+}
+
+/* ---------------------------------------------------------------------- */
+
 void FixFSIStress::choose_fields()
 {
   Pair *const pair = force->pair ? force->pair_match("^fsi/solid$", 0) : nullptr;

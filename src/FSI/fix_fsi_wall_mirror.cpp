@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_keywords.h"
+#include "fsi_profile.h"
 #include "fsi_record.h"
 #include "pair.h"
 #include "update.h"

@@ -21,6 +21,7 @@
 #include "fix_store_atom.h"
 #include "force.h"
 #include "fsi_kernel.h"
+#include "fsi_profile.h"
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
@@ -120,9 +121,9 @@ void FixFSIWallParticle::init()
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSIWallParticle::set_fields(FixFSI &fsi)
+void FixFSIWallParticle::set_fields(Scene &scene)
 {
-  fsi.noslip_walls = fsi.noslip_walls || !slip;
+  scene.noslip_walls = scene.noslip_walls || !slip;
 }
 
 void FixFSIWallParticle::add_costs(Costs &costs) const

@@ -53,7 +53,7 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   double memory_usage() override;
 
   int slip;
-  void set_fields(FixFSI &) override;
+  void set_fields(FSI::Scene &) override;
   void end_state(bool advance) override;    // the fluid's densities and the positions are those at which forces are computed
   void add_costs(Costs &) const override;
 

@@ -109,7 +109,7 @@ void FixFSIWatch::init()
   auto dt = modify->get_fix_by_style("^fsi/dt$");
   fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
   if (fix_dt && !fix_dt->chooses()) fix_dt = nullptr;
-  solid_tl = dynamic_cast<PairFSISolidTL *>(force->pair_match("fsi/solid/tl", 1));
+  solid_tl = PairFSISolidTL::find(lmp);
   const auto &file = halt.restart_file;
   for (auto &fix : modify->get_fix_by_style("^fsi/watch$"))
     if (fix != this && static_cast<FixFSIWatch *>(fix)->halt.restart_file == file && !file.empty())
@@ -224,7 +224,7 @@ void FixFSIWatch::look(Stop::When when)
   if (distances) {
     double smallest = BIG;
     for (const char *style : {"^fsi/fluid", "^fsi/solid"}) {
-        const Pair *const pair = force->pair_match(style, 0);
+      const Pair *const pair = force->pair_match(style, 0);
       if (!pair || !pair->list) continue;
       const NeighList *const list = pair->list;
       for (int ii = 0; ii < list->inum; ii++) {
@@ -276,8 +276,8 @@ void FixFSIWatch::judge(Stop::When when)
     all.trouble = q;
     all.value = seen[q];
     const auto what = fmt::format("{} {:.4g} is {} the limit {:g}", about[q].what, all.value, q == DISTANCE ? "below" : "above", allowed(q));
-    const auto text = halt.describe(hub, what, all, when);
-    if (!warn) halt.stop(hub, text, all, when);
+    const auto text = halt.describe(*hub, what, all, when);
+    if (!warn) halt.stop(*hub, text, all, when);
     warned |= 1 << k;
     if (comm->me == 0) error->warning(FLERR, text);
   }

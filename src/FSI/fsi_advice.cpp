@@ -17,10 +17,11 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_fsi.h"
+#include "fix.h"
 #include "force.h"
 #include "fsi_lattice.h"
 #include "fsi_limits.h"
+#include "fsi_scene.h"
 #include "group.h"
 #include "math_eigen.h"
 #include "modify.h"
@@ -115,7 +116,7 @@ class Cells {
 
 class Adviser : protected Pointers {
  public:
-  Adviser(LAMMPS *lmp, const FixFSI &hub) : Pointers(lmp), hub(hub), present(atom->ntypes + 1, 0)
+  Adviser(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), present(atom->ntypes + 1, 0)
   {
     std::vector<int> mine(present.size(), 0);
     for (int i = 0; i < atom->nlocal; i++)
@@ -127,7 +128,7 @@ class Adviser : protected Pointers {
   {
     units();
     box();
-    const Cells cells(atom->x, atom->nlocal + atom->nghost, hub.dim, 1.25 * hub.dx);
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * scene.dx);
     if (spacing(cells) && pair("^fsi/solid")) {
       thickness();
       rows();
@@ -138,11 +139,11 @@ class Adviser : protected Pointers {
       speeds();
     }
     if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
-    if (hub.substeps > 1) held_forces();
+    if (scene.substeps > 1) held_forces();
   }
 
  private:
-  const FixFSI &hub;
+  const Scene &scene;
   std::vector<int> present;    // types that are fluid or move, on any rank
 
   // a pair style that there may be, and its settings
@@ -153,9 +154,9 @@ class Adviser : protected Pointers {
     return *static_cast<T *>(pair(style)->extract(setting, dim_of_extract));
   }
 
-  bool fluid(int i) const { return hub.state[atom->type[i]].species == FLUID; }
-  bool solid(int i) const { return hub.state[atom->type[i]].species == SOLID; }
-  bool moves(int i) const { return solid(i) && atom->mask[i] & hub.groupbit; }
+  bool fluid(int i) const { return scene.state[atom->type[i]].species == FLUID; }
+  bool solid(int i) const { return scene.state[atom->type[i]].species == SOLID; }
+  bool moves(int i) const { return solid(i) && atom->mask[i] & scene.mover->groupbit; }
 
   void warn(const std::string &text) const
   {
@@ -179,7 +180,7 @@ class Adviser : protected Pointers {
     }
     for (int t = 1; t <= atom->ntypes; t++) {
       if (!present[t]) continue;
-      const State &s = hub.state[t];
+      const State &s = scene.state[t];
       if (s.rho0 < 1.0e-4 * water || s.rho0 > 30.0 * water)
         warn(fmt::format("the density {:g} of type {} is that of no material in units {}, in which water has {:g}", s.rho0, t,
                          update->unit_style, water));
@@ -192,28 +193,28 @@ class Adviser : protected Pointers {
 
   void box() const
   {
-    for (int d = 0; d < hub.dim; d++)
-      if (domain->periodicity[d] && domain->prd[d] < 2.0 * hub.cut)
+    for (int d = 0; d < scene.dim; d++)
+      if (domain->periodicity[d] && domain->prd[d] < 2.0 * scene.cut)
         warn(fmt::format("the periodic box is {:g} long in {}, less than twice the kernel's support {:g}: particles see the same "
-                         "neighbor on both sides", domain->prd[d], "xyz"[d], hub.cut));
+                         "neighbor on both sides", domain->prd[d], "xyz"[d], scene.cut));
     double mine = 1.0, least;
-    const double ghost = *std::max_element(comm->cutghost, comm->cutghost + hub.dim);
-    for (int d = 0; d < hub.dim; d++)
+    const double ghost = *std::max_element(comm->cutghost, comm->cutghost + scene.dim);
+    for (int d = 0; d < scene.dim; d++)
       if (comm->procgrid[d] > 1) mine = std::min(mine, (domain->subhi[d] - domain->sublo[d]) / ghost);
     MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE, MPI_MIN, world);
     if (least < 1.0)
       warn(fmt::format("a sub-domain is thinner than what it needs of its neighbors ({:.2g} of {:g}), so messages travel over several "
                        "ranks: use fewer ranks, or processors and balance along the longer sides", least, ghost));
-    if (pair("^fsi/fluid") && neighbor->skin > 1.5 * hub.dx)
+    if (pair("^fsi/fluid") && neighbor->skin > 1.5 * scene.dx)
       warn(fmt::format("the skin {:g} is {:.1f} spacings wide, which only costs time: neighbor {:g} bin", neighbor->skin,
-                       neighbor->skin / hub.dx, 0.3 * hub.dx));
+                       neighbor->skin / scene.dx, 0.3 * scene.dx));
   }
 
   /* the particles' distance is the spacing that they were said to have (returned), and nobody sits on somebody else */
 
   bool spacing(const Cells &cells) const
   {
-    const double reach = 1.25 * hub.dx;
+    const double reach = 1.25 * scene.dx;
     double mine[3] = {0.0, 0.0, 0.0}, sum[3];    // distances, particles that have a neighbor, all
     struct {
       double r;
@@ -241,22 +242,22 @@ class Adviser : protected Pointers {
     }
     MPI_Allreduce(mine, sum, 3, MPI_DOUBLE, MPI_SUM, world);
     if (sum[2] < 2.0) return true;
-    const double mean = sum[1] > 0.0 ? sum[0] / sum[1] / hub.dx : 0.0;
+    const double mean = sum[1] > 0.0 ? sum[0] / sum[1] / scene.dx : 0.0;
     if (sum[1] < 0.5 * sum[2]) {
-      warn(fmt::format("most particles have no neighbor within {:g}: is {:g} the spacing of the lattice?", reach, hub.dx));
+      warn(fmt::format("most particles have no neighbor within {:g}: is {:g} the spacing of the lattice?", reach, scene.dx));
       return false;
     }
     if (mean < 0.6 || mean > 1.1) {
-      warn(fmt::format("nearest neighbors are {:.3g} apart on average, but the spacing is {:g}: is that of the lattice?", mean * hub.dx,
-                       hub.dx));
+      warn(fmt::format("nearest neighbors are {:.3g} apart on average, but the spacing is {:g}: is that of the lattice?", mean * scene.dx,
+                       scene.dx));
       return false;
     }
     if (update->ntimestep == 0) {
       MPI_Allreduce(&closest, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
       MPI_Bcast(pair, 2, MPI_LMP_TAGINT, least.rank, world);
-      if (least.r < 0.4 * hub.dx)
+      if (least.r < 0.4 * scene.dx)
         warn(fmt::format("atoms {} and {} are {:.2g} spacings apart: do bodies or phases overlap? Put them on one lattice, or "
-                         "delete_atoms overlap", pair[0], pair[1], least.r / hub.dx));
+                         "delete_atoms overlap", pair[0], pair[1], least.r / scene.dx));
     }
     return true;
   }
@@ -266,8 +267,8 @@ class Adviser : protected Pointers {
 
   void thickness() const
   {
-    const double reach = 2.5 * hub.dx;
-    const Cells cells(atom->x, atom->nlocal + atom->nghost, hub.dim, reach);
+    const double reach = 2.5 * scene.dx;
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, reach);
     std::map<tagint, std::array<double, ENOUGH>> bodies;    // particles with 1, 2, ENOUGH or more across
     for (int i = 0; i < atom->nlocal; i++) {
       if (!moves(i)) continue;
@@ -275,16 +276,16 @@ class Adviser : protected Pointers {
       cells.around(atom->x[i], [&](int j, double rsq) {
         if (rsq > reach * reach || !solid(j) || atom->molecule[j] != atom->molecule[i]) return;
         n++;
-        for (int a = 0; a < hub.dim; a++) {
-          const double r = (atom->x[j][a] - atom->x[i][a]) / hub.dx;
+        for (int a = 0; a < scene.dim; a++) {
+          const double r = (atom->x[j][a] - atom->x[i][a]) / scene.dx;
           sum[a] += r;
-          for (int b = 0; b <= a; b++) moment[a][b] += r * (atom->x[j][b] - atom->x[i][b]) / hub.dx;
+          for (int b = 0; b <= a; b++) moment[a][b] += r * (atom->x[j][b] - atom->x[i][b]) / scene.dx;
         }
       });
       double least[3];
-      for (int a = 0; a < hub.dim; a++)
+      for (int a = 0; a < scene.dim; a++)
         for (int b = 0; b <= a; b++) moment[b][a] = moment[a][b] = moment[a][b] / n - sum[a] / n * sum[b] / n;
-      if (hub.dim == 2) {
+      if (scene.dim == 2) {
         const double half = 0.5 * (moment[0][0] + moment[1][1]), diff = 0.5 * (moment[0][0] - moment[1][1]);
         least[0] = half - std::sqrt(diff * diff + moment[0][1] * moment[0][1]);
       } else {
@@ -302,7 +303,7 @@ class Adviser : protected Pointers {
       // a plate 2 across swings 12 % too fast (fsi/solid/tl), 8 to 16 % with the corrected gradients of fsi/solid
       // and one that is nearly incompressible locks: the gate with Poisson's ratio 0.49 opens to 6.7 mm, 3 across to 35 mm
       bool locks = false;
-      for (const auto &s : hub.state) locks = locks || (s.species == SOLID && s.shear > 0.0 && s.rho0 * s.csq > NEARLY_INCOMPRESSIBLE * s.shear);
+      for (const auto &s : scene.state) locks = locks || (s.species == SOLID && s.shear > 0.0 && s.rho0 * s.csq > NEARLY_INCOMPRESSIBLE * s.shear);
       const char *const how = pair("^fsi/solid$") && number<int>("^fsi/solid$", "gradient") == 0 ? "it will bend too easily"
           : locks ? "it will hardly bend, since its material is nearly incompressible" : "it will bend too little, some 25 %";
       warn(fmt::format("body {} is {} across: {}, and fluid may leak through; take a spacing of a third of its thickness", body,
@@ -334,12 +335,12 @@ class Adviser : protected Pointers {
         const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
         const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
         bool inside = true;
-        for (int d = 0; d < hub.dim; d++)
-          inside &= -ends[3 + d] > lo[d] - 1.0e-6 * hub.dx && ends[d] < hi[d] + 1.0e-6 * hub.dx;
-        for (int d = 0; d < hub.dim && inside; d++) {
-          const double below = -ends[3 + d] - lo[d], above = hi[d] - ends[d], width = (hi[d] - lo[d]) / hub.dx;
-          const double count = (ends[d] + ends[3 + d]) / hub.dx + 1.0;
-          if (below > hub.dx || above > hub.dx || std::fabs(count - std::round(count)) > 0.01) continue;
+        for (int d = 0; d < scene.dim; d++)
+          inside &= -ends[3 + d] > lo[d] - 1.0e-6 * scene.dx && ends[d] < hi[d] + 1.0e-6 * scene.dx;
+        for (int d = 0; d < scene.dim && inside; d++) {
+          const double below = -ends[3 + d] - lo[d], above = hi[d] - ends[d], width = (hi[d] - lo[d]) / scene.dx;
+          const double count = (ends[d] + ends[3 + d]) / scene.dx + 1.0;
+          if (below > scene.dx || above > scene.dx || std::fabs(count - std::round(count)) > 0.01) continue;
           const double off = std::fabs(count - width);
           if (off < 0.25 || off < 0.02 * width) continue;
           warn(fmt::format("body {} has {:.0f} rows along {}, but region {}, {:g} wide, holds {:.3g} spacings: the body is {:.2g} times as "
@@ -375,7 +376,7 @@ class Adviser : protected Pointers {
     bigint mine = 0, all;
     tagint one = MAXTAGINT, first;
     for (int i = 0; i < atom->nlocal; i++)
-      if (fluid(i) && !hub.is_moved(i)) {
+      if (fluid(i) && !scene.is_moved(i)) {
         mine++;
         one = std::min(one, atom->tag[i]);
       }
@@ -383,7 +384,7 @@ class Adviser : protected Pointers {
     MPI_Allreduce(&one, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
     if (all)
       warn(fmt::format("{} fluid particles, the first of them atom {}, are not in group {} of fix {}: they stay where they are", all, first,
-                       group->names[hub.igroup], hub.id));
+                       group->names[scene.mover->igroup], scene.mover->id));
   }
 
   /* A kernel that makes a solid of the fluid's lattice. In water a quarter as deep as a wave is long, linear theory with such a solid
@@ -392,13 +393,13 @@ class Adviser : protected Pointers {
   void lattice() const
   {
     LatticeStiffness s = {0.0, 0.0};
-    with_kernel(hub.kernel, hub.dim, hub.h, [&](const auto &k) { s = lattice_stiffness(k, hub.dx); });
+    with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &k) { s = lattice_stiffness(k, scene.dx); });
     const double period = 0.18 * s.stretch + 0.27 * s.shear;
     if (std::fabs(period) < 0.03) return;
-    const double free = lattice_free_ratio(hub.kernel, hub.dim, hub.h / hub.dx);
+    const double free = lattice_free_ratio(scene.kernel, scene.dim, scene.h / scene.dx);
     warn(fmt::format("with this kernel and h = {:g} dx a lattice of the fluid is elastic, by {:.2f} of the pressure when stretched and {:.2f} in shear: "
                      "waves are some {:.0f} % too {} at any resolution. {}quintic 0.94 has next to none",
-                     hub.h / hub.dx, s.stretch, s.shear, 100.0 * std::fabs(period), period > 0.0 ? "fast" : "slow",
+                     scene.h / scene.dx, s.stretch, s.shear, 100.0 * std::fabs(period), period > 0.0 ? "fast" : "slow",
                      free > 0.0 ? fmt::format("When stretched it has none at h = {:.2f} dx; ", free) : ""));
   }
 
@@ -409,10 +410,10 @@ class Adviser : protected Pointers {
     std::array<double, 3> gravity = {0.0, 0.0, 0.0};
     double g = 0.0;
     for (int t = atom->ntypes; t > 0; t--)
-      if (present[t] && hub.state[t].species == FLUID) gravity = hub.body_forces.of_type[t];
-    for (int d = 0; d < hub.dim; d++) g += gravity[d] * gravity[d];
+      if (present[t] && scene.state[t].species == FLUID) gravity = scene.body_forces.of_type[t];
+    for (int d = 0; d < scene.dim; d++) g += gravity[d] * gravity[d];
     g = std::sqrt(g);
-    for (int d = 0; d < hub.dim; d++)
+    for (int d = 0; d < scene.dim; d++)
       if (gravity[d] != 0.0 && domain->periodicity[d]) g = 0.0;    // drives a flow in a channel
     // speed, both ends along gravity, upper ends, lower ends with the sign changed
     double mine[9] = {0.0, -BIG, -BIG, -BIG, -BIG, -BIG, -BIG, -BIG, -BIG}, most[9];
@@ -420,20 +421,20 @@ class Adviser : protected Pointers {
       if (!fluid(i)) continue;
       const double *const x = atom->x[i], *const v = atom->v[i];
       mine[0] = std::max(mine[0], std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-      for (int d = 0; d < hub.dim; d++) {
+      for (int d = 0; d < scene.dim; d++) {
         mine[3 + d] = std::max(mine[3 + d], x[d]);
         mine[6 + d] = std::max(mine[6 + d], -x[d]);
       }
       if (g == 0.0) continue;
-      const double z = (x[0] * gravity[0] + x[1] * gravity[1] + (hub.dim == 3 ? x[2] * gravity[2] : 0.0)) / g;
+      const double z = (x[0] * gravity[0] + x[1] * gravity[1] + (scene.dim == 3 ? x[2] * gravity[2] : 0.0)) / g;
       mine[1] = std::max(mine[1], z);
       mine[2] = std::max(mine[2], -z);
     }
     MPI_Allreduce(mine, most, 9, MPI_DOUBLE, MPI_MAX, world);
-    const double height = g > 0.0 && most[1] > -BIG ? most[1] + most[2] + hub.dx : 0.0;
+    const double height = g > 0.0 && most[1] > -BIG ? most[1] + most[2] + scene.dx : 0.0;
     const double falls = std::sqrt(2.0 * g * height), expected = std::max(most[0], falls);
     for (int t = 1; t <= atom->ntypes; t++) {
-      const State &s = hub.state[t];
+      const State &s = scene.state[t];
       if (!present[t] || s.species != FLUID || expected == 0.0) continue;
       if (s.c > 50.0 * expected) {
         warn(fmt::format("the speed of sound {:g} of the fluid is {:.2g} times the speed {:.3g} that there is or falling gives: 10 times is "
@@ -449,17 +450,17 @@ class Adviser : protected Pointers {
       break;
     }
     double length = BIG;
-    for (int d = 0; d < hub.dim; d++) length = std::min(length, most[3 + d] + most[6 + d] + hub.dx);
+    for (int d = 0; d < scene.dim; d++) length = std::min(length, most[3 + d] + most[6 + d] + scene.dx);
     for (int t = 1; t <= atom->ntypes; t++)
-      if (present[t] && hub.state[t].species == FLUID) viscosity(t, expected, length);
+      if (present[t] && scene.state[t].species == FLUID) viscosity(t, expected, length);
   }
 
   /* what artificial viscosity is worth: half of alpha h c/2(d+2), since it acts on approach only (doc/src/theory.rst) */
 
   void viscosity(int type, double speed, double length) const
   {
-    const State &s = hub.state[type];
-    const double alpha = number<double>("^fsi/fluid", "alpha"), nu = 0.25 * alpha * hub.h * s.c / (hub.dim + 2);
+    const State &s = scene.state[type];
+    const double alpha = number<double>("^fsi/fluid", "alpha"), nu = 0.25 * alpha * scene.h * s.c / (scene.dim + 2);
     if (alpha == 0.0) return;
     std::string text = fmt::format("  artificial viscosity, alpha {:g}, of type {} acts like a kinematic viscosity of about {:.2g}", alpha, type, nu);
     if (speed > 0.0)
@@ -481,12 +482,12 @@ class Adviser : protected Pointers {
       const char *what;
     } causes[] = {{Limits::SOUND, 2.0, "sound in the fluid"}, {Limits::ELASTIC, 1.6, "elastic waves in the solid"}, {Limits::LAMINAR, 2.0, "viscosity"}};
     Limits limits(lmp);
-    limits.find(&hub, hub.groupbit, hub.substeps > 1);
+    limits.find(scene, scene.mover->groupbit, scene.substeps > 1);
     limits.reduce();
     double good = Limits::UNLIMITED, most = good;
     const char *what = "";
     for (const auto &c : causes) {
-      const double limit = std::min(limits.step[c.cause], hub.substeps * limits.sub[c.cause]);
+      const double limit = std::min(limits.step[c.cause], scene.substeps * limits.sub[c.cause]);
       good = std::min(good, limit);
       if (c.fails * limit < most) {
         most = c.fails * limit;
@@ -523,7 +524,7 @@ class Adviser : protected Pointers {
 
 /* ---------------------------------------------------------------------- */
 
-void FSI::advise(LAMMPS *lmp, const FixFSI &hub)
+void FSI::advise(LAMMPS *lmp, const Scene &scene)
 {
-  Adviser(lmp, hub).all();
+  Adviser(lmp, scene).all();
 }

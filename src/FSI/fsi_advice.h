@@ -15,14 +15,14 @@
 #define LMP_FSI_ADVICE_H
 
 namespace LAMMPS_NS {
-class FixFSI;
 class LAMMPS;
 
 namespace FSI {
+  class Scene;
 
   // Warns, before the first step, of numbers that are legal and most likely not what was meant: spacing, overlaps, thin
   // bodies, speed of sound, time step, skin, box, units. Each says what to type. Reads only; a few operations per particle.
-  void advise(LAMMPS *lmp, const FixFSI &hub);
+  void advise(LAMMPS *lmp, const Scene &scene);
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

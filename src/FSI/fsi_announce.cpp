@@ -17,12 +17,12 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
-#include "fix_fsi.h"
 #include "force.h"
 #include "fsi_advice.h"
 #include "fsi_kernel.h"
 #include "fsi_lattice.h"
 #include "fsi_part.h"
+#include "fsi_scene.h"
 #include "lammps.h"
 #include "modify.h"
 
@@ -34,40 +34,40 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-static void say_effects(LAMMPS *lmp, FixFSI &hub, std::string &text)
+static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
 {
   static const char *const modes[] = {"continuity", "summation", "ratio"};
   static const char *const kernels[] = {"cubic spline", "quintic spline", "Wendland C2"};
   const bool fluid = lmp->force->pair_match("fsi/fluid", 1), solid = lmp->force->pair_match("fsi/solid", 1);
   std::vector<Part::Effect> effects;
-  if (fluid) effects.push_back({fmt::format("density of the fluid by {}", modes[hub.density_fluid]), "", true});
-  if (solid) effects.push_back({fmt::format("density of the solid by {}", modes[hub.density_solid]), "", true});
-  for (const auto *p : hub.parts)
+  if (fluid) effects.push_back({fmt::format("density of the fluid by {}", modes[scene.density_fluid]), "", true});
+  if (solid) effects.push_back({fmt::format("density of the solid by {}", modes[scene.density_solid]), "", true});
+  for (const auto *p : scene.parts)
     for (const auto &e : p->effects()) effects.push_back(e);
   if (fluid) {
-    effects.push_back({fmt::format("{} mirror walls", hub.walls.wall.size()), "fix fsi/wall/mirror", hub.walls.any()});
+    effects.push_back({fmt::format("{} mirror walls", scene.walls.wall.size()), "fix fsi/wall/mirror", scene.walls.any()});
     const int n = lmp->modify->get_fix_by_style("^fsi/wall/particle$").size();
     effects.push_back({fmt::format("{} groups of wall particles", n), "fix fsi/wall/particle", n > 0});
   }
   if (lmp->force->pair_match("fsi/solid/tl", 1))
-    effects.push_back({fmt::format("{} solid sub-steps", hub.substeps), "fix fsi substeps", hub.substeps > 1});
-  if (hub.surface_ratio > 0.0)
-    effects.push_back({fmt::format("surface looked for every {} steps", hub.surface_every), "fix fsi surface/every", hub.number_density_is_kept()});
-  effects.push_back({"energy ledger", "compute fsi/energy", hub.ledger});
+    effects.push_back({fmt::format("{} solid sub-steps", scene.substeps), "fix fsi substeps", scene.substeps > 1});
+  if (scene.surface_ratio > 0.0)
+    effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every), "fix fsi surface/every", scene.number_density_is_kept()});
+  effects.push_back({"energy ledger", "compute fsi/energy", scene.ledger});
 
   std::string on, off;
-  hub.effects_on.clear();
+  scene.effects_on.clear();
   for (const auto &e : effects) {
     if (e.on) {
       on += "\n    " + e.name;
-      hub.effects_on.push_back(e.name);
+      scene.effects_on.push_back(e.name);
     } else off += (off.empty() ? "" : ", ") + e.keyword;
   }
-  text += fmt::format("FSI: {}, h = {:g} dx, dx = {:g}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[hub.kernel], hub.h / hub.dx,
-                      hub.dx, on, off.empty() ? "none" : off);
+  text += fmt::format("FSI: {}, h = {:g} dx, dx = {:g}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[scene.kernel], scene.h / scene.dx,
+                      scene.dx, on, off.empty() ? "none" : off);
   if (fluid)
-    with_kernel(hub.kernel, hub.dim, hub.h, [&](const auto &k) {
-      const auto s = lattice_stiffness(k, hub.dx);
+    with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &k) {
+      const auto s = lattice_stiffness(k, scene.dx);
       text += fmt::format("  a lattice of the fluid under a pressure p has, for 0, a modulus of {:.3f} p when stretched, {:.3f} p in shear\n",
                           s.stretch, s.shear);
     });
@@ -77,16 +77,16 @@ static void say_effects(LAMMPS *lmp, FixFSI &hub, std::string &text)
    memory, and what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a ghost
 ------------------------------------------------------------------------- */
 
-static void say_costs(LAMMPS *lmp, const FixFSI &hub, std::string &text)
+static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
 {
-  const bool newton = lmp->force->newton_pair, psi = hub.has_number_density(), send = psi && !hub.number_density_is_kept();
+  const bool newton = lmp->force->newton_pair, psi = scene.has_number_density(), send = psi && !scene.number_density_is_kept();
   Part::Costs costs;
-  costs.bytes = 8 * psi + (hub.walls.any() ? sizeof(int) : 0);
+  costs.bytes = 8 * psi + (scene.walls.any() ? sizeof(int) : 0);
   costs.arrays = psi ? ", number density" : "";
   costs.forward = 1;
   costs.back = newton * send;
   costs.fluid_ghost = costs.solid_ghost = 1 + send * (1 + newton);
-  for (const auto *p : hub.parts) p->add_costs(costs);
+  for (const auto *p : scene.parts) p->add_costs(costs);
   costs.back += newton * costs.sums;
 
   const auto have = [&](const char *style) { return lmp->force->pair_match(style, 0) != nullptr; };
@@ -97,7 +97,7 @@ static void say_costs(LAMMPS *lmp, const FixFSI &hub, std::string &text)
   text += fmt::format("  they carry for each ghost:{}{}\n", fluid ? fmt::format(" {} bytes of a fluid", 8 * costs.fluid_ghost) : "",
                       solid ? fmt::format("{} {} bytes of a solid", fluid ? "," : "", 8 * costs.solid_ghost) : "");
   if (psi && !send)
-    text += fmt::format("  every {} steps: {} message back and {} bytes of a ghost more, number density\n", hub.surface_every, (int) newton,
+    text += fmt::format("  every {} steps: {} message back and {} bytes of a ghost more, number density\n", scene.surface_every, (int) newton,
                         8 * (1 + newton));
 }
 
@@ -105,11 +105,11 @@ static void say_costs(LAMMPS *lmp, const FixFSI &hub, std::string &text)
    effects that a script names and that have nothing to act on
 ------------------------------------------------------------------------- */
 
-static void warn_idle(LAMMPS *lmp, const FixFSI &hub)
+static void warn_idle(LAMMPS *lmp, const Scene &scene)
 {
   bigint mine[2] = {0, 0}, all[2];    // fluid and solid particles
   for (int i = 0; i < lmp->atom->nlocal; i++) {
-    const int species = hub.state[lmp->atom->type[i]].species;
+    const int species = scene.state[lmp->atom->type[i]].species;
     if (species != RIGID) mine[species == SOLID]++;
   }
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
@@ -117,26 +117,26 @@ static void warn_idle(LAMMPS *lmp, const FixFSI &hub)
   const auto nothing = [&](const std::string &what, const std::string &why) {
     if (lmp->comm->me == 0) lmp->error->warning(FLERR, what + " has nothing to act on: " + why);
   };
-  for (const auto *p : hub.parts) p->find_idle({all[0], all[1]}, nothing);
+  for (const auto *p : scene.parts) p->find_idle({all[0], all[1]}, nothing);
   const auto have = [&](const char *style) { return lmp->force->pair_match(style, 0) != nullptr; };
-  if (hub.substeps > 1 && all[1] == 0) nothing("Fix fsi substeps", "no particle is a solid");
-  if (hub.surface_every > 1 && !hub.has_number_density()) nothing("Fix fsi surface/every", "pair_style fsi/fluid has no surface rule");
-  if (hub.surface_every > 1 && hub.has_number_density() && !hub.number_density_is_kept())
+  if (scene.substeps > 1 && all[1] == 0) nothing("Fix fsi substeps", "no particle is a solid");
+  if (scene.surface_every > 1 && !scene.has_number_density()) nothing("Fix fsi surface/every", "pair_style fsi/fluid has no surface rule");
+  if (scene.surface_every > 1 && scene.has_number_density() && !scene.number_density_is_kept())
     nothing("Fix fsi surface/every", "a density mode needs the number density in each step");
-  if (hub.density_fluid != FixFSI::CONTINUITY && !have("^fsi/fluid")) nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");
-  if (hub.density_solid != FixFSI::CONTINUITY && !have("^fsi/solid")) nothing("Fix fsi solid density", "there is no pair_style fsi/solid");
+  if (scene.density_fluid != Scene::CONTINUITY && !have("^fsi/fluid")) nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");
+  if (scene.density_solid != Scene::CONTINUITY && !have("^fsi/solid")) nothing("Fix fsi solid density", "there is no pair_style fsi/solid");
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FSI::announce(LAMMPS *lmp, FixFSI &hub)
+void FSI::announce(LAMMPS *lmp, Scene &scene)
 {
   std::string text;
-  say_effects(lmp, hub, text);
-  say_costs(lmp, hub, text);
-  if (text == hub.announced) return;
-  hub.announced = text;
+  say_effects(lmp, scene, text);
+  say_costs(lmp, scene, text);
+  if (text == scene.announced) return;
+  scene.announced = text;
   if (lmp->comm->me == 0) utils::logmesg(lmp, text);
-  advise(lmp, hub);
-  warn_idle(lmp, hub);
+  advise(lmp, scene);
+  warn_idle(lmp, scene);
 }

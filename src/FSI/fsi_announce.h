@@ -16,14 +16,14 @@
 #define LMP_FSI_ANNOUNCE_H
 
 namespace LAMMPS_NS {
-class FixFSI;
 class LAMMPS;
 
 namespace FSI {
+  class Scene;
 
   // Before the first step, when it changes: every effect that is on, every one that is not and how to turn it on, and what memory and
   // messages they need; then advice, and what has nothing to act on.
-  void announce(LAMMPS *lmp, FixFSI &hub);
+  void announce(LAMMPS *lmp, Scene &scene);
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

@@ -16,8 +16,8 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
-#include "fix_fsi.h"
 #include "fix_gravity.h"
 #include "modify.h"
 #include "update.h"
@@ -39,12 +39,12 @@ struct Peek : FixGravity {
 };
 }    // namespace
 
-void BodyForces::find(const FixFSI &hub)
+void BodyForces::find(const std::vector<State> &state)
 {
   all.clear();
   for (auto &fix : modify->get_fix_by_style("^gravity"))
     if (auto *g = dynamic_cast<FixGravity *>(fix)) {
-      all.push_back({g, Peek::is_disabled(g) ? 0 : g->groupbit, Peek::has_variable(g), {0.0, 0.0, 0.0}});
+      all.push_back({g, Peek::is_disabled(g) ? 0 : g->groupbit, Peek::has_variable(g), {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}});
       g->init();    // its variables are looked up
     }
   const int ntypes = atom->ntypes, nfields = all.size();
@@ -57,7 +57,7 @@ void BodyForces::find(const FixFSI &hub)
   MPI_Allreduce(with.data(), some.data(), (int) with.size(), MPI_INT, MPI_MAX, world);
   for (int k = 0; k < nfields; k++)
     for (int t = 1; t <= ntypes; t++) {
-      if (some[at(k, t)] && acts_on_all[at(k, t)] && hub.state[t].species == FLUID && comm->me == 0)
+      if (some[at(k, t)] && acts_on_all[at(k, t)] && state[t].species == FLUID && comm->me == 0)
         error->warning(FLERR, "Fix gravity {} acts on a part of the particles of type {} only: for what is hydrostatic between them, as in "
                               "density diffusion, it does not count", all[k].fix->id, t);
       acts_on_all[at(k, t)] = all[k].mask && !acts_on_all[at(k, t)];
@@ -67,11 +67,10 @@ void BodyForces::find(const FixFSI &hub)
 
 /* ----------------------------------------------------------------------
    Body forces of this step. Fix gravity evaluates its variables when it acts, after the pair styles: it is asked to do so earlier, with
-   nothing to act on. Where the field changes, so does the potential energy of what is there, which the ledger has to know; taken in
-   the middle between two steps, positions are those of whole steps.
+   nothing to act on.
 ------------------------------------------------------------------------- */
 
-void BodyForces::evaluate(FixFSI &hub, bool advance)
+void BodyForces::evaluate()
 {
   of_type.assign(atom->ntypes + 1, {0.0, 0.0, 0.0});
   size_t on = 0;
@@ -84,18 +83,30 @@ void BodyForces::evaluate(FixFSI &hub, bool advance)
     }
     int dim_of_extract;
     const auto *now = static_cast<double *>(field.fix->extract("gvec", dim_of_extract));
-    if (field.varies && hub.ledger && advance) {
-      const double dth = 0.5 * update->dt;
-      for (int i = 0; i < atom->nlocal; i++)
-        if ((atom->mask[i] & field.mask) && hub.state[atom->type[i]].species != RIGID)
-          for (int d = 0; d < hub.dim; d++)
-            hub.taken[FixFSI::FIELDS] += atom->rmass[i] * (now[d] - field.g[d]) * (atom->x[i][d] - (atom->mask[i] & hub.groupbit ? dth * atom->v[i][d] : 0.0));
-    }
+    for (int d = 0; d < 3; d++) field.change[d] = now[d] - field.g[d];
     std::copy_n(now, 3, field.g);
     for (int t = 0; t <= atom->ntypes; t++, on++)
       if (t > 0 && acts_on_all[on])
         for (int d = 0; d < 3; d++) of_type[t][d] += field.g[d];
   }
+}
+
+/* ----------------------------------------------------------------------
+   Where a field changes, so does the potential energy of what is there, which the ledger has to know.
+------------------------------------------------------------------------- */
+
+double BodyForces::work(const std::vector<State> &state, int groupbit) const
+{
+  const double dth = 0.5 * update->dt;
+  double sum = 0.0;
+  for (const auto &field : all) {
+    if (!field.varies) continue;
+    for (int i = 0; i < atom->nlocal; i++)
+      if ((atom->mask[i] & field.mask) && state[atom->type[i]].species != RIGID)
+        for (int d = 0; d < domain->dimension; d++)
+          sum += atom->rmass[i] * field.change[d] * (atom->x[i][d] - (atom->mask[i] & groupbit ? dth * atom->v[i][d] : 0.0));
+  }
+  return sum;
 }
 
 /* ---------------------------------------------------------------------- */

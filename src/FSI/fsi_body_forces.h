@@ -17,6 +17,7 @@
 #ifndef LMP_FSI_BODY_FORCES_H
 #define LMP_FSI_BODY_FORCES_H
 
+#include "fsi_material.h"
 #include "pointers.h"
 
 #include <array>
@@ -24,22 +25,24 @@
 
 namespace LAMMPS_NS {
 class Fix;
-class FixFSI;
 
 namespace FSI {
 
   class BodyForces : protected Pointers {
    public:
     explicit BodyForces(LAMMPS *lmp) : Pointers(lmp) {}
-    void find(const FixFSI &);    // before a run
-    void evaluate(FixFSI &, bool advance);    // at the time of the step
+    void find(const std::vector<State> &);    // before a run
+    void evaluate();                          // at the time of the step
+    // Energy that this rank's particles have lost because fields changed in the last evaluate(), taken in the middle between two steps.
+    // Those of the group are half a step further.
+    double work(const std::vector<State> &, int groupbit) const;
     std::array<double, 3> on(int i) const;    // atom i, over its mass
 
     struct Field {
       Fix *fix;
       int mask;    // of its group; 0 if it is disabled
       bool varies;
-      double g[3];
+      double g[3], change[3];
     };
     std::vector<Field> all;
     std::vector<std::array<double, 3>> of_type;    // sum of those that act on all its particles

@@ -15,10 +15,13 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
-#include "fix_fsi.h"
+#include "fix.h"
 #include "force.h"
 #include "fsi_pack.h"
+#include "fsi_scene.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -59,11 +62,49 @@ static bool all_below(int n, const double *a, double most)
 
 /* ---------------------------------------------------------------------- */
 
-Check::Check(LAMMPS *lmp, FixFSI *hub) :
-    Pointers(lmp), hub(hub), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), found{}
+Check::Check(LAMMPS *lmp, const Scene &scene) :
+    Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), substepped(nullptr), found{}
 {
   stop.restart_file = "fsi_stop.restart";
   stop.dump_file = "fsi_stop.dump";
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Check::before_init()
+{
+  if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
+  if (update->whichflag == 2)
+    error->all(FLERR, "Fix fsi does not support minimize: there is no energy of all particles; run with fix viscous or artificial/visc to a state of rest");
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "Fix fsi does not support run_style respa");
+  if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
+  if (comm->cutghostuser > 0.0 && comm->cutghostuser < scene.cut)
+    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", scene.cut, comm->cutghostuser);
+  if (domain->dimension != scene.dim)
+    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", scene.dim, domain->dimension);
+  if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
+
+  const bool solid = force->pair_match("fsi/solid", 1), solid_tl = force->pair_match("fsi/solid/tl", 1);
+  if (!solid && !solid_tl && !force->pair_match("fsi/fluid", 1))
+    error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
+  if (scene.substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
+  if (solid_tl && scene.density_solid != Scene::CONTINUITY)
+    error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Check::materials()
+{
+  const auto walls = modify->get_fix_by_style("^fsi/wall/particle$");
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int species = scene.state[atom->type[i]].species;
+    if (species == NONE)
+      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i], atom->type[i]);
+    if (species == RIGID && std::none_of(walls.begin(), walls.end(), [&](const Fix *fix) { return atom->mask[i] & fix->groupbit; }))
+      error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -74,9 +115,9 @@ void Check::init()
 {
   limit_sq.assign(atom->ntypes + 1, HUGE_SQUARE);
   for (int t = 1; t <= atom->ntypes; t++) {
-    const State &s = hub->state[t];
-    if (hub->mach == OFF || (s.species != FLUID && s.species != SOLID)) continue;
-    const double most = hub->mach * (s.species == SOLID ? SOLID_OVER_FLUID : 1.0);
+    const State &s = scene.state[t];
+    if (scene.mach == OFF || (s.species != FLUID && s.species != SOLID)) continue;
+    const double most = scene.mach * (s.species == SOLID ? SOLID_OVER_FLUID : 1.0);
     limit_sq[t] = most * most * s.wave_speed_sq();
   }
   // |v + dv| is below a limit if no component of v is above 0.9, and none of dv above 0.1, of it over the root of 3
@@ -119,7 +160,7 @@ void Check::positions()
 void Check::before_kick()
 {
   look(neighbor->ago == 0 || update->ntimestep % EVERY == 0, update->dt * force->ftm2v);
-  if (hub->substeps == 1) judge(Stop::MIDDLE);
+  if (scene.substeps == 1) judge(Stop::MIDDLE);
 }
 
 /* ----------------------------------------------------------------------
@@ -128,9 +169,9 @@ void Check::before_kick()
 
 void Check::before_substeps(const std::vector<int> &solids)
 {
-  substepped = solids;
+  substepped = &solids;
   kept.resize(6 * solids.size());
-  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const auto *const x = Scene::rows(atom->x), *const v = Scene::rows(atom->v);
   double *to = kept.data();
   for (const int i : solids) {
     for (int d = 0; d < 3; d++) {
@@ -141,11 +182,11 @@ void Check::before_substeps(const std::vector<int> &solids)
   }
 }
 
-void Check::after_substeps(const std::vector<int> &solids)
+void Check::after_substeps()
 {
-  const auto *const v = FixFSI::rows(atom->v);
+  const auto *const v = Scene::rows(atom->v);
   const int *const type = atom->type;
-  for (const int i : solids)
+  for (const int i : *substepped)
     if (!(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2] <= limit_sq[type[i]])) examine(i, 0.0);
   judge(Stop::MIDDLE);
 }
@@ -178,15 +219,15 @@ void Check::look(bool closely, double kick)
 void Check::examine(int i, double kick)
 {
   const double *const v = atom->v[i], *const f = atom->f[i];
-  const State &s = hub->state[atom->type[i]];
+  const State &s = scene.state[atom->type[i]];
   const double rho = atom->rho[i];
-  const bool kicked = (atom->mask[i] & hub->groupbit) && (hub->substeps == 1 || s.species != SOLID);
+  const bool kicked = (atom->mask[i] & scene.mover->groupbit) && (scene.substeps == 1 || s.species != SOLID);
   const double k = kicked ? kick / atom->rmass[i] : 0.0;
   const double a = v[0] + k * f[0], b = v[1] + k * f[1], c = v[2] + k * f[2];
   const double vsq = a * a + b * b + c * c;    // not a number if a force is not
   const double *const x = atom->x[i];
   // torn fluid without tension has no pressure, whatever its density: spray whose density says nothing until it comes together
-  const bool torn = s.species == FLUID && s.floor == 0.0 && hub->pressure(i) == 0.0;
+  const bool torn = s.species == FLUID && s.floor == 0.0 && scene.pressure(i) == 0.0;
   if (vsq <= limit_sq[atom->type[i]] && rho > 0.0 && rho < OFF && std::isfinite(x[0] + x[1] + x[2])) return;
   const Finding lost = stop.not_finite(i, true);
   if (lost.tag) enter(lost);
@@ -223,9 +264,9 @@ void Check::judge(Stop::When when)
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
   if (!all) return;
   // back to before the sub-steps, if there were any
-  if (when == Stop::MIDDLE && hub->substeps > 1) {
+  if (when == Stop::MIDDLE && scene.substeps > 1) {
     const double *from = kept.data();
-    for (const int i : substepped) {
+    for (const int i : *substepped) {
       std::copy_n(from, 3, atom->x[i]);
       std::copy_n(from + 3, 3, atom->v[i]);
       from += 6;
@@ -236,6 +277,6 @@ void Check::judge(Stop::When when)
   if (worst.trouble == DENSITY) what = fmt::format("density {:.4g} is not above 0", worst.value);
   if (worst.trouble == MACH)
     what = fmt::format("Mach number {:.4g} is above the limit {:g}", worst.value,
-                       hub->mach * (hub->state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
-  stop.stop(hub, stop.describe(hub, what, worst, when), worst, when);
+                       scene.mach * (scene.state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
+  stop.stop(scene, stop.describe(scene, what, worst, when), worst, when);
 }

@@ -28,21 +28,23 @@ namespace FSI {
    public:
     static constexpr double OFF = 1.0e20;
 
-    Check(class LAMMPS *, FixFSI *);
+    Check(class LAMMPS *, const Scene &);
+    void before_init();       // what no run may have
+    void materials();         // every atom has one
     void init();              // of a run: what a restart file or a script has put there
     void setup();             // after the first forces
     void positions();         // before lists are built
     void before_kick();       // in each step
     void before_substeps(const std::vector<int> &solids);
-    void after_substeps(const std::vector<int> &solids);
+    void after_substeps();
 
    private:
-    FixFSI *const hub;
+    const Scene &scene;
     Stop stop;
     std::vector<double> limit_sq;    // per type: of the speed
     double calm_speed, calm_kick;    // components of velocities and of their change in a step from which no limit is in reach
     double lightest;                 // mass of this rank's particles
-    std::vector<int> substepped;     // solids with sub-steps,
+    const std::vector<int> *substepped;    // solids with sub-steps,
     std::vector<double> kept;        // and their positions and velocities before them
     Finding found;                   // the first thing that is not finite, or the worst of this rank
 

@@ -14,8 +14,9 @@
 #include "fsi_limits.h"
 
 #include "atom.h"
-#include "fix_fsi.h"
+#include "fix.h"
 #include "force.h"
+#include "fsi_scene.h"
 #include "pair.h"
 
 #include <algorithm>
@@ -37,13 +38,13 @@ Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
    acceleration: sqrt(h/|a|)/4
 ------------------------------------------------------------------------- */
 
-void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_fluid, double of_solid)
+void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_fluid, double of_solid)
 {
   const int *const mask = atom->mask, *const type = atom->type;
   double **v = atom->v;
   double **f = atom->f;
   const double *const rmass = atom->rmass, *const rho = atom->rho;
-  const double h = hub->h;
+  const double h = scene.h;
 
   double *const mine[2] = {step, sub}, fastest = 0.0, asq_max[2] = {0.0, 0.0};    // fluid, solid
   const double factor[2] = {of_fluid, of_solid};
@@ -52,7 +53,7 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_flui
   std::vector<char> present(atom->ntypes + 1, 0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    const State &s = hub->state[type[i]];
+    const State &s = scene.state[type[i]];
     if (s.species == RIGID) continue;
     present[type[i]] = 1;
     if (s.species == FLUID) {
@@ -65,7 +66,7 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_flui
       }
     }
     // what is held does not follow its force
-    if (!(mask[i] & hub->groupbit)) continue;
+    if (!(mask[i] & scene.mover->groupbit)) continue;
     const double w = force->ftm2v / rmass[i];
     const double asq = w * w * (f[i][0] * f[i][0] + f[i][1] * f[i][1] + f[i][2] * f[i][2]);
     const int solid = s.species == SOLID;
@@ -87,7 +88,7 @@ void Limits::find(const FixFSI *hub, int groupbit, bool substeps, double of_flui
   }
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!present[t]) continue;
-    const State &s = hub->state[t];
+    const State &s = scene.state[t];
     const bool fluid = s.species == FLUID;
     double *const m = mine[substeps && !fluid], own = factor[!fluid];
     Pair *const pair = force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0);    // null: walls of held solids

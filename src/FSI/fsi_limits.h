@@ -19,8 +19,8 @@
 #include "pointers.h"
 
 namespace LAMMPS_NS {
-class FixFSI;
 namespace FSI {
+  class Scene;
 
   class Limits : protected Pointers {
    public:
@@ -34,7 +34,7 @@ namespace FSI {
 
     Limits(class LAMMPS *);
     // of this rank's particles, times a factor of fluids and one of solids
-    void find(const FixFSI *, int groupbit, bool substeps, double of_fluid = 1.0, double of_solid = 1.0);
+    void find(const Scene &, int groupbit, bool substeps, double of_fluid = 1.0, double of_solid = 1.0);
     void reduce();    // of all ranks
   };
 

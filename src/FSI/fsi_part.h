@@ -26,18 +26,17 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixFSI;
-
 namespace FSI {
 
   class Message;
   class Profile;
+  class Scene;
 
   class Part {
    public:
     // Before a run, when the states of all types are known: arrays per atom for the effects that are on; then what of them goes to
     // ghosts, and what pairs leave on ghosts and comes back.
-    virtual void set_fields(FixFSI &) {}
+    virtual void set_fields(Scene &) {}
     virtual void add_messages(Message &to_ghosts, Message &back) {}
 
     // In a step, in this order. Not to advance, in setup: the same for the state that there is, nothing evolves.

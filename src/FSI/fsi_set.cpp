@@ -67,7 +67,7 @@ void FSISet::command(int narg, char **arg)
 
   // materials, masses and gravity are entered in init()
   lmp->init();
-  hub->body_forces.evaluate(*hub, false);
+  hub->body_forces.evaluate();
   if (hydrostatic && std::none_of(hub->body_forces.all.begin(), hub->body_forces.all.end(), [](const BodyForces::Field &f) { return f.mask; }))
     error->all(FLERR, "Fsi_set hydrostatic requires fix gravity");
 

@@ -17,10 +17,11 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_fsi.h"
+#include "fix.h"
 #include "force.h"
 #include "fsi_kernel.h"
 #include "fsi_part.h"
+#include "fsi_scene.h"
 #include "lmptype.h"
 #include "modify.h"
 #include "pair.h"
@@ -81,34 +82,34 @@ Finding Stop::worst(const Finding &mine, double key) const
 
 /* ---------------------------------------------------------------------- */
 
-std::string Stop::describe(const FixFSI *hub, const std::string &what, const Finding &all, When when) const
+std::string Stop::describe(const Scene &scene, const std::string &what, const Finding &all, When when) const
 {
   static constexpr const char *fields[] = {"force", "velocity", "density", "position", "mass"};
   auto text = who + ": " + (all.trouble == FINITE ? fmt::format("{} is not finite ({})", fields[all.field], all.value) : what);
   text += fmt::format(" on step {}", update->ntimestep);
   if (all.tag) text += fmt::format(", atom {} (type {}) at {:.6g} {:.6g} {:.6g}", all.tag, all.type, all.x[0], all.x[1], all.x[2]);
   if (all.other) text += fmt::format(", and atom {}", all.other);
-  return text + ". Try " + advice(hub, all, when);
+  return text + ". Try " + advice(scene, all, when);
 }
 
 /* ----------------------------------------------------------------------
    of waves in what an atom type is made of, at rest
 ------------------------------------------------------------------------- */
 
-double Stop::courant(const FixFSI *hub, int type) const
+double Stop::courant(const Scene &scene, int type) const
 {
-  const State &s = hub->state[type];
+  const State &s = scene.state[type];
   const bool waves = s.species == FLUID || s.species == SOLID;
-  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) / (s.species == SOLID ? hub->substeps : 1) / hub->h : 0.0;
+  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) / (s.species == SOLID ? scene.substeps : 1) / scene.h : 0.0;
 }
 
 /* ----------------------------------------------------------------------
    what to try that is not on already
 ------------------------------------------------------------------------- */
 
-std::string Stop::advice(const FixFSI *hub, const Finding &all, When when) const
+std::string Stop::advice(const Scene &scene, const Finding &all, When when) const
 {
-  const bool fluid = !all.tag || hub->state[all.type].species == FLUID;
+  const bool fluid = !all.tag || scene.state[all.type].species == FLUID;
   const auto *const pair = dynamic_cast<Part *>(force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0));
   const bool solid_tl = force->pair_match("fsi/solid/tl", 1);
   // of fix fsi/dt: does it choose the time step, sub-steps, too?
@@ -126,7 +127,7 @@ std::string Stop::advice(const FixFSI *hub, const Finding &all, When when) const
     if (off(keyword)) tips.emplace_back(tip);
   };
   const auto shorter = [&]() {
-    const double number = all.tag ? courant(hub, all.type) : 0.0;
+    const double number = all.tag ? courant(scene, all.type) : 0.0;
     std::string tip;
     if (number > USUAL) tip = fmt::format("a shorter time step (the Courant number is {:.2g}, 0.25 is usual): ", number);
     if (!chooses("step")) tip += std::string("fix fsi/dt") + (solid_tl ? " with substeps auto" : "");
@@ -150,7 +151,7 @@ std::string Stop::advice(const FixFSI *hub, const Finding &all, When when) const
       break;
     case DISTANCE:
       if (when == START) tips.emplace_back("a look for overlapping particles");
-      if (hub->kernel != WENDLAND) tips.emplace_back("kernel wendland");
+      if (scene.kernel != WENDLAND) tips.emplace_back("kernel wendland");
       missing("artificial/visc", "artificial/visc 0.02 0");
       missing("shift", "shift");
       missing("background", "a background pressure, if there is no free surface");
@@ -184,14 +185,14 @@ std::string Stop::advice(const FixFSI *hub, const Finding &all, When when) const
 
 /* ---------------------------------------------------------------------- */
 
-void Stop::stop(const FixFSI *hub, std::string text, const Finding &all, When when)
+void Stop::stop(const Scene &scene, std::string text, const Finding &all, When when)
 {
-  if (when == MIDDLE) go_back(hub);
+  if (when == MIDDLE) go_back(scene);
   if (when != BEFORE && all.tag && !dump_file.empty()) {
-    write_neighbours(hub, all);
+    write_neighbours(scene, all);
     text += fmt::format(". Particles around it: {}", dump_file);
   }
-  if (when != BEFORE && !restart_file.empty()) text += write_state(hub);
+  if (when != BEFORE && !restart_file.empty()) text += write_state(scene);
   error->all(FLERR, text);
 }
 
@@ -200,13 +201,13 @@ void Stop::stop(const FixFSI *hub, std::string text, const Finding &all, When wh
    stress of fsi/solid stays where it is, a step too far: an error of one step's strain.)
 ------------------------------------------------------------------------- */
 
-void Stop::go_back(const FixFSI *hub)
+void Stop::go_back(const Scene &scene)
 {
-  const double back = -0.5 * update->dt, dt = update->dt + hub->stagger;
+  const double back = -0.5 * update->dt, dt = update->dt + scene.stagger;
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & hub->groupbit)
-      for (int d = 0; d < hub->dim; d++) atom->x[i][d] += back * atom->v[i][d];
-  for (auto *p : hub->parts) p->go_back();
+    if (atom->mask[i] & scene.mover->groupbit)
+      for (int d = 0; d < scene.dim; d++) atom->x[i][d] += back * atom->v[i][d];
+  for (auto *p : scene.parts) p->go_back();
   update->ntimestep--;
 }
 
@@ -214,7 +215,7 @@ void Stop::go_back(const FixFSI *hub)
    restart file, and what to say of it
 ------------------------------------------------------------------------- */
 
-std::string Stop::write_state(const FixFSI *hub)
+std::string Stop::write_state(const Scene &scene)
 {
   int mine = 1, writable;
   for (int i = 0; i < atom->nlocal; i++)
@@ -240,8 +241,8 @@ std::string Stop::write_state(const FixFSI *hub)
     own[d] = -domain->boxlo[d];
     own[3 + d] = domain->boxhi[d];
     for (int i = 0; i < atom->nlocal && !domain->periodicity[d]; i++) {
-      if (atom->x[i][d] < domain->boxlo[d]) own[d] = std::max(own[d], hub->dx - atom->x[i][d]);
-      if (atom->x[i][d] >= domain->boxhi[d]) own[3 + d] = std::max(own[3 + d], hub->dx + atom->x[i][d]);
+      if (atom->x[i][d] < domain->boxlo[d]) own[d] = std::max(own[d], scene.dx - atom->x[i][d]);
+      if (atom->x[i][d] >= domain->boxhi[d]) own[3 + d] = std::max(own[3 + d], scene.dx + atom->x[i][d]);
     }
   }
   MPI_Allreduce(own, ends, 6, MPI_DOUBLE, MPI_MAX, world);
@@ -259,10 +260,10 @@ std::string Stop::write_state(const FixFSI *hub)
    text dump of all particles within three cutoffs
 ------------------------------------------------------------------------- */
 
-void Stop::write_neighbours(const FixFSI *hub, const Finding &all) const
+void Stop::write_neighbours(const Scene &scene, const Finding &all) const
 {
   static constexpr int NINT = 3, NCOL = 13;
-  const double reach = 3.0 * hub->cut;
+  const double reach = 3.0 * scene.cut;
   std::vector<double> mine;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], *const v = atom->v[i], *const f = atom->f[i];

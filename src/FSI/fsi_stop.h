@@ -21,8 +21,8 @@
 #include <string>
 
 namespace LAMMPS_NS {
-class FixFSI;
 namespace FSI {
+  class Scene;
 
   // what can be wrong
   enum Trouble { FINITE, MACH, DISTANCE, DENSITY, COURANT, ENERGY, LOST, REFLECTED, NTROUBLE };
@@ -51,17 +51,17 @@ namespace FSI {
     // of the findings of all ranks the one with the largest key
     Finding worst(const Finding &mine, double key) const;
     // what is wrong, if it is not FINITE, then step, particle and what to try
-    std::string describe(const FixFSI *, const std::string &what, const Finding &, When) const;
+    std::string describe(const Scene &, const std::string &what, const Finding &, When) const;
     // error->all, after writing the files
-    void stop(const FixFSI *, std::string text, const Finding &, When);
+    void stop(const Scene &, std::string text, const Finding &, When);
 
    private:
     std::string who;
-    double courant(const FixFSI *, int type) const;
-    std::string advice(const FixFSI *, const Finding &, When) const;
-    void go_back(const FixFSI *);
-    std::string write_state(const FixFSI *);
-    void write_neighbours(const FixFSI *, const Finding &) const;
+    double courant(const Scene &, int type) const;
+    std::string advice(const Scene &, const Finding &, When) const;
+    void go_back(const Scene &);
+    std::string write_state(const Scene &);
+    void write_neighbours(const Scene &, const Finding &) const;
   };
 
 }    // namespace FSI

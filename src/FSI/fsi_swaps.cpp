@@ -14,6 +14,7 @@
 #include "fsi_swaps.h"
 
 #include "comm_brick.h"
+#include "fsi_profile.h"
 #include "pair.h"
 
 #include <algorithm>

@@ -22,6 +22,7 @@
 #include "force.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_kernel.h"
+#include "fsi_profile.h"
 #include "fsi_shift.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -138,8 +139,7 @@ void PairFSIFluid::init_style()
   if (couple != WALL && solid && *static_cast<int *>(solid->extract("gradient", dim_of_extract)) != 0)
     error->all(FLERR, "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid gradient plain: with corrected gradients "
                       "use couple wall");
-  auto stress = modify->get_fix_by_style("^fsi/stress$");
-  fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);
+  fix_stress = FixFSIStress::find(lmp);
   kinds[SOLIDS] = couple == WALL ? WITH_SOLID : couple == PRESSURE ? WITH_SOLID_PRESSURE : WITH_SOLID_FULL;
 }
 
@@ -161,14 +161,14 @@ int PairFSIFluid::nshift() const
   return 2 * hub->dim + 1;
 }
 
-void PairFSIFluid::set_fields(FixFSI &fsi)
+void PairFSIFluid::set_fields(Scene &scene)
 {
-  fields.set("density rate", Fields::STEP, fsi.density_fluid == FixFSI::CONTINUITY, rate);
-  fields.set("shift", Fields::STEP, shifting > 0.0, fsi.shift, nshift());
-  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, fsi.dim + 1);
-  fsi.noslip_walls = fsi.noslip_walls || sticks_to_solids();
-  fsi.surface_ratio = surface_ratio;
-  fsi.surface_max = surface_max;
+  fields.set("density rate", Fields::STEP, scene.density_fluid == FixFSI::CONTINUITY, rate);
+  fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
+  fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
+  scene.noslip_walls = scene.noslip_walls || sticks_to_solids();
+  scene.surface_ratio = surface_ratio;
+  scene.surface_max = surface_max;
 }
 
 void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
@@ -568,6 +568,8 @@ template <int D> void PairFSIFluid::compute_forces()
                }
              });
 
+  split_forces<D>(particles, laws);
+
   auto *const f = FixFSI::rows(atom->f);
   for (int i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) f[i][d] += forces[ROW * i + d];
@@ -577,6 +579,32 @@ template <int D> void PairFSIFluid::compute_forces()
   hub->tally(FixFSI::WALLS, sums.walls);
   if (tally_pairs && (vflag_global || vflag_fdotr))
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
+}
+
+/* ----------------------------------------------------------------------
+   for those who ask for them, forces of viscosity alone on solids and walls: the same loops without pressures, guard and stress
+------------------------------------------------------------------------- */
+
+template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles, ForceLaws laws)
+{
+  if (std::none_of(force_computes.begin(), force_computes.end(), [](const auto *measure) { return measure->split; })) return;
+  constexpr int ROW = row_of_forces(D);
+  const int nall = atom->nlocal + atom->nghost;
+  auto *const point = reinterpret_cast<Point<D> *>(points.data());
+  for (int i = 0; i < nall; i++) point[i].p = point[i].pv2 = 0.0;
+  const std::vector<Contact> no_guards(guards.size(), Contact(D, 0.0));
+  laws.guard = no_guards.data();
+  laws.extrapolate = nullptr;
+  laws.stress = nullptr;
+  viscous_forces.assign((size_t) ROW * nall, 0.0);
+  for (const int kind : {WALLS, SOLIDS}) loops->forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
+  for_images(hub->walls, [&](int i) { return point[i].position(atom->x[i]); },
+             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) {
+               double unused[D] = {};
+               if (kind == SOLIDS) loops->forces(kinds[kind], which, mirror, particles, laws, viscous_forces.data(), unused, nullptr);
+             });
+  for (auto *measure : force_computes)
+    if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -603,7 +631,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  double bytes = fields.memory_usage() + (double) (points.capacity() + forces.capacity() + pressure_over_density.capacity()) * sizeof(double);
+  double bytes = fields.memory_usage() + (double) (points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity()) * sizeof(double);
   for (const auto &list_of : rows) bytes += list_of.memory_usage();
   for (const auto &lists : images)
     for (const auto &list_of : lists) bytes += list_of.memory_usage();

@@ -51,7 +51,7 @@ class PairFSIFluid : public PairFSI {
   bool sticks_to_solids() const { return laminar && !solids_slip && has_solids(); }
   double sound_of(const FSI::Material &) const;
 
-  void set_fields(FixFSI &) override;
+  void set_fields(FSI::Scene &) override;
   void add_messages(FSI::Message &, FSI::Message &) override;
   void begin_state(bool) override;    // with new neighbor lists new rows
   bool add_rates(bool) override;
@@ -97,7 +97,7 @@ class PairFSIFluid : public PairFSI {
   template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
 
   // local and ghost, gathered at the start of each loop
-  std::vector<double> points, forces, pressure_over_density;
+  std::vector<double> points, forces, viscous_forces, pressure_over_density;
   template <int D, class Rest> FSI::FluidParticles gather(double t, Rest);    // positions a time t later; what else a loop needs
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
   FSI::Fields fields;
@@ -111,6 +111,7 @@ class PairFSIFluid : public PairFSI {
   void advance_density();
   void displacements(double dt);    // turns the sums of particle shifting of local fluid atoms into displacements
   template <int D> void compute_forces();
+  template <int D> void split_forces(const FSI::FluidParticles &, FSI::ForceLaws);
   std::vector<FSI::Contact> guards;    // per type
   template <class Sum> void distance_sums(bool others_too, Sum);
 };

@@ -24,6 +24,7 @@
 #include "fsi_gradient.h"
 #include "fsi_hourglass.h"
 #include "fsi_kernel.h"
+#include "fsi_profile.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_tensor.h"
 #include "fsi_viscosity_artificial.h"
@@ -71,10 +72,8 @@ bool PairFSISolid::handles(int a, int b) const
 
 State PairFSISolid::make_state(const Material &m) const
 {
-  bool plane_stress = false;
-  for (auto &fix : modify->get_fix_by_style("^fsi/stress$"))
-    plane_stress = dynamic_cast<FixFSIStress *>(fix)->plane_stress;
-  State s = solid_state(m, plane_stress);
+  const auto *const stress = FixFSIStress::find(lmp);
+  State s = solid_state(m, stress && stress->plane_stress);
   s.form = UPDATED_LAGRANGIAN;
   return s;
 }
@@ -85,9 +84,8 @@ void PairFSISolid::init_style()
 {
   PairFSI::init_style();
   check_contact();
-  auto stress = modify->get_fix_by_style("^fsi/stress$");
-  if (stress.empty()) error->all(FLERR, "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
-  fix_stress = dynamic_cast<FixFSIStress *>(stress[0]);
+  fix_stress = FixFSIStress::find(lmp);
+  if (!fix_stress) error->all(FLERR, "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
   comm_forward = has_hourglass() ? hub->dim * hub->dim : 0;
   comm_reverse = has_hourglass() ? hub->dim : 0;
   const bool bodies = several_bodies();
@@ -141,7 +139,7 @@ int PairFSISolid::ngrad() const
   return n == 0 ? dim * dim : dim * n + 2 * packed_size(n);
 }
 
-void PairFSISolid::set_fields(FixFSI &)
+void PairFSISolid::set_fields(Scene &)
 {
   fields.set("velocity gradient", Fields::STEP, true, grad, ngrad());
 }

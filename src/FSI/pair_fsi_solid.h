@@ -45,7 +45,7 @@ class PairFSISolid : public PairFSI {
   double memory_usage() override;
 
   void *extract(const char *, int &) override;
-  void set_fields(FixFSI &) override;
+  void set_fields(FSI::Scene &) override;
   void add_messages(FSI::Message &, FSI::Message &) override;
   bool add_rates(bool) override;
   void advance(bool) override;

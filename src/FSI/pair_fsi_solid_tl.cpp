@@ -22,8 +22,8 @@
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
-#include "fsi_check.h"
 #include "fsi_contact.h"
+#include "fsi_profile.h"
 #include "fsi_viscosity_artificial.h"
 #include "memory.h"
 #include "modify.h"
@@ -72,6 +72,11 @@ PairFSISolidTL::~PairFSISolidTL()
   if (modify->nfix && modify->get_fix_by_id(REFERENCE)) modify->delete_fix(REFERENCE);
 }
 
+PairFSISolidTL *PairFSISolidTL::find(LAMMPS *lmp)
+{
+  return dynamic_cast<PairFSISolidTL *>(lmp->force->pair_match("fsi/solid/tl", 1));
+}
+
 template <> const StVenantKirchhoff *PairFSISolidTL::laws<StVenantKirchhoff>() const
 {
   return svk.data();
@@ -118,8 +123,7 @@ void PairFSISolidTL::init_style()
   if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
   if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
   refuse_constraints();
-  auto stress = modify->get_fix_by_style("^fsi/stress$");
-  fix_stress = stress.empty() ? nullptr : dynamic_cast<FixFSIStress *>(stress[0]);
+  fix_stress = FixFSIStress::find(lmp);
   if (hypoelastic() && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
 
   reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(REFERENCE));
@@ -507,7 +511,7 @@ void PairFSISolidTL::integrate_substeps()
       for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
   };
   hub->set_tally(dt);
-  hub->check->before_substeps(solids());
+  hub->check.before_substeps(solids());
   drift(back);
   for (int n = 0; n < substeps; n++) {
     drift(dth);
@@ -523,7 +527,7 @@ void PairFSISolidTL::integrate_substeps()
     hold(dt);
     drift(dth);
   }
-  hub->check->after_substeps(solids());
+  hub->check.after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
   if (force->pair != this)

@@ -1,0 +1,95 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_scene.h"
+
+#include "atom.h"
+#include "fix.h"
+#include "lammps.h"
+#include "modify.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) :
+    mover(fix_fsi), state(lmp->atom->ntypes + 1), substeps(1), body_forces(lmp), profile(nullptr), stagger(0.0), psi(nullptr),
+    shift(nullptr), wmask(nullptr), wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
+    surface_max(false), need_psi(false), keep_psi(false), ledger(false), taken{}, tally_dt(0.0), instance(lmp)
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool Scene::several_stiffnesses() const
+{
+  double first = 0.0;
+  for (const auto &s : state) {
+    if (s.species != FLUID) continue;
+    const double K = s.rho0 * s.csq;
+    if (first == 0.0) first = K;
+    else if (std::abs(K - first) > 1.0e-12 * first) return true;
+  }
+  return false;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double Scene::pressure(int i) const
+{
+  const Atom *const atom = instance->atom;
+  const State &s = state[atom->type[i]];
+  if (s.species == FLUID && surface_ratio > 0.0 && psi[i] <= surface_ratio * psi_reference) return 0.0;
+  if (s.species == RIGID && wall_stiffness) return std::max(s.floor, s.p0 + wall_stiffness[i] * (atom->rho[i] / s.rho0 - 1.0));
+  return s.pressure(atom->rho[i]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double Scene::density_ratio(int i) const
+{
+  return instance->atom->rho[i] / state[instance->atom->type[i]].rho0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double Scene::potential(int i) const
+{
+  const double *x = instance->atom->x[i];
+  const auto g = body_forces.on(i);
+  return -instance->atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
+}
+
+double Scene::stored(int i) const
+{
+  const Atom *const atom = instance->atom;
+  return atom->rmass[i] * state[atom->type[i]].energy(atom->rho[i]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool Scene::is_total_lagrangian(int i) const
+{
+  return state[instance->atom->type[i]].form == TOTAL_LAGRANGIAN;
+}
+
+bool Scene::is_moved(int i) const
+{
+  for (const auto &fix : instance->modify->get_fix_list())
+    if (fix->time_integrate && instance->atom->mask[i] & fix->groupbit) return true;
+  return false;
+}
