@@ -36,6 +36,53 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
+/* ----------------------------------------------------------------------
+   the words of the command, one after the other
+------------------------------------------------------------------------- */
+
+class FixFSIMove::Words : protected Pointers {
+ public:
+  Words(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp), word(arg, arg + narg), at(0) { motion = next(); }
+  std::string motion;
+
+  bool any() const { return at < word.size(); }
+  bool skip_null()
+  {
+    const bool null = any() && word[at] == "NULL";
+    at += null;
+    return null;
+  }
+  std::string next()
+  {
+    if (!any()) utils::missing_cmd_args(FLERR, "fix fsi/move" + (motion.empty() ? "" : " " + motion), error);
+    return word[at++];
+  }
+  double number()
+  {
+    const auto text = next();
+    const double x = utils::numeric(FLERR, text, false, lmp);
+    if (!std::isfinite(x)) error->all(FLERR, "Fix fsi/move {} {} must be finite", motion, text);
+    return x;
+  }
+  double period()
+  {
+    const double t = number();
+    if (t <= 0.0) error->all(FLERR, "Fix fsi/move {} period {} must be > 0", motion, word[at - 1]);
+    return t;
+  }
+  std::string variable()    // without v_; empty: NULL
+  {
+    if (skip_null()) return "";
+    const auto text = next();
+    if (!utils::strmatch(text, "^v_")) error->all(FLERR, "Fix fsi/move variable {} must be NULL or v_name", text);
+    return text.substr(2);
+  }
+
+ private:
+  std::vector<std::string> word;
+  size_t at;
+};
+
 /* ---------------------------------------------------------------------- */
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
@@ -43,98 +90,84 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     original(nullptr), values(nullptr), nmax(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/move", error);
-  const std::string name = arg[3];
-  int iarg = 4;
-  const auto next = [&]() {
-    if (iarg >= narg) utils::missing_cmd_args(FLERR, "fix fsi/move " + name, error);
-    return arg[iarg++];
-  };
-  const auto number = [&]() {
-    const char *const word = next();
-    const double x = utils::numeric(FLERR, word, false, lmp);
-    if (!std::isfinite(x)) error->all(FLERR, "Fix fsi/move {} {} must be finite", name, word);
-    return x;
-  };
-  const auto component = [&](int k) {
-    if (iarg < narg && strcmp(arg[iarg], "NULL") == 0) {
-      iarg++;
-      return;
-    }
-    rate[k] = number();
-    source[k] = GIVEN;
-  };
-  const auto variable = [&](std::string &v) {
-    const std::string word = next();
-    if (word == "NULL") return;
-    if (!utils::strmatch(word, "^v_")) error->all(FLERR, "Fix fsi/move variable {} must be NULL or v_name", word);
-    v = word.substr(2);
-  };
-  const auto turn = [&]() {
-    for (double &p : point) p = number();
-    for (double &a : axis) a = number();
-    const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-    if (length == 0.0) error->all(FLERR, "Fix fsi/move {} axis must not be of length 0", name);
-    for (double &a : axis) a /= length;
-    if (domain->dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0)) error->all(FLERR, "Fix fsi/move {} axis must be z in 2D", name);
-    for (auto &s : source) s = GIVEN;
-  };
-  const auto period = [&]() {
-    const char *const word = iarg < narg ? arg[iarg] : "";
-    const double t = number();
-    if (t <= 0.0) error->all(FLERR, "Fix fsi/move {} period {} must be > 0", name, word);
-    omega = MathConst::MY_2PI / t;
-  };
-
-  if (name == "linear") {
-    style = LINEAR;
-    for (int k = 0; k < 3; k++) component(k);
-  } else if (name == "wiggle") {
-    style = WIGGLE;
-    for (int k = 0; k < 3; k++) component(k);
-    period();
-  } else if (name == "rotate") {
-    style = ROTATE;
-    turn();
-    period();
-  } else if (name == "transrot") {
-    style = TRANSROT;
-    for (double &r : rate) r = number();
-    turn();
-    period();
-  } else if (name == "variable") {
-    style = VARIABLE;
-    for (auto &v : position) variable(v);
-    for (auto &v : velocity) variable(v);
-    for (int k = 0; k < 3; k++)
-      if (!position[k].empty() && velocity[k].empty())
-        error->all(FLERR, "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels how fast a wall moves", position[k]);
-  } else
-    error->all(FLERR, "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable", name);
-
-  bool lattice = style != VARIABLE;
-  while (iarg < narg) {
-    const std::string key = arg[iarg++];
-    if (key != "units") error->all(FLERR, "Unknown fix fsi/move keyword {}: expected units", key);
-    const std::string value = next();
-    if (value != "box" && value != "lattice") error->all(FLERR, "Unknown fix fsi/move units {}: expected box or lattice", value);
-    lattice = style != VARIABLE && value == "lattice";
-  }
+  Words words(lmp, narg - 3, arg + 3);
+  read_motion(words);
+  read_units(words);
   if (domain->dimension == 2 && (rate[2] != 0.0 || !position[2].empty() || !velocity[2].empty()))
-    error->all(FLERR, "Fix fsi/move {} cannot move along z in 2D", name);
-  if (lattice) {
-    const double scale[] = {domain->lattice->xlattice, domain->lattice->ylattice, domain->lattice->zlattice};
-    for (int k = 0; k < 3; k++) {
-      rate[k] *= scale[k];
-      point[k] *= scale[k];
-    }
-  }
+    error->all(FLERR, "Fix fsi/move {} cannot move along z in 2D", words.motion);
 
   time_integrate = 1;
   restart_global = 1;
   fields.set("place before the motion", Fields::FILE, true, original, 3);
   register_fields();
   for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], original[i]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIMove::read_motion(Words &words)
+{
+  const auto components = [&]() {
+    for (int k = 0; k < 3; k++) {
+      if (words.skip_null()) continue;
+      rate[k] = words.number();
+      source[k] = GIVEN;
+    }
+  };
+  const auto turn = [&]() {
+    for (double &p : point) p = words.number();
+    for (double &a : axis) a = words.number();
+    const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    if (length == 0.0) error->all(FLERR, "Fix fsi/move {} axis must not be of length 0", words.motion);
+    for (double &a : axis) a /= length;
+    if (domain->dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0)) error->all(FLERR, "Fix fsi/move {} axis must be z in 2D", words.motion);
+    for (auto &s : source) s = GIVEN;
+    omega = MathConst::MY_2PI / words.period();
+  };
+
+  if (words.motion == "linear") {
+    style = LINEAR;
+    components();
+  } else if (words.motion == "wiggle") {
+    style = WIGGLE;
+    components();
+    omega = MathConst::MY_2PI / words.period();
+  } else if (words.motion == "rotate") {
+    style = ROTATE;
+    turn();
+  } else if (words.motion == "transrot") {
+    style = TRANSROT;
+    for (double &r : rate) r = words.number();
+    turn();
+  } else if (words.motion == "variable") {
+    style = VARIABLE;
+    for (auto &v : position) v = words.variable();
+    for (auto &v : velocity) v = words.variable();
+    for (int k = 0; k < 3; k++)
+      if (!position[k].empty() && velocity[k].empty())
+        error->all(FLERR, "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels how fast a wall moves", position[k]);
+  } else
+    error->all(FLERR, "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable", words.motion);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIMove::read_units(Words &words)
+{
+  bool lattice = style != VARIABLE;
+  while (words.any()) {
+    const auto key = words.next();
+    if (key != "units") error->all(FLERR, "Unknown fix fsi/move keyword {}: expected units", key);
+    const auto value = words.next();
+    if (value != "box" && value != "lattice") error->all(FLERR, "Unknown fix fsi/move units {}: expected box or lattice", value);
+    lattice = style != VARIABLE && value == "lattice";
+  }
+  if (!lattice) return;
+  const double scale[] = {domain->lattice->xlattice, domain->lattice->ylattice, domain->lattice->zlattice};
+  for (int k = 0; k < 3; k++) {
+    rate[k] *= scale[k];
+    point[k] *= scale[k];
+  }
 }
 
 /* ---------------------------------------------------------------------- */

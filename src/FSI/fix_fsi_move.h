@@ -48,6 +48,9 @@ class FixFSIMove : public FSI::FixFields {
   void set_arrays(int) override;
 
  private:
+  class Words;
+  void read_motion(Words &);
+  void read_units(Words &);
   enum Style { LINEAR, WIGGLE, ROTATE, TRANSROT, VARIABLE };
   enum Source { FREE, GIVEN, EQUAL, ATOM };
   int style;

@@ -118,7 +118,7 @@ template <class K, int TERMS, int... F> void PairFSISolid::pick_force(int flags,
 {
   using Loop = void (PairFSISolid::*)();
   static constexpr Loop table[] = {&PairFSISolid::force_pairs<K, TERMS, F>...};
-  force_loop = table[flags];
+  force_loop = flags & LEDGER ? &PairFSISolid::force_pairs<K, TERMS, ALL> : table[flags];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -487,31 +487,17 @@ void PairFSISolid::compute(int eflag, int vflag)
 }
 
 /* ----------------------------------------------------------------------
-   with the weights G_ij = -V_j g C phi of the gradient (gradient corrected, quadratic): F_ij = V_i sigma_i G_ij - V_j sigma_j G_ji
-   instead of the first two terms below. What deforms the solid is what resists: energy and angular momentum are kept
-   gradient plain: F_ij = [sigma_i V_i^2 + sigma_j V_j^2 + (R_i + R_j) (W_ij/W(dx))^4 - Q_ij I] . grad_i W_ij (paper eq. 14), sigma = -p I + S
-   between bodies only contact (fsi_contact.h) and Q: bodies do not stick, nor share their stress
+   what the pairs of an atom share; local and ghost
 ------------------------------------------------------------------------- */
 
-template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
+template <int D, int TERMS> const std::vector<PairFSISolid::Aux<D>> &PairFSISolid::fill_aux()
 {
-  constexpr int D = K::DIM;
-  const K kernel(hub->h);
-  double **x = atom->x;
-  double **v = atom->v;
-  double **f = atom->f;
-  const double *const rho = atom->rho;
-  const double *const rmass = atom->rmass;
-  const int *const type = atom->type;
-  const tagint *const molecule = atom->molecule;
-  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
-  const bool newton = force->newton_pair;
-  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off
   const State *const state = hub->state.data();
+  const int *const type = atom->type;
+  const double *const rho = atom->rho, *const rmass = atom->rmass;
   double **S = fix_stress->stress;
-  const ArtificialViscosity viscosity(alpha, beta, hub->h);
+  const int nall = atom->nlocal + atom->nghost;
   const ArtificialStress artificial(epsilon, hub->wdx);
-  const Contact contact(D, hub->dx, contact_range);
 
   auto &aux = get_aux<D>();
   if ((int) aux.size() < nall) aux.resize(atom->nmax);
@@ -525,22 +511,73 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
     a.stress = Sym<D>::load(S[i]);
     a.stress *= v2;
     a.stress += Sym<D>::identity(-a.pv2);
-    if (FLAGS & ARTIFICIAL_STRESS) a.artificial = artificial(a.stress);
+    a.artificial = epsilon > 0.0 ? artificial(a.stress) : Sym<D>();
     if constexpr (TERMS > 0) {
       a.C = grad[i] + D * D;
       a.vstress = a.stress;
       a.vstress *= 1.0 / a.vol;
     }
   }
+  return aux;
+}
+
+/* ---------------------------------------------------------------------- */
+
+template <int D> static double contract(const Sym<D> &s, const double *x_ij, const double *vi, const double *vj)
+{
+  double sx[D], sum = 0.0;
+  dot<D>(s, x_ij, sx);
+  for (int d = 0; d < D; d++) sum += sx[d] * (vi[d] - vj[d]);
+  return sum;
+}
+
+/* ----------------------------------------------------------------------
+   takes w_i V_i sigma_i G_i - w_j V_j sigma_j G_j from t, with the corrected gradients G of i and of j (fsi_gradient.h) over -g
+------------------------------------------------------------------------- */
+
+template <int D, int TERMS, class Aux>
+static void subtract_corrected(const Aux &ai, const Aux &aj, double wi, double wj, const double *x_ij, double hinv, double *t)
+{
+  double xji[D], phi[TERMS], Gi[D] = {}, Gj[D] = {}, si[D], sj[D];
+  for (int d = 0; d < D; d++) xji[d] = -x_ij[d] * hinv;
+  gradient_basis<D, TERMS>(xji, phi);
+  for (int a = 0; a < D; a++)
+    for (int k = 0; k < TERMS; k++) {
+      Gi[a] += ai.C[a * TERMS + k] * phi[k];
+      Gj[a] += aj.C[a * TERMS + k] * (k < D ? -phi[k] : phi[k]);
+    }
+  dot<D>(ai.vstress, Gi, si);
+  dot<D>(aj.vstress, Gj, sj);
+  for (int d = 0; d < D; d++) t[d] -= wi * si[d] - wj * sj[d];
+}
+
+/* ----------------------------------------------------------------------
+   with the weights G_ij = -V_j g C phi of the gradient (gradient corrected, quadratic): F_ij = V_i sigma_i G_ij - V_j sigma_j G_ji
+   instead of the first two terms below. What deforms the solid is what resists: energy and angular momentum are kept
+   gradient plain: F_ij = [sigma_i V_i^2 + sigma_j V_j^2 + (R_i + R_j) (W_ij/W(dx))^4 - Q_ij I] . grad_i W_ij (paper eq. 14), sigma = -p I + S
+   between bodies only contact (fsi_contact.h) and Q: bodies do not stick, nor share their stress
+------------------------------------------------------------------------- */
+
+template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
+{
+  constexpr int D = K::DIM;
+  const K kernel(hub->h);
+  double **x = atom->x, **v = atom->v, **f = atom->f;
+  const double *const rmass = atom->rmass;
+  const int *const type = atom->type;
+  const tagint *const molecule = atom->molecule;
+  const int nlocal = atom->nlocal;
+  const bool newton = force->newton_pair;
+  const bool tally_pairs = evflag && !vflag_fdotr;    // newton off
+  const State *const state = hub->state.data();
+  const ArtificialViscosity viscosity(alpha, beta, hub->h);
+  const ArtificialStress artificial(epsilon, hub->wdx);
+  const Contact contact(D, hub->dx, contact_range);
+
+  const auto &aux = fill_aux<D, TERMS>();
 
   // energies: without newton a pair across ranks is computed on both
   const auto share = [&](int j) { return (newton || j < nlocal) ? 1.0 : 0.5; };
-  const auto contract = [](const Sym<D> &s, const double *x_ij, const double *vi, const double *vj) {
-    double sx[D], sum = 0.0;
-    dot<D>(s, x_ij, sx);
-    for (int d = 0; d < D; d++) sum += sx[d] * (vi[d] - vj[d]);
-    return sum;
-  };
 
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
@@ -548,7 +585,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
     double fi[D] = {};
     for (int jj = 0; jj < list->numneigh[i]; jj++) {
       const int j = list->firstneigh[i][jj] & NEIGHMASK;
-      double xij[D], vij[D], rsq = 0.0, vdotx = 0.0;
+      double xij[D], rsq = 0.0;
       for (int d = 0; d < D; d++) {
         xij[d] = x[i][d] - x[j][d];
         rsq += xij[d] * xij[d];
@@ -572,7 +609,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
           R *= artificial.weight(kernel.W(r));
           t += R;
           if (FLAGS & LEDGER) {
-            const double power = contract(R, xij, v[i], v[j]);
+            const double power = contract<D>(R, xij, v[i], v[j]);
             hub->tally(FixFSI::STRESS, -share(j) * g * power);
             hub->tally(FixFSI::GRADIENT, share(j) * g * power);
           }
@@ -583,17 +620,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       if constexpr (TERMS > 0) {
         if (!(FLAGS & BODIES) || molecule[i] == molecule[j]) {
           const double wi = rmass[j] / state[type[j]].rho0, wj = rmass[i] / state[type[i]].rho0;    // times -g
-          double xji[D], phi[TERMS], Gi[D] = {}, Gj[D] = {}, si[D], sj[D];
-          for (int d = 0; d < D; d++) xji[d] = -xij[d] * kernel.hinv;
-          gradient_basis<D, TERMS>(xji, phi);
-          for (int a = 0; a < D; a++)
-            for (int k = 0; k < TERMS; k++) {
-              Gi[a] += ai.C[a * TERMS + k] * phi[k];
-              Gj[a] += aj.C[a * TERMS + k] * (k < D ? -phi[k] : phi[k]);
-            }
-          dot<D>(ai.vstress, Gi, si);
-          dot<D>(aj.vstress, Gj, sj);
-          for (int d = 0; d < D; d++) tx[d] -= wi * si[d] - wj * sj[d];
+          subtract_corrected<D, TERMS>(ai, aj, wi, wj, xij, kernel.hinv, tx);
         }
       }
       if (FLAGS & LEDGER) {
@@ -602,10 +629,8 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
         hub->tally(FixFSI::GRADIENT, -share(j) * power);
       }
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
-        for (int d = 0; d < D; d++) {
-          vij[d] = v[i][d] - v[j][d];
-          vdotx += vij[d] * xij[d];
-        }
+        double vdotx = 0.0;
+        for (int d = 0; d < D; d++) vdotx += (v[i][d] - v[j][d]) * xij[d];
         const double q = viscosity(vdotx, rsq, 0.5 * (ai.rho + aj.rho), 0.5 * (state[type[i]].c + state[type[j]].c),
                                    ai.vol * aj.vol);
         for (int d = 0; d < D; d++) tx[d] -= q * xij[d];

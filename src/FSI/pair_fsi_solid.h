@@ -96,8 +96,10 @@ class PairFSISolid : public PairFSI {
   std::vector<Aux<2>> aux2;
   std::vector<Aux<3>> aux3;
   template <int D> std::vector<Aux<D>> &get_aux();
+  template <int D, int TERMS> const std::vector<Aux<D>> &fill_aux();
 
-  enum { ARTIFICIAL_VISCOSITY = 1, ARTIFICIAL_STRESS = 2, BODIES = 4, LEDGER = 8, NFORCE = 16 };
+  // with the ledger one loop has all effects, and those that are off have coefficients of zero
+  enum { ARTIFICIAL_VISCOSITY = 1, ARTIFICIAL_STRESS = 2, BODIES = 4, NFORCE = 8, LEDGER = 8, ALL = 15 };
   void (PairFSISolid::*force_loop)();
   void (PairFSISolid::*gradient_loop)(double);
   template <class K, int TERMS, int FLAGS> void force_pairs();
