@@ -48,6 +48,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("laminar/visc/central").set(laminar, CENTRAL);
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
+  keywords.key("density/surface").logical(surfaces, false).effect("density that follows surfaces");
   keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
   keywords.key("surface")
       .number(surface_ratio, 0.0, Range::from_to_below(0.0, 1.0), "ratio")
@@ -111,6 +112,10 @@ void PairFSIFluid::init_style()
   PairFSI::init_style();
   if (delta > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
+  if (surfaces && hub->density_fluid != FixFSI::CONTINUITY)
+    error->all(FLERR, "Pair style fsi/fluid density/surface requires fix fsi with fluid continuity");
+  if (surfaces && (tension || background != 0.0))
+    error->all(FLERR, "Pair style fsi/fluid density/surface is for fluids with a free surface: without tension yes and background");
   if (shifting > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Pair style fsi/fluid shift requires fix fsi with fluid continuity");
   if (laminar) {
@@ -151,6 +156,10 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
     dim_of_extract = 0;
     return &laminar;
   }
+  if (strcmp(name, "density/surface") == 0) {
+    dim_of_extract = 0;
+    return &surfaces;
+  }
   return PairFSI::extract(name, dim_of_extract);
 }
 
@@ -182,7 +191,7 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 void PairFSIFluid::add_costs(Costs &costs) const
 {
   const int newton = force->newton_pair, continuity = hub->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? nshift() : 0;
-  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + ns);
+  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + ns + 2 * surfaces);
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
   if (sticks_to_solids()) costs.solid_ghost += hub->dim + newton * (hub->dim + 1);
@@ -449,19 +458,19 @@ void PairFSIFluid::displacements(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-// sums of what depends on the distance of a pair, walls' images included: sum(rows, both, mirror), of neighbors only if both
+// sums of what depends on the distance of a pair, walls' images included: sum(kind, rows, both, mirror), of neighbors only if both
 template <class Sum> void PairFSIFluid::distance_sums(bool others_too, Sum sum)
 {
   const auto both = [&](int kind) { return kind == FLUIDS || others_too; };
-  for (int kind = 0; kind < NROWS; kind++) sum(rows[kind].rows, both(kind), nullptr);
+  for (int kind = 0; kind < NROWS; kind++) sum(kind, rows[kind].rows, both(kind), nullptr);
   double **x = atom->x;
   for_images(hub->walls, [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
-             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { sum(which, both(kind), mirror); });
+             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { sum(kind, which, both(kind), mirror); });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
-  distance_sums(solids_too, [&](const std::vector<Row> &which, bool both, const Mirror *mirror) {
+  distance_sums(solids_too, [&](int, const std::vector<Row> &which, bool both, const Mirror *mirror) {
     loops->number_density(which, both, mirror, FixFSI::rows(atom->x), psi);
   });
 }
@@ -470,9 +479,32 @@ void PairFSIFluid::add_position_divergence(double *div)
 {
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
-  distance_sums(false, [&](const std::vector<Row> &which, bool both, const Mirror *mirror) {
+  distance_sums(false, [&](int, const std::vector<Row> &which, bool both, const Mirror *mirror) {
     loops->position_divergence(which, both, mirror, FixFSI::rows(atom->x), volume.data(), div);
   });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::add_gradient_sum(double *s)
+{
+  if (hub->dim == 2) add_gradients<2>(s);
+  else add_gradients<3>(s);
+}
+
+// the plain sums of particle shifting, all volumes those of the lattice
+template <int D> void PairFSIFluid::add_gradients(double *s)
+{
+  constexpr int N = Shift<D>::N;
+  const size_t nall = atom->nlocal + atom->nghost;
+  const double volume = 1.0 / hub->psi_bulk;
+  const FluidParticles particles = gather<D>(0.0, [=](int, Point<D> &p) { p.vol = volume; });
+  std::vector<double> sums(N * nall, 0.0);
+  distance_sums(false, [&](int kind, const std::vector<Row> &which, bool, const Mirror *mirror) {
+    loops->shifts(kinds[kind], which, mirror, particles, hub->wdx, sums.data());
+  });
+  for (size_t i = 0; i < nall; i++)
+    for (int d = 0; d < D; d++) s[d * nall + i] += sums[N * i + D + d];
 }
 
 /* ---------------------------------------------------------------------- */
