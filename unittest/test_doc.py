@@ -15,6 +15,7 @@ STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in sorte
 STYLES["atom_style_fsi"] = STYLES.pop("atom_fsi")
 STYLES["fsi_set"] = STYLES.pop("command_fsi_set")
 STYLES.pop("fix_fsi_reference")  # internal
+STYLES.pop("fix_fsi_outlet")  # on the page of fix fsi/inlet
 
 SETUP = """units si
 dimension 2
@@ -65,7 +66,7 @@ def deck(page, example):
                                                                       "create_atoms 3 region wall\ngroup wall type 3\ngroup water")
         pairs = PAIRS.replace("water plate", "water plate wall").replace("NULL plate", "NULL plate NULL")
         return walls + pairs + FIX.replace("all", "fluid").replace("fix", "group fluid subtract all wall\nfix", 1) + STRESS + GRAVITY + example + "\nrun 1\n"
-    if page == "fix_fsi_stream":
+    if page in ("fix_fsi_stream", "fix_fsi_inlet"):
         lines = examples(page)    # region and variable stand before the fix that has them
         return SETUP + PAIRS + FIX + STRESS + "\n".join(line for line in lines if not line.startswith("fix") and line != example) + f"\n{example}\nrun 1\n"
     if page == "fix_fsi_move":
@@ -85,7 +86,7 @@ def test_example(tmp_path, page, example):
     run(tmp_path, deck(page, example))
 
 
-@pytest.mark.parametrize("page, name", STYLES.items())
+@pytest.mark.parametrize("page, name", [*STYLES.items(), ("fix_fsi_inlet", "fsi/outlet")])
 def test_page_has_every_keyword(page, name):
     """Words that the source compares arguments with, as a user may write them, stand on the page."""
     text = (PAGES / f"{page}.rst").read_text()

@@ -13,6 +13,11 @@ from xml.etree import ElementTree
 
 from . import launch, paths
 
+# What --quick and the line coverage leave out, test_NAME.py: scenes, whose equations the other tests look at one by one; what runs
+# tools, installs, builds or counts instructions, to which an instrumented build adds its own; the plugin, bit for bit the usual build
+SLOW = ["scene*", "cost*", "pay", "scaling", "hard", "interface", "viscosity", "plugin", "install", "fuzz", "faults", "doc*", "recipes", "run", "python",
+        "gallery", "results", "check"]
+
 
 def googletest():
     """(passed, failed) of the GoogleTest cases that the build registered with ctest; (0, 0) if it has none."""
@@ -60,17 +65,21 @@ def other_builds():
     return variants.main([])
 
 
+def quick():
+    """pytest's options that leave the slow tests out."""
+    return [f"--ignore-glob=*/test_{name}.py" for name in SLOW]
+
+
 def coverage():
-    """(1, 0) if the tests execute enough of src/FSI (tools/coverage); without the scenes, which take the longest, the plugin,
-    whose bits are compared with those of the usual build, and what counts instructions, to which the instrumented build adds its own."""
-    left_out = ["scene*", "plugin", "pay", "cost*"]
-    command = [str(paths.ROOT / "tools" / "coverage"), *(f"--ignore-glob=*/test_{name}.py" for name in left_out)]
-    good = subprocess.run(command, check=False).returncode == 0
+    """(1, 0) if the quick tests execute enough of src/FSI (tools/coverage)."""
+    good = subprocess.run([str(paths.ROOT / "tools" / "coverage"), *quick()], check=False).returncode == 0
     return int(good), int(not good)
 
 
 def main(arguments):
-    """Runs everything, or with pytest's options only GoogleTest and pytest; the last line is the sum."""
+    """Runs everything, or with --quick or pytest's options only GoogleTest and pytest; the last line is the sum."""
+    if "--quick" in arguments:
+        arguments = [*(a for a in arguments if a != "--quick"), *quick()]
     results = [googletest(), pytest(arguments)]
     if not arguments:
         results += [other_builds(), coverage()]

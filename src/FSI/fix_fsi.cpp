@@ -295,6 +295,7 @@ void FixFSI::pre_force(int)
 
 void FixFSI::final_integrate()
 {
+  for (auto *p : parts) p->prescribe();
   check.before_kick();
   if (substeps > 1)
     for (auto *p : parts) p->integrate_substeps();

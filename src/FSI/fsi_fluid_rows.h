@@ -336,7 +336,7 @@ namespace FSI {
   // sums of particle shifting; solids and walls count, but are not shifted
   template <class T, class K, int FLAGS>
   FSI_INLINE void shift_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
-                             const double wdx, double *const shift)
+                             const double wdx, double (*const shift)[Shift<K::DIM>::ROW])
   {
     constexpr int D = K::DIM, N = Shift<D>::N;
     using L = Lanes<T>;
@@ -363,13 +363,9 @@ namespace FSI {
         for (int d = 0; d < D; d++) back[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * x[d] : -x[d];
         for (T &s : of_j) s = 0.0;
         law.add(of_j, pi.vol, g, w, rsq, back);
-        for (int k = 0; k < Lanes<T>::WIDTH; k++) {
-          double *const to = shift + (size_t) N * j[k];
-          for (int m = 0; m < N; m++) to[m] += L::place(of_j[m], k);
-        }
+        L::add_rows(of_j, shift, j, N);
       });
-      double *const to = shift + (size_t) N * i;
-      for (int m = 0; m < N; m++) to[m] += L::sum(sum[m]);
+      for (int m = 0; m < N; m++) shift[i][m] += L::sum(sum[m]);
     }
   }
 
@@ -474,7 +470,8 @@ namespace FSI {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::IMAGES | Flag::BOTH>((image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0), [&](auto flags) {
         run_loop([&](auto number) __attribute__((always_inline)) {
-          shift_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, wdx, shift);
+          shift_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, wdx,
+                                                   reinterpret_cast<double(*)[Shift<D>::ROW]>(shift));
         });
       });
     }

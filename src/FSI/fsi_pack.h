@@ -92,11 +92,11 @@ namespace FSI {
       transpose(load(a), load(b), load(c), load(d), out);
     }
 
-    // the inverse: adds the nth numbers of x, y, z to the first three of the four doubles at a, b, c, d
-    FSI_INLINE static void add_rows(const Pack &x, const Pack &y, const Pack &z, double *a, double *b, double *c, double *d)
+    // the inverse: adds the nth numbers of x, y, z, w to the four doubles at a, b, c, d
+    FSI_INLINE static void add_rows(const Pack &x, const Pack &y, const Pack &z, const Pack &w, double *a, double *b, double *c, double *d)
     {
       Pack row[WIDTH];
-      transpose(x, y, z, 0.0, row);
+      transpose(x, y, z, w, row);
       store(a, load(a) + row[0]);
       store(b, load(b) + row[1]);
       store(c, load(c) + row[2]);
@@ -181,7 +181,6 @@ namespace FSI {
     FSI_INLINE static double read(const double *a, const int *j) { return a[*j]; }
     FSI_INLINE static void add(double x, double *a, const int *j) { a[*j] += x; }
     FSI_INLINE static double sum(double x) { return x; }
-    FSI_INLINE static double place(double x, int) { return x; }
     // f(k) for place k
     template <class F> FSI_INLINE static double make(F f) { return f(0); }
     // 1 in the first n places, else 0
@@ -200,7 +199,6 @@ namespace FSI {
       for (int k = 0; k < WIDTH; k++) a[j[k]] += x.v[k];
     }
     FSI_INLINE static double sum(const Pack &x) { return x.sum(); }
-    FSI_INLINE static double place(const Pack &x, int k) { return x.v[k]; }
     template <class F> FSI_INLINE static Pack make(F f) { return {f(0), f(1), f(2), f(3)}; }
     FSI_INLINE static Pack first(int n)
     {
@@ -213,7 +211,17 @@ namespace FSI {
     }
     FSI_INLINE static void add_rows(const Pack *x, double (*a)[4], const int *j, int)
     {
-      Pack::add_rows(x[0], x[1], x[2], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
+      Pack::add_rows(x[0], x[1], x[2], 0.0, a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
+    }
+    FSI_INLINE static void add_rows(const Pack *x, double (*a)[5], const int *j, int)
+    {
+      Pack::add_rows(x[0], x[1], x[2], x[3], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
+      for (int k = 0; k < WIDTH; k++) a[j[k]][4] += x[4].v[k];
+    }
+    FSI_INLINE static void add_rows(const Pack *x, double (*a)[8], const int *j, int)
+    {
+      Pack::add_rows(x[0], x[1], x[2], x[3], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
+      Pack::add_rows(x[4], x[5], x[6], 0.0, a[j[0]] + 4, a[j[1]] + 4, a[j[2]] + 4, a[j[3]] + 4);
     }
   };
 #endif

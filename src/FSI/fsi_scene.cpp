@@ -89,7 +89,9 @@ bool Scene::is_total_lagrangian(int i) const
 
 bool Scene::is_moved(int i) const
 {
-  for (const auto &fix : instance->modify->get_fix_list())
-    if (fix->time_integrate && instance->atom->mask[i] & fix->groupbit) return true;
+  // not get_fix_list(), which makes the list anew: who asks in set_arrays() is called from a loop over it
+  const Modify *const modify = instance->modify;
+  for (int k = 0; k < modify->nfix; k++)
+    if (modify->fix[k]->time_integrate && instance->atom->mask[i] & modify->fix[k]->groupbit) return true;
   return false;
 }

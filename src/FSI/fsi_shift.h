@@ -36,7 +36,8 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   template <int D> struct Shift {
-    static constexpr int N = 2 * D + 1;    // sums of a particle: weighted and plain sum of V_j grad_i W_ij, divergence
+    static constexpr int N = 2 * D + 1;             // sums of a particle: weighted and plain sum of V_j grad_i W_ij, divergence
+    static constexpr int ROW = D == 2 ? N : N + 1;    // numbers from one particle to the next: fours are added at once
     double wdx;                            // W(dx)
     explicit Shift(double w) : wdx(w) {}
 

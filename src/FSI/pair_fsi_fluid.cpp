@@ -165,9 +165,11 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
 
 /* ---------------------------------------------------------------------- */
 
+// numbers of an atom in the array of shifting
+
 int PairFSIFluid::nshift() const
 {
-  return 2 * hub->dim + 1;
+  return hub->dim == 2 ? Shift<2>::ROW : Shift<3>::ROW;
 }
 
 void PairFSIFluid::set_fields(Scene &scene)
@@ -185,13 +187,13 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
   if (sticks_to_solids()) to_ghosts.add(hub->wall_velocity, 0, hub->dim, {SOLID});
   if (sticks_to_solids()) back.add(beyond, 0, hub->dim + 1, {SOLID});
   if (hub->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
-  if (shifting > 0.0) back.add(hub->shift, 0, nshift(), {FLUID, RIGID});
+  if (shifting > 0.0) back.add(hub->shift, 0, 2 * hub->dim + 1, {FLUID, RIGID});
 }
 
 void PairFSIFluid::add_costs(Costs &costs) const
 {
-  const int newton = force->newton_pair, continuity = hub->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? nshift() : 0;
-  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + ns + 2 * surfaces);
+  const int newton = force->newton_pair, continuity = hub->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? 2 * hub->dim + 1 : 0;
+  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + (ns ? nshift() : 0) + 2 * surfaces);
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
   if (sticks_to_solids()) costs.solid_ghost += hub->dim + newton * (hub->dim + 1);
@@ -495,16 +497,16 @@ void PairFSIFluid::add_gradient_sum(double *s)
 // the plain sums of particle shifting, all volumes those of the lattice
 template <int D> void PairFSIFluid::add_gradients(double *s)
 {
-  constexpr int N = Shift<D>::N;
+  constexpr int ROW = Shift<D>::ROW;
   const size_t nall = atom->nlocal + atom->nghost;
   const double volume = 1.0 / hub->psi_bulk;
   const FluidParticles particles = gather<D>(0.0, [=](int, Point<D> &p) { p.vol = volume; });
-  std::vector<double> sums(N * nall, 0.0);
+  std::vector<double> sums(ROW * nall, 0.0);
   distance_sums(false, [&](int kind, const std::vector<Row> &which, bool, const Mirror *mirror) {
     loops->shifts(kinds[kind], which, mirror, particles, hub->wdx, sums.data());
   });
   for (size_t i = 0; i < nall; i++)
-    for (int d = 0; d < D; d++) s[d * nall + i] += sums[N * i + D + d];
+    for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d];
 }
 
 /* ---------------------------------------------------------------------- */

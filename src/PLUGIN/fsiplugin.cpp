@@ -25,6 +25,7 @@
 #include "compute_fsi_surface_atom.h"
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
+#include "fix_fsi_inlet.h"
 #include "fix_fsi_move.h"
 #include "fix_fsi_reference.h"
 #include "fix_fsi_spectrum.h"
@@ -135,6 +136,8 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi/wall/particle", &create_with_arguments<FixFSIWallParticle>);
   two("fix", "fsi/watch", &create_with_arguments<FixFSIWatch>);
   two("fix", "fsi/dt", &create_with_arguments<FixFSIDt>);
+  two("fix", "fsi/inlet", &create_with_arguments<FixFSIInlet>);
+  two("fix", "fsi/outlet", &create_with_arguments<FixFSIInlet>);
   two("fix", "fsi/move", &create_with_arguments<FixFSIMove>);
   two("fix", "fsi/stream", &create_with_arguments<FixFSIStream>);
   two("fix", "fsi/report", &create_with_arguments<FixFSIReport>);

@@ -1,0 +1,797 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+#include "fix_fsi_inlet.h"
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "fsi_kernel.h"
+#include "fsi_record.h"
+#include "group.h"
+#include "input.h"
+#include "memory.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "region.h"
+#include "update.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace FSI;
+
+static constexpr double AUTO = -1.0;
+static constexpr int PRESSURE_COLUMN = 3, NCOLUMNS = 4;    // of the values of variables
+static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with; a column more or less is there at any time
+static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: no fluid to speak of
+static constexpr double TAKEN = 0.5;    // of the spacing: a place is taken by who is as near
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
+    FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
+    length(0.0), region(nullptr), hub(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0),
+    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), given{}
+{
+  if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
+  if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
+  const std::string face = arg[3];
+  if (face.size() != 3 || face[0] < 'x' || face[0] > 'z' || (face.substr(1) != "lo" && face.substr(1) != "hi"))
+    error->all(FLERR, "Unknown {} face {}: expected xlo, xhi, ylo, yhi, zlo or zhi", std::string("fix ") + style, face);
+  axis = face[0] - 'x';
+  side = face[1] == 'l' ? 1.0 : -1.0;
+  if (axis >= domain->dimension) error->all(FLERR, "{} {} is not possible for dimension 2", who, face);
+  position = numeric(lmp, who + " " + face, arg[4]);
+
+  keywords.key("velocity").word(words[0], "").word(words[1], "").word(words[2], "");
+  keywords.key("pressure").word(words[PRESSURE_COLUMN], "");
+  keywords.key("absorb").number(absorb, outlet ? AUTO : 0.0, Range::from(0.0)).or_word("auto", AUTO);
+  keywords.key("buffer").number(given_length, AUTO, Range::above(0.0)).or_word("auto", AUTO);
+  keywords.key("region").word(region_id, "");
+  keywords.parse(narg - 5, arg + 5);
+
+  const std::string p = words[PRESSURE_COLUMN];
+  if (!words[0].empty() && !p.empty()) error->all(FLERR, "{} {} takes velocity or pressure, not both: the other one is that of the fluid", who, face);
+  if (words[0].empty() && p.empty() && !outlet) error->all(FLERR, "{} {} requires keyword velocity or pressure", who, face);
+  if (words[0].empty()) {
+    if (p.empty()) pressure.source = BACKGROUND;
+    else if (p != "free") read(pressure, p, "pressure", "v_name or free");
+  } else {
+    for (int d = 0; d < 3; d++) {
+      read(velocity[d], words[d], "velocity", "v_name");
+      if (d >= domain->dimension && (velocity[d].source != NUMBER || velocity[d].number != 0.0))
+        error->all(FLERR, "{} velocity along z must be 0 in 2D, not {}", who, words[d]);
+    }
+  }
+  if (p == "free" && absorb > 0.0) error->all(FLERR, "{} absorb is not for pressure free, which has no value to go back to", who);
+  if (!region_id.empty() && !domain->get_region_by_id(region_id)) error->all(FLERR, "Region {} of {} does not exist", region_id, keywords_name());
+
+  force_reneighbor = 1;
+  next_reneighbor = -1;    // whenever lists are built
+  scalar_flag = vector_flag = 1;
+  size_vector = 10;
+  extscalar = 1;
+  extvector = 0;
+  global_freq = 1;
+  restart_global = 1;
+  fields.set("of the buffer", Fields::FILE, true, of_buffer);
+  fields.set("place of the copy", Fields::FILE, true, behind, 3);
+  register_fields();
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIInlet::~FixFSIInlet()
+{
+  memory->destroy(target);
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSIInlet::setmask()
+{
+  return PRE_EXCHANGE;
+}
+
+/* ----------------------------------------------------------------------
+   values: numbers and variables
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::read(Value &v, const std::string &word, const std::string &what, const std::string &other)
+{
+  if (utils::strmatch(word, "^v_")) {
+    v.name = word.substr(2);
+    v.source = EQUAL;
+  } else {
+    v.number = numeric(lmp, who + " " + what, word, {}, false, other);
+    v.source = NUMBER;
+  }
+}
+
+void FixFSIInlet::find_variable(Value &v)
+{
+  if (v.name.empty()) return;
+  v.variable = input->variable->find(v.name.c_str());
+  if (v.variable < 0) error->all(FLERR, "Variable {} of {} does not exist", v.name, keywords_name());
+  if (input->variable->equalstyle(v.variable)) v.source = EQUAL;
+  else if (input->variable->atomstyle(v.variable)) v.source = ATOM;
+  else error->all(FLERR, "Variable {} of {} must be equal-style or atom-style", v.name, keywords_name());
+}
+
+// at the time that LAMMPS has
+void FixFSIInlet::evaluate(Value *values, int n, int column)
+{
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    memory->destroy(target);
+    memory->create(target, nmax, NCOLUMNS, "fsi/inlet:target");
+  }
+  modify->clearstep_compute();
+  for (int k = 0; k < n; k++) {
+    if (values[k].source == EQUAL) values[k].number = input->variable->compute_equal(values[k].variable);
+    if (values[k].source == ATOM) input->variable->compute_atom(values[k].variable, igroup, &target[0][column + k], NCOLUMNS, 0);
+  }
+  modify->addstep_compute(update->ntimestep + 1);
+}
+
+double FixFSIInlet::value(const Value &v, int i, int column) const
+{
+  const double x = v.source == ATOM ? target[i][column] : v.number;
+  if (!std::isfinite(x))
+    error->one(FLERR, "{} {}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", who, id,
+               column == PRESSURE_COLUMN ? "pressure" : fmt::format("velocity along {}", "xyz"[column]), x, atom->tag[i], atom->x[i][0],
+               atom->x[i][1], atom->x[i][2], v.name.empty() ? "" : ", see variable " + v.name);
+  return x;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIInlet::init()
+{
+  hub = FixFSI::find(lmp, who);
+  if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
+  if (hub->density_fluid != FixFSI::CONTINUITY)
+    error->all(FLERR, "{} requires fix fsi with fluid continuity: a density that is summed cannot be prescribed", who);
+  if (!neighbor->dist_check)
+    error->all(FLERR, "{} requires neigh_modify check yes: particles are made and deleted when lists are built, before they have moved far", who);
+  if (domain->periodicity[axis]) error->all(FLERR, "{} {} is in periodic dimension {}: its boundary must be fixed (f)", who, id, "xyz"[axis]);
+
+  // lists hold for half a skin; a place that becomes free at the end is filled when a column has gone by
+  const double least = hub->cut + hub->dx + 0.5 * neighbor->skin;
+  length = hub->dx * std::ceil(least / hub->dx - 1.0e-9);
+  if (given_length != AUTO) {
+    length = hub->dx * std::round(given_length / hub->dx);
+    if (std::fabs(length - given_length) > 1.0e-6 * hub->dx)
+      error->all(FLERR, "{} buffer {} must be a multiple of the spacing {}: its end is where the lattice goes on", who, given_length, hub->dx);
+    if (length < least - 1.0e-9 * hub->dx)
+      error->all(FLERR, "{} buffer {} is too short: expected at least {:g}, the kernel's support {:g}, a spacing and half the skin", who, given_length,
+                 hub->dx * std::ceil(least / hub->dx - 1.0e-9), hub->cut);
+  }
+  // a number in a script may be that of the box but for its last digits
+  const double end = position - side * length, little = 1.0e-9 * domain->prd[axis], lo = domain->boxlo[axis], hi = domain->boxhi[axis];
+  if (position < lo - little || position > hi + little)
+    error->all(FLERR, "{} {}: its plane at {} = {} is outside the box, from {} to {}", who, id, "xyz"[axis], position, lo, hi);
+  if (domain->boundary[axis][side < 0.0] == 1 && (end < lo - little || end > hi + little))
+    error->all(FLERR, "{} {}: its buffer, {} = {:g} to {:g}, must be inside the box, from {} to {}", who, id, "xyz"[axis], position, end, lo, hi);
+
+  region = nullptr;
+  if (!region_id.empty()) {
+    region = domain->get_region_by_id(region_id);
+    if (!region) error->all(FLERR, "Region {} of {} does not exist", region_id, keywords_name());
+    if (region->dynamic_check()) error->all(FLERR, "Region {} of {} must not move nor change", region_id, keywords_name());
+    if (region->bboxflag) {
+      const double from[] = {region->extent_xlo, region->extent_ylo, region->extent_zlo}, to[] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
+      for (int d = 0; d < hub->dim; d++)
+        if (d != axis && (from[d] > domain->boxhi[d] || to[d] < domain->boxlo[d]))
+          error->all(FLERR, "Region {} of {}, from {} to {} along {}, is outside the box", region_id, keywords_name(), from[d], to[d], "xyz"[d]);
+      if (from[axis] > position || to[axis] < position)
+        error->all(FLERR, "Region {} of {}, from {} to {} along {}, does not reach its plane at {}", region_id, keywords_name(), from[axis], to[axis],
+                   "xyz"[axis], position);
+    }
+  }
+  for (auto &v : velocity) find_variable(v);
+  find_variable(pressure);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool FixFSIInlet::is_fluid(int i) const
+{
+  return (atom->mask[i] & groupbit) && hub->state[atom->type[i]].species == FLUID;
+}
+
+// a region says which part of the plane is open
+bool FixFSIInlet::in_patch(const double *x) const
+{
+  if (!region) return true;
+  double at[3] = {x[0], x[1], x[2]};
+  at[axis] = position;
+  domain->remap(at);
+  return region->match(at[0], at[1], at[2]);
+}
+
+bool FixFSIInlet::holds(const double *x) const
+{
+  const double s = inside(x);
+  return s <= 0.0 && s > -2.0 * length && in_patch(x);
+}
+
+double FixFSIInlet::energy(int i) const
+{
+  const double *const v = atom->v[i];
+  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + hub->potential(i) + hub->stored(i);
+}
+
+// as Comm::exchange() does, which comes next: new atoms take their places
+void FixFSIInlet::forget_ghosts()
+{
+  if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
+  atom->nghost = 0;
+  atom->avec->clear_bonus();
+}
+
+/* ----------------------------------------------------------------------
+   Before the first run: an empty buffer is filled with copies of the fluid before it
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::setup_pre_exchange()
+{
+  for (const auto &w : hub->walls.wall) {
+    const double at = side * (w.position - position);
+    if (w.axis == axis && !w.finite && at < 0.5 * hub->dx && at > -length)
+      error->all(FLERR, "{} {}: the mirror wall {}{} at {} closes it", who, id, "xyz"[axis], w.side > 0.0 ? "lo" : "hi", w.position);
+  }
+  if (region) region->prematch();
+  if (filled) return;
+  filled = true;
+  fill();
+}
+
+void FixFSIInlet::fill()
+{
+  enum { BEHIND, AHEAD, BEYOND, WALLS_BEHIND, WALLS_AHEAD, NCOUNT };
+  bigint own[NCOUNT] = {}, all[NCOUNT];
+  std::vector<Copy> copies;
+  const auto copy = [&](int i) {
+    const double *const x = atom->x[i], *const v = atom->v[i];
+    Copy c = {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i], atom->molecule[i], atom->type[i], atom->mask[i]};
+    c.x[axis] -= side * length;
+    copies.push_back(c);
+  };
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double s = inside(atom->x[i]);
+    if (s <= -2.0 * length || s >= length) continue;
+    if (hub->state[atom->type[i]].species == RIGID && s > -length) own[s > 0.0 ? WALLS_AHEAD : WALLS_BEHIND]++;
+    if (!is_fluid(i) || !in_patch(atom->x[i])) continue;
+    if (s > 0.0) {
+      own[AHEAD]++;
+      copy(i);
+    } else {
+      own[s > -length - 0.5 * hub->dx ? BEHIND : BEYOND]++;
+      of_buffer[i] = MEMBER;
+    }
+  }
+  MPI_Allreduce(own, all, NCOUNT, MPI_LMP_BIGINT, MPI_SUM, world);
+  const double end = position - side * length;
+  if (all[BEHIND] == 0 && all[AHEAD] == 0 && !outlet)
+    error->all(FLERR, "{} {}: there is no fluid of group {} at its plane {} = {}: fill the buffer, to {} = {:g}, or what is before it", who, id,
+               group->names[igroup], "xyz"[axis], position, "xyz"[axis], end);
+  if (all[BEYOND] > 0)
+    error->all(FLERR, "{} {}: {} particles of fluid are beyond the end of its buffer, {} = {:g}: {}{} has the fluid at {} {} {}", who, id, all[BEYOND],
+               "xyz"[axis], end, "xyz"[axis], side > 0.0 ? "lo" : "hi", "xyz"[axis], side > 0.0 ? ">" : "<", position);
+  if (all[WALLS_AHEAD] > 0 && 2 * all[WALLS_BEHIND] < all[WALLS_AHEAD] && comm->me == 0)
+    error->warning(FLERR, "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls should go on along the buffer, to {} = {:g}", who,
+                   id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
+  if (all[BEHIND] == 0 && all[AHEAD] > 0) {
+    forget_ghosts();
+    make(copies, true);
+  }
+  evaluate(velocity, 3, 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (of_buffer[i])
+      for (int d = 0; d < hub->dim; d++)
+        if (velocity[d].source != EXTRAPOLATED) atom->v[i][d] = value(velocity[d], i, d);
+}
+
+/* ----------------------------------------------------------------------
+   Makes copies: IDs go on from the largest that there ever was, in the order of those of the parents, whatever rank has them. Fluid that is
+   in the place keeps it.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
+{
+  int n = own.size() * sizeof(Copy), total = 0;
+  std::vector<int> counts(comm->nprocs), starts(comm->nprocs);
+  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  for (int k = 0; k < comm->nprocs; k++) {
+    starts[k] = total;
+    total += counts[k];
+  }
+  std::vector<Copy> copies(total / sizeof(Copy));
+  MPI_Allgatherv(own.data(), n, MPI_BYTE, copies.data(), counts.data(), starts.data(), MPI_BYTE, world);
+  if (copies.empty()) return;
+  double low = inside(copies[0].x), high = low;
+  for (auto &c : copies) {
+    domain->remap(c.x);
+    low = std::min(low, inside(c.x));
+    high = std::max(high, inside(c.x));
+  }
+
+  // along the lateral axis, then the distance
+  const int a = axis == 0 ? 1 : 0;
+  const double reach = TAKEN * hub->dx;
+  std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) { return b.x[a] < c.x[a] || (b.x[a] == c.x[a] && b.parent < c.parent); });
+  std::vector<int> is_taken(copies.size(), 0), taken(copies.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double s = inside(atom->x[i]);
+    if (s < low - reach || s > high + reach) continue;
+    const int species = hub->state[atom->type[i]].species;
+    if (species != FLUID && !at_start) continue;    // as near as its parent is in front
+    for (int image = -domain->periodicity[a]; image <= domain->periodicity[a]; image++) {
+      const double from = atom->x[i][a] + image * domain->prd[a] - reach;
+      auto c = std::lower_bound(copies.begin(), copies.end(), from, [&](const Copy &b, double x) { return b.x[a] < x; });
+      for (; c != copies.end() && c->x[a] < from + 2.0 * reach; c++) {
+        double d[3] = {c->x[0] - atom->x[i][0], c->x[1] - atom->x[i][1], c->x[2] - atom->x[i][2]};
+        domain->minimum_image(d);
+        if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] >= reach * reach) continue;
+        if (species != FLUID)
+          error->one(FLERR, "{} {}: atom {} of a {} at {:g} {:g} {:g} is where fluid of its buffer should be", who, id, atom->tag[i],
+                     species == RIGID ? "wall" : "solid", atom->x[i][0], atom->x[i][1], atom->x[i][2]);
+        is_taken[c - copies.begin()] = 1;
+      }
+    }
+  }
+  MPI_Allreduce(is_taken.data(), taken.data(), taken.size(), MPI_INT, MPI_MAX, world);
+
+  tagint largest = last_id, id_now;
+  for (const auto &fix : modify->get_fix_by_style("^fsi/[inout]+let$")) largest = std::max(largest, dynamic_cast<FixFSIInlet *>(fix)->last_id);
+  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
+  MPI_Allreduce(&largest, &id_now, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  for (size_t k = 0; k < copies.size(); k++)
+    if (taken[k]) copies[k].parent = 0;
+  std::sort(copies.begin(), copies.end(), [](const Copy &b, const Copy &c) { return b.parent < c.parent; });
+
+  const int first = atom->nlocal;
+  bigint wanted = 0, made, mine;
+  for (auto &c : copies) {
+    if (c.parent == 0) continue;
+    if (id_now >= MAXTAGINT) error->all(FLERR, "{} {}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who, id);
+    id_now++;
+    wanted++;
+    if (!domain->ownatom(id_now, c.x, nullptr, 1)) continue;
+    atom->avec->create_atom(c.type, c.x);
+    const int i = atom->nlocal - 1;
+    atom->tag[i] = id_now;
+    atom->mask[i] = c.mask;
+    atom->molecule[i] = c.molecule;
+    atom->rho[i] = c.rho;
+    atom->rmass[i] = c.rmass;
+    std::copy_n(c.v, 3, atom->v[i]);
+  }
+  last_id = id_now;
+  atom->data_fix_compute_variable(first, atom->nlocal);
+  for (int i = first; i < atom->nlocal; i++) {
+    of_buffer[i] = MEMBER;
+    if (hub->ledger && !at_start) hub->taken[FixFSI::FIELDS] -= energy(i);
+  }
+  mine = atom->nlocal - first;
+  MPI_Allreduce(&mine, &made, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (made != wanted) error->all(FLERR, "{} {}: {} of {} new particles are outside the box", who, id, wanted - made, wanted);
+  atom->natoms += made;
+  if (atom->map_style != Atom::MAP_NONE) {
+    atom->map_init();
+    atom->map_set();
+  }
+}
+
+/* ----------------------------------------------------------------------
+   when lists are built: who has passed the plane, or the end of the buffer
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::pre_exchange()
+{
+  if (region) region->prematch();
+  const auto others = modify->get_fix_by_style("^fsi/[inout]+let$");
+  std::vector<Copy> copies;
+  std::vector<int> gone;
+  double own[5] = {}, all[5];    // in, out, net mass, made, deleted
+  const int *const type = atom->type;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const x = atom->x[i], s = inside(x);
+    if (s > 0.0 && !of_buffer[i]) continue;
+    if (!is_fluid(i)) {
+      if (hub->state[type[i]].species == SOLID && s > -length && in_patch(x))
+        error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone", atom->tag[i], keywords_name(), id);
+      continue;
+    }
+    if (of_buffer[i] && s > 0.0) {
+      if (of_buffer[i] == MEMBER) copy_place(i);
+      of_buffer[i] = NOT;
+      own[0]++;
+      own[2] += atom->rmass[i];
+      const double *const v = atom->v[i];
+      const double *const y = behind[i];
+      copies.push_back({{y[0], y[1], y[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i], atom->molecule[i], type[i], atom->mask[i]});
+      continue;
+    }
+    if (of_buffer[i]) of_buffer[i] = MEMBER;    // it may have been out and come back
+    if (!of_buffer[i] && holds(x)) {
+      of_buffer[i] = MEMBER;
+      own[1]++;
+      own[2] -= atom->rmass[i];
+    }
+    if (!of_buffer[i]) continue;
+    for (const auto &other : others)
+      if (other != this && dynamic_cast<FixFSIInlet *>(other)->holds(x))
+        error->one(FLERR, "Atom {} at {:g} {:g} {:g} is in the buffers of fix {} and fix {}: keep them apart, with keyword region", atom->tag[i], x[0],
+                   x[1], x[2], id, other->id);
+    if (s <= -length) gone.push_back(i);
+  }
+  own[3] = copies.size();
+  own[4] = gone.size();
+  MPI_Allreduce(own, all, 5, MPI_DOUBLE, MPI_SUM, world);
+  passed_in += all[0];
+  passed_out += all[1];
+  mass_in += all[2];
+  if (all[3] == 0.0 && all[4] == 0.0) return;
+
+  forget_ghosts();
+  for (auto i = gone.rbegin(); i != gone.rend(); i++) {
+    if (hub->ledger) hub->taken[FixFSI::FIELDS] += energy(*i);
+    last_id = std::max(last_id, atom->tag[*i]);
+    atom->avec->copy(atom->nlocal - 1, *i, 1);
+    atom->nlocal--;
+  }
+  atom->natoms -= static_cast<bigint>(all[4]);
+  tagint largest = last_id;
+  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (atom->map_style != Atom::MAP_NONE) {
+    atom->map_init();
+    atom->map_set();
+  }
+  if (all[3] > 0.0) make(copies, false);
+}
+
+/* ----------------------------------------------------------------------
+   The copy is made when the next list is built, where it would be had it been made when its parent passed the plane: when lists are built
+   does not matter to what flows in.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::copy_place(int i)
+{
+  of_buffer[i] = PASSED;
+  std::copy_n(atom->x[i], 3, behind[i]);
+  behind[i][axis] -= side * length;
+}
+
+/* ----------------------------------------------------------------------
+   fluid at the plane and in the buffer, of this rank: from one list to the next
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::find_places()
+{
+  places.clear();
+  if (region) region->prematch();
+  const double from = -2.0 * length, to = hub->cut + neighbor->skin;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double s = inside(atom->x[i]);
+    if (s > from && s < to && is_fluid(i) && in_patch(atom->x[i])) places.push_back({i, 0.0, 0.0, false});
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Pressure or normal velocity of the fluid at the nodes of a lattice in the plane: a fit, linear along the plane, of the fluid within the
+   kernel's support, which is on one side only. The nodes are the same on all ranks.
+------------------------------------------------------------------------- */
+
+template <class Visit> void FixFSIInlet::at_nodes(const double *x, double reach, Visit visit) const
+{
+  int low[2] = {0, 0}, high[2] = {0, 0};
+  for (int k = 0; k < nlateral; k++) {
+    low[k] = static_cast<int>(std::ceil((x[lateral[k]] - reach) / node_distance[k]));
+    high[k] = static_cast<int>(std::floor((x[lateral[k]] + reach) / node_distance[k]));
+  }
+  for (int b = low[1]; b <= high[1]; b++)
+    for (int a = low[0]; a <= high[0]; a++) {
+      const int at[] = {a, b};
+      int node = 0;
+      double d[2] = {0.0, 0.0};
+      bool exists = true;
+      for (int k = nlateral - 1; k >= 0; k--) {
+        int m = at[k] - first[k];
+        if (domain->periodicity[lateral[k]]) m = (m % count[k] + count[k]) % count[k];
+        exists = exists && m >= 0 && m < count[k];
+        node = node * count[k] + m;
+        d[k] = x[lateral[k]] - at[k] * node_distance[k];
+      }
+      if (exists) visit(node, d);
+    }
+}
+
+void FixFSIInlet::measure()
+{
+  const int dim = hub->dim;
+  nlateral = 0;
+  int nodes = 1;
+  for (int d = 0; d < dim; d++) {
+    if (d == axis) continue;
+    const int k = nlateral++;
+    const double lo = domain->boxlo[d], hi = domain->boxhi[d];
+    lateral[k] = d;
+    if (domain->periodicity[d]) {
+      count[k] = std::max(1, static_cast<int>(std::round(domain->prd[d] / hub->dx)));
+      node_distance[k] = domain->prd[d] / count[k];
+      first[k] = 0;
+    } else {
+      node_distance[k] = hub->dx;
+      first[k] = static_cast<int>(std::floor(lo / hub->dx)) - 1;
+      count[k] = static_cast<int>(std::ceil(hi / hub->dx)) + 2 - first[k];
+    }
+    nodes *= count[k];
+  }
+  const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
+  const int nfit = 1 + nlateral, nmoment = nfit * (nfit + 1) / 2;
+  ncolumns = nmoment + nfit * (wants_velocity + wants_pressure);
+  mine.assign(nodes * ncolumns + NMEAN, 0.0);
+  sums.resize(mine.size());
+  double *const total = mine.data() + nodes * ncolumns;
+
+  with_kernel(hub->kernel, dim, hub->h, [&](const auto &kernel) {
+    for (auto &place : places) {
+      const int i = place.i;
+      const double *const x = atom->x[i];
+      const double s = place.inside = inside(x), u = atom->v[i][axis], m = atom->rmass[i];
+      const State &state = hub->state[atom->type[i]];
+      // hat functions, which a lattice sums to a constant
+      const double width = 2.0 * hub->dx, hat = std::max(0.0, 1.0 - std::fabs(s) / width) / width;
+      total[MASS_FLOW] += m * side * u * hat;
+      total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
+      if (s <= 0.0) {
+        if (s > -hub->cut) total[BUFFER]++;
+        continue;
+      }
+      if (s >= hub->cut) continue;
+      double p = state.pressure(atom->rho[i]);
+      const double w = m * (1.0 - s / hub->cut);
+      p -= atom->rho[i] * hub->body_forces.of_type[atom->type[i]][axis] * side * s;
+      total[WEIGHT] += w;
+      total[SPEED] += w * side * u;
+      total[PRESSURE] += w * p;
+      total[OVER_IMPEDANCE] += w * p / (state.rho0 * state.c);
+      at_nodes(x, std::sqrt(kernel.cutsq - s * s), [&](int node, const double *d) {
+        const double W = kernel.W(std::sqrt(std::min(s * s + d[0] * d[0] + d[1] * d[1], kernel.cutsq)));
+        const double f[] = {W, W * d[0], W * d[1]};
+        double *c = &mine[node * ncolumns];
+        *c++ += W;
+        for (int a = 0; a < nlateral; a++) *c++ += f[1 + a];
+        for (int a = 0; a < nlateral; a++)
+          for (int b = 0; b <= a; b++) *c++ += f[1 + a] * d[b];
+        if (wants_velocity)
+          for (int a = 0; a < nfit; a++) *c++ += f[a] * u;
+        if (wants_pressure)
+          for (int a = 0; a < nfit; a++) *c++ += f[a] * p;
+      });
+    }
+  });
+  MPI_Allreduce(mine.data(), sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, world);
+  std::copy_n(sums.data() + nodes * ncolumns, NMEAN, mean);
+
+  // values at nodes: the mean, and the slope where there is fluid on both sides or enough on one
+  for (int node = 0; node < nodes; node++) {
+    double *const c = &sums[node * ncolumns], S = c[0];
+    if (S <= LITTLE * hub->psi_bulk) {
+      c[0] = 0.0;
+      continue;
+    }
+    double m[2] = {0.0, 0.0}, C[3] = {0.0, 0.0, 0.0};
+    for (int a = 0; a < nlateral; a++) m[a] = c[1 + a] / S;
+    for (int a = 0, k = 0; a < nlateral; a++)
+      for (int b = 0; b <= a; b++, k++) C[k] = c[nfit + k] / S - m[a] * m[b];
+    const double enough = 0.1 * hub->dx * hub->dx, det = nlateral == 1 ? C[0] : C[0] * C[2] - C[1] * C[1];
+    const bool linear = det > (nlateral == 1 ? enough : enough * enough);
+    for (int field = 0; field < wants_velocity + wants_pressure; field++) {
+      const double *const F = c + nmoment + field * nfit;
+      double result = F[0] / S;
+      if (linear) {
+        double g[2] = {0.0, 0.0};
+        for (int a = 0; a < nlateral; a++) g[a] = F[1 + a] / S - F[0] / S * m[a];
+        if (nlateral == 1) result -= g[0] / C[0] * m[0];
+        else result -= ((C[2] * g[0] - C[1] * g[1]) * m[0] + (C[0] * g[1] - C[1] * g[0]) * m[1]) / det;
+      }
+      c[1 + field] = result;
+    }
+    c[0] = 1.0;
+  }
+}
+
+// fit of a place from the nodes around it: normal velocity, pressure
+bool FixFSIInlet::at_plane(const double *x, double *values) const
+{
+  const int n = (velocity[0].source == EXTRAPOLATED) + (pressure.source == EXTRAPOLATED);
+  double weight = 0.0;
+  std::fill_n(values, n, 0.0);
+  // the next node may be a whole distance away, but for round-off
+  at_nodes(x, *std::max_element(node_distance, node_distance + nlateral), [&](int node, const double *d) {
+    const double *const c = &sums[node * ncolumns];
+    if (c[0] == 0.0) return;
+    double w = 1.0;
+    for (int k = 0; k < nlateral; k++) w *= std::max(0.0, 1.0 - std::fabs(d[k]) / node_distance[k]);
+    weight += w;
+    for (int k = 0; k < n; k++) values[k] += w * c[1 + k];
+  });
+  if (weight <= 0.0) return false;
+  for (int k = 0; k < n; k++) values[k] /= weight;
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   The density of the buffer is that of its pressure: the fluid's at the plane with the weight of what lies between, or as given.
+   Sound that leaves meets its own impedance: to a change of the fluid's velocity the pressure at the plane answers with rho c times that, or
+   the velocity to one of its pressure, and goes back to what is given at the rate of absorption. Of the mean over the plane: vortices
+   that pass do not change it.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::advance(bool advance)
+{
+  if (neighbor->ago == 0) find_places();
+  if (!advance) return;
+  const double dt = update->dt + hub->stagger;
+  const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
+  measure();
+
+  double rate = absorb;
+  if (wants_velocity && wants_pressure) rate = 0.0;
+  else if (rate == AUTO) {
+    double c = 0.0;
+    for (const auto &s : hub->state)
+      if (s.species == FLUID) c = std::max(c, s.c);
+    rate = c / domain->prd[axis];
+  }
+  if (rate > 0.0 && mean[WEIGHT] > 0.0) {
+    const double now = (wants_velocity ? mean[SPEED] : mean[OVER_IMPEDANCE]) / mean[WEIGHT];
+    if (has_before) wave -= now - before;
+    before = now;
+    has_before = true;
+  } else
+    has_before = false;
+  wave *= std::exp(-rate * dt);
+
+  // what has a given velocity goes without the fluid where that does not follow, and has nothing to come back with
+  if (served == 0.0) served = mean[BUFFER];
+  if (!wants_velocity && mean[BUFFER] < STARVED * served)
+    error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. The fluid does not follow the velocity that is given: "
+               "it tears under suction, without keyword tension yes or background of pair_style fsi/fluid", who, id, served, "xyz"[axis], position, mean[BUFFER]);
+
+  if (pressure.source == EQUAL || pressure.source == ATOM) evaluate(&pressure, 1, PRESSURE_COLUMN);
+  double **const shift = hub->shift;
+  for (auto &place : places) {
+    const int i = place.i;
+    if (place.inside > 0.0 && of_buffer[i] == MEMBER) copy_place(i);
+    if (place.inside > 0.0 && of_buffer[i] != PASSED) continue;
+    const State &state = hub->state[atom->type[i]];
+    double values[2] = {0.0, 0.0};
+    place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
+    place.normal = values[0];
+    if (place.inside > 0.0) continue;
+    double p;
+    if (wants_pressure)
+      p = place.known ? values[wants_velocity] + state.rho0 * hub->body_forces.of_type[atom->type[i]][axis] * side * place.inside : state.p0;
+    else
+      p = (pressure.source == BACKGROUND ? state.p0 : value(pressure, i, PRESSURE_COLUMN)) + state.rho0 * state.c * wave;
+    const double stored = hub->ledger ? hub->stored(i) : 0.0;
+    atom->rho[i] = state.density(std::max(p, state.floor));
+    if (hub->ledger) hub->taken[FixFSI::FIELDS] += stored - hub->stored(i);
+    if (shift) std::fill_n(shift[i], hub->dim, 0.0);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   forces that give the buffer its velocity at the end of the step; where there is no fluid at the plane it keeps what it has
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::prescribe()
+{
+  std::fill_n(given, 4, 0.0);
+  const double dt = update->dt;
+  if (dt == 0.0) return;
+  const bool wants_velocity = velocity[0].source == EXTRAPOLATED;
+  if (!wants_velocity) evaluate(velocity, 3, 0);
+  for (const auto &place : places) {
+    const int i = place.i;
+    const bool passed = of_buffer[i] == PASSED;
+    if (place.inside > 0.0 && !passed) continue;
+    const double m = atom->rmass[i];
+    double *const f = atom->f[i], *const v = atom->v[i];
+    for (int d = 0; d < hub->dim; d++) {
+      double u;
+      if (wants_velocity) u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
+      else u = value(velocity[d], i, d) + (d == axis ? side * wave : 0.0);
+      if (passed) behind[i][d] += dt * u;
+      if (place.inside > 0.0) continue;
+      const double to = m * (u - v[d]) / (dt * force->ftm2v), push = to - f[d];
+      f[d] = to;
+      given[d] += push;
+      given[3] += push * 0.5 * (u + v[d]);
+    }
+  }
+  hub->tally(FixFSI::FIELDS, -given[3]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSIInlet::compute_scalar()
+{
+  return mass_in;
+}
+
+double FixFSIInlet::compute_vector(int n)
+{
+  double own = 0.0, all;
+  switch (n) {
+    case 1: return passed_in;
+    case 2: return passed_out;
+    case 3: return mean[MASS_FLOW];
+    case 4: return mean[VOLUME_FLOW];
+    case 5: return mean[WEIGHT] > 0.0 ? mean[PRESSURE] / mean[WEIGHT] : 0.0;
+    case 0: own = atom->nlocal - std::count(of_buffer, of_buffer + atom->nlocal, double(NOT)); break;
+    default: own = given[n - 6];
+  }
+  MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIInlet::write_restart(FILE *fp)
+{
+  Record record(lmp, style);
+  record.add("filled", std::vector<double>{double(filled), served});
+  record.add("absorption", std::vector<double>{wave, before, double(has_before)});
+  record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
+  record.add("last ID", std::to_string(last_id));
+  fields.write(record);
+  record.write(fp);
+}
+
+void FixFSIInlet::restart(char *buf)
+{
+  const Record record(lmp, style, buf);
+  auto numbers = record.numbers("filled");
+  filled = numbers[0] != 0.0;
+  served = numbers[1];
+  numbers = record.numbers("absorption");
+  wave = numbers[0];
+  before = numbers[1];
+  has_before = numbers[2] != 0.0;
+  numbers = record.numbers("passed");
+  passed_in = numbers[0];
+  passed_out = numbers[1];
+  mass_in = numbers[2];
+  last_id = std::stoll(record.value("last ID"));
+  fields.read(record);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSIInlet::memory_usage()
+{
+  return FixFields::memory_usage() + (double) NCOLUMNS * nmax * sizeof(double) + (double) (mine.capacity() + sums.capacity()) * sizeof(double) +
+      (double) places.capacity() * sizeof(Place);
+}

@@ -1,0 +1,133 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(fsi/inlet,FixFSIInlet);
+FixStyle(fsi/outlet,FixFSIInlet);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_FSI_INLET_H
+#define LMP_FIX_FSI_INLET_H
+
+#include "fsi_fields.h"
+#include "fsi_keywords.h"
+#include "fsi_part.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// An open end of the fluid: a plane, and behind it a buffer of particles whose velocity or pressure is prescribed, and the other one that of
+// the fluid at the plane. One that passes the plane inwards is fluid from then on, and a copy of it takes its place a buffer's length
+// behind; fluid that passes it outwards is of the buffer, and deleted at its end. Inlets and outlets are the same but for defaults.
+
+class FixFSIInlet : public FSI::FixFields, public FSI::Part {
+ public:
+  FixFSIInlet(class LAMMPS *, int, char **);
+  ~FixFSIInlet() override;
+  int setmask() override;
+  void init() override;
+  void setup_pre_exchange() override;
+  void pre_exchange() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double memory_usage() override;
+
+  void advance(bool) override;    // density of the buffer, when the fluid has its own
+  void prescribe() override;      // velocity of the buffer
+
+  bool holds(const double *x) const;    // is a place in the buffer?
+  tagint last_id;                       // largest that it has given
+
+ private:
+  enum Source { EXTRAPOLATED, NUMBER, EQUAL, ATOM, BACKGROUND };
+  struct Value {
+    Source source = EXTRAPOLATED;
+    double number = 0.0;
+    std::string name;
+    int variable = -1;
+  };
+  struct Place {    // of a particle near the plane
+    int i;
+    double inside;    // distance from the plane into the fluid
+    double normal;    // velocity of the fluid at the plane, along the axis
+    bool known;       // is there fluid at the plane?
+  };
+  struct Copy {
+    double x[3], v[3], rho, rmass;
+    tagint parent, molecule;
+    int type, mask;
+  };
+  enum { WEIGHT, SPEED, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, NMEAN };    // sums over the fluid at the plane
+
+  const std::string who;    // Fix fsi/inlet
+  const bool outlet;
+  FSI::Keywords keywords;
+  int axis;
+  double side, position;    // +1: the fluid is above the plane
+  std::string words[4], region_id;
+  Value velocity[3], pressure;
+  double absorb;    // 1/time; < 0: of the domain's length
+  double given_length, length;
+  class Region *region;
+  class FixFSI *hub;
+
+  enum Membership { NOT, MEMBER, PASSED };    // passed the plane since the last list
+  double *of_buffer;     // per atom
+  double **behind;       // of one that has passed: where its copy would be now, had it been made then
+  std::vector<Place> places;
+  double **target;      // values of atom-style variables: velocity and pressure
+  int nmax;
+
+  // sums over the fluid at the nodes of a lattice in the plane, then values there
+  int nlateral, lateral[2], first[2], count[2], ncolumns;
+  double node_distance[2];
+  std::vector<double> mine, sums;
+  double mean[NMEAN];
+
+  // what is kept
+  bool filled;
+  double wave, before;       // of absorption: velocity or pressure over impedance that it adds; the mean from which it has that
+  double served;             // particles near the plane at first
+  bool has_before;
+  double passed_in, passed_out, mass_in;
+  double given[4];           // force on the buffer and its power, this rank's part
+
+  double inside(const double *x) const { return side * (x[axis] - position); }
+  bool in_patch(const double *x) const;
+  bool is_fluid(int i) const;
+  std::string keywords_name() const { return std::string("fix ") + style; }
+  void read(Value &, const std::string &word, const std::string &what, const std::string &other);
+  void find_variable(Value &);
+  void evaluate(Value *, int n, int column);
+  double value(const Value &, int i, int column) const;
+  double energy(int i) const;
+  void fill();
+  void make(std::vector<Copy> &, bool at_start);
+  void forget_ghosts();
+  void copy_place(int i);
+  void find_places();
+  template <class Visit> void at_nodes(const double *x, double reach, Visit) const;
+  void measure();
+  bool at_plane(const double *x, double *values) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif
