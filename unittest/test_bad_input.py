@@ -172,6 +172,8 @@ CASES = [
     ("surface ratio large", *fluid("", "sound 10 surface 1.5 bulk "), r"surface ratio 1\.5 must be >= 0 and < 1"),
     ("surface reference unknown", *fluid("", "sound 10 surface 0.9 mean "), r"surface reference mean"),
     ("diffusion with summation", "fluid continuity", "fluid summation", r"density/diffusion requires .*fluid continuity"),
+    ("surfaces of no logical value", "density/diffusion 0.1", "density/surface perhaps", r"density/surface perhaps"),
+    ("surfaces with tension", "density/diffusion 0.1", "density/surface yes tension yes", r"density/surface is for fluids with a free surface"),
     ("shift negative", "density/diffusion 0.1", "shift -0.1", r"shift -0\.1 must be between 0 and 1"),
     ("shift large", "density/diffusion 0.1", "shift 2", r"shift 2 must be between 0 and 1"),
     ("shift with ratio", re.compile("density/diffusion 0.1(.*)fluid continuity", re.S), r"shift 0.5\1fluid ratio",
