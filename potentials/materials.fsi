@@ -28,6 +28,9 @@ steel            solid rho 7850.0 young 210.0e9 poisson 0.3 yield 235.0e6
 # ---- benchmarks ----
 # Taylor-Green vortices with U = L = 1 at Re = 100
 vortex_Re100     fluid rho 1000.0 viscosity 10.0
+# Lid-driven cavity with U = L = 1 at Re = 100 (the same), 400 and 1000: Ghia, Ghia and Shin, J. Comput. Phys. 48 (1982) 387
+vortex_Re400     fluid rho 1000.0 viscosity 2.5
+vortex_Re1000    fluid rho 1000.0 viscosity 1.0
 # Channel of Schaefer and Turek, and of Turek and Hron: nu = 1e-3 m^2/s
 channel_water    fluid rho 1000.0 viscosity 1.0
 

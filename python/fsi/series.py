@@ -112,6 +112,23 @@ def periodic(time, values, periods=3):
     return {name: np.array(value) if name != "count" else value for name, value in found.items()}
 
 
+def swing(time, values, rate, periods=5, harmonics=4):
+    """(mean, amplitude) of a noisy periodic signal of known frequency over its last whole periods: (max+min)/2 and (max-min)/2 of the
+    harmonics fitted to it by least squares, so that sound between them does not count as `periodic` would have it.
+    """
+    periods = min(periods, int((time[-1] - time[0]) * rate + 1e-9))
+    if periods < 1:
+        raise ValueError("there is no whole period")
+    late = time >= time[-1] - periods / rate
+    phase = 2.0 * np.pi * rate * np.outer(np.arange(1, harmonics + 1), time[late])
+    shapes = np.vstack([np.ones(late.sum()), np.cos(phase), np.sin(phase)])
+    weights = np.gradient(time[late])  # steps of time vary
+    fit = np.linalg.lstsq((shapes * np.sqrt(weights)).T, values[late] * np.sqrt(weights), rcond=None)[0]
+    phase = 2.0 * np.pi * np.outer(np.arange(1, harmonics + 1), np.linspace(0.0, 1.0, 721))
+    curve = fit @ np.vstack([np.ones(721), np.cos(phase), np.sin(phase)])
+    return 0.5 * (curve.max() + curve.min()), 0.5 * (curve.max() - curve.min())
+
+
 def read_ave(path):
     """Reads a file of fix ave/time: columns over TimeStep, each (steps,); of mode vector (steps, rows)."""
     titles, data = [], []
