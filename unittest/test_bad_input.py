@@ -64,6 +64,11 @@ def tl(keywords="", more=""):
         "\npair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi NULL plate\n" + more
 
 
+def tl_spacing(dx):
+    """The scene with a total-Lagrangian plate that is said to have this spacing"""
+    return re.compile(HYBRID.pattern + r"\nfix sph .*\n"), tl()[1] + f"fix sph all fsi 0.01 wendland 1.5 spacing 2 {dx}\n"
+
+
 def probe(arguments):
     return RUN, f"compute c all fsi/probe {arguments}\nrun 0"
 
@@ -242,6 +247,14 @@ CASES = [
     ("substeps without tl", SPH, SPH + " substeps 4", r"substeps requires pair_style fsi/solid/tl"),
     ("substeps zero", SPH, SPH + " substeps 0", r"substeps 0 must be between 1 and 10000"),
     ("surface/every zero", SPH, SPH + " surface/every 0", r"surface/every 0 must be >= 1"),
+    ("spacing of a fluid", SPH, SPH + " spacing 1 0.005", r"spacing 0\.005 of type 1, a fluid: fluids have the spacing dx, 0\.01"),
+    ("spacing of fsi/solid", SPH, SPH + " spacing 2 0.005", r"spacing 0\.005 of type 2: .*Use pair_style fsi/solid/tl"),
+    ("spacing without value", SPH, SPH + " spacing 2", r"fix fsi spacing command: missing"),
+    ("spacing no type", SPH, SPH + " spacing 0.005 2", r"0\.005"),
+    ("spacing of a type that is not", SPH, SPH + " spacing 3 0.005", r"3.*out of|out of bounds.*3"),
+    ("spacing coarser than the fluid", *tl_spacing("0.02"), r"spacing 0\.02 of type 2 is coarser than the fluid's dx 0\.01"),
+    ("spacing too fine", *tl_spacing("0.002"), r"spacing 0\.002 of type 2 is 5 times finer than the fluid's dx 0\.01: expected 4 at most"),
+    ("spacing zero of a type", SPH, SPH + " spacing 2 0", r"spacing 0 must be > 0"),
     ("substeps no integer", SPH, SPH + " substeps 2.5", r"2\.5"),
     ("substeps without value", SPH, SPH + " substeps", r"fix fsi substeps command: missing"),
     ("tl atom in no body", *tl("", more="group last id 1 \nset type 2 mol 2\nset group all mol 3\n"

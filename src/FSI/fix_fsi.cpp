@@ -20,7 +20,6 @@
 #include "force.h"
 #include "fsi_announce.h"
 #include "fsi_kernel.h"
-#include "fsi_lattice.h"
 #include "fsi_order.h"
 #include "fsi_part.h"
 #include "fsi_profile.h"
@@ -59,18 +58,13 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("solid").choice(density_solid, CONTINUITY, modes, "density").changes(other_mode);
   keywords.key("substeps").integer(given_substeps, 1, 1, 10000);
   keywords.key("surface/every").integer(surface_every, 1, 1);
+  keywords.key("spacing").per_type(given_spacing, Range::above(0.0)).kept("that of the particles cannot change");
   keywords.key("mach").number(mach, 1.0, Range::above(0.0)).or_word("off", Check::OFF);
   keywords.parse(narg - 3, arg + 3);
   substeps = given_substeps;
 
   dim = domain->dimension;
-  h = hdx * dx;
-  with_kernel(kernel, dim, h, [&](const auto &k) {
-    cut = k.cut;
-    psi_bulk = lattice_number_density(k, dx);
-    wdx = k.W(dx);
-    w0 = k.W(0.0);
-  });
+  resolve(hdx, given_spacing);
 
   time_integrate = 1;
   force_reneighbor = 1;
@@ -179,7 +173,7 @@ void FixFSI::give_defaults(int i)
 {
   const State &s = state[atom->type[i]];
   if (s.species == NONE) return;    // before init()
-  if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / psi_bulk;
+  if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / resolution[atom->type[i]].psi_bulk;
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
 }
 

@@ -74,6 +74,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void give_defaults(int);
   int given_substeps;
   double hdx;    // h over dx
+  std::vector<double> given_spacing;    // per type; 0: dx
   bool states_entered;       // since the last init()
   int nlocal_ready;          // atoms when the state was last brought up to date; -1: not since init()
   bool ids_checked;

@@ -199,7 +199,7 @@ void FixFSIReference::follow_commands()
     cut[1]++;
     bodies.insert(atom->molecule[i]);
     nbond[s] = kept;
-    if (domain->dimension == 2 ? !renew<2>(s) : !renew<3>(s)) cut[2]++;
+    if (domain->dimension == 2 ? !renew<2>(i) : !renew<3>(i)) cut[2]++;
   }
   MPI_Allreduce(cut, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all[0] == 0) return;
@@ -261,7 +261,6 @@ void FixFSIReference::take()
 template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &bare)
 {
   static constexpr double correction[4] = {0.0, 1.0 / 12.0, -1.0 / 8.0, 1.0 / 24.0};
-  const double dx = hub->dx, near = 0.05 * dx;
   resolve();
   std::vector<double> layers((size_t) atom->nmax * 2 * D, 0.0);
   layer = layers.data();
@@ -269,6 +268,7 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
   // partner one spacing away along direction k = 2 axis + (positive side), or -1
   const auto next = [&](int i, int k) {
     const double *value = values(i) + D;
+    const double dx = hub->dx_of(atom->type[i]), near = 0.05 * dx;
     for (int b = 0; b < count(i); b++, value += nvalue) {
       bool found = true;
       for (int a = 0; a < D; a++)
@@ -317,15 +317,19 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
   const int *const type = atom->type;
+  std::vector<double> all_h;    // bodies by their smoothing length, in the order of the first of each
+  for (const int i : bare)
+    if (std::find(all_h.begin(), all_h.end(), hub->h_of(type[i])) == all_h.end()) all_h.push_back(hub->h_of(type[i]));
   const auto volume = [&](int i) { return atom->rmass[i] / hub->state[type[i]].rho0; };
   GradientWeights<D> weights;
   std::vector<int> near;
   std::vector<double> dX, w, G;
   bigint mine[6] = {};    // particles, bonds, particles by order reached
 
-  with_kernel(hub->kernel, D, hub->h, [&](const auto &kernel) {
+  for (const double h : all_h) with_kernel(hub->kernel, D, h, [&](const auto &kernel) {
     if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
       for (const int i : bare) {
+        if (hub->h_of(type[i]) != h) continue;
         near.clear();
         dX.clear();
         w.clear();
@@ -338,6 +342,9 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
             rsq += d[a] * d[a];
           }
           if (rsq >= kernel.cutsq) continue;
+          if (hub->h_of(type[j]) != h)
+            error->one(FLERR, "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types {} and {}: a body has one", tag[i], tag[j],
+                       molecule[i], hub->dx_of(type[i]), hub->dx_of(type[j]), type[i], type[j]);
           if (rsq == 0.0) error->one(FLERR, "Solid atoms {} and {} of body {} are at the same place", tag[i], tag[j], molecule[i]);
           if (domain->closest_image(i, j) != j)
             error->one(FLERR, "Solid atoms {} and {} are neighbors through more than one image: a periodic box must be wider than two "
@@ -348,7 +355,7 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
         }
         const int n = near.size();
         G.resize((size_t) n * D);
-        const auto order = weights(n, dX.data(), w.data(), hub->h, quadratic, G.data());
+        const auto order = weights(n, dX.data(), w.data(), h, quadratic, G.data());
         if (order == GradientWeights<D>::DEFICIENT)
           error->one(FLERR, "Solid atom {} of body {} has {} neighbors of its own body within {}: too few, or all in one {}, for a "
                             "deformation gradient. A body must be at least two particles thick, and one body one molecule ID",
@@ -457,15 +464,15 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
     }
     if (kept == n) continue;
     n = kept;
-    renew<D>(slot[i]);
+    renew<D>(i);
   }
 }
 
 // the gradient's weights from the bonds that are left; if they do not suffice, none is
-template <int D> bool FixFSIReference::renew(int s)
+template <int D> bool FixFSIReference::renew(int i)
 {
-  const size_t first = (size_t) s * maxbond;
-  int &n = nbond[s];
+  const size_t first = (size_t) slot[i] * maxbond;
+  int &n = nbond[slot[i]];
   GradientWeights<D> weights;
   std::vector<double> dX((size_t) n * D), w(n), G((size_t) n * D);
   for (int k = 0; k < n; k++) {
@@ -477,7 +484,7 @@ template <int D> bool FixFSIReference::renew(int s)
     }
     w[k] = value[2 * D] * Rsq;    // V_i V_j W: the factor V_i does not matter
   }
-  if (weights(n, dX.data(), w.data(), hub->h, quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
+  if (weights(n, dX.data(), w.data(), hub->h_of(atom->type[i]), quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
     n = 0;
     return false;
   }

@@ -101,7 +101,7 @@ class FixFSIReference : public Fix {
   void resolve();
   bool is_solid(int i) const;
   template <int D> void break_bonds_of_all(double stretch);
-  template <int D> bool renew(int slot);
+  template <int D> bool renew(int i);
   template <int D> void move_apart();
   void reserve(int n);
   int new_slot(int n);

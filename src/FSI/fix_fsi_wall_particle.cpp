@@ -105,7 +105,7 @@ void FixFSIWallParticle::init()
     if (s.kept) error->all(FLERR, "Atom type {} is in two fixes fsi/wall/particle", t);
     s.kept = true;
     s.noslip = !slip;
-    s.guard = guard * hub->dx;
+    s.guard = guard * 0.5 * (hub->dx + hub->dx_of(t));    // of the distance from the fluid
   }
   if (!slip && !fluid->has_laminar() && comm->me == 0)
     error->warning(FLERR, "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has no laminar/visc");
@@ -272,11 +272,11 @@ double FixFSIWallParticle::compute_vector(int n)
 double FixFSIWallParticle::compute_scalar()
 {
   if (!hub) return 0.0;    // before the first run
-  const double limit = guard * hub->dx;
   double mine = 0.0, all;
   for (const auto &[w, j] : pairs) {
     double rsq = 0.0;
     for (int k = 0; k < hub->dim; k++) rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
+    const double limit = hub->state[atom->type[w]].guard;
     // without newton a pair across ranks is in the lists of both
     if (rsq < limit * limit) mine += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
   }

@@ -181,7 +181,7 @@ void FixFSIWatch::look(Stop::When when)
   double **v = atom->v;
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
-  const double dt = update->dt, h = hub->h;
+  const double dt = update->dt;
 
   struct Of {
     double csq, rho0, mass, fastest;    // of a type Mach and Courant number grow with the speed
@@ -204,8 +204,8 @@ void FixFSIWatch::look(Stop::When when)
       of.fastest = vsq;
       const double c = std::sqrt(of.csq), speed = std::sqrt(vsq);
       enter(MACH, i, speed / c);
-      if (of.species == FLUID) enter(COURANT, i, dt * (c + speed) / h);
-      else enter(COURANT, i, dt * c / (hub->is_total_lagrangian(i) ? hub->substeps : 1) / h);
+      if (of.species == FLUID) enter(COURANT, i, dt * (c + speed) / hub->h_of(type[i]));
+      else enter(COURANT, i, dt * c / (hub->is_total_lagrangian(i) ? hub->substeps : 1) / hub->h_of(type[i]));
       enter(ENERGY, i, vsq);
     }
     // spray without tension loses density, which then means nothing
@@ -234,9 +234,10 @@ void FixFSIWatch::look(Stop::When when)
           const int j = list->firstneigh[i][jj] & NEIGHMASK;
           const double a = x[i][0] - x[j][0], b = x[i][1] - x[j][1], c = x[i][2] - x[j][2];
           const double rsq = a * a + b * b + c * c;
-          if (rsq >= smallest) continue;
-          smallest = rsq;
-          enter(DISTANCE, i, std::sqrt(rsq) / hub->dx, j);
+          const double apart = spacing_between(hub->resolution[type[i]], hub->resolution[type[j]]);
+          if (rsq >= smallest * apart * apart) continue;
+          smallest = rsq / (apart * apart);
+          enter(DISTANCE, i, std::sqrt(rsq) / apart, j);
         }
       }
     }

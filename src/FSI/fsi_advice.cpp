@@ -128,7 +128,7 @@ class Adviser : protected Pointers {
   {
     units();
     box();
-    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * scene.dx);
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest());
     if (spacing(cells) && pair("^fsi/solid")) {
       thickness();
       rows();
@@ -154,6 +154,13 @@ class Adviser : protected Pointers {
     return *static_cast<T *>(pair(style)->extract(setting, dim_of_extract));
   }
 
+  double dx(int i) const { return scene.dx_of(atom->type[i]); }
+  double coarsest() const
+  {
+    double most = 0.0;
+    for (size_t t = 1; t < scene.resolution.size(); t++) most = std::max(most, scene.dx_of(t));
+    return most;
+  }
   bool fluid(int i) const { return scene.state[atom->type[i]].species == FLUID; }
   bool solid(int i) const { return scene.state[atom->type[i]].species == SOLID; }
   bool moves(int i) const { return solid(i) && atom->mask[i] & scene.mover->groupbit; }
@@ -214,7 +221,6 @@ class Adviser : protected Pointers {
 
   bool spacing(const Cells &cells) const
   {
-    const double reach = 1.25 * scene.dx;
     double mine[3] = {0.0, 0.0, 0.0}, sum[3];    // distances, particles that have a neighbor, all
     struct {
       double r;
@@ -222,11 +228,12 @@ class Adviser : protected Pointers {
     } closest = {BIG, comm->me}, least;
     tagint pair[2] = {0, 0};
     for (int i = 0; i < atom->nlocal; i++) {
-      double nearest = reach * reach;
+      double nearest = 1.25 * 1.25;    // over the spacing between the two lattices
       int who = -1;
       cells.around(atom->x[i], [&](int j, double rsq) {
-        if (j == i || rsq >= nearest) return;
-        nearest = rsq;
+        const double apart = 0.5 * (dx(i) + dx(j));
+        if (j == i || rsq >= nearest * apart * apart) return;
+        nearest = rsq / (apart * apart);
         who = j;
       });
       mine[2]++;
@@ -242,9 +249,9 @@ class Adviser : protected Pointers {
     }
     MPI_Allreduce(mine, sum, 3, MPI_DOUBLE, MPI_SUM, world);
     if (sum[2] < 2.0) return true;
-    const double mean = sum[1] > 0.0 ? sum[0] / sum[1] / scene.dx : 0.0;
+    const double mean = sum[1] > 0.0 ? sum[0] / sum[1] : 0.0;
     if (sum[1] < 0.5 * sum[2]) {
-      warn(fmt::format("most particles have no neighbor within {:g}: is {:g} the spacing of the lattice?", reach, scene.dx));
+      warn(fmt::format("most particles have no neighbor within {:g}: is {:g} the spacing of the lattice?", 1.25 * scene.dx, scene.dx));
       return false;
     }
     if (mean < 0.6 || mean > 1.1) {
@@ -255,9 +262,9 @@ class Adviser : protected Pointers {
     if (update->ntimestep == 0) {
       MPI_Allreduce(&closest, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
       MPI_Bcast(pair, 2, MPI_LMP_TAGINT, least.rank, world);
-      if (least.r < 0.4 * scene.dx)
+      if (least.r < 0.4)
         warn(fmt::format("atoms {} and {} are {:.2g} spacings apart: do bodies or phases overlap? Put them on one lattice, or "
-                         "delete_atoms overlap", pair[0], pair[1], least.r / scene.dx));
+                         "delete_atoms overlap", pair[0], pair[1], least.r));
     }
     return true;
   }
@@ -267,19 +274,19 @@ class Adviser : protected Pointers {
 
   void thickness() const
   {
-    const double reach = 2.5 * scene.dx;
-    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, reach);
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 2.5 * coarsest());
     std::map<tagint, std::array<double, ENOUGH>> bodies;    // particles with 1, 2, ENOUGH or more across
     for (int i = 0; i < atom->nlocal; i++) {
       if (!moves(i)) continue;
       double n = 0.0, sum[3] = {}, moment[3][3] = {};
+      const double own = dx(i), reach = 2.5 * own;
       cells.around(atom->x[i], [&](int j, double rsq) {
         if (rsq > reach * reach || !solid(j) || atom->molecule[j] != atom->molecule[i]) return;
         n++;
         for (int a = 0; a < scene.dim; a++) {
-          const double r = (atom->x[j][a] - atom->x[i][a]) / scene.dx;
+          const double r = (atom->x[j][a] - atom->x[i][a]) / own;
           sum[a] += r;
-          for (int b = 0; b <= a; b++) moment[a][b] += r * (atom->x[j][b] - atom->x[i][b]) / scene.dx;
+          for (int b = 0; b <= a; b++) moment[a][b] += r * (atom->x[j][b] - atom->x[i][b]) / own;
         }
       });
       double least[3];
@@ -317,8 +324,8 @@ class Adviser : protected Pointers {
 
   void rows() const
   {
-    static constexpr std::array<double, 6> none = {-BIG, -BIG, -BIG, -BIG, -BIG, -BIG};
-    std::map<tagint, std::array<double, 6>> bodies;    // upper ends of x, y, z, lower ends with the sign changed
+    static constexpr std::array<double, 7> none = {-BIG, -BIG, -BIG, -BIG, -BIG, -BIG, 0.0};
+    std::map<tagint, std::array<double, 7>> bodies;    // upper ends of x, y, z, lower ends with the sign changed; spacing
     for (int i = 0; i < atom->nlocal; i++) {
       if (!moves(i)) continue;
       auto &ends = bodies.insert({atom->molecule[i], none}).first->second;
@@ -326,21 +333,23 @@ class Adviser : protected Pointers {
         ends[d] = std::max(ends[d], atom->x[i][d]);
         ends[3 + d] = std::max(ends[3 + d], -atom->x[i][d]);
       }
+      ends[6] = dx(i);
     }
-    for_bodies(bodies, none, [&](tagint body, const std::array<double, 6> &mine) {
-      std::array<double, 6> ends;
-      MPI_Allreduce(const_cast<double *>(mine.data()), ends.data(), 6, MPI_DOUBLE, MPI_MAX, world);
+    for_bodies(bodies, none, [&](tagint body, const std::array<double, 7> &mine) {
+      std::array<double, 7> ends;
+      MPI_Allreduce(const_cast<double *>(mine.data()), ends.data(), 7, MPI_DOUBLE, MPI_MAX, world);
+      const double own = ends[6];
       for (const auto &region : domain->get_region_list()) {
         if (strcmp(region->style, "block") != 0 || !region->interior || region->dynamic) continue;
         const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
         const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
         bool inside = true;
         for (int d = 0; d < scene.dim; d++)
-          inside &= -ends[3 + d] > lo[d] - 1.0e-6 * scene.dx && ends[d] < hi[d] + 1.0e-6 * scene.dx;
+          inside &= -ends[3 + d] > lo[d] - 1.0e-6 * own && ends[d] < hi[d] + 1.0e-6 * own;
         for (int d = 0; d < scene.dim && inside; d++) {
-          const double below = -ends[3 + d] - lo[d], above = hi[d] - ends[d], width = (hi[d] - lo[d]) / scene.dx;
-          const double count = (ends[d] + ends[3 + d]) / scene.dx + 1.0;
-          if (below > scene.dx || above > scene.dx || std::fabs(count - std::round(count)) > 0.01) continue;
+          const double below = -ends[3 + d] - lo[d], above = hi[d] - ends[d], width = (hi[d] - lo[d]) / own;
+          const double count = (ends[d] + ends[3 + d]) / own + 1.0;
+          if (below > own || above > own || std::fabs(count - std::round(count)) > 0.01) continue;
           const double off = std::fabs(count - width);
           if (off < 0.25 || off < 0.02 * width) continue;
           warn(fmt::format("body {} has {:.0f} rows along {}, but region {}, {:g} wide, holds {:.3g} spacings: the body is {:.2g} times as "

@@ -63,8 +63,11 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
       scene.effects_on.push_back(e.name);
     } else off += (off.empty() ? "" : ", ") + e.keyword;
   }
-  text += fmt::format("FSI: {}, h = {:g} dx, dx = {:g}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[scene.kernel], scene.h / scene.dx,
-                      scene.dx, on, off.empty() ? "none" : off);
+  std::string finer;
+  for (size_t t = 1; t < scene.resolution.size(); t++)
+    if (scene.dx_of(t) != scene.dx) finer += fmt::format("{} {:g} of type {}", finer.empty() ? "," : " and", scene.dx_of(t), t);
+  text += fmt::format("FSI: {}, h = {:g} dx, dx = {:g}{}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[scene.kernel], scene.h / scene.dx,
+                      scene.dx, finer, on, off.empty() ? "none" : off);
   if (fluid)
     with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &k) {
       const auto s = lattice_stiffness(k, scene.dx);

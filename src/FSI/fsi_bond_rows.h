@@ -42,6 +42,7 @@ namespace FSI {
     const double *values;
     double volume;    // of i in the energy's integral
     double stiffness; // zeta E of hourglass control
+    double h;         // smoothing length of its body
   };
 
   // Doubles of a particle's position and velocity, of the force on it.
@@ -57,7 +58,7 @@ namespace FSI {
     const int *type;
     const State *state;
     const double *const *stress;    // per particle, of law hypo; null: none
-    double alpha, beta, h;          // artificial viscosity
+    double alpha, beta;             // artificial viscosity
     bool one_material;              // all solids have one density and one speed of sound
     BondSums *sums;
   };
@@ -147,7 +148,6 @@ namespace FSI {
     using namespace BondFlag;
     using L = Lanes<T>;
     constexpr int NV = 2 * D + 2, NP = row_of_points(D), W = L::WIDTH;
-    const ArtificialViscosity viscosity(in.alpha, in.beta, in.h);
     // the bonds of a row as read once, kept for the second pass over them; copied, since doubles need not be where packs may be
     constexpr int SIZE = (FLAGS ? sizeof(Bond<T, D>) : sizeof(Bond<T, D>::G)) / sizeof(double);
     std::vector<double> kept;
@@ -155,6 +155,7 @@ namespace FSI {
     for (T &w : virial) w = 0.0;
     for (const BondRow &row : rows) {
       const int i = row.i;
+      const ArtificialViscosity viscosity(in.alpha, in.beta, row.h);
       const double *const from = in.points + NP * i;
       // the last bonds that do not fill T, with others of no weight to i itself
       const int full = row.n & ~(W - 1);

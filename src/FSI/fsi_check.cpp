@@ -23,6 +23,7 @@
 #include "fsi_scene.h"
 #include "modify.h"
 #include "neighbor.h"
+#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
@@ -79,8 +80,8 @@ void Check::before_init()
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix fsi does not support run_style respa");
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
-  if (comm->cutghostuser > 0.0 && comm->cutghostuser < scene.cut)
-    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", scene.cut, comm->cutghostuser);
+  if (comm->cutghostuser > 0.0 && comm->cutghostuser < scene.largest_cut)
+    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", scene.largest_cut, comm->cutghostuser);
   if (domain->dimension != scene.dim)
     error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", scene.dim, domain->dimension);
   if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
@@ -104,6 +105,38 @@ void Check::materials()
       error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i], atom->type[i]);
     if (species == RIGID && std::none_of(walls.begin(), walls.end(), [&](const Fix *fix) { return atom->mask[i] & fix->groupbit; }))
       error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
+  }
+  spacings();
+}
+
+/* ----------------------------------------------------------------------
+   The fluid's spacing is dx. Bodies and walls may be finer: a fluid finer than a body would meet it through the body's wider kernel,
+   which pushes less at the face than the fluid itself does, and flow into it.
+------------------------------------------------------------------------- */
+
+void Check::spacings() const
+{
+  constexpr double FINEST = 4.0, ROUND = 1.0 + 1.0e-6;
+  Pair *const fluid = force->pair_match("fsi/fluid", 1);
+  int dim_of_extract;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const double own = scene.dx_of(t), dx = scene.dx;
+    const State &s = scene.state[t];
+    if (own == dx || s.species == NONE) continue;
+    const auto what = fmt::format("Fix fsi spacing {:g} of type {}", own, t);
+    if (s.species == FLUID) error->all(FLERR, "{}, a fluid: fluids have the spacing dx, {:g}", what, dx);
+    if (s.form == UPDATED_LAGRANGIAN)
+      error->all(FLERR, "{}: the sums of pair_style fsi/solid are over whatever is near, with one kernel. Use pair_style fsi/solid/tl, whose "
+                        "bonds are those of one body", what);
+    if (scene.density_solid != Scene::CONTINUITY)
+      error->all(FLERR, "{} requires fix fsi solid continuity: number densities are those of one spacing", what);
+    if (!fluid) continue;
+    if (own > ROUND * dx)
+      error->all(FLERR, "{} is coarser than the fluid's dx {:g}: the fluid would flow between its particles. Make it dx or finer", what, dx);
+    if (ROUND * FINEST * own < dx)
+      error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most", what, dx / own, dx, FINEST);
+    if (*static_cast<int *>(fluid->extract("couple", dim_of_extract)) != 0)
+      error->all(FLERR, "{} requires couple wall in pair_style fsi/fluid: a pressure of the body's own is that of its own volumes", what);
   }
 }
 

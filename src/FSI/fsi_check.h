@@ -48,6 +48,7 @@ namespace FSI {
     std::vector<double> kept;        // and their positions and velocities before them
     Finding found;                   // the first thing that is not finite, or the worst of this rank
 
+    void spacings() const;
     void enter(const Finding &);
     void examine(int i, double kick);
     void look(bool closely, double kick);

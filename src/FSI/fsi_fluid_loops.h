@@ -95,12 +95,20 @@ namespace FSI {
     double artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, diffusion = 0.0, virial[6] = {};
   };
 
+  // How particles of a type count at a fluid particle, if their lattice is finer (theory.rst)
+  struct Share {
+    double volume = 1.0;     // of a particle of the lattice over that of a fluid particle
+    double sharper = 0.0;    // e of Kernel::sharper_gradient()
+  };
+
   // Of all loops: by local and ghost particle.
   struct FluidParticles {
     const double *points;    // Point<D>
     const int *type;
     const State *state;
     int nlocal;
+    const Share *share;    // per type
+    bool finer;            // does any type differ from fluids in it?
     bool newton;    // else a pair across ranks is visited on both: each counts half of powers and forces on walls
   };
 
@@ -133,8 +141,9 @@ namespace FSI {
                         double *total, PairSums *sums) const = 0;
     // adds the sums of particle shifting of fluids to shift, rows of Shift<D>::N
     virtual void shifts(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, double wdx, double *shift) const = 0;
-    // adds W_ij to sum; of the neighbours only if both
-    virtual void number_density(const std::vector<Row> &, bool both, const Mirror *mirror, const double (*x)[3], double *sum) const = 0;
+    // adds W_ij, by the neighbours' share, to sum; of the neighbours only if both
+    virtual void number_density(PairKind, const std::vector<Row> &, bool both, const Mirror *mirror, const FluidParticles &,
+                                const double (*x)[3], double *sum) const = 0;
     // adds V_j x_ji.grad_i W_ij to sum, likewise
     virtual void position_divergence(const std::vector<Row> &, bool both, const Mirror *mirror, const double (*x)[3], const double *vol,
                                      double *sum) const = 0;

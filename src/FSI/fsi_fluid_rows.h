@@ -35,9 +35,9 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too
+  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of finer lattices
   namespace Flag {
-    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64 };
+    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, FINER = 128 };
   }
 
   template <class T, int D> struct Particle {
@@ -143,6 +143,7 @@ namespace FSI {
       const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
       const Particle<T, D> pi(point[i]);
       const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
+      const double sharper = (FLAGS & Flag::FINER) ? in.share[type_j].sharper : 0.0;
       T sum = 0.0, flux = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
@@ -150,7 +151,7 @@ namespace FSI {
         T x[D], v[D];
         difference(pi.x, pj.x, x);
         difference(pi.v, pj.v, v);
-        T g = kernel.gradient(root(product(x, x)));
+        T g = (FLAGS & Flag::FINER) ? kernel.sharper_gradient(root(product(x, x)), sharper) : kernel.gradient(root(product(x, x)));
         if (FLAGS & Flag::IMAGES) g = weight * g;
         const T s = g * product(v, x);
         sum += s;
@@ -167,24 +168,27 @@ namespace FSI {
         }
         L::add(rate_j, rate, j);
       });
-      rate[i] += point[i].rho * point[i].vol * L::sum(sum) + L::sum(flux);
+      const double volume = (FLAGS & Flag::FINER) ? in.share[type_j].volume : 1.0;
+      rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
     }
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(taken);
   }
 
   // Pressure p_i V_i^2 + p_j V_j^2 that fluid particle i and its neighbour share (paper eq. 14), by the rule of the pair; x_j: of the
-  // neighbour itself, not of its image
+  // neighbour itself, not of its image; back: the fluid's volume over the neighbour's
   template <class T, int KIND, int D>
-  FSI_INLINE T shared_pressure(const Particle<T, D> &pi, const Particle<T, D> &pj, const T *x_j, const double *extrapolate, double floor)
+  FSI_INLINE T shared_pressure(const Particle<T, D> &pi, const Particle<T, D> &pj, const T *x_j, const double *extrapolate, double floor,
+                               double back)
   {
     if (KIND == WITH_SOLID) {
       // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
       T p = pi.p;
       for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
-      return pi.pv2 + greater(p, T(floor)) * pj.vol * pj.vol;
+      return pi.pv2 + greater(p, T(floor)) * (back * pj.vol) * pj.vol;
     }
-    if (KIND == WITH_SOLID_PRESSURE) return greater(pi.pv2 + pj.pv2, T(0.0));    // no suction
-    return pi.pv2 + pj.pv2;
+    if (KIND == WITH_FLUID) return pi.pv2 + pj.pv2;
+    const T both = pi.pv2 + back * pj.pv2;
+    return KIND == WITH_SOLID_PRESSURE ? greater(both, T(0.0)) : both;    // no suction
   }
 
   // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14)
@@ -205,7 +209,11 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i, type_j = in.type[row.j[0]];
       const State &fluid = in.state[in.type[i]], &other = in.state[type_j];
-      const Particle<T, D> pi(point[i]);
+      Particle<T, D> pi(point[i]);
+      // neighbours of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i of the lattices
+      const double volume = (FLAGS & Flag::FINER) ? in.share[type_j].volume : 1.0, back = 1.0 / volume;
+      const double sharper = (FLAGS & Flag::FINER) ? in.share[type_j].sharper : 0.0;
+      if (FLAGS & Flag::FINER) pi.pv2 = volume * pi.pv2;
       const double c = KIND == WITH_FLUID ? 0.5 * (fluid.c + other.c) : KIND == WITH_WALL || fluid.c < other.c ? fluid.c : other.c, bulk = fluid.rho0 * fluid.csq, floor = fluid.floor;
       // beyond a wall or solid with no slip there is fluid, where it slips it does not rub
       const bool slips = KIND == WITH_FLUID ? false : KIND == WITH_WALL ? !other.noslip : laws.solids_slip;
@@ -226,19 +234,26 @@ namespace FSI {
         const T rsq = product(x, x), vdotx = product(v, x);
         T g = kernel.gradient(root(rsq));
         if (FLAGS & Flag::IMAGES) g = weight * g;
+        T pushing = g;    // of pressures
+        if (FLAGS & Flag::FINER) {
+          pushing = kernel.sharper_gradient(root(rsq), sharper);
+          if (FLAGS & Flag::IMAGES) pushing = weight * pushing;
+        }
         const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
 
-        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, extrapolate, floor);
+        T viscous_push = 0.0;
+        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, extrapolate, floor, back);
         // beyond the compression of the fluid and, in density mode summation, of the solid
         T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
         if (FLAGS & Flag::ARTIFICIAL) {
           T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), c, pi.vol * pj.vol);
           if (KIND == WITH_WALL) q = rubs * q;
-          p += q;
+          if (FLAGS & Flag::FINER) viscous_push = q * g;
+          else p += q;
           if (FLAGS & Flag::SUMS) by_artificial += share * q * g * vdotx;
         }
-        p = -p * g;
-        coupled = coupled * g * vdotx;
+        p = (FLAGS & Flag::FINER) ? -(p * pushing + viscous_push) : -p * g;
+        coupled = coupled * pushing * vdotx;
 
         T force[D];    // on i
         for (int d = 0; d < D; d++) force[d] = p * x[d];
@@ -371,8 +386,8 @@ namespace FSI {
 
   // W_ij, or V_j x_ji.grad_i W_ij
   template <class T, class K, int FLAGS>
-  FSI_INLINE void distance_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const double (*const x)[3],
-                                const double *const vol, double *const sum)
+  FSI_INLINE void distance_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
+                                const double (*const x)[3], const double *const vol, double *const sum)
   {
     constexpr int D = K::DIM;
     using L = Lanes<T>;
@@ -380,6 +395,9 @@ namespace FSI {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i;
+      // of neighbours on a finer lattice
+      const double volume = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0;
+      const double sharper = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].sharper : 0.0;
       T of_i = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         T rsq = 0.0;
@@ -394,12 +412,12 @@ namespace FSI {
           of_i += w * L::read(vol, j);
           if (FLAGS & Flag::BOTH) L::add(w * vol[i], sum, j);
         } else {
-          const T w = weight * kernel.W(r);
+          const T w = weight * ((FLAGS & Flag::FINER) ? kernel.sharper(r, sharper) : kernel.W(r));
           of_i += w;
           if (FLAGS & Flag::BOTH) L::add(w, sum, j);
         }
       });
-      sum[i] += L::sum(of_i);
+      sum[i] += volume * L::sum(of_i);
     }
   }
 
@@ -420,12 +438,12 @@ namespace FSI {
           rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate, sums);
         });
       };
-      const int images = image ? IMAGES : 0, diffusion = kind != WITH_FLUID || laws.delta == 0.0 ? 0 : sums ? DIFFUSION | SUMS : DIFFUSION;
-      with_flags<IMAGES | DIFFUSION | SUMS>(images | diffusion, [&](auto flags) {
+      const int images = (image ? IMAGES : 0) | finer(kind, in), diffusion = kind != WITH_FLUID || laws.delta == 0.0 ? 0 : sums ? DIFFUSION | SUMS : DIFFUSION;
+      with_flags<IMAGES | DIFFUSION | SUMS | FINER>(images | diffusion, [&](auto flags) {
         if constexpr ((flags() & DIFFUSION) || !(flags() & SUMS)) {
           if constexpr (!(flags() & DIFFUSION))
             if (kind != WITH_FLUID) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
-          loop(std::integral_constant<int, WITH_FLUID>(), flags);
+          if constexpr (!(flags() & FINER)) loop(std::integral_constant<int, WITH_FLUID>(), flags);
         }
       });
     }
@@ -450,13 +468,14 @@ namespace FSI {
       // with sums there is one loop for all effects: those that are off have coefficients of zero
       constexpr int ALL = ARTIFICIAL | LAMINAR | SUMS;
       const int effects = (laws.alpha > 0.0 || laws.beta > 0.0 ? ARTIFICIAL : 0) | (laws.laminar ? LAMINAR : 0);
-      with_flags<ALL | IMAGES>((sums ? ALL : effects) | (image ? IMAGES : 0), [&](auto flags) {
+      with_flags<ALL | IMAGES | FINER>((sums ? ALL : effects) | (image ? IMAGES : 0) | finer(kind, in), [&](auto flags) {
         if constexpr (!(flags() & SUMS) || (flags() & ALL) == ALL) {
-          if (kind == WITH_FLUID) loop(packs, std::integral_constant<int, WITH_FLUID>(), flags);
+          if constexpr (!(flags() & FINER))
+            if (kind == WITH_FLUID) loop(packs, std::integral_constant<int, WITH_FLUID>(), flags);
           if (kind == WITH_SOLID) loop(packs, std::integral_constant<int, WITH_SOLID>(), flags);
           if constexpr (!(flags() & IMAGES))    // walls of particles have no images
             if (kind == WITH_WALL) loop(packs, std::integral_constant<int, WITH_WALL>(), flags);
-          if constexpr (flags() & SUMS) {
+          if constexpr ((flags() & SUMS) && !(flags() & FINER)) {
             if (kind == WITH_SOLID_PRESSURE) loop(no_packs, std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
             if (kind == WITH_SOLID_FULL) loop(no_packs, std::integral_constant<int, WITH_SOLID_FULL>(), flags);
           }
@@ -476,26 +495,30 @@ namespace FSI {
       });
     }
 
-    void number_density(const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], double *sum) const override
+    void number_density(PairKind kind, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
+                        double *sum) const override
     {
-      distances(0, rows, both, image, x, nullptr, sum);
+      distances(finer(kind, in), rows, both, image, in, x, nullptr, sum);
     }
 
     void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], const double *vol,
                              double *sum) const override
     {
-      distances(Flag::DIVERGENCE, rows, both, image, x, vol, sum);
+      distances(Flag::DIVERGENCE, rows, both, image, FluidParticles(), x, vol, sum);
     }
 
    private:
-    void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], const double *vol,
-                   double *sum) const
+    // Rows of solids and walls with finer lattices; those with the fluid's among them have shares that change nothing.
+    static int finer(PairKind kind, const FluidParticles &in) { return in.finer && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::FINER : 0; }
+
+    void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
+                   const double *vol, double *sum) const
     {
       const Mirror mirror = image ? *image : Mirror();
-      with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH>(
+      with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::FINER>(
           what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
-            run_loop([&](auto number) __attribute__((always_inline)) {
-              distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, x, vol, sum);
+            if constexpr (!(flags() & Flag::FINER) || !(flags() & (Flag::DIVERGENCE | Flag::BOTH))) run_loop([&](auto number) __attribute__((always_inline)) {
+              distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, x, vol, sum);
             });
           });
     }

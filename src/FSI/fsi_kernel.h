@@ -47,6 +47,19 @@ namespace FSI {
     template <class T> FSI_INLINE T W(const T &r) const { return norm * Shape::w(r * hinv); }
     // factor g with grad_i W_ij = g x_ij
     template <class T> FSI_INLINE T gradient(const T &r) const { return gnorm * Shape::dwq(r * hinv); }
+    // For neighbours on a lattice finer than that of i, the kernel less its Laplacian times e h^2, and the same factor of its gradient: the mean of
+    // it over a cell of i's lattice is what a neighbour in the middle of this cell has (theory.rst). Bounded where they meet.
+    template <class T> FSI_INLINE T sharper(const T &r, double e) const
+    {
+      const T q = r * hinv;
+      return norm * (Shape::w(q) - e * (Shape::d2w(q) + (D - 1.0) * Shape::dwq(q)));
+    }
+    template <class T> FSI_INLINE T sharper_gradient(const T &r, double e) const
+    {
+      const T q = greater(r * hinv, T(0.1));
+      const T laplacian = Shape::d3w(q) + (D - 1.0) * ((Shape::d2w(q) - Shape::dwq(q)) / q);
+      return gnorm * (Shape::dwq(r * hinv) - e * (laplacian / q));
+    }
     double curvature(double r) const { return gnorm * Shape::d2w(r * hinv); }    // d^2W/dr^2
   };
 
@@ -64,7 +77,8 @@ namespace FSI {
       const T t = greater(2.0 - q, T(0.0));
       return where(q < T(1.0), -2.0 + 1.5 * q, -0.5 * t * t / greater(q, T(1.0)));
     }
-    static double d2w(double q) { return q < 1.0 ? 3.0 * q - 2.0 : greater(2.0 - q, 0.0); }
+    template <class T> FSI_INLINE static T d2w(const T &q) { return where(q < T(1.0), 3.0 * q - 2.0, greater(2.0 - q, T(0.0))); }
+    template <class T> FSI_INLINE static T d3w(const T &q) { return where(q < T(1.0), T(3.0), where(q < T(2.0), T(-1.0), T(0.0))); }
   };
 
   // paper, eq. 11: quintic spline with sigma = 7/(478 pi) in 2D, 1/(120 pi) in 3D
@@ -82,10 +96,15 @@ namespace FSI {
       const T s = pow4(greater(3.0 - q, T(0.0))) - 6.0 * pow4(greater(2.0 - q, T(0.0)));
       return where(q < T(1.0), -120.0 + q * q * (120.0 - 50.0 * q), -5.0 * s / greater(q, T(1.0)));
     }
-    static double d2w(double q)
+    template <class T> FSI_INLINE static T d2w(const T &q)
     {
-      const double a = greater(3.0 - q, 0.0), b = greater(2.0 - q, 0.0), c = greater(1.0 - q, 0.0);
+      const T a = greater(3.0 - q, T(0.0)), b = greater(2.0 - q, T(0.0)), c = greater(1.0 - q, T(0.0));
       return 20.0 * (a * a * a - 6.0 * (b * b * b) + 15.0 * (c * c * c));
+    }
+    template <class T> FSI_INLINE static T d3w(const T &q)
+    {
+      const T a = greater(3.0 - q, T(0.0)), b = greater(2.0 - q, T(0.0)), c = greater(1.0 - q, T(0.0));
+      return -60.0 * (a * a - 6.0 * (b * b) + 15.0 * (c * c));
     }
 
    private:
@@ -110,11 +129,12 @@ namespace FSI {
       const T t = greater(1.0 - 0.5 * q, T(0.0));
       return -5.0 * t * t * t;
     }
-    static double d2w(double q)
+    template <class T> FSI_INLINE static T d2w(const T &q)
     {
-      const double t = greater(1.0 - 0.5 * q, 0.0);
+      const T t = greater(1.0 - 0.5 * q, T(0.0));
       return t * t * (7.5 * q - 5.0 * t);
     }
+    template <class T> FSI_INLINE static T d3w(const T &q) { return greater(1.0 - 0.5 * q, T(0.0)) * (15.0 - 15.0 * q); }
   };
 
   template <int D> using Cubic = Kernel<D, CubicShape>;

@@ -13,6 +13,7 @@
 
 #include "fsi_keywords.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "fsi_record.h"
@@ -153,6 +154,16 @@ Keywords &Keywords::word(std::string &where, const std::string &start)
   return *this;
 }
 
+Keywords &Keywords::per_type(std::vector<double> &where, const Range &range)
+{
+  Value &v = add(Value::PER_TYPE);
+  v.range = range;
+  v.each = &where;
+  where.resize(atom->ntypes + 1);
+  v.begin();
+  return *this;
+}
+
 Keywords &Keywords::set(int &where, int value)
 {
   Value &v = add(Value::SET, value);
@@ -196,6 +207,7 @@ void Keywords::Value::begin() const
 {
   if (number) *number = start;
   else if (word) *word = start_word;
+  else if (each) std::fill(each->begin(), each->end(), start);
   else *n = kind == SET ? 0 : static_cast<int>(start);
 }
 
@@ -203,6 +215,7 @@ bool Keywords::Value::at_start() const
 {
   if (number) return *number == start;
   if (word) return *word == start_word;
+  if (each) return std::all_of(each->begin(), each->end(), [this](double x) { return x == start; });
   return *n == (kind == SET ? 0 : static_cast<int>(start));
 }
 
@@ -214,6 +227,12 @@ std::string Keywords::Value::text() const
     case INTEGER: return std::to_string(*n);
     case CHOICE: return words[*n];
     case WORD: return !other.empty() && word->empty() ? other : *word;
+    case PER_TYPE: {
+      std::string list;
+      for (size_t t = 1; t < each->size(); t++)
+        if ((*each)[t] != start) list += fmt::format("{}{} {}", list.empty() ? "" : " ", t, (*each)[t]);
+      return list.empty() ? "none" : list;
+    }
     default: return (kind == SET ? *n == static_cast<int>(start) : *n) ? "yes" : "no";
   }
 }
@@ -227,6 +246,14 @@ void Keywords::take(const Row &row, const Value &v, const std::string &text) con
     case Value::INTEGER: *v.n = FSI::integer(lmp, who + " " + name, text, v.least, v.most); break;
     case Value::WORD: *v.word = other ? "" : text; break;
     case Value::SET: *v.n = static_cast<int>(v.start); break;
+    case Value::PER_TYPE: {
+      const size_t gap = text.find(' ');
+      int first, last;
+      utils::bounds_typelabel(FLERR, text.substr(0, gap), 1, atom->ntypes, first, last, lmp, Atom::ATOM);
+      const double x = FSI::numeric(lmp, who + " " + name, text.substr(gap + 1), v.range);
+      std::fill(v.each->begin() + first, v.each->begin() + last + 1, x);
+      break;
+    }
     case Value::LOGICAL:
       for (const char *yes : {"yes", "on", "true"})
         if (text == yes) return void(*v.n = 1);
@@ -245,7 +272,7 @@ void Keywords::take(const Row &row, const Value &v, const std::string &text) con
 int Keywords::Row::count() const
 {
   int n = 0;
-  for (const auto &v : values) n += v.kind != Value::SET;
+  for (const auto &v : values) n += v.count();
   return n;
 }
 
@@ -288,8 +315,10 @@ void Keywords::parse(int narg, char **arg)
       row++;
     if (iarg + it->count() > narg) utils::missing_cmd_args(FLERR, keyword ? command + " " + it->name : command, error);
     for (const auto &v : it->values) {
-      take(*it, v, v.kind == Value::SET ? "" : arg[iarg]);
-      iarg += v.kind != Value::SET;
+      std::string text;
+      for (int k = 0; k < v.count(); k++) text += (k ? " " : "") + std::string(arg[iarg + k]);
+      take(*it, v, text);
+      iarg += v.count();
     }
   }
 }

@@ -63,6 +63,7 @@ namespace FSI {
     Keywords &choice(int &where, int start, const std::vector<std::string> &words, const std::string &what = "");
     Keywords &logical(int &where, bool start);
     Keywords &word(std::string &where, const std::string &start);    // any
+    Keywords &per_type(std::vector<double> &where, const Range & = {});    // atom types and a number, as often as wanted; 0: not given
     Keywords &set(int &where, int value);                            // no value follows: the keyword sets it; 0 without
     // of the last value: a word that stands for a number, or for no word
     Keywords &or_word(const std::string &word, double number = 0.0);
@@ -88,11 +89,12 @@ namespace FSI {
 
    private:
     struct Value {
-      enum Kind { NUMBER, INTEGER, CHOICE, LOGICAL, WORD, SET };
+      enum Kind { NUMBER, INTEGER, CHOICE, LOGICAL, WORD, SET, PER_TYPE };
       Kind kind = NUMBER;
       double *number = nullptr;
       int *n = nullptr;
       std::string *word = nullptr;
+      std::vector<double> *each = nullptr;
       double start = 0.0;    // number, integer, index of a choice, what a keyword sets
       std::string start_word;
       Range range;
@@ -102,6 +104,7 @@ namespace FSI {
       std::string other;    // a word that stands for other_number
       double other_number = 0.0;
 
+      int count() const { return kind == SET ? 0 : kind == PER_TYPE ? 2 : 1; }    // words that follow
       void begin() const;
       bool at_start() const;
       std::string text() const;

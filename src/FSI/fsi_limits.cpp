@@ -44,11 +44,10 @@ void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_flu
   double **v = atom->v;
   double **f = atom->f;
   const double *const rmass = atom->rmass, *const rho = atom->rho;
-  const double h = scene.h;
 
-  double *const mine[2] = {step, sub}, fastest = 0.0, asq_max[2] = {0.0, 0.0};    // fluid, solid
-  const double factor[2] = {of_fluid, of_solid};
-  tagint pushed[2] = {0, 0};
+  double *const mine[2] = {step, sub}, fastest = 0.0;
+  std::vector<double> asq_max(atom->ntypes + 1, 0.0);
+  std::vector<tagint> pushed(atom->ntypes + 1, 0);
   for (auto &row : culprit) row[0] = row[1] = 0;
   std::vector<char> present(atom->ntypes + 1, 0);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -69,28 +68,25 @@ void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_flu
     if (!(mask[i] & scene.mover->groupbit)) continue;
     const double w = force->ftm2v / rmass[i];
     const double asq = w * w * (f[i][0] * f[i][0] + f[i][1] * f[i][1] + f[i][2] * f[i][2]);
-    const int solid = s.species == SOLID;
-    if (asq > asq_max[solid]) {
-      asq_max[solid] = asq;
-      pushed[solid] = atom->tag[i];
+    if (asq > asq_max[type[i]]) {
+      asq_max[type[i]] = asq;
+      pushed[type[i]] = atom->tag[i];
     }
   }
 
   for (double *row : mine) std::fill_n(row, NLIMIT, UNLIMITED);
-  if (fastest > 0.0) mine[0][SOUND] = of_fluid * safe[SOUND] * h / fastest;
-  for (int k = 0; k < 2; k++) {
-    if (asq_max[k] <= 0.0) continue;
-    const int in_sub = substeps && k;
-    const double limit = factor[k] * safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[k]));
-    if (limit >= mine[in_sub][ACCELERATION]) continue;
-    mine[in_sub][ACCELERATION] = limit;
-    culprit[in_sub][1] = pushed[k];
-  }
+  if (fastest > 0.0) mine[0][SOUND] = of_fluid * safe[SOUND] * scene.h / fastest;
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!present[t]) continue;
     const State &s = scene.state[t];
     const bool fluid = s.species == FLUID;
-    double *const m = mine[substeps && !fluid], own = factor[!fluid];
+    const int in_sub = substeps && !fluid;
+    double *const m = mine[in_sub], own = fluid ? of_fluid : of_solid, h = scene.h_of(t);
+    const double pushing = asq_max[t] > 0.0 ? own * safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[t])) : UNLIMITED;
+    if (pushing < m[ACCELERATION]) {
+      m[ACCELERATION] = pushing;
+      culprit[in_sub][1] = pushed[t];
+    }
     Pair *const pair = force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0);    // null: walls of held solids
     int dim_of_extract;
     const double alpha = pair ? *static_cast<double *>(pair->extract("alpha", dim_of_extract)) : 0.0;

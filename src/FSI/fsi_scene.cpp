@@ -15,6 +15,7 @@
 
 #include "atom.h"
 #include "fix.h"
+#include "fsi_kernel.h"
 #include "lammps.h"
 #include "modify.h"
 
@@ -31,6 +32,35 @@ Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) :
     shift(nullptr), wmask(nullptr), wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
     surface_max(false), need_psi(false), keep_psi(false), ledger(false), taken{}, tally_dt(0.0), instance(lmp)
 {
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Scene::resolve(double hdx, const std::vector<double> &spacing)
+{
+  const auto resolution_of = [&](double own) {
+    Resolution of;
+    of.dx = own;
+    of.h = hdx * own;
+    with_kernel(kernel, dim, of.h, [&](const auto &k) {
+      of.cut = k.cut;
+      of.psi_bulk = lattice_number_density(k, own);
+    });
+    return of;
+  };
+  const Resolution fluid = resolution_of(dx);
+  h = fluid.h;
+  cut = largest_cut = fluid.cut;
+  psi_bulk = fluid.psi_bulk;
+  with_kernel(kernel, dim, h, [&](const auto &k) {
+    wdx = k.W(dx);
+    w0 = k.W(0.0);
+  });
+  resolution.clear();
+  for (const double own : spacing) {
+    resolution.push_back(own > 0.0 ? resolution_of(own) : fluid);
+    largest_cut = std::max(largest_cut, resolution.back().cut);
+  }
 }
 
 /* ---------------------------------------------------------------------- */

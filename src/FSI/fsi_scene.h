@@ -19,6 +19,7 @@
 
 #include "fsi_body_forces.h"
 #include "fsi_material.h"
+#include "fsi_resolution.h"
 #include "fsi_walls.h"
 
 #include <string>
@@ -48,6 +49,10 @@ namespace FSI {
     double psi_bulk;     // number density inside the lattice: the volume of a particle is 1/psi_bulk
     double wdx, w0;      // W(dx), W(0)
     int density_fluid, density_solid;    // Density
+    std::vector<Resolution> resolution;    // per atom type; that of fluids is the above
+    double largest_cut;                    // support of the coarsest
+    double dx_of(int type) const { return resolution[type].dx; }
+    double h_of(int type) const { return resolution[type].h; }
 
     // per atom type; pair styles enter theirs in init_style()
     std::vector<State> state;
@@ -108,6 +113,7 @@ namespace FSI {
     static Row *rows(double **a) { return reinterpret_cast<Row *>(a[0]); }
 
    protected:
+    void resolve(double hdx, const std::vector<double> &spacing);    // h over dx; spacings that differ from dx, by type, or 0
     double tally_dt;
 
    private:

@@ -100,7 +100,7 @@ double Stop::courant(const Scene &scene, int type) const
 {
   const State &s = scene.state[type];
   const bool waves = s.species == FLUID || s.species == SOLID;
-  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) / (s.species == SOLID ? scene.substeps : 1) / scene.h : 0.0;
+  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) / (s.species == SOLID ? scene.substeps : 1) / scene.h_of(type) : 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -263,7 +263,7 @@ std::string Stop::write_state(const Scene &scene)
 void Stop::write_neighbours(const Scene &scene, const Finding &all) const
 {
   static constexpr int NINT = 3, NCOL = 13;
-  const double reach = 3.0 * scene.cut;
+  const double reach = 3.0 * scene.largest_cut;
   std::vector<double> mine;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], *const v = atom->v[i], *const f = atom->f[i];

@@ -161,7 +161,7 @@ bool PairFSI::several_bodies() const
 double PairFSI::init_one(int i, int j)
 {
   if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set: types {} and {}", i, j);
-  return handles(material[i].species, material[j].species) ? hub->cut : 0.0;
+  return handles(material[i].species, material[j].species) ? std::max(hub->resolution[i].cut, hub->resolution[j].cut) : 0.0;
 }
 
 /* ----------------------------------------------------------------------

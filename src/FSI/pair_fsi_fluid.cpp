@@ -128,6 +128,14 @@ void PairFSIFluid::init_style()
     error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
                    has_solids() ? "there is no laminar/visc" : "there is no solid");
   loops = make_fluid_loops(hub->kernel, hub->dim, hub->h);
+  shares.assign(atom->ntypes + 1, Share());
+  finer = false;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const double ratio = hub->dx_of(t) / hub->dx, per_h = hub->dx / hub->h;
+    if (ratio == 1.0) continue;
+    finer = true;
+    shares[t] = {hub->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h};
+  }
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
   if (couple != WALL && force->pair_match("fsi/solid/tl", 1))
@@ -150,6 +158,10 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
   if (strcmp(name, "laminar/visc") == 0) {
     dim_of_extract = 0;
     return &laminar;
+  }
+  if (strcmp(name, "couple") == 0) {
+    dim_of_extract = 0;
+    return &couple;
   }
   return PairFSI::extract(name, dim_of_extract);
 }
@@ -375,6 +387,11 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 /* ---------------------------------------------------------------------- */
 
+FluidParticles PairFSIFluid::particles_at(const double *points) const
+{
+  return {points, atom->type, hub->state.data(), atom->nlocal, shares.data(), finer, force->newton_pair != 0};
+}
+
 template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest rest)
 {
   constexpr size_t SIZE = sizeof(Point<D>) / sizeof(double);
@@ -393,7 +410,7 @@ template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest 
     p.vol = rmass[i] / p.rho;
     rest(i, p);
   }
-  return {points.data(), atom->type, hub->state.data(), atom->nlocal, force->newton_pair != 0};
+  return particles_at(points.data());
 }
 
 /* ----------------------------------------------------------------------
@@ -451,20 +468,20 @@ void PairFSIFluid::displacements(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-// sums of what depends on the distance of a pair, walls' images included: sum(rows, both, mirror), of neighbors only if both
+// sums of what depends on the distance of a pair, walls' images included: sum(kind, rows, both, mirror), of neighbors only if both
 template <class Sum> void PairFSIFluid::distance_sums(bool others_too, Sum sum)
 {
   const auto both = [&](int kind) { return kind == FLUIDS || others_too; };
-  for (int kind = 0; kind < NROWS; kind++) sum(rows[kind].rows, both(kind), nullptr);
+  for (int kind = 0; kind < NROWS; kind++) sum(kinds[kind], rows[kind].rows, both(kind), nullptr);
   double **x = atom->x;
   for_images(hub->walls, [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
-             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { sum(which, both(kind), mirror); });
+             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { sum(kinds[kind], which, both(kind), mirror); });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
-  distance_sums(solids_too, [&](const std::vector<Row> &which, bool both, const Mirror *mirror) {
-    loops->number_density(which, both, mirror, FixFSI::rows(atom->x), psi);
+  distance_sums(solids_too, [&](PairKind kind, const std::vector<Row> &which, bool both, const Mirror *mirror) {
+    loops->number_density(kind, which, both, mirror, particles_at(nullptr), FixFSI::rows(atom->x), psi);
   });
 }
 
@@ -472,7 +489,7 @@ void PairFSIFluid::add_position_divergence(double *div)
 {
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
-  distance_sums(false, [&](const std::vector<Row> &which, bool both, const Mirror *mirror) {
+  distance_sums(false, [&](PairKind, const std::vector<Row> &which, bool both, const Mirror *mirror) {
     loops->position_divergence(which, both, mirror, FixFSI::rows(atom->x), volume.data(), div);
   });
 }

@@ -245,11 +245,11 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
     one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
     if (reference->count(i) == 0) continue;    // torn off by damage
     rows.push_back({i, reference->count(i), reference->partners(i), reference->values(i), atom->rmass[i] / s.rho0 * reference->weight(i),
-                    zeta * material[type[i]].young});
+                    zeta * material[type[i]].young, hub->h_of(type[i])});
   }
 
   BondSums sums;
-  const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr, alpha, beta, hub->h, one_material, &sums};
+  const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr, alpha, beta, one_material, &sums};
   const L *const law_of = laws<L>();
   auto *const f = reinterpret_cast<double(*)[row_of_bond_forces(D)]>(fsolid ? fsolid[0] : nullptr);
   const int flags = hub->ledger || vflag_global ? ALL : (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
@@ -275,7 +275,10 @@ template <int D> void PairFSISolidTL::contact_forces()
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
   const State *const state = hub->state.data();
-  const Contact contact(D, hub->dx, contact_range);
+  const int ntypes = atom->ntypes;
+  std::vector<Contact> contacts;    // by both types
+  for (int a = 0; a <= ntypes; a++)
+    for (int b = 0; b <= ntypes; b++) contacts.emplace_back(D, spacing_between(hub->resolution[a], hub->resolution[b]), contact_range);
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
   for (int ii = 0; ii < list->inum; ii++) {
@@ -289,6 +292,7 @@ template <int D> void PairFSISolidTL::contact_forces()
         rsq += xij[d] * xij[d];
       }
       const State &si = state[type[i]], &sj = state[type[j]];
+      const Contact &contact = contacts[type[i] * (ntypes + 1) + type[j]];
       const double f = contact(rsq, si.csq * si.rho0, sj.csq * sj.rho0);
       if (f == 0.0) continue;
       const bool both = newton || j < nlocal;    // without newton the other rank does its own particle

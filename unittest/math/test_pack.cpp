@@ -41,7 +41,7 @@ FSI_AVX2 static void transpose(const double (*rows)[4], double (*columns)[4], do
   Pack::columns(rows[0], rows[1], rows[2], rows[3], c);
   for (int n = 0; n < 4; n++)
     for (int k = 0; k < 4; k++) columns[n][k] = c[n].v[k];
-  Pack::add_rows(c[0], c[1], c[2], sums[0], sums[1], sums[2], sums[3]);
+  Pack::add_rows(c[0], c[1], c[2], 0.0, sums[0], sums[1], sums[2], sums[3]);
 }
 
 FSI_AVX2 static void pairs_of_columns(const double (*rows)[4], double *first, double *second)
