@@ -11,41 +11,79 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 import numpy as np  # noqa: E402
 
-from fsi import dump, plot, series  # noqa: E402
+from fsi import dump, log, plot, series  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
 SOURCE = "Schaefer & Turek 1996, test case 2D-1: 5.57 to 5.59"
 DRAG, LIFT = 5.58, 0.0107
-TO_COEFFICIENT = 2.0 / (1000.0 * 0.2**2 * 0.1)
-COLOURS = (plot.BLUE, plot.ORANGE, "#3a923a", plot.GREY)
+UNSTEADY = "the same, 2D-2"  # Cd at its largest 3.22 to 3.24, Cl 0.99 to 1.01, St 0.295 to 0.305
+DRAG_MAX, LIFT_MAX, STROUHAL = 3.23, 1.00, 0.300
+DIAMETER = 0.1
+COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
+
+
+def forces(folder):
+    """(mean velocity of the inflow, time, drag coefficient, lift coefficient)"""
+    s = series.read(Path(folder) / "series.csv")
+    speed = log.read(Path(folder) / "log.lammps").values["velocity"]
+    factor = 2.0 / (1000.0 * speed**2 * DIAMETER)
+    return speed, s.time, s["drag"] * factor, s["lift"] * factor
 
 
 def coefficients(folder):
     """Means of drag and lift over the last quarter of the run, and their scatter (standard deviation)"""
-    s = series.read(Path(folder) / "series.csv")
-    late = s.time >= 0.75 * s.time[-1]
-    drag, lift = (s[name][late] * TO_COEFFICIENT for name in ("drag", "lift"))
+    _, time, *both = forces(folder)
+    drag, lift = (values[time >= 0.75 * time[-1]] for values in both)
     return drag.mean(), lift.mean(), drag.std(), lift.std()
 
 
+def vortices(folder):
+    """(largest drag, largest lift, Strouhal number) of the harmonics of the last five periods; the frequency is that of the lift's
+    second half. Sound, whose frequencies are others, does not count."""
+    speed, time, drag, lift = forces(folder)
+    late = time >= 0.5 * time[-1]
+    rate = series.frequency(time[late], smooth(time, lift, 0.5 * DIAMETER / speed)[late])
+    return *(sum(series.swing(time, values, rate)) for values in (drag, lift)), rate * DIAMETER / speed
+
+
+def smooth(time, values, width):
+    """Running mean over `width` [s]."""
+    n = max(1, round(width / (time[1] - time[0])))
+    return np.convolve(np.pad(values, (n // 2, n - 1 - n // 2), mode="edge"), np.full(n, 1.0 / n), mode="valid")
+
+
 def curve(folder):
-    """Drag coefficient over time, means of 0.1 s"""
-    s = series.read(Path(folder) / "series.csv")
-    n = max(1, round(0.1 / (s.time[1] - s.time[0])))
-    m = len(s.time) // n * n
-    return s.time[:m].reshape(-1, n).mean(1), s["drag"][:m].reshape(-1, n).mean(1) * TO_COEFFICIENT
+    """Time in D/U and drag coefficient, means of 0.2 D/U"""
+    speed, time, drag, _ = forces(folder)
+    n = max(1, round(0.2 * DIAMETER / speed / (time[1] - time[0])))
+    m = len(time) // n * n
+    return time[:m].reshape(-1, n).mean(1) * speed / DIAMETER, drag[:m].reshape(-1, n).mean(1)
+
+
+def is_steady(folder):
+    """2D-1 rather than 2D-2"""
+    return forces(folder)[0] < 0.5
+
+
+def add(summary, folder, suffix="", finest=False):
+    """The figures of one run."""
+    if is_steady(folder):
+        drag, lift, scatter, lift_scatter = coefficients(folder)
+        summary.add(f"drag{suffix}", drag, "", DRAG, SOURCE, 0.02 if finest else None)
+        summary.add(f"lift{suffix}", lift, "", LIFT, "the same, 0.0104 to 0.0110")
+        summary.add(f"drag_scatter{suffix}", scatter)
+        summary.add(f"lift_scatter{suffix}", lift_scatter)
+    else:
+        for name, value, reference, target in zip(("drag_max", "lift_max", "strouhal"), vortices(folder), (DRAG_MAX, LIFT_MAX, STROUHAL), (0.03, 0.07, 0.02)):
+            summary.add(name + suffix, value, "", reference, UNSTEADY, target if finest else None)
 
 
 def main(folder):
     """Analyses the run in `folder`; returns the summary."""
     folder = Path(folder)
     summary = Summary(folder)
-    drag, lift, drag_scatter, lift_scatter = coefficients(folder)
-    summary.add("drag", drag, "", DRAG, SOURCE)
-    summary.add("lift", lift, "", LIFT, "the same, 0.0104 to 0.0110")
-    summary.add("drag_scatter", drag_scatter)
-    summary.add("lift_scatter", lift_scatter)
-    plot.lines(folder / "drag.png", "t [s]", "drag coefficient", [(*curve(folder), "SPH, means of 0.1 s", plot.BLUE)])
+    add(summary, folder)
+    plot.lines(folder / "drag.png", "t U/D", "drag coefficient", [(*curve(folder), "SPH, means of 0.2 D/U", plot.BLUE)])
     last = dump.read(folder / "particles.dump")[-1]
     last = last.of_types(1)
     plot.clouds(folder / "speed.png", [(f"t = {last.time:.1f} s", last["x"], last["y"], np.hypot(last["vx"], last["vy"]))],
@@ -57,15 +95,12 @@ def study(folder, cases):
     """Drag of all cases in one picture."""
     folder = Path(folder)
     summary = Summary(folder)
-    finest = "16_across"
+    finest = {is_steady(path): name for name, path in cases.items()}  # they are in the order of resolution
     curves = []
     for (name, path), colour in zip(cases.items(), COLOURS):
-        drag, lift, scatter, lift_scatter = coefficients(path)
-        summary.add(f"drag_{name}", drag, "", DRAG, SOURCE, 0.02 if name == finest else None)
-        summary.add(f"lift_{name}", lift, "", LIFT, "the same, 0.0104 to 0.0110")
-        summary.add(f"drag_scatter_{name}", scatter)
+        add(summary, path, f"_{name}", name in finest.values())
         curves.append((*curve(path), name.replace("_", " "), colour))
-    plot.lines(folder / "drag.png", "t [s]", "drag coefficient, means of 0.1 s", curves)
+    plot.lines(folder / "drag.png", "t U/D", "drag coefficient, means of 0.2 D/U", curves)
     return summary.write()
 
 

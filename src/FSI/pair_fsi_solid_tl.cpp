@@ -244,6 +244,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
     const State &s = state[type[i]], &first = state[type[reference->solids[0]]];
     one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
     if (reference->count(i) == 0) continue;    // torn off by damage
+    if (!only_on_held.empty() && only_on_held[i]) continue;
     rows.push_back({i, reference->count(i), reference->partners(i), reference->values(i), atom->rmass[i] / s.rho0 * reference->weight(i),
                     zeta * material[type[i]].young, hub->h_of(type[i])});
   }
@@ -516,8 +517,10 @@ void PairFSISolidTL::integrate_substeps()
   };
   hub->set_tally(dt);
   hub->check.before_substeps(solids());
+  if (!hub->ledger) find_only_on_held();
   drift(back);
   for (int n = 0; n < substeps; n++) {
+    if (n + 1 == substeps) only_on_held.clear();
     drift(dth);
     forward_positions();
     advance_stress(dt);
@@ -538,6 +541,17 @@ void PairFSISolidTL::integrate_substeps()
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   for (const int i : solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
+}
+
+void PairFSISolidTL::find_only_on_held()
+{
+  const int *const mask = atom->mask, groupbit = hub->groupbit;
+  only_on_held.assign(atom->nlocal, 0);
+  for (const int i : reference->solids) {
+    if (mask[i] & groupbit) continue;
+    const int *const partner = reference->partners(i);
+    only_on_held[i] = std::none_of(partner, partner + reference->count(i), [=](int j) { return mask[j] & groupbit; });
+  }
 }
 
 /* ---------------------------------------------------------------------- */

@@ -98,6 +98,9 @@ class PairFSISolidTL : public PairFSI {
   void refuse_constraints() const;
   template <class L> const L *laws() const;
   std::vector<FSI::BondRow> rows;
+  // rows that act on held particles alone: of no use to sub-steps but the last, whose forces are seen from outside
+  std::vector<char> only_on_held;    // per local atom; empty: all rows are wanted
+  void find_only_on_held();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
   template <class L, int D> void bond_forces();
   template <int D> void contact_forces();

@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Figures and pictures of the flag behind a cylinder.   usage: analyze.py FOLDER
+
+main(folder) reads series.csv, particles.dump, run.json and log.lammps of one run; study(folder, cases) compares runs.
+"""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+
+import numpy as np  # noqa: E402
+
+from fsi import dump, log, plot, series  # noqa: E402
+from fsi.summary import Summary  # noqa: E402
+
+SOURCE = "Turek & Hron 2006, Featflow level 4"
+# mean, amplitude and frequency [Hz], or a steady value: displacements of A in mm, forces on cylinder and flag in N/m
+REFERENCE = {
+    "cfd1": {"drag": 14.29, "lift": 1.119},
+    "cfd2": {"drag": 136.7, "lift": 10.53},
+    "cfd3": {"drag": (439.45, 5.6183, 4.3956), "lift": (-11.893, 437.81, 4.3956)},
+    "fsi1": {"ux": 0.0227, "uy": 0.8209, "drag": 14.295, "lift": 0.7638},
+    "fsi2": {"ux": (-14.85, 12.70, 3.86), "uy": (1.30, 81.6, 1.93), "drag": (215.06, 77.65, 3.86), "lift": (0.61, 237.8, 1.93)},
+    "fsi3": {"ux": (-2.88, 2.72, 10.93), "uy": (1.47, 34.99, 5.46), "drag": (460.5, 27.74, 10.93), "lift": (2.50, 153.91, 5.46)},
+}
+UNITS = {"ux": "mm", "uy": "mm", "drag": "N/m", "lift": "N/m"}
+TARGETS = {("fsi1", "uy"): 0.05, ("fsi1", "drag"): 0.03, ("cfd1", "drag"): 0.02, ("cfd2", "drag"): 0.02,
+           ("fsi2", "uy_amplitude"): 0.03, ("fsi2", "frequency"): 0.03, ("fsi2", "drag_mean"): 0.03, ("fsi2", "drag_amplitude"): 0.1,
+           ("fsi2", "lift_amplitude"): 0.1, ("fsi3", "uy_amplitude"): 0.05, ("fsi3", "frequency"): 0.03, ("fsi3", "drag_mean"): 0.03,
+           ("fsi3", "lift_amplitude"): 0.1}
+PERIODS = 3
+COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
+
+
+def read(folder):
+    """(case, values of the log, series with displacements in mm)."""
+    found = log.read(Path(folder) / "log.lammps")
+    s = series.read(Path(folder) / "series.csv")
+    for name in ("ux", "uy"):
+        s.columns[name] = 1e3 * s[name]
+    return found.values["case"], found.values, s
+
+
+def add(summary, folder, suffix="", finest=True):
+    """The figures of one run, and the scatter of drag and lift about them."""
+    case, _, s = read(folder)
+
+    def figure(name, value, unit, reference):
+        summary.add(name + suffix, value, unit, reference, SOURCE, TARGETS.get((case, name)) if finest else None)
+
+    late = s.time >= 0.75 * s.time[-1]
+    fundamental = "lift" if case == "cfd3" else "uy"
+    steady = not isinstance(REFERENCE[case]["drag"], tuple)
+    if steady:
+        for name, reference in REFERENCE[case].items():
+            figure(name, s[name][late].mean(), UNITS[name], reference)
+    else:
+        half = s.time >= 0.5 * s.time[-1]
+        rate = series.frequency(s.time[half], s[fundamental][half])
+        figure("frequency", rate, "Hz", REFERENCE[case][fundamental][2])
+        for name, (mean, amplitude, _) in REFERENCE[case].items():
+            found = series.swing(s.time, s[name], rate, PERIODS)
+            figure(f"{name}_mean", found[0], UNITS[name], mean)
+            figure(f"{name}_amplitude", found[1], UNITS[name], amplitude)
+    if steady:
+        for name in ("drag", "lift"):
+            summary.add(f"{name}_scatter{suffix}", s[name][late].std(), "N/m")
+    summary.add(f"flow{suffix}", s["flow"][late].mean())
+
+
+def picture(path, runs, names=("uy", "drag", "lift")):
+    """Columns over time, one below the other. runs: [(series, label)]."""
+    with plot.picture(path, 7.4, 1.9 * len(names)) as figure:
+        for k, (axes, name) in enumerate(zip(np.ravel(figure.subplots(len(names), 1, sharex=True)), names)):
+            for (s, label), colour in zip(runs, COLOURS):
+                axes.plot(s.time, s[name], color=colour, label=label, linewidth=0.8)
+            axes.set(ylabel=f"{name} [{UNITS[name]}]")
+            if k == 0:
+                axes.legend(loc="upper left", fontsize="small")
+        axes.set(xlabel="t [s]")
+        figure.align_ylabels()
+        figure.tight_layout()
+
+
+def main(folder):
+    """Analyses the run in `folder`; returns the summary."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    add(summary, folder)
+    case, values, s = read(folder)
+    moves = case.startswith("fsi")
+    picture(folder / "forces.png", [(s, f"{case.upper()}, {values['across']:.0f} particles across the flag")],
+            ("uy", "drag", "lift") if moves else ("drag", "lift"))
+    last = dump.read(folder / "particles.dump")[-1]
+    speed = np.hypot(last["vx"], last["vy"])
+    plot.clouds(folder / "speed.png", [(f"t = {last.time:.2f} s", last["x"], last["y"], speed)], values["dx"], ((0, 1.2), (0, 0.41)), "speed [m/s]",
+                panel_width=8.0)
+    return summary.write()
+
+
+def study(folder, cases):
+    """All cases; the motion of the flag in FSI2 at every resolution."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    finest = {read(path)[0]: name for name, path in cases.items()}  # they are in the order of resolution
+    runs = []
+    for name, path in cases.items():
+        add(summary, path, f"_{name}", name in finest.values())
+        case, values, s = read(path)
+        if case == "fsi2":
+            runs.append((s, f"FSI2, {values['across']:.0f} particles across the flag"))
+    if runs:
+        picture(folder / "forces.png", runs)
+    return summary.write()
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])
