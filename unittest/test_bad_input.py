@@ -362,6 +362,9 @@ NUMBERS = [
     *[(f"stream {word}", RUN, f"region zone block 0 1 INF INF INF INF\nfix s all fsi/stream {keyword}\nunfix s\nrun 0") for word, keyword in (
         ("velocity", "{} NULL NULL region zone rate 1"), ("rate", "1 NULL NULL region zone rate {}"),
         ("density", "1 NULL NULL region zone rate 1 density {}"))],
+    *[(f"inlet {word}", RUN, f"fix i all fsi/inlet xlo {keyword}\nunfix i\nrun 0") for word, keyword in (
+        ("xlo", "{} velocity 0 0 0"), ("velocity", "0 velocity {} 0 0"), ("pressure", "0 pressure {}"), ("absorb", "0 velocity 0 0 0 absorb {}"),
+        ("buffer", "0 velocity 0 0 0 buffer {}"))],
     *[(word, RUN, f"fix dt all fsi/dt {keyword}\nrun 0") for word, keyword in (
         ("interval", "{}"), ("cfl", "10 cfl {}"), ("cfl/fluid", "10 cfl/fluid {}"), ("cfl/solid", "10 cfl/solid {}"), ("stop", "10 stop {}"), ("min", "10 min {}"), ("max", "10 max {}"), ("growth", "10 growth {}"))],
     *[(f"watch {word}", RUN, f"fix w all fsi/watch {keyword}\nunfix w\nrun 0") for word, keyword in (
