@@ -123,7 +123,7 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "energy ledger": {"commands": LEDGER}}),
     "total": ("Solid, total Lagrangian", total, {
         "artificial viscosity": {"style": "artificial/visc 0.1 0"},
-        "hourglass control": {"style": "hourglass 0.05"},
+        "hourglass control": ({"style": "hourglass 0"}, {}),
         "neo-Hookean": {"style": "law neohookean"},
         "hypoelastic": {"style": "law hypo", "stress": ""},
         "plasticity (hypoelastic)": {"style": "law hypo", "stress": "plastic", "material": "metal"},
@@ -138,7 +138,7 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "viscosity of the rubber": ({"without": ("rubber viscosity",)}, {}),
         "sub-steps": ({"without": ("substeps",)}, {}),
         "shifting": {"water": "shift 0.1"},
-        "hourglass control": {"rubber": "hourglass 0.05"},
+        "hourglass control": ({"rubber": "hourglass 0"}, {}),
         "damage": {"rubber": "damage 0.5"},
         "adaptive time step": {"commands": STEP},
         "watch": {"commands": WATCH},

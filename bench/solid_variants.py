@@ -14,7 +14,7 @@ from fsi import plot
 from fsi.command import start
 
 PLAIN = "updated Lagrangian, plain gradients"
-UL, TL, HYPO = "fsi/solid", "fsi/solid/tl", "fsi/solid/tl law hypo"
+UL, TL, HYPO = "fsi/solid", "fsi/solid/tl hourglass 0", "fsi/solid/tl hourglass 0 law hypo"
 # variant: pair style with its keywords, keywords of fix fsi/stress (None: no such fix), two bodies
 VARIANTS = {
     PLAIN: (UL, ""),
@@ -31,9 +31,9 @@ VARIANTS = {
     "total Lagrangian, St. Venant-Kirchhoff": (TL, None),
     "TL, linear gradients": (f"{TL} gradient linear", None),
     "TL, neo-Hookean": (f"{TL} law neohookean", None),
-    "TL + hourglass control": (f"{TL} hourglass 0.05", None),
+    "TL + hourglass control": ("fsi/solid/tl", None),
     "TL + artificial viscosity": (f"{TL} artificial/visc 0.1 0", None),
-    "TL + both": (f"{TL} hourglass 0.05 artificial/visc 0.1 0", None),
+    "TL + both": ("fsi/solid/tl artificial/visc 0.1 0", None),
     "TL + damage": (f"{TL} damage 0.5", None),
     "TL, hypoelastic": (HYPO, ""),
     "TL, hypoelastic + plasticity": (HYPO, "plastic"),

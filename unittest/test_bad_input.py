@@ -177,6 +177,8 @@ CASES = [
     ("surface ratio large", *fluid("", "sound 10 surface 1.5 bulk "), r"surface ratio 1\.5 must be >= 0 and < 1"),
     ("surface reference unknown", *fluid("", "sound 10 surface 0.9 mean "), r"surface reference mean"),
     ("diffusion with summation", "fluid continuity", "fluid summation", r"density/diffusion requires .*fluid continuity"),
+    ("surfaces of no logical value", "density/diffusion 0.1", "density/surface perhaps", r"density/surface perhaps"),
+    ("surfaces with tension", "density/diffusion 0.1", "density/surface yes tension yes", r"density/surface is for fluids with a free surface"),
     ("shift negative", "density/diffusion 0.1", "shift -0.1", r"shift -0\.1 must be between 0 and 1"),
     ("shift large", "density/diffusion 0.1", "shift 2", r"shift 2 must be between 0 and 1"),
     ("shift with ratio", re.compile("density/diffusion 0.1(.*)fluid continuity", re.S), r"shift 0.5\1fluid ratio",
@@ -362,6 +364,9 @@ NUMBERS = [
     *[(f"stream {word}", RUN, f"region zone block 0 1 INF INF INF INF\nfix s all fsi/stream {keyword}\nunfix s\nrun 0") for word, keyword in (
         ("velocity", "{} NULL NULL region zone rate 1"), ("rate", "1 NULL NULL region zone rate {}"),
         ("density", "1 NULL NULL region zone rate 1 density {}"))],
+    *[(f"inlet {word}", RUN, f"fix i all fsi/inlet xlo {keyword}\nunfix i\nrun 0") for word, keyword in (
+        ("xlo", "{} velocity 0 0 0"), ("velocity", "0 velocity {} 0 0"), ("pressure", "0 pressure {}"), ("absorb", "0 velocity 0 0 0 absorb {}"),
+        ("buffer", "0 velocity 0 0 0 buffer {}"))],
     *[(word, RUN, f"fix dt all fsi/dt {keyword}\nrun 0") for word, keyword in (
         ("interval", "{}"), ("cfl", "10 cfl {}"), ("cfl/fluid", "10 cfl/fluid {}"), ("cfl/solid", "10 cfl/solid {}"), ("stop", "10 stop {}"), ("min", "10 min {}"), ("max", "10 max {}"), ("growth", "10 growth {}"))],
     *[(f"watch {word}", RUN, f"fix w all fsi/watch {keyword}\nunfix w\nrun 0") for word, keyword in (

@@ -76,7 +76,7 @@ def made(tmp_path, name, definition):
 @pytest.fixture(scope="module")
 def plate(tmp_path_factory):
     knob = [{"name": "Courant number", "variable": "cfl", "of": "TL linear", "at": 3, "values": [0.25, 2.0]}]
-    effects = [{"of": "TL linear", "at": 3, "cases": {"hourglass control": {"hourglass": 0.05}}}]
+    effects = [{"of": "TL linear", "at": 3, "cases": {"no hourglass control": {"hourglass": 0}}}]
     folder = tmp_path_factory.mktemp("plate")
     definition = small("oscillating_plate", ["TL linear", "TL quadratic"], [3, 4, 5], knobs=knob, effects=effects)
     definition["common"] = {**definition["common"], "periods": "1.7"}  # one swing, of the softest, too

@@ -130,6 +130,52 @@ def test_nobody_is_thinner_than_alone(n):
     assert rho[1] > 1.5 * alone[1]
 
 
+def planes(kernel, dim, dx):
+    """(s, room) of the layers of a lattice below a plane surface, from the inside: what the planes of neighbours that are missing add up to."""
+    reach = range(-6, 7)
+    rows = [(0.0, 0.0)]
+    for z in range(6, 0, -1):
+        r = dx * np.sqrt([float(x * x + y * y + z * z) for x in reach for y in (reach if dim == 3 else [0])])
+        r = r[r < kernel.cut]
+        if r.size:
+            rows.append((rows[-1][0] - kernel.h * (kernel.g(r) * z * dx).sum(), rows[-1][1] + kernel.W(r).sum()))
+    return np.array(rows).T / kernel.lattice_sum(dx, dim)
+
+
+@BOTH
+def test_density_follows_surfaces(n):
+    """Two blocks that meet lose the room that neighbours missed between them, and have it again when they part; nothing happens at rest, nor
+    between the steps that look."""
+    dim, dx = len(n), 0.1
+    x = lattice(n, dx)
+    apart, met = (np.vstack([x, x + [n[0] * dx + gap, 0, 0]]) for gap in (0.5, 0.02))
+    with Scene(apart, dim=dim, dx=dx, hdx=1.5, kernel="wendland", dt=1e-7, fluid="density/surface yes") as s:
+        bulk, m = s.kernel.lattice_sum(dx, dim), None
+        layers = planes(s.kernel, dim, dx)
+
+        def seen(x):
+            i, j, d, r = pairs(x, s.kernel.cut)
+            psi = s.kernel.W(0.0) + sum_over(i, s.kernel.W(r), len(x))
+            gradient = np.column_stack([sum_over(i, s.kernel.g(r) * d[:, a], len(x)) for a in range(3)])
+            size = s.kernel.h * np.linalg.norm(gradient, axis=1) / bulk
+            beyond = (layers[1, -1] - layers[1, -2]) / (layers[0, -1] - layers[0, -2])    # as between the last two layers
+            return 1 - psi / bulk, np.interp(size, *layers) + beyond * np.maximum(0, size - layers[0, -1])
+
+        s.run()
+        m = s.get("rmass")
+        room, plane = seen(apart)
+        edge = np.where(plane > 0, np.maximum(1, room / np.where(plane > 0, plane, 1)), 1)
+        assert np.abs(s.run(10).get("rho") - 1000).max() < 1e-9    # at rest
+        s.put("x", met)
+        assert np.abs(s.run(9).get("rho") - 1000).max() < 1e-9
+        left = np.minimum(room, edge * seen(met)[1])
+        expected = np.maximum(1000 * (1 + left - room), m * s.kernel.W(0.0))
+        assert expected.min() < 800 and np.sum(expected > 999.9) > len(x) / 4
+        close(s.run(1).get("rho"), expected, 1e-9)    # dt = 1e-7: what moves in it
+        s.put("x", apart)
+        close(s.run(10).get("rho"), np.full(len(apart), 1000.0), 1e-9)
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_lattice_is_stress_free(dim, kernel):

@@ -28,7 +28,7 @@ def test_every_recipe_is_on_the_page():
     assert not [path.name for path in RECIPES.iterdir() if f"recipes/{path.name}" not in text]
 
 
-@pytest.mark.parametrize("name", ["in.bodies", "in.turned", "in.tear", "in.channel", "in.fine"])
+@pytest.mark.parametrize("name", ["in.bodies", "in.turned", "in.tear", "in.channel", "in.inflow", "in.fine"])
 def test_deck(tmp_path, name):
     found = go(tmp_path, name, n=20)
     assert found.finished[-1].steps == 20 and not found.warnings

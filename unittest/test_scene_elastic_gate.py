@@ -35,12 +35,21 @@ def summary(tmp_path):
                 write_run(tmp_path / f"{modulus}_{across}_{solid}",
                           [experiment.time, scale * (experiment["horizontal"] + offset), experiment["vertical"]],
                           {"dx": 0.005 / across, "across": across, "rubber": f"gate_{modulus}", "solid": solid}, across)
+    write_run(tmp_path / "12MPa_5_coarse", [experiment.time, 1.01 * (experiment["horizontal"] + 0.02), experiment["vertical"]],
+              {"dx": 0.001, "across": 5, "coarser": 2.5, "rubber": "gate_12MPa", "solid": "tl"})
     times = np.linspace(0.0, 4.0, 41)
     write_run(tmp_path / "long", [times, np.where(times > 3.0, 0.001, 1.0), 0.0 * times],
               {"dx": 0.0025, "across": 2, "rubber": "gate_10MPa", "solid": "tl"}, 0, 7)
     (tmp_path / "long" / "particles.dump").write_text(frame(4.0, [(1, 0.5, 0.01, 3.0)]))
     STUDY.study(tmp_path, {path.name: path for path in sorted(tmp_path.iterdir())})
     return tmp_path, {f["name"]: f for f in json.loads((tmp_path / "summary.json").read_text())["figures"]}
+
+
+def test_coarser_water_is_beside_the_gate_of_one_spacing(summary):
+    _, figures = summary
+    peak = figures["12MPa_water_2.5_times_coarser_tip_x_peak"]
+    assert peak["relative_error"] == pytest.approx(0.01) and peak["target"] == 0.02
+    assert figures["12MPa_water_2.5_times_coarser_tip_y_rms"]["value"] == pytest.approx(0.0, abs=1e-9)
 
 
 def frame(time, water, gate=()):

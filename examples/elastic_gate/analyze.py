@@ -34,6 +34,7 @@ COMPONENTS = {"x": "horizontal", "y": "vertical"}
 CODE_PEAKS = {"khayyer2018": (42.7, 0.115, 14.8), "yang2012": (39.3, 0.120, 13.1), "ng2020": (39.0, 0.116, 13.7)}
 MASS_DIGITS = 1e-6  # to which log and dump write masses and densities
 PEAK_TARGET, CONVERGED = 0.10, 0.02  # of the peak: away from the experiment; change from one resolution to the next
+COARSER = 0.02  # change of a peak with coarser water
 
 
 class Midline:
@@ -171,7 +172,7 @@ def main(folder):
 
     values = summary.log.values
     first = next(dump.frames(folder / "particles.dump"))
-    spacing = values.get("dx") or float(np.sqrt(WATER_AREA / len(first.of_types(WATER))))
+    spacing = float(np.sqrt(WATER_AREA / len(first.of_types(WATER))))  # of the water
     leaked, outflow = count_leaks(passing(), spacing, summary.log)
     summary.add("particles_leaked", leaked)
     summary.add("outflow_particles", len(outflow))
@@ -189,11 +190,12 @@ def study(folder, runs):
     folder = Path(folder)
     summary = Summary(folder)
     experiment, codes = series.read(HERE / "experiment.csv"), series.read(HERE / "codes.csv")
-    found, others = {}, []  # modulus -> runs of the total-Lagrangian gate, the coarsest first; runs of other forms of the solid
+    # modulus -> runs of the total-Lagrangian gate, the coarsest first; runs of other forms of the solid, and with coarser water
+    found, others, coarser = {}, [], []
     for case, run in runs.items():
         if case != LONG:
             values = log.read(Path(run) / LOG_FILE).values
-            tried = found.setdefault(_modulus(values), []) if _solid(values) == "tl" else others
+            tried = others if _solid(values) != "tl" else coarser if _coarser(values) > 1.0 else found.setdefault(_modulus(values), [])
             tried.append((values, series.read(Path(run) / "tip.csv"), Path(run)))
 
     for modulus, tried in sorted(found.items()):
@@ -210,6 +212,13 @@ def study(folder, runs):
             summary.add(f"{_modulus(values)}_{_solid(values)}_tip_{name}_peak_{values['across']:.0f}_across",
                         1e3 * tip.peak(f"tip_{name}")[0], "mm", 1e3 * same[0].peak(f"tip_{name}")[0],
                         "our total-Lagrangian gate at this spacing")
+    for values, tip, _ in coarser:
+        same = [run[1] for run in found.get(_modulus(values), ()) if run[0]["across"] == values["across"]]
+        for name in COMPONENTS if same else ():
+            start = f"{_modulus(values)}_water_{_coarser(values):g}_times_coarser_tip_{name}"
+            summary.add(f"{start}_peak", 1e3 * tip.peak(f"tip_{name}")[0], "mm", 1e3 * same[0].peak(f"tip_{name}")[0],
+                        "our gate with one spacing", COARSER)
+            summary.add(f"{start}_rms", 1e3 * series.rms_distance(tip, f"tip_{name}", same[0], f"tip_{name}"), "mm")
     summary.add("particles_leaked", sum(_figure(case, "particles_leaked") for case in summary.cases.values()), target=0)
     summary.add("mass_error", max(_figure(case, "mass_error") for case in summary.cases.values()), target=MASS_DIGITS)
     if LONG in runs:
@@ -273,6 +282,11 @@ def _modulus(values):
 def _solid(values):
     """The form of a run's solid, as the deck names it."""
     return values.get("solid", "tl")
+
+
+def _coarser(values):
+    """Spacing of a run's water over that of its rubber."""
+    return values.get("coarser", 1.0)
 
 
 def _label(values):

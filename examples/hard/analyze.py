@@ -281,7 +281,7 @@ ROWS = {
     "spray": Row("spray of 1, 2, 3 particles", "spray_.*", ballistic, {"off_parabola": ("<", 1e-12)}, "no tension"),
     "splash": Row("cube of water falls on a floor at 1, 2, 3, 5 m/s, until at rest (3D)", r"splash_.*", splash,
                   {"energy_error": ("<", 0.01), "smallest_density": (">", 0.1), "lost": ("<=", 0)}, "density diffusion within water under pressure"),
-    "settle": Row("volume after a dam break, at rest", r"settle_.*", settled, {"volume_error": ("<", 0.01)}, "density diffusion within water under pressure"),
+    "settle": Row("volume at rest after a dam break, and of a block that fell into a box (3D)", r"settle_.*", settled, {"volume_error": ("<", 0.01)}, "density/surface, density diffusion within water under pressure"),
     "wall": Row("a million steps against a wall: a particle, and a drop of nine", "wall.*", wall, {"leaked": ("<=", 0), "steps": (">=", 1000000)}, "guard of 0.4 dx, continuity"),
     "pull": Row("plate pulled out of water", "pull", pull, {"hanging": ("<=", 0), "pull": ("<", 1e-12)}, "couple wall: no suction"),
     "tear": Row("solid torn between two ranks", "tear.*", tear, {"pieces": ("==", 2), "ranks_differ": ("<", 1e-6)}, "damage"),

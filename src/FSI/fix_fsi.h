@@ -27,6 +27,7 @@ FixStyle(fsi,FixFSI);
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
 #include "fsi_scene.h"
+#include "fsi_surface_room.h"
 
 #include <string>
 #include <vector>
@@ -67,6 +68,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::Check check;    // stops a run that has lost its meaning
 
   FSI::NumberDensity number_density;
+  FSI::SurfaceRoom surface_room;
   void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
 
  private:

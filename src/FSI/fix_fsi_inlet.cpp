@@ -662,7 +662,7 @@ void FixFSIInlet::advance(bool advance)
     double c = 0.0;
     for (const auto &s : hub->state)
       if (s.species == FLUID) c = std::max(c, s.c);
-    rate = c / domain->prd[axis];
+    rate = 0.5 * c / domain->prd[axis];
   }
   if (rate > 0.0 && mean[WEIGHT] > 0.0) {
     const double now = (wants_velocity ? mean[SPEED] : mean[OVER_IMPEDANCE]) / mean[WEIGHT];

@@ -259,21 +259,27 @@ const double *FSI::restart_values(const double *extra, int nth)
    a fix with fields
 ------------------------------------------------------------------------- */
 
-FixFields::FixFields(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), fields(lmp) {}
+FixFields::FixFields(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), fields(lmp), grows(false), restarts(false) {}
 
 FixFields::~FixFields()
 {
   if (!modify->get_fix_by_id(id)) return;
-  if (fields.any(Fields::ATOM)) atom->delete_callback(id, Atom::GROW);
-  if (restart_peratom) atom->delete_callback(id, Atom::RESTART);
+  if (grows) atom->delete_callback(id, Atom::GROW);
+  if (restarts) atom->delete_callback(id, Atom::RESTART);
 }
 
 void FixFields::register_fields()
 {
   create_attribute = 1;
-  restart_peratom = fields.any(Fields::FILE);
-  if (fields.any(Fields::ATOM)) atom->add_callback(Atom::GROW);
-  if (restart_peratom) atom->add_callback(Atom::RESTART);
+  if (!grows && fields.any(Fields::ATOM)) {
+    atom->add_callback(Atom::GROW);
+    grows = true;
+  }
+  if (!restarts && fields.any(Fields::FILE)) {
+    atom->add_callback(Atom::RESTART);
+    restarts = true;
+    restart_peratom = 1;
+  }
 }
 
 void FixFields::grow_arrays(int nmax)

@@ -103,7 +103,10 @@ namespace FSI {
 
    protected:
     Fields fields;
-    void register_fields();    // once, when those that last are set
+    void register_fields();    // when those that last are set
+
+   private:
+    bool grows, restarts;    // with LAMMPS' own arrays
   };
 
   // The numbers of atom i that the nth fix of a restart file left there; all begin with their length.

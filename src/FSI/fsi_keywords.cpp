@@ -369,7 +369,7 @@ std::vector<Keywords::Effect> Keywords::effects() const
   for (const auto &row : rows) {
     if (row.effect.empty()) continue;
     bool on = false;
-    for (const auto &v : row.values) on = on || (v.kind != Value::CHOICE && !v.at_start());
+    for (const auto &v : row.values) on = on || (v.kind == Value::NUMBER ? *v.number != 0.0 : v.kind != Value::CHOICE && !v.at_start());
     std::string name = row.effect;
     const size_t gap = name.find("{}");
     if (gap != std::string::npos) name.replace(gap, 2, fmt::format("{:g}", *row.values[0].number));

@@ -67,7 +67,7 @@ namespace FSI {
     Keywords &set(int &where, int value);                            // no value follows: the keyword sets it; 0 without
     // of the last value: a word that stands for a number, or for no word
     Keywords &or_word(const std::string &word, double number = 0.0);
-    // of the last row: the effect in words, {} stands for its first value; on if that is not the one at the start
+    // of the last row: the effect in words, {} stands for its first value; on if a number is not 0, or another value not the one at the start
     Keywords &effect(const std::string &text);
     // of the last row: a run that goes on from a restart file must not change it, or may, and what that does
     Keywords &kept(const std::string &why);

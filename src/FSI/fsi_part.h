@@ -46,6 +46,7 @@ namespace FSI {
     virtual bool add_rates(bool advance) { return false; }    // sums over pairs, some of them left on ghosts; whether there are any
     virtual void advance(bool advance) {}         // density, stress, bonds to the middle of the step
     virtual void add_number_density(double *n, bool of_all_bodies) {}    // psi, of what it has pairs of
+    virtual void add_gradient_sum(double *s) {}     // sum_j grad_i W_ij/psi_bulk of fluids, components one after the other
     virtual void end_state(bool advance) {}       // when ghosts have it
     virtual void prescribe() {}                   // when all forces are there: those that bring velocities to what is given
     virtual void integrate_substeps() {}          // what takes shorter steps than the kick of all

@@ -48,6 +48,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("laminar/visc/central").set(laminar, CENTRAL);
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
+  keywords.key("density/surface").logical(surfaces, false).effect("density that follows surfaces");
   keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
   keywords.key("surface")
       .number(surface_ratio, 0.0, Range::from_to_below(0.0, 1.0), "ratio")
@@ -111,6 +112,10 @@ void PairFSIFluid::init_style()
   PairFSI::init_style();
   if (delta > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
+  if (surfaces && hub->density_fluid != FixFSI::CONTINUITY)
+    error->all(FLERR, "Pair style fsi/fluid density/surface requires fix fsi with fluid continuity");
+  if (surfaces && (tension || background != 0.0))
+    error->all(FLERR, "Pair style fsi/fluid density/surface is for fluids with a free surface: without tension yes and background");
   if (shifting > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Pair style fsi/fluid shift requires fix fsi with fluid continuity");
   if (laminar) {
@@ -159,6 +164,10 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
     dim_of_extract = 0;
     return &laminar;
   }
+  if (strcmp(name, "density/surface") == 0) {
+    dim_of_extract = 0;
+    return &surfaces;
+  }
   if (strcmp(name, "couple") == 0) {
     dim_of_extract = 0;
     return &couple;
@@ -196,7 +205,7 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 void PairFSIFluid::add_costs(Costs &costs) const
 {
   const int newton = force->newton_pair, continuity = hub->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? 2 * hub->dim + 1 : 0;
-  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + (ns ? nshift() : 0));
+  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + (ns ? nshift() : 0) + 2 * surfaces);
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
   if (sticks_to_solids()) costs.solid_ghost += hub->dim + newton * (hub->dim + 1);
@@ -492,6 +501,29 @@ void PairFSIFluid::add_position_divergence(double *div)
   distance_sums(false, [&](PairKind, const std::vector<Row> &which, bool both, const Mirror *mirror) {
     loops->position_divergence(which, both, mirror, FixFSI::rows(atom->x), volume.data(), div);
   });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::add_gradient_sum(double *s)
+{
+  if (hub->dim == 2) add_gradients<2>(s);
+  else add_gradients<3>(s);
+}
+
+// the plain sums of particle shifting, all volumes those of the lattice
+template <int D> void PairFSIFluid::add_gradients(double *s)
+{
+  constexpr int ROW = Shift<D>::ROW;
+  const size_t nall = atom->nlocal + atom->nghost;
+  const int *const type = atom->type;
+  const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) { p.vol = 1.0 / hub->resolution[type[i]].psi_bulk; });
+  std::vector<double> sums(ROW * nall, 0.0);
+  distance_sums(false, [&](PairKind kind, const std::vector<Row> &which, bool, const Mirror *mirror) {
+    loops->shifts(kind, which, mirror, particles, hub->wdx, sums.data());
+  });
+  for (size_t i = 0; i < nall; i++)
+    for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d];
 }
 
 /* ---------------------------------------------------------------------- */

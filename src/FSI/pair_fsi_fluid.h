@@ -60,6 +60,7 @@ class PairFSIFluid : public PairFSI {
   void go_back() override;
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
   void add_position_divergence(double *div);
+  void add_gradient_sum(double *) override;
 
  protected:
   bool handles(int, int) const override;
@@ -81,6 +82,7 @@ class PairFSIFluid : public PairFSI {
   double surface_ratio;
   int surface_max;
   int tait, laminar, couple, extrapolate, tension, solids_slip;
+  int surfaces;    // does the density follow surfaces (fsi_surface_room.h)?
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
@@ -113,6 +115,7 @@ class PairFSIFluid : public PairFSI {
   template <int D> void add_density_rate(double dt);
   void advance_density();
   void displacements(double dt);    // turns the sums of particle shifting of local fluid atoms into displacements
+  template <int D> void add_gradients(double *);
   template <int D> void compute_forces();
   template <int D> void split_forces(const FSI::FluidParticles &, FSI::ForceLaws);
   std::vector<FSI::Contact> guards;    // per type

@@ -47,7 +47,7 @@ PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
 {
   no_virial_fdotr_compute = 1;
   artificial_row("solid");
-  keywords.key("hourglass").number(zeta, 0.0, Range::from(0.0)).effect("hourglass control of the solid {}");
+  keywords.key("hourglass").number(zeta, 0.05, Range::from(0.0)).effect("hourglass control of the solid {}");
   keywords.key("law").choice(law, SVK, {"svk", "neohookean", "hypo"});
   keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"});
   keywords.key("gradient").choice(linear, 0, {"quadratic", "linear"});

@@ -1,0 +1,159 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_surface_room.h"
+
+#include "atom.h"
+#include "force.h"
+#include "fsi_fields.h"
+#include "fsi_kernel.h"
+#include "fsi_number_density.h"
+#include "fsi_part.h"
+#include "fsi_profile.h"
+#include "fsi_scene.h"
+#include "pair.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+// steps from one look to the next: at the usual time step and a Mach number of 0.1 neighbours move by 0.4 dx
+static constexpr int EVERY = 10;
+
+/* ----------------------------------------------------------------------
+   sums over the planes of a lattice that are missing
+------------------------------------------------------------------------- */
+
+RoomOfPlane::RoomOfPlane(int kernel, int dim, double h_over_dx)
+{
+  with_kernel(kernel, dim, h_over_dx, [this](const auto &k) {
+    constexpr int D = std::decay_t<decltype(k)>::DIM;
+    const double psi = lattice_number_density(k, 1.0);
+    const int n = static_cast<int>(k.cut) + 1;
+    double s = 0.0, missing = 0.0;
+    layers = {{0.0, 0.0}};
+    for (int z = n; z > 0; z--) {
+      double w = 0.0, g = 0.0;
+      for (int y = (D == 3 ? -n : 0); y <= (D == 3 ? n : 0); y++)
+        for (int x = -n; x <= n; x++) {
+          const double r = std::sqrt(double(x * x + y * y + z * z));
+          if (r >= k.cut) continue;
+          w += k.W(r);
+          g -= k.gradient(r) * z;
+        }
+      missing += w / psi;
+      s += k.h * g / psi;
+      if (w > 0.0) layers.emplace_back(s, missing);
+    }
+  });
+}
+
+// beyond the first layer, at edges, as between the last two
+double RoomOfPlane::operator()(double s) const
+{
+  size_t k = 1;
+  while (k + 1 < layers.size() && s > layers[k].first) k++;
+  const auto &a = layers[k - 1], &b = layers[k];
+  return a.second + (s - a.first) * (b.second - a.second) / (b.first - a.first);
+}
+
+/* ---------------------------------------------------------------------- */
+
+SurfaceRoom::SurfaceRoom(LAMMPS *lmp, Scene &scene, SumOverGhosts add_ghosts) :
+    Pointers(lmp), scene(scene), add_ghosts(std::move(add_ghosts)), room(nullptr)
+{
+}
+
+void SurfaceRoom::set_fields(Fields &fields)
+{
+  // a pair style that comes after fix fsi may want it: what a restart file has of it is read here
+  const auto wanted = [&]() {
+    if (!force->pair) return true;
+    Pair *const fluid = force->pair_match("^fsi/fluid", 0);
+    int dim_of_extract;
+    return fluid && *static_cast<int *>(fluid->extract("density/surface", dim_of_extract));
+  };
+  fields.set("room at the surface", Fields::FILE, scene.density_fluid == Scene::CONTINUITY && wanted(), room, 2);
+  if (room) of_plane = RoomOfPlane(scene.kernel, scene.dim, scene.h / scene.dx);
+}
+
+void SurfaceRoom::renew(const NumberDensity &number_density, bool advance)
+{
+  if (!room || (advance && update->ntimestep % EVERY != 0)) return;
+  const Phase phase(scene.profile, Profile::DENSITY);
+  begin(number_density);
+  if (advance) follow();
+}
+
+/* ----------------------------------------------------------------------
+   what is new
+------------------------------------------------------------------------- */
+
+void SurfaceRoom::begin(const NumberDensity &number_density)
+{
+  const int nlocal = atom->nlocal, *const type = atom->type;
+  const auto is_new = [&](int i) { return scene.state[type[i]].species == FLUID && room[i][0] == 0.0; };
+  int mine = 0, any;
+  for (int i = 0; i < nlocal; i++) mine |= is_new(i);
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
+  std::vector<double> psi(nlocal + atom->nghost);
+  number_density.find(psi.data());
+  const auto asymmetry = gradients();
+  for (int i = 0; i < nlocal; i++)
+    if (is_new(i)) {
+      const double missing = std::max(0.0, 1.0 - psi[i] / scene.psi_bulk), plane = of_plane(asymmetry[i]);
+      room[i][0] = 1.0 + missing;
+      room[i][1] = missing > plane && plane > 0.0 ? missing / plane : 1.0;
+    }
+}
+
+/* ----------------------------------------------------------------------
+   s of local atoms
+------------------------------------------------------------------------- */
+
+std::vector<double> SurfaceRoom::gradients() const
+{
+  const int nlocal = atom->nlocal, dim = scene.dim;
+  const size_t nall = nlocal + atom->nghost;
+  std::vector<double> gradient(dim * nall, 0.0), s(nlocal);    // columns one after the other
+  for (auto *p : scene.parts) p->add_gradient_sum(gradient.data());
+  for (int d = 0; d < dim; d++) add_ghosts(&gradient[d * nall]);
+  for (int i = 0; i < nlocal; i++) {
+    double ssq = 0.0;
+    for (int d = 0; d < dim; d++) ssq += gradient[d * nall + i] * gradient[d * nall + i];
+    s[i] = scene.h * std::sqrt(ssq);
+  }
+  return s;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void SurfaceRoom::follow()
+{
+  const auto asymmetry = gradients();
+  for (int i = 0; i < atom->nlocal; i++) {
+    const State &state = scene.state[atom->type[i]];
+    if (state.species != FLUID) continue;
+    const double had = room[i][0] - 1.0, most = room[i][1] * of_plane(asymmetry[i]), free = 1.0 - atom->rho[i] / state.rho0;
+    const double has = had > most ? most : free > 0.0 ? std::min(most, had + free) : had;
+    if (has == had) continue;
+    const double stored = scene.ledger ? scene.stored(i) : 0.0;
+    room[i][0] = 1.0 + has;
+    atom->rho[i] = std::max(atom->rho[i] + (has - had) * state.rho0, atom->rmass[i] * scene.w0);
+    if (scene.ledger) scene.taken[Scene::DIFFUSION] += stored - scene.stored(i);
+  }
+}

@@ -1,0 +1,73 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+
+// The room at free surfaces. Continuity keeps rho - m psi of a particle, psi being its number density (pair_fsi_fluid.cpp): what began
+// at a surface, where neighbours are missing, would keep the room of those inside, and a block of water that has fallen into a box
+// would stay too large. So the part of rho that stands for missing neighbours,
+//   room = 1 - psi/psi_bulk  at the start,
+// is kept for each particle, and may not be more than that of a particle at a plane surface with the same sum of gradients,
+//   s = h |sum_j grad W_ij|/psi_bulk
+// (on edges, in proportion to what it was at the start):
+// where neighbours come, room and density go. Where a surface opens it grows to that bound, at p = 0, as long as the density does not
+// exceed rho0: no pressure comes of it. Nothing depends on how often this is asked, but for what happens in between.
+
+#ifndef LMP_FSI_SURFACE_ROOM_H
+#define LMP_FSI_SURFACE_ROOM_H
+
+#include "pointers.h"
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  class Fields;
+  class NumberDensity;
+  class Scene;
+
+  // The room of the layers of a lattice below a plane surface, linear in s between them
+  class RoomOfPlane {
+   public:
+    RoomOfPlane() = default;
+    RoomOfPlane(int kernel, int dim, double h_over_dx);
+    double operator()(double s) const;
+
+   private:
+    std::vector<std::pair<double, double>> layers;    // s and room, from the inside
+  };
+
+  class SurfaceRoom : protected Pointers {
+   public:
+    // adds to local atoms what pairs left on their ghosts
+    using SumOverGhosts = std::function<void(double *)>;
+    SurfaceRoom(LAMMPS *, Scene &, SumOverGhosts);
+    void set_fields(Fields &);
+    void renew(const NumberDensity &, bool advance);
+
+   private:
+    Scene &scene;
+    const SumOverGhosts add_ghosts;
+    double **room;    // 1 + room (0: not known yet), and how often that of a plane it was at the start, on an edge
+    RoomOfPlane of_plane;
+    void begin(const NumberDensity &);
+    std::vector<double> gradients() const;
+    void follow();
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
