@@ -239,7 +239,10 @@ class Reader:
         if words:  # without any found pytest's status is 5
             self.execute(shlex.join([str(paths.ROOT / "tools/pytest"), "--collect-only", "-p", "no:cacheprovider", *words]), cwd=paths.ROOT)
 
-    tools_test = tools_coverage = tools_pytest
+    def tools_test(self, _, words):
+        self.tools_pytest(_, [word for word in words if word != "--quick"])
+
+    tools_coverage = tools_pytest
 
     def tools_setup(self, _, words):
         text = self.execute("tools/setup --help")

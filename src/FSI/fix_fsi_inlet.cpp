@@ -525,12 +525,11 @@ template <class Visit> void FixFSIInlet::at_nodes(const double *x, double reach,
     }
 }
 
-void FixFSIInlet::measure()
+int FixFSIInlet::place_nodes()
 {
-  const int dim = hub->dim;
   nlateral = 0;
   int nodes = 1;
-  for (int d = 0; d < dim; d++) {
+  for (int d = 0; d < hub->dim; d++) {
     if (d == axis) continue;
     const int k = nlateral++;
     const double lo = domain->boxlo[d], hi = domain->boxhi[d];
@@ -546,6 +545,12 @@ void FixFSIInlet::measure()
     }
     nodes *= count[k];
   }
+  return nodes;
+}
+
+void FixFSIInlet::measure()
+{
+  const int dim = hub->dim, nodes = place_nodes();
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
   const int nfit = 1 + nlateral, nmoment = nfit * (nfit + 1) / 2;
   ncolumns = nmoment + nfit * (wants_velocity + wants_pressure);

@@ -123,6 +123,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void copy_place(int i);
   void find_places();
   template <class Visit> void at_nodes(const double *x, double reach, Visit) const;
+  int place_nodes();    // how many there are
   void measure();
   bool at_plane(const double *x, double *values) const;
 };
