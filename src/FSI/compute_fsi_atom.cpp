@@ -34,7 +34,7 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), nmax(0), hub(nullptr)
+ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), nmax(0), fix_fsi(nullptr)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "compute fsi/atom", error);
   static const std::vector<std::string> names = {"p",   "rho", "psi", "volume", "vonmises", "sxx",
@@ -62,7 +62,7 @@ ComputeFSIAtom::~ComputeFSIAtom()
 
 void ComputeFSIAtom::init()
 {
-  hub = FixFSI::find(lmp, "Compute fsi/atom");
+  fix_fsi = FixFSI::find(lmp, "Compute fsi/atom");
   const auto *const stress = FixFSIStress::find(lmp);
   if (std::find(quantity.begin(), quantity.end(), PLASTIC) != quantity.end() &&
       (!stress || !stress->plastic))
@@ -74,7 +74,7 @@ void ComputeFSIAtom::init()
 void ComputeFSIAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
-  hub = FixFSI::ready(lmp, "Compute fsi/atom");
+  fix_fsi = FixFSI::ready(lmp, "Compute fsi/atom");
   const int n = quantity.size();
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
@@ -89,38 +89,38 @@ void ComputeFSIAtom::compute_peratom()
   if (std::find(quantity.begin(), quantity.end(), PSI) != quantity.end()) {
     psi.resize(atom->nmax);
     comm->forward_comm();    // ghosts still stand where they were in the middle of the step
-    hub->number_density.find(psi.data());
+    fix_fsi->number_density.find(psi.data());
   }
   auto *const solid_tl = PairFSISolidTL::find(lmp);
   if (solid_tl) solid_tl->forward_positions();    // likewise
   fix_stress = FixFSIStress::find(lmp);
-  const auto has_stress = [this](int i) { return hub->state[atom->type[i]].form == UPDATED_LAGRANGIAN; };
+  const auto has_stress = [this](int i) { return fix_fsi->state[atom->type[i]].form == UPDATED_LAGRANGIAN; };
 
   const int *const mask = atom->mask;
   PairFSISolidTL::Stress tl;
   for (int i = 0; i < atom->nlocal; i++) {
-    const bool lagrangian = (mask[i] & groupbit) && hub->is_total_lagrangian(i);
+    const bool lagrangian = (mask[i] & groupbit) && fix_fsi->is_total_lagrangian(i);
     if (lagrangian) tl = solid_tl->stress(i);
     for (int k = 0; k < n; k++) {
       double value = 0.0;
       if (lagrangian) {
         switch (quantity[k]) {
           case PRESSURE: value = tl.pressure(); break;
-          case DENSITY: value = hub->state[atom->type[i]].rho0 / tl.J; break;
+          case DENSITY: value = fix_fsi->state[atom->type[i]].rho0 / tl.J; break;
           case PSI: value = psi[i]; break;
-          case VOLUME: value = atom->rmass[i] * tl.J / hub->state[atom->type[i]].rho0; break;
+          case VOLUME: value = atom->rmass[i] * tl.J / fix_fsi->state[atom->type[i]].rho0; break;
           case VONMISES: value = tl.von_mises(); break;
           case PLASTIC: value = fix_stress->plastic_strain(i); break;
           default: value = tl.sigma[quantity[k] - SXX];
         }
       } else if (mask[i] & groupbit) {
         switch (quantity[k]) {
-          case PRESSURE: value = hub->pressure(i); break;
+          case PRESSURE: value = fix_fsi->pressure(i); break;
           case DENSITY: value = atom->rho[i]; break;
           case PSI: value = psi[i]; break;
           case VOLUME: value = atom->rmass[i] / atom->rho[i]; break;
           case VONMISES:
-            if (has_stress(i)) value = fix_stress->von_mises(i, hub->pressure(i));
+            if (has_stress(i)) value = fix_stress->von_mises(i, fix_fsi->pressure(i));
             break;
           case PLASTIC:
             if (has_stress(i)) value = fix_stress->plastic_strain(i);
@@ -140,10 +140,10 @@ void ComputeFSIAtom::compute_peratom()
 
 double ComputeFSIAtom::cauchy(int i, int component) const
 {
-  const double p = hub->pressure(i);
-  const bool stress = hub->state[atom->type[i]].form == UPDATED_LAGRANGIAN;
+  const double p = fix_fsi->pressure(i);
+  const bool stress = fix_fsi->state[atom->type[i]].form == UPDATED_LAGRANGIAN;
   const double *s = stress ? fix_stress->stress[i] : nullptr;
-  const bool flat = hub->dim == 2;
+  const bool flat = fix_fsi->dim == 2;
   switch (component) {
     case SXX: return -p + (s ? s[0] : 0.0);
     case SYY: return -p + (s ? s[1] : 0.0);

@@ -41,7 +41,7 @@ class ComputeFSIAtom : public Compute {
   std::vector<int> quantity;
   std::vector<double> psi;
   int nmax;
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
   class FixFSIStress *fix_stress;    // null: no solid has one
 
   double cauchy(int i, int component) const;

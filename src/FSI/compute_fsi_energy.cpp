@@ -28,7 +28,7 @@ static constexpr int NHAVE = 4;    // kinetic, gravitational, compressive, shear
 
 /* ---------------------------------------------------------------------- */
 
-ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), hub(nullptr)
+ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), fix_fsi(nullptr)
 {
   if (narg != 3) error->all(FLERR, "Compute fsi/energy takes no arguments");
   if (igroup) error->all(FLERR, "Compute fsi/energy must use group all: pairs have no group");
@@ -49,7 +49,7 @@ ComputeFSIEnergy::~ComputeFSIEnergy()
 
 void ComputeFSIEnergy::init()
 {
-  hub = FixFSI::find(lmp, "Compute fsi/energy");
+  fix_fsi = FixFSI::find(lmp, "Compute fsi/energy");
 }
 
 const char *ComputeFSIEnergy::name(int k)
@@ -80,7 +80,7 @@ double ComputeFSIEnergy::compute_scalar()
 void ComputeFSIEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
-  hub = FixFSI::ready(lmp, "Compute fsi/energy");
+  fix_fsi = FixFSI::ready(lmp, "Compute fsi/energy");
   double mine[NHAVE + FixFSI::NTERM] = {};
   double **v = atom->v;
   double **f = atom->f;
@@ -88,24 +88,24 @@ void ComputeFSIEnergy::compute_vector()
   const double half = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
   const auto *const stress = FixFSIStress::find(lmp);
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = hub->state[atom->type[i]];
+    const State &s = fix_fsi->state[atom->type[i]];
     if (s.species == RIGID) continue;    // what it gets is in the term of walls
     const double m = atom->rmass[i];
-    const bool tl = hub->is_total_lagrangian(i);
+    const bool tl = fix_fsi->is_total_lagrangian(i);
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it
-    const double dth = !(atom->mask[i] & hub->groupbit) ? 0.0 : tl ? half / hub->substeps : half;
-    const auto g = hub->body_forces.on(i);
-    for (int d = 0; d < hub->dim; d++) {
+    const double dth = !(atom->mask[i] & fix_fsi->groupbit) ? 0.0 : tl ? half / fix_fsi->substeps : half;
+    const auto g = fix_fsi->body_forces.on(i);
+    for (int d = 0; d < fix_fsi->dim; d++) {
       const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;
       mine[0] += 0.5 * m * vmid * vmid;
       mine[1] += m * g[d] * dth * v[i][d];    // back from the end of the step
     }
-    mine[1] += hub->potential(i);
+    mine[1] += fix_fsi->potential(i);
     if (tl) continue;
-    mine[2] += hub->stored(i);
+    mine[2] += fix_fsi->stored(i);
     if (s.form == UPDATED_LAGRANGIAN) mine[3] += stress->shear_energy(i, s.shear);
   }
   if (const auto *solid_tl = PairFSISolidTL::find(lmp)) mine[3] += solid_tl->strain_energy;
-  for (int k = 0; k < FixFSI::NTERM; k++) mine[NHAVE + k] = hub->taken[k];
+  for (int k = 0; k < FixFSI::NTERM; k++) mine[NHAVE + k] = fix_fsi->energy_out[k];
   MPI_Allreduce(mine, vector, size_vector, MPI_DOUBLE, MPI_SUM, world);
 }

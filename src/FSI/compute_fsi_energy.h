@@ -36,7 +36,7 @@ class ComputeFSIEnergy : public Compute {
   static const char *name(int);    // of an entry of the vector
 
  private:
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
 };
 
 }    // namespace LAMMPS_NS

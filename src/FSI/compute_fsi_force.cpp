@@ -27,7 +27,7 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), sum{}, about{}, reduced(false), hub(nullptr)
+ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), sum{}, about{}, reduced(false), fix_fsi(nullptr)
 {
   FSI::Keywords keywords(lmp, "compute fsi/force");
   keywords.key("split").logical(split, false);
@@ -49,7 +49,7 @@ ComputeFSIForce::~ComputeFSIForce()
 
 void ComputeFSIForce::init()
 {
-  hub = FixFSI::find(lmp, "Compute fsi/force");
+  fix_fsi = FixFSI::find(lmp, "Compute fsi/force");
   if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Compute fsi/force requires pair_style fsi/fluid");
 }
 
@@ -57,7 +57,7 @@ void ComputeFSIForce::init()
 
 bool ComputeFSIForce::counts(int i) const
 {
-  const int species = hub->state[atom->type[i]].species;
+  const int species = fix_fsi->state[atom->type[i]].species;
   return (atom->mask[i] & groupbit) && (species == FSI::SOLID || species == FSI::RIGID);
 }
 
@@ -89,7 +89,7 @@ void ComputeFSIForce::add(int i, const double *f, double sign, int where)
   double r[3];
   for (int d = 0; d < 3; d++) r[d] = atom->x[i][d] - about[d];
   domain->minimum_image(r);
-  const int dim = hub->dim;
+  const int dim = fix_fsi->dim;
   for (int d = 0; d < 3; d++) {
     const int a = (d + 1) % 3, b = (d + 2) % 3;
     if (d < dim) sum[where + d] += sign * f[d];
@@ -125,7 +125,7 @@ void ComputeFSIForce::tally_viscosity(const double *forces, int row)
 void ComputeFSIForce::compute_vector()
 {
   invoked_vector = update->ntimestep;
-  hub = FixFSI::ready(lmp, "Compute fsi/force");
+  fix_fsi = FixFSI::ready(lmp, "Compute fsi/force");
   if (reduced) return;
   reduced = true;
   double all[NSUM];

@@ -43,7 +43,7 @@ class ComputeFSIForce : public Compute {
   enum { FORCE = 0, TORQUE = 3, VISCOUS = 6, VISCOUS_TORQUE = 9, MOMENT = 12, MASS = 15, NSUM };    // about and from `about`
   double sum[NSUM], about[3];
   bool reduced;    // over ranks, since the last forces
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
 
   bool counts(int) const;
   void add(int, const double *f, double sign, int where);

@@ -35,7 +35,7 @@ static constexpr double MOST = 1.0e7;    // points of one place
 /* ---------------------------------------------------------------------- */
 
 ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1), hub(nullptr)
+    Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1), fix_fsi(nullptr)
 {
   static const std::vector<std::string> names = {"p", "rho", "vx", "vy", "vz", "fill", "level", "wet"};
   int iarg = 3;
@@ -112,7 +112,7 @@ ComputeFSIProbe::~ComputeFSIProbe()
 
 void ComputeFSIProbe::init()
 {
-  hub = FixFSI::find(lmp, "Compute fsi/probe");
+  fix_fsi = FixFSI::find(lmp, "Compute fsi/probe");
   listed = -1;
   points.clear();
   nsums = places[0].line ? 2 : 1 + quantity.size();
@@ -126,12 +126,12 @@ void ComputeFSIProbe::init()
       place.origin[d] = place.from[d];
       if (place.line) continue;
       // the tolerance: 0.1/0.005 is not 21 cells
-      place.n[d] = std::max(1, static_cast<int>(std::min(std::ceil(2.0 * extent / hub->dx - 1.0e-6), MOST + 1.0)));
+      place.n[d] = std::max(1, static_cast<int>(std::min(std::ceil(2.0 * extent / fix_fsi->dx - 1.0e-6), MOST + 1.0)));
       place.step[d][d] = extent / place.n[d];
       place.origin[d] += 0.5 * place.step[d][d];
     }
     if (place.line) {
-      place.n[0] = 1 + static_cast<int>(std::min(std::ceil(4.0 * std::sqrt(length) / hub->dx - 1.0e-6), MOST));
+      place.n[0] = 1 + static_cast<int>(std::min(std::ceil(4.0 * std::sqrt(length) / fix_fsi->dx - 1.0e-6), MOST));
       for (int d = 0; d < 3; d++) place.step[0][d] = (place.to[d] - place.from[d]) / (place.n[0] - 1);
     }
     double n = 1.0;
@@ -162,14 +162,14 @@ double ComputeFSIProbe::Place::along(int d, const double *x) const
 void ComputeFSIProbe::find_near()
 {
   listed = neighbor->lastcall;
-  const double reach = hub->cut + neighbor->skin;
+  const double reach = fix_fsi->cut + neighbor->skin;
   int images[3];
-  for (int d = 0; d < 3; d++) images[d] = d < hub->dim && domain->periodicity[d];
+  for (int d = 0; d < 3; d++) images[d] = d < fix_fsi->dim && domain->periodicity[d];
 
   for (auto &place : places) {
     place.near.clear();
     for (int i = 0; i < atom->nlocal; i++) {
-      const int species = hub->state[atom->type[i]].species;
+      const int species = fix_fsi->state[atom->type[i]].species;
       if (species == FLUID ? !(atom->mask[i] & groupbit) : !place.line) continue;
       for (int a = -images[0]; a <= images[0]; a++)
         for (int b = -images[1]; b <= images[1]; b++)
@@ -185,7 +185,7 @@ void ComputeFSIProbe::find_near()
               const double t = std::min(std::max(place.along(k, x), 0.0), place.n[k] - 1.0);
               for (int d = 0; d < 3; d++) apart[d] -= t * place.step[k][d];
             }
-            for (int d = 0; d < hub->dim; d++) rsq += apart[d] * apart[d];
+            for (int d = 0; d < fix_fsi->dim; d++) rsq += apart[d] * apart[d];
             if (rsq < reach * reach) place.near.push_back(p);
           }
     }
@@ -199,7 +199,7 @@ void ComputeFSIProbe::find_near()
 
 void ComputeFSIProbe::sum_up()
 {
-  hub = FixFSI::ready(lmp, "Compute fsi/probe");
+  fix_fsi = FixFSI::ready(lmp, "Compute fsi/probe");
   if (listed != neighbor->lastcall || update->whichflag == 0) find_near();
 
   const int npoints = points.size() / 3;
@@ -207,29 +207,29 @@ void ComputeFSIProbe::sum_up()
   all.resize(sums.size());
 
   // walls are known at the middle of the step, where forces are; positions are those of its end
-  const Walls walls = hub->walls.moved(update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt);
+  const Walls walls = fix_fsi->walls.moved(update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt);
   std::vector<double> at(points);
   std::vector<int> mask(npoints, 0);
   if (walls.any())
     for (int k = 0; k < npoints; k++) {
       // a point on a wall is not behind it
       for (const auto &w : walls.wall)
-        if (std::fabs(w.distance(&at[3 * k])) < 1.0e-6 * hub->dx) at[3 * k + w.axis] = w.position;
-      mask[k] = walls.near(&at[3 * k], hub->cut);
+        if (std::fabs(w.distance(&at[3 * k])) < 1.0e-6 * fix_fsi->dx) at[3 * k + w.axis] = w.position;
+      mask[k] = walls.near(&at[3 * k], fix_fsi->cut);
     }
 
   double *const *const v = atom->v;
-  with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
+  with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, [&](const auto &kernel) {
     for (const auto &place : places)
       for (const auto &p : place.near) {
         const int i = p.i;
         double x[3];
         for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
-        const State &state = hub->state[atom->type[i]];
-        const auto &g = hub->body_forces.of_type[atom->type[i]];
+        const State &state = fix_fsi->state[atom->type[i]];
+        const auto &g = fix_fsi->body_forces.of_type[atom->type[i]];
         const bool fluid = state.species == FLUID;
-        const double rho = atom->rho[i], vol = atom->rmass[i] / rho, pressure = fluid ? hub->pressure(i) : 0.0;
-        const int mask_i = walls.any() ? walls.near(x, hub->cut) : 0;
+        const double rho = atom->rho[i], vol = atom->rmass[i] / rho, pressure = fluid ? fix_fsi->pressure(i) : 0.0;
+        const int mask_i = walls.any() ? walls.near(x, fix_fsi->cut) : 0;
         int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
         for (int d = 0; d < 3; d++) {
           if (place.n[d] == 1) continue;
@@ -245,7 +245,7 @@ void ComputeFSIProbe::sum_up()
               const double *const xk = &at[3 * k];
               double *const sum = &sums[(size_t) k * nsums];
               double rsq = 0.0, head = 0.0;
-              for (int d = 0; d < hub->dim; d++) {
+              for (int d = 0; d < fix_fsi->dim; d++) {
                 rsq += (xk[d] - x[d]) * (xk[d] - x[d]);
                 head += rho * g[d] * (xk[d] - x[d]);
               }

@@ -64,7 +64,7 @@ class ComputeFSIProbe : public Compute {
   int nsums;    // per point: fluid, solid; or fluid and one for each quantity
   bigint listed;
 
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
 
   void find_near();
   void sum_up();

@@ -31,7 +31,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 ComputeFSISurfaceAtom::ComputeFSISurfaceAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), nmax(0), hub(nullptr)
+    Compute(lmp, narg, arg), nmax(0), fix_fsi(nullptr)
 {
   Keywords keywords(lmp, "compute fsi/surface/atom");
   keywords.key("number/density").set(rule, NUMBER_DENSITY).number(threshold, 0.75, Range::inside(0.0, 1.0), "threshold");
@@ -52,7 +52,7 @@ ComputeFSISurfaceAtom::~ComputeFSISurfaceAtom()
 
 void ComputeFSISurfaceAtom::init()
 {
-  hub = FixFSI::find(lmp, "Compute fsi/surface/atom");
+  fix_fsi = FixFSI::find(lmp, "Compute fsi/surface/atom");
   if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
 }
 
@@ -65,7 +65,7 @@ void ComputeFSISurfaceAtom::init()
 void ComputeFSISurfaceAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
-  hub = FixFSI::ready(lmp, "Compute fsi/surface/atom");
+  fix_fsi = FixFSI::ready(lmp, "Compute fsi/surface/atom");
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
     memory->destroy(vector_atom);
@@ -75,17 +75,17 @@ void ComputeFSISurfaceAtom::compute_peratom()
   comm->forward_comm();    // ghosts still stand where they were in the middle of the step
   double limit;
   if (rule == NUMBER_DENSITY) {
-    hub->number_density.find(sum.data());
-    limit = threshold * hub->psi_bulk;
+    fix_fsi->number_density.find(sum.data());
+    limit = threshold * fix_fsi->psi_bulk;
   } else {
     std::fill(sum.begin(), sum.end(), 0.0);
     dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1))->add_position_divergence(sum.data());
-    hub->add_ghosts(sum.data());
-    limit = threshold * hub->dim;
+    fix_fsi->add_ghosts(sum.data());
+    limit = threshold * fix_fsi->dim;
   }
   const int *const mask = atom->mask, *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++)
-    vector_atom[i] = (mask[i] & groupbit) && hub->state[type[i]].species == FLUID && sum[i] <= limit ? 1.0 : 0.0;
+    vector_atom[i] = (mask[i] & groupbit) && fix_fsi->state[type[i]].species == FLUID && sum[i] <= limit ? 1.0 : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -42,7 +42,7 @@ class ComputeFSISurfaceAtom : public Compute {
   double threshold;
   int nmax;
   std::vector<double> sum;
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
 };
 
 }    // namespace LAMMPS_NS

@@ -110,12 +110,12 @@ FixFSI *FixFSI::find(LAMMPS *lmp, const std::string &who)
 
 FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
 {
-  FixFSI *const hub = find(lmp, who);
-  int mine = hub->nlocal_ready != lmp->atom->nlocal, any = 0;
+  FixFSI *const fix_fsi = find(lmp, who);
+  int mine = fix_fsi->nlocal_ready != lmp->atom->nlocal, any = 0;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
   if (any) lmp->error->all(FLERR, "{} needs a run before it, if only run 0, and after atoms are made or deleted", who);
-  hub->find_parts();    // commands since the last run may have changed them
-  return hub;
+  fix_fsi->find_parts();    // commands since the last run may have changed them
+  return fix_fsi;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -130,7 +130,7 @@ int FixFSI::setmask()
 void FixFSI::init()
 {
   check.before_init();
-  stagger = 0.0;
+  dt_offset = 0.0;
   nlocal_ready = -1;
   states_entered = false;
   clock.restore();
@@ -329,7 +329,7 @@ void FixFSI::update_state(bool advance)
 
   tally_dt = (ledger && advance) ? update->dt : 0.0;
   body_forces.evaluate();
-  if (ledger && advance) taken[FIELDS] += body_forces.work(state, groupbit);
+  if (ledger && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);
   for (auto *p : parts) p->begin_state(advance);
   if (walls.any()) {
@@ -409,7 +409,7 @@ void FixFSI::set_arrays(int i)
 void FixFSI::write_restart(FILE *fp)
 {
   double all[NTERM];
-  MPI_Allreduce(taken, all, NTERM, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(energy_out, all, NTERM, MPI_DOUBLE, MPI_SUM, world);
   Record record(lmp, "fix fsi");
   keywords.write(record);
   clock.write(record);
@@ -431,7 +431,7 @@ void FixFSI::restart(char *buf)
   clock.read(record);
   if (record.has("ledger") && comm->me == 0) {
     const auto terms = record.numbers("ledger");
-    std::copy_n(terms.begin(), std::min(terms.size(), (size_t) NTERM), taken);
+    std::copy_n(terms.begin(), std::min(terms.size(), (size_t) NTERM), energy_out);
   }
 }
 

@@ -42,7 +42,7 @@ static constexpr double PRINT = 0.95;    // causes whose limits differ by less t
 /* ---------------------------------------------------------------------- */
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), hub(nullptr), keywords(lmp, "fix fsi/dt"), cut(false), limits(lmp), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0),
+    Fix(lmp, narg, arg), fix_fsi(nullptr), keywords(lmp, "fix fsi/dt"), cut(false), limits(lmp), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0),
     next_substeps(0), warned(0), restored(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
@@ -84,7 +84,7 @@ int FixFSIDt::setmask()
 
 void FixFSIDt::init()
 {
-  hub = FixFSI::find(lmp, "Fix fsi/dt");
+  fix_fsi = FixFSI::find(lmp, "Fix fsi/dt");
   if (modify->get_fix_by_style("^fsi/dt$").size() > 1) error->all(FLERR, "There can be only one fix fsi/dt");
   if (update->dt <= 0.0 || update->dt >= BIG) error->all(FLERR, "Fix fsi/dt: timestep {} must be > 0 and below {:g}", update->dt, BIG);
   if (check) return;
@@ -94,10 +94,10 @@ void FixFSIDt::init()
     error->all(FLERR, "Fix fsi/dt: fix {} (style {}) cannot have its time step changed: use fix fsi/move, which can", fix->id, fix->style);
   // the time step changes when fix fsi begins its step: what moves earlier would still take the old one
   for (auto &fix : modify->get_fix_list()) {
-    if (fix == hub) break;
+    if (fix == fix_fsi) break;
     if (modify->get_fix_mask(fix) & INITIAL_INTEGRATE)
       error->all(FLERR, "Fix fsi/dt: fix {} (style {}) must be defined after fix {}, with which the time step changes", fix->id,
-                 fix->style, hub->id);
+                 fix->style, fix_fsi->id);
   }
   if (restored) {
     // whatever a timestep command between read_restart and here has said
@@ -112,7 +112,7 @@ void FixFSIDt::init()
       if (fix == this) break;
       fix->reset_dt();
     }
-    hub->clock.restore();
+    fix_fsi->clock.restore();
   }
 }
 
@@ -189,7 +189,7 @@ void FixFSIDt::post_run()
    A new time step begins with a step, between two of position Verlet, each of which is second order on its own: positions and
    velocities need no more care. What lives at the middle of steps, the density of continuity and the stress of fsi/solid, goes
    from t^n - dt_old/2 to t^n + dt_new/2 with the rate of t^n: by the mean of the two, or every change would add an error of
-   first order, (dt_new - dt_old)/2 times the rate. Fix fsi takes the difference from stagger. (The rates' positions, dt/2 v
+   first order, (dt_new - dt_old)/2 times the rate. Fix fsi takes the difference from dt_offset. (The rates' positions, dt/2 v
    before those in atom->x, are of the new step, as they should.)
    Other styles hear of it as from fix dt/reset; the clock and the dumps by time count from the end of the last step.
 ------------------------------------------------------------------------- */
@@ -197,7 +197,7 @@ void FixFSIDt::post_run()
 void FixFSIDt::start_step()
 {
   if (check) return;
-  if (next_substeps) hub->substeps = next_substeps;
+  if (next_substeps) fix_fsi->substeps = next_substeps;
   if (next_dt > 0.0 && next_dt != update->dt) {
     update->ntimestep--;
     update->update_time();
@@ -208,7 +208,7 @@ void FixFSIDt::start_step()
     output->reset_dt();
     update->ntimestep++;
   }
-  hub->stagger = dt > 0.0 ? 0.5 * (dt - update->dt) : 0.0;
+  fix_fsi->dt_offset = dt > 0.0 ? 0.5 * (dt - update->dt) : 0.0;
   dt = update->dt;
 }
 
@@ -218,7 +218,7 @@ void FixFSIDt::start_step()
 
 void FixFSIDt::find_limits()
 {
-  limits.find(*hub, groupbit, force->pair_match("fsi/solid/tl", 1) && (automatic || hub->substeps > 1), of_fluid, of_solid);
+  limits.find(*fix_fsi, groupbit, force->pair_match("fsi/solid/tl", 1) && (automatic || fix_fsi->substeps > 1), of_fluid, of_solid);
   limits.reduce();
   std::copy_n(limits.step, NLIMIT, step);
   std::copy_n(limits.sub, NLIMIT, sub);
@@ -239,7 +239,7 @@ double FixFSIDt::largest_courant() const
 void FixFSIDt::choose(double most)
 {
   const double shortest = *std::min_element(sub, sub + NLIMIT);
-  int n = hub->substeps;
+  int n = fix_fsi->substeps;
   const bool free = automatic && *std::min_element(step, step + NLIMIT) < BIG;
   target = high;
   cause = MAXIMUM;
@@ -325,7 +325,7 @@ double FixFSIDt::compute_vector(int k)
 {
   if (k < NLIMIT) return limit[k];
   if (k == NLIMIT) return cause + 1;
-  return next_substeps ? next_substeps : hub ? hub->substeps : 0;
+  return next_substeps ? next_substeps : fix_fsi ? fix_fsi->substeps : 0;
 }
 
 /* ---------------------------------------------------------------------- */

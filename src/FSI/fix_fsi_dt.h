@@ -55,7 +55,7 @@ class FixFSIDt : public Fix, public FSI::Part {
   static constexpr int NLIMIT = FSI::Limits::NLIMIT;
   enum Cause { MAXIMUM = NLIMIT, GROWTH };
   enum Check { NO, WARN, STOP };
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
 
   FSI::Keywords keywords;
   int interval;

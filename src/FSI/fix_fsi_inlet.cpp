@@ -47,7 +47,7 @@ static constexpr double TAKEN = 0.5;    // of the spacing: a place is taken by w
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
-    length(0.0), region(nullptr), hub(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0),
+    length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0),
     before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), given{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
@@ -165,24 +165,24 @@ double FixFSIInlet::value(const Value &v, int i, int column) const
 
 void FixFSIInlet::init()
 {
-  hub = FixFSI::find(lmp, who);
+  fix_fsi = FixFSI::find(lmp, who);
   if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
-  if (hub->density_fluid != FixFSI::CONTINUITY)
+  if (fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "{} requires fix fsi with fluid continuity: a density that is summed cannot be prescribed", who);
   if (!neighbor->dist_check)
     error->all(FLERR, "{} requires neigh_modify check yes: particles are made and deleted when lists are built, before they have moved far", who);
   if (domain->periodicity[axis]) error->all(FLERR, "{} {} is in periodic dimension {}: its boundary must be fixed (f)", who, id, "xyz"[axis]);
 
   // lists hold for half a skin; a place that becomes free at the end is filled when a column has gone by
-  const double least = hub->cut + hub->dx + 0.5 * neighbor->skin;
-  length = hub->dx * std::ceil(least / hub->dx - 1.0e-9);
+  const double least = fix_fsi->cut + fix_fsi->dx + 0.5 * neighbor->skin;
+  length = fix_fsi->dx * std::ceil(least / fix_fsi->dx - 1.0e-9);
   if (given_length != AUTO) {
-    length = hub->dx * std::round(given_length / hub->dx);
-    if (std::fabs(length - given_length) > 1.0e-6 * hub->dx)
-      error->all(FLERR, "{} buffer {} must be a multiple of the spacing {}: its end is where the lattice goes on", who, given_length, hub->dx);
-    if (length < least - 1.0e-9 * hub->dx)
+    length = fix_fsi->dx * std::round(given_length / fix_fsi->dx);
+    if (std::fabs(length - given_length) > 1.0e-6 * fix_fsi->dx)
+      error->all(FLERR, "{} buffer {} must be a multiple of the spacing {}: its end is where the lattice goes on", who, given_length, fix_fsi->dx);
+    if (length < least - 1.0e-9 * fix_fsi->dx)
       error->all(FLERR, "{} buffer {} is too short: expected at least {:g}, the kernel's support {:g}, a spacing and half the skin", who, given_length,
-                 hub->dx * std::ceil(least / hub->dx - 1.0e-9), hub->cut);
+                 fix_fsi->dx * std::ceil(least / fix_fsi->dx - 1.0e-9), fix_fsi->cut);
   }
   // a number in a script may be that of the box but for its last digits
   const double end = position - side * length, little = 1.0e-9 * domain->prd[axis], lo = domain->boxlo[axis], hi = domain->boxhi[axis];
@@ -198,7 +198,7 @@ void FixFSIInlet::init()
     if (region->dynamic_check()) error->all(FLERR, "Region {} of {} must not move nor change", region_id, keywords_name());
     if (region->bboxflag) {
       const double from[] = {region->extent_xlo, region->extent_ylo, region->extent_zlo}, to[] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
-      for (int d = 0; d < hub->dim; d++)
+      for (int d = 0; d < fix_fsi->dim; d++)
         if (d != axis && (from[d] > domain->boxhi[d] || to[d] < domain->boxlo[d]))
           error->all(FLERR, "Region {} of {}, from {} to {} along {}, is outside the box", region_id, keywords_name(), from[d], to[d], "xyz"[d]);
       if (from[axis] > position || to[axis] < position)
@@ -214,7 +214,7 @@ void FixFSIInlet::init()
 
 bool FixFSIInlet::is_fluid(int i) const
 {
-  return (atom->mask[i] & groupbit) && hub->state[atom->type[i]].species == FLUID;
+  return (atom->mask[i] & groupbit) && fix_fsi->state[atom->type[i]].species == FLUID;
 }
 
 // a region says which part of the plane is open
@@ -236,7 +236,7 @@ bool FixFSIInlet::holds(const double *x) const
 double FixFSIInlet::energy(int i) const
 {
   const double *const v = atom->v[i];
-  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + hub->potential(i) + hub->stored(i);
+  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + fix_fsi->potential(i) + fix_fsi->stored(i);
 }
 
 // as Comm::exchange() does, which comes next: new atoms take their places
@@ -253,9 +253,9 @@ void FixFSIInlet::forget_ghosts()
 
 void FixFSIInlet::setup_pre_exchange()
 {
-  for (const auto &w : hub->walls.wall) {
+  for (const auto &w : fix_fsi->walls.wall) {
     const double at = side * (w.position - position);
-    if (w.axis == axis && !w.finite && at < 0.5 * hub->dx && at > -length)
+    if (w.axis == axis && !w.finite && at < 0.5 * fix_fsi->dx && at > -length)
       error->all(FLERR, "{} {}: the mirror wall {}{} at {} closes it", who, id, "xyz"[axis], w.side > 0.0 ? "lo" : "hi", w.position);
   }
   if (region) region->prematch();
@@ -278,13 +278,13 @@ void FixFSIInlet::fill()
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (s <= -2.0 * length || s >= length) continue;
-    if (hub->state[atom->type[i]].species == RIGID && s > -length) own[s > 0.0 ? WALLS_AHEAD : WALLS_BEHIND]++;
+    if (fix_fsi->state[atom->type[i]].species == RIGID && s > -length) own[s > 0.0 ? WALLS_AHEAD : WALLS_BEHIND]++;
     if (!is_fluid(i) || !in_patch(atom->x[i])) continue;
     if (s > 0.0) {
       own[AHEAD]++;
       copy(i);
     } else {
-      own[s > -length - 0.5 * hub->dx ? BEHIND : BEYOND]++;
+      own[s > -length - 0.5 * fix_fsi->dx ? BEHIND : BEYOND]++;
       of_buffer[i] = MEMBER;
     }
   }
@@ -306,7 +306,7 @@ void FixFSIInlet::fill()
   evaluate(velocity, 3, 0);
   for (int i = 0; i < atom->nlocal; i++)
     if (of_buffer[i])
-      for (int d = 0; d < hub->dim; d++)
+      for (int d = 0; d < fix_fsi->dim; d++)
         if (velocity[d].source != EXTRAPOLATED) atom->v[i][d] = value(velocity[d], i, d);
 }
 
@@ -336,13 +336,13 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
 
   // along the lateral axis, then the distance
   const int a = axis == 0 ? 1 : 0;
-  const double reach = TAKEN * hub->dx;
+  const double reach = TAKEN * fix_fsi->dx;
   std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) { return b.x[a] < c.x[a] || (b.x[a] == c.x[a] && b.parent < c.parent); });
   std::vector<int> is_taken(copies.size(), 0), taken(copies.size());
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (s < low - reach || s > high + reach) continue;
-    const int species = hub->state[atom->type[i]].species;
+    const int species = fix_fsi->state[atom->type[i]].species;
     if (species != FLUID && !at_start) continue;    // as near as its parent is in front
     for (int image = -domain->periodicity[a]; image <= domain->periodicity[a]; image++) {
       const double from = atom->x[i][a] + image * domain->prd[a] - reach;
@@ -389,7 +389,7 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
   atom->data_fix_compute_variable(first, atom->nlocal);
   for (int i = first; i < atom->nlocal; i++) {
     of_buffer[i] = MEMBER;
-    if (hub->ledger && !at_start) hub->taken[FixFSI::FIELDS] -= energy(i);
+    if (fix_fsi->ledger && !at_start) fix_fsi->energy_out[FixFSI::FIELDS] -= energy(i);
   }
   mine = atom->nlocal - first;
   MPI_Allreduce(&mine, &made, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -417,7 +417,7 @@ void FixFSIInlet::pre_exchange()
     const double *const x = atom->x[i], s = inside(x);
     if (s > 0.0 && !of_buffer[i]) continue;
     if (!is_fluid(i)) {
-      if (hub->state[type[i]].species == SOLID && s > -length && in_patch(x))
+      if (fix_fsi->state[type[i]].species == SOLID && s > -length && in_patch(x))
         error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone", atom->tag[i], keywords_name(), id);
       continue;
     }
@@ -454,7 +454,7 @@ void FixFSIInlet::pre_exchange()
 
   forget_ghosts();
   for (auto i = gone.rbegin(); i != gone.rend(); i++) {
-    if (hub->ledger) hub->taken[FixFSI::FIELDS] += energy(*i);
+    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += energy(*i);
     last_id = std::max(last_id, atom->tag[*i]);
     atom->avec->copy(atom->nlocal - 1, *i, 1);
     atom->nlocal--;
@@ -489,7 +489,7 @@ void FixFSIInlet::find_places()
 {
   places.clear();
   if (region) region->prematch();
-  const double from = -2.0 * length, to = hub->cut + neighbor->skin;
+  const double from = -2.0 * length, to = fix_fsi->cut + neighbor->skin;
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (s > from && s < to && is_fluid(i) && in_patch(atom->x[i])) places.push_back({i, 0.0, 0.0, false});
@@ -529,19 +529,19 @@ int FixFSIInlet::place_nodes()
 {
   nlateral = 0;
   int nodes = 1;
-  for (int d = 0; d < hub->dim; d++) {
+  for (int d = 0; d < fix_fsi->dim; d++) {
     if (d == axis) continue;
     const int k = nlateral++;
     const double lo = domain->boxlo[d], hi = domain->boxhi[d];
     lateral[k] = d;
     if (domain->periodicity[d]) {
-      count[k] = std::max(1, static_cast<int>(std::round(domain->prd[d] / hub->dx)));
+      count[k] = std::max(1, static_cast<int>(std::round(domain->prd[d] / fix_fsi->dx)));
       node_distance[k] = domain->prd[d] / count[k];
       first[k] = 0;
     } else {
-      node_distance[k] = hub->dx;
-      first[k] = static_cast<int>(std::floor(lo / hub->dx)) - 1;
-      count[k] = static_cast<int>(std::ceil(hi / hub->dx)) + 2 - first[k];
+      node_distance[k] = fix_fsi->dx;
+      first[k] = static_cast<int>(std::floor(lo / fix_fsi->dx)) - 1;
+      count[k] = static_cast<int>(std::ceil(hi / fix_fsi->dx)) + 2 - first[k];
     }
     nodes *= count[k];
   }
@@ -550,7 +550,7 @@ int FixFSIInlet::place_nodes()
 
 void FixFSIInlet::measure()
 {
-  const int dim = hub->dim, nodes = place_nodes();
+  const int dim = fix_fsi->dim, nodes = place_nodes();
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
   const int nfit = 1 + nlateral, nmoment = nfit * (nfit + 1) / 2;
   ncolumns = nmoment + nfit * (wants_velocity + wants_pressure);
@@ -558,24 +558,24 @@ void FixFSIInlet::measure()
   sums.resize(mine.size());
   double *const total = mine.data() + nodes * ncolumns;
 
-  with_kernel(hub->kernel, dim, hub->h, [&](const auto &kernel) {
+  with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
     for (auto &place : places) {
       const int i = place.i;
       const double *const x = atom->x[i];
       const double s = place.inside = inside(x), u = atom->v[i][axis], m = atom->rmass[i];
-      const State &state = hub->state[atom->type[i]];
+      const State &state = fix_fsi->state[atom->type[i]];
       // hat functions, which a lattice sums to a constant
-      const double width = 2.0 * hub->dx, hat = std::max(0.0, 1.0 - std::fabs(s) / width) / width;
+      const double width = 2.0 * fix_fsi->dx, hat = std::max(0.0, 1.0 - std::fabs(s) / width) / width;
       total[MASS_FLOW] += m * side * u * hat;
       total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
       if (s <= 0.0) {
-        if (s > -hub->cut) total[BUFFER]++;
+        if (s > -fix_fsi->cut) total[BUFFER]++;
         continue;
       }
-      if (s >= hub->cut) continue;
+      if (s >= fix_fsi->cut) continue;
       double p = state.pressure(atom->rho[i]);
-      const double w = m * (1.0 - s / hub->cut);
-      p -= atom->rho[i] * hub->body_forces.of_type[atom->type[i]][axis] * side * s;
+      const double w = m * (1.0 - s / fix_fsi->cut);
+      p -= atom->rho[i] * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * s;
       total[WEIGHT] += w;
       total[SPEED] += w * side * u;
       total[PRESSURE] += w * p;
@@ -601,7 +601,7 @@ void FixFSIInlet::measure()
   // values at nodes: the mean, and the slope where there is fluid on both sides or enough on one
   for (int node = 0; node < nodes; node++) {
     double *const c = &sums[node * ncolumns], S = c[0];
-    if (S <= LITTLE * hub->psi_bulk) {
+    if (S <= LITTLE * fix_fsi->psi_bulk) {
       c[0] = 0.0;
       continue;
     }
@@ -609,7 +609,7 @@ void FixFSIInlet::measure()
     for (int a = 0; a < nlateral; a++) m[a] = c[1 + a] / S;
     for (int a = 0, k = 0; a < nlateral; a++)
       for (int b = 0; b <= a; b++, k++) C[k] = c[nfit + k] / S - m[a] * m[b];
-    const double enough = 0.1 * hub->dx * hub->dx, det = nlateral == 1 ? C[0] : C[0] * C[2] - C[1] * C[1];
+    const double enough = 0.1 * fix_fsi->dx * fix_fsi->dx, det = nlateral == 1 ? C[0] : C[0] * C[2] - C[1] * C[1];
     const bool linear = det > (nlateral == 1 ? enough : enough * enough);
     for (int field = 0; field < wants_velocity + wants_pressure; field++) {
       const double *const F = c + nmoment + field * nfit;
@@ -657,7 +657,7 @@ void FixFSIInlet::advance(bool advance)
 {
   if (neighbor->ago == 0) find_places();
   if (!advance) return;
-  const double dt = update->dt + hub->stagger;
+  const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
   measure();
 
@@ -665,7 +665,7 @@ void FixFSIInlet::advance(bool advance)
   if (wants_velocity && wants_pressure) rate = 0.0;
   else if (rate == AUTO) {
     double c = 0.0;
-    for (const auto &s : hub->state)
+    for (const auto &s : fix_fsi->state)
       if (s.species == FLUID) c = std::max(c, s.c);
     rate = 0.5 * c / domain->prd[axis];
   }
@@ -685,25 +685,25 @@ void FixFSIInlet::advance(bool advance)
                "it tears under suction, without keyword tension yes or background of pair_style fsi/fluid", who, id, served, "xyz"[axis], position, mean[BUFFER]);
 
   if (pressure.source == EQUAL || pressure.source == ATOM) evaluate(&pressure, 1, PRESSURE_COLUMN);
-  double **const shift = hub->shift;
+  double **const shift = fix_fsi->shift;
   for (auto &place : places) {
     const int i = place.i;
     if (place.inside > 0.0 && of_buffer[i] == MEMBER) copy_place(i);
     if (place.inside > 0.0 && of_buffer[i] != PASSED) continue;
-    const State &state = hub->state[atom->type[i]];
+    const State &state = fix_fsi->state[atom->type[i]];
     double values[2] = {0.0, 0.0};
     place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
     place.normal = values[0];
     if (place.inside > 0.0) continue;
     double p;
     if (wants_pressure)
-      p = place.known ? values[wants_velocity] + state.rho0 * hub->body_forces.of_type[atom->type[i]][axis] * side * place.inside : state.p0;
+      p = place.known ? values[wants_velocity] + state.rho0 * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * place.inside : state.p0;
     else
       p = (pressure.source == BACKGROUND ? state.p0 : value(pressure, i, PRESSURE_COLUMN)) + state.rho0 * state.c * wave;
-    const double stored = hub->ledger ? hub->stored(i) : 0.0;
+    const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
     atom->rho[i] = state.density(std::max(p, state.floor));
-    if (hub->ledger) hub->taken[FixFSI::FIELDS] += stored - hub->stored(i);
-    if (shift) std::fill_n(shift[i], hub->dim, 0.0);
+    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
+    if (shift) std::fill_n(shift[i], fix_fsi->dim, 0.0);
   }
 }
 
@@ -724,7 +724,7 @@ void FixFSIInlet::prescribe()
     if (place.inside > 0.0 && !passed) continue;
     const double m = atom->rmass[i];
     double *const f = atom->f[i], *const v = atom->v[i];
-    for (int d = 0; d < hub->dim; d++) {
+    for (int d = 0; d < fix_fsi->dim; d++) {
       double u;
       if (wants_velocity) u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
       else u = value(velocity[d], i, d) + (d == axis ? side * wave : 0.0);
@@ -736,7 +736,7 @@ void FixFSIInlet::prescribe()
       given[3] += push * 0.5 * (u + v[d]);
     }
   }
-  hub->tally(FixFSI::FIELDS, -given[3]);
+  fix_fsi->tally(FixFSI::FIELDS, -given[3]);
 }
 
 /* ---------------------------------------------------------------------- */

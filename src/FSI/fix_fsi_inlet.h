@@ -85,7 +85,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double absorb;    // 1/time; < 0: of the domain's length
   double given_length, length;
   class Region *region;
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
 
   enum Membership { NOT, MEMBER, PASSED };    // passed the plane since the last list
   double *of_buffer;     // per atom

@@ -195,10 +195,10 @@ double FixFSIMove::now() const
 
 void FixFSIMove::init()
 {
-  const auto *const hub = FixFSI::find(lmp, "Fix fsi/move");
+  const auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/move");
   int mine = 0, any;
   for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && (atom->mask[i] & hub->groupbit)) mine = 1;
+    if ((atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit)) mine = 1;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) error->all(FLERR, "Particles of fix fsi/move {} are also in the group of fix fsi, which moves them, too: leave them out", id);
   if (style != VARIABLE) return;

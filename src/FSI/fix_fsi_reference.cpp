@@ -42,7 +42,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), swaps(lmp), hub(nullptr), list(nullptr), slot(nullptr),
+    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), swaps(lmp), fix_fsi(nullptr), list(nullptr), slot(nullptr),
     maxbond(0), apart(0.0), layer(nullptr)
 {
   has_record = false;
@@ -80,7 +80,7 @@ int FixFSIReference::setmask()
 
 void FixFSIReference::init()
 {
-  hub = FixFSI::find(lmp, "Fix fsi/reference");
+  fix_fsi = FixFSI::find(lmp, "Fix fsi/reference");
   int mine = std::any_of(slot, slot + atom->nlocal, [](int s) { return s >= 0; }), any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (!any) made.clear();
@@ -118,7 +118,7 @@ void FixFSIReference::post_neighbor()
 
 bool FixFSIReference::is_solid(int i) const
 {
-  return hub->state[atom->type[i]].species == SOLID;
+  return fix_fsi->state[atom->type[i]].species == SOLID;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -268,7 +268,7 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
   // partner one spacing away along direction k = 2 axis + (positive side), or -1
   const auto next = [&](int i, int k) {
     const double *value = values(i) + D;
-    const double dx = hub->dx_of(atom->type[i]), near = 0.05 * dx;
+    const double dx = fix_fsi->dx_of(atom->type[i]), near = 0.05 * dx;
     for (int b = 0; b < count(i); b++, value += nvalue) {
       bool found = true;
       for (int a = 0; a < D; a++)
@@ -319,17 +319,17 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
   const int *const type = atom->type;
   std::vector<double> all_h;    // bodies by their smoothing length, in the order of the first of each
   for (const int i : bare)
-    if (std::find(all_h.begin(), all_h.end(), hub->h_of(type[i])) == all_h.end()) all_h.push_back(hub->h_of(type[i]));
-  const auto volume = [&](int i) { return atom->rmass[i] / hub->state[type[i]].rho0; };
+    if (std::find(all_h.begin(), all_h.end(), fix_fsi->h_of(type[i])) == all_h.end()) all_h.push_back(fix_fsi->h_of(type[i]));
+  const auto volume = [&](int i) { return atom->rmass[i] / fix_fsi->state[type[i]].rho0; };
   GradientWeights<D> weights;
   std::vector<int> near;
   std::vector<double> dX, w, G;
   bigint mine[6] = {};    // particles, bonds, particles by order reached
 
-  for (const double h : all_h) with_kernel(hub->kernel, D, h, [&](const auto &kernel) {
+  for (const double h : all_h) with_kernel(fix_fsi->kernel, D, h, [&](const auto &kernel) {
     if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
       for (const int i : bare) {
-        if (hub->h_of(type[i]) != h) continue;
+        if (fix_fsi->h_of(type[i]) != h) continue;
         near.clear();
         dX.clear();
         w.clear();
@@ -342,9 +342,9 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
             rsq += d[a] * d[a];
           }
           if (rsq >= kernel.cutsq) continue;
-          if (hub->h_of(type[j]) != h)
+          if (fix_fsi->h_of(type[j]) != h)
             error->one(FLERR, "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types {} and {}: a body has one", tag[i], tag[j],
-                       molecule[i], hub->dx_of(type[i]), hub->dx_of(type[j]), type[i], type[j]);
+                       molecule[i], fix_fsi->dx_of(type[i]), fix_fsi->dx_of(type[j]), type[i], type[j]);
           if (rsq == 0.0) error->one(FLERR, "Solid atoms {} and {} of body {} are at the same place", tag[i], tag[j], molecule[i]);
           if (domain->closest_image(i, j) != j)
             error->one(FLERR, "Solid atoms {} and {} are neighbors through more than one image: a periodic box must be wider than two "
@@ -426,7 +426,7 @@ template <int D> void FixFSIReference::move_apart()
         hi[a] = std::max(hi[a], d);
       }
   for (int a = 0; a < D; a++) sum += (hi[a] - lo[a]) * (hi[a] - lo[a]);
-  apart = anew ? 0.0 : apart + std::sqrt(sum) + 1e-9 * hub->dx;    // more than round-off
+  apart = anew ? 0.0 : apart + std::sqrt(sum) + 1e-9 * fix_fsi->dx;    // more than round-off
 }
 
 template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
@@ -484,7 +484,7 @@ template <int D> bool FixFSIReference::renew(int i)
     }
     w[k] = value[2 * D] * Rsq;    // V_i V_j W: the factor V_i does not matter
   }
-  if (weights(n, dX.data(), w.data(), hub->h_of(atom->type[i]), quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
+  if (weights(n, dX.data(), w.data(), fix_fsi->h_of(atom->type[i]), quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
     n = 0;
     return false;
   }

@@ -77,7 +77,7 @@ class FixFSIReference : public Fix {
   FSI::Swaps swaps;    // those of solids
 
  private:
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
   std::string made;    // how the bonds were: keywords of pair_style fsi/solid/tl; empty: none yet
   std::string as_now() const;
   bool has_record;

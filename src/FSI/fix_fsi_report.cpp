@@ -54,7 +54,7 @@ static std::string word(const std::string &text)
 /* ---------------------------------------------------------------------- */
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), hub(nullptr), energy(nullptr), every(100), fp(nullptr), worst{}, samples(0), sampled(-1), limits(lmp), first_step(0),
+    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), every(100), fp(nullptr), worst{}, samples(0), sampled(-1), limits(lmp), first_step(0),
     natoms(0), first_time(0.0), counted(0), ghost_bytes(0.0), ghost_messages(0.0), any_held(false), listed(-1), momentum{}, by_gravity{}, by_walls{},
     by_held{}, collected(-1), output{}
 {
@@ -98,7 +98,7 @@ int FixFSIReport::setmask()
 
 void FixFSIReport::init()
 {
-  hub = FixFSI::find(lmp, "Fix fsi/report");
+  fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
   if (modify->get_fix_by_style("^fsi/report$").size() > 1) error->all(FLERR, "There can be only one fix fsi/report");
   auto computes = modify->get_compute_by_style("^fsi/energy$");
   energy = computes.empty() ? nullptr : dynamic_cast<ComputeFSIEnergy *>(computes[0]);
@@ -129,11 +129,11 @@ void FixFSIReport::begin()
   by_gravity = by_walls = by_held = {};
   momentum = momentum_of_moving();
   fields.clear();
-  for (const auto &field : hub->body_forces.all)
+  for (const auto &field : fix_fsi->body_forces.all)
     if (field.mask) fields.push_back({field.g, group->mass(field.fix->igroup)});
   int held = 0, any;
   for (int i = 0; i < atom->nlocal; i++)
-    if (!(atom->mask[i] & hub->groupbit)) held = 1;
+    if (!(atom->mask[i] & fix_fsi->groupbit)) held = 1;
   MPI_Allreduce(&held, &any, 1, MPI_INT, MPI_MAX, world);
   any_held = any;
   listed = -1;
@@ -170,7 +170,7 @@ void FixFSIReport::end_of_step()
       listed = neighbor->lastcall;
       held.clear();
       for (int i = 0; i < atom->nlocal; i++)
-        if (!(atom->mask[i] & hub->groupbit)) held.push_back(i);
+        if (!(atom->mask[i] & fix_fsi->groupbit)) held.push_back(i);
     }
     double **f = atom->f;
     double x = 0.0, y = 0.0, z = 0.0;
@@ -179,7 +179,7 @@ void FixFSIReport::end_of_step()
       y += f[i][1];
       z += f[i][2];
     }
-    const double sum[3] = {x, y, hub->dim == 3 ? z : 0.0};
+    const double sum[3] = {x, y, fix_fsi->dim == 3 ? z : 0.0};
     for (int d = 0; d < 3; d++) by_held[d] -= dtf * sum[d];
   }
 
@@ -214,12 +214,12 @@ void FixFSIReport::sample()
   samples++;
   sampled = update->ntimestep;
   collected = -1;
-  limits.find(*hub, groupbit, hub->substeps > 1);
+  limits.find(*fix_fsi, groupbit, fix_fsi->substeps > 1);
   for (int k = 0; k < Limits::NLIMIT; k++)
     for (const bool sub : {false, true}) {
       const double limit = sub ? limits.sub[k] : limits.step[k];
       if (limit >= Limits::UNLIMITED) continue;
-      const double share = update->dt / (sub ? hub->substeps : 1) / limit;
+      const double share = update->dt / (sub ? fix_fsi->substeps : 1) / limit;
       enter(k, Limits::safe[k] * share, share,
             k == Limits::SOUND ? limits.culprit[sub][0] : k == Limits::ACCELERATION ? limits.culprit[sub][1] : 0);
     }
@@ -227,10 +227,10 @@ void FixFSIReport::sample()
   double **v = atom->v;
   const auto *const solid_tl = PairFSISolidTL::find(lmp);
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = hub->state[atom->type[i]];
+    const State &s = fix_fsi->state[atom->type[i]];
     if (s.species == RIGID) continue;
     const bool fluid = s.species == FLUID;
-    const double ratio = hub->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i) : hub->density_ratio(i);
+    const double ratio = fix_fsi->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i) : fix_fsi->density_ratio(i);
     enter(fluid ? FLUID_DENSITY : SOLID_DENSITY, std::abs(ratio - 1.0), 0.0, atom->tag[i]);
     if (fluid) enter(MACH, std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]) / s.c, 0.0, atom->tag[i]);
   }
@@ -272,7 +272,7 @@ FixFSIReport::Vector FixFSIReport::momentum_of_moving(double *scale) const
   double **v = atom->v;
   double mine[4] = {}, all[4];
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & hub->groupbit)) continue;
+    if (!(atom->mask[i] & fix_fsi->groupbit)) continue;
     for (int d = 0; d < 3; d++) mine[d] += atom->rmass[i] * v[i][d];
     mine[3] += atom->rmass[i] * std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
   }
@@ -311,7 +311,7 @@ FixFSIReport::Balance FixFSIReport::balance() const
 
 double FixFSIReport::compute_vector(int k)
 {
-  if (!hub) return 0.0;    // before the first run
+  if (!fix_fsi) return 0.0;    // before the first run
   if (collected != update->ntimestep) {
     Worst all[NWORST];
     gather(all);
@@ -356,8 +356,8 @@ void FixFSIReport::post_run()
                                  now == natoms ? "" : fmt::format(" ({} lost)", natoms - now), comm->nprocs, comm->nprocs > 1 ? "s" : "",
                                  loop);
   std::string line = "  on:", effects;
-  auto on = hub->effects_on;
-  if (hub->substeps > 1 && !modify->get_fix_by_style("^fsi/dt$").empty()) on.push_back(fmt::format("{} solid sub-steps at the end", hub->substeps));
+  auto on = fix_fsi->effects_on;
+  if (fix_fsi->substeps > 1 && !modify->get_fix_by_style("^fsi/dt$").empty()) on.push_back(fmt::format("{} solid sub-steps at the end", fix_fsi->substeps));
   for (const auto &e : on) {
     if (line.size() + e.size() + 2 > WIDTH) {
       text += line + "\n";
@@ -514,17 +514,17 @@ std::string FixFSIReport::momentum_table(bool lost)
   for (auto &fix : modify->get_fix_list())
     if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^fsi/") && !utils::strmatch(fix->style, "^gravity"))
       others += fmt::format(" fix {},", fix->id);
-  std::string text = fmt::format("  {:<46} {:>12} {:>12}{}\n", "momentum", "x", "y", hub->dim == 3 ? fmt::format(" {:>12}", "z") : "");
+  std::string text = fmt::format("  {:<46} {:>12} {:>12}{}\n", "momentum", "x", "y", fix_fsi->dim == 3 ? fmt::format(" {:>12}", "z") : "");
   const auto row = [&](const char *name, const std::string &label, const Vector &p, bool shown) {
     for (int d = 0; d < 3; d++) enter_line(fmt::format("momentum_{}_{}", name, "xyz"[d]), p[d]);
     if (!shown) return;
     text += fmt::format("    {:<44}", label);
-    for (int d = 0; d < hub->dim; d++) text += fmt::format(" {:>12.4g}", p[d]);
+    for (int d = 0; d < fix_fsi->dim; d++) text += fmt::format(" {:>12.4g}", p[d]);
     text += "\n";
   };
   row("change", "change", b.change, true);
   row("gravity", "from gravity", b.gravity, !fields.empty());
-  row("walls", "from walls, reflections too", b.walls, hub->walls.any());
+  row("walls", "from walls, reflections too", b.walls, fix_fsi->walls.any());
   row("held", "from held particles", b.held, any_held);
   row("rest", others.empty() ? "unaccounted for: error" : fmt::format("unaccounted for:{} error", others), b.rest, true);
   enter_line("momentum_rest_relative", relative);

@@ -48,7 +48,7 @@ class FixFSIReport : public Fix, public FSI::Part {
   FSI::Profile profile;    // filled by fix fsi, pair styles and walls
 
  private:
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
   class ComputeFSIEnergy *energy;
   int every;
   FILE *fp;    // of rank 0; null: the log

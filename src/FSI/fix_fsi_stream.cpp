@@ -40,7 +40,7 @@ using namespace FSI;
 
 FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"), source{FREE, FREE, FREE}, value{}, variable{-1, -1, -1}, low(0.0), high(0.0),
-    region(nullptr), hub(nullptr), step(-1), target(nullptr), nmax(0), given{}, work(0.0)
+    region(nullptr), fix_fsi(nullptr), step(-1), target(nullptr), nmax(0), given{}, work(0.0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stream requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi/stream", error);
@@ -91,9 +91,9 @@ int FixFSIStream::setmask()
 
 void FixFSIStream::init()
 {
-  hub = FixFSI::find(lmp, "Fix fsi/stream");
+  fix_fsi = FixFSI::find(lmp, "Fix fsi/stream");
   if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
-  if (density_rate > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
+  if (density_rate > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Fix fsi/stream density requires fix fsi with fluid continuity: a density that is summed cannot be damped");
   region = domain->get_region_by_id(region_id);
   if (!region) error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
@@ -144,7 +144,7 @@ void FixFSIStream::find_weights()
   const int *const mask = atom->mask, *const type = atom->type;
   const bool look_for_solids = neighbor->ago == 0;
   for (int i = 0; i < atom->nlocal; i++) {
-    const int species = hub->state[type[i]].species;
+    const int species = fix_fsi->state[type[i]].species;
     const bool fluid = species == FLUID && (mask[i] & groupbit);
     if (!fluid && !(species == SOLID && look_for_solids)) continue;
     double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
@@ -163,7 +163,7 @@ void FixFSIStream::find_weights()
 void FixFSIStream::advance(bool advance)
 {
   if (!advance) return;
-  const double dt = update->dt + hub->stagger;
+  const double dt = update->dt + fix_fsi->dt_offset;
   find_weights();
   if (density_rate == 0.0) return;
   const int *const type = atom->type, n = atom->ntypes + 1;
@@ -179,9 +179,9 @@ void FixFSIStream::advance(bool advance)
   MPI_Allreduce(mine.data(), all.data(), 2 * n, MPI_DOUBLE, MPI_SUM, world);
   for (int i = 0; i < atom->nlocal; i++) {
     if (weight[i] == 0.0) continue;
-    const double before = hub->ledger ? hub->stored(i) : 0.0;
+    const double before = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
     rho[i] += part(i) * (all[2 * type[i] + 1] / all[2 * type[i]] - rho[i]);
-    if (hub->ledger) hub->taken[FixFSI::FIELDS] += before - hub->stored(i);
+    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += before - fix_fsi->stored(i);
   }
 }
 
@@ -222,7 +222,7 @@ void FixFSIStream::post_force(int)
       given[3] += push * (v[d] + 0.5 * dt * force->ftm2v * f[d] / m);    // in the middle of the kick
     }
   }
-  hub->tally(FixFSI::FIELDS, -given[3]);
+  fix_fsi->tally(FixFSI::FIELDS, -given[3]);
   if (update->ntimestep > update->firststep) work += dt * given[3];
 }
 

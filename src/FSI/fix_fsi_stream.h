@@ -59,7 +59,7 @@ class FixFSIStream : public Fix, public FSI::Part {
   double rate, density_rate;     // 1/time, in the middle of the zone
   double low, high;              // ends of the zone along the axis
   class Region *region;
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
   bigint step;                   // of the weights
   std::vector<double> weight;    // of local atoms: 0 outside of the zone and at its ends, 1 in its middle
   double **target;

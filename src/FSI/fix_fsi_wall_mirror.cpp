@@ -43,7 +43,7 @@ static std::string face(const Wall &w)
 /* ---------------------------------------------------------------------- */
 
 FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), guard(0.1), reflected(0), hub(nullptr)
+    Fix(lmp, narg, arg), guard(0.1), reflected(0), fix_fsi(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/mirror requires atom_style fsi");
 
@@ -141,7 +141,7 @@ int FixFSIWallMirror::setmask()
 
 void FixFSIWallMirror::init()
 {
-  hub = FixFSI::find(lmp, "Fix fsi/wall/mirror");
+  fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");
 }
 
 /* ----------------------------------------------------------------------
@@ -153,9 +153,9 @@ void FixFSIWallMirror::setup(int)
   double **x = atom->x;
   const int *const mask = atom->mask, *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(mask[i] & groupbit) || hub->state[type[i]].species != FLUID) continue;
+    if (!(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID) continue;
     for (const auto &w : walls)
-      if (!w.finite && w.distance(x[i]) < -hub->dx)
+      if (!w.finite && w.distance(x[i]) < -fix_fsi->dx)
         error->one(FLERR, "Fluid atom {} at {} {} {} is behind the {}{} wall of fix {}", atom->tag[i], x[i][0],
                    x[i][1], x[i][2], "xyz"[w.axis], w.side > 0.0 ? "lo" : "hi", id);
   }
@@ -170,31 +170,31 @@ void FixFSIWallMirror::setup(int)
 
 void FixFSIWallMirror::post_integrate()
 {
-  const Phase phase(hub->profile, Profile::WALLS);
+  const Phase phase(fix_fsi->profile, Profile::WALLS);
   auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   const int *const mask = atom->mask, *const type = atom->type;
-  const double dth = 0.5 * update->dt, near = guard * hub->dx;
+  const double dth = 0.5 * update->dt, near = guard * fix_fsi->dx;
 
   for (auto &w : walls) w.position += dth * w.velocity[w.axis];
 
   const Clearance away(walls, near);
   for (int i = 0; i < atom->nlocal; i++) {
-    if (away.holds(x[i]) || !(mask[i] & groupbit) || hub->state[type[i]].species != FLUID) continue;
+    if (away.holds(x[i]) || !(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID) continue;
     for (const auto &w : walls) {
       const double a = w.distance(x[i]);
       if (a >= near || (w.finite && !w.spans(x[i], 0.0))) continue;
       // behind a segment already at the last step: it flows there by right
       const double ahead = update->dt * w.side * (v[i][w.axis] - w.velocity[w.axis]);
       if (w.finite && a < 0.0 && a < ahead) continue;
-      const double before = hub->ledger ? hub->potential(i) : 0.0;
+      const double before = fix_fsi->ledger ? fix_fsi->potential(i) : 0.0;
       x[i][w.axis] += w.side * 2.0 * (near - a);
-      if (hub->ledger) hub->taken[FixFSI::WALLS] += before - hub->potential(i);
+      if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::WALLS] += before - fix_fsi->potential(i);
       const double vn = v[i][w.axis] - w.velocity[w.axis];
       if (vn * w.side < 0.0) {
-        if (hub->ledger)
-          hub->taken[FixFSI::WALLS] += 2.0 * vn * atom->rmass[i] * (v[i][w.axis] - vn + dth * hub->body_forces.on(i)[w.axis]);
+        if (fix_fsi->ledger)
+          fix_fsi->energy_out[FixFSI::WALLS] += 2.0 * vn * atom->rmass[i] * (v[i][w.axis] - vn + dth * fix_fsi->body_forces.on(i)[w.axis]);
         v[i][w.axis] -= 2.0 * vn;
-        if (hub->profile) hub->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
+        if (fix_fsi->profile) fix_fsi->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
       }
       reflected++;
     }
@@ -208,8 +208,8 @@ void FixFSIWallMirror::end_of_step()
   for (size_t k = 0; k < walls.size(); k++) {
     Wall &w = walls[k];
     w.position += 0.5 * update->dt * w.velocity[w.axis];
-    if (hub->ledger)
-      for (int d = 0; d < 3; d++) hub->taken[FixFSI::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
+    if (fix_fsi->ledger)
+      for (int d = 0; d < 3; d++) fix_fsi->energy_out[FixFSI::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
   }
 }
 

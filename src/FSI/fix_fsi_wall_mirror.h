@@ -58,7 +58,7 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
   std::string settings(int) const;
   double guard;    // smallest distance to a wall, in spacings
   bigint reflected;
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
 };
 
 }    // namespace LAMMPS_NS

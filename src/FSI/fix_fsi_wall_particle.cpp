@@ -41,7 +41,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), hub(nullptr), sum(nullptr), nmax(0), nsum(0), force_on{}
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), fix_fsi(nullptr), sum(nullptr), nmax(0), nsum(0), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
@@ -83,17 +83,17 @@ void FixFSIWallParticle::post_constructor()
 
 void FixFSIWallParticle::init()
 {
-  hub = FixFSI::find(lmp, "Fix fsi/wall/particle");
+  fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/particle");
   const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
   if (!fluid) error->all(FLERR, "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
 
   std::vector<int> mine(atom->ntypes + 1, 0), types(atom->ntypes + 1);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    if (hub->state[atom->type[i]].species != RIGID)
+    if (fix_fsi->state[atom->type[i]].species != RIGID)
       error->one(FLERR, "Atom {} of fix fsi/wall/particle {} is of type {}, whose material is not a wall", atom->tag[i], id,
                  atom->type[i]);
-    if (atom->mask[i] & hub->groupbit)
+    if (atom->mask[i] & fix_fsi->groupbit)
       error->one(FLERR, "Atom {} of fix fsi/wall/particle {} is also in the group of fix fsi: leave it out, and move it with fix move "
                  "or fix rigid", atom->tag[i], id);
     mine[atom->type[i]] = 1;
@@ -101,21 +101,21 @@ void FixFSIWallParticle::init()
   MPI_Allreduce(mine.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!types[t]) continue;
-    State &s = hub->state[t];
+    State &s = fix_fsi->state[t];
     if (s.kept) error->all(FLERR, "Atom type {} is in two fixes fsi/wall/particle", t);
     s.kept = true;
     s.noslip = !slip;
-    s.guard = guard * 0.5 * (hub->dx + hub->dx_of(t));    // of the distance from the fluid
+    s.guard = guard * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t));    // of the distance from the fluid
   }
   if (!slip && !fluid->has_laminar() && comm->me == 0)
     error->warning(FLERR, "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has no laminar/visc");
 
   movers.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/move$")) movers.push_back(dynamic_cast<FixFSIMove *>(fix));
-  const bool stiffness = hub->several_stiffnesses();
-  nsum = 2 + hub->dim * (slip ? 1 : 2) + stiffness;
+  const bool stiffness = fix_fsi->several_stiffnesses();
+  nsum = 2 + fix_fsi->dim * (slip ? 1 : 2) + stiffness;
   comm_reverse = nsum;
-  comm_forward = 1 + (slip ? 0 : hub->dim) + stiffness;
+  comm_forward = 1 + (slip ? 0 : fix_fsi->dim) + stiffness;
   nmax = 0;    // sums of another size than in the last run
 }
 
@@ -141,7 +141,7 @@ void FixFSIWallParticle::find_pairs()
   pairs.clear();
   const NeighList *const list = force->pair_match("fsi/fluid", 1)->list;
   const int *const mask = atom->mask, *const type = atom->type;
-  const auto is_fluid = [&](int i) { return hub->state[type[i]].species == FLUID; };
+  const auto is_fluid = [&](int i) { return fix_fsi->state[type[i]].species == FLUID; };
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
     const bool wall = mask[i] & groupbit;
@@ -163,13 +163,13 @@ void FixFSIWallParticle::find_pairs()
 
 void FixFSIWallParticle::end_state(bool advance)
 {
-  const Phase phase(hub->profile, Profile::WALLS);
-  const int dim = hub->dim, nall = atom->nlocal + atom->nghost;
+  const Phase phase(fix_fsi->profile, Profile::WALLS);
+  const int dim = fix_fsi->dim, nall = atom->nlocal + atom->nghost;
   double **x = atom->x;
   double **v = atom->v;
   double *rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
-  const bool stiffness = hub->wall_stiffness;
+  const bool stiffness = fix_fsi->wall_stiffness;
   if (neighbor->ago == 0) find_pairs();
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
@@ -177,7 +177,7 @@ void FixFSIWallParticle::end_state(bool advance)
   }
   if (nall) memset(sum[0], 0, (size_t) nall * nsum * sizeof(double));
 
-  with_kernel(hub->kernel, dim, hub->h, [&](const auto &kernel) {
+  with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
     for (const auto &[w, j] : pairs) {
       double d[3], rsq = 0.0;
       for (int k = 0; k < dim; k++) {
@@ -188,28 +188,28 @@ void FixFSIWallParticle::end_state(bool advance)
       const double W = kernel.W(std::sqrt(rsq));
       double *const s = sum[w];
       s[0] += W;
-      const auto &g = hub->body_forces.of_type[type[j]];
-      double p = hub->pressure(j);
+      const auto &g = fix_fsi->body_forces.of_type[type[j]];
+      double p = fix_fsi->pressure(j);
       for (int k = 0; k < dim; k++) {
         p += rho[j] * g[k] * d[k];
         s[2 + k] += W * rho[j] * d[k];
       }
       s[1] += W * p;
-      if (stiffness) s[nsum - 1] += W * hub->state[type[j]].rho0 * hub->state[type[j]].csq;
+      if (stiffness) s[nsum - 1] += W * fix_fsi->state[type[j]].rho0 * fix_fsi->state[type[j]].csq;
       if (!slip)
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     }
   });
-  if (force->newton_pair) reverse_comm(hub->profile, comm, this);
+  if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
 
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    const State &state = hub->state[type[i]];
+    const State &state = fix_fsi->state[type[i]];
     const double *const s = sum[i];
     double *const old = before->astore[i];
     // acceleration: in this step where the motion is known, else in the last; a wall that is set in motion has none in its first step
     const double *from = old, *to = v[i];
-    double known = old[3], span = update->dt + 2.0 * hub->stagger, next[3];
+    double known = old[3], span = update->dt + 2.0 * fix_fsi->dt_offset, next[3];
     for (const auto *mover : movers)
       if ((mask[i] & mover->groupbit) && mover->velocity_at_end(i, next)) {
         from = v[i];
@@ -221,12 +221,12 @@ void FixFSIWallParticle::end_state(bool advance)
     for (int k = 0; k < dim; k++) {
       const double a = advance && known > 0.0 ? (to[k] - from[k]) / span : 0.0;
       p -= a * s[2 + k];
-      if (!slip) hub->wall_velocity[i][k] = 2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
+      if (!slip) fix_fsi->wall_velocity[i][k] = 2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
     }
     p = s[0] > 0.0 ? p / s[0] : state.p0;
     p = std::max(p, state.floor);
     if (stiffness) {
-      const double K = hub->wall_stiffness[i] = s[0] > 0.0 ? s[nsum - 1] / s[0] : state.rho0 * state.csq;
+      const double K = fix_fsi->wall_stiffness[i] = s[0] > 0.0 ? s[nsum - 1] / s[0] : state.rho0 * state.csq;
       rho[i] = state.rho0 * (1.0 + (p - state.p0) / K);
     } else
       rho[i] = state.density(p);
@@ -235,7 +235,7 @@ void FixFSIWallParticle::end_state(bool advance)
       old[3] = 1.0;
     }
   }
-  forward_comm(hub->profile, comm, this);
+  forward_comm(fix_fsi->profile, comm, this);
 }
 
 /* ----------------------------------------------------------------------
@@ -271,12 +271,12 @@ double FixFSIWallParticle::compute_vector(int n)
 
 double FixFSIWallParticle::compute_scalar()
 {
-  if (!hub) return 0.0;    // before the first run
+  if (!fix_fsi) return 0.0;    // before the first run
   double mine = 0.0, all;
   for (const auto &[w, j] : pairs) {
     double rsq = 0.0;
-    for (int k = 0; k < hub->dim; k++) rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
-    const double limit = hub->state[atom->type[w]].guard;
+    for (int k = 0; k < fix_fsi->dim; k++) rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
+    const double limit = fix_fsi->state[atom->type[w]].guard;
     // without newton a pair across ranks is in the lists of both
     if (rsq < limit * limit) mine += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
   }
@@ -293,9 +293,9 @@ int FixFSIWallParticle::pack_forward_comm(int n, int *list, double *buf, int, in
     const int i = list[ii];
     if (!(atom->mask[i] & groupbit)) continue;
     buf[m++] = atom->rho[i];
-    if (hub->wall_stiffness) buf[m++] = hub->wall_stiffness[i];
+    if (fix_fsi->wall_stiffness) buf[m++] = fix_fsi->wall_stiffness[i];
     if (!slip)
-      for (int d = 0; d < hub->dim; d++) buf[m++] = hub->wall_velocity[i][d];
+      for (int d = 0; d < fix_fsi->dim; d++) buf[m++] = fix_fsi->wall_velocity[i][d];
   }
   return m;
 }
@@ -308,9 +308,9 @@ void FixFSIWallParticle::unpack_forward_comm(int n, int first, double *buf)
   for (int i = first; i < first + n; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     atom->rho[i] = buf[m++];
-    if (hub->wall_stiffness) hub->wall_stiffness[i] = buf[m++];
+    if (fix_fsi->wall_stiffness) fix_fsi->wall_stiffness[i] = buf[m++];
     if (!slip)
-      for (int d = 0; d < hub->dim; d++) hub->wall_velocity[i][d] = buf[m++];
+      for (int d = 0; d < fix_fsi->dim; d++) fix_fsi->wall_velocity[i][d] = buf[m++];
   }
 }
 

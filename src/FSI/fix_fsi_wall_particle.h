@@ -63,7 +63,7 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   std::string id_store;
   std::vector<class FixFSIMove *> movers;
   class FixStoreAtom *before;    // velocity at the last step, and whether there was one
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
   std::vector<std::pair<int, int>> pairs;    // wall and fluid particles that may be within the kernel's support
   double **sum;    // per atom: of W, p W, rho (x_wall - x) W, v W over the fluid
   int nmax, nsum;

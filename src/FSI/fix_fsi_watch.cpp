@@ -39,10 +39,10 @@ using namespace FSI;
 
 static constexpr double BIG = 1.0e20;
 
-struct About {
+struct Description {
   const char *key, *what;
 };
-static constexpr About about[] = {
+static constexpr Description about[] = {
     {"", ""},
     {"mach", "Mach number"},
     {"distance", "distance over particle spacing"},
@@ -55,7 +55,7 @@ static constexpr About about[] = {
 /* ---------------------------------------------------------------------- */
 
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), nearest(BIG), hub(nullptr), halt(lmp, "Fix fsi/watch"), energy_before(-1.0), reflected_before(-1.0), warned(0),
+    Fix(lmp, narg, arg), nearest(BIG), fix_fsi(nullptr), halt(lmp, "Fix fsi/watch"), energy_before(-1.0), reflected_before(-1.0), warned(0),
     violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
@@ -105,7 +105,7 @@ int FixFSIWatch::setmask()
 
 void FixFSIWatch::init()
 {
-  hub = FixFSI::find(lmp, "Fix fsi/watch");
+  fix_fsi = FixFSI::find(lmp, "Fix fsi/watch");
   auto dt = modify->get_fix_by_style("^fsi/dt$");
   fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
   if (fix_dt && !fix_dt->chooses()) fix_dt = nullptr;
@@ -183,19 +183,19 @@ void FixFSIWatch::look(Stop::When when)
   const int *const mask = atom->mask, *const type = atom->type;
   const double dt = update->dt;
 
-  struct Of {
+  struct TypeState {
     double csq, rho0, mass, fastest;    // of a type Mach and Courant number grow with the speed
     int species;
   };
-  std::vector<Of> all_of(atom->ntypes + 1, {0.0, 1.0, 0.0, -1.0, NONE});
+  std::vector<TypeState> all_of(atom->ntypes + 1, {0.0, 1.0, 0.0, -1.0, NONE});
   for (int t = 1; t <= atom->ntypes; t++) {
-    const State &s = hub->state[t];
+    const State &s = fix_fsi->state[t];
     all_of[t] = {s.species == NONE ? 0.0 : s.wave_speed_sq(), s.rho0, 0.0, -1.0, s.species};
   }
   double kinetic = 0.0, furthest = -1.0;    // furthest from the density at rest
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    Of &of = all_of[type[i]];
+    TypeState &of = all_of[type[i]];
     if (of.species == RIGID) continue;    // neither compressed nor integrated
     const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2];
     kinetic += rmass[i] * vsq;
@@ -204,13 +204,13 @@ void FixFSIWatch::look(Stop::When when)
       of.fastest = vsq;
       const double c = std::sqrt(of.csq), speed = std::sqrt(vsq);
       enter(MACH, i, speed / c);
-      if (of.species == FLUID) enter(COURANT, i, dt * (c + speed) / hub->h_of(type[i]));
-      else enter(COURANT, i, dt * c / (hub->is_total_lagrangian(i) ? hub->substeps : 1) / hub->h_of(type[i]));
+      if (of.species == FLUID) enter(COURANT, i, dt * (c + speed) / fix_fsi->h_of(type[i]));
+      else enter(COURANT, i, dt * c / (fix_fsi->is_total_lagrangian(i) ? fix_fsi->substeps : 1) / fix_fsi->h_of(type[i]));
       enter(ENERGY, i, vsq);
     }
     // spray without tension loses density, which then means nothing
-    if (of.species == FLUID && rho[i] < of.rho0 && hub->pressure(i) == hub->state[type[i]].floor) continue;
-    const double error = std::abs((hub->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i) : hub->density_ratio(i)) - 1.0);
+    if (of.species == FLUID && rho[i] < of.rho0 && fix_fsi->pressure(i) == fix_fsi->state[type[i]].floor) continue;
+    const double error = std::abs((fix_fsi->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i) : fix_fsi->density_ratio(i)) - 1.0);
     if (error > furthest) {
       furthest = error;
       enter(DENSITY, i, error);
@@ -218,7 +218,7 @@ void FixFSIWatch::look(Stop::When when)
   }
   // kinetic energy, and what of it is small: that of a hundredth of the speed of waves
   double mine[3] = {0.5 * kinetic, 0.0, (double) atom->nlocal}, all[3];
-  for (const Of &of : all_of) mine[1] += 0.5e-4 * of.mass * of.csq;
+  for (const TypeState &of : all_of) mine[1] += 0.5e-4 * of.mass * of.csq;
 
   // pairs whose neighbour lists are at hand: all but those inside one total-Lagrangian body
   if (distances) {
@@ -234,7 +234,7 @@ void FixFSIWatch::look(Stop::When when)
           const int j = list->firstneigh[i][jj] & NEIGHMASK;
           const double a = x[i][0] - x[j][0], b = x[i][1] - x[j][1], c = x[i][2] - x[j][2];
           const double rsq = a * a + b * b + c * c;
-          const double apart = spacing_between(hub->resolution[type[i]], hub->resolution[type[j]]);
+          const double apart = spacing_between(fix_fsi->resolution[type[i]], fix_fsi->resolution[type[j]]);
           if (rsq >= smallest * apart * apart) continue;
           smallest = rsq / (apart * apart);
           enter(DISTANCE, i, std::sqrt(rsq) / apart, j);
@@ -277,8 +277,8 @@ void FixFSIWatch::judge(Stop::When when)
     all.trouble = q;
     all.value = seen[q];
     const auto what = fmt::format("{} {:.4g} is {} the limit {:g}", about[q].what, all.value, q == DISTANCE ? "below" : "above", allowed(q));
-    const auto text = halt.describe(*hub, what, all, when);
-    if (!warn) halt.stop(*hub, text, all, when);
+    const auto text = halt.describe(*fix_fsi, what, all, when);
+    if (!warn) halt.stop(*fix_fsi, text, all, when);
     warned |= 1 << k;
     if (comm->me == 0) error->warning(FLERR, text);
   }

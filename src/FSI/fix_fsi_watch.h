@@ -44,7 +44,7 @@ class FixFSIWatch : public Fix, public FSI::Part {
   double nearest;    // smallest distance over spacing of all checks so far; for fix fsi/report, which sets it back
 
  private:
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
   class FixFSIDt *fix_dt;    // that chooses the time step; null: none does
   class PairFSISolidTL *solid_tl;
   FSI::Stop halt;

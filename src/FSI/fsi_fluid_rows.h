@@ -136,7 +136,7 @@ namespace FSI {
     constexpr int D = K::DIM;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
-    T taken = 0.0;
+    T by_diffusion = 0.0;
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
       if (row.n == 0) continue;
@@ -163,7 +163,7 @@ namespace FSI {
           rate_j -= k * pi.vol;
           // m p/rho^2 of what diffusion adds to rho
           if (FLAGS & Flag::SUMS)
-            taken -= share_of<T>(i, j, in.nlocal, in.newton) * k * pi.vol * pj.vol *
+            by_diffusion -= share_of<T>(i, j, in.nlocal, in.newton) * k * pi.vol * pj.vol *
                 (T(laws.pressure_over_density[i]) - L::read(laws.pressure_over_density, j));
         }
         L::add(rate_j, rate, j);
@@ -171,7 +171,7 @@ namespace FSI {
       const double volume = (FLAGS & Flag::FINER) ? in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
     }
-    if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(taken);
+    if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);
   }
 
   // Pressure p_i V_i^2 + p_j V_j^2 that fluid particle i and its neighbour share (paper eq. 14), by the rule of the pair; x_j: of the

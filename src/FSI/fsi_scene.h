@@ -67,8 +67,8 @@ namespace FSI {
     void add_wall_force(int wall, int axis, double f) { wall_forces[wall][axis] -= f; }    // f on the fluid
     BodyForces body_forces;
     Profile *profile;     // of fix fsi/report; null: there is none
-    // what moves by rates between the middles of two steps takes update->dt + stagger: their distance, if dt changes
-    double stagger;
+    // what moves by rates between the middles of two steps takes update->dt + dt_offset: their distance, if dt changes
+    double dt_offset;
 
     // Per atom, local and ghost; valid from pre_force on. Null: nothing needs it.
     double *psi;               // number density
@@ -92,9 +92,9 @@ namespace FSI {
     // rank's part; kept only while such a compute exists
     enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, FIELDS, NTERM };
     bool ledger;
-    double taken[NTERM];
+    double energy_out[NTERM];
     // adds a power of the pair loops, which counts only in steps, not in setup
-    void tally(Term term, double power) { taken[term] += tally_dt * power; }
+    void tally(Term term, double power) { energy_out[term] += tally_dt * power; }
     void set_tally(double dt) { tally_dt = ledger ? dt : 0.0; }    // time that powers act for
 
     std::vector<std::string> effects_on;    // what is simulated, in words; from setup on

@@ -63,12 +63,12 @@ void FSISet::command(int narg, char **arg)
   }
   const double number = variable < 0 ? numeric(lmp, std::string("Fsi_set ") + arg[1], arg[2]) : 0.0;
 
-  FixFSI *hub = FixFSI::find(lmp, "Fsi_set");
+  FixFSI *fix_fsi = FixFSI::find(lmp, "Fsi_set");
 
   // materials, masses and gravity are entered in init()
   lmp->init();
-  hub->body_forces.evaluate();
-  if (hydrostatic && std::none_of(hub->body_forces.all.begin(), hub->body_forces.all.end(), [](const BodyForces::Field &f) { return f.mask; }))
+  fix_fsi->body_forces.evaluate();
+  if (hydrostatic && std::none_of(fix_fsi->body_forces.all.begin(), fix_fsi->body_forces.all.end(), [](const BodyForces::Field &f) { return f.mask; }))
     error->all(FLERR, "Fsi_set hydrostatic requires fix gravity");
 
   std::vector<double> each(atom->nlocal, number);
@@ -77,7 +77,7 @@ void FSISet::command(int narg, char **arg)
   bigint count = 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    const State &s = hub->state[atom->type[i]];
+    const State &s = fix_fsi->state[atom->type[i]];
     const double value = each[i];
     if (volume) {
       if (!(value > 0.0)) error->one(FLERR, "Fsi_set volume {} must be > 0", value);
@@ -88,7 +88,7 @@ void FSISet::command(int narg, char **arg)
     if (s.species == RIGID) continue;    // has its pressure from the fluid, and its mass
     double rho = value;
     if (hydrostatic) {
-      const auto g = hub->body_forces.on(i);
+      const auto g = fix_fsi->body_forces.on(i);
       const double *x = atom->x[i], size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
       if (size == 0.0) error->one(FLERR, "Fsi_set hydrostatic: no fix gravity acts on atom {}", atom->tag[i]);
       const double height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;

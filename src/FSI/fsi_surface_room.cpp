@@ -154,6 +154,6 @@ void SurfaceRoom::follow()
     const double stored = scene.ledger ? scene.stored(i) : 0.0;
     room[i][0] = 1.0 + has;
     atom->rho[i] = std::max(atom->rho[i] + (has - had) * state.rho0, atom->rmass[i] * scene.w0);
-    if (scene.ledger) scene.taken[Scene::DIFFUSION] += stored - scene.stored(i);
+    if (scene.ledger) scene.energy_out[Scene::DIFFUSION] += stored - scene.stored(i);
   }
 }

@@ -32,7 +32,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
-    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), hub(nullptr), alpha(0.0), beta(0.0), contact_range(1.0)
+    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr), alpha(0.0), beta(0.0), contact_range(1.0)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -111,13 +111,13 @@ void PairFSI::set_flags()
 void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
-  hub = FixFSI::find(lmp, "Pair style " + style);
-  hub->check_restart_ids();
+  fix_fsi = FixFSI::find(lmp, "Pair style " + style);
+  fix_fsi->check_restart_ids();
   if (force->pair_match(style, 1, 1) != force->pair_match(style, 1, 2))
     error->all(FLERR, "Pair style hybrid has {} more than once: one is for the materials of all atom types{}", style,
                style == "fsi/fluid" ? ", and a speed of sound of its own is keyword sound of a fluid in the material file" : "");
   for (int t = 1; t <= atom->ntypes; t++)
-    if (defines(material[t].species)) hub->enter_state(t, make_state(material[t]));
+    if (defines(material[t].species)) fix_fsi->enter_state(t, make_state(material[t]));
   if (needs_neighbors()) neighbor->add_request(this);
   else list = nullptr;    // that of an earlier run is gone
 }
@@ -161,7 +161,7 @@ bool PairFSI::several_bodies() const
 double PairFSI::init_one(int i, int j)
 {
   if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set: types {} and {}", i, j);
-  return handles(material[i].species, material[j].species) ? std::max(hub->resolution[i].cut, hub->resolution[j].cut) : 0.0;
+  return handles(material[i].species, material[j].species) ? std::max(fix_fsi->resolution[i].cut, fix_fsi->resolution[j].cut) : 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -183,8 +183,8 @@ void PairFSI::contact_row()
 
 void PairFSI::check_contact() const
 {
-  if (contact_range * hub->dx > hub->cut * (1.0 + 1.0e-12))
-    error->all(FLERR, "Pair style {} contact {} must not exceed the kernel's support, {:g} spacings", style, contact_range, hub->cut / hub->dx);
+  if (contact_range * fix_fsi->dx > fix_fsi->cut * (1.0 + 1.0e-12))
+    error->all(FLERR, "Pair style {} contact {} must not exceed the kernel's support, {:g} spacings", style, contact_range, fix_fsi->cut / fix_fsi->dx);
 }
 
 /* ----------------------------------------------------------------------

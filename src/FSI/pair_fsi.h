@@ -47,7 +47,7 @@ class PairFSI : public Pair, public FSI::Part {
  protected:
   const std::string style;    // for messages
   FSI::Keywords keywords;     // of settings()
-  class FixFSI *hub;
+  class FixFSI *fix_fsi;
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
   double alpha, beta;    // artificial/visc (fsi_viscosity_artificial.h)
   double contact_range;    // of solids, over dx (fsi_contact.h)

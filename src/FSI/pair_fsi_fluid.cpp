@@ -110,13 +110,13 @@ double PairFSIFluid::sound_of(const Material &m) const
 void PairFSIFluid::init_style()
 {
   PairFSI::init_style();
-  if (delta > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
+  if (delta > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
-  if (surfaces && hub->density_fluid != FixFSI::CONTINUITY)
+  if (surfaces && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Pair style fsi/fluid density/surface requires fix fsi with fluid continuity");
   if (surfaces && (tension || background != 0.0))
     error->all(FLERR, "Pair style fsi/fluid density/surface is for fluids with a free surface: without tension yes and background");
-  if (shifting > 0.0 && hub->density_fluid != FixFSI::CONTINUITY)
+  if (shifting > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Pair style fsi/fluid shift requires fix fsi with fluid continuity");
   if (laminar) {
     bool any = false;
@@ -132,14 +132,14 @@ void PairFSIFluid::init_style()
   if (solids_slip && (!laminar || !has_solids()) && comm->me == 0)
     error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
                    has_solids() ? "there is no laminar/visc" : "there is no solid");
-  loops = make_fluid_loops(hub->kernel, hub->dim, hub->h);
+  loops = make_fluid_loops(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h);
   shares.assign(atom->ntypes + 1, Share());
   finer = false;
   for (int t = 1; t <= atom->ntypes; t++) {
-    const double ratio = hub->dx_of(t) / hub->dx, per_h = hub->dx / hub->h;
+    const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx, per_h = fix_fsi->dx / fix_fsi->h;
     if (ratio == 1.0) continue;
     finer = true;
-    shares[t] = {hub->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h};
+    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h};
   }
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
@@ -181,7 +181,7 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
 
 int PairFSIFluid::nshift() const
 {
-  return hub->dim == 2 ? Shift<2>::ROW : Shift<3>::ROW;
+  return fix_fsi->dim == 2 ? Shift<2>::ROW : Shift<3>::ROW;
 }
 
 void PairFSIFluid::set_fields(Scene &scene)
@@ -196,19 +196,19 @@ void PairFSIFluid::set_fields(Scene &scene)
 
 void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 {
-  if (sticks_to_solids()) to_ghosts.add(hub->wall_velocity, 0, hub->dim, {SOLID});
-  if (sticks_to_solids()) back.add(beyond, 0, hub->dim + 1, {SOLID});
-  if (hub->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
-  if (shifting > 0.0) back.add(hub->shift, 0, 2 * hub->dim + 1, {FLUID, RIGID});
+  if (sticks_to_solids()) to_ghosts.add(fix_fsi->wall_velocity, 0, fix_fsi->dim, {SOLID});
+  if (sticks_to_solids()) back.add(beyond, 0, fix_fsi->dim + 1, {SOLID});
+  if (fix_fsi->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
+  if (shifting > 0.0) back.add(fix_fsi->shift, 0, 2 * fix_fsi->dim + 1, {FLUID, RIGID});
 }
 
 void PairFSIFluid::add_costs(Costs &costs) const
 {
-  const int newton = force->newton_pair, continuity = hub->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? 2 * hub->dim + 1 : 0;
-  costs.bytes += 8 * (2 * hub->dim + 4 + continuity + (ns ? nshift() : 0) + 2 * surfaces);
+  const int newton = force->newton_pair, continuity = fix_fsi->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? 2 * fix_fsi->dim + 1 : 0;
+  costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0) + 2 * surfaces);
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
-  if (sticks_to_solids()) costs.solid_ghost += hub->dim + newton * (hub->dim + 1);
+  if (sticks_to_solids()) costs.solid_ghost += fix_fsi->dim + newton * (fix_fsi->dim + 1);
 }
 
 void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
@@ -229,14 +229,14 @@ bool PairFSIFluid::add_rates(bool advance)
   fields.grow();
   const size_t nall = atom->nlocal + atom->nghost;
   if (rate) std::fill_n(rate, nall, 0.0);
-  if (shifting > 0.0 && nall) std::fill_n(hub->shift[0], nall * nshift(), 0.0);
-  const Phase phase(hub->profile, Profile::DENSITY);
+  if (shifting > 0.0 && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
+  const Phase phase(fix_fsi->profile, Profile::DENSITY);
   if (rate && advance) {
-    if (hub->dim == 2) add_density_rate<2>(update->dt);
+    if (fix_fsi->dim == 2) add_density_rate<2>(update->dt);
     else add_density_rate<3>(update->dt);
   }
   if (beyond) {
-    if (nall) std::fill_n(beyond[0], nall * (hub->dim + 1), 0.0);
+    if (nall) std::fill_n(beyond[0], nall * (fix_fsi->dim + 1), 0.0);
     add_velocities_at_solids();
   }
   return (rate && advance) || beyond;
@@ -244,7 +244,7 @@ bool PairFSIFluid::add_rates(bool advance)
 
 void PairFSIFluid::advance(bool advance)
 {
-  const Phase phase(hub->profile, Profile::DENSITY);
+  const Phase phase(fix_fsi->profile, Profile::DENSITY);
   if (beyond) extrapolate_velocities();
   if (!rate || !advance) return;
   advance_density();
@@ -260,17 +260,17 @@ void PairFSIFluid::advance_density()
 {
   double *const rho = atom->rho;
   const int *const type = atom->type;
-  const double dt = update->dt + hub->stagger;
+  const double dt = update->dt + fix_fsi->dt_offset;
   for (int i = 0; i < atom->nlocal; i++)
-    if (hub->state[type[i]].species == FLUID) rho[i] = std::max(rho[i] + dt * rate[i], atom->rmass[i] * hub->w0);
+    if (fix_fsi->state[type[i]].species == FLUID) rho[i] = std::max(rho[i] + dt * rate[i], atom->rmass[i] * fix_fsi->w0);
 }
 
 void PairFSIFluid::go_back()
 {
   if (!rate) return;
-  const double dt = update->dt + hub->stagger;
+  const double dt = update->dt + fix_fsi->dt_offset;
   for (int i = 0; i < atom->nlocal; i++)
-    if (hub->state[atom->type[i]].species == FLUID) atom->rho[i] -= dt * rate[i];
+    if (fix_fsi->state[atom->type[i]].species == FLUID) atom->rho[i] -= dt * rate[i];
 }
 
 /* ----------------------------------------------------------------------
@@ -280,13 +280,13 @@ void PairFSIFluid::go_back()
 void PairFSIFluid::find_rows()
 {
   const int *const type = atom->type, nlocal = atom->nlocal, nall = nlocal + atom->nghost;
-  const State *const state = hub->state.data();
+  const State *const state = fix_fsi->state.data();
   std::vector<int> fluid_types, other_types;
   for (int t = 1; t <= atom->ntypes; t++)
     if (state[t].species == FLUID) fluid_types.push_back(t);
     else if (state[t].species != NONE) other_types.push_back(t);
   guards.clear();
-  for (const auto &s : hub->state) guards.emplace_back(hub->dim, s.guard);
+  for (const auto &s : fix_fsi->state) guards.emplace_back(fix_fsi->dim, s.guard);
   for (auto &list_of : rows) list_of.clear();
 
   // neighbors of other species by fluid particle, whose row they may be in or not: counted, then filled in
@@ -343,8 +343,8 @@ void PairFSIFluid::find_rows()
 
 template <class Position> void PairFSIFluid::find_images(const Walls &walls, Position position)
 {
-  const int *const wmask = hub->wmask, *const type = atom->type, nlocal = atom->nlocal;
-  const double cutsq = hub->cut * hub->cut;
+  const int *const wmask = fix_fsi->wmask, *const type = atom->type, nlocal = atom->nlocal;
+  const double cutsq = fix_fsi->cut * fix_fsi->cut;
   const int n = walls.reflections.size();
   const bool finite = walls.finite();
   const auto sees = [&](int i, int j, int k) {
@@ -384,7 +384,7 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
 
 template <class Position, class Loop> void PairFSIFluid::for_images(const Walls &walls, Position position, Loop loop)
 {
-  if (!hub->wmask || !walls.any()) return;
+  if (!fix_fsi->wmask || !walls.any()) return;
   if (images_step != update->ntimestep || walls.finite()) find_images(walls, position);
   images_step = update->ntimestep;
   for (size_t k = 0; k < walls.reflections.size(); k++) {
@@ -398,7 +398,7 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 FluidParticles PairFSIFluid::particles_at(const double *points) const
 {
-  return {points, atom->type, hub->state.data(), atom->nlocal, shares.data(), finer, force->newton_pair != 0};
+  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, force->newton_pair != 0};
 }
 
 template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest rest)
@@ -432,32 +432,32 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   const double dth = 0.5 * dt;
   double **x = atom->x;
   const int *const type = atom->type;
-  const Walls walls = hub->walls.moved(-dth);
+  const Walls walls = fix_fsi->walls.moved(-dth);
   const FluidParticles particles = gather<D>(-dth, [&](int i, Point<D> &p) {
     // Diffusion smooths pressures, so both of a pair must have one. What has none, spray and surfaces, has the density that its few
     // neighbours leave: their exchange would empty the spray, beyond zero, and take volume from the rest.
     if (delta == 0.0) return;
-    const State &s = hub->state[type[i]];
+    const State &s = fix_fsi->state[type[i]];
     p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
-    p.pv2 = DensityDiffusion::hydrostatic(hub->body_forces.of_type[type[i]].data(), p.position(x[i]).data(), s.rho0 * s.inv_csq);
+    p.pv2 = DensityDiffusion::hydrostatic(fix_fsi->body_forces.of_type[type[i]].data(), p.position(x[i]).data(), s.rho0 * s.inv_csq);
   });
-  if (hub->ledger) {
+  if (fix_fsi->ledger) {
     pressure_over_density.resize(atom->nmax);
-    for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = hub->pressure(i) / atom->rho[i];
+    for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
   const RateLaws laws = {delta, pressure_over_density.data()};
-  double *const shift = shifting > 0.0 ? hub->shift[0] : nullptr;
+  double *const shift = shifting > 0.0 ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror) {
-    loops->rates(kinds[kind], which, mirror, particles, laws, rate, hub->ledger ? &sums : nullptr);
-    if (shift) loops->shifts(kinds[kind], which, mirror, particles, hub->wdx, shift);
+    loops->rates(kinds[kind], which, mirror, particles, laws, rate, fix_fsi->ledger ? &sums : nullptr);
+    if (shift) loops->shifts(kinds[kind], which, mirror, particles, fix_fsi->wdx, shift);
   };
   for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind].rows, nullptr);
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(walls, [&](int i) { return point[i].position(x[i]); },
              [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { loop(kind, which, mirror); });
-  hub->tally(FixFSI::DIFFUSION, sums.diffusion);
+  fix_fsi->tally(FixFSI::DIFFUSION, sums.diffusion);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -465,13 +465,13 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
 void PairFSIFluid::displacements(double dt)
 {
   const int *const type = atom->type;
-  double *const *const sums = hub->shift;
+  double *const *const sums = fix_fsi->shift;
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = hub->state[type[i]];
+    const State &s = fix_fsi->state[type[i]];
     if (s.species != FLUID) continue;
     const double reach = shifting * s.c * dt;
-    if (hub->dim == 2) Shift<2>::displacement(sums[i], reach * hub->h, 0.25 * reach);
-    else Shift<3>::displacement(sums[i], reach * hub->h, 0.25 * reach);
+    if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], reach * fix_fsi->h, 0.25 * reach);
+    else Shift<3>::displacement(sums[i], reach * fix_fsi->h, 0.25 * reach);
   }
 }
 
@@ -483,7 +483,7 @@ template <class Sum> void PairFSIFluid::distance_sums(bool others_too, Sum sum)
   const auto both = [&](int kind) { return kind == FLUIDS || others_too; };
   for (int kind = 0; kind < NROWS; kind++) sum(kinds[kind], rows[kind].rows, both(kind), nullptr);
   double **x = atom->x;
-  for_images(hub->walls, [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
+  for_images(fix_fsi->walls, [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
              [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { sum(kinds[kind], which, both(kind), mirror); });
 }
 
@@ -507,7 +507,7 @@ void PairFSIFluid::add_position_divergence(double *div)
 
 void PairFSIFluid::add_gradient_sum(double *s)
 {
-  if (hub->dim == 2) add_gradients<2>(s);
+  if (fix_fsi->dim == 2) add_gradients<2>(s);
   else add_gradients<3>(s);
 }
 
@@ -517,10 +517,10 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
   constexpr int ROW = Shift<D>::ROW;
   const size_t nall = atom->nlocal + atom->nghost;
   const int *const type = atom->type;
-  const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) { p.vol = 1.0 / hub->resolution[type[i]].psi_bulk; });
+  const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) { p.vol = 1.0 / fix_fsi->resolution[type[i]].psi_bulk; });
   std::vector<double> sums(ROW * nall, 0.0);
   distance_sums(false, [&](PairKind kind, const std::vector<Row> &which, bool, const Mirror *mirror) {
-    loops->shifts(kind, which, mirror, particles, hub->wdx, sums.data());
+    loops->shifts(kind, which, mirror, particles, fix_fsi->wdx, sums.data());
   });
   for (size_t i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d];
@@ -530,9 +530,9 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
 
 void PairFSIFluid::add_velocities_at_solids()
 {
-  const int dim = hub->dim;
+  const int dim = fix_fsi->dim;
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
-  with_kernel(hub->kernel, dim, hub->h, [&](const auto &kernel) {
+  with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
     for (const Row &row : rows[SOLIDS].rows)
       for (int k = 0; k < row.n; k++) {
         const int i = row.i, j = row.j[k];
@@ -553,11 +553,11 @@ void PairFSIFluid::add_velocities_at_solids()
 
 void PairFSIFluid::extrapolate_velocities()
 {
-  const int dim = hub->dim;
+  const int dim = fix_fsi->dim;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (hub->state[atom->type[i]].species != SOLID) continue;
+    if (fix_fsi->state[atom->type[i]].species != SOLID) continue;
     const double *const s = beyond[i], *const v = atom->v[i];
-    for (int d = 0; d < dim; d++) hub->wall_velocity[i][d] = s[dim] > 0.0 ? 2.0 * v[d] - s[d] / s[dim] : v[d];
+    for (int d = 0; d < dim; d++) fix_fsi->wall_velocity[i][d] = s[dim] > 0.0 ? 2.0 * v[d] - s[d] / s[dim] : v[d];
   }
 }
 
@@ -565,15 +565,15 @@ void PairFSIFluid::extrapolate_velocities()
 
 void PairFSIFluid::compute(int eflag, int vflag)
 {
-  const Phase phase(hub->profile, Profile::FLUID);
+  const Phase phase(fix_fsi->profile, Profile::FLUID);
   ev_init(eflag, vflag);
   check_tally();
 
   for (auto *measure : force_computes) measure->tally(-1.0);
-  hub->dim == 2 ? compute_forces<2>() : compute_forces<3>();
+  fix_fsi->dim == 2 ? compute_forces<2>() : compute_forces<3>();
   for (auto *measure : force_computes) measure->tally(1.0);
 
-  if (vflag_fdotr && !hub->walls.any()) virial_fdotr_compute();
+  if (vflag_fdotr && !fix_fsi->walls.any()) virial_fdotr_compute();
 }
 
 /* ----------------------------------------------------------------------
@@ -591,21 +591,21 @@ template <int D> void PairFSIFluid::compute_forces()
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
   // newton off, or a hybrid style with solids that need it, or images, which are no particles: like LAMMPS' own walls they do not count
   // in the virial, and forces times positions would have them
-  const bool tally_pairs = vflag_fdotr ? hub->walls.any() : evflag != 0;
-  const bool own_pressure = surface_ratio > 0.0 || hub->wall_stiffness;
+  const bool tally_pairs = vflag_fdotr ? fix_fsi->walls.any() : evflag != 0;
+  const bool own_pressure = surface_ratio > 0.0 || fix_fsi->wall_stiffness;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
-    p.p = own_pressure ? hub->pressure(i) : hub->state[type[i]].pressure(p.rho);
+    p.p = own_pressure ? fix_fsi->pressure(i) : fix_fsi->state[type[i]].pressure(p.rho);
     p.pv2 = p.p * p.vol * p.vol;
   });
 
-  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? hub->body_forces.of_type.data() : nullptr, hub->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
-                    FixFSI::rows(hub->wall_velocity ? hub->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr};
-  PairSums sums, *const of_pairs = hub->ledger || tally_pairs ? &sums : nullptr;
+  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr, fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
+                    FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr};
+  PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   for (int kind = 0; kind < NROWS; kind++)
     loops->forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, forces.data(), nullptr, of_pairs);
 
-  const Walls &walls = hub->walls;
+  const Walls &walls = fix_fsi->walls;
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(walls, [&](int i) { return point[i].position(x[i]); },
              [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &s) {
@@ -615,7 +615,7 @@ template <int D> void PairFSIFluid::compute_forces()
                  int w = s.w[0];
                  for (int k = 1; k < s.n; k++)
                    if (walls.wall[s.w[k]].axis == d) w = s.w[k];
-                 hub->add_wall_force(w, d, total[d]);
+                 fix_fsi->add_wall_force(w, d, total[d]);
                }
              });
 
@@ -624,10 +624,10 @@ template <int D> void PairFSIFluid::compute_forces()
   auto *const f = FixFSI::rows(atom->f);
   for (int i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) f[i][d] += forces[ROW * i + d];
-  hub->tally(FixFSI::ARTIFICIAL, sums.artificial);
-  hub->tally(FixFSI::LAMINAR, sums.laminar);
-  hub->tally(FixFSI::COUPLING, sums.coupling);
-  hub->tally(FixFSI::WALLS, sums.walls);
+  fix_fsi->tally(FixFSI::ARTIFICIAL, sums.artificial);
+  fix_fsi->tally(FixFSI::LAMINAR, sums.laminar);
+  fix_fsi->tally(FixFSI::COUPLING, sums.coupling);
+  fix_fsi->tally(FixFSI::WALLS, sums.walls);
   if (tally_pairs && (vflag_global || vflag_fdotr))
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
@@ -649,7 +649,7 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
   for (const int kind : {WALLS, SOLIDS}) loops->forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
-  for_images(hub->walls, [&](int i) { return point[i].position(atom->x[i]); },
+  for_images(fix_fsi->walls, [&](int i) { return point[i].position(atom->x[i]); },
              [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) {
                double unused[D] = {};
                if (kind == SOLIDS) loops->forces(kinds[kind], which, mirror, particles, laws, viscous_forces.data(), unused, nullptr);

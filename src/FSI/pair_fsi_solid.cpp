@@ -86,12 +86,12 @@ void PairFSISolid::init_style()
   check_contact();
   fix_stress = FixFSIStress::find(lmp);
   if (!fix_stress) error->all(FLERR, "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
-  comm_forward = has_hourglass() ? hub->dim * hub->dim : 0;
-  comm_reverse = has_hourglass() ? hub->dim : 0;
+  comm_forward = has_hourglass() ? fix_fsi->dim * fix_fsi->dim : 0;
+  comm_reverse = has_hourglass() ? fix_fsi->dim : 0;
   const bool bodies = several_bodies();
   const int flags = (has_artificial() ? ARTIFICIAL_VISCOSITY : 0) | (epsilon > 0.0 ? ARTIFICIAL_STRESS : 0) |
       (bodies ? BODIES : 0) | (modify->get_compute_by_style("^fsi/energy$").empty() ? 0 : LEDGER);
-  with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &k) {
+  with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, [&](const auto &k) {
     using K = std::decay_t<decltype(k)>;
     if (gradient == PLAIN) select<K, 0>(flags);
     else if (gradient == CORRECTED_LINEAR) select<K, K::DIM>(flags);
@@ -135,7 +135,7 @@ void *PairFSISolid::extract(const char *name, int &dim_of_extract)
 
 int PairFSISolid::ngrad() const
 {
-  const int dim = hub->dim, n = terms();
+  const int dim = fix_fsi->dim, n = terms();
   return n == 0 ? dim * dim : dim * n + 2 * packed_size(n);
 }
 
@@ -146,7 +146,7 @@ void PairFSISolid::set_fields(Scene &)
 
 void PairFSISolid::add_messages(Message &to_ghosts, Message &back)
 {
-  const int dim = hub->dim;
+  const int dim = fix_fsi->dim;
   to_ghosts.add(fix_stress->stress, 0, dim == 2 ? 3 : 6, {SOLID});
   to_ghosts.add(grad, dim * dim, dim * terms(), {SOLID});
   back.add(grad, 0, ngrad(), {SOLID});
@@ -154,7 +154,7 @@ void PairFSISolid::add_messages(Message &to_ghosts, Message &back)
 
 void PairFSISolid::add_costs(Costs &costs) const
 {
-  const int dim = hub->dim, newton = force->newton_pair, hourglass = has_hourglass();
+  const int dim = fix_fsi->dim, newton = force->newton_pair, hourglass = has_hourglass();
   costs.bytes += 8 * ngrad();
   costs.arrays += ", velocity gradient";
   costs.sums = true;
@@ -175,7 +175,7 @@ bool PairFSISolid::add_rates(bool advance)
   fields.grow();
   any_gradient = advance || terms();
   if (!any_gradient) return false;
-  const Phase phase(hub->profile, Profile::STRESS);
+  const Phase phase(fix_fsi->profile, Profile::STRESS);
   const size_t nall = atom->nlocal + atom->nghost;
   if (nall) std::fill_n(grad[0], nall * ngrad(), 0.0);
   velocity_gradient(advance ? update->dt : 0.0);
@@ -185,8 +185,8 @@ bool PairFSISolid::add_rates(bool advance)
 void PairFSISolid::advance(bool advance)
 {
   if (!any_gradient) return;
-  const Phase phase(hub->profile, Profile::STRESS);
-  const int dim = hub->dim;
+  const Phase phase(fix_fsi->profile, Profile::STRESS);
+  const int dim = fix_fsi->dim;
   if (terms() == 0) dim == 2 ? advance_stress<2, 0>(advance) : advance_stress<3, 0>(advance);
   else if (terms() == dim) dim == 2 ? advance_stress<2, 2>(advance) : advance_stress<3, 3>(advance);
   else dim == 2 ? advance_stress<2, 5>(advance) : advance_stress<3, 9>(advance);
@@ -201,9 +201,9 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
 {
   double *rho = atom->rho;
   const int *const type = atom->type;
-  const double dt = update->dt + hub->stagger;
+  const double dt = update->dt + fix_fsi->dt_offset;
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = hub->state[type[i]];
+    const State &s = fix_fsi->state[type[i]];
     if (s.species != SOLID) continue;
     double *L = grad[i];
     if constexpr (TERMS > 0) {
@@ -217,19 +217,19 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
       for (int a = 0; a < D; a++)
         for (int b = 0; b < D; b++)
           for (int k = 0; k < TERMS; k++) full[a * D + b] += L[a * TERMS + k] * C[b * TERMS + k];
-      const double inv = 1.0 / hub->h;
+      const double inv = 1.0 / fix_fsi->h;
       for (int k = 0; k < D * D; k++) L[k] = full[k] * inv;
       for (int k = 0; k < D * TERMS; k++) L[D * D + k] = force_C[k] * inv;
     }
     if (!advance) continue;
     const double work = fix_stress->advance_stress<D>(i, L, dt, s);
-    if (hub->density_solid == FixFSI::CONTINUITY) {
+    if (fix_fsi->density_solid == FixFSI::CONTINUITY) {
       double div = 0.0;
       for (int a = 0; a < D; a++) div += L[a * D + a];
       // d rho/dt = -rho div v, centred: second order, and positive for any step
       rho[i] *= (1.0 - 0.5 * dt * div) / (1.0 + 0.5 * dt * div);
     }
-    if (hub->ledger) {
+    if (fix_fsi->ledger) {
       // what the strain stores; what the pair forces deliver, with the same stress and velocity, is taken off in
       // force_pairs(): their difference is what the gradient's correction costs
       auto sigma = Sym<D>::load(fix_stress->stress[i]);
@@ -237,8 +237,8 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
       double power = 0.0;
       for (int a = 0; a < D; a++)
         for (int b = 0; b < D; b++) power += sigma(a, b) * L[a * D + b];
-      hub->tally(FixFSI::GRADIENT, -power * atom->rmass[i] / rho[i]);
-      hub->taken[FixFSI::PLASTIC] += work * atom->rmass[i] / rho[i];
+      fix_fsi->tally(FixFSI::GRADIENT, -power * atom->rmass[i] / rho[i]);
+      fix_fsi->energy_out[FixFSI::PLASTIC] += work * atom->rmass[i] / rho[i];
     }
   }
 }
@@ -247,12 +247,12 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
 
 void PairFSISolid::go_back()
 {
-  if (hub->density_solid != FixFSI::CONTINUITY) return;
-  const double dt = update->dt + hub->stagger;
+  if (fix_fsi->density_solid != FixFSI::CONTINUITY) return;
+  const double dt = update->dt + fix_fsi->dt_offset;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (hub->state[atom->type[i]].species != SOLID) continue;
+    if (fix_fsi->state[atom->type[i]].species != SOLID) continue;
     double div = 0.0;
-    for (int k = 0; k < hub->dim; k++) div += grad[i][k * (hub->dim + 1)];
+    for (int k = 0; k < fix_fsi->dim; k++) div += grad[i][k * (fix_fsi->dim + 1)];
     atom->rho[i] *= (1.0 + 0.5 * dt * div) / (1.0 - 0.5 * dt * div);
   }
 }
@@ -285,13 +285,13 @@ static inline void add_moments(const double *phi, double wi, double wj, double *
 template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(double dt)
 {
   constexpr int D = K::DIM;
-  const K kernel(hub->h);
+  const K kernel(fix_fsi->h);
   const double dth = 0.5 * dt, hinv = kernel.hinv;
   double **x = atom->x;
   double **v = atom->v;
   const double *const rmass = atom->rmass;
   const int *const type = atom->type;
-  const State *const state = hub->state.data();
+  const State *const state = fix_fsi->state.data();
   const tagint *const molecule = atom->molecule;
   double **grad = this->grad;
 
@@ -356,11 +356,11 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
 
 void PairFSISolid::advance_hourglass(double dt)
 {
-  const int dim = hub->dim;
-  forward_comm(hub->profile, comm, this);
+  const int dim = fix_fsi->dim;
+  forward_comm(fix_fsi->profile, comm, this);
   hourglass_rate.assign((size_t) (atom->nlocal + atom->nghost) * dim, 0.0);
-  with_kernel(hub->kernel, dim, hub->h, [&](const auto &k) { hourglass_pairs<std::decay_t<decltype(k)>>(dt); });
-  if (force->newton_pair) reverse_comm(hub->profile, comm, this);
+  with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &k) { hourglass_pairs<std::decay_t<decltype(k)>>(dt); });
+  if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
   if (dim == 2) rotate_hourglass<2>(dt);
   else rotate_hourglass<3>(dt);
 }
@@ -368,13 +368,13 @@ void PairFSISolid::advance_hourglass(double dt)
 template <class K> void PairFSISolid::hourglass_pairs(double dt)
 {
   constexpr int D = K::DIM;
-  const K kernel(hub->h);
+  const K kernel(fix_fsi->h);
   const Hourglass hourglass{xi};
   double **x = atom->x;
   double **v = atom->v;
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
-  const State *const state = hub->state.data();
+  const State *const state = fix_fsi->state.data();
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
     const State &si = state[type[i]];
@@ -450,7 +450,7 @@ void PairFSISolid::add_number_density(double *psi, bool all_bodies)
 {
   double **x = atom->x;
   const tagint *const molecule = atom->molecule;
-  with_kernel(hub->kernel, hub->dim, hub->h, [&](const auto &kernel) {
+  with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, [&](const auto &kernel) {
     for (int ii = 0; ii < list->inum; ii++) {
       const int i = list->ilist[ii];
       for (int jj = 0; jj < list->numneigh[i]; jj++) {
@@ -471,7 +471,7 @@ void PairFSISolid::add_number_density(double *psi, bool all_bodies)
 
 void PairFSISolid::compute(int eflag, int vflag)
 {
-  const Phase phase(hub->profile, Profile::SOLID);
+  const Phase phase(fix_fsi->profile, Profile::SOLID);
   ev_init(eflag, vflag);
   check_tally();
   (this->*force_loop)();
@@ -480,7 +480,7 @@ void PairFSISolid::compute(int eflag, int vflag)
     for (int i = 0; i < atom->nlocal; i++) {
       if (material[atom->type[i]].species != SOLID) continue;
       const double *q = fix_stress->hourglass_force(i);
-      for (int d = 0; d < hub->dim; d++) f[i][d] += q[d];
+      for (int d = 0; d < fix_fsi->dim; d++) f[i][d] += q[d];
     }
   }
   if (vflag_fdotr) virial_fdotr_compute();
@@ -492,12 +492,12 @@ void PairFSISolid::compute(int eflag, int vflag)
 
 template <int D, int TERMS> const std::vector<PairFSISolid::Aux<D>> &PairFSISolid::fill_aux()
 {
-  const State *const state = hub->state.data();
+  const State *const state = fix_fsi->state.data();
   const int *const type = atom->type;
   const double *const rho = atom->rho, *const rmass = atom->rmass;
   double **S = fix_stress->stress;
   const int nall = atom->nlocal + atom->nghost;
-  const ArtificialStress artificial(epsilon, hub->wdx);
+  const ArtificialStress artificial(epsilon, fix_fsi->wdx);
 
   auto &aux = get_aux<D>();
   if ((int) aux.size() < nall) aux.resize(atom->nmax);
@@ -507,7 +507,7 @@ template <int D, int TERMS> const std::vector<PairFSISolid::Aux<D>> &PairFSISoli
     a.rho = rho[i];
     a.vol = rmass[i] / rho[i];
     const double v2 = a.vol * a.vol;
-    a.pv2 = hub->pressure(i) * v2;
+    a.pv2 = fix_fsi->pressure(i) * v2;
     a.stress = Sym<D>::load(S[i]);
     a.stress *= v2;
     a.stress += Sym<D>::identity(-a.pv2);
@@ -561,7 +561,7 @@ static void subtract_corrected(const Aux &ai, const Aux &aj, double wi, double w
 template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
 {
   constexpr int D = K::DIM;
-  const K kernel(hub->h);
+  const K kernel(fix_fsi->h);
   double **x = atom->x, **v = atom->v, **f = atom->f;
   const double *const rmass = atom->rmass;
   const int *const type = atom->type;
@@ -569,10 +569,10 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
   const bool tally_pairs = evflag && !vflag_fdotr;    // newton off
-  const State *const state = hub->state.data();
-  const ArtificialViscosity viscosity(alpha, beta, hub->h);
-  const ArtificialStress artificial(epsilon, hub->wdx);
-  const Contact contact(D, hub->dx, contact_range);
+  const State *const state = fix_fsi->state.data();
+  const ArtificialViscosity viscosity(alpha, beta, fix_fsi->h);
+  const ArtificialStress artificial(epsilon, fix_fsi->wdx);
+  const Contact contact(D, fix_fsi->dx, contact_range);
 
   const auto &aux = fill_aux<D, TERMS>();
 
@@ -610,8 +610,8 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
           t += R;
           if (FLAGS & LEDGER) {
             const double power = contract<D>(R, xij, v[i], v[j]);
-            hub->tally(FixFSI::STRESS, -share(j) * g * power);
-            hub->tally(FixFSI::GRADIENT, share(j) * g * power);
+            fix_fsi->tally(FixFSI::STRESS, -share(j) * g * power);
+            fix_fsi->tally(FixFSI::GRADIENT, share(j) * g * power);
           }
         }
       }
@@ -623,7 +623,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       if (FLAGS & LEDGER) {
         double power = 0.0;
         for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (v[i][d] - v[j][d]);
-        hub->tally(FixFSI::GRADIENT, -share(j) * power);
+        fix_fsi->tally(FixFSI::GRADIENT, -share(j) * power);
       }
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
         double vdotx = 0.0;
@@ -631,7 +631,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
         const double q = viscosity(vdotx, rsq, 0.5 * (ai.rho + aj.rho), 0.5 * (state[type[i]].c + state[type[j]].c),
                                    ai.vol * aj.vol);
         for (int d = 0; d < D; d++) tx[d] -= q * xij[d];
-        if (FLAGS & LEDGER) hub->tally(FixFSI::ARTIFICIAL, share(j) * q * g * vdotx);
+        if (FLAGS & LEDGER) fix_fsi->tally(FixFSI::ARTIFICIAL, share(j) * q * g * vdotx);
       }
       for (int d = 0; d < D; d++) {
         tx[d] *= g;

@@ -119,7 +119,7 @@ void PairFSISolidTL::init_style()
 {
   PairFSI::init_style();
   check_contact();
-  const int dim = hub->dim;
+  const int dim = fix_fsi->dim;
   if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
   if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
   refuse_constraints();
@@ -156,19 +156,19 @@ void PairFSISolidTL::refuse_constraints() const
   static const char *const styles[] = {"setforce", "aveforce", "lineforce", "planeforce", "freeze", "manifoldforce", "damping/cundall",
                                        "shake", "rattle"};
   auto dt = modify->get_fix_by_style("^fsi/dt$");
-  if (hub->substeps == 1 && (dt.empty() || !dynamic_cast<FixFSIDt *>(dt[0])->chooses_substeps())) return;
+  if (fix_fsi->substeps == 1 && (dt.empty() || !dynamic_cast<FixFSIDt *>(dt[0])->chooses_substeps())) return;
   for (auto &fix : modify->get_fix_list())
     for (const char *style : styles) {
       const std::string name = style;
       if (fix->style != name && !utils::strmatch(fix->style, "^" + name + "/")) continue;
       tagint mine = MAXTAGINT, first;
       for (int i = 0; i < atom->nlocal; i++)
-        if (material[atom->type[i]].species == SOLID && atom->mask[i] & hub->groupbit && atom->mask[i] & fix->groupbit)
+        if (material[atom->type[i]].species == SOLID && atom->mask[i] & fix_fsi->groupbit && atom->mask[i] & fix->groupbit)
           mine = std::min(mine, atom->tag[i]);
       MPI_Allreduce(&mine, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
       if (first < MAXTAGINT)
         error->all(FLERR, "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see forces inside the solid: to hold "
-                          "particles leave them out of the group of fix {}", fix->id, fix->style, first, hub->id);
+                          "particles leave them out of the group of fix {}", fix->id, fix->style, first, fix_fsi->id);
     }
 }
 
@@ -185,14 +185,14 @@ const std::vector<int> &PairFSISolidTL::solids() const
 
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
-  const Phase phase(hub->profile, Profile::SOLID);
+  const Phase phase(fix_fsi->profile, Profile::SOLID);
   ev_init(eflag, vflag);
   check_tally();
-  if (hub->substeps > 1 && !update->setupflag) return;
+  if (fix_fsi->substeps > 1 && !update->setupflag) return;
   internal_forces();
   double **f = atom->f;
   for (const int i : reference->solids)
-    for (int d = 0; d < hub->dim; d++) f[i][d] += fsolid[i][d];
+    for (int d = 0; d < fix_fsi->dim; d++) f[i][d] += fsolid[i][d];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -202,22 +202,22 @@ void PairFSISolidTL::internal_forces()
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
     memory->destroy(fsolid);
-    memory->create(fsolid, nmax, row_of_bond_forces(hub->dim), "pair:fsolid");
+    memory->create(fsolid, nmax, row_of_bond_forces(fix_fsi->dim), "pair:fsolid");
   }
   for (const auto *set : {&reference->solids, &reference->ghosts})
-    for (const int i : *set) std::fill_n(fsolid[i], hub->dim, 0.0);
+    for (const int i : *set) std::fill_n(fsolid[i], fix_fsi->dim, 0.0);
   const auto forces_of = [&](auto law_of) {
     using L = decltype(law_of);
-    hub->dim == 2 ? bond_forces<L, 2>() : bond_forces<L, 3>();
+    fix_fsi->dim == 2 ? bond_forces<L, 2>() : bond_forces<L, 3>();
   };
   if (law == SVK) forces_of(svk[0]);
   else if (law == NEOHOOKEAN) forces_of(neohookean[0]);
   else forces_of(hypo[0]);
   if (list) {
-    if (hub->dim == 2) contact_forces<2>();
+    if (fix_fsi->dim == 2) contact_forces<2>();
     else contact_forces<3>();
   }
-  exchange(hub->profile, comm, this, true, [this]() { reference->swaps.reverse(this); }, reference->swaps.skip_empty());
+  exchange(fix_fsi->profile, comm, this, true, [this]() { reference->swaps.reverse(this); }, reference->swaps.skip_empty());
 }
 
 /* ----------------------------------------------------------------------
@@ -230,7 +230,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
   constexpr int NP = row_of_points(D), ALL = HOURGLASS | VISCOSITY | SUMS;
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   const int *const type = atom->type;
-  const State *const state = hub->state.data();
+  const State *const state = fix_fsi->state.data();
   if (points.size() < (size_t) NP * atom->nmax) points.assign((size_t) NP * atom->nmax, 0.0);
   for (const auto *set : {&reference->solids, &reference->ghosts})
     for (const int i : *set)
@@ -246,14 +246,14 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
     if (reference->count(i) == 0) continue;    // torn off by damage
     if (!only_on_held.empty() && only_on_held[i]) continue;
     rows.push_back({i, reference->count(i), reference->partners(i), reference->values(i), atom->rmass[i] / s.rho0 * reference->weight(i),
-                    zeta * material[type[i]].young, hub->h_of(type[i])});
+                    zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
   }
 
   BondSums sums;
   const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr, alpha, beta, one_material, &sums};
   const L *const law_of = laws<L>();
   auto *const f = reinterpret_cast<double(*)[row_of_bond_forces(D)]>(fsolid ? fsolid[0] : nullptr);
-  const int flags = hub->ledger || vflag_global ? ALL : (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
+  const int flags = fix_fsi->ledger || vflag_global ? ALL : (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
   with_flags<ALL>(flags, [&](auto which) {
     // with sums there is one loop for all effects: those that are off have coefficients of zero
     if constexpr (!(which() & SUMS) || which() == ALL)
@@ -261,7 +261,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
                one_material || !has_artificial());
   });
   strain_energy = sums.energy;
-  hub->tally(FixFSI::ARTIFICIAL, sums.artificial);
+  fix_fsi->tally(FixFSI::ARTIFICIAL, sums.artificial);
   if (vflag_global)
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
@@ -275,11 +275,11 @@ template <int D> void PairFSISolidTL::contact_forces()
   double **x = atom->x;
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
-  const State *const state = hub->state.data();
+  const State *const state = fix_fsi->state.data();
   const int ntypes = atom->ntypes;
   std::vector<Contact> contacts;    // by both types
   for (int a = 0; a <= ntypes; a++)
-    for (int b = 0; b <= ntypes; b++) contacts.emplace_back(D, spacing_between(hub->resolution[a], hub->resolution[b]), contact_range);
+    for (int b = 0; b <= ntypes; b++) contacts.emplace_back(D, spacing_between(fix_fsi->resolution[a], fix_fsi->resolution[b]), contact_range);
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
   for (int ii = 0; ii < list->inum; ii++) {
@@ -338,8 +338,8 @@ template <int D> void PairFSISolidTL::deformation(int i, double *F) const
 void PairFSISolidTL::advance_stress(double dt)
 {
   if (law != HYPO) return;
-  const Phase phase(hub->profile, Profile::STRESS);
-  if (hub->dim == 2) advance_stress_of_all<2>(dt);
+  const Phase phase(fix_fsi->profile, Profile::STRESS);
+  if (fix_fsi->dim == 2) advance_stress_of_all<2>(dt);
   else advance_stress_of_all<3>(dt);
 }
 
@@ -368,9 +368,9 @@ template <int D> void PairFSISolidTL::advance_stress_of_all(double dt)
     for (int a = 0; a < D; a++)
       for (int c = 0; c < D; c++)
         for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
-    const State &s = hub->state[atom->type[i]];
+    const State &s = fix_fsi->state[atom->type[i]];
     const double work = fix_stress->advance_stress<D>(i, L, dt, s);
-    if (hub->ledger) hub->taken[FixFSI::PLASTIC] += work * atom->rmass[i] / s.rho0;
+    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::PLASTIC] += work * atom->rmass[i] / s.rho0;
   }
 }
 
@@ -379,7 +379,7 @@ template <int D> void PairFSISolidTL::advance_stress_of_all(double dt)
 void PairFSISolidTL::break_bonds()
 {
   if (damage <= 0.0) return;
-  const Phase phase(hub->profile, Profile::STRESS);
+  const Phase phase(fix_fsi->profile, Profile::STRESS);
   reference->break_bonds(1.0 + damage);
 }
 
@@ -387,7 +387,7 @@ double PairFSISolidTL::volume_ratio(int i) const
 {
   if (reference->count(i) == 0) return 1.0;
   double F[9];
-  if (hub->dim == 2) {
+  if (fix_fsi->dim == 2) {
     deformation<2>(i, F);
     return determinant<2>(F);
   }
@@ -424,7 +424,7 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
     if (D == 2) s.sigma[2] = piola.zz / s.J;
     return s;
   };
-  return hub->dim == 2 ? evaluate(std::integral_constant<int, 2>()) : evaluate(std::integral_constant<int, 3>());
+  return fix_fsi->dim == 2 ? evaluate(std::integral_constant<int, 2>()) : evaluate(std::integral_constant<int, 3>());
 }
 
 double PairFSISolidTL::Stress::von_mises() const
@@ -440,12 +440,12 @@ double PairFSISolidTL::Stress::von_mises() const
 
 void PairFSISolidTL::forward_positions()
 {
-  exchange(hub->profile, comm, this, false, [this]() { reference->swaps.forward(this); }, reference->swaps.skip_empty());
+  exchange(fix_fsi->profile, comm, this, false, [this]() { reference->swaps.forward(this); }, reference->swaps.skip_empty());
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
 {
-  const int dim = hub->dim;
+  const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
   const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0, pbc_flag ? pbc[1] * domain->yprd : 0.0,
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
@@ -460,7 +460,7 @@ int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_f
 
 void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
-  const int dim = hub->dim;
+  const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
   for_solids(n, nullptr, first, [&](int i) {
     for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
@@ -473,7 +473,7 @@ int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 {
   int m = 0;
   for_solids(n, nullptr, first, [&](int i) {
-    for (int d = 0; d < hub->dim; d++) buf[m++] = fsolid[i][d];
+    for (int d = 0; d < fix_fsi->dim; d++) buf[m++] = fsolid[i][d];
   });
   return m;
 }
@@ -481,7 +481,7 @@ int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
   for_solids(n, listed, 0, [&](int i) {
-    for (int d = 0; d < hub->dim; d++) fsolid[i][d] += *buf++;
+    for (int d = 0; d < fix_fsi->dim; d++) fsolid[i][d] += *buf++;
   });
 }
 
@@ -493,9 +493,9 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 
 void PairFSISolidTL::integrate_substeps()
 {
-  Profile *const profile = hub->profile;
+  Profile *const profile = fix_fsi->profile;
   const Phase phase(profile, Profile::SOLID);
-  const int dim = hub->dim, substeps = hub->substeps;
+  const int dim = fix_fsi->dim, substeps = fix_fsi->substeps;
   double **x = atom->x;
   double **v = atom->v;
   double **f = atom->f;
@@ -504,7 +504,7 @@ void PairFSISolidTL::integrate_substeps()
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
   std::vector<int> moving, held;
   for (const int i : solids())
-    if (atom->mask[i] & hub->groupbit) moving.push_back(i);
+    if (atom->mask[i] & fix_fsi->groupbit) moving.push_back(i);
     else if (profile) held.push_back(i);
   const auto hold = [&](double t) {
     for (const int i : held)
@@ -515,9 +515,9 @@ void PairFSISolidTL::integrate_substeps()
     for (const int i : moving)
       for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
   };
-  hub->set_tally(dt);
-  hub->check.before_substeps(solids());
-  if (!hub->ledger) find_only_on_held();
+  fix_fsi->set_tally(dt);
+  fix_fsi->check.before_substeps(solids());
+  if (!fix_fsi->ledger) find_only_on_held();
   drift(back);
   for (int n = 0; n < substeps; n++) {
     if (n + 1 == substeps) only_on_held.clear();
@@ -534,7 +534,7 @@ void PairFSISolidTL::integrate_substeps()
     hold(dt);
     drift(dth);
   }
-  hub->check.after_substeps();
+  fix_fsi->check.after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
   if (force->pair != this)
@@ -545,7 +545,7 @@ void PairFSISolidTL::integrate_substeps()
 
 void PairFSISolidTL::find_only_on_held()
 {
-  const int *const mask = atom->mask, groupbit = hub->groupbit;
+  const int *const mask = atom->mask, groupbit = fix_fsi->groupbit;
   only_on_held.assign(atom->nlocal, 0);
   for (const int i : reference->solids) {
     if (mask[i] & groupbit) continue;
@@ -560,7 +560,7 @@ void PairFSISolidTL::advance(bool advance)
 {
   if (!advance) return;
   break_bonds();
-  if (hub->substeps == 1) advance_stress(update->dt);
+  if (fix_fsi->substeps == 1) advance_stress(update->dt);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -577,8 +577,8 @@ void *PairFSISolidTL::extract(const char *name, int &dim_of_extract)
 
 void PairFSISolidTL::add_costs(Costs &costs) const
 {
-  const int n = hub->substeps;
-  costs.solid_ghost += n * hub->dim + (n > 1 ? n * comm_forward : 0);
+  const int n = fix_fsi->substeps;
+  costs.solid_ghost += n * fix_fsi->dim + (n > 1 ? n * comm_forward : 0);
   costs.solids = n > 1 ? fmt::format("; {} each way for solid sub-steps, where they carry solids", n) : "; 1 back for solid forces";
 }
 
