@@ -43,8 +43,8 @@ using namespace FSI;
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this),
-    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, [this](double *n) { add_ghosts(n); }), states_entered(false), nlocal_ready(-1), ids_checked(false),
-    forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr)
+    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, [this](double *n) { add_ghosts(n); }),
+    states_entered(false), nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 

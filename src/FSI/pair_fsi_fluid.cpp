@@ -598,7 +598,8 @@ template <int D> void PairFSIFluid::compute_forces()
     p.pv2 = p.p * p.vol * p.vol;
   });
 
-  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr, fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
+  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
+                    fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
                     FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr};
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
@@ -682,7 +683,8 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  double bytes = fields.memory_usage() + (double) (points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity()) * sizeof(double);
+  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity();
+  double bytes = fields.memory_usage() + (double) numbers * sizeof(double);
   for (const auto &list_of : rows) bytes += list_of.memory_usage();
   for (const auto &lists : images)
     for (const auto &list_of : lists) bytes += list_of.memory_usage();
