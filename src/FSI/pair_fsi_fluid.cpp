@@ -261,8 +261,12 @@ void PairFSIFluid::advance_density()
   double *const rho = atom->rho;
   const int *const type = atom->type;
   const double dt = update->dt + fix_fsi->dt_offset;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (fix_fsi->state[type[i]].species == FLUID) rho[i] = std::max(rho[i] + dt * rate[i], atom->rmass[i] * fix_fsi->w0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (fix_fsi->state[type[i]].species != FLUID) continue;
+    const double next = rho[i] + dt * rate[i], alone = atom->rmass[i] * fix_fsi->w0;
+    if (next < alone) rate[i] = (alone - rho[i]) / dt;    // what go_back() takes
+    rho[i] = std::max(next, alone);
+  }
 }
 
 void PairFSIFluid::go_back()
