@@ -341,6 +341,19 @@ def test_swing_that_has_not_settled(tmp_path, capsys):
     assert "last 2 of " in text and "not settled" in text
 
 
+def test_what_a_frame_is_made_of():
+    """Water 10 x 6, and a plate 3 x 20 that lies aslant with its own, finer spacing; a single particle has no extent."""
+    block = lambda n, m, dx: dx * np.stack(np.meshgrid(np.arange(n), np.arange(m)), -1).reshape(-1, 2).astype(float)
+    turn = np.array([[np.cos(0.5), -np.sin(0.5)], [np.sin(0.5), np.cos(0.5)]])
+    x = np.concatenate([block(10, 6, 0.1), 5.0 + block(3, 20, 0.04) @ turn.T, [[9.0, 9.0]]])
+    kind, mol = np.repeat([1, 2, 3], (60, 60, 1)), np.repeat([0, 7, 0], (60, 60, 1))
+    found = dump.bodies(dump.Frame(0, 0.0, None, {"type": kind, "mol": mol, "x": x[:, 0], "y": x[:, 1], "z": 0.0 * kind}))
+    assert [(name, number) for name, number, _ in found] == [("type 1", 60), ("type 3", 1), ("body 7", 60)]
+    np.testing.assert_allclose(found[0][2], [6, 10])
+    np.testing.assert_allclose(found[2][2], [3, 20])
+    assert found[1][2] == []
+
+
 def test_animation_says_what_the_dump_lacks(tmp_path):
     path = tmp_path / "bare.dump"
     path.write_text(DUMP.format(step=0, time=0, p=1).replace(" p\n", " c_1[1]\n"))

@@ -24,6 +24,7 @@ from .command import Refusal, whole
 from .progress import Progress
 
 COLOURS = (plot.BLUE, plot.ORANGE, plot.GREY, plot.GREEN, plot.RED)
+MANY = 20  # bodies that are listed
 TIME = ("time", "Time", "t")  # names of columns that others are drawn over
 
 
@@ -102,7 +103,8 @@ def show_frequency(files, options):
 def show_dump(files, options):
     """fsi dump DUMP [plot=FILE.png] [view=...] [colour=COLUMN] [types=1,2] [frames=6]
 
-    Without plot: frames, particles, columns and their ranges in the last frame. plot draws up to six frames (frames=N), coloured by
+    Without plot: frames, particles of each body or type at first and their extent in spacings (the least of a plate: particles across it),
+    columns and their ranges in the last frame. plot draws up to six frames (frames=N), coloured by
     pressure and von Mises stress, or by the column of colour=; colour=speed is made of vx, vy, vz. types= leaves other particles out.
     view= is for three dimensions: x, y or z looks along that axis; AZIMUTH,ELEVATION (degrees; default 30,20) from there, with z up;
     AZIMUTH,ELEVATION,y with y up.
@@ -123,6 +125,11 @@ def show_dump(files, options):
     if not count:
         raise ValueError(f"{path} has no frames")
     print(f"{count} frames from t = {first.time:g} to {last.time:g}, {len(first)} particles at first, {len(last)} at last")
+    made_of = dump.bodies(first) if "type" in first and "x" in first else []
+    for name, number, size in made_of[:MANY]:
+        print(f"  {name}: {number} particles" + (f", {' x '.join(f'{s:.3g}' for s in size)} spacings" if size else ""))
+    if len(made_of) > MANY:
+        print(f"  and {len(made_of) - MANY} more")
     for name, values in last.columns.items():
         print(f"  {name:12} {np.nanmin(values):.6g} to {np.nanmax(values):.6g}")
 
