@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from conftest import run
 
-from fsi import animate, cli, dump, paths, plot, report, series, vtk
+from fsi import animate, cli, dump, launch, paths, plot, report, series, vtk
 
 DUMP = """ITEM: TIMESTEP
 {step}
@@ -170,6 +170,12 @@ def test_command_line(frames, tmp_path, capsys):
     says("log", path, "time", "Step", f"plot={tmp_path / 'log.png'}")
     says("dump", frames, f"plot={tmp_path / 'dump.png'}")
     assert all((tmp_path / name).read_bytes().startswith(b"\x89PNG") for name in ("log.png", "dump.png"))
+    closed = f"from fsi import cli; cli.main(['dump', {str(frames)!r}])"  # into a pipe that nobody reads any more
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run([sys.executable, "-c", closed], stdout=write, stderr=subprocess.PIPE, env=launch.environment(), check=False)
+    os.close(write)
+    assert done.returncode == 0 and not done.stderr
     assert "view=" in says("dump", "--help") and "fsi check" in says("--help")
     for words, message in (([], "Usage"), (["log", path, "speed"], "no column speed; it has Step, v_time"), (["dump", path], "no frames"),
                            (["log", tmp_path / "none"], "No such file"), (["lag", path], "no command lag; there are log"), (["vtk"], "fsi vtk DUMP"),

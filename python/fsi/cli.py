@@ -14,6 +14,7 @@
 plot=FILE.png behind log, series or dump draws instead: columns over time; snapshots. fsi COMMAND --help says more.
 """
 
+import os
 import sys
 from pathlib import Path
 
@@ -243,6 +244,11 @@ def main(arguments=None):
     if not fewest <= len(files) <= most:
         sys.exit("Usage: " + function.__doc__.split("\n")[0])
     try:
-        return function(files, options)
+        result = function(files, options)
+        sys.stdout.flush()
+        return result
+    except BrokenPipeError:  # whoever read has had enough, as head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return None
     except (OSError, ValueError, Refusal) as error:
         sys.exit(f"fsi {name}: {error}")
