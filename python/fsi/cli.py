@@ -70,11 +70,12 @@ def show_series(files, options):
 
 
 def show_frequency(files, options):
-    """fsi frequency FILE COLUMN [FROM [TO]] [periods=3]
+    """fsi frequency FILE COLUMN [FROM [TO]] [periods=3] [harmonics=4]
 
     First the frequency of the largest peak of the column's spectrum between two times. Then, as Turek and Hron define them for
     their benchmark, over the last whole periods: mean = (max+min)/2, amplitude = (max-min)/2, frequency = 1/period, each averaged
-    over so many periods, in brackets the smallest and largest. A signal that has not settled is said to be so.
+    over so many periods, in brackets the smallest and largest. Last, mean and amplitude of the harmonics of that frequency that fit these periods best: what is between
+    them, such as sound in a force, does not count there. A signal that has not settled is said to be so.
     """
     path, *wanted = files
     if not 1 <= len(wanted) <= 3:
@@ -96,6 +97,9 @@ def show_frequency(files, options):
     print(f"last {len(found['mean'])} of {found.pop('count')} whole periods:")
     for name, values in found.items():
         print(f"  {name:9}  {np.mean(values):.6g}  ({np.min(values):.6g} to {np.max(values):.6g})")
+    harmonics = whole("harmonics", options.get("harmonics", "4"))
+    mean, amplitude = series.swing(time, column, np.mean(found["frequency"]), len(found["mean"]), harmonics)
+    print(f"by {harmonics} harmonics:\n  mean       {mean:.6g}\n  amplitude  {amplitude:.6g}")
     size = found["amplitude"]
     if np.ptp(size) > 0.05 * np.mean(size):
         print("  not settled: the amplitude changes by more than 5 %")
@@ -174,7 +178,7 @@ def make_check(files, options):
 COMMANDS = {
     "log": (show_log, 1, 99, {"plot"}),
     "series": (show_series, 1, 99, {"plot"}),
-    "frequency": (show_frequency, 1, 4, {"periods"}),
+    "frequency": (show_frequency, 1, 4, {"periods", "harmonics"}),
     "dump": (show_dump, 1, 99, {"plot", "frames", *animate.OPTIONS}),
     "vtk": (make_vtk, 1, 2, set()),
     "animate": (make_animation, 1, 2, {"rate", *animate.OPTIONS}),
