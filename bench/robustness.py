@@ -25,6 +25,8 @@ SCENES = {  # scene: (variable of the resolution, its value, whether it is a num
     "bending_column": ("across", 4, True, {}),
     "colliding_rings": ("dx", 0.002, False, {}),
     "column": ("dx", 0.01, False, {}),
+    "couette_poiseuille": ("n", 10, True, {"wall": "solid"}),
+    "cylinder_channel": ("across", 8, True, {"length": 0.5}),
     "dam_break": ("resolution", 20, True, {}),
     "dam_break_3d": ("dx", 0.055, False, {}),
     "dam_break_elastic": ("dx", 0.004, False, {"dim": 2, "column": 0.292, "depth": 0.12}),
@@ -34,6 +36,8 @@ SCENES = {  # scene: (variable of the resolution, its value, whether it is a num
     "floating_blocks": ("dx", 0.02, False, {}),
     "gate_static": ("dx", 0.00125, False, {}),
     "hydrostatic_plate": ("across", 4, True, {"depth": 0.5}),
+    "lid_driven_cavity": ("n", 20, True, {}),
+    "open_channel": ("across", 8, True, {"length": 0.5}),
     "oscillating_plate": ("n", 4, True, {"spectrum": "no"}),
     "rolling_tank": ("dx", 0.002, False, {}),
     "rotating_square_patch": ("dx", 0.05, False, {}),
@@ -43,6 +47,7 @@ SCENES = {  # scene: (variable of the resolution, its value, whether it is a num
     "taylor_bar": ("rows", 16, True, {}),
     "taylor_green": ("dx", 0.05, False, {}),
     "turek_hron_csm": ("across", 4, True, {}),
+    "turek_hron_fsi": ("across", 2, True, {"length": 0.8}),
     "twisting_column": ("across", 4, True, {}),
 }
 CHANGES = {  # name: (factor of Young's modulus, Poisson's ratio, factor of the spacing)

@@ -149,7 +149,7 @@ def page(m, rows, balanced):
     lines = [
         "# Scaling: a model", "",
         "Written by `tools/cost scaling`. No machine of many nodes was at hand: what one particle costs is measured, what crosses ranks is counted "
-        "(fix fsi prints it, `unittest/test_pay.py` checks it around the MPI calls), the network is assumed.", "",
+        "(fix fsi prints it, `unittest/tools/test_pay.py` checks it around the MPI calls), the network is assumed.", "",
         "![Strong and weak scaling](scaling.png)", "",
         "A step of the busiest of P ranks, each a cube of n = N/P particles:", "", "```text",
         "t = (1 + imbalance) (n + g G) tau + exchanges swaps latency + G bytes/bandwidth + latency log2 P",

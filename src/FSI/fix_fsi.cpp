@@ -43,7 +43,7 @@ using namespace FSI;
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this),
-    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, [this](double *n) { add_ghosts(n); }),
+    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
     states_entered(false), nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
@@ -83,7 +83,7 @@ void FixFSI::set_fields()
 {
   const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
   number_density.set_fields(fields);
-  surface_room.set_fields(fields);
+  surface_room.set_array(fields);
   fields.set("walls near", Fields::STEP, walls.any(), wmask);
   fields.set("wall velocity", Fields::STEP, noslip_walls, wall_velocity, 3);
   fields.set("wall stiffness", Fields::STEP, particle_walls && several_stiffnesses(), wall_stiffness);
@@ -201,6 +201,7 @@ void FixFSI::find_parts()
     if (auto *p = dynamic_cast<Part *>(force->pair_match(style, 1))) parts.push_back(p);
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
+  parts.push_back(&surface_room);
 }
 
 /* ----------------------------------------------------------------------
@@ -347,7 +348,6 @@ void FixFSI::update_state(bool advance)
   for (auto *p : parts) sums = p->add_rates(advance) || sums;
   if (sums && force->newton_pair) reverse_comm(profile, comm, this);
   for (auto *p : parts) p->advance(advance);
-  surface_room.renew(number_density, advance);
   number_density.renew(advance);
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
   forward_comm(profile, comm, this);

@@ -72,12 +72,12 @@ double RoomOfPlane::operator()(double s) const
 
 /* ---------------------------------------------------------------------- */
 
-SurfaceRoom::SurfaceRoom(LAMMPS *lmp, Scene &scene, SumOverGhosts add_ghosts) :
-    Pointers(lmp), scene(scene), add_ghosts(std::move(add_ghosts)), room(nullptr)
+SurfaceRoom::SurfaceRoom(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density, SumOverGhosts add_ghosts) :
+    Pointers(lmp), scene(scene), number_density(number_density), add_ghosts(std::move(add_ghosts)), room(nullptr)
 {
 }
 
-void SurfaceRoom::set_fields(Fields &fields)
+void SurfaceRoom::set_array(Fields &fields)
 {
   // a pair style that comes after fix fsi may want it: what a restart file has of it is read here
   const auto wanted = [&]() {
@@ -90,19 +90,52 @@ void SurfaceRoom::set_fields(Fields &fields)
   if (room) of_plane = RoomOfPlane(scene.kernel, scene.dim, scene.h / scene.dx);
 }
 
-void SurfaceRoom::renew(const NumberDensity &number_density, bool advance)
+bool SurfaceRoom::is_due(bool advance) const
 {
-  if (!room || (advance && update->ntimestep % EVERY != 0)) return;
+  return room && (!advance || update->ntimestep % EVERY == 0);
+}
+
+bool SurfaceRoom::add_rates(bool advance)
+{
+  if (scene.ledger && advance && is_due(advance)) earlier.assign(atom->rho, atom->rho + atom->nlocal);
+  return false;
+}
+
+void SurfaceRoom::advance(bool advance)
+{
+  changes.clear();
+  if (!is_due(advance)) return;
   const Phase phase(scene.profile, Profile::DENSITY);
-  begin(number_density);
+  begin();
   if (advance) follow();
+}
+
+void SurfaceRoom::go_back()
+{
+  for (size_t i = 0; i < changes.size() / 2; i++) {
+    room[i][0] -= changes[2 * i];
+    atom->rho[i] -= changes[2 * i + 1];
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<Part::Effect> SurfaceRoom::effects() const
+{
+  if (!force->pair_match("^fsi/fluid", 0)) return {};
+  return {{"density that follows surfaces", "density/surface", room != nullptr}};
+}
+
+void SurfaceRoom::add_costs(Costs &costs) const
+{
+  costs.bytes += room ? 2 * sizeof(double) : 0;
 }
 
 /* ----------------------------------------------------------------------
    what is new
 ------------------------------------------------------------------------- */
 
-void SurfaceRoom::begin(const NumberDensity &number_density)
+void SurfaceRoom::begin()
 {
   const int nlocal = atom->nlocal, *const type = atom->type;
   const auto is_new = [&](int i) { return scene.state[type[i]].species == FLUID && room[i][0] == 0.0; };
@@ -145,15 +178,31 @@ std::vector<double> SurfaceRoom::gradients() const
 void SurfaceRoom::follow()
 {
   const auto asymmetry = gradients();
+  changes.assign(2 * atom->nlocal, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     const State &state = scene.state[atom->type[i]];
     if (state.species != FLUID) continue;
     const double had = room[i][0] - 1.0, most = room[i][1] * of_plane(asymmetry[i]), free = 1.0 - atom->rho[i] / state.rho0;
     const double has = had > most ? most : free > 0.0 ? std::min(most, had + free) : had;
     if (has == had) continue;
-    const double stored = scene.ledger ? scene.stored(i) : 0.0;
+    const double before = atom->rho[i];
     room[i][0] = 1.0 + has;
-    atom->rho[i] = std::max(atom->rho[i] + (has - had) * state.rho0, atom->rmass[i] * scene.w0);
-    if (scene.ledger) scene.energy_out[Scene::DIFFUSION] += stored - scene.stored(i);
+    atom->rho[i] = std::max(before + (has - had) * state.rho0, atom->rmass[i] * scene.w0);
+    changes[2 * i] = has - had;
+    changes[2 * i + 1] = atom->rho[i] - before;
+    if (scene.ledger) scene.energy_out[Scene::DIFFUSION] += taken(i, before, atom->rho[i] - before);
   }
+}
+
+/* ----------------------------------------------------------------------
+   Forces have the density of before until the step's start, and that of after from there: the change is one at its start, between
+   two densities, which is what the ledger's energy is of (where it takes half of a step's work, the other is in the next)
+------------------------------------------------------------------------- */
+
+double SurfaceRoom::taken(int i, double now, double change) const
+{
+  const State &state = scene.state[atom->type[i]];
+  double sum = 0.0;
+  for (const double rho : {earlier[i], now}) sum += state.energy(rho) - state.energy(rho + change);
+  return 0.5 * atom->rmass[i] * sum;
 }

@@ -25,6 +25,7 @@
 #ifndef LMP_FSI_SURFACE_ROOM_H
 #define LMP_FSI_SURFACE_ROOM_H
 
+#include "fsi_part.h"
 #include "pointers.h"
 
 #include <functional>
@@ -49,22 +50,31 @@ namespace FSI {
     std::vector<std::pair<double, double>> layers;    // s and room, from the inside
   };
 
-  class SurfaceRoom : protected Pointers {
+  class SurfaceRoom final : public Part, protected Pointers {
    public:
     // adds to local atoms what pairs left on their ghosts
     using SumOverGhosts = std::function<void(double *)>;
-    SurfaceRoom(LAMMPS *, Scene &, SumOverGhosts);
-    void set_fields(Fields &);
-    void renew(const NumberDensity &, bool advance);
+    SurfaceRoom(LAMMPS *, Scene &, const NumberDensity &, SumOverGhosts);
+    void set_array(Fields &);
+    bool add_rates(bool) override;
+    void advance(bool) override;    // after the density
+    void go_back() override;
+    std::vector<Effect> effects() const override;
+    void add_costs(Costs &) const override;
 
    private:
     Scene &scene;
+    const NumberDensity &number_density;
     const SumOverGhosts add_ghosts;
     double **room;    // 1 + room (0: not known yet), and how often that of a plane it was at the start, on an edge
     RoomOfPlane of_plane;
-    void begin(const NumberDensity &);
+    std::vector<double> changes;    // of room and density in this step
+    std::vector<double> earlier;    // densities before it, for the ledger
+    bool is_due(bool advance) const;
+    void begin();
     std::vector<double> gradients() const;
     void follow();
+    double taken(int i, double now, double change) const;
   };
 
 }    // namespace FSI

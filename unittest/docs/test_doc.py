@@ -1,0 +1,164 @@
+"""The manual says what LAMMPS takes: every command under Examples runs, every keyword in the sources has its place on the page."""
+
+import re
+import subprocess
+
+import pytest
+from scenes import run
+
+from fsi import launch, paths
+
+PAGES = paths.ROOT / "doc/src"
+SOURCES = paths.ROOT / "src/FSI"
+STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in sorted(SOURCES.glob("*.h"))
+          for kind, name in re.findall(r"^(Pair|Fix|Compute|Command|Atom)Style\(([^,]+),", header.read_text(), re.M)}
+STYLES["atom_style_fsi"] = STYLES.pop("atom_fsi")
+STYLES["fsi_set"] = STYLES.pop("command_fsi_set")
+STYLES.pop("fix_fsi_reference")  # internal
+STYLES.pop("fix_fsi_outlet")  # on the page of fix fsi/inlet
+
+SETUP = """units si
+dimension 2
+boundary f f p
+atom_style fsi
+region box block -0.05 0.3 -0.05 0.3 -0.005 0.005
+create_box 2 box
+lattice sq 0.01 origin 0.5 0.5 0
+region water block 0 0.1 0 0.1 INF INF units box
+region plate block 0.1 0.15 0 0.1 INF INF units box
+create_atoms 1 region water
+create_atoms 2 region plate
+group water type 1
+group plate type 2
+set group plate mol 1
+timestep 1e-5
+neighbor 0.003 bin
+"""
+PAIRS = """pair_style hybrid fsi/fluid sound 16 fsi/solid
+pair_coeff * * fsi/fluid materials.fsi water plate
+pair_coeff * * fsi/solid materials.fsi NULL plate
+"""
+FIX, STRESS, GRAVITY = "fix sph all fsi 0.01 wendland 1.5\n", "fix stress all fsi/stress\n", "fix g all gravity 9.81 vector 0 -1 0\n"
+
+
+def lagrangian(text):
+    return text.replace("fsi/solid", "fsi/solid/tl")
+
+
+def examples(page):
+    """Commands under Examples, a continued line as one; commands of one paragraph belong together."""
+    text = (PAGES / f"{page}.rst").read_text()
+    block = re.search(r'^Examples\n"+\n\n\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)', text, re.M)[1]
+    paragraphs = [re.sub(r"^ +", "", p.strip("\n"), flags=re.M) for p in re.split(r"\n\s*\n", block) if p.strip()]
+    return paragraphs if page.startswith("pair") or page == "fix_fsi_spectrum" else [line for p in paragraphs for line in p.splitlines()]
+
+
+def deck(page, example):
+    """A scene of water and plate in which the example is one of the commands."""
+    if page == "atom_style_fsi":
+        return SETUP
+    if page.startswith("pair"):
+        return SETUP + example + "\n" + FIX + (STRESS if re.search(r"fsi/solid(?!/)", example) else "") + "run 1\n"
+    sub = "substeps" in example
+    pairs = lagrangian(PAIRS) if sub else PAIRS
+    if page == "fix_fsi_wall_particle":
+        walls = SETUP.replace("create_box 2", "create_box 3").replace("group water", "region wall block -0.04 0 -0.04 0.1 INF INF units box\n"
+                                                                      "create_atoms 3 region wall\ngroup wall type 3\ngroup water")
+        pairs = PAIRS.replace("water plate", "water plate wall").replace("NULL plate", "NULL plate NULL")
+        return walls + pairs + FIX.replace("all", "fluid").replace("fix", "group fluid subtract all wall\nfix", 1) + STRESS + GRAVITY + example + "\nrun 1\n"
+    if page in ("fix_fsi_stream", "fix_fsi_inlet"):
+        lines = examples(page)    # region and variable stand before the fix that has them
+        return SETUP + PAIRS + FIX + STRESS + "\n".join(line for line in lines if not line.startswith("fix") and line != example) + f"\n{example}\nrun 1\n"
+    if page == "fix_fsi_move":
+        moves = FIX.replace("all", "water") + "group wall type 2\ngroup blades type 2\n"
+        lines = examples(page)  # variables stand before the fix that has them
+        return SETUP + PAIRS + moves + STRESS + "\n".join(line for line in lines if line.startswith("variable")) + f"\n{example}\nrun 1\n"
+    fix = "" if page == "fix_fsi" else FIX
+    stress = "" if sub or page == "fix_fsi_stress" else STRESS
+    return SETUP + pairs + fix + stress + GRAVITY + example + "\nrun 1\n"
+
+
+CASES = [(page, example) for page in STYLES for example in examples(page)]
+
+
+@pytest.mark.parametrize("page, example", CASES, ids=[f"{p}-{e.splitlines()[0][:60]}" for p, e in CASES])
+def test_example(tmp_path, page, example):
+    run(tmp_path, deck(page, example))
+
+
+@pytest.mark.parametrize("page, name", [*STYLES.items(), ("fix_fsi_inlet", "fsi/outlet")])
+def test_page_has_every_keyword(page, name):
+    """Words that the source compares arguments with, as a user may write them, stand on the page."""
+    text = (PAGES / f"{page}.rst").read_text()
+    title = name if page == "fsi_set" else f"{page.split('_fsi')[0].replace('pair', 'pair_style')} {name}"
+    assert f".. index:: {title}\n" in text and f"\n{title} command\n===" in text
+    source = SOURCES / f"{page}.cpp"
+    if not source.exists():
+        return
+    code = source.read_text()
+    words = set(re.findall(r'strcmp\(arg\[[^\]]*\](?:, | \+ \d\], )"([^"]+)"\)', code)) | set(re.findall(r'key == "([^"]+)"', code))
+    words |= set(re.findall(r'^    \{"(\w+)", "', code, re.M))  # fix fsi/watch
+    words |= set(re.findall(r'(?:\.key|or_word)\("([^"]+)"', code))
+    for choice in re.findall(r"(?:choice\([^{};]*|names = |modes = )\{([^}]*)\}", code):
+        words |= set(re.findall(r'"([^"]+)"', choice))
+    words -= {"*", "NULL"}
+    missing = sorted(w for w in words if w not in text)
+    assert not missing, f"{source.name} knows {missing}, {page}.rst does not"
+
+
+def run_time_messages():
+    """[words] of what the sources say about atoms and steps, not arguments; of each message the longest part between its numbers."""
+    found = []
+    for source in SOURCES.glob("*.cpp"):
+        code = source.read_text()
+        for text in re.findall(r'(?:FLERR, |fmt::format\()((?:"[^"]*"\s*)+)', code):
+            text = re.sub(r"\{[^}]*\}", "|", re.sub(r'"\s*"', "", text).strip().strip('"')).removeprefix("Fix fsi/dt: ")
+            if re.match(r"(\w+ )*atoms? (type )?\||on step \|", text, re.I):
+                found.append(max((part.strip(" ,.") for part in text.split(":")[0].split("|")), key=lambda part: len(part.split())))
+        if source.stem == "fix_fsi_watch":
+            found += re.findall(r'^    \{"\w+", "([^"]+)"', code, re.M)
+    return found
+
+
+def test_run_time_messages_are_among_the_symptoms():
+    text = " ".join((PAGES / "troubleshooting.rst").read_text().replace("*", "").replace("\\", "").split())
+    messages = run_time_messages()
+    assert len(messages) > 20 and min(len(m.split()) for m in messages) >= 2
+    missing = [m for m in messages if m not in text]
+    assert not missing, f"doc/src/troubleshooting.rst lacks {missing}"
+
+
+def test_every_command_is_on_the_page_of_commands():
+    """That no page is left out of the contents is Sphinx' own warning."""
+    text = (PAGES / "Commands_fsi.rst").read_text()
+    assert not [page for page in STYLES if not re.search(rf":doc:`(?:[^`<]*<)?{page}>?`", text)]
+
+
+def test_every_bundled_material_is_on_its_page():
+    names = re.findall(r"^(\w+) +(?:fluid|solid|wall) ", (paths.POTENTIALS / "materials.fsi").read_text(), re.M)
+    text = (PAGES / "materials.rst").read_text()
+    assert len(names) > 10 and not [name for name in names if f"*{name}*" not in text]
+
+
+def test_howto_deck(tmp_path):
+    """The deck of the Howto, shortened to the first contact."""
+    text = (PAGES / "in.howto").read_text()
+    assert "run           2500" in text
+    log = run(tmp_path, text.replace("run           2500", "run 600")).output
+    energy = [float(line.split()[-1]) for line in log.splitlines() if re.match(r"\s+\d+ +[\d.e-]+ +[\d.e-]+ +\d", line)]
+    assert len(energy) >= 2 and abs(energy[-1] / energy[0] - 1.0) < 1e-3
+
+
+def test_manual(tmp_path):
+    """Builds without a warning: no link or picture of any page is dead. Nothing in it comes from the net, and links are words."""
+    done = subprocess.run([paths.ROOT / "tools/doc", str(tmp_path)], env=launch.environment(), stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    pages = {page.relative_to(tmp_path).as_posix(): page.read_text() for page in tmp_path.rglob("*.html") if "_static" not in page.parts}
+    assert {f"doc/src/{page}.html" for page in STYLES} | {f"examples/{name}/README.html" for name in paths.scenes()} <= set(pages)
+    for name, text in pages.items():
+        assert not re.search(r'(?:src|<link[^>]*href)="(?:https?:)?//', text), name
+        assert not re.search(r">https?://", text), name
+    assert re.search(r'<script[^>]*src="[./]*_static/mathjax/MathJax.js\?config=', pages["doc/src/theory.html"])
+    assert (tmp_path / "_static/mathjax/jax/output/SVG/fonts/TeX/Main/Regular/Main.js").exists()
+    assert "doc/src/index.html" in pages["index.html"]

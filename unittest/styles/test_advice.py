@@ -1,0 +1,163 @@
+"""Warnings about legal numbers that are most likely not what was meant: each appears when it should, alone."""
+
+import re
+
+import pytest
+from scenes import run
+
+# 5 x 8 particles of water, 0.08 m high, beside a plate of 3; sqrt(2gH) = 1.25 m/s; the plate's longitudinal waves run at 64.8 m/s
+DECK = """units si
+dimension 2
+boundary f f p
+atom_style fsi
+region box block -0.05 0.15 -0.05 0.15 -0.005 0.005
+create_box 2 box
+lattice sq 0.01 origin 0.5 0.5 0
+region water block 0 0.05 0 0.08 INF INF units box
+region plate block 0.05 0.08 0 0.08 INF INF units box
+create_atoms 1 region water
+create_atoms 2 region plate
+group plate type 2
+set group plate mol 1
+pair_style hybrid fsi/fluid sound 12.53 fsi/solid/tl
+pair_coeff * * fsi/fluid materials.fsi water_inviscid plate
+pair_coeff * * fsi/solid/tl materials.fsi NULL plate
+fix sph all fsi 0.01 wendland 1.5
+fix g all gravity 9.81 vector 0 -1 0
+fix walls all fsi/wall/mirror xlo 0 ylo 0
+timestep 4e-5
+neighbor 0.003 bin
+run 0
+"""
+MATERIALS = "# UNITS: si\nwater_inviscid fluid rho 1000\nplate solid rho {rho} young {young} poisson 0.4\n"
+
+
+def mine(**what):
+    return [("materials.fsi", "mine.fsi")], MATERIALS.format(**{"rho": 1000, "young": 2e6, **what})
+
+
+CASES = {
+    # largest c without a warning is 7 sqrt(2gH) = 8.77
+    "sound": ([("sound 12.53", "sound 8.7")], None, r"speed of sound 8.7 .* 6.9 times sqrt\(2gH\) of its height H = 0.08, 1.25: .* sound 12.5$"),
+    "speed": ([("run 0", "velocity all set 3 4 0 units box\nrun 0"), ("4e-5", "3e-5")], None, r"2.5 times its speed at the start, 5: .* sound 50$"),
+    "lattice units": ([("run 0", "velocity all set 2 0 0\nrun 0"), ("fix g all", "#")], None,
+                      r"speed of sound 12.53 .* 6.3e\+02 times the speed 0.02 .*: velocity \.\.\. units box"),
+    "spacing": ([("fsi 0.01", "fsi 0.0085"), ("4e-5", "3e-5")], None, r"nearest neighbors are 0.01 apart on average, but the spacing is 0.0085"),
+    "coarse": ([("sq 0.01", "sq 0.013")], None, r"most particles have no neighbor within 0.0125: is 0.01 the spacing"),
+    "overlap": ([("run 0", "create_atoms 1 single 0.028 0.025 0 units box\nrun 0")], None, r"atoms 13 and 65 are 0.3 spacings apart"),
+    "thin": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF")], None, r"body 1 is 2 particles across: it will bend too little, some 25 %"),
+    "thin, nearly incompressible": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF"), ("materials.fsi", "mine.fsi")],
+                                    MATERIALS.format(rho=1000, young=1e5).replace("poisson 0.4", "poisson 0.49"),
+                                    r"body 1 is 2 particles across: it will hardly bend, since its material is nearly incompressible"),
+    "thin, plain": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF"), ("fsi/solid/tl", "fsi/solid"),
+                     ("fix g all", "fix s all fsi/stress\nfix g all")], None, r"body 1 is 2 particles across: it will bend too easily"),
+    # 3.3 spacings; 3 spacings with lattice points on both edges
+    "rows": ([("plate block 0.05 0.08", "plate block 0.05 0.083")], None,
+             r"body 1 has 3 rows along x, but region plate, 0.033 wide, holds 3.3 spacings: the body is 0.91 times as thick"),
+    "edges": ([("origin 0.5 0.5 0", "origin 0 0.5 0"), ("water block 0 0.05", "water block 0.005 0.045")], None,
+              r"body 1 has 4 rows along x, but region plate, 0.03 wide, holds 3 spacings: the body is 1.3 times as thick"),
+    "idle": ([("fix sph all", "group moving type 2\ngroup some id 1:20\ngroup moving union moving some\nfix sph moving")], None,
+             r"20 fluid particles, the first of them atom 21, are not in group moving of fix sph"),
+    # alpha h c/16 = 2.9e-3 against 1e-3/1000*1000
+    "alpha": ([("sound 12.53", "sound 12.53 artificial/visc 0.25 0 laminar/visc"), ("water_inviscid", "sirup"), ("materials.fsi", "mine.fsi")],
+              MATERIALS.format(rho=1000, young=2e6).replace("water_inviscid", "sirup").replace("fluid rho 1000", "fluid rho 1000 viscosity 1.0"),
+              r"artificial viscosity of type 1 is worth 0.0029, 2.9 times its laminar viscosity 0.001: take alpha 0.009 or less"),
+    "periodic": ([("boundary f f p", "boundary p f p"), ("box block -0.05 0.15", "box block 0 0.05"), ("walls all fsi/wall/mirror xlo 0", "walls all fsi/wall/mirror"),
+                  ("create_atoms 2 region plate", "")], None, r"periodic box is 0.05 long in x, less than twice the kernel's support 0.03"),
+    # 0.4 h/c_l = 9.25e-5, 0.5 h/c = 6.0e-4
+    "long solid": ([("4e-5", "9.5e-5")], None, r"time step 9.5e-05 is too long for elastic waves in the solid, 9.25e-05 at most: timestep 5.78e-05"),
+    "long fluid": ([("4e-5", "6.2e-4"), ("1.5\n", "1.5 substeps 20\n")], None, r"too long for sound in the fluid, 0.000599 at most"),
+    "viscous": ([("sound 12.53", "sound 12.53 laminar/visc"), ("water_inviscid", "sirup"), ("materials.fsi", "mine.fsi")],
+                MATERIALS.format(rho=1000, young=2e6).replace("water_inviscid", "sirup").replace("fluid rho 1000", "fluid rho 1000 viscosity 2000"),
+                r"too long for viscosity, 2.81e-05 at most"),
+    "short": ([("4e-5", "1e-8")], None, r"time step 1e-08 is 5.8e\+03 times shorter"),
+    "default": ([("timestep 4e-5\n", "")], None, r"time step 1e-08, LAMMPS' default, is"),
+    "grams": (*mine(rho=1.0e-3), r"density 0.001 of type 2 is that of no material in units si, in which water has 1000"),
+    "megapascal": (*mine(young=2.0), r"elastic waves in type 2 run at 0.065 m/s only: moduli are in pascal"),
+    # 0.18 stretch + 0.27 shear = 0.079; 0.042 for the cubic spline; none for 1.5: 0.014
+    "elastic lattice": ([("wendland 1.5", "wendland 1.3")], None, r"h = 1.3 dx a lattice .* by 0.43 .* and 0.00 in shear: waves are some 8 % too fast .* at h = 1.53 dx; quintic 0.94"),
+    "elastic lattice, cubic": ([("wendland 1.5", "cubic 1.3"), ("4e-5", "3.5e-5")], None, r"by 0.13 .* 0.07 in shear: waves are some 4 % too fast .* h = 1.34 dx"),
+    "skin": ([("neighbor 0.003", "neighbor 0.016")], None, r"skin 0.016 is 1.6 spacings wide, .*: neighbor 0.003 bin"),
+}
+ALSO = {  # what follows from the mistake as well
+    "grams": r"too long for elastic", "megapascal": r"times shorter",
+}
+
+
+def advice(folder, changes=(), materials=None, ranks=1):
+    """The advice that LAMMPS gives on a deck, and the deck."""
+    text = DECK
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    output = run(folder, text, ranks, **({"mine_fsi": materials} if materials else {})).output
+    return [re.sub(r" \([^()]*fsi_advice.cpp:\d+\)$", "", line) for line in output.splitlines() if line.startswith("WARNING: Fix fsi: ")]
+
+
+def test_sound_deck_is_not_criticised(tmp_path):
+    assert advice(tmp_path) == []
+    # the bounds themselves: 7 sqrt(2gH), 0.4 h/c_l, three layers
+    assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
+
+
+ON_TWO_RANKS = ("sound", "spacing", "overlap", "thin", "rows", "idle", "long fluid")  # what is summed over ranks
+
+
+@pytest.mark.parametrize("name, ranks", [(name, 1) for name in CASES] + [(name, 2) for name in ON_TWO_RANKS])
+def test_warning(tmp_path, name, ranks):
+    changes, materials, message = CASES[name]
+    found = advice(tmp_path, changes, materials, ranks)
+    matching = [line for line in found if re.search(message, line)]
+    assert len(matching) == 1, found
+    others = [line for line in found if line not in matching]
+    assert all(name in ALSO and re.search(ALSO[name], line) for line in others), others
+
+
+@pytest.mark.parametrize("angle", [-3, -9, -20, -45])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_turned_bodies(tmp_path, angle, dim):
+    """A plate counts as many particles across however it lies."""
+    turn = ("run 0", f"displace_atoms plate rotate 0.08 0 0 0 0 1 {angle} units box\nrun 0")
+    deep = [] if dim == 2 else [("dimension 2", "dimension 3"), ("boundary f f p", "boundary f f f"), ("-0.005 0.005", "-0.05 0.1"), ("lattice sq", "lattice sc"),
+                                ("0.05 0 0.08 INF INF", "0.05 0 0.08 0 0.05"), ("0.08 0 0.08 INF INF", "0.08 0 0.08 0 0.05"), ("origin 0.5 0.5 0", "origin 0.5 0.5 0.5"),
+                                ("xlo 0 ylo 0", "xlo 0 ylo 0 zlo 0 zhi 0.05")]
+    assert advice(tmp_path / "3", [turn, *deep]) == []
+    found = advice(tmp_path / "2", [turn, *deep, ("0.08 0 0.08", "0.07 0 0.08")])
+    assert len(found) == 1 and "body 1 is 2 particles across" in found[0]
+
+
+@pytest.mark.parametrize("dim, expected", [(2, 16), (3, 20)])
+def test_what_artificial_viscosity_is_worth(tmp_path, dim, expected):
+    """In the log, without a warning: alpha h c/4(d+2), and the Reynolds number with sqrt(2gH) and the water's 0.05 m."""
+    text = DECK.replace("sound 12.53", "sound 12.53 artificial/visc 0.1 0")
+    if dim == 3:
+        text = text.replace("dimension 2", "dimension 3").replace("f f p", "f f f").replace("lattice sq", "lattice sc").replace("create_atoms 2 region plate", "")
+    output = run(tmp_path, text).output
+    found = re.search(r"alpha 0.1, of type 1 acts like a kinematic viscosity of about (\S+): Reynolds number (\S+) with speed (\S+) and the fluid's least width (\S+)", output)
+    nu, reynolds, speed, width = map(float, found.groups())
+    assert nu == pytest.approx(0.1 * 0.015 * 12.53 / expected, rel=0.05)
+    assert speed == pytest.approx((2 * 9.81 * 0.08)**0.5, rel=0.01)
+    assert width == pytest.approx(0.05 if dim == 2 else 0.01, rel=0.01) and reynolds == pytest.approx(speed * width / nu, rel=0.06)
+
+
+def test_thin_sub_domains(tmp_path):
+    """0.2 m in 4 slices of 0.05 are enough for a support of 0.03 and a skin of 0.003; 0.12 m in 4 are not."""
+    wide = [("boundary", "processors 4 1 1\nboundary")]
+    assert advice(tmp_path, wide, ranks=4) == []
+    narrow = [*wide, ("block -0.05 0.15", "block -0.02 0.10")]
+    found = advice(tmp_path, narrow, ranks=4)
+    assert len(found) == 1 and re.search(r"sub-domain is thinner .*0.91 of 0.033.*fewer ranks", found[0])
+
+
+@pytest.mark.parametrize("change", [("timestep 4e-5", "fix dt all fsi/dt 1"), ("timestep 4e-5", "fix dt all fsi/dt 1 substeps auto")])
+def test_chosen_time_step_is_not_criticised(tmp_path, change):
+    assert advice(tmp_path, [change]) == []
+
+
+def test_flow_driven_along_a_period_has_no_height(tmp_path):
+    changes = [("boundary f f p", "boundary f p p"), ("-0.05 0.15 -0.005", "0 0.08 -0.005"), (" ylo 0", ""), ("sound 12.53", "sound 2")]
+    assert advice(tmp_path, changes) == []
+
+
+def test_said_once(tmp_path):
+    assert len(advice(tmp_path, [("sound 12.53", "sound 5"), ("run 0", "run 0\nrun 1\nrun 1")])) == 1

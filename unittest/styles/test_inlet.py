@@ -1,0 +1,298 @@
+"""fix fsi/inlet and fix fsi/outlet: open ends of the fluid."""
+
+import re
+
+import numpy as np
+import pytest
+from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
+from scenes import WATER, Scene, difference, differing, lammps, lattice, run, watch
+
+
+OIL = "fluid rho 1000 viscosity 100"
+
+
+def vector(scene, name, k):
+    """k-th output of a fix, from 1 on"""
+    return scene.lmp.extract_fix(name, LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, k - 1)
+
+
+def net_mass(scene, *names):
+    return sum(scene.lmp.extract_fix(name, LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR) for name in names)
+
+
+def go_on(scene, steps):
+    """Arrays are as long as there are particles now."""
+    scene.run(steps)
+    scene.n = scene.lmp.get_natoms()
+
+
+def open_box(n, dx, axis, *commands, fluid="density/diffusion 0.1", materials=(WATER,), v=(0, 0, 0), dt=None, skin=0.3, room=6):
+    """Fluid from 0 to n dx; so many spacings for buffers, which take five, along the axis, periodic across it"""
+    size = [k * dx for k in n] + [0] * (3 - len(n))
+    lo, hi = [0, 0, 0], size
+    lo[axis], hi[axis] = -room * dx, hi[axis] + room * dx
+    ends = ["f" if d == axis else "p" for d in range(3)]
+    x = lattice(n, dx)
+    return Scene(x, np.zeros_like(x) + v, dim=len(n), dx=dx, box=(lo, hi), boundary=" ".join(ends), dt=dt or 0.25 * 1.5 * dx / 11, skin=skin,
+                 fluid=f"sound 10 tension yes {fluid}", materials=materials, commands=commands)
+
+
+@pytest.mark.parametrize("n, axis, sign", [((16, 6), 0, 1), ((6, 16), 1, -1), ((10, 5, 5), 0, 1), ((5, 5, 10), 2, -1)],
+                         ids=["x", "-y", "x in 3D", "-z in 3D"])
+def test_uniform_stream(n, axis, sign):
+    """A lattice that moves as one stays one, whichever way: nothing is lost, doubled or disturbed, and every number is known."""
+    dx, U, steps = 0.1, 1.0, 700
+    v = np.zeros(3)
+    v[axis] = sign * U
+    ends = [("lo", 0.0), ("hi", n[axis] * dx)][::sign]
+    face = [f"{'xyz'[axis]}{end} {place}" for end, place in ends]
+    dt = 0.25 * 1.5 * dx / 11
+    with open_box(n, dx, axis, f"fix i all fsi/inlet {face[0]} velocity {v[0]} {v[1]} {v[2]}", f"fix o all fsi/outlet {face[1]}",
+                  "compute e all fsi/energy", v=v, dt=dt) as s:
+        go_on(s, 0)
+        across = len(s.get("id")) // (n[axis] + 10)
+        assert s.n == across * (n[axis] + 10)    # a buffer of five behind each plane
+        energy = lambda: s.lmp.extract_compute("e", LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR)
+        start, m = energy(), s.get("rmass")[0]
+        go_on(s, steps)
+        ids, x = s.get("id"), s.get("x")
+        columns = int(U * dt * steps / dx + 0.5)    # the first one starts half a spacing behind the plane
+        assert vector(s, "i", 2) == columns * across and vector(s, "o", 3) == columns * across
+        assert vector(s, "i", 3) == 0 and vector(s, "o", 2) == 0
+        assert len(set(ids)) == s.n and s.n <= across * (n[axis] + 11)
+        assert ids.max() > across * (n[axis] + 10)    # the first ones are gone, and their IDs with them
+        assert abs(net_mass(s, "i", "o")) < 1e-12 * m * columns * across
+        area = m / 1000 / dx * across    # of the particles, whose volume is that of the discrete lattice
+        assert vector(s, "i", 4) == pytest.approx(1000 * area * U, rel=1e-9) and vector(s, "o", 5) == pytest.approx(-area * U, rel=1e-9)
+        assert np.abs(s.get("v") - v).max() < 1e-9 and np.abs(s.get("rho") - 1000).max() < 1e-6
+        apart = np.diff(np.unique(np.round(x[:, axis], 6)))
+        assert np.abs(apart - dx).max() < 1e-6
+        assert energy() == pytest.approx(start, rel=1e-9)
+
+
+def pulse(inlet, outlet, direction):
+    """Sound that goes to an end of a channel: amplitude of what comes back"""
+    n, dx, c, dt = (160, 4), 0.05, 10.0, 1.5e-3
+    shape = lambda x: np.where(abs(x - 4) < 1.0, np.cos(np.pi * (x - 4) / 2)**2, 0.0)
+    with open_box(n, dx, 0, f"fix i all fsi/inlet xlo 0 velocity 0 0 0 absorb {inlet}", f"fix o all fsi/outlet xhi 8 absorb {outlet}", dt=dt, fluid="") as s:
+        go_on(s, 0)
+        wave = 1e-3 * shape(s.get("x")[:, 0])
+        v = np.zeros((s.n, 3))
+        v[:, 0] = direction * wave
+        s.put("v", v), s.put("rho", 1000 * (1 + wave / c))
+        go_on(s, round(0.8 / dt))
+        return np.abs(s.get("v")[:, 0]).max() / 1e-3
+
+
+def test_sound_leaves():
+    """What is prescribed reflects all of it; what answers with rho c next to nothing: half of what is left is the tail of the rate, half the
+    buffer's width, over which the wave is taken as one number."""
+    walls = pulse(0, 0, -1), pulse(0, 0, 1)
+    soft = pulse("auto", 0, -1), pulse(0, "auto", 1)
+    print("inlet, outlet reflect", walls, "with absorb auto", soft)
+    assert min(walls) > 0.95
+    assert max(soft) < 0.13
+
+
+DECK = """units si
+dimension 2
+boundary {ends} p
+atom_style fsi
+newton {newton}
+{start}
+pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2
+pair_coeff * * oil.fsi {materials}
+fix sph {moving} fsi 0.1 wendland 1.5
+fix walls all fsi/wall/mirror ylo 0 yhi 1 slip no ylo 0 slip no
+timestep 3e-3
+neighbor 0.03 bin
+thermo_modify norm no lost error
+variable U index 1
+variable u atom 6*v_U*y*(1-y)*(1-exp(-time/0.5))
+{more}
+{inlet}
+{outlet}
+"""
+FILES = {"oil_fsi": f"# DATE: 2026-01-01 UNITS: si CITATION: none\noil {OIL}\nbed wall rho 1000\nrubber solid rho 1000 young 1e5 poisson 0.3\n"}
+ATOMS = """region box block -0.6 3.6 -0.5 1.5 -0.05 0.05
+create_box 2 box
+lattice sq 0.1 origin 0.5 0.5 0
+region water block 0 3 0 1 INF INF units box
+create_atoms 1 region water
+"""
+INLET, OUTLET = "fix i all fsi/inlet xlo 0 velocity v_u 0 0", "fix o all fsi/outlet xhi 3"
+
+
+def deck(start=ATOMS, ends="f f", newton="on", moving="all", materials="oil oil", more="", inlet=INLET, outlet=OUTLET):
+    return DECK.format(start=start, ends=ends, newton=newton, moving=moving, materials=materials, more=more, inlet=inlet, outlet=outlet).replace(
+        "fsi/wall/mirror ylo 0 yhi 1 slip no ylo 0 slip no", "fsi/wall/mirror ylo 0 slip no yhi 1 slip no")
+
+
+def test_restart_goes_on_bit_for_bit(tmp_path):
+    """And so do IDs, counts and the memory of what absorbs sound."""
+    printed = "\nfix p all print 400 '$(f_i:%.17g) $(f_o:%.17g) $(f_o[2]) $(f_o[3]) $(f_o[6]:%.17g) $(f_i[6]:%.17g)' file {}.txt screen no\n"
+    more = "compute e all fsi/energy"
+    whole = run(tmp_path, deck(more=more) + watch(every=400) + printed.format("whole") + "restart 200 mid.*\nrun 400\n", **FILES).frames()[-1]
+    rest = run(tmp_path, deck("read_restart mid.200", more=more) + watch("rest.dump", 400) + printed.format("rest") + "restart 200 other.*\nrun 200\n",
+               **FILES).frames("rest.dump")[-1]
+    assert whole["id"].max() > 420    # some came in
+    assert differing(whole, rest) == []
+    assert (tmp_path / "whole.txt").read_text().splitlines()[-1] == (tmp_path / "rest.txt").read_text().splitlines()[-1]
+
+
+@pytest.mark.parametrize("ranks, newton", [(2, "on"), (4, "off")])
+def test_ranks_agree(tmp_path, ranks, newton):
+    run(tmp_path, deck(newton=newton) + "run 1\nwrite_restart start\n", **FILES)
+    one = run(tmp_path, deck("read_restart start", newton=newton) + watch(every=300) + "run 299\n", **FILES).frames()[-1]
+    more = run(tmp_path, deck("read_restart start", newton=newton) + watch(every=300) + "run 299\n", ranks, **FILES).frames()[-1]
+    assert one["id"].max() > 400
+    for quantity in ("x", "v", "rho"):    # the same IDs, and round-off of 300 steps, see test_parallel
+        assert difference(one, more, quantity) < 1e-11, quantity
+
+
+def test_when_lists_are_built_does_not_matter(tmp_path):
+    """With a skin of another width particles are made at other steps, where they would be by then."""
+    def places(skin):
+        text = deck().replace("neighbor 0.03", f"neighbor {skin}")
+        frame = run(tmp_path, text + watch(every=300) + "run 300\n", **FILES).frames()[-1]
+        x = np.column_stack([frame["x"], frame["y"]])
+        x = x[(x[:, 0] > 0) & (x[:, 0] < 3)]
+        return x[np.lexsort(np.round(x, 7).T)]
+
+    a, b = places(0.03), places(0.06)
+    assert a.shape == b.shape and np.abs(a - b).max() < 1e-3 * 0.1    # of a spacing: the inflow is faster or slower where a parent drifts across before its copy is made
+
+
+def test_channel():
+    """Poiseuille's flow from end to end, five times through: profile and pressure, nothing lost, no more particles than at first."""
+    dx, L, U, mu = 0.1, 3.0, 1.0, 100.0
+    n = (30, 10)
+    x = lattice(n, dx)
+    walls = "fix w all fsi/wall/mirror ylo 0 slip no yhi 1 slip no"
+    with Scene(x, dx=dx, box=((-0.6, -0.5, 0), (3.6, 1.5, 0)), fluid="sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2",
+               materials=(OIL,), dt=3e-3,
+               commands=[walls, f"variable u atom 6*{U}*y*(1-y)*(1-exp(-time/0.5))", "fix i all fsi/inlet xlo 0 velocity v_u 0 0",
+                         "fix o all fsi/outlet xhi 3"]) as s:
+        go_on(s, 0)
+        m, most, fewest = s.get("rmass")[0], 0, 10**6
+        inside = lambda: s.n - vector(s, "i", 1) - vector(s, "o", 1)
+        assert inside() == 300
+        profile, flow, drop = [], [], []
+        for k in range(50):
+            go_on(s, 100)
+            assert len(set(s.get("id"))) == s.n
+            # those whose copies are not made yet are of the buffer, so counts and masses agree at each step
+            assert inside() - 300 == vector(s, "i", 2) - vector(s, "i", 3) + vector(s, "o", 2) - vector(s, "o", 3)
+            assert abs(net_mass(s, "i", "o") - m * (inside() - 300)) < 1e-9 * m * s.n
+            if k < 25:
+                continue
+            most, fewest = max(most, inside()), min(fewest, inside())
+            x, v = s.get("x"), s.get("v")
+            middle = (x[:, 0] > 1) & (x[:, 0] < 2)
+            profile.append(np.mean((v[middle, 0] - 6 * U * x[middle, 1] * (1 - x[middle, 1]))**2))
+            flow.append((vector(s, "i", 4), -vector(s, "o", 4)))
+            drop.append(vector(s, "i", 6) - vector(s, "o", 6))
+        error, (come, gone) = np.sqrt(np.mean(profile)), np.mean(flow, axis=0)
+        print(f"channel: {fewest} to {most} particles of 300, profile's error {error:.4f} U, flow in {come / (m * 100 * U):.4f}, out {gone / come:.4f} of it, "
+              f"pressure drop {np.mean(drop) / (12 * mu * U * L):.3f} of Poiseuille's")
+        assert max(abs(most / 300 - 1), abs(fewest / 300 - 1)) < 0.06
+        assert error < 0.06 and abs(gone / come - 1) < 0.03    # ten spacings between the walls, 25 moments
+        assert abs(np.mean(drop) / (12 * mu * U * L) - 1) < 0.10
+
+
+@pytest.mark.parametrize("room", [6, 5.16])
+def test_flow_that_reverses(room):
+    """Water that swings in and out of both ends by several spacings, under pressure: what went out comes back, and nothing is lost in a box
+    that goes on for half a skin of 0.3 spacings behind the buffers.
+    """
+    U, T = 0.5, 8.0
+    with open_box((30, 8), 0.1, 0, f"variable u equal {U}*sin(time*2*PI/{T})", "fix i all fsi/inlet xlo 0 velocity v_u 0 0",
+                  "fix o all fsi/outlet xhi 3", fluid="density/diffusion 0.1 background 6000 shift 0.2", dt=3e-3, room=room) as s:
+        go_on(s, 0)
+        start = s.n
+        speeds = []
+        for _ in range(27):
+            go_on(s, 100)
+            u = U * np.sin(s.lmp.extract_global("ntimestep") * 3e-3 * 2 * np.pi / T)
+            x, v = s.get("x"), s.get("v")
+            speeds.append((u, v[(x[:, 0] > 0) & (x[:, 0] < 3), 0].mean()))
+            assert abs(s.n - start) <= 0.1 * start and len(set(s.get("id"))) == s.n
+        u, mean = np.array(speeds).T
+        print("reversal: rms difference of the mean velocity", np.sqrt(np.mean((mean - u)**2)), [vector(s, e, k) for e in "io" for k in (1, 2, 3)])
+        for end in "io":
+            assert vector(s, end, 2) > 40 and vector(s, end, 3) > 40    # both ways through both
+        # the middle follows by half of what sound takes through: U omega L/2c over the root of 2
+        assert np.sqrt(np.mean((mean - u)**2)) < U * 2 * np.pi / T * 3.0 / 20 / np.sqrt(2)
+        assert vector(s, "i", 1) > 0.8 * 40
+
+
+def test_parts_of_a_plane(tmp_path):
+    """Two inlets side by side in a wall, by regions, and an outlet at right angles to them: each carries its own flow."""
+    start = ATOMS.replace("-0.5 1.5", "-0.7 1.5").replace("0 3 0 1", "0 3 0 1")
+    more = ("unfix walls\nfix walls all fsi/wall/mirror xlo 0 range y 0 1 xhi 3 range y 0 1 yhi 1\n"
+            "region a block 0 1 INF INF INF INF units box\nregion b block 1 2 INF INF INF INF units box\nregion c block 2 3 INF INF INF INF units box\n"
+            "fix a all fsi/inlet ylo 0 velocity 0 0.1 0 region a\nfix b all fsi/inlet ylo 0 velocity 0 0.2 0 region b\n")
+    text = deck(start=start, more=more, inlet="", outlet="fix c all fsi/outlet ylo 0 region c")
+    out = run(tmp_path, text + "fix p all print 100 '$(f_a[4]) $(f_b[4]) $(f_c[4]) $(atoms)' file p.txt screen no\nrun 1500\n", **FILES)
+    a, b, c, _ = np.loadtxt(out.folder / "p.txt")[-5:].mean(0)
+    print(f"parts of a plane: {a:.1f}, {b:.1f} in, {-c:.1f} out kg/s")
+    assert abs(a / 100 - 1) < 0.05 and abs(b / 200 - 1) < 0.05 and abs(c / -300 - 1) < 0.1
+
+
+SOLID = ("region solid block {} 0.3 0.6 INF INF units box\n{}", "pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2")
+BAD = [
+    ("face", {"inlet": INLET.replace("xlo", "left")}, r"Unknown fix fsi/inlet face left: expected xlo, xhi, ylo, yhi, zlo or zhi"),
+    ("z in 2D", {"inlet": INLET.replace("xlo", "zlo")}, r"Fix fsi/inlet zlo is not possible for dimension 2"),
+    ("position", {"inlet": INLET.replace("xlo 0", "xlo here")}, r"Fix fsi/inlet xlo here is not a number"),
+    ("nothing given", {"inlet": "fix i all fsi/inlet xlo 0"}, r"Fix fsi/inlet xlo requires keyword velocity or pressure"),
+    ("both given", {"inlet": INLET + " pressure 0"}, r"takes velocity or pressure, not both"),
+    ("velocity", {"inlet": INLET.replace("v_u", "fast")}, r"Fix fsi/inlet velocity fast is not a number: expected a number, or v_name"),
+    ("vz in 2D", {"inlet": INLET.replace("v_u 0 0", "v_u 0 1")}, r"velocity along z must be 0 in 2D, not 1"),
+    ("pressure", {"outlet": OUTLET + " pressure much"}, r"Fix fsi/outlet pressure much is not a number: expected a number, or v_name or free"),
+    ("absorb", {"outlet": OUTLET + " absorb -1"}, r"absorb -1 must be >= 0, or auto"),
+    ("absorb what is free", {"outlet": OUTLET + " pressure free absorb 1"}, r"absorb is not for pressure free"),
+    ("buffer without length", {"inlet": INLET + " buffer 0"}, r"buffer 0 must be > 0"),
+    ("short buffer", {"inlet": INLET + " buffer 0.3"}, r"buffer 0.3 is too short: expected at least 0.5"),
+    ("uneven buffer", {"inlet": INLET + " buffer 0.55"}, r"buffer 0.55 must be a multiple of the spacing 0.1"),
+    ("periodic", {"ends": "p f"}, r"Fix fsi/inlet i is in periodic dimension x: its boundary must be fixed"),
+    ("plane outside", {"outlet": OUTLET.replace("3", "4")}, r"its plane at x = 4 is outside the box, from -0.6 to 3.6"),
+    ("buffer outside", {"outlet": OUTLET.replace("3", "3.3")}, r"its buffer, x = 3.3 to 3.8, and half the neighbor skin, 0.015, must be inside the box"),
+    ("no room behind the buffer", {"outlet": OUTLET.replace("3", "3.1")}, r"its buffer, x = 3.1 to 3.6, and half the neighbor skin, 0.015, must be inside the box"),
+    ("unknown region", {"inlet": INLET + " region gate"}, r"Region gate of fix fsi/inlet does not exist"),
+    ("region outside", {"more": "region gate block INF INF 2 3 INF INF units box", "inlet": INLET + " region gate"},
+     r"Region gate of fix fsi/inlet, from 2 to 3 along y, is outside the box"),
+    ("region elsewhere", {"more": "region gate block 1 2 0 1 INF INF units box", "inlet": INLET + " region gate"},
+     r"Region gate of fix fsi/inlet, from 1 to 2 along x, does not reach its plane at 0"),
+    ("region moves", {"more": "variable m equal 0.1*step\nregion gate block INF INF 0 1 INF INF units box move v_m NULL NULL",
+                      "inlet": INLET + " region gate"}, r"Region gate of fix fsi/inlet must not move nor change"),
+    ("unknown variable", {"inlet": INLET.replace("v_u", "v_fast")}, r"Variable fast of fix fsi/inlet does not exist"),
+    ("wrong variable", {"inlet": INLET.replace("v_u", "v_U")}, r"Variable U of fix fsi/inlet must be equal-style or atom-style"),
+    ("NaN", {"more": "variable u atom 1e200*1e200*(y-0.5)"}, r"velocity along x -?(inf|nan) of atom \d+ at -0\.\d+ \S+ 0 is no number, see variable u"),
+    ("pressure is NaN", {"more": "variable p equal 1e200*1e200", "outlet": OUTLET + " pressure v_p"},
+     r"Fix fsi/outlet o: pressure inf of atom \d+ at 3\.\d+ \S+ 0 is no number, see variable p"),
+    ("no fluid", {"more": "group none empty", "inlet": INLET.replace("all", "none")}, r"there is no fluid of group none at its plane x = 0"),
+    ("wrong side", {"inlet": INLET.replace("xlo", "xhi")}, r"Fix fsi/inlet i: 50 particles of fluid are beyond the end of its buffer, x = 0.5: xhi has the fluid at x < 0"),
+    ("no check", {"more": "neigh_modify check no"}, r"requires neigh_modify check yes"),
+    ("closed", {"more": "fix end all fsi/wall/mirror xlo 0"}, r"Fix fsi/inlet i: the mirror wall xlo at 0 closes it"),
+    ("corner", {"start": ATOMS.replace("0 3 0 1", "0 3 -0.5 1"), "more": "unfix walls", "inlet": "fix j all fsi/inlet ylo 0 velocity 0 0 0\n" + INLET},
+     r"Atom \d+ at \S+ \S+ 0 is in the buffers of fix j and fix i"),
+    ("summation", {"more": "unfix sph\nfix sph all fsi 0.1 wendland 1.5 fluid summation"}, r"requires fix fsi with fluid continuity"),
+    ("a wall in the way", {"start": ATOMS + "region bed block -0.3 -0.2 0.3 0.6 INF INF units box\ncreate_atoms 2 region bed\ngroup bed type 2\ngroup oil type 1",
+                           "materials": "oil bed", "moving": "oil", "more": "fix b bed fsi/wall/particle"}, r"Fix fsi/inlet i: atom \d+ of a wall at -0\.\d+ .* is where fluid of its buffer should be"),
+    ("a solid in the buffer", {"start": ATOMS + "region solid block 3.2 3.5 0.3 0.6 INF INF units box\ncreate_atoms 2 region solid\nset type 2 mol 1",
+                               "materials": "oil rubber"}, r"of a solid"),
+    ("starves", {"inlet": INLET.replace("v_u", "-0.5"), "outlet": OUTLET + " pressure -1000"}, r"Fix fsi/inlet i starves: of \d+ particles behind its plane x = 0 there are \d"),
+]
+
+
+@pytest.mark.parametrize("name, change, message", BAD, ids=[b[0] for b in BAD])
+def test_bad_input(tmp_path, name, change, message):
+    text = deck(**change)
+    if name == "starves":
+        text = text.replace("tension yes", "tension no")
+    if "rubber" in str(change):
+        text = text.replace("pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2",
+                            "pair_style hybrid fsi/fluid sound 10 tension yes laminar/visc fsi/solid/tl"
+                            ).replace("pair_coeff * * oil.fsi oil rubber", "pair_coeff * * fsi/fluid oil.fsi oil rubber\npair_coeff * * fsi/solid/tl oil.fsi NULL rubber")
+    result = lammps(tmp_path, text + "run 400\n", **FILES)
+    assert result.status != 0 and any(re.search(message, line) for line in result.errors), result.output[-1500:]

