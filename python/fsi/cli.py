@@ -89,7 +89,8 @@ def show_frequency(files, options):
     if inside.sum() < 8:
         raise ValueError(f"{path} has {inside.sum()} rows between {first} = {low:g} and {high:g}")
     time, column = time[inside], column[inside]
-    print(f"{series.frequency(time, column):.6g} per unit of {first}")
+    peak = series.frequency(time, column)
+    print(f"{peak:.6g} per unit of {first}")
     found = series.periodic(time, column, periods)
     if found is None:
         print("no whole period, so neither mean nor amplitude")
@@ -97,12 +98,15 @@ def show_frequency(files, options):
     print(f"last {len(found['mean'])} of {found.pop('count')} whole periods:")
     for name, values in found.items():
         print(f"  {name:9}  {np.mean(values):.6g}  ({np.min(values):.6g} to {np.max(values):.6g})")
+    rate = np.mean(found["frequency"])
     harmonics = whole("harmonics", options.get("harmonics", "4"))
-    mean, amplitude = series.swing(time, column, np.mean(found["frequency"]), len(found["mean"]), harmonics)
+    mean, amplitude = series.swing(time, column, rate, len(found["mean"]), harmonics)
     print(f"by {harmonics} harmonics:\n  mean       {mean:.6g}\n  amplitude  {amplitude:.6g}")
     size = found["amplitude"]
     if np.ptp(size) > 0.05 * np.mean(size):
         print("  not settled: the amplitude changes by more than 5 %")
+    if abs(rate - peak) > 0.1 * peak:
+        print(f"  not one swing: {rate:.4g} of these periods is not the peak of the spectrum over all of the time; look at plot= of fsi series, or begin later")
 
 
 def show_dump(files, options):

@@ -346,7 +346,10 @@ def test_swing_that_has_not_settled(tmp_path, capsys):
     (tmp_path / "tip.csv").write_text("time,tip\n" + "".join(f"{a},{np.exp(0.1 * a) * np.sin(6.0 * a)}\n" for a in t))
     cli.main(["frequency", str(tmp_path / "tip.csv"), "tip", "periods=2"])
     text = capsys.readouterr().out
-    assert "last 2 of " in text and "not settled" in text
+    assert "last 2 of " in text and "not settled" in text and "not one swing" not in text
+    (tmp_path / "tip.csv").write_text("time,tip\n" + "".join(f"{a},{np.sin(6.0 * a) if a < 4.0 else 0.5 * np.sin(60.0 * a)}\n" for a in t))
+    cli.main(["frequency", str(tmp_path / "tip.csv"), "tip", "periods=2"])
+    assert "not one swing: 9.5" in capsys.readouterr().out  # 60/2 pi
 
 
 def test_what_a_frame_is_made_of():
