@@ -274,7 +274,7 @@ BAD = [
     ("wrong side", {"inlet": INLET.replace("xlo", "xhi")}, r"Fix fsi/inlet i: 50 particles of fluid are beyond the end of its buffer, x = 0.5: xhi has the fluid at x < 0"),
     ("no check", {"more": "neigh_modify check no"}, r"requires neigh_modify check yes"),
     ("closed", {"more": "fix end all fsi/wall/mirror xlo 0"}, r"Fix fsi/inlet i: the mirror wall xlo at 0 closes it"),
-    ("corner", {"start": ATOMS.replace("0 3 0 1", "0 3 -0.5 1"), "more": "unfix walls", "inlet": "fix j all fsi/inlet ylo 0 velocity 0 0 0\n" + INLET},
+    ("corner", {"start": ATOMS.replace("-0.5 1.5", "-0.6 1.5").replace("0 3 0 1", "0 3 -0.5 1"), "more": "unfix walls", "inlet": "fix j all fsi/inlet ylo 0 velocity 0 0 0\n" + INLET},
      r"Atom \d+ at \S+ \S+ 0 is in the buffers of fix j and fix i"),
     ("summation", {"more": "unfix sph\nfix sph all fsi 0.1 wendland 1.5 fluid summation"}, r"requires fix fsi with fluid continuity"),
     ("a wall in the way", {"start": ATOMS + "region bed block -0.3 -0.2 0.3 0.6 INF INF units box\ncreate_atoms 2 region bed\ngroup bed type 2\ngroup oil type 1",
