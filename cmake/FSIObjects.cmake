@@ -13,7 +13,7 @@ endif()
 set_property(SOURCE ${_instrumented} APPEND PROPERTY COMPILE_OPTIONS ${FSI_INSTRUMENT})
 if(FSI_SANITIZE)
   # all that these loops call is part of them: optimised with checks they take a quarter of an hour to compile
-  set_property(SOURCE "${FSI_SOURCE_DIR}/fsi_fluid_loops_wendland.cpp" "${FSI_SOURCE_DIR}/pair_fsi_solid.cpp" APPEND PROPERTY COMPILE_OPTIONS -O0 -g0)
+  set_property(SOURCE "${FSI_SOURCE_DIR}/fsi_fluid_loops_wendland.cpp" "${FSI_SOURCE_DIR}/pair_fsi_solid.cpp" "${FSI_SOURCE_DIR}/pair_fsi_solid_tl.cpp" APPEND PROPERTY COMPILE_OPTIONS -O0 -g0)
 endif()
 if(FSI_FFTW)
   target_compile_definitions(fsi PRIVATE FSI_FFTW3)
