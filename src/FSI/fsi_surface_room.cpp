@@ -90,10 +90,21 @@ void SurfaceRoom::set_array(Fields &fields)
   if (room) of_plane = RoomOfPlane(scene.kernel, scene.dim, scene.h / scene.dx);
 }
 
+bool SurfaceRoom::is_due(bool advance) const
+{
+  return room && (!advance || update->ntimestep % EVERY == 0);
+}
+
+bool SurfaceRoom::add_rates(bool advance)
+{
+  if (scene.ledger && advance && is_due(advance)) earlier.assign(atom->rho, atom->rho + atom->nlocal);
+  return false;
+}
+
 void SurfaceRoom::advance(bool advance)
 {
   changes.clear();
-  if (!room || (advance && update->ntimestep % EVERY != 0)) return;
+  if (!is_due(advance)) return;
   const Phase phase(scene.profile, Profile::DENSITY);
   begin();
   if (advance) follow();
@@ -105,6 +116,19 @@ void SurfaceRoom::go_back()
     room[i][0] -= changes[2 * i];
     atom->rho[i] -= changes[2 * i + 1];
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<Part::Effect> SurfaceRoom::effects() const
+{
+  if (!force->pair_match("^fsi/fluid", 0)) return {};
+  return {{"density that follows surfaces", "density/surface", room != nullptr}};
+}
+
+void SurfaceRoom::add_costs(Costs &costs) const
+{
+  costs.bytes += room ? 2 * sizeof(double) : 0;
 }
 
 /* ----------------------------------------------------------------------
@@ -161,11 +185,24 @@ void SurfaceRoom::follow()
     const double had = room[i][0] - 1.0, most = room[i][1] * of_plane(asymmetry[i]), free = 1.0 - atom->rho[i] / state.rho0;
     const double has = had > most ? most : free > 0.0 ? std::min(most, had + free) : had;
     if (has == had) continue;
-    const double stored = scene.ledger ? scene.stored(i) : 0.0, before = atom->rho[i];
+    const double before = atom->rho[i];
     room[i][0] = 1.0 + has;
     atom->rho[i] = std::max(before + (has - had) * state.rho0, atom->rmass[i] * scene.w0);
     changes[2 * i] = has - had;
     changes[2 * i + 1] = atom->rho[i] - before;
-    if (scene.ledger) scene.energy_out[Scene::DIFFUSION] += stored - scene.stored(i);
+    if (scene.ledger) scene.energy_out[Scene::DIFFUSION] += taken(i, before, atom->rho[i] - before);
   }
+}
+
+/* ----------------------------------------------------------------------
+   Forces have the density of before until the step's start, and that of after from there: the change is one at its start, between
+   two densities, which is what the ledger's energy is of (where it takes half of a step's work, the other is in the next)
+------------------------------------------------------------------------- */
+
+double SurfaceRoom::taken(int i, double now, double change) const
+{
+  const State &state = scene.state[atom->type[i]];
+  double sum = 0.0;
+  for (const double rho : {earlier[i], now}) sum += state.energy(rho) - state.energy(rho + change);
+  return 0.5 * atom->rmass[i] * sum;
 }

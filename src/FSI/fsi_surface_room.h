@@ -56,8 +56,11 @@ namespace FSI {
     using SumOverGhosts = std::function<void(double *)>;
     SurfaceRoom(LAMMPS *, Scene &, const NumberDensity &, SumOverGhosts);
     void set_array(Fields &);
+    bool add_rates(bool) override;
     void advance(bool) override;    // after the density
     void go_back() override;
+    std::vector<Effect> effects() const override;
+    void add_costs(Costs &) const override;
 
    private:
     Scene &scene;
@@ -66,9 +69,12 @@ namespace FSI {
     double **room;    // 1 + room (0: not known yet), and how often that of a plane it was at the start, on an edge
     RoomOfPlane of_plane;
     std::vector<double> changes;    // of room and density in this step
+    std::vector<double> earlier;    // densities before it, for the ledger
+    bool is_due(bool advance) const;
     void begin();
     std::vector<double> gradients() const;
     void follow();
+    double taken(int i, double now, double change) const;
   };
 
 }    // namespace FSI

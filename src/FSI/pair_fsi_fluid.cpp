@@ -48,7 +48,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("laminar/visc/central").set(laminar, CENTRAL);
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
-  keywords.key("density/surface").logical(surfaces, false).effect("density that follows surfaces");
+  keywords.key("density/surface").logical(surfaces, false);
   keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
   keywords.key("surface")
       .number(surface_ratio, 0.0, Range::from_to_below(0.0, 1.0), "ratio")
@@ -205,7 +205,7 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 void PairFSIFluid::add_costs(Costs &costs) const
 {
   const int newton = force->newton_pair, continuity = fix_fsi->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? 2 * fix_fsi->dim + 1 : 0;
-  costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0) + 2 * surfaces);
+  costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
   if (sticks_to_solids()) costs.solid_ghost += fix_fsi->dim + newton * (fix_fsi->dim + 1);

@@ -1,5 +1,9 @@
 """Short form of the cylinder in a channel."""
 
+import subprocess
+
+import pytest
+from fsi import launch, scene
 from scenes import run_scene
 
 
@@ -9,3 +13,12 @@ def test_cylinder_in_a_channel(tmp_path):
     figures = run_scene(tmp_path, "cylinder_channel", across=8, length=0.5, tend=1.2)
     assert 5.0 < figures["drag"] < 6.7
     assert abs(figures["lift"]) < 0.5
+
+
+@pytest.mark.parametrize("name", ["cylinder_channel", "open_channel"])
+def test_a_coarse_cylinder_has_the_rings_that_fit(tmp_path, name):
+    # four across: of radius 1.5 and 0.5 spacings, round(2 pi r) particles each
+    command = launch.lammps(scene.deck(name), 0, {"across": 4, "length": 0.5, "tend": 0.002})
+    done = subprocess.run(command, cwd=tmp_path, env=launch.environment(), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout[-500:]
+    assert f"{9 + 3} atoms in group cylinder" in done.stdout
