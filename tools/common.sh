@@ -3,6 +3,8 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${FSI_BUILD_DIR:-$root/build}
 export FSI_BUILD_DIR=$build
+# builds side by side share objects: paths below the root are relative for the compiler cache
+export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root}
 export PYTHONPATH="$root/python${PYTHONPATH:+:$PYTHONPATH}"
 
 say() { printf '%s: %s\n' "${0##*/}" "$*"; }

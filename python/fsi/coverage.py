@@ -23,7 +23,7 @@ def collect():
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for report in Path(folder).glob("*.gcov.json.gz"):
             for source in json.loads(gzip.decompress(report.read_bytes()))["files"]:
-                path = Path(source["file"])
+                path = (paths.BUILD / source["file"]).resolve()  # the compiler cache makes paths relative
                 if path.parent == SOURCES:
                     for line in source["lines"]:
                         covered[path.name][line["line_number"]] |= line["count"] > 0

@@ -41,9 +41,10 @@ def pytest(arguments):
     """(passed, failed) of the tests in unittest/; an error in collecting or setting up counts as a failure."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
-        # files side by side, since most tests run on one core; a file's tests share what its fixtures have run
+        # files side by side, since most tests run on one core; a file's tests share what its fixtures have run. Long files first
+        tests = [str(paths.ROOT / "unittest" / name) for name in ("tools", "scenes", "docs", "styles")]
         command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist", "loadfile", f"--junitxml={report}",
-                   *arguments, str(paths.ROOT / "unittest")]
+                   *arguments, *tests]
         status = subprocess.run(command, cwd=paths.ROOT, env=launch.environment(), check=False).returncode
         passed = failed = 0
         if report.exists():

@@ -139,7 +139,7 @@ def test_bare_scenes_send_only_their_own(sent, name, size):
 # three rows of particles along each side of the square are near a wall: a row of images each, of half their neighbours and themselves
 IMAGES = (1 - (119 / 125) ** 2) * (16 + 4 * (12 + 1))
 ARRAYS = {"nothing": (0, {}), "shifting": (40, {"style": "shift 0.1"}), "walls": (4 + IMAGES, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
-          "surface at intervals": (8, {"style": "surface 0.9 bulk", "hub": "surface/every 10"}),
+          "surface at intervals": (8, {"style": "surface 0.9 bulk", "hub": "surface/every 10"}), "surfaces": (16, {"style": "density/surface yes"}),
           "ratio": (8, {"hub": "fluid ratio"}), "summation": (0, {"hub": "fluid summation"}),
           "the rest": (0, {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1 eos tait tension yes background 1"})}
 SLOTS = 16384  # LAMMPS grows its arrays by so many atoms

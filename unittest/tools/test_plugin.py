@@ -4,9 +4,9 @@ import shutil
 import subprocess
 
 import pytest
-from scenes import Result, dam_gate, differing, fluid_box, run, watch
+from scenes import dam_gate, differing, fluid_box, lammps, run, watch
 
-from fsi import dump, launch, paths
+from fsi import dump, paths
 
 PLAIN = paths.ROOT / "build-plain"
 SCENE = dam_gate(2)
@@ -28,20 +28,12 @@ def plain():
     return PLAIN
 
 
-def lammps(build, folder, text, ranks=1, plugin_path=None, libraries=None):
-    """Runs the LAMMPS of a build folder; plugin_path: where it looks for plugins when it starts."""
+def load(build, folder, text, ranks=1, **environment):
+    """Runs the LAMMPS of a build folder with the plugin beside the input."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "in.test").write_text(text)
-    (folder / "scene.data").write_text(SCENE.data())
     if not (folder / "fsiplugin.so").exists():
         shutil.copy(PLAIN / "fsiplugin.so", folder)
-    command = [str(build / "lmp") if word == str(paths.BUILD / "lmp") else word for word in launch.lammps("in.test", ranks)]
-    environment = {**launch.environment(), "LD_LIBRARY_PATH": str(libraries or build)}
-    if plugin_path:
-        environment["LAMMPS_PLUGIN_PATH"] = str(plugin_path)
-    done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, timeout=120, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, check=False)
-    return Result(done.returncode, done.stdout, folder)
+    return lammps(folder, text, ranks, build=build, environment=environment, scene_data=SCENE.data())
 
 
 def good(result):
@@ -54,13 +46,13 @@ def expected(folder, text, ranks):
 
 
 def test_styles_are_not_compiled_in(plain, tmp_path):
-    assert "Unrecognized atom style 'fsi'" in lammps(plain, tmp_path, "atom_style fsi\n").output
+    assert "Unrecognized atom style 'fsi'" in load(plain, tmp_path, "atom_style fsi\n").output
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_plugin_load(plain, tmp_path, ranks):
     text = SCENE.text("2 * *" if ranks > 1 else "* * *") + watch() + "run 100\n"
-    frame = good(lammps(plain, tmp_path / "plugin", LOAD + text, ranks))
+    frame = good(load(plain, tmp_path / "plugin", LOAD + text, ranks))
     assert differing(frame, expected(tmp_path / "package", text, ranks)) == []
 
 
@@ -68,7 +60,7 @@ def test_plugin_path(plain, tmp_path):
     folder = tmp_path / "plugins"
     folder.mkdir()
     shutil.copy(plain / "fsiplugin.so", folder)
-    result = lammps(plain, tmp_path, SCENE.text() + watch() + "run 20\n", plugin_path=folder)
+    result = load(plain, tmp_path, SCENE.text() + watch() + "run 20\n", LAMMPS_PLUGIN_PATH=str(folder))
     good(result)
     assert "Loaded 1 plugins" in result.output
 
@@ -84,34 +76,34 @@ def test_restart(plain, tmp_path, solid):
             text = text.replace("* * fsi/solid ", "* * fsi/solid/tl ").replace("fix stress all fsi/stress", "")
         return text
     first = LOAD + SCENE.setup() + "read_data scene.data\n" + physics(True) + watch(every=80) + "restart 40 half.*\nrun 80\n"
-    whole = good(lammps(plain, tmp_path, first))
+    whole = good(load(plain, tmp_path, first))
     again = LOAD + "read_restart half.40\n" + physics(False) + watch("again.dump", 80) + "restart 40 other.*\nrun 40\n"
-    good(lammps(plain, tmp_path, again))
+    good(load(plain, tmp_path, again))
     assert differing(dump.read(tmp_path / "again.dump")[-1], whole) == []
 
 
 def test_clear(plain, tmp_path):
     """The command clear forgets every plugin; loaded again, the second run is the first."""
     text = SCENE.text() + watch("{}.dump") + "run 40\n"
-    good(result := lammps(plain, tmp_path, LOAD + text.replace("{}", "atoms") + "clear\n" + LOAD + text.replace("{}", "second")))
+    good(result := load(plain, tmp_path, LOAD + text.replace("{}", "atoms") + "clear\n" + LOAD + text.replace("{}", "second")))
     assert differing(result.frames()[-1], result.frames("second.dump")[-1]) == []
 
 
 def test_clear_without_loading(plain, tmp_path):
-    assert "Unrecognized atom style 'fsi'" in lammps(plain, tmp_path, LOAD + "clear\natom_style fsi\n").output
+    assert "Unrecognized atom style 'fsi'" in load(plain, tmp_path, LOAD + "clear\natom_style fsi\n").output
 
 
 def test_unload(plain, tmp_path):
     """Unloading styles in use takes their instances along, and LAMMPS goes on."""
     text = LOAD + SCENE.text() + "run 5\n" + "".join(
         f"plugin unload {kind}\n" for kind in ("pair fsi/solid", "pair fsi/fluid", "fix fsi/wall/mirror", "fix fsi/stress", "fix fsi"))
-    result = lammps(plain, tmp_path, text + "fix 1 all nve\nrun 0\nprint 'still here'\n")
+    result = load(plain, tmp_path, text + "fix 1 all nve\nrun 0\nprint 'still here'\n")
     assert result.status == 0 and "still here" in result.output
 
 
 def test_hybrid_atom_style(plain, tmp_path):
     text = LOAD + fluid_box(2, atom_style="hybrid fsi ellipsoid").setup() + "print 'entered'\n"
-    assert "\nentered" in lammps(plain, tmp_path, text).output
+    assert "\nentered" in load(plain, tmp_path, text).output
 
 
 def test_version_that_differs(plain, tmp_path):
@@ -123,7 +115,7 @@ def test_version_that_differs(plain, tmp_path):
                    if "define LAMMPS_VERSION" in line)
     other = version[:-1] + ("6" if version[-1] != "6" else "7")
     (library / "liblammps.so.0").write_bytes(data.replace(version.encode() + b"\0", other.encode() + b"\0"))
-    result = lammps(plain, tmp_path, LOAD + "plugin list\natom_style fsi\n", libraries=library)
+    result = load(plain, tmp_path, LOAD + "plugin list\natom_style fsi\n", LD_LIBRARY_PATH=str(library))
     assert f"FSI plugin not loaded: it was compiled for LAMMPS version {version}, this is version {other}" in result.output
     assert "style plugin fsi" not in result.output and "Unrecognized atom style 'fsi'" in result.output
 
@@ -131,7 +123,7 @@ def test_version_that_differs(plain, tmp_path):
 def test_package_compiled_in(plain, tmp_path):
     """In a LAMMPS that has the package the plugin changes nothing, and says so."""
     text = LOAD + SCENE.text() + watch() + "run 5\n"
-    result = lammps(paths.BUILD, tmp_path, text)
+    result = load(paths.BUILD, tmp_path, text)
     good(result)
     assert "FSI plugin not loaded: this LAMMPS has the FSI package compiled in" in result.output
     assert "Overriding" not in result.output
@@ -139,7 +131,7 @@ def test_package_compiled_in(plain, tmp_path):
 
 def test_plugin_alone(plain, tmp_path):
     """Configured for a LAMMPS that is there, only the plugin is built, and it is the same one."""
-    build = tmp_path / "build"
+    build = paths.ROOT / "build-plugin"  # beside the usual one, whose objects the compiler cache then knows
     for command in (["cmake", "-S", paths.ROOT, "-B", build, "-G", "Ninja", "-DFSI_BUILD_LAMMPS=OFF", "-DBUILD_OMP=OFF",
                      *same_options()], ["cmake", "--build", build]):
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
@@ -149,5 +141,5 @@ def test_plugin_alone(plain, tmp_path):
     folder.mkdir()
     shutil.copy(build / "fsiplugin.so", folder)
     text = SCENE.text() + watch() + "run 40\n"
-    frame = good(lammps(plain, folder, LOAD + text))
+    frame = good(load(plain, folder, LOAD + text))
     assert differing(frame, expected(tmp_path / "package", text, 1)) == []
