@@ -1,12 +1,14 @@
 """What accuracy costs: the command line of tools/cost. A scene's sweep is its cost.json, see doc/cost/README.md."""
 
+import contextlib
 import json
 from pathlib import Path
 
 import cost_report
+import numpy as np
 from tool import say
 
-from fsi import log, paths, scene, sweep
+from fsi import log, paths, scene, series, sweep
 from fsi.command import Refusal, split, start
 
 OPTIONS = ("out", "budget", "limit", "repeats", "draw", "source")
@@ -96,16 +98,36 @@ def analysed(name):
 
 
 def printed(name):
-    """The same for a deck of its own: what it prints as FSI NAME value, or the end of a thermo column."""
+    """The same for a deck of its own: what it prints as FSI NAME value, or the end of a thermo column; and whether that still moves."""
     def measure(folder):
         found = log.read(folder / "log.lammps")
         if name in found.values:
-            return {name: float(found.values[name])}
-        column = found.column(name, f"v_{name}")
-        if column is None:
-            raise ValueError(f"the log has neither a line 'FSI {name} value' nor a thermo column {name} or v_{name}")
-        return {name: float(column[-1])}
+            value = float(found.values[name])
+        else:
+            column = found.column(name, f"v_{name}")
+            if column is None:
+                raise ValueError(f"the log has neither a line 'FSI {name} value' nor a thermo column {name} or v_{name}")
+            value = float(column[-1])
+        return {name: value, cost_report.MOVING: still_moving(folder, found, name, value)}
     return measure
+
+
+def still_moving(folder, found, name, value):
+    """series.still_moving() of the column that a figure is of: its own, or else the one whose end or extreme it is; None where there is none."""
+    tables = [{key: found.column(key) for key in dict.fromkeys(key for run in found.runs for key in run.thermo)}]
+    for path in sorted(folder.glob("*.csv")):
+        with contextlib.suppress(ValueError):  # another kind of table
+            tables.append(series.read(path).columns)
+    for own in (True, False):
+        for table in tables:
+            time = next((table[key] for key in ("v_time", "Time", "time", "v_t", "t", "Step") if key in table), None)
+            for key, column in table.items():
+                if time is None or column is time or len(column) != len(time) or len(column) < 3:
+                    continue
+                ends = (column[-1], column.max(), column.min(), np.abs(column).max(), np.ptp(column))
+                if key in (name, f"v_{name}") if own else np.isclose(value, ends, rtol=1e-3, atol=0.0).any() and np.ptp(column):
+                    return series.still_moving(time, column)
+    return None
 
 
 def own_deck(path, vary, measure, given):
@@ -128,7 +150,7 @@ def own_deck(path, vary, measure, given):
         "title": path.stem if path.stem != "in" else path.name, "figure": measure, "label": f"error of {measure}",
         "reference": None, "resolution": {"variable": variable, "finer": "up" if whole else "down", "text": variable},
         "common": given, "methods": {n: {"settings": s, "at": values} for n, s in methods.items()},
-        "command": f"tools/cost {path.name}{words} --measure {measure}"}
+        "command": f"tools/cost {path.name}{words} --measure {measure}" + "".join(f" {k}={v}" for k, v in given.items())}
 
 
 def parse(arguments):
@@ -196,7 +218,9 @@ def main(arguments):
     for point in wanted:
         point["run"] = store.get(point["settings"])
     complete &= all(point["run"] for point in wanted)
-    cost_report.write(folder, name, definition, [p for p in wanted if p["run"]], store.source)
+    summary = cost_report.write(folder, name, definition, [p for p in wanted if p["run"]], store.source)
+    if summary["moving"]:
+        say(f"cost: warning: {cost_report.moving(summary)}")
     print(f"cost: figures, pictures and tables are in {folder}")
     if bundled and complete and not given and "out" not in options:
         cost_report.publish(folder, name)

@@ -13,8 +13,10 @@ from fsi.precision import crossings, extrapolate, order, pareto, reach
 
 BOUNDS = (10.0, 5.0, 2.0, 1.0)  # per cent
 COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, "#7b4fa3", plot.RED, "#8c6d31", "#2ba3b4", "#444444")
+MANY = 12  # bodies that a table lists
 NOISE = 0.2  # times that differ by less count as equal
 SAME = 1.1  # errors that differ by less than this factor count as equal
+MOVING = "still moving"  # among a run's figures: series.still_moving() of what is measured
 BESIDE = "to_outside"  # column: relative difference to a figure from outside that does not judge the discretisation
 COLUMNS = ("role", "group", "label", "x", "status", "value", "error", "crossing", "front", "cpu_seconds", "spread", "repeats", "dx",
            "particles", "steps", "particle_steps", "pair_visits", "instructions_per_particle_step", "instructions_per_pair_visit", "why")
@@ -40,7 +42,8 @@ def write(folder, name, definition, points, source):
         "source": source, "points": len(rows), "failed": sum(r["status"] == "failed" for r in rows),
         "spread": float(np.median(spreads)) if (spreads := [r["spread"] for r in rows if r["spread"] is not None]) else None,
         "cpu_seconds": sum({json.dumps(p["run"]["settings"]): sum(p["run"]["cpu_seconds"]) for p in points}.values()),
-        "methods": methods, "knobs": _knobs(definition, rows), "reach": _reach(methods)}
+        "methods": methods, "knobs": _knobs(definition, rows), "reach": _reach(methods),
+        "moving": {row["label"]: share for row in rows if (share := row["point"]["figures"].get(MOVING)) is not None}}
     summary["recommendation"] = _recommendation(definition, summary, rows)
     write_csv(folder / "points.csv", [*COLUMNS[:-1], *_further(definition), COLUMNS[-1]], rows)
     (folder / "summary.json").write_text(json.dumps(summary, indent=1, default=float) + "\n")
@@ -65,6 +68,13 @@ def publish(folder, name):
     shutil.copyfile(folder / "summary.json", PAGE / f"{name}.json")
     (PAGE / f"{name}.md").write_text(page)
     (PAGE / "README.md").write_text(_index())
+
+
+def moving(summary):
+    """What is said of figures that neither swung back nor came to rest."""
+    runs = ", ".join(f"{label} ({100 * share:.2g} %)" for label, share in summary["moving"].items())
+    return (f"{summary['figure']} has not yet swung in {runs}: by so much of its range it still went on in the last tenth of the run. "
+            "Let the deck run longer")
 
 
 # ---- from points to figures ----
@@ -540,6 +550,7 @@ def _page(definition, summary, rows, curves):
              "caches. What does not depend on the machine: particle-steps (of total-Lagrangian solids times sub-steps), pair visits (entries "
              "of the neighbour list times steps, and bonds of total-Lagrangian solids, from both ends, times sub-steps), instructions of "
              "the time loop (callgrind, over the first steps of one run of each method).", "",
+             *([f"**Warning**: {moving(summary)}.", ""] if summary["moving"] else []),
              "## In short", summary["recommendation"], "",
              "## Error against resolution, time and work",
              f"![Error against {variable}, CPU time and particle-steps](work.png)", "",
@@ -556,14 +567,23 @@ def _page(definition, summary, rows, curves):
               "`<`: the coarsest one made; *slanted*: extrapolated; -: neither. Order: least squares with 95 % interval, none where that holds 0.", "",
               f"| method | {variable} | value | error | CPU s | spread | particle-steps | pair visits |"
               + "".join(f" {heading} |" for heading in _further(definition).values()), "|---" * (8 + len(_further(definition))) + "|"]
-    for method, curve in curves.items():
-        for r in curve:
+    for method in curves:
+        of_method = [r for r in rows if r["role"] == "curve" and r["group"] == method]
+        for r in sorted(of_method, key=lambda r: _size(definition, r["x"]), reverse=True):
+            if r["status"] == "failed":
+                lines.append(f"| {method} | {r['x']:.4g} | fails: {r['why']} |" + " |" * (5 + len(_further(definition))))
+                continue
             mark = " (sign changes)" if r["crossing"] else " **front**" if r["front"] else ""
-            lines.append(f"| {method} | {r['x']:.4g} | {r['value']:.5g} | {_percent(r['error'])}{mark} | "
+            error = "reference" if r["error"] is None else _percent(r["error"])
+            lines.append(f"| {method} | {r['x']:.4g} | {r['value']:.5g} | {error}{mark} | "
                          + f"{r['cpu_seconds']:.3g} | "
                          + (f"{100 * r['spread']:.0f} %" if r["spread"] is not None else "1 run")
                          + f" | {r['particle_steps']:.2e} | " + (f"{r['pair_visits']:.2e} |" if r["pair_visits"] else "- |")
                          + _further_cells(definition, r))
+    about = summary["reference"]
+    if about["kind"] != "finest" and about["value"]:
+        lines.append(f"| reference, {about['kind']} | | {about['value']:.5g} |" + " |" * (5 + len(_further(definition))))
+    lines += _particles(definition, rows)
     if summary["knobs"]:
         lines += ["", "## One setting at a time", "![Error and time over each setting](knobs.png)", "",
                   "Blue: error; orange: CPU time; ring: the base; cross: the run fails.", "",
@@ -597,6 +617,22 @@ def _page(definition, summary, rows, curves):
             cells = f"{_percent(r['error'])}{mark} | {r['cpu_seconds']:.3g} | {r['particle_steps']:.2e}" if r["status"] == "ok" else "fails | |"
             lines.append(f"| {r['label']} | {cells} |")
     return "\n".join(lines) + "\n"
+
+
+def _particles(definition, rows):
+    """The table of what each resolution is made of."""
+    runs = {r["x"]: r["point"]["bodies"] for r in rows if r["role"] == "curve" and r["point"].get("bodies")}
+    if not runs:
+        return []
+    sizes = sorted(runs, key=lambda x: _size(definition, x), reverse=True)
+    cell = lambda count, size: f"{count:,}" + (": " + " x ".join(f"{s:.3g}" for s in size) if size else "")
+    names = list(dict.fromkeys(name for bodies in runs.values() for name, *_ in bodies))
+    lines = ["", f"Particles of each body (fluids and walls: of each type) at each {definition['resolution']['variable']}, and their extent in spacings, the least first:", "",
+             "| | " + " | ".join(f"{x:.4g}" for x in sizes) + " |", "|---" * (1 + len(sizes)) + "|"]
+    for name in names[:MANY]:
+        found = [next((cell(*rest) for body, *rest in runs[x] if body == name), "-") for x in sizes]
+        lines.append(f"| {name} | " + " | ".join(found) + " |")
+    return lines + ([f"| and {len(names) - MANY} more |" + " |" * len(sizes)] if len(names) > MANY else [])
 
 
 def _index():

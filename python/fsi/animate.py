@@ -9,20 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from . import dump, plot
+from .dump import spacing
 from .progress import Progress
 
 OPTIONS = ("solid", "view", "colour", "types")  # of pictures, as the command line has them
-
-
-def spacing(frame, samples=200):
-    """Distance of nearest neighbours, the median of some particles."""
-    x = frame.vector()
-    nearest = []
-    for i in range(0, len(x), max(1, len(x) // samples)):
-        rsq = ((x - x[i])**2).sum(axis=1)
-        rsq[i] = np.inf
-        nearest.append(np.sqrt(rsq.min()))
-    return float(np.median(nearest))
 
 
 def species(frames, solid=None):

@@ -89,6 +89,15 @@ def run(deck, variables):
         return done.returncode, done.stdout, log.read(path) if path.exists() else None
 
 
+def length(lines, found):
+    """How long the runs would have been, in words: to a time where fix fsi/dt stops them, else so many steps."""
+    steps = sum(int(float(line.split()[2])) for line in lines if re.fullmatch(r"FSI steps \d+(\.\d*)?(e\+?\d+)?", line))
+    if found.stop is None:
+        return f", {steps} steps" if steps else ""
+    limits = [match[1] for line in lines if (match := re.search(r"Fix fsi/dt: .* limits the time step, to (\S+)", line))]
+    return f", to t = {found.stop:g}" + (f" in {found.stop / float(limits[-1]):.2g} steps or more" if limits else "")
+
+
 def main(deck, variables):
     """Prints what there is to say; 0 if the deck runs and there is no advice."""
     status, output, found = run(deck, variables)
@@ -111,7 +120,6 @@ def main(deck, variables):
     if not ran:
         print(f"fsi check: {deck} has no run")
         return 1
-    steps = sum(int(float(line.split()[2])) for line in lines if re.fullmatch(r"FSI steps \d+(\.\d*)?(e\+?\d+)?", line))
-    print(f"fsi check: {ran[0].atoms} particles" + (f", {steps} steps" if steps else "") + "; "
+    print(f"fsi check: {ran[0].atoms} particles{length(lines, found)}; "
           + (f"{len(advice)} warning{'s' * (len(advice) > 1)}" if advice else "nothing to warn of"))
     return 1 if advice else 0

@@ -14,6 +14,7 @@
 plot=FILE.png behind log, series or dump draws instead: columns over time; snapshots. fsi COMMAND --help says more.
 """
 
+import os
 import sys
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from .command import Refusal, whole
 from .progress import Progress
 
 COLOURS = (plot.BLUE, plot.ORANGE, plot.GREY, plot.GREEN, plot.RED)
+MANY = 20  # bodies that are listed
 TIME = ("time", "Time", "t")  # names of columns that others are drawn over
 
 
@@ -68,11 +70,12 @@ def show_series(files, options):
 
 
 def show_frequency(files, options):
-    """fsi frequency FILE COLUMN [FROM [TO]] [periods=3]
+    """fsi frequency FILE COLUMN [FROM [TO]] [periods=3] [harmonics=4]
 
     First the frequency of the largest peak of the column's spectrum between two times. Then, as Turek and Hron define them for
     their benchmark, over the last whole periods: mean = (max+min)/2, amplitude = (max-min)/2, frequency = 1/period, each averaged
-    over so many periods, in brackets the smallest and largest. A signal that has not settled is said to be so.
+    over so many periods, in brackets the smallest and largest. Last, mean and amplitude of the harmonics of that frequency that fit these periods best: what is between
+    them, such as sound in a force, does not count there. A signal that has not settled is said to be so.
     """
     path, *wanted = files
     if not 1 <= len(wanted) <= 3:
@@ -86,7 +89,8 @@ def show_frequency(files, options):
     if inside.sum() < 8:
         raise ValueError(f"{path} has {inside.sum()} rows between {first} = {low:g} and {high:g}")
     time, column = time[inside], column[inside]
-    print(f"{series.frequency(time, column):.6g} per unit of {first}")
+    peak = series.frequency(time, column)
+    print(f"{peak:.6g} per unit of {first}")
     found = series.periodic(time, column, periods)
     if found is None:
         print("no whole period, so neither mean nor amplitude")
@@ -94,15 +98,22 @@ def show_frequency(files, options):
     print(f"last {len(found['mean'])} of {found.pop('count')} whole periods:")
     for name, values in found.items():
         print(f"  {name:9}  {np.mean(values):.6g}  ({np.min(values):.6g} to {np.max(values):.6g})")
+    rate = np.mean(found["frequency"])
+    harmonics = whole("harmonics", options.get("harmonics", "4"))
+    mean, amplitude = series.swing(time, column, rate, len(found["mean"]), harmonics)
+    print(f"by {harmonics} harmonics:\n  mean       {mean:.6g}\n  amplitude  {amplitude:.6g}")
     size = found["amplitude"]
     if np.ptp(size) > 0.05 * np.mean(size):
         print("  not settled: the amplitude changes by more than 5 %")
+    if abs(rate - peak) > 0.1 * peak:
+        print(f"  not one swing: {rate:.4g} of these periods is not the peak of the spectrum over all of the time; look at plot= of fsi series, or begin later")
 
 
 def show_dump(files, options):
     """fsi dump DUMP [plot=FILE.png] [view=...] [colour=COLUMN] [types=1,2] [frames=6]
 
-    Without plot: frames, particles, columns and their ranges in the last frame. plot draws up to six frames (frames=N), coloured by
+    Without plot: frames, particles of each body or type at first and their extent in spacings (the least of a plate: particles across it),
+    columns and their ranges in the last frame. plot draws up to six frames (frames=N), coloured by
     pressure and von Mises stress, or by the column of colour=; colour=speed is made of vx, vy, vz. types= leaves other particles out.
     view= is for three dimensions: x, y or z looks along that axis; AZIMUTH,ELEVATION (degrees; default 30,20) from there, with z up;
     AZIMUTH,ELEVATION,y with y up.
@@ -123,6 +134,11 @@ def show_dump(files, options):
     if not count:
         raise ValueError(f"{path} has no frames")
     print(f"{count} frames from t = {first.time:g} to {last.time:g}, {len(first)} particles at first, {len(last)} at last")
+    made_of = dump.bodies(first) if "type" in first and "x" in first else []
+    for name, number, size in made_of[:MANY]:
+        print(f"  {name}: {number} particles" + (f", {' x '.join(f'{s:.3g}' for s in size)} spacings" if size else ""))
+    if len(made_of) > MANY:
+        print(f"  and {len(made_of) - MANY} more")
     for name, values in last.columns.items():
         print(f"  {name:12} {np.nanmin(values):.6g} to {np.nanmax(values):.6g}")
 
@@ -166,7 +182,7 @@ def make_check(files, options):
 COMMANDS = {
     "log": (show_log, 1, 99, {"plot"}),
     "series": (show_series, 1, 99, {"plot"}),
-    "frequency": (show_frequency, 1, 4, {"periods"}),
+    "frequency": (show_frequency, 1, 4, {"periods", "harmonics"}),
     "dump": (show_dump, 1, 99, {"plot", "frames", *animate.OPTIONS}),
     "vtk": (make_vtk, 1, 2, set()),
     "animate": (make_animation, 1, 2, {"rate", *animate.OPTIONS}),
@@ -236,6 +252,11 @@ def main(arguments=None):
     if not fewest <= len(files) <= most:
         sys.exit("Usage: " + function.__doc__.split("\n")[0])
     try:
-        return function(files, options)
+        result = function(files, options)
+        sys.stdout.flush()
+        return result
+    except BrokenPipeError:  # whoever read has had enough, as head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return None
     except (OSError, ValueError, Refusal) as error:
         sys.exit(f"fsi {name}: {error}")

@@ -102,6 +102,39 @@ def nearest(found, times, tolerance):
     return [chosen[step] for step in sorted(chosen)]
 
 
+def spacing(frame, samples=200):
+    """Distance of nearest neighbours, the median of some particles."""
+    x = frame.vector()
+    distances = []
+    for i in range(0, len(x), max(1, len(x) // samples)):
+        rsq = ((x - x[i])**2).sum(axis=1)
+        rsq[i] = np.inf
+        distances.append(np.sqrt(rsq.min()))
+    return float(np.median(distances))
+
+
+def bodies(frame):
+    """What a frame is made of, [(name, particles, sizes in its own spacings, the least first)]: solids by molecule ID, all else by type.
+
+    Sizes are those along the axes, or along the principal axes of what lies aslant: a plate's least is the particles across it.
+    """
+    loose = frame["mol"] == 0 if "mol" in frame else np.ones(len(frame), bool)
+    kinds = [(f"type {t}", loose & (frame["type"] == t)) for t in np.unique(frame["type"][loose])]
+    kinds += [(f"body {m}", frame["mol"] == m) for m in np.unique(frame["mol"][~loose])] if "mol" in frame else []
+    found = []
+    for name, mask in kinds:
+        part = frame.select(mask)
+        if len(part) < 3:
+            found.append((name, len(part), []))
+            continue
+        x = part.vector()
+        x = x[:, np.ptp(x, axis=0) > 0.0]  # in two dimensions there may be a column of zeros
+        aslant = x @ np.linalg.eigh(np.atleast_2d(np.cov(x.T)))[1]
+        sizes, tight = np.ptp(x, axis=0), np.ptp(aslant, axis=0)
+        found.append((name, len(part), sorted(1.0 + (tight if np.prod(tight) < 0.9 * np.prod(sizes) else sizes) / spacing(part))))
+    return found
+
+
 def _frame(step, time, box, names, table):
     if "id" in names:
         table = table[np.argsort(table[:, names.index("id")], kind="stable")]

@@ -16,6 +16,7 @@ _NEIGHBOURS = re.compile(r"(Neighs|FullNghs):\s+(\S+) ave")
 _BONDS = re.compile(r"\s*fsi/solid/tl: reference of (\d+) particles taken, (\S+) bonds each")
 _SUBSTEPS = re.compile(r"fix\s+\S+\s+\S+\s+fsi\s.*\ssubsteps\s+(\d+)")
 _CHOSEN = re.compile(r"fix\s+(\S+)\s+\S+\s+fsi/dt\s.*\ssubsteps\s+auto")  # their number is in thermo output where that has it
+_STOP = re.compile(r"fix\s+\S+\s+\S+\s+fsi/dt\s.*\sstop\s+([-+.\deE]+)")
 _BUILDS = re.compile(r"Neighbor list builds = (\d+)")
 _VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
 _REPORT = re.compile(r"^FSI report (\w+) (.+)$")  # of fix fsi/report
@@ -58,6 +59,7 @@ class Log:
     solid_particles: int = 0  # of total-Lagrangian solids
     bonds: float = 0.0  # of all of them, each seen from both ends
     substeps: int = 1  # steps of total-Lagrangian solids in each step, as fix fsi is told
+    stop: float = None  # time at which fix fsi/dt ends the last run
     chosen: str = None  # column of thermo output with those that fix fsi/dt chooses
     effects: list = field(default_factory=list)  # the lists of effects that are on, as fix fsi printed them
 
@@ -134,8 +136,11 @@ def read(path):
             log.solid_particles, log.bonds = int(match[1]), int(match[1]) * float(match[2])
         elif match := _SUBSTEPS.match(line):
             log.substeps = int(match[1])
-        elif match := _CHOSEN.match(line):
-            log.chosen = f"f_{match[1]}[7]"
+        elif line.startswith("fix") and "fsi/dt" in line:
+            if match := _STOP.match(line):
+                log.stop = float(match[1])
+            if match := _CHOSEN.match(line):
+                log.chosen = f"f_{match[1]}[7]"
         elif log.runs and (match := _REPORT.match(line)):
             log.runs[-1].report[match[1]] = _number(match[2])
         elif match := _VALUE.match(line):

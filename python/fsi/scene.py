@@ -26,6 +26,7 @@ from .sweep import Deck, deck_variables
 OPTIONS = ("ranks", "out", "case")
 MADE_FILE = ".made-by-tools-run"
 CASES_FILE = "cases.json"
+RANKS = 1  # where nobody says how many: small scenes gain nothing by more, and on a busy machine ranks wait for each other
 EDITS_FILE = "edits.json"  # {name: {"find": regular expression, "put": text with {value}}}: settings that no deck has a variable for
 OWN_RUN = "custom"  # folder of a run with the user's variables beside the cases, whose results stay as they are
 SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools")  # what decides a result
@@ -136,7 +137,7 @@ def run_cases(scene, folder, ranks=None):
         ran = {}
         for k, (name, case) in enumerate(wanted.items(), start=1):
             print(f"run: {scene}, case {name} ({k} of {len(wanted)})", flush=True)
-            if run(scene, folder / name, ranks or case["ranks"] or default_ranks(), case["variables"], name, case["deck"],
+            if run(scene, folder / name, ranks or case["ranks"] or RANKS, case["variables"], name, case["deck"],
                    case["may_fail"]) == 0:
                 ran[name] = folder / name
         failed = [name for name in wanted if name not in ran]
@@ -149,11 +150,6 @@ def run_cases(scene, folder, ranks=None):
         print(f"run: {scene}: {len(ran)} of {len(wanted)} cases ran" +
               (f"; failed: {', '.join(failed)}" if failed else ""), flush=True)
         return 0 if good else 1
-
-
-def default_ranks():
-    """MPI ranks where nobody says how many."""
-    return min(2, launch.cores())
 
 
 def analysis(scene):
@@ -311,14 +307,14 @@ def _job(scene, options, variables, every):
         return lambda: run_cases(scene, folder, ranks)
     if "case" not in options:
         below = OWN_RUN if known and out is None else ""
-        return lambda: run(scene, folder / below, ranks or default_ranks(), variables)
+        return lambda: run(scene, folder / below, ranks or RANKS, variables)
     name = options["case"]
     if name not in known:
         raise Refusal(f"{scene} has no case '{name}'{_similar(name, known)}. Its cases: {', '.join(known) or 'none'}")
     if variables:
         raise Refusal("case= sets the variables: give either it or NAME=VALUE")
     return lambda: run(scene, folder / name if out is None else folder,
-                       ranks or known[name]["ranks"] or default_ranks(), known[name]["variables"], name,
+                       ranks or known[name]["ranks"] or RANKS, known[name]["variables"], name,
                        known[name]["deck"], known[name]["may_fail"])
 
 

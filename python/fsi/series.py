@@ -9,6 +9,9 @@ from pathlib import Path
 import numpy as np
 
 
+AT_REST = 0.01  # of its range: what changes by less in the last tenth of its time has come to rest
+
+
 @dataclass
 class Series:
     """Columns by name, each an array (rows,); the first one is the time [s]."""
@@ -127,6 +130,17 @@ def swing(time, values, rate, periods=5, harmonics=4):
     phase = 2.0 * np.pi * np.outer(np.arange(1, harmonics + 1), np.linspace(0.0, 1.0, 721))
     curve = fit @ np.vstack([np.ones(721), np.cos(phase), np.sin(phase)])
     return 0.5 * (curve.max() + curve.min()), 0.5 * (curve.max() - curve.min())
+
+
+def still_moving(time, values):
+    """Share of its range by which a column went on in the last tenth of the time, if it is farthest from where it began there: it has
+    neither swung back nor come to rest. None if it has.
+    """
+    late = np.flatnonzero(time >= time[-1] - 0.1 * (time[-1] - time[0]))
+    farthest = int(np.argmax(np.abs(values - values[0])))
+    whole = np.ptp(values)
+    share = abs(values[farthest] - values[late[0]]) / whole if whole else 0.0
+    return float(share) if farthest > late[0] and share > AT_REST else None
 
 
 def read_ave(path):

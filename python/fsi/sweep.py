@@ -16,10 +16,11 @@ import tempfile
 import time
 from pathlib import Path
 
-from . import launch, log, paths, plot
+from . import dump, launch, log, paths, plot
 from .command import Refusal
 
 REPEATS = ((1.0, 3), (3.0, 2))  # runs shorter than so many CPU seconds are made so many times
+AT_FIRST = "at_first.dump"  # where a deck of the package is made to leave its particles before its first run
 COUNTED = 60000  # particle-steps of which instructions are counted: valgrind is some fifty times slower
 
 
@@ -160,6 +161,8 @@ class Store:
         if steps:  # in place of the first run; none after it
             first, *rest = re.split(r"^run\s.*$", text, flags=re.M)
             text = f"{first}run {steps}" + "".join(rest) if rest else text
+        elif re.search(r"^\s*atom_style\s+fsi\b", text, re.M):
+            text = re.sub(r"^(?=run\s)", f"write_dump all custom {AT_FIRST} id type mol x y z modify time yes\n", text, count=1, flags=re.M)
         for path in self.files:
             if not (folder / path.name).exists():
                 (folder / path.name).symlink_to(path.resolve())
@@ -183,6 +186,8 @@ class Store:
         runs = found.finished
         if counted := re.search(r"Collected : (\d+)", done.stdout):
             cost["instructions"] = int(counted[1])
+        if (folder / AT_FIRST).exists():
+            cost["bodies"] = dump.bodies(next(dump.frames(folder / AT_FIRST)))
         cost["cpu_seconds"] = [sum(run.cpu_seconds for run in runs)]
         return cost | {
             "dx": found.values.get("dx"), "particles": runs[0].atoms, "steps": sum(run.steps for run in runs),

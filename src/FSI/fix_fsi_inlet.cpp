@@ -188,8 +188,11 @@ void FixFSIInlet::init()
   const double end = position - side * length, little = 1.0e-9 * domain->prd[axis], lo = domain->boxlo[axis], hi = domain->boxhi[axis];
   if (position < lo - little || position > hi + little)
     error->all(FLERR, "{} {}: its plane at {} = {} is outside the box, from {} to {}", who, id, "xyz"[axis], position, lo, hi);
-  if (domain->boundary[axis][side < 0.0] == 1 && (end < lo - little || end > hi + little))
-    error->all(FLERR, "{} {}: its buffer, {} = {:g} to {:g}, must be inside the box, from {} to {}", who, id, "xyz"[axis], position, end, lo, hi);
+  // what has passed the end of the buffer is deleted with the next list
+  const double last = end - side * 0.5 * neighbor->skin;
+  if (domain->boundary[axis][side < 0.0] == 1 && (last < lo - little || last > hi + little))
+    error->all(FLERR, "{} {}: its buffer, {} = {:g} to {:g}, and half the neighbor skin, {:g}, must be inside the box, from {} to {}", who, id, "xyz"[axis],
+               position, end, 0.5 * neighbor->skin, lo, hi);
 
   region = nullptr;
   if (!region_id.empty()) {

@@ -68,7 +68,8 @@ def deck(page, example):
         return walls + pairs + FIX.replace("all", "fluid").replace("fix", "group fluid subtract all wall\nfix", 1) + STRESS + GRAVITY + example + "\nrun 1\n"
     if page in ("fix_fsi_stream", "fix_fsi_inlet"):
         lines = examples(page)    # region and variable stand before the fix that has them
-        return SETUP + PAIRS + FIX + STRESS + "\n".join(line for line in lines if not line.startswith("fix") and line != example) + f"\n{example}\nrun 1\n"
+        room = SETUP.replace("-0.05 0.3 -0.05 0.3", "-0.06 0.3 -0.06 0.3")  # for buffers and what leaves them
+        return room + PAIRS + FIX + STRESS + "\n".join(line for line in lines if not line.startswith("fix") and line != example) + f"\n{example}\nrun 1\n"
     if page == "fix_fsi_move":
         moves = FIX.replace("all", "water") + "group wall type 2\ngroup blades type 2\n"
         lines = examples(page)  # variables stand before the fix that has them

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from scenes import run
 
-from fsi import fill, launch, log, paths
+from fsi import dump, fill, launch, log, paths
 
 RECIPES = paths.ROOT / "doc/src/recipes"
 
 
 def go(folder, name, ranks=1, **variables):
     """Runs a recipe as it is, beside copies of all; its log."""
+    folder.mkdir(exist_ok=True)
     for path in RECIPES.iterdir():
         if not (folder / path.name).exists():
             (folder / path.name).write_text(path.read_text())
@@ -43,6 +44,44 @@ def test_stl(tmp_path):
     np.testing.assert_allclose(low, 0.055 - 0.5 * 9.81 * time**2, atol=1e-6)  # printed with eight digits
 
 
+def test_runs_to_times(tmp_path):
+    """Both runs end where they are told to, pictures are at equal times, and the water is held until the gate goes."""
+    found = go(tmp_path, "in.time", tend=0.2)
+    assert not found.warnings and [run.thermo["Time"][-1] for run in found.finished] == [0.1, 0.2]
+    frames = dump.read(tmp_path / "particles.dump")
+    # a picture is taken at the first step past its time; a step is 1e-4 s
+    np.testing.assert_allclose([frame.time for frame in frames], [0, 0.05, 0.1, 0.15, 0.2], atol=1.1e-4)
+    assert max(frame["x"].max() for frame in frames[:3]) < 0.1 < 0.12 < frames[4]["x"].max()
+
+
+def test_half_is_half_of_the_whole(tmp_path):
+    """Images in the plane of symmetry are what the other half is: front and forces agree to the digits that are printed, before the first splash."""
+    half, whole = (go(tmp_path / which, "in.half", half=which, tend=0.1) for which in ("yes", "no"))
+    assert whole.finished[0].atoms == 2 * half.finished[0].atoms == 1600 and not half.warnings + whole.warnings
+    np.testing.assert_allclose(half.column("v_front"), whole.column("v_front"), rtol=1e-7)
+    np.testing.assert_allclose(2.0 * half.column("v_floor"), whole.column("v_floor"), rtol=1e-6)
+
+
+@pytest.mark.parametrize("friction, value", [("laminar", 4.9e-5), ("artificial", 4.4e-5)])
+def test_viscosity_is_what_the_page_says(tmp_path, friction, value):
+    """And within 2 and 6 % of 0.0459/917 and of alpha's formula, as it says."""
+    found = go(tmp_path, "in.slow", friction=friction)
+    assert not found.warnings and found.values["viscosity"] == pytest.approx(value, abs=0.05e-5)  # its digits
+    assert found.values["of_alpha"] == pytest.approx(0.1 * 1.5 * 0.01 * 0.5 / 16)
+    assert found.values["viscosity"] == pytest.approx({"laminar": 0.0459 / 917, "artificial": found.values["of_alpha"]}[friction], rel=0.065)
+
+
+def test_water_that_is_added(tmp_path):
+    """Each lump is there in the next run, falls freely from rest until it meets the water 0.05 m below, and nothing is lost."""
+    found = go(tmp_path, "in.pour", lumps=2)
+    assert not found.warnings and [run.atoms for run in found.finished] == [900, 1000]
+    before = [frame for frame in dump.read(tmp_path / "particles.dump") if len(frame) == 1000 and frame.time < 0.21]
+    lump = [frame.select(frame["id"] > 900) for frame in before]
+    assert len(lump) >= 1
+    for frame in lump:
+        assert frame["y"].mean() == pytest.approx(0.125 - 0.5 * 9.81 * (frame.time - 0.15)**2, abs=1e-6)
+
+
 @pytest.mark.parametrize("extrapolate, dx, value", [("no", 0.01, 1.16), ("yes", 0.01, 0.987), ("no", 0.005, 1.077), ("yes", 0.005, 0.987)])
 def test_buoyancy_is_what_the_page_says(tmp_path, extrapolate, dx, value):
     assert go(tmp_path, "in.buoy", extrapolate=extrapolate, dx=dx).values["buoyancy"] == pytest.approx(value, abs=0.005)  # its digits
@@ -50,7 +89,7 @@ def test_buoyancy_is_what_the_page_says(tmp_path, extrapolate, dx, value):
 
 def test_restart_on_other_ranks(tmp_path):
     """From the same file on one and on two ranks: the same to round-off, before the splash amplifies it."""
-    go(tmp_path, "in.first")
+    assert not go(tmp_path, "in.first").warnings
     ends = [go(tmp_path, "in.second", ranks, n=200).finished[-1].thermo for ranks in (1, 2)]
     assert ends[0]["Step"][0] == 1000 and ends[0]["Step"][-1] == 1200
     np.testing.assert_allclose(ends[0]["KinEng"], ends[1]["KinEng"], rtol=1e-7)  # eight digits are printed

@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 
-from fsi import log, paths, precision, scene, sweep
+from fsi import log, paths, precision, scene, series, sweep
 
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import accuracy_cost  # noqa: E402
@@ -237,10 +237,37 @@ def test_deck_of_ones_own(tmp_path, monkeypatch, capsys):
     summary = json.loads((out / "summary.json").read_text())
     assert summary["reference"]["kind"] == "finest" and not summary["failed"]
     assert summary["methods"]["kind a"]["bounds"] == {} and "reference" in (out / "points.csv").read_text()
+    table = (out / "page.md").read_text()
+    assert "| kind a | 0.25 | 1.1875 | reference |" in table and "| kind a | 0.5 | 1.75 | +47 % **front** |" in table
     # a formula of the deck can be replaced; points are others, so nothing is mixed up
     assert accuracy_cost.main([*words, "offset=1"]) == 0
     assert json.loads((out / "summary.json").read_text())["reference"]["value"] == pytest.approx(2.0, abs=1e-3)
     assert "8 points, 8 to run" in capsys.readouterr().out
+
+
+def test_deck_of_ones_own_that_has_not_swung(tmp_path, monkeypatch, capsys):
+    """An eighth of the beam's period: its tip still falls. Over more than half a period it has been down and comes back."""
+    monkeypatch.setattr(scene, "build", lambda: True)
+    monkeypatch.setattr(sweep, "count", lambda *_: None)  # instructions are another test's
+    (tmp_path / "own.in").write_text((paths.EXAMPLES / "beam" / "in.beam").read_text().replace("thermo          2000", "thermo 20"))
+    words = [str(tmp_path / "own.in"), "--vary", "across=2,3", "--measure", "tip", "repeats=1"]
+    assert accuracy_cost.main([*words, "tend=0.03", f"out={tmp_path / 'short'}"]) == 0
+    assert "cost: warning: tip has not yet swung in deck, across = 2 (" in capsys.readouterr().out
+    page = (tmp_path / "short" / "page.md").read_text()
+    assert "**Warning**: tip has not yet swung" in page
+    # 0.2 m and five columns of the clamp, 0.01 m or 0.0067 m each; 2 or 3 rows
+    assert "| body 1 | 50: 2 x 25 | 105: 3 x 35 |" in page
+    assert accuracy_cost.main([*words, "tend=0.18", f"out={tmp_path / 'long'}"]) == 0
+    assert "warning" not in capsys.readouterr().out and "Warning" not in (tmp_path / "long" / "page.md").read_text()
+
+
+def test_what_still_moves():
+    time = np.linspace(0.0, 1.0, 101)
+    assert series.still_moving(time, time) == pytest.approx(0.1)  # a straight rise: a tenth in the last tenth
+    assert series.still_moving(time, np.sin(np.pi * time)) is None  # has been up and is back
+    assert series.still_moving(time, 1.0 - np.exp(-10.0 * time)) is None  # has come to rest
+    assert series.still_moving(time, 1.0 - np.exp(-time)) == pytest.approx((np.exp(-0.9) - np.exp(-1.0)) / (1.0 - np.exp(-1.0)))
+    assert series.still_moving(time, 0.0 * time) is None
 
 
 @pytest.mark.parametrize("words, says", [

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scenes import run
 
-from fsi import animate, cli, dump, paths, plot, report, series, vtk
+from fsi import animate, cli, dump, launch, paths, plot, report, series, vtk
 
 DUMP = """ITEM: TIMESTEP
 {step}
@@ -170,6 +170,12 @@ def test_command_line(frames, tmp_path, capsys):
     says("log", path, "time", "Step", f"plot={tmp_path / 'log.png'}")
     says("dump", frames, f"plot={tmp_path / 'dump.png'}")
     assert all((tmp_path / name).read_bytes().startswith(b"\x89PNG") for name in ("log.png", "dump.png"))
+    closed = f"from fsi import cli; cli.main(['dump', {str(frames)!r}])"  # into a pipe that nobody reads any more
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run([sys.executable, "-c", closed], stdout=write, stderr=subprocess.PIPE, env=launch.environment(), check=False)
+    os.close(write)
+    assert done.returncode == 0 and not done.stderr
     assert "view=" in says("dump", "--help") and "fsi check" in says("--help")
     for words, message in (([], "Usage"), (["log", path, "speed"], "no column speed; it has Step, v_time"), (["dump", path], "no frames"),
                            (["log", tmp_path / "none"], "No such file"), (["lag", path], "no command lag; there are log"), (["vtk"], "fsi vtk DUMP"),
@@ -294,6 +300,8 @@ def test_frequency(tmp_path, capsys):
     text = capsys.readouterr().out
     assert float(text.split()[0]) == pytest.approx(3.7, rel=0.01)
     assert "last 3 of " in text
+    plain, fitted = (float(value) for value in re.findall(r"amplitude +([\d.]+)", text))
+    assert fitted == pytest.approx(plain, abs=0.05)  # the faster swing is almost the third harmonic
     for words, message in ((["tip", "0", "0.01"], "has 2 rows"), ([], "takes a column"), (["speed"], "no column speed")):
         with pytest.raises(SystemExit, match=message):
             cli.main(["frequency", str(tmp_path / "tip.csv"), *words])
@@ -338,7 +346,23 @@ def test_swing_that_has_not_settled(tmp_path, capsys):
     (tmp_path / "tip.csv").write_text("time,tip\n" + "".join(f"{a},{np.exp(0.1 * a) * np.sin(6.0 * a)}\n" for a in t))
     cli.main(["frequency", str(tmp_path / "tip.csv"), "tip", "periods=2"])
     text = capsys.readouterr().out
-    assert "last 2 of " in text and "not settled" in text
+    assert "last 2 of " in text and "not settled" in text and "not one swing" not in text
+    (tmp_path / "tip.csv").write_text("time,tip\n" + "".join(f"{a},{np.sin(6.0 * a) if a < 4.0 else 0.5 * np.sin(60.0 * a)}\n" for a in t))
+    cli.main(["frequency", str(tmp_path / "tip.csv"), "tip", "periods=2"])
+    assert "not one swing: 9.5" in capsys.readouterr().out  # 60/2 pi
+
+
+def test_what_a_frame_is_made_of():
+    """Water 10 x 6, and a plate 3 x 20 that lies aslant with its own, finer spacing; a single particle has no extent."""
+    block = lambda n, m, dx: dx * np.stack(np.meshgrid(np.arange(n), np.arange(m)), -1).reshape(-1, 2).astype(float)
+    turn = np.array([[np.cos(0.5), -np.sin(0.5)], [np.sin(0.5), np.cos(0.5)]])
+    x = np.concatenate([block(10, 6, 0.1), 5.0 + block(3, 20, 0.04) @ turn.T, [[9.0, 9.0]]])
+    kind, mol = np.repeat([1, 2, 3], (60, 60, 1)), np.repeat([0, 7, 0], (60, 60, 1))
+    found = dump.bodies(dump.Frame(0, 0.0, None, {"type": kind, "mol": mol, "x": x[:, 0], "y": x[:, 1], "z": 0.0 * kind}))
+    assert [(name, number) for name, number, _ in found] == [("type 1", 60), ("type 3", 1), ("body 7", 60)]
+    np.testing.assert_allclose(found[0][2], [6, 10])
+    np.testing.assert_allclose(found[2][2], [3, 20])
+    assert found[1][2] == []
 
 
 def test_animation_says_what_the_dump_lacks(tmp_path):
