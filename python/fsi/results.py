@@ -2,8 +2,8 @@
 
     python -m fsi.results [RESULTS [PAGE]]     default: results doc/results; tools/run all ends with it
 
-Writes README.md, results.json (all that the page is made of) and copies of the pictures into the folder PAGE. Its first table is also put between
-the marks in the README.md of the repository, where PAGE is in one.
+Writes README.md, results.json (all that the page is made of) and copies of the pictures into the folder PAGE. What was not run keeps what the page
+has of it; the page names the commit of each. Its first table is also put between the marks in the README.md of the repository, where PAGE is in one.
 """
 
 import json
@@ -205,11 +205,16 @@ def write(results, page):
     if not any(entry["summary"] for entry in found["scenes"].values()):
         raise FileNotFoundError(f"{results} holds no summary.json of a scene")
     page.mkdir(parents=True, exist_ok=True)
-    for name, picture in _listed(page):
-        (page / copied(name, picture)).unlink(missing_ok=True)
+    before = _scenes_of(page)
+    for name, entry in found["scenes"].items():
+        if entry["summary"]:
+            for picture in before.get(name, {}).get("pictures", []):
+                (page / copied(name, picture)).unlink(missing_ok=True)
+            for picture in entry["pictures"]:
+                shutil.copyfile(results / name / picture["file"], page / copied(name, picture))
+        elif name in before:
+            entry.update(summary=before[name]["summary"], pictures=before[name]["pictures"])
     (page / "results.json").write_text(json.dumps(found, indent=2) + "\n")
-    for name, picture in _listed(page):
-        shutil.copyfile(results / name / picture["file"], page / copied(name, picture))
     (page / "README.md").write_text(render(found, Path(os.path.relpath(paths.EXAMPLES, page)).as_posix()))
     if page.resolve() == (paths.ROOT / "doc/results").resolve():
         write_readme(found)
@@ -225,11 +230,10 @@ def write_readme(found):
     path.write_text(before + MARKS[0] + "\n" + table + "\n\n" + MARKS[1] + rest.split(MARKS[1])[1])
 
 
-def _listed(page):
-    """(scene, picture) of those that the page's results.json names."""
+def _scenes_of(page):
+    """What the page's results.json has, by scene."""
     path = page / "results.json"
-    found = json.loads(path.read_text())["scenes"] if path.exists() else {}
-    return [(name, picture) for name, entry in found.items() for picture in entry["pictures"]]
+    return json.loads(path.read_text())["scenes"] if path.exists() else {}
 
 
 if __name__ == "__main__":

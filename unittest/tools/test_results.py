@@ -145,3 +145,18 @@ def test_nothing_to_show_is_refused(tree):
     with pytest.raises(FileNotFoundError, match="no summary.json"):
         results.write(tree / "nowhere", tree / "doc" / "results")
     assert not (tree / "doc").exists()
+
+
+def test_what_was_not_run_again_stays(tree):
+    before = page_of(tree)
+    (tree / "results" / "stone").rename(tree / "elsewhere")
+    summary = tree / "results" / "study" / "summary.json"
+    summary.write_text(summary.read_text().replace("1.98", "1.97"))
+    after = page_of(tree)
+    assert after == before.replace("1.98", "1.97")
+    page = tree / "doc" / "results"
+    assert (page / "stone_fall.png").read_text() == "stone/fall.png"
+    (tree / "elsewhere").rename(tree / "results" / "stone")
+    (tree / "results" / "stone" / "fall.png").unlink()
+    page_of(tree)
+    assert not (page / "stone_fall.png").exists()
