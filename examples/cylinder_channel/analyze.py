@@ -42,14 +42,8 @@ def vortices(folder):
     second half. Sound, whose frequencies are others, does not count."""
     speed, time, drag, lift = forces(folder)
     late = time >= 0.5 * time[-1]
-    rate = series.frequency(time[late], smooth(time, lift, 0.5 * DIAMETER / speed)[late])
+    rate = series.frequency(time[late], series.smooth(time, lift, 0.5 * DIAMETER / speed)[late])
     return *(sum(series.swing(time, values, rate)) for values in (drag, lift)), rate * DIAMETER / speed
-
-
-def smooth(time, values, width):
-    """Running mean over `width` [s]."""
-    n = max(1, round(width / (time[1] - time[0])))
-    return np.convolve(np.pad(values, (n // 2, n - 1 - n // 2), mode="edge"), np.full(n, 1.0 / n), mode="valid")
 
 
 def curve(folder):

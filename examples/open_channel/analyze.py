@@ -21,12 +21,6 @@ D = 0.1
 COLOURS = (plot.BLUE, plot.ORANGE, "#3a923a", plot.GREY)
 
 
-def smooth(time, values, window):
-    """Means over a window, at the places of the values: what sound does to the forces is not the flow's"""
-    n = max(1, round(window / (time[1] - time[0])))
-    return np.convolve(values, np.full(n, 1.0 / n), "same")
-
-
 def swing(time, lift, U):
     """Amplitude and frequency of the sine that fits best, between a third and twice the frequency of the reference"""
     lift = lift - lift.mean()
@@ -88,7 +82,7 @@ def main(folder):
     for name in ("in", "out", "particles", "lost"):
         summary.add(name, found[name])
     plot.lines(folder / "forces.png", "t [s]", "coefficient", [
-        (s.time, smooth(s.time, scale * s[name], window), name, colour) for name, colour in zip(("drag", "lift"), COLOURS)])
+        (s.time, series.smooth(s.time, scale * s[name], window), name, colour) for name, colour in zip(("drag", "lift"), COLOURS)])
     last = dump.read(folder / "particles.dump")[-1]
     last = last.of_types(1)
     dx = float(summary.log.values["dx"])
@@ -110,7 +104,7 @@ def study(folder, cases):
             summary.add(f"strouhal_{name}", found["strouhal"], "", STROUHAL, SOURCE)
         for key in ("in", "out", "particles", "lost"):
             summary.add(f"{key}_{name}", found[key])
-        curves.append((s.time, smooth(s.time, scale * s["lift"], window), name.replace("_", " "), colour))
+        curves.append((s.time, series.smooth(s.time, scale * s["lift"], window), name.replace("_", " "), colour))
     plot.lines(folder / "lift.png", "t [s]", "lift coefficient", curves)
     return summary.write()
 

@@ -67,6 +67,12 @@ def rms_distance(series, name, reference, reference_name, tolerance=1e-3):
     return float(np.sqrt(np.mean((series.at(name, clipped) - reference[reference_name][inside]) ** 2)))
 
 
+def smooth(time, values, width):
+    """Running mean over `width` [s], for equal steps of time; at the ends the first and last values go on."""
+    n = max(1, round(width / (time[1] - time[0])))
+    return np.convolve(np.pad(values, (n // 2, n - 1 - n // 2), mode="edge"), np.full(n, 1.0 / n), mode="valid")
+
+
 def frequency(time, values):
     """Where the spectrum is highest: Hann window, mean removed, the peak between the bins; at least two periods are needed."""
     n = len(time)

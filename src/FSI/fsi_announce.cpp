@@ -52,7 +52,7 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
   if (lmp->force->pair_match("fsi/solid/tl", 1))
     effects.push_back({fmt::format("{} solid sub-steps", scene.substeps), "fix fsi substeps", scene.substeps > 1});
   if (scene.surface_ratio > 0.0)
-    effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every), "fix fsi surface/every", scene.number_density_is_kept()});
+    effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every), "fix fsi surface/every", scene.keep_psi});
   effects.push_back({"energy ledger", "compute fsi/energy", scene.ledger});
 
   std::string on, off;
@@ -82,7 +82,7 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
 
 static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
 {
-  const bool newton = lmp->force->newton_pair, psi = scene.has_number_density(), send = psi && !scene.number_density_is_kept();
+  const bool newton = lmp->force->newton_pair, psi = scene.need_psi, send = psi && !scene.keep_psi;
   Part::Costs costs;
   costs.bytes = 8 * psi + (scene.walls.any() ? sizeof(int) : 0);
   costs.arrays = psi ? ", number density" : "";
@@ -123,8 +123,8 @@ static void warn_idle(LAMMPS *lmp, const Scene &scene)
   for (const auto *p : scene.parts) p->find_idle({all[0], all[1]}, nothing);
   const auto have = [&](const char *style) { return lmp->force->pair_match(style, 0) != nullptr; };
   if (scene.substeps > 1 && all[1] == 0) nothing("Fix fsi substeps", "no particle is a solid");
-  if (scene.surface_every > 1 && !scene.has_number_density()) nothing("Fix fsi surface/every", "pair_style fsi/fluid has no surface rule");
-  if (scene.surface_every > 1 && scene.has_number_density() && !scene.number_density_is_kept())
+  if (scene.surface_every > 1 && !scene.need_psi) nothing("Fix fsi surface/every", "pair_style fsi/fluid has no surface rule");
+  if (scene.surface_every > 1 && scene.need_psi && !scene.keep_psi)
     nothing("Fix fsi surface/every", "a density mode needs the number density in each step");
   if (scene.density_fluid != Scene::CONTINUITY && !have("^fsi/fluid")) nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");
   if (scene.density_solid != Scene::CONTINUITY && !have("^fsi/solid")) nothing("Fix fsi solid density", "there is no pair_style fsi/solid");

@@ -140,19 +140,6 @@ namespace FSI {
     return law.template operator()<D>(F, deviator);
   }
 
-  // adds a tensor, by its components, to a virial in LAMMPS' order
-  template <int D, class Component, class T> FSI_INLINE void add_virial(Component component, T *virial)
-  {
-    virial[0] += component(0, 0);
-    virial[1] += component(1, 1);
-    virial[3] += component(0, 1);
-    if (D == 3) {
-      virial[2] += component(D - 1, D - 1);
-      virial[4] += component(0, D - 1);
-      virial[5] += component(1, D - 1);
-    }
-  }
-
   // takes t F^T from a virial
   template <int D> FSI_INLINE void subtract_product(const double *t, const double *F, double *virial)
   {
@@ -245,11 +232,19 @@ namespace FSI {
         __builtin_memcpy(end, &b.G, SIZE * sizeof(double));
         end += SIZE;
       };
-      for (int k = 0; k < full; k += W) take(row.values + k * NV, row.partner + k);
       if (W > 1 && full < row.n) {
         std::fill_n(std::copy_n(row.values + full * NV, (row.n - full) * NV, last_values), (W - row.n + full) * NV, 0.0);
         std::fill_n(std::copy_n(row.partner + full, row.n - full, last_partner), W - row.n + full, i);
-        take(last_values, last_partner);
+      }
+      // one place for the text of a bond: see for_neighbors() of fsi_fluid_rows.h
+      const double *values = row.values;
+      const int *partner = row.partner;
+      for (int left = row.n; left > 0; left -= W, values += W * NV, partner += W) {
+        if (left < W) {
+          values = last_values;
+          partner = last_partner;
+        }
+        take(values, partner);
       }
 
       double Fi[D * D];
@@ -293,8 +288,11 @@ namespace FSI {
         }
         L::add_rows(force, f, partner, D);
       };
-      for (int k = 0; k < full; k += W) push(row.partner + k);
-      if (W > 1 && full < row.n) push(last_partner);
+      partner = row.partner;
+      for (int left = row.n; left > 0; left -= W, partner += W) {
+        if (left < W) partner = last_partner;
+        push(partner);
+      }
       for (int a = 0; a < D; a++) f[i][a] -= L::sum(sum[a]);
     }
     if (FLAGS & SUMS) {

@@ -115,6 +115,7 @@ namespace FSI {
   struct RateLaws {
     double delta;                         // of density diffusion; 0: none
     const double *pressure_over_density;  // per particle, with sums
+    double wdx;                           // W(dx), for shifting
   };
 
   struct ForceLaws {
@@ -132,14 +133,15 @@ namespace FSI {
    public:
     virtual ~FluidLoops() = default;
 
-    // adds m_i dpsi_i/dt, with density diffusion, to rate; mirror: the rows' neighbours are images in it; sums: or null
+    // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting to shift, rows of Shift<D>::ROW; mirror: the
+    // rows' neighbours are images in it; shift, sums: or null
     virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, const RateLaws &, double *rate,
-                       PairSums *sums) const = 0;
+                       double *shift, PairSums *sums) const = 0;
     // adds pressure, viscosity and what keeps fluid out of walls to force, rows of row_of_forces(D); with mirror the sum of the
     // forces on all particles to total[D]
     virtual void forces(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, const ForceLaws &, double *force,
                         double *total, PairSums *sums) const = 0;
-    // adds the sums of particle shifting of fluids to shift, rows of Shift<D>::N
+    // adds the sums of particle shifting alone
     virtual void shifts(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, double wdx, double *shift) const = 0;
     // adds W_ij, by the neighbours' share, to sum; of the neighbours only if both
     virtual void number_density(PairKind, const std::vector<Row> &, bool both, const Mirror *mirror, const FluidParticles &,

@@ -22,6 +22,7 @@
 #define LMP_FSI_FLUID_ROWS_H
 
 #include "fsi_contact.h"
+#include "fsi_couple_paper.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
@@ -35,9 +36,9 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of finer lattices
+  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of finer lattices; shifting
   namespace Flag {
-    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, FINER = 128 };
+    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, FINER = 128, SHIFT = 256 };
   }
 
   template <class T, int D> struct Particle {
@@ -109,15 +110,20 @@ namespace FSI {
   {
     constexpr int W = Lanes<T>::WIDTH;
     const auto weight = [&](const int *j, int n) __attribute__((always_inline)) {
-      const T there = n == W ? T(1.0) : Lanes<T>::first(n);
+      const T there = W == 1 ? T(1.0) : Lanes<T>::first(n < W ? n : W);
       return MIRRORED ? there * Lanes<T>::make([&](int k) { return j[k] == row.i ? 0.5 : 1.0; }) : there;
     };
-    const int full = row.n & ~(W - 1);
-    for (int jj = 0; jj < full; jj += W) pairs(row.j + jj, weight(row.j + jj, W));
-    if (full == row.n) return;
-    int j[W];
-    for (int k = 0; k < W; k++) j[k] = full + k < row.n ? row.j[full + k] : row.i;
-    pairs(j, weight(j, row.n - full));
+    // one place for the text of a pair: written out again for the last ones loops are twice as long
+    int last[W];
+    const int *j = row.j;
+    for (int left = row.n;; left -= W, j += W) {
+      if (left < W) {
+        if (left <= 0) return;
+        for (int k = 0; k < W; k++) last[k] = k < left ? j[k] : row.i;
+        j = last;
+      }
+      pairs(j, weight(j, left));
+    }
   }
 
   // 1 for a pair that only this rank visits, else 1/2
@@ -127,15 +133,32 @@ namespace FSI {
     return Lanes<T>::make([&](int k) { return i < nlocal && j[k] < nlocal ? 1.0 : 0.5; });
   }
 
+  // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j. Solids and walls count, but are not shifted.
+  template <class T, class K, bool BOTH, bool IMAGE, int D>
+  FSI_INLINE void add_shift(const Shift<D> &law, const K &kernel, const Mirror &mirror, const T &r, const T &rsq, const T &g, const T &vol_i, const T &vol_j,
+                            const T (&x)[D], const int *j, T (&sum)[Shift<D>::N], double (*const shift)[Shift<D>::ROW])
+  {
+    const T w = kernel.W(r);
+    law.add(sum, vol_j, g, w, rsq, x);
+    if (!BOTH) return;
+    T back[D], of_j[Shift<D>::N];
+    for (int d = 0; d < D; d++) back[d] = IMAGE ? -mirror.sign[d] * x[d] : -x[d];
+    for (T &s : of_j) s = 0.0;
+    law.add(of_j, vol_i, g, w, rsq, back);
+    Lanes<T>::add_rows(of_j, shift, j, Shift<D>::N);
+  }
+
   // d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which makes the work of the pair force
-  // -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures
+  // -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures; and the sums of particle shifting
   template <class T, class K, int KIND, int FLAGS>
   FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
-                            const RateLaws laws, double *const rate, PairSums *const sums)
+                            const RateLaws laws, double *const rate, double (*const shift)[Shift<K::DIM>::ROW], PairSums *const sums)
   {
-    constexpr int D = K::DIM;
+    constexpr int D = K::DIM, N = Shift<D>::N;
+    constexpr bool IMAGE = FLAGS & Flag::IMAGES;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+    const Shift<D> law(laws.wdx);
     T by_diffusion = 0.0;
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
@@ -144,15 +167,22 @@ namespace FSI {
       const Particle<T, D> pi(point[i]);
       const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
       const double sharper = (FLAGS & Flag::FINER) ? in.share[type_j].sharper : 0.0;
-      T sum = 0.0, flux = 0.0;
-      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
+      T sum = 0.0, flux = 0.0, displacement[N];
+      for (T &s : displacement) s = 0.0;
+      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
-        if (FLAGS & Flag::IMAGES) pj.reflect(mirror);
+        if (IMAGE) pj.reflect(mirror);
         T x[D], v[D];
         difference(pi.x, pj.x, x);
         difference(pi.v, pj.v, v);
-        T g = (FLAGS & Flag::FINER) ? kernel.sharper_gradient(root(product(x, x)), sharper) : kernel.gradient(root(product(x, x)));
-        if (FLAGS & Flag::IMAGES) g = weight * g;
+        const T rsq = product(x, x), r = root(rsq);
+        T g = kernel.gradient(r);
+        if (IMAGE) g = weight * g;
+        if (FLAGS & Flag::SHIFT) add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, pj.vol, x, j, displacement, shift);
+        if (FLAGS & Flag::FINER) {
+          g = kernel.sharper_gradient(r, sharper);
+          if (IMAGE) g = weight * g;
+        }
         const T s = g * product(v, x);
         sum += s;
         if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
@@ -170,25 +200,25 @@ namespace FSI {
       });
       const double volume = (FLAGS & Flag::FINER) ? in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
+      if (FLAGS & Flag::SHIFT)
+        for (int m = 0; m < N; m++) shift[i][m] += L::sum(displacement[m]);
     }
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);
   }
 
-  // Pressure p_i V_i^2 + p_j V_j^2 that fluid particle i and its neighbour share (paper eq. 14), by the rule of the pair; x_j: of the
-  // neighbour itself, not of its image; back: the fluid's volume over the neighbour's
+  // Pressure p_i V_i^2 + p_j V_j^2 that fluid particle i and its neighbour share (paper eq. 14); x_j: of the neighbour itself, not of its
+  // image; back: the fluid's volume over the neighbour's
   template <class T, int KIND, int D>
   FSI_INLINE T shared_pressure(const Particle<T, D> &pi, const Particle<T, D> &pj, const T *x_j, const double *extrapolate, double floor,
                                double back)
   {
-    if (KIND == WITH_SOLID) {
-      // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
-      T p = pi.p;
-      for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
-      return pi.pv2 + greater(p, T(floor)) * (back * pj.vol) * pj.vol;
-    }
-    if (KIND == WITH_FLUID) return pi.pv2 + pj.pv2;
     const T both = pi.pv2 + back * pj.pv2;
-    return KIND == WITH_SOLID_PRESSURE ? greater(both, T(0.0)) : both;    // no suction
+    if (KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL) return CouplePaper::pressure(both, KIND == WITH_SOLID_FULL);
+    if (KIND != WITH_SOLID) return both;
+    // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
+    T p = pi.p;
+    for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
+    return pi.pv2 + greater(p, T(floor)) * (back * pj.vol) * pj.vol;
   }
 
   // What is constant in a row of forces.
@@ -225,17 +255,6 @@ namespace FSI {
     {
       for (T &w : virial) w = 0.0;
     }
-    template <int D> FSI_INLINE void add_virial(const T &share, const T (&x)[D], const T (&force)[D])
-    {
-      virial[0] += share * x[0] * force[0];
-      virial[1] += share * x[1] * force[1];
-      virial[3] += share * x[0] * force[1];
-      if (D == 3) {
-        virial[2] += share * x[D - 1] * force[D - 1];
-        virial[4] += share * x[0] * force[D - 1];
-        virial[5] += share * x[1] * force[D - 1];
-      }
-    }
     FSI_INLINE void add_to(PairSums *sums) const
     {
       using L = Lanes<T>;
@@ -246,21 +265,6 @@ namespace FSI {
       for (int k = 0; k < 6; k++) sums->virial[k] += L::sum(virial[k]);
     }
   };
-
-  // Adds the stress of the solid j (couple full) to the force on i; its power. It is that of the particle, not of its image, so look from the solid.
-  template <int FLAGS, int D>
-  FSI_INLINE double stress_of_solid(const double *stress, const Mirror &mirror, double v2g, const double (&x)[D], const double (&v)[D], double (&force)[D])
-  {
-    double seen[D], shear[D] = {}, power = 0.0;
-    for (int d = 0; d < D; d++) seen[d] = ((FLAGS & Flag::IMAGES) ? mirror.sign[d] : 1.0) * x[d];
-    dot<D>(Sym<D>::load(stress), seen, shear);
-    for (int d = 0; d < D; d++) {
-      const double s = ((FLAGS & Flag::IMAGES) ? mirror.sign[d] : 1.0) * shear[d] * v2g;
-      force[d] += s;
-      power += s * v[d];
-    }
-    return power;
-  }
 
   // Adds laminar viscosity to the forces on both; what it takes from their energy, times 2 for images, which each pair meets from both sides.
   template <class T, int KIND, int FLAGS, int D>
@@ -369,7 +373,7 @@ namespace FSI {
           coupled -= k * vdotx;
         }
         if constexpr (KIND == WITH_SOLID_FULL)
-          if (laws.stress) coupled -= stress_of_solid<FLAGS>(laws.stress[*j], mirror, pj.vol * pj.vol * g, x, v, force);
+          if (laws.stress) coupled -= CouplePaper::add_stress<(FLAGS & Flag::IMAGES) != 0>(laws.stress[*j], mirror, pj.vol * pj.vol * g, x, v, force);
         if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) by.coupling += share * coupled;
         for (int d = 0; d < D; d++) on_j[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * force[d] : -force[d];
         if (FLAGS & Flag::LAMINAR) {
@@ -378,7 +382,8 @@ namespace FSI {
         }
         // what wall particles are given: they are not in the sum of energies
         if ((FLAGS & Flag::SUMS) && KIND == WITH_WALL) by.walls -= share * product(force, pj.v);
-        if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) by.add_virial(share, x, force);
+        if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES))
+          add_virial<D>([&](int a, int c) __attribute__((always_inline)) { return share * x[a] * force[c]; }, by.virial);
         for (int d = 0; d < D; d++) {
           sum[d] += force[d];
           if (FLAGS & Flag::IMAGES) on_all[d] += share * (force[d] + on_j[d]);
@@ -392,12 +397,13 @@ namespace FSI {
     if (FLAGS & Flag::SUMS) by.add_to(sums);
   }
 
-  // sums of particle shifting; solids and walls count, but are not shifted
+  // the sums of particle shifting alone
   template <class T, class K, int FLAGS>
   FSI_INLINE void shift_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
                              const double wdx, double (*const shift)[Shift<K::DIM>::ROW])
   {
     constexpr int D = K::DIM, N = Shift<D>::N;
+    constexpr bool IMAGE = FLAGS & Flag::IMAGES;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(wdx);
@@ -408,21 +414,15 @@ namespace FSI {
       const Particle<T, D> pi(point[i]);
       T sum[N];
       for (T &s : sum) s = 0.0;
-      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
+      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
-        if (FLAGS & Flag::IMAGES) pj.reflect(mirror);
+        if (IMAGE) pj.reflect(mirror);
         T x[D];
         difference(pi.x, pj.x, x);
-        const T rsq = product(x, x), r = root(rsq), w = kernel.W(r);
+        const T rsq = product(x, x), r = root(rsq);
         T g = kernel.gradient(r);
-        if (FLAGS & Flag::IMAGES) g = weight * g;
-        law.add(sum, pj.vol, g, w, rsq, x);
-        if (!(FLAGS & Flag::BOTH)) return;
-        T back[D], of_j[N];
-        for (int d = 0; d < D; d++) back[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * x[d] : -x[d];
-        for (T &s : of_j) s = 0.0;
-        law.add(of_j, pi.vol, g, w, rsq, back);
-        L::add_rows(of_j, shift, j, N);
+        if (IMAGE) g = weight * g;
+        add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, pj.vol, x, j, sum, shift);
       });
       for (int m = 0; m < N; m++) shift[i][m] += L::sum(sum[m]);
     }
@@ -473,17 +473,18 @@ namespace FSI {
     explicit FluidLoopsOf(double h) : kernel(h) {}
 
     void rates(PairKind kind, const std::vector<Row> &rows, const Mirror *image, const FluidParticles &in, const RateLaws &laws, double *rate,
-               PairSums *sums) const override
+               double *shift, PairSums *sums) const override
     {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop([&](auto number) __attribute__((always_inline)) {
-          rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate, sums);
+          rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate,
+                                                             reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums);
         });
       };
-      const int images = (image ? IMAGES : 0) | finer(kind, in), diffusion = kind != WITH_FLUID || laws.delta == 0.0 ? 0 : sums ? DIFFUSION | SUMS : DIFFUSION;
-      with_flags<IMAGES | DIFFUSION | SUMS | FINER>(images | diffusion, [&](auto flags) {
+      const int diffusion = kind != WITH_FLUID || laws.delta == 0.0 ? 0 : sums ? DIFFUSION | SUMS : DIFFUSION;
+      with_flags<IMAGES | DIFFUSION | SUMS | FINER | SHIFT>((image ? IMAGES : 0) | finer(kind, in) | diffusion | (shift ? SHIFT : 0), [&](auto flags) {
         if constexpr ((flags() & DIFFUSION) || !(flags() & SUMS)) {
           if constexpr (!(flags() & DIFFUSION))
             if (kind != WITH_FLUID) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
@@ -509,11 +510,12 @@ namespace FSI {
       };
       const std::true_type packs;
       const std::false_type no_packs;
-      // with sums there is one loop for all effects: those that are off have coefficients of zero
-      constexpr int ALL = ARTIFICIAL | LAMINAR | SUMS;
-      const int effects = (laws.alpha > 0.0 || laws.beta > 0.0 ? ARTIFICIAL : 0) | (laws.laminar ? LAMINAR : 0);
-      with_flags<ALL | IMAGES | FINER>((sums ? ALL : effects) | (image ? IMAGES : 0) | finer(kind, in), [&](auto flags) {
-        if constexpr (!(flags() & SUMS) || (flags() & ALL) == ALL) {
+      // with sums, or neighbours on a finer lattice, there is one loop for all effects: those that are off have coefficients of zero
+      constexpr int EFFECTS = ARTIFICIAL | LAMINAR;
+      const int named = (laws.alpha > 0.0 || laws.beta > 0.0 ? ARTIFICIAL : 0) | (laws.laminar ? LAMINAR : 0);
+      const int special = (sums ? SUMS : 0) | finer(kind, in);
+      with_flags<EFFECTS | SUMS | IMAGES | FINER>((special ? EFFECTS : named) | special | (image ? IMAGES : 0), [&](auto flags) {
+        if constexpr (!(flags() & (SUMS | FINER)) || (flags() & EFFECTS) == EFFECTS) {
           if constexpr (!(flags() & FINER))
             if (kind == WITH_FLUID) loop(packs, std::integral_constant<int, WITH_FLUID>(), flags);
           if (kind == WITH_SOLID) loop(packs, std::integral_constant<int, WITH_SOLID>(), flags);

@@ -85,8 +85,6 @@ namespace FSI {
     int surface_every;     // steps from one number density to the next of that rule
     bool need_psi;         // for any mode or rule
     bool keep_psi;         // it is that of some steps only: it travels with its atom and through restarts
-    bool has_number_density() const { return need_psi; }
-    bool number_density_is_kept() const { return keep_psi; }
 
     // Energy ledger (compute fsi/energy): what each term took from the particles' energy since fix fsi was defined, this
     // rank's part; kept only while such a compute exists

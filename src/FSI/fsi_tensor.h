@@ -19,6 +19,7 @@
 #ifndef LMP_FSI_TENSOR_H
 #define LMP_FSI_TENSOR_H
 
+#include "fsi_pack.h"
 #include "math_eigen.h"
 
 #include <cmath>
@@ -179,6 +180,19 @@ namespace FSI {
       }
     }
     return r;
+  }
+
+  // adds a tensor, by its components, to a virial in LAMMPS' order
+  template <int D, class Component, class T> FSI_INLINE void add_virial(Component component, T *virial)
+  {
+    virial[0] += component(0, 0);
+    virial[1] += component(1, 1);
+    virial[3] += component(0, 1);
+    if (D == 3) {
+      virial[2] += component(D - 1, D - 1);
+      virial[4] += component(0, D - 1);
+      virial[5] += component(1, D - 1);
+    }
   }
 
 }    // namespace FSI

@@ -450,12 +450,11 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
     for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, pressure_over_density.data()};
+  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx};
   double *const shift = shifting > 0.0 ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror) {
-    loops->rates(kinds[kind], which, mirror, particles, laws, rate, fix_fsi->ledger ? &sums : nullptr);
-    if (shift) loops->shifts(kinds[kind], which, mirror, particles, fix_fsi->wdx, shift);
+    loops->rates(kinds[kind], which, mirror, particles, laws, rate, shift, fix_fsi->ledger ? &sums : nullptr);
   };
   for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind].rows, nullptr);
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);

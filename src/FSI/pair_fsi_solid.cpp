@@ -118,7 +118,10 @@ template <class K, int TERMS, int... F> void PairFSISolid::pick_force(int flags,
 {
   using Loop = void (PairFSISolid::*)();
   static constexpr Loop table[] = {&PairFSISolid::force_pairs<K, TERMS, F>...};
-  force_loop = flags & LEDGER ? &PairFSISolid::force_pairs<K, TERMS, ALL> : table[flags];
+  // with artificial stress, and with the ledger, there is one loop for all effects: those that are off have coefficients of zero
+  constexpr int EFFECTS = ARTIFICIAL_VISCOSITY | ARTIFICIAL_STRESS | BODIES;
+  force_loop = flags & LEDGER ? &PairFSISolid::force_pairs<K, TERMS, EFFECTS | LEDGER> :
+      flags & ARTIFICIAL_STRESS ? &PairFSISolid::force_pairs<K, TERMS, EFFECTS> : table[flags];
 }
 
 /* ---------------------------------------------------------------------- */

@@ -98,8 +98,8 @@ class PairFSISolid : public PairFSI {
   template <int D> std::vector<Aux<D>> &get_aux();
   template <int D, int TERMS> const std::vector<Aux<D>> &fill_aux();
 
-  // with the ledger one loop has all effects, and those that are off have coefficients of zero
-  enum { ARTIFICIAL_VISCOSITY = 1, ARTIFICIAL_STRESS = 2, BODIES = 4, NFORCE = 8, LEDGER = 8, ALL = 15 };
+  // with artificial stress, and with the ledger, one loop has all effects, and those that are off have coefficients of zero
+  enum { ARTIFICIAL_VISCOSITY = 1, BODIES = 2, NFORCE = 4, ARTIFICIAL_STRESS = 4, LEDGER = 8 };
   void (PairFSISolid::*force_loop)();
   void (PairFSISolid::*gradient_loop)(double);
   template <class K, int TERMS, int FLAGS> void force_pairs();
