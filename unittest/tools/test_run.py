@@ -1,10 +1,11 @@
 """tools/run without its builds: which runs it makes of a scene, where they go, and what of it survives a failure."""
 
 import json
+from pathlib import Path
 
 import pytest
 
-from fsi import paths, scene
+from fsi import paths, scene, suite
 from fsi.summary import Summary
 
 DECK = """# a deck that computes nothing
@@ -226,3 +227,12 @@ def test_target_of_a_figure(tmp_path):
     met = {f["name"]: f["met"] for f in summary.write()["figures"]}
     assert met["near"] and met["small"] and met["without"] is None
     assert [met[name] for name in ("far", "large", "lost", "missing")] == [False] * 4
+
+
+def test_quick_leaves_out_what_is_slow(monkeypatch):
+    asked = []
+    monkeypatch.setattr(suite.subprocess, "run", lambda command, **_: asked.extend(command) or suite.subprocess.CompletedProcess(command, 0))
+    suite.pytest(suite.quick())
+    collected = {Path(word).name for word in asked if word.startswith(str(paths.ROOT / "unittest"))}
+    assert collected == {"styles"}
+    assert f"--ignore={paths.ROOT / 'unittest/styles/test_fuzz.py'}" in asked
