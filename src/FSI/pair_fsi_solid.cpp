@@ -118,10 +118,11 @@ template <class K, int TERMS, int... F> void PairFSISolid::pick_force(int flags,
 {
   using Loop = void (PairFSISolid::*)();
   static constexpr Loop table[] = {&PairFSISolid::force_pairs<K, TERMS, F>...};
-  // with artificial stress, and with the ledger, there is one loop for all effects: those that are off have coefficients of zero
-  constexpr int EFFECTS = ARTIFICIAL_VISCOSITY | ARTIFICIAL_STRESS | BODIES;
-  force_loop = flags & LEDGER ? &PairFSISolid::force_pairs<K, TERMS, EFFECTS | LEDGER> :
-      flags & ARTIFICIAL_STRESS ? &PairFSISolid::force_pairs<K, TERMS, EFFECTS> : table[flags];
+  // with artificial stress the loop has artificial viscosity, too, and with the ledger both that and contact: what is off has coefficients of zero
+  constexpr int LEDGER_OF = ARTIFICIAL_VISCOSITY | BODIES | LEDGER, STRESS = ARTIFICIAL_VISCOSITY | ARTIFICIAL_STRESS;
+  if (flags & LEDGER) force_loop = flags & ARTIFICIAL_STRESS ? &PairFSISolid::force_pairs<K, TERMS, LEDGER_OF | STRESS> : &PairFSISolid::force_pairs<K, TERMS, LEDGER_OF>;
+  else if (flags & ARTIFICIAL_STRESS) force_loop = flags & BODIES ? &PairFSISolid::force_pairs<K, TERMS, STRESS | BODIES> : &PairFSISolid::force_pairs<K, TERMS, STRESS>;
+  else force_loop = table[flags];
 }
 
 /* ---------------------------------------------------------------------- */

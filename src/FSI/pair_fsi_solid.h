@@ -98,7 +98,7 @@ class PairFSISolid : public PairFSI {
   template <int D> std::vector<Aux<D>> &get_aux();
   template <int D, int TERMS> const std::vector<Aux<D>> &fill_aux();
 
-  // with artificial stress, and with the ledger, one loop has all effects, and those that are off have coefficients of zero
+  // with artificial stress, and with the ledger, a loop may have effects that are off, with coefficients of zero
   enum { ARTIFICIAL_VISCOSITY = 1, BODIES = 2, NFORCE = 4, ARTIFICIAL_STRESS = 4, LEDGER = 8 };
   void (PairFSISolid::*force_loop)();
   void (PairFSISolid::*gradient_loop)(double);
