@@ -101,7 +101,12 @@ void PairFSISolid::init_style()
 
 template <class K, int TERMS> void PairFSISolid::select(int flags)
 {
-  pick_force<K, TERMS>(flags, std::make_integer_sequence<int, NFORCE>());
+  // loops may have effects that are off, with coefficients of zero: with artificial stress artificial viscosity, with the ledger contact, too
+  const int with = flags | (flags & (ARTIFICIAL_STRESS | LEDGER) ? ARTIFICIAL_VISCOSITY : 0) | (flags & LEDGER ? BODIES : 0);
+  with_flags<ARTIFICIAL_VISCOSITY | BODIES | ARTIFICIAL_STRESS | LEDGER>(with, [this](auto f) {
+    constexpr bool more = (f() & (ARTIFICIAL_STRESS | LEDGER)) != 0, ledger = (f() & LEDGER) != 0;
+    if constexpr ((!more || (f() & ARTIFICIAL_VISCOSITY)) && (!ledger || (f() & BODIES))) force_loop = &PairFSISolid::force_pairs<K, TERMS, f()>;
+  });
   gradient_loop =
       (flags & BODIES) ? &PairFSISolid::gradient_pairs<K, TERMS, BODIES> : &PairFSISolid::gradient_pairs<K, TERMS, 0>;
 }
@@ -110,19 +115,6 @@ int PairFSISolid::terms() const
 {
   const int dim = domain->dimension;
   return gradient == PLAIN ? 0 : gradient == CORRECTED_LINEAR ? dim : dim * (dim + 3) / 2;
-}
-
-/* ---------------------------------------------------------------------- */
-
-template <class K, int TERMS, int... F> void PairFSISolid::pick_force(int flags, std::integer_sequence<int, F...>)
-{
-  using Loop = void (PairFSISolid::*)();
-  static constexpr Loop table[] = {&PairFSISolid::force_pairs<K, TERMS, F>...};
-  // with artificial stress the loop has artificial viscosity, too, and with the ledger both that and contact: what is off has coefficients of zero
-  constexpr int LEDGER_OF = ARTIFICIAL_VISCOSITY | BODIES | LEDGER, STRESS = ARTIFICIAL_VISCOSITY | ARTIFICIAL_STRESS;
-  if (flags & LEDGER) force_loop = flags & ARTIFICIAL_STRESS ? &PairFSISolid::force_pairs<K, TERMS, LEDGER_OF | STRESS> : &PairFSISolid::force_pairs<K, TERMS, LEDGER_OF>;
-  else if (flags & ARTIFICIAL_STRESS) force_loop = flags & BODIES ? &PairFSISolid::force_pairs<K, TERMS, STRESS | BODIES> : &PairFSISolid::force_pairs<K, TERMS, STRESS>;
-  else force_loop = table[flags];
 }
 
 /* ---------------------------------------------------------------------- */

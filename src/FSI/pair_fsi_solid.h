@@ -24,7 +24,6 @@ PairStyle(fsi/solid,PairFSISolid);
 #include "fsi_tensor.h"
 #include "pair_fsi.h"
 
-#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -98,14 +97,12 @@ class PairFSISolid : public PairFSI {
   template <int D> std::vector<Aux<D>> &get_aux();
   template <int D, int TERMS> const std::vector<Aux<D>> &fill_aux();
 
-  // with artificial stress, and with the ledger, a loop may have effects that are off, with coefficients of zero
-  enum { ARTIFICIAL_VISCOSITY = 1, BODIES = 2, NFORCE = 4, ARTIFICIAL_STRESS = 4, LEDGER = 8 };
+  enum { ARTIFICIAL_VISCOSITY = 1, BODIES = 2, ARTIFICIAL_STRESS = 4, LEDGER = 8 };
   void (PairFSISolid::*force_loop)();
   void (PairFSISolid::*gradient_loop)(double);
   template <class K, int TERMS, int FLAGS> void force_pairs();
   template <class K, int TERMS, int FLAGS> void gradient_pairs(double);
   template <class K, int TERMS> void select(int flags);
-  template <class K, int TERMS, int... F> void pick_force(int, std::integer_sequence<int, F...>);
 };
 
 }    // namespace LAMMPS_NS
