@@ -151,11 +151,11 @@ namespace FSI {
                                      double *sum) const = 0;
   };
 
-  std::unique_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h);
-  // with packs
-  std::unique_ptr<FluidLoops> make_fluid_loops_cubic(int dim, double h);
-  std::unique_ptr<FluidLoops> make_fluid_loops_quintic(int dim, double h);
-  std::unique_ptr<FluidLoops> make_fluid_loops_wendland(int dim, double h);
+  // packs: several pairs at a time, of all kinds but WITH_SOLID_PRESSURE and WITH_SOLID_FULL
+  std::shared_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h, bool packs);
+  std::shared_ptr<FluidLoops> make_fluid_loops_cubic(int dim, double h);
+  std::shared_ptr<FluidLoops> make_fluid_loops_quintic(int dim, double h);
+  std::shared_ptr<FluidLoops> make_fluid_loops_wendland(int dim, double h);
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS
