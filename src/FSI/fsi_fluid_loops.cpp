@@ -11,7 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_fluid_rows.h"
+#include "fsi_fluid_loops.h"
+
+#include "fsi_kernel.h"
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -27,6 +29,5 @@ std::shared_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h,
     return make_fluid_loops_wendland(dim, h);
   }
 #endif
-  if (dim == 2) return std::make_shared<FluidLoopsOf<double, AnyKernel<2>>>(AnyKernel<2>(kernel, h));
-  return std::make_shared<FluidLoopsOf<double, AnyKernel<3>>>(AnyKernel<3>(kernel, h));
+  return make_fluid_loops_any(kernel, dim, h);
 }
