@@ -24,6 +24,7 @@
 #include "fsi_part.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
+#include "fsi_sight.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -44,7 +45,7 @@ using namespace FSI;
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this),
     number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
-    states_entered(false), nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr)
+    states_entered(false), nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), array(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -59,12 +60,17 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("substeps").integer(given_substeps, 1, 1, 10000);
   keywords.key("surface/every").integer(surface_every, 1, 1);
   keywords.key("spacing").per_type(given_spacing, Range::above(0.0)).kept("that of the particles cannot change");
+  keywords.key("thin").types(thin);
   keywords.key("mach").number(mach, 1.0, Range::above(0.0)).or_word("off", Check::OFF);
   keywords.parse(narg - 3, arg + 3);
   substeps = given_substeps;
 
   dim = domain->dimension;
   resolve(hdx, given_spacing);
+  if (std::count(thin.begin(), thin.end(), 1.0)) {
+    past_thin_bodies.reset(new Sight(lmp, *this));
+    sight = past_thin_bodies.get();
+  }
 
   time_integrate = 1;
   force_reneighbor = 1;
@@ -93,9 +99,9 @@ void FixFSI::set_fields()
   number_density.add_messages(forward);
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
-  scalar_back.clear();
-  scalar_back.add(summed, {NONE, FLUID, SOLID, RIGID});
-  comm_forward = forward.size();
+  scalar.clear();
+  scalar.add(array, {NONE, FLUID, SOLID, RIGID});
+  comm_forward = std::max(1, forward.size());
   comm_reverse = std::max(1, back.size());
 }
 
@@ -153,6 +159,7 @@ void FixFSI::init()
   comm->ghost_velocity = 1;
 
   check.materials();
+  if (sight) sight->init();
   for (int i = 0; i < atom->nlocal; i++) give_defaults(i);
   body_forces.find(state);
   check.init();
@@ -332,6 +339,7 @@ void FixFSI::update_state(bool advance)
   body_forces.evaluate();
   if (ledger && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);
+  if (sight && neighbor->ago == 0) sight->find_bodies();
   for (auto *p : parts) p->begin_state(advance);
   if (walls.any()) {
     phase.next(Profile::WALLS);
@@ -360,9 +368,16 @@ void FixFSI::update_state(bool advance)
 
 void FixFSI::add_ghosts(double *n)
 {
-  summed = n;
+  array = n;
   if (force->newton_pair) reverse_comm(profile, comm, this);
-  summed = nullptr;
+  array = nullptr;
+}
+
+void FixFSI::send_to_ghosts(double *n)
+{
+  array = n;
+  forward_comm(profile, comm, this);
+  array = nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -372,22 +387,22 @@ void FixFSI::add_ghosts(double *n)
 
 int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
-  return forward.pack(n, list, buf);
+  return (array ? scalar : forward).pack(n, list, buf);
 }
 
 void FixFSI::unpack_forward_comm(int n, int first, double *buf)
 {
-  forward.unpack(n, first, buf);
+  (array ? scalar : forward).unpack(n, first, buf);
 }
 
 int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 {
-  return (summed ? scalar_back : back).pack_back(n, first, buf);
+  return (array ? scalar : back).pack_back(n, first, buf);
 }
 
 void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  (summed ? scalar_back : back).add_up(n, list, buf);
+  (array ? scalar : back).add_up(n, list, buf);
 }
 
 /* ---------------------------------------------------------------------- */

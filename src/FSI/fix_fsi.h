@@ -29,6 +29,7 @@ FixStyle(fsi,FixFSI);
 #include "fsi_scene.h"
 #include "fsi_surface_room.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::NumberDensity number_density;
   FSI::SurfaceRoom surface_room;
   void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
+  void send_to_ghosts(double *n);
 
  private:
   void set_fields();
@@ -77,6 +79,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   int given_substeps;
   double hdx;    // h over dx
   std::vector<double> given_spacing;    // per type; 0: dx
+  std::unique_ptr<FSI::Sight> past_thin_bodies;
   bool states_entered;       // since the last init()
   int nlocal_ready;          // atoms when the state was last brought up to date; -1: not since init()
   bool ids_checked;
@@ -84,8 +87,8 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void find_parts();
   void gather_walls();
 
-  FSI::Message forward, back, scalar_back;    // to ghosts, and sums from them; of one array of numbers per atom
-  double *summed;                             // that array; null: the other
+  FSI::Message forward, back, scalar;    // to ghosts, and sums from them; of one array of numbers per atom, both ways
+  double *array;                         // that array; null: the others
   bool fresh_start() const;
   template <int D> void drift();
   template <int D> void kick();

@@ -32,6 +32,7 @@ class LAMMPS;
 namespace FSI {
   class Part;
   class Profile;
+  class Sight;
 
   class Scene {
    public:
@@ -53,6 +54,8 @@ namespace FSI {
     double largest_cut;                    // support of the coarsest
     double dx_of(int type) const { return resolution[type].dx; }
     double h_of(int type) const { return resolution[type].h; }
+    std::vector<double> thin;    // per atom type, 1: fluids do not see each other through it
+    Sight *sight;                // past those; null: there are none
 
     // per atom type; pair styles enter theirs in init_style()
     std::vector<State> state;

@@ -24,6 +24,7 @@
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
 #include "fsi_shift.h"
+#include "fsi_sight.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -137,9 +138,10 @@ void PairFSIFluid::init_style()
   finer = false;
   for (int t = 1; t <= atom->ntypes; t++) {
     const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx, per_h = fix_fsi->dx / fix_fsi->h;
-    if (ratio == 1.0) continue;
+    const bool thin = fix_fsi->thin[t] != 0.0;
+    if (ratio == 1.0 && !thin) continue;
     finer = true;
-    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h};
+    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h, thin};
   }
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
@@ -222,6 +224,7 @@ void PairFSIFluid::begin_state(bool)
 {
   images_step = -1;
   if (neighbor->ago == 0) find_rows();
+  if (fix_fsi->sight && neighbor->ago == 0) fix_fsi->send_to_ghosts(fill.data());
 }
 
 bool PairFSIFluid::add_rates(bool advance)
@@ -285,6 +288,7 @@ void PairFSIFluid::find_rows()
 {
   const int *const type = atom->type, nlocal = atom->nlocal, nall = nlocal + atom->nghost;
   const State *const state = fix_fsi->state.data();
+  double **const x = atom->x;
   std::vector<int> fluid_types, other_types;
   for (int t = 1; t <= atom->ntypes; t++)
     if (state[t].species == FLUID) fluid_types.push_back(t);
@@ -314,6 +318,8 @@ void PairFSIFluid::find_rows()
   }
 
   std::vector<int> unmasked;
+  Sight *const sight = fix_fsi->sight;
+  if (sight) fill.assign(nall, 1.0);
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], n = list->numneigh[i], *const neighbors = list->firstneigh[i];
@@ -324,9 +330,15 @@ void PairFSIFluid::find_rows()
     }
     unmasked.resize(n);
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
+    if (sight && sight->near(x[i])) {
+      sight->look_from(x[i]);
+      fill[i] = sight->fill();
+      const auto hidden = [&](int j) { return state[type[j]].species == FLUID && sight->blocked(x[j]); };
+      unmasked.erase(std::remove_if(unmasked.begin(), unmasked.end(), hidden), unmasked.end());
+    }
     // that of its own type stays if it is empty, for its own images
     for (const int t : fluid_types)
-      rows[FLUIDS].add(i, unmasked.data(), n, false, t == type[i], [=](int j) { return type[j] == t; });
+      rows[FLUIDS].add(i, unmasked.data(), unmasked.size(), false, t == type[i], [=](int j) { return type[j] == t; });
   }
   if (!own) rows[FLUIDS].end();
   if (other_types.empty()) return;
@@ -402,7 +414,7 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 FluidParticles PairFSIFluid::particles_at(const double *points) const
 {
-  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, force->newton_pair != 0};
+  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fix_fsi->sight ? fill.data() : nullptr, force->newton_pair != 0};
 }
 
 template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest rest)
@@ -502,7 +514,7 @@ void PairFSIFluid::add_position_divergence(double *div)
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
   distance_sums(false, [&](PairKind, const std::vector<Row> &which, bool both, const Mirror *mirror) {
-    loops->position_divergence(which, both, mirror, FixFSI::rows(atom->x), volume.data(), div);
+    loops->position_divergence(which, both, mirror, particles_at(nullptr), FixFSI::rows(atom->x), volume.data(), div);
   });
 }
 
@@ -603,7 +615,8 @@ template <int D> void PairFSIFluid::compute_forces()
 
   const ForceLaws laws = {alpha, beta, laminar, extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
                     fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
-                    FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr};
+                    FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr,
+                    fix_fsi->body_forces.of_type.data()};
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   for (int kind = 0; kind < NROWS; kind++)
@@ -649,7 +662,7 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   for (int i = 0; i < nall; i++) point[i].p = point[i].pv2 = 0.0;
   const std::vector<Contact> no_guards(guards.size(), Contact(D, 0.0));
   laws.guard = no_guards.data();
-  laws.extrapolate = nullptr;
+  laws.extrapolate = laws.gravity = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
   for (const int kind : {WALLS, SOLIDS}) loops->forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
@@ -686,7 +699,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity();
+  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity() + fill.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double);
   for (const auto &list_of : rows) bytes += list_of.memory_usage();
   for (const auto &lists : images)

@@ -101,7 +101,8 @@ class PairFSIFluid : public PairFSI {
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
   std::vector<FSI::Share> shares;    // per type: how its particles count at fluid particles
-  bool finer;                        // is any type finer than the fluid?
+  bool finer;                        // is any type finer than the fluid, or thin?
+  std::vector<double> fill;          // with thin bodies, per particle (fsi_sight.h)
   FSI::FluidParticles particles_at(const double *points) const;
   template <int D, class Rest> FSI::FluidParticles gather(double t, Rest);    // positions a time t later; what else a loop needs
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
