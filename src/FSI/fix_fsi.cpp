@@ -45,7 +45,7 @@ using namespace FSI;
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this),
     number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
-    states_entered(false), nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), array(nullptr)
+    states_entered(false), nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -100,7 +100,7 @@ void FixFSI::set_fields()
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
   scalar.clear();
-  scalar.add(array, {NONE, FLUID, SOLID, RIGID});
+  scalar.add(carried, {NONE, FLUID, SOLID, RIGID});
   comm_forward = std::max(1, forward.size());
   comm_reverse = std::max(1, back.size());
 }
@@ -368,16 +368,16 @@ void FixFSI::update_state(bool advance)
 
 void FixFSI::add_ghosts(double *n)
 {
-  array = n;
+  carried = n;
   if (force->newton_pair) reverse_comm(profile, comm, this);
-  array = nullptr;
+  carried = nullptr;
 }
 
 void FixFSI::send_to_ghosts(double *n)
 {
-  array = n;
+  carried = n;
   forward_comm(profile, comm, this);
-  array = nullptr;
+  carried = nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -387,22 +387,22 @@ void FixFSI::send_to_ghosts(double *n)
 
 int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
-  return (array ? scalar : forward).pack(n, list, buf);
+  return (carried ? scalar : forward).pack(n, list, buf);
 }
 
 void FixFSI::unpack_forward_comm(int n, int first, double *buf)
 {
-  (array ? scalar : forward).unpack(n, first, buf);
+  (carried ? scalar : forward).unpack(n, first, buf);
 }
 
 int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 {
-  return (array ? scalar : back).pack_back(n, first, buf);
+  return (carried ? scalar : back).pack_back(n, first, buf);
 }
 
 void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  (array ? scalar : back).add_up(n, list, buf);
+  (carried ? scalar : back).add_up(n, list, buf);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -88,7 +88,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void gather_walls();
 
   FSI::Message forward, back, scalar;    // to ghosts, and sums from them; of one array of numbers per atom, both ways
-  double *array;                         // that array; null: the others
+  double *carried;                       // that array; null: the others
   bool fresh_start() const;
   template <int D> void drift();
   template <int D> void kick();
