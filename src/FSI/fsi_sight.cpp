@@ -24,44 +24,44 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static constexpr int NLAYER = 400;    // distances for which the force of a layer is tabulated
+static constexpr int NTABLE = 400;    // distances for which forces are tabulated
 
 /* ---------------------------------------------------------------------- */
 
 Sight::Sight(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), reach(0.0), from{}, low{}, per_cell(0.0), n{} {}
 
 /* ----------------------------------------------------------------------
-   the gradient of a layer of particles as smooth as the fluid meets it: the kernel that is sharper where the layer is of a finer lattice
+   A layer of particles pushes as a smeared one, with the kernel that is sharper where its lattice is finer than the fluid's.
 ------------------------------------------------------------------------- */
 
 void Sight::init()
 {
-  layers.assign(scene.thin.size(), {});
+  half_space.assign(scene.thin.size(), {});
   for (size_t t = 1; t < scene.thin.size(); t++) {
     if (scene.thin[t] == 0.0) continue;
-    const double ratio = scene.dx_of(t) / scene.dx, per_h = scene.dx / scene.h, sharper = (1.0 - ratio * ratio) / 24.0 * per_h * per_h;
+    const double dx = scene.dx_of(t), ratio = dx / scene.dx, per_h = scene.dx / scene.h, sharper = (1.0 - ratio * ratio) / 24.0 * per_h * per_h;
     with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &kernel) {
       constexpr int D = std::decay_t<decltype(kernel)>::DIM, STEPS = 200;
       const double step = kernel.cut / STEPS;
-      for (int k = 0; k <= NLAYER; k++) {
-        const double a = k * kernel.cut / NLAYER;
+      for (int k = 0; k <= NTABLE; k++) {
         double sum = 0.0;
-        for (int m = 0; m < STEPS; m++) {
-          const double s = (m + 0.5) * step, r = std::sqrt(a * a + s * s);
-          if (r < kernel.cut) sum -= (D == 3 ? s : 1.0) * a * kernel.sharper_gradient(r, sharper);
-        }
-        layers[t].push_back(sum);
+        for (double a = k * kernel.cut / NTABLE; a < kernel.cut; a += dx)
+          for (int m = 0; m < STEPS; m++) {
+            const double s = (m + 0.5) * step, r = std::sqrt(a * a + s * s);
+            if (r < kernel.cut) sum -= (D == 3 ? s : 1.0) * a * kernel.sharper_gradient(r, sharper);
+          }
+        half_space[t].push_back(sum);
       }
     });
   }
 }
 
-double Sight::force_of_layer(int type, double distance) const
+double Sight::force_beyond(int type, double distance) const
 {
-  const double at = std::fabs(distance) / scene.cut * NLAYER;
+  const double at = std::max(distance, 0.0) / scene.cut * NTABLE;
   const int k = static_cast<int>(at);
-  if (k >= NLAYER) return 0.0;
-  const auto &of = layers[type];
+  if (k >= NTABLE) return 0.0;
+  const auto &of = half_space[type];
   return of[k] + (at - k) * (of[k + 1] - of[k]);
 }
 
@@ -97,7 +97,7 @@ void Sight::find_bodies()
     if (scene.thin[type[i]] != 0.0) first[cell(x[i]) + 2]++;
   for (size_t c = 2; c < first.size(); c++) first[c] += first[c - 1];
   for (int i = 0; i < nall; i++)
-    if (scene.thin[type[i]] != 0.0) places[first[cell(x[i]) + 1]++] = {{x[i][0], x[i][1], x[i][2]}, type[i]};
+    if (scene.thin[type[i]] != 0.0) places[first[cell(x[i]) + 1]++] = {{x[i][0], x[i][1], x[i][2]}, i};
 }
 
 template <class Visit> void Sight::for_near(const double *x, Visit visit) const
@@ -134,8 +134,8 @@ void Sight::look_from(const double *x)
       s.x[d] = p.x[d] - x[d];
       s.rsq += s.x[d] * s.x[d];
     }
-    s.type = p.type;
-    s.dx = scene.dx_of(p.type);
+    s.i = p.i;
+    s.dx = scene.dx_of(atom->type[p.i]);
     if (s.rsq < reach * reach) seen.push_back(s);
     return false;
   });
@@ -161,7 +161,7 @@ bool Sight::blocked(const double *y) const
     const double t = along / dsq, offsq = (s.rsq - t * along) / (s.dx * s.dx);
     if (offsq > AROUND * AROUND || s.rsq - 2.0 * along + dsq > reach * reach) continue;
     nearest = std::min(nearest, offsq);
-    around.push_back({{s.x[0] - t * d[0], s.x[1] - t * d[1], s.x[2] - t * d[2]}, offsq, s.dx, s.type});
+    around.push_back({{s.x[0] - t * d[0], s.x[1] - t * d[1], s.x[2] - t * d[2]}, offsq, s.dx, s.i});
   }
   if (nearest > NEAR * NEAR) return false;
   if (nearest < HIT * HIT) return true;
@@ -179,37 +179,41 @@ bool Sight::blocked(const double *y) const
 }
 
 /* ----------------------------------------------------------------------
-   The body is as thick here as it is along its normal through x; its layers push as those of a flat one.
+   the body is as thick as it is along its normal through x
 ------------------------------------------------------------------------- */
 
-double Sight::fill() const
+bool Sight::beside(int i, Beside &b) const
 {
   const auto dot = [](const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const double cutsq = scene.cut * scene.cut;
   const auto nearest = std::min_element(seen.begin(), seen.end(), [](const Seen &a, const Seen &b) { return a.rsq < b.rsq; });
-  if (nearest == seen.end() || nearest->rsq >= scene.cut * scene.cut) return 1.0;
+  if (nearest == seen.end() || nearest->rsq >= cutsq) return false;
   // normal, from what is on the side of the nearest
   double normal[3] = {};
   for (const auto &s : seen)
-    if (s.rsq < scene.cut * scene.cut && dot(s.x, nearest->x) > 0.0) {
-      const double rest = 1.0 - s.rsq / (scene.cut * scene.cut);
+    if (s.rsq < cutsq && dot(s.x, nearest->x) > 0.0) {
+      const double rest = 1.0 - s.rsq / cutsq;
       for (int d = 0; d < 3; d++) normal[d] += rest * rest * rest * s.x[d];
     }
-  const double length = std::sqrt(dot(normal, normal)), dx = nearest->dx;
+  const double length = std::sqrt(dot(normal, normal)), dx = nearest->dx, tube = 0.75 * dx;
+  for (double &e : normal) e /= length;
   double face = reach, back = 0.0;
   for (const auto &s : seen) {
-    const double depth = dot(s.x, normal) / length;
-    if (depth <= 0.0 || s.rsq - depth * depth > 0.75 * 0.75 * dx * dx) continue;
+    const double depth = dot(s.x, normal);
+    if (depth <= 0.0 || s.rsq - depth * depth > tube * tube) continue;
     face = std::min(face, depth);
     back = std::max(back, depth);
   }
-  if (back == 0.0) return 1.0;
-  const double n = (back - face) / dx + 1.0;
-  double all = 0.0, there = 0.0;
-  for (int k = 0; face + k * dx < scene.cut; k++) {
-    const double f = force_of_layer(nearest->type, face + k * dx);
-    all += f;
-    there += f * std::min(std::max(n - k, 0.0), 1.0);
-  }
+  b = {i, nearest->i, atom->type[nearest->i], {normal[0], normal[1], normal[2]}, face - dot(nearest->x, normal), (back - face) / dx + 1.0};
+  return back > 0.0;
+}
+
+double Sight::fill(const Beside &b) const
+{
+  const double *const xi = atom->x[b.i], *const xj = atom->x[b.j];
+  double face = b.face;
+  for (int d = 0; d < 3; d++) face += (xj[d] - xi[d]) * b.normal[d];
+  const double all = force_beyond(b.type, face), there = all - force_beyond(b.type, face + b.layers * scene.dx_of(b.type));
   return there > 0.0 ? all / there : 1.0;
 }
 

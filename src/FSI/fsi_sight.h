@@ -35,8 +35,13 @@ namespace FSI {
     bool near(const double *x) const;      // may one be within the reach of the lists?
     void look_from(const double *x);       // x: for the next two
     bool blocked(const double *y) const;   // is one between x and y? The same from y to x, and on each rank that has one of both
-    // of a half-space of the body over what there is of it: force of its layers on a fluid particle at x
-    double fill() const;
+    // The body that a fluid particle has beside it: how deep, counted from one of its particles, and thick it is along its normal
+    struct Beside {
+      int i, j, type;            // fluid particle, particle of the body
+      double normal[3], face, layers;    // from x inwards; distance of the first layer less that of j along it; number of layers
+    };
+    bool beside(int i, Beside &) const;    // of i, that x is of; false: none
+    double fill(const Beside &) const;     // force of a half-space of its layers on i over that of those that there are, now
 
     double memory_usage() const;
 
@@ -48,18 +53,18 @@ namespace FSI {
     std::vector<int> first;       // of each cell, and behind the last
     struct Place {
       double x[3];
-      int type;
+      int i;
     };
     std::vector<Place> places;    // by cell
     struct Seen {
       double x[3], rsq, dx;       // from x; spacing
-      int type;
+      int i;
     };
     std::vector<Seen> seen;
     mutable std::vector<double> angles;
     mutable std::vector<Seen> around;
-    std::vector<std::vector<double>> layers;    // per type: force of a layer by its distance
-    double force_of_layer(int type, double distance) const;
+    std::vector<std::vector<double>> half_space;    // per type: force of its layers by the distance of the first
+    double force_beyond(int type, double distance) const;
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true
   };
 

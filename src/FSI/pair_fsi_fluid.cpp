@@ -24,7 +24,6 @@
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
 #include "fsi_shift.h"
-#include "fsi_sight.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -40,7 +39,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), rate(nullptr), beyond(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), fill(nullptr), rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -191,6 +190,7 @@ void PairFSIFluid::set_fields(Scene &scene)
   fields.set("density rate", Fields::STEP, scene.density_fluid == FixFSI::CONTINUITY, rate);
   fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
   fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
+  fields.set("room behind thin bodies", Fields::STEP, scene.sight != nullptr, fill);
   scene.noslip_walls = scene.noslip_walls || sticks_to_solids();
   scene.surface_ratio = surface_ratio;
   scene.surface_max = surface_max;
@@ -200,6 +200,7 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 {
   if (sticks_to_solids()) to_ghosts.add(fix_fsi->wall_velocity, 0, fix_fsi->dim, {SOLID});
   if (sticks_to_solids()) back.add(beyond, 0, fix_fsi->dim + 1, {SOLID});
+  if (fix_fsi->sight) to_ghosts.add(fill, {FLUID});
   if (fix_fsi->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
   if (shifting > 0.0) back.add(fix_fsi->shift, 0, 2 * fix_fsi->dim + 1, {FLUID, RIGID});
 }
@@ -210,6 +211,10 @@ void PairFSIFluid::add_costs(Costs &costs) const
   costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
+  if (fix_fsi->sight) {
+    costs.bytes += 8;
+    costs.fluid_ghost++;
+  }
   if (sticks_to_solids()) costs.solid_ghost += fix_fsi->dim + newton * (fix_fsi->dim + 1);
 }
 
@@ -223,8 +228,10 @@ void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
 void PairFSIFluid::begin_state(bool)
 {
   images_step = -1;
-  if (neighbor->ago == 0) find_rows();
-  if (fix_fsi->sight && neighbor->ago == 0) fix_fsi->send_to_ghosts(fill.data());
+  if (neighbor->ago) return;
+  fields.grow();
+  find_rows();
+  if (fill) fix_fsi->send_to_ghosts(fill);
 }
 
 bool PairFSIFluid::add_rates(bool advance)
@@ -249,6 +256,7 @@ void PairFSIFluid::advance(bool advance)
 {
   const Phase phase(fix_fsi->profile, Profile::DENSITY);
   if (beyond) extrapolate_velocities();
+  for (const auto &there : beside) fill[there.i] = fix_fsi->sight->fill(there);
   if (!rate || !advance) return;
   advance_density();
   if (shifting > 0.0) displacements(update->dt);
@@ -319,7 +327,8 @@ void PairFSIFluid::find_rows()
 
   std::vector<int> unmasked;
   Sight *const sight = fix_fsi->sight;
-  if (sight) fill.assign(nall, 1.0);
+  beside.clear();
+  if (fill) std::fill_n(fill, nall, 1.0);
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], n = list->numneigh[i], *const neighbors = list->firstneigh[i];
@@ -332,7 +341,11 @@ void PairFSIFluid::find_rows()
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
     if (sight && sight->near(x[i])) {
       sight->look_from(x[i]);
-      fill[i] = sight->fill();
+      Sight::Beside there;
+      if (sight->beside(i, there)) {
+        fill[i] = sight->fill(there);
+        beside.push_back(there);
+      }
       const auto hidden = [&](int j) { return state[type[j]].species == FLUID && sight->blocked(x[j]); };
       unmasked.erase(std::remove_if(unmasked.begin(), unmasked.end(), hidden), unmasked.end());
     }
@@ -414,7 +427,7 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 FluidParticles PairFSIFluid::particles_at(const double *points) const
 {
-  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fix_fsi->sight ? fill.data() : nullptr, force->newton_pair != 0};
+  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill, force->newton_pair != 0};
 }
 
 template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest rest)
@@ -699,8 +712,8 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity() + fill.capacity();
-  double bytes = fields.memory_usage() + (double) numbers * sizeof(double);
+  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity();
+  double bytes = fields.memory_usage() + (double) numbers * sizeof(double) + (double) beside.capacity() * sizeof(beside[0]);
   for (const auto &list_of : rows) bytes += list_of.memory_usage();
   for (const auto &lists : images)
     for (const auto &list_of : lists) bytes += list_of.memory_usage();
