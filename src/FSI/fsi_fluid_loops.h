@@ -110,7 +110,7 @@ namespace FSI {
     int nlocal;
     const Share *share;    // per type
     bool finer;            // does any type differ from fluids in it?
-    const double *fill;    // per particle: by how much more thin bodies count (fsi_sight.h)
+    const double *fill, *fill_weight;    // per particle: by how much more thin bodies count (fsi_sight.h)
     bool newton;    // else a pair across ranks is visited on both: each counts half of powers and forces on walls
   };
 

@@ -133,8 +133,9 @@ namespace FSI {
     return Lanes<T>::make([&](int k) { return i < nlocal && j[k] < nlocal ? 1.0 : 0.5; });
   }
 
-  // How much more neighbours of this type count at i
+  // How much more neighbours of this type count at i: in forces of pressure; in sums of W and along the face
   FSI_INLINE double fill_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.fill[i] : 1.0; }
+  FSI_INLINE double fill_weight_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.fill_weight[i] : 1.0; }
 
   // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j. Solids and walls count, but are not shifted.
   template <class T, class K, bool BOTH, bool IMAGE, int D>
@@ -246,11 +247,12 @@ namespace FSI {
     if (FLAGS & Flag::FINER) {
       r.volume = in.share[type_j].volume;
       r.sharper = in.share[type_j].sharper;
-      r.visc *= fill_of(in, i, type_j);
+      r.visc *= fill_weight_of(in, i, type_j);
     }
     r.thin = (FLAGS & Flag::FINER) && in.share[type_j].thin;
     const auto *const g = KIND == WITH_WALL && r.thin ? laws.gravity : laws.extrapolate;
-    for (int d = 0; d < D; d++) r.extrapolate[d] = g ? g[type_i][d] : 0.0;
+    const double along = r.thin ? in.fill_weight[i] / in.fill[i] : 1.0;
+    for (int d = 0; d < D; d++) r.extrapolate[d] = g ? along * g[type_i][d] : 0.0;
     return r;
   }
 
@@ -453,7 +455,7 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i;
       // of neighbours on a finer lattice
-      const double volume = ((FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0) * (in.fill ? fill_of(in, i, in.type[row.j[0]]) : 1.0);
+      const double volume = ((FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0) * (!in.fill ? 1.0 : (FLAGS & Flag::DIVERGENCE) ? fill_of(in, i, in.type[row.j[0]]) : fill_weight_of(in, i, in.type[row.j[0]]));
       const double sharper = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].sharper : 0.0;
       T of_i = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {

@@ -31,7 +31,7 @@ static constexpr int NTABLE = 400;    // distances for which forces are tabulate
 Sight::Sight(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), reach(0.0), from{}, low{}, per_cell(0.0), n{} {}
 
 /* ----------------------------------------------------------------------
-   A layer of particles pushes as a smeared one, with the kernel that is sharper where its lattice is finer than the fluid's.
+   A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice is finer than the fluid's.
 ------------------------------------------------------------------------- */
 
 void Sight::init()
@@ -44,11 +44,13 @@ void Sight::init()
       constexpr int D = std::decay_t<decltype(kernel)>::DIM, STEPS = 200;
       const double step = kernel.cut / STEPS;
       for (int k = 0; k <= NTABLE; k++) {
-        double sum = 0.0;
+        Fill sum = {0.0, 0.0};
         for (double a = k * kernel.cut / NTABLE; a < kernel.cut; a += dx)
           for (int m = 0; m < STEPS; m++) {
             const double s = (m + 0.5) * step, r = std::sqrt(a * a + s * s);
-            if (r < kernel.cut) sum -= (D == 3 ? s : 1.0) * a * kernel.sharper_gradient(r, sharper);
+            if (r >= kernel.cut) continue;
+            sum.force -= (D == 3 ? s : 1.0) * a * kernel.sharper_gradient(r, sharper);
+            sum.weight += (D == 3 ? s : 1.0) * kernel.sharper(r, sharper);
           }
         half_space[t].push_back(sum);
       }
@@ -56,13 +58,13 @@ void Sight::init()
   }
 }
 
-double Sight::force_beyond(int type, double distance) const
+Sight::Fill Sight::beyond(int type, double distance) const
 {
   const double at = std::max(distance, 0.0) / scene.cut * NTABLE;
   const int k = static_cast<int>(at);
-  if (k >= NTABLE) return 0.0;
-  const auto &of = half_space[type];
-  return of[k] + (at - k) * (of[k + 1] - of[k]);
+  if (k >= NTABLE) return {0.0, 0.0};
+  const Fill &a = half_space[type][k], &b = half_space[type][k + 1];
+  return {a.force + (at - k) * (b.force - a.force), a.weight + (at - k) * (b.weight - a.weight)};
 }
 
 /* ----------------------------------------------------------------------
@@ -208,13 +210,14 @@ bool Sight::beside(int i, Beside &b) const
   return back > 0.0;
 }
 
-double Sight::fill(const Beside &b) const
+Sight::Fill Sight::fill(const Beside &b) const
 {
   const double *const xi = atom->x[b.i], *const xj = atom->x[b.j];
   double face = b.face;
   for (int d = 0; d < 3; d++) face += (xj[d] - xi[d]) * b.normal[d];
-  const double all = force_beyond(b.type, face), there = all - force_beyond(b.type, face + b.layers * scene.dx_of(b.type));
-  return there > 0.0 ? all / there : 1.0;
+  const Fill all = beyond(b.type, face), missing = beyond(b.type, face + b.layers * scene.dx_of(b.type));
+  const auto over = [](double whole, double rest) { return whole > rest ? whole / (whole - rest) : 1.0; };
+  return {over(all.force, missing.force), over(all.weight, missing.weight)};
 }
 
 /* ---------------------------------------------------------------------- */

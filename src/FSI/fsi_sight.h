@@ -41,7 +41,11 @@ namespace FSI {
       double normal[3], face, layers;    // from x inwards; distance of the first layer less that of j along it; number of layers
     };
     bool beside(int i, Beside &) const;    // of i, that x is of; false: none
-    double fill(const Beside &) const;     // force of a half-space of its layers on i over that of those that there are, now
+    // of a half-space of its layers over those that there are, now: force on i, and weight in sums of W, as forces along the face are
+    struct Fill {
+      double force, weight;
+    };
+    Fill fill(const Beside &) const;
 
     double memory_usage() const;
 
@@ -63,8 +67,8 @@ namespace FSI {
     std::vector<Seen> seen;
     mutable std::vector<double> angles;
     mutable std::vector<Seen> around;
-    std::vector<std::vector<double>> half_space;    // per type: force of its layers by the distance of the first
-    double force_beyond(int type, double distance) const;
+    std::vector<std::vector<Fill>> half_space;    // per type: of its layers by the distance of the first
+    Fill beyond(int type, double distance) const;
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true
   };
 

@@ -39,7 +39,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), fill(nullptr), rate(nullptr), beyond(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), fill(nullptr), fill_weight(nullptr), rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -191,6 +191,7 @@ void PairFSIFluid::set_fields(Scene &scene)
   fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
   fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
   fields.set("room behind thin bodies", Fields::STEP, scene.sight != nullptr, fill);
+  fields.set("weight behind thin bodies", Fields::STEP, scene.sight != nullptr, fill_weight);
   scene.noslip_walls = scene.noslip_walls || sticks_to_solids();
   scene.surface_ratio = surface_ratio;
   scene.surface_max = surface_max;
@@ -201,6 +202,7 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
   if (sticks_to_solids()) to_ghosts.add(fix_fsi->wall_velocity, 0, fix_fsi->dim, {SOLID});
   if (sticks_to_solids()) back.add(beyond, 0, fix_fsi->dim + 1, {SOLID});
   if (fix_fsi->sight) to_ghosts.add(fill, {FLUID});
+  if (fix_fsi->sight) to_ghosts.add(fill_weight, {FLUID});
   if (fix_fsi->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
   if (shifting > 0.0) back.add(fix_fsi->shift, 0, 2 * fix_fsi->dim + 1, {FLUID, RIGID});
 }
@@ -212,8 +214,8 @@ void PairFSIFluid::add_costs(Costs &costs) const
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
   if (fix_fsi->sight) {
-    costs.bytes += 8;
-    costs.fluid_ghost++;
+    costs.bytes += 16;
+    costs.fluid_ghost += 2;
   }
   if (sticks_to_solids()) costs.solid_ghost += fix_fsi->dim + newton * (fix_fsi->dim + 1);
 }
@@ -231,7 +233,12 @@ void PairFSIFluid::begin_state(bool)
   if (neighbor->ago) return;
   fields.grow();
   find_rows();
-  if (fill) fix_fsi->send_to_ghosts(fill);
+  if (!fill) return;
+  std::fill_n(fill, atom->nlocal + atom->nghost, 1.0);
+  std::fill_n(fill_weight, atom->nlocal + atom->nghost, 1.0);
+  follow_thin_bodies();
+  fix_fsi->send_to_ghosts(fill);
+  fix_fsi->send_to_ghosts(fill_weight);
 }
 
 bool PairFSIFluid::add_rates(bool advance)
@@ -256,10 +263,20 @@ void PairFSIFluid::advance(bool advance)
 {
   const Phase phase(fix_fsi->profile, Profile::DENSITY);
   if (beyond) extrapolate_velocities();
-  for (const auto &there : beside) fill[there.i] = fix_fsi->sight->fill(there);
+  follow_thin_bodies();
   if (!rate || !advance) return;
   advance_density();
   if (shifting > 0.0) displacements(update->dt);
+}
+
+// rates have what was found in the last step: the distance changes little from one to the next
+void PairFSIFluid::follow_thin_bodies()
+{
+  for (const auto &there : beside) {
+    const auto more = fix_fsi->sight->fill(there);
+    fill[there.i] = more.force;
+    fill_weight[there.i] = more.weight;
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -328,7 +345,6 @@ void PairFSIFluid::find_rows()
   std::vector<int> unmasked;
   Sight *const sight = fix_fsi->sight;
   beside.clear();
-  if (fill) std::fill_n(fill, nall, 1.0);
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], n = list->numneigh[i], *const neighbors = list->firstneigh[i];
@@ -342,10 +358,7 @@ void PairFSIFluid::find_rows()
     if (sight && sight->near(x[i])) {
       sight->look_from(x[i]);
       Sight::Beside there;
-      if (sight->beside(i, there)) {
-        fill[i] = sight->fill(there);
-        beside.push_back(there);
-      }
+      if (sight->beside(i, there)) beside.push_back(there);
       const auto hidden = [&](int j) { return state[type[j]].species == FLUID && sight->blocked(x[j]); };
       unmasked.erase(std::remove_if(unmasked.begin(), unmasked.end(), hidden), unmasked.end());
     }
@@ -427,7 +440,7 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 FluidParticles PairFSIFluid::particles_at(const double *points) const
 {
-  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill, force->newton_pair != 0};
+  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill, fill_weight, force->newton_pair != 0};
 }
 
 template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest rest)

@@ -103,8 +103,9 @@ class PairFSIFluid : public PairFSI {
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
   std::vector<FSI::Share> shares;    // per type: how its particles count at fluid particles
   bool finer;                        // is any type finer than the fluid, or thin?
-  double *fill;                      // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
+  double *fill, *fill_weight;        // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
   std::vector<FSI::Sight::Beside> beside;
+  void follow_thin_bodies();
   FSI::FluidParticles particles_at(const double *points) const;
   template <int D, class Rest> FSI::FluidParticles gather(double t, Rest);    // positions a time t later; what else a loop needs
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
