@@ -150,7 +150,7 @@ void Sight::look_from(const double *x)
 
 bool Sight::blocked(const double *y) const
 {
-  constexpr double NEAR = 0.75, AROUND = 1.25, HIT = 0.05, PI_AND_MORE = PI + 0.05;
+  constexpr double NEAR = 0.75, AROUND = 1.25, HIT = 1.0e-4, PI_AND_MORE = PI + 1.0e-6;
   double d[3] = {}, dsq = 0.0, nearest = AROUND * AROUND;
   for (int k = 0; k < scene.dim; k++) {
     d[k] = y[k] - from[k];

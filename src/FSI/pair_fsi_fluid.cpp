@@ -717,6 +717,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
   static const char *const modes[] = {"wall", "pressure", "full"};
   auto list = keywords.effects();
   list.push_back({fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
+  if (fix_fsi && fix_fsi->sight) list.push_back({"line of sight: thin bodies hide fluids from each other", "fix fsi thin", true});
   list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});
   return list;
 }
