@@ -181,23 +181,42 @@ bool Sight::blocked(const double *y) const
 }
 
 /* ----------------------------------------------------------------------
+   images in mirror walls of the solids seen, which fluids meet, too
+------------------------------------------------------------------------- */
+
+void Sight::see_images()
+{
+  const int mask = scene.walls.near(from, scene.cut);
+  if (!mask) return;
+  for (size_t k = 0, n = seen.size(); k < n; k++) {
+    const Seen s = seen[k];
+    if (scene.state[atom->type[s.i]].species != SOLID) continue;
+    const double y[3] = {from[0] + s.x[0], from[1] + s.x[1], from[2] + s.x[2]};
+    scene.walls.images(mask & scene.walls.near(y, scene.cut), s.rsq, from, y, scene.cut * scene.cut,
+                       [&](const Walls::Reflection &, double rsq, const double *d) { seen.push_back({{-d[0], -d[1], -d[2]}, rsq, s.dx, s.i}); });
+  }
+}
+
+/* ----------------------------------------------------------------------
    the body is as thick as it is along its normal through x
 ------------------------------------------------------------------------- */
 
-bool Sight::beside(int i, Beside &b) const
+bool Sight::beside(int i, Beside &b)
 {
   const auto dot = [](const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
   const double cutsq = scene.cut * scene.cut;
-  const auto nearest = std::min_element(seen.begin(), seen.end(), [](const Seen &a, const Seen &b) { return a.rsq < b.rsq; });
-  if (nearest == seen.end() || nearest->rsq >= cutsq) return false;
+  const auto first = std::min_element(seen.begin(), seen.end(), [](const Seen &a, const Seen &b) { return a.rsq < b.rsq; });
+  if (first == seen.end() || first->rsq >= cutsq) return false;
+  const Seen nearest = *first;
+  see_images();
   // normal, from what is on the side of the nearest
   double normal[3] = {};
   for (const auto &s : seen)
-    if (s.rsq < cutsq && dot(s.x, nearest->x) > 0.0) {
+    if (s.rsq < cutsq && dot(s.x, nearest.x) > 0.0) {
       const double rest = 1.0 - s.rsq / cutsq;
       for (int d = 0; d < 3; d++) normal[d] += rest * rest * rest * s.x[d];
     }
-  const double length = std::sqrt(dot(normal, normal)), dx = nearest->dx, tube = 0.75 * dx;
+  const double length = std::sqrt(dot(normal, normal)), dx = nearest.dx, tube = 0.75 * dx;
   for (double &e : normal) e /= length;
   double face = reach, back = 0.0;
   for (const auto &s : seen) {
@@ -206,7 +225,7 @@ bool Sight::beside(int i, Beside &b) const
     face = std::min(face, depth);
     back = std::max(back, depth);
   }
-  b = {i, nearest->i, atom->type[nearest->i], {normal[0], normal[1], normal[2]}, face - dot(nearest->x, normal), (back - face) / dx + 1.0};
+  b = {i, nearest.i, atom->type[nearest.i], {normal[0], normal[1], normal[2]}, face - dot(nearest.x, normal), (back - face) / dx + 1.0};
   return back > 0.0;
 }
 

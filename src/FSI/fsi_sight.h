@@ -40,7 +40,7 @@ namespace FSI {
       int i, j, type;            // fluid particle, particle of the body
       double normal[3], face, layers;    // from x inwards; distance of the first layer less that of j along it; number of layers
     };
-    bool beside(int i, Beside &) const;    // of i, that x is of; false: none
+    bool beside(int i, Beside &);    // of i, that x is of; false: none. What is seen goes on behind mirror walls afterwards
     // of a half-space of its layers over those that there are, now: force on i, and weight in sums of W, as forces along the face are
     struct Fill {
       double force, weight;
@@ -69,6 +69,7 @@ namespace FSI {
     mutable std::vector<Seen> around;
     std::vector<std::vector<Fill>> half_space;    // per type: of its layers by the distance of the first
     Fill beyond(int type, double distance) const;
+    void see_images();
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true
   };
 

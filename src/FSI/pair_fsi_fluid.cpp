@@ -357,10 +357,10 @@ void PairFSIFluid::find_rows()
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
     if (sight && sight->near(x[i])) {
       sight->look_from(x[i]);
-      Sight::Beside there;
-      if (sight->beside(i, there)) beside.push_back(there);
       const auto hidden = [&](int j) { return state[type[j]].species == FLUID && sight->blocked(x[j]); };
       unmasked.erase(std::remove_if(unmasked.begin(), unmasked.end(), hidden), unmasked.end());
+      Sight::Beside there;
+      if (sight->beside(i, there)) beside.push_back(there);
     }
     // that of its own type stays if it is empty, for its own images
     for (const int t : fluid_types)
