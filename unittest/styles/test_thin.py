@@ -12,10 +12,10 @@ from test_spacing import GRIDS, beside, fine_gate, finer
 WALL = "wall rho 1000"
 
 
-def two_levels(kind, layers, ratio, dim=2, seconds=0.6, thin=True):
+def two_levels(kind, layers, ratio, dim=2, thin=True):
     """Water 20 and 10 particles deep on the two sides of a wall or plate of some layers, `ratio` times finer. Means of the last quarter of the
     time over hydrostatics: load, moment about the foot; the largest error of pressures at the faces, in rho g H; leaked particles."""
-    dx, c, width, deep, G = 0.01, 20.0, 10, (20, 10), 9810.0
+    dx, c, width, deep, G = 0.01, 20.0, 7, (20, 10), 9810.0
     ds, thick, z = dx / ratio, layers * dx / ratio, [7] * (dim - 2)
     left = lattice([width, deep[0], *z], dx)
     right = lattice([width, deep[1], *z], dx, origin=np.array([width * dx + thick, 0, 0][:dim]))
@@ -33,13 +33,13 @@ def two_levels(kind, layers, ratio, dim=2, seconds=0.6, thin=True):
     heights = [0.02, 0.05, 0.08]
     points = " ".join(f"point {at} {y} {0.035 * (dim - 2)}" for y in heights for at in (width * dx, width * dx + thick))
     with Scene(x, dim=dim, dx=dx, type=1 + solid, mol=1 + solid, held=solid & ((x[:, 1] < 1.01 * ds) | (kind == "wall")), dt=dt,
-               fluid=f"sound {c} artificial/visc 0.2 0 density/diffusion 0.1", density=f"spacing 2 {ds!r} substeps {substeps} {'thin 2' * thin}", **styles,
+               fluid=f"sound {c} artificial/visc 0.2 0 density/diffusion 0.1 {'extrapolate yes' * (kind == 'plate')}", density=f"spacing 2 {ds!r} substeps {substeps} {'thin 2' * thin}", **styles,
                **(dict(boundary="f f p", box=((-0.1, -0.1, 0), (end + 0.1, 0.4, 0.07))) if dim == 3 else {}),
                commands=["fix g all gravity 9.81 vector 0 -1 0", f"fix w all fsi/wall/mirror xlo 0 xhi {end} ylo 0",
                          "fix wp held fsi/wall/particle" if kind == "wall" else "", f"group left id 1:{len(left)}",
                          f"group right id {len(left) + 1}:{len(left) + len(right)}", "group body type 2", f"fsi_set left hydrostatic {levels[0]}",
                          f"fsi_set right hydrostatic {levels[1]}", "compute force body fsi/force", f"compute p all fsi/probe p extrapolate yes {points}"]) as s:
-        steps = round(seconds / dt)
+        steps = round((0.6 if dim == 2 else 0.3) / dt)
         s.run(3 * steps // 4)
         load, p = [], []
         for _ in range(20):
@@ -57,7 +57,7 @@ def two_levels(kind, layers, ratio, dim=2, seconds=0.6, thin=True):
 
 # of the scene; one particle across has too few bonds for an elastic body
 CASES = [("wall", layers, ratio, 2) for layers in (1, 2, 3) for ratio in (1, 2, 3)] + [("wall", 1, 1, 3), ("wall", 1, 2, 3)] + \
-    [("plate", layers, ratio, 2) for layers, ratio in ((2, 1), (3, 1), (2, 2), (3, 2), (2, 3))] + [("plate", 2, 1, 3)]
+    [("plate", layers, ratio, 2) for layers, ratio in ((2, 1), (3, 1), (2, 2))]
 
 
 @pytest.mark.parametrize("kind, layers, ratio, dim", CASES)
@@ -65,8 +65,7 @@ def test_two_levels(kind, layers, ratio, dim):
     """Load and moment within 2 % of hydrostatics, pressures at both faces within 2 % of that of the depth, nothing leaks"""
     load, p, leaked = two_levels(kind, layers, ratio, dim)
     print(f"{kind} {layers} thick, {ratio} times finer, {dim}D: load {load[0]:.4f}, moment {load[1]:.4f}, pressures {p:.4f}, leaked {leaked}")
-    assert np.abs(load - 1).max() < 0.02 and leaked == 0
-    assert p < (0.02 if kind == "wall" else 0.04)
+    assert np.abs(load - 1).max() < 0.02 and p < 0.02 and leaked == 0
 
 
 @pytest.mark.parametrize("layers, ratio", [(1, 1), (1, 3)])
