@@ -220,7 +220,7 @@ void ComputeFSIProbe::sum_up()
     }
 
   double *const *const v = atom->v;
-  Sight *const sight = fix_fsi->sight;
+  Sight *const sight = fix_fsi->sight.get();
   with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, [&](const auto &kernel) {
     for (const auto &place : places)
       for (const auto &p : place.near) {

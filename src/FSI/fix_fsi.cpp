@@ -67,10 +67,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
   dim = domain->dimension;
   resolve(hdx, given_spacing);
-  if (std::count(thin.begin(), thin.end(), 1.0)) {
-    past_thin_bodies.reset(new Sight(lmp, *this));
-    sight = past_thin_bodies.get();
-  }
+  if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this);
 
   time_integrate = 1;
   force_reneighbor = 1;
@@ -159,7 +156,6 @@ void FixFSI::init()
   comm->ghost_velocity = 1;
 
   check.materials();
-  if (sight) sight->init();
   for (int i = 0; i < atom->nlocal; i++) give_defaults(i);
   body_forces.find(state);
   check.init();
@@ -186,9 +182,7 @@ void FixFSI::give_defaults(int i)
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
 }
 
-/* ----------------------------------------------------------------------
-   what a pair style knows of an atom type
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixFSI::enter_state(int type, const State &s)
 {
@@ -339,7 +333,6 @@ void FixFSI::update_state(bool advance)
   body_forces.evaluate();
   if (ledger && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);
-  if (sight && neighbor->ago == 0) sight->find_bodies();
   for (auto *p : parts) p->begin_state(advance);
   if (walls.any()) {
     phase.next(Profile::WALLS);
@@ -362,9 +355,7 @@ void FixFSI::update_state(bool advance)
   for (auto *p : parts) p->end_state(advance);
 }
 
-/* ----------------------------------------------------------------------
-   to local atoms what pairs left on their ghosts
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixFSI::add_ghosts(double *n)
 {
@@ -372,7 +363,6 @@ void FixFSI::add_ghosts(double *n)
   if (force->newton_pair) reverse_comm(profile, comm, this);
   carried = nullptr;
 }
-
 void FixFSI::send_to_ghosts(double *n)
 {
   carried = n;

@@ -29,7 +29,6 @@ FixStyle(fsi,FixFSI);
 #include "fsi_scene.h"
 #include "fsi_surface_room.h"
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -79,7 +78,6 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   int given_substeps;
   double hdx;    // h over dx
   std::vector<double> given_spacing;    // per type; 0: dx
-  std::unique_ptr<FSI::Sight> past_thin_bodies;
   bool states_entered;       // since the last init()
   int nlocal_ready;          // atoms when the state was last brought up to date; -1: not since init()
   bool ids_checked;

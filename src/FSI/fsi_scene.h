@@ -22,6 +22,7 @@
 #include "fsi_resolution.h"
 #include "fsi_walls.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,7 @@ namespace FSI {
     double dx_of(int type) const { return resolution[type].dx; }
     double h_of(int type) const { return resolution[type].h; }
     std::vector<double> thin;    // per atom type, 1: fluids do not see each other through it
-    Sight *sight;                // past those; null: there are none
+    std::shared_ptr<Sight> sight;    // past those; null: there are none
 
     // per atom type; pair styles enter theirs in init_style()
     std::vector<State> state;

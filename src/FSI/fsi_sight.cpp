@@ -26,17 +26,13 @@ using namespace FSI;
 
 static constexpr int NTABLE = 400;    // distances for which forces are tabulated
 
-/* ---------------------------------------------------------------------- */
-
-Sight::Sight(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), reach(0.0), from{}, low{}, per_cell(0.0), n{} {}
-
 /* ----------------------------------------------------------------------
    A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice is finer than the fluid's.
 ------------------------------------------------------------------------- */
 
-void Sight::init()
+Sight::Sight(LAMMPS *lmp, const Scene &scene) :
+    Pointers(lmp), scene(scene), reach(0.0), from{}, low{}, per_cell(0.0), n{}, half_space(scene.thin.size())
 {
-  half_space.assign(scene.thin.size(), {});
   for (size_t t = 1; t < scene.thin.size(); t++) {
     if (scene.thin[t] == 0.0) continue;
     const double dx = scene.dx_of(t), ratio = dx / scene.dx, per_h = scene.dx / scene.h, sharper = (1.0 - ratio * ratio) / 24.0 * per_h * per_h;

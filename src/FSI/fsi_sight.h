@@ -28,8 +28,7 @@ namespace FSI {
 
   class Sight : protected Pointers {
    public:
-    Sight(LAMMPS *, const Scene &);
-    void init();           // when kernel and spacings are known
+    Sight(LAMMPS *, const Scene &);    // whose kernel and spacings are known
     void find_bodies();    // where they are when neighbor lists are new: what follows is said of then
 
     bool near(const double *x) const;      // may one be within the reach of the lists?

@@ -232,6 +232,7 @@ void PairFSIFluid::begin_state(bool)
   images_step = -1;
   if (neighbor->ago) return;
   fields.grow();
+  if (fix_fsi->sight) fix_fsi->sight->find_bodies();
   find_rows();
   if (!fill) return;
   std::fill_n(fill, atom->nlocal + atom->nghost, 1.0);
@@ -343,7 +344,7 @@ void PairFSIFluid::find_rows()
   }
 
   std::vector<int> unmasked;
-  Sight *const sight = fix_fsi->sight;
+  Sight *const sight = fix_fsi->sight.get();
   beside.clear();
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
   for (int ii = 0; ii < list->inum; ii++) {

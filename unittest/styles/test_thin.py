@@ -39,7 +39,7 @@ def two_levels(kind, layers, ratio, dim=2, thin=True):
                          "fix wp held fsi/wall/particle" if kind == "wall" else "", f"group left id 1:{len(left)}",
                          f"group right id {len(left) + 1}:{len(left) + len(right)}", "group body type 2", f"fsi_set left hydrostatic {levels[0]}",
                          f"fsi_set right hydrostatic {levels[1]}", "compute force body fsi/force", f"compute p all fsi/probe p extrapolate yes {points}"]) as s:
-        steps = round((0.6 if dim == 2 else 0.3) / dt)
+        steps = round(0.6 / dt)
         s.run(3 * steps // 4)
         load, p = [], []
         for _ in range(20):
