@@ -42,7 +42,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), swaps(lmp), fix_fsi(nullptr), list(nullptr), slot(nullptr),
+    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), changes(0), swaps(lmp), fix_fsi(nullptr), list(nullptr), slot(nullptr),
     maxbond(0), apart(0.0), layer(nullptr)
 {
   has_record = false;
@@ -189,8 +189,8 @@ void FixFSIReference::follow_commands()
     for (int k = 0; k < nbond[s]; k++) {
       const auto it = now.find(partner[first + k]);
       if (it == now.end()) continue;
+      move_bond(s, k, kept);
       partner[first + kept] = it->second;
-      std::copy_n(&data[(first + k) * nvalue], nvalue, &data[(first + kept) * nvalue]);
       kept++;
     }
     owner[s] = tag[i];
@@ -267,12 +267,12 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
 
   // partner one spacing away along direction k = 2 axis + (positive side), or -1
   const auto next = [&](int i, int k) {
-    const double *value = values(i) + D;
     const double dx = fix_fsi->dx_of(atom->type[i]), near = 0.05 * dx;
-    for (int b = 0; b < count(i); b++, value += nvalue) {
+    for (int b = 0; b < count(i); b++) {
+      const double *const value = bond(i, b);
       bool found = true;
       for (int a = 0; a < D; a++)
-        if (std::fabs(value[a] - (a == k / 2 ? (k % 2 ? dx : -dx) : 0.0)) > near) found = false;
+        if (std::fabs(value[(D + a) * BOND_BLOCK] - (a == k / 2 ? (k % 2 ? dx : -dx) : 0.0)) > near) found = false;
       if (found) return partners(i)[b];
     }
     return -1;
@@ -366,21 +366,21 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
 
         slot[i] = new_slot(n);
         owner[slot[i]] = tag[i];
-        const size_t first = (size_t) slot[i] * maxbond;
-        double *value = &data[first * nvalue];
-        for (int k = 0; k < n; k++, value += nvalue) {
+        for (int k = 0; k < n; k++) {
+          double *const value = bond_in(slot[i], k);
           const double *d = &dX[k * D];
           double rsq = 0.0;
           for (int a = 0; a < D; a++) {
-            value[a] = G[k * D + a];
-            value[D + a] = d[a];
+            value[a * BOND_BLOCK] = G[k * D + a];
+            value[(D + a) * BOND_BLOCK] = d[a];
             rsq += d[a] * d[a];
           }
           const double r = std::sqrt(rsq), vv = volume(i) * volume(near[k]);
-          value[2 * D] = vv * kernel.W(r) / rsq;
-          value[2 * D + 1] = vv * kernel.gradient(r);
-          partner[first + k] = tag[near[k]];
+          value[2 * D * BOND_BLOCK] = vv * kernel.W(r) / rsq;
+          value[(2 * D + 1) * BOND_BLOCK] = vv * kernel.gradient(r);
+          partner[(size_t) slot[i] * maxbond + k] = tag[near[k]];
         }
+        complete(slot[i]);
       }
   });
 
@@ -442,11 +442,11 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
     int &n = nbond[slot[i]];
     reserve = std::numeric_limits<double>::max();
     const auto longer = [&](int k) {
-      const double *const X = &data[(first + k) * nvalue + D], *const xj = x[local[first + k]];
+      const double *const X = bond(i, k) + D * BOND_BLOCK, *const xj = x[local[first + k]];
       double rsq = 0.0, Rsq = 0.0;
       for (int a = 0; a < D; a++) {
         rsq += (xj[a] - x[i][a]) * (xj[a] - x[i][a]);
-        Rsq += X[a] * X[a];
+        Rsq += X[a * BOND_BLOCK] * X[a * BOND_BLOCK];
       }
       if (rsq > limit * Rsq) return true;
       reserve = std::min(reserve, apart + stretch * std::sqrt(Rsq) - std::sqrt(rsq));
@@ -455,41 +455,39 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
     int kept = 0;
     for (int k = 0; k < n; k++) {
       if (longer(k)) continue;
-      if (kept < k) {
-        local[first + kept] = local[first + k];
-        partner[first + kept] = partner[first + k];
-        std::copy_n(&data[(first + k) * nvalue], nvalue, &data[(first + kept) * nvalue]);
-      }
+      if (kept < k) move_bond(slot[i], k, kept);
       kept++;
     }
     if (kept == n) continue;
     n = kept;
     renew<D>(i);
+    changes++;
   }
 }
 
 // the gradient's weights from the bonds that are left; if they do not suffice, none is
 template <int D> bool FixFSIReference::renew(int i)
 {
-  const size_t first = (size_t) slot[i] * maxbond;
   int &n = nbond[slot[i]];
   GradientWeights<D> weights;
   std::vector<double> dX((size_t) n * D), w(n), G((size_t) n * D);
   for (int k = 0; k < n; k++) {
-    const double *const value = &data[(first + k) * nvalue];
+    const double *const value = bond(i, k);
     double Rsq = 0.0;
     for (int a = 0; a < D; a++) {
-      dX[k * D + a] = value[D + a];
-      Rsq += value[D + a] * value[D + a];
+      const double X = value[(D + a) * BOND_BLOCK];
+      dX[k * D + a] = X;
+      Rsq += X * X;
     }
-    w[k] = value[2 * D] * Rsq;    // V_i V_j W: the factor V_i does not matter
+    w[k] = value[2 * D * BOND_BLOCK] * Rsq;    // V_i V_j W: the factor V_i does not matter
   }
   if (weights(n, dX.data(), w.data(), fix_fsi->h_of(atom->type[i]), quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
     n = 0;
     return false;
   }
   for (int k = 0; k < n; k++)
-    for (int a = 0; a < D; a++) data[(first + k) * nvalue + a] = G[k * D + a];
+    for (int a = 0; a < D; a++) bond_in(slot[i], k)[a * BOND_BLOCK] = G[k * D + a];
+  complete(slot[i]);
   return true;
 }
 
@@ -526,11 +524,38 @@ void FixFSIReference::resolve()
                    comm->cutghostuser > neighbor->cutneighmax ? comm->cutghostuser : neighbor->cutneighmax);
       local[first + k] = j;
     }
+    std::fill(&local[first] + nbond[slot[i]], &local[first] + whole_blocks(nbond[slot[i]]), i);
   }
   for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; i++)
     if (is_solid(i)) ghosts.push_back(i);
+  changes++;
   seen.clear();
   swaps.find([this](int i) { return is_solid(i); });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIReference::move_bond(int s, int from, int to)
+{
+  const size_t first = (size_t) s * maxbond;
+  local[first + to] = local[first + from];
+  partner[first + to] = partner[first + from];
+  for (int v = 0; v < nvalue; v++) bond_in(s, to)[v * BOND_BLOCK] = bond_in(s, from)[v * BOND_BLOCK];
+}
+
+// what follows from the bonds of slot s
+void FixFSIReference::complete(int s)
+{
+  const int dim = domain->dimension;
+  for (int k = nbond[s]; k < whole_blocks(nbond[s]); k++)
+    for (int v = 0; v < nvalue; v++) bond_in(s, k)[v * BOND_BLOCK] = 0.0;
+  double *const M = &moment[(size_t) s * packed_size(dim)];
+  std::fill_n(M, packed_size(dim), 0.0);
+  for (int k = 0; k < nbond[s]; k++) {
+    const double *const X = bond_in(s, k) + dim * BOND_BLOCK, w = X[dim * BOND_BLOCK];
+    for (int a = 0, m = 0; a < dim; a++)
+      for (int c = 0; c <= a; c++) M[m++] += w * X[a * BOND_BLOCK] * X[c * BOND_BLOCK];
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -541,12 +566,12 @@ void FixFSIReference::reserve(int n)
 {
   if (n <= maxbond) return;
   const int old = maxbond, slots = nbond.size();
-  maxbond = n;
+  maxbond = whole_blocks(n);
   maxexchange = 3 + maxbond * (nvalue + 1);
   const auto widen = [&](auto &list, int width) {
     std::decay_t<decltype(list)> wider((size_t) slots * maxbond * width);
     for (int s = 0; s < slots; s++)
-      std::copy_n(list.begin() + (size_t) s * old * width, (size_t) nbond[s] * width,
+      std::copy_n(list.begin() + (size_t) s * old * width, (size_t) whole_blocks(nbond[s]) * width,
                   wider.begin() + (size_t) s * maxbond * width);
     list.swap(wider);
   };
@@ -568,6 +593,7 @@ int FixFSIReference::new_slot(int n)
     local.resize(size);
     partner.resize(size);
     data.resize(size * nvalue);
+    moment.resize(nbond.size() * packed_size(domain->dimension));
   } else {
     s = unused.back();
     unused.pop_back();
@@ -609,8 +635,9 @@ int FixFSIReference::pack(int i, double *buf) const
   buf[m++] = quadrature[slot[i]];
   const size_t first = (size_t) slot[i] * maxbond;
   for (int k = 0; k < n; k++) buf[m++] = ubuf(partner[first + k]).d;
-  memcpy(buf + m, &data[first * nvalue], (size_t) n * nvalue * sizeof(double));
-  return m + n * nvalue;
+  for (int k = 0; k < n; k++)
+    for (int v = 0; v < nvalue; v++) buf[m++] = bond(i, k)[v * BOND_BLOCK];
+  return m;
 }
 
 int FixFSIReference::unpack(int i, const double *buf)
@@ -624,8 +651,10 @@ int FixFSIReference::unpack(int i, const double *buf)
   quadrature[slot[i]] = buf[m++];
   const size_t first = (size_t) slot[i] * maxbond;
   for (int k = 0; k < n; k++) partner[first + k] = (tagint) ubuf(buf[m++]).i;
-  memcpy(&data[first * nvalue], buf + m, (size_t) n * nvalue * sizeof(double));
-  return m + n * nvalue;
+  for (int k = 0; k < n; k++)
+    for (int v = 0; v < nvalue; v++) bond_in(slot[i], k)[v * BOND_BLOCK] = buf[m++];
+  complete(slot[i]);
+  return m;
 }
 
 // delete_atoms may have given the atom another ID since its bonds were looked at
@@ -695,5 +724,5 @@ int FixFSIReference::maxsize_restart()
 double FixFSIReference::memory_usage()
 {
   return (double) atom->nmax * sizeof(int) + (double) local.capacity() * sizeof(int) + (double) (partner.capacity() + owner.capacity()) * sizeof(tagint) +
-      (double) (data.capacity() + quadrature.capacity() + seen.capacity() + slack.capacity()) * sizeof(double);
+      (double) (data.capacity() + moment.capacity() + quadrature.capacity() + seen.capacity() + slack.capacity()) * sizeof(double);
 }

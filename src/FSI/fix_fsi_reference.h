@@ -21,7 +21,9 @@ FixStyle(fsi/reference,FixFSIReference);
 #ifndef LMP_FIX_FSI_REFERENCE_H
 #define LMP_FIX_FSI_REFERENCE_H
 
+#include "domain.h"
 #include "fix.h"
+#include "fsi_bond_rows.h"
 #include "fsi_swaps.h"
 
 #include <string>
@@ -60,18 +62,21 @@ class FixFSIReference : public Fix {
   bool quadratic;    // gradients exact for quadratic fields, where neighbours suffice
   bool end_corrected;    // volumes of the energy's integral with corrections at faces
 
-  // per bond, 2 D + 2 numbers: G_ij, X_j - X_i, V_i V_j W/|X|^2, V_i V_j (grad W)/x_ij
+  // per bond, 2 D + 2 numbers: G_ij, X_j - X_i, w = V_i V_j W/|X|^2, V_i V_j (grad W)/x_ij
   int nvalue;
-  // bonds of local atom i
+  // bonds of local atom i; what fills up its last block has zeros for numbers
   int count(int i) const { return nbond[slot[i]]; }
   const int *partners(int i) const { return &local[(size_t) slot[i] * maxbond]; }    // indices of local and ghost atoms
+  const double *numbers(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }    // where they are: number_of_bond()
+  const double *bond(int i, int k) const { return numbers(i) + FSI::number_of_bond(k, nvalue); }
+  const double *moments(int i) const { return &moment[(size_t) slot[i] * FSI::packed_size(domain->dimension)]; }    // sum_j w X_ij (x) X_ij
   double weight(int i) const { return quadrature[slot[i]]; }    // of i in the energy's integral, times its volume
-  const double *values(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }
 
   // removes bonds longer than stretch times their reference length, and makes the gradient anew from those left; a particle
   // whose bonds no longer suffice loses them all. Looks only at particles of which a bond may have become too long since
   void break_bonds(double stretch);
 
+  int changes;    // how often bonds, or where their partners are, have changed
   // local solid atoms, and ghosts of solid atoms
   std::vector<int> solids, ghosts;
   FSI::Swaps swaps;    // those of solids
@@ -87,7 +92,7 @@ class FixFSIReference : public Fix {
   int maxbond;
   std::vector<int> nbond, local, unused;
   std::vector<tagint> partner, owner;    // owner: ID of the slot's atom when its bonds were last looked at
-  std::vector<double> data, quadrature;
+  std::vector<double> data, moment, quadrature;
   // damage: positions of solids and ghosts at the last look, empty = indices have changed; how far particles have moved apart since
   // indices changed, at most; per slot, how far they may before one of its bonds can be too long
   std::vector<double> seen, slack;
@@ -103,6 +108,9 @@ class FixFSIReference : public Fix {
   template <int D> void break_bonds_of_all(double stretch);
   template <int D> bool renew(int i);
   template <int D> void move_apart();
+  double *bond_in(int s, int k) { return &data[(size_t) s * maxbond * nvalue] + FSI::number_of_bond(k, nvalue); }
+  void move_bond(int s, int from, int to);
+  void complete(int s);
   void reserve(int n);
   int new_slot(int n);
   int pack(int, double *) const;

@@ -50,7 +50,7 @@ static FSI_INLINE bool none_above(int n, const double *a, double most)
   return !above;
 }
 
-FSI_AVX2 static bool all_below_packed(int n, const double *a, double most)
+FSI_TARGET static bool all_below_packed(int n, const double *a, double most)
 {
   return none_above(n, a, most);
 }

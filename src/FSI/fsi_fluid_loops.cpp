@@ -11,9 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_fluid_loops.h"
-
-#include "fsi_kernel.h"
+#include "fsi_fluid_rows.h"
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -22,7 +20,13 @@ using namespace FSI;
 
 std::unique_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h)
 {
-  if (kernel == CUBIC) return make_fluid_loops_cubic(dim, h);
-  if (kernel == QUINTIC) return make_fluid_loops_quintic(dim, h);
-  return make_fluid_loops_wendland(dim, h);
+#if FSI_PACKS
+  if (have_packs()) {
+    if (kernel == CUBIC) return make_fluid_loops_cubic(dim, h);
+    if (kernel == QUINTIC) return make_fluid_loops_quintic(dim, h);
+    return make_fluid_loops_wendland(dim, h);
+  }
+#endif
+  if (dim == 2) return std::make_unique<FluidLoopsOf<double, AnyKernel<2>>>(AnyKernel<2>(kernel, h));
+  return std::make_unique<FluidLoopsOf<double, AnyKernel<3>>>(AnyKernel<3>(kernel, h));
 }

@@ -18,8 +18,10 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
+#if FSI_PACKS
 std::unique_ptr<FluidLoops> FSI::make_fluid_loops_cubic(int dim, double h)
 {
-  if (dim == 2) return std::make_unique<FluidLoopsOf<Cubic<2>>>(h);
-  return std::make_unique<FluidLoopsOf<Cubic<3>>>(h);
+  if (dim == 2) return std::make_unique<FluidLoopsOf<Pack, Cubic<2>>>(Cubic<2>(h));
+  return std::make_unique<FluidLoopsOf<Pack, Cubic<3>>>(Cubic<3>(h));
 }
+#endif

@@ -465,12 +465,22 @@ namespace FSI {
     }
   }
 
-  template <class K> class FluidLoopsOf : public FluidLoops {
+  // T: double for loops pair by pair, Pack for several at a time
+  template <class T, class K> class FluidLoopsOf : public FluidLoops {
     static constexpr int D = K::DIM;
+    static constexpr bool ONE_BY_ONE = std::is_same_v<T, double>;
     const K kernel;
 
+    template <class Loop> static void run(Loop loop)
+    {
+      if constexpr (ONE_BY_ONE) loop(0.0);
+#if FSI_PACKS
+      else run_packed(loop);
+#endif
+    }
+
    public:
-    explicit FluidLoopsOf(double h) : kernel(h) {}
+    explicit FluidLoopsOf(const K &kernel_in) : kernel(kernel_in) {}
 
     void rates(PairKind kind, const std::vector<Row> &rows, const Mirror *image, const FluidParticles &in, const RateLaws &laws, double *rate,
                double *shift, PairSums *sums) const override
@@ -478,7 +488,7 @@ namespace FSI {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       const auto loop = [&](auto kind_is, auto flags) {
-        run_loop([&](auto number) __attribute__((always_inline)) {
+        run([&](auto number) __attribute__((always_inline)) {
           rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate,
                                                              reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums);
         });
@@ -499,23 +509,24 @@ namespace FSI {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
+      // with sums, neighbours on a finer lattice, or pair by pair there is one loop for all effects: those that are off have
+      // coefficients of zero
+      constexpr int EFFECTS = ARTIFICIAL | LAMINAR;
       PairSums unused;
       if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL)) sums = &unused;
       const auto loop = [&](auto packs, auto kind_is, auto flags) {
         const auto rows_of = [&](auto number) __attribute__((always_inline)) {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
         };
-        if constexpr (packs()) run_loop(rows_of);
+        if constexpr (packs()) run(rows_of);
         else rows_of(0.0);
       };
       const std::true_type packs;
       const std::false_type no_packs;
-      // with sums, or neighbours on a finer lattice, there is one loop for all effects: those that are off have coefficients of zero
-      constexpr int EFFECTS = ARTIFICIAL | LAMINAR;
       const int named = (laws.alpha > 0.0 || laws.beta > 0.0 ? ARTIFICIAL : 0) | (laws.laminar ? LAMINAR : 0);
       const int special = (sums ? SUMS : 0) | finer(kind, in);
-      with_flags<EFFECTS | SUMS | IMAGES | FINER>((special ? EFFECTS : named) | special | (image ? IMAGES : 0), [&](auto flags) {
-        if constexpr (!(flags() & (SUMS | FINER)) || (flags() & EFFECTS) == EFFECTS) {
+      with_flags<EFFECTS | SUMS | IMAGES | FINER>((special || ONE_BY_ONE ? EFFECTS : named) | special | (image ? IMAGES : 0), [&](auto flags) {
+        if constexpr (!(ONE_BY_ONE || (flags() & (SUMS | FINER))) || (flags() & EFFECTS) == EFFECTS) {
           if constexpr (!(flags() & FINER))
             if (kind == WITH_FLUID) loop(packs, std::integral_constant<int, WITH_FLUID>(), flags);
           if (kind == WITH_SOLID) loop(packs, std::integral_constant<int, WITH_SOLID>(), flags);
@@ -534,7 +545,7 @@ namespace FSI {
     {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::IMAGES | Flag::BOTH>((image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0), [&](auto flags) {
-        run_loop([&](auto number) __attribute__((always_inline)) {
+        run([&](auto number) __attribute__((always_inline)) {
           shift_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, wdx,
                                                    reinterpret_cast<double(*)[Shift<D>::ROW]>(shift));
         });
@@ -563,7 +574,7 @@ namespace FSI {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::FINER>(
           what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
-            if constexpr (!(flags() & Flag::FINER) || !(flags() & (Flag::DIVERGENCE | Flag::BOTH))) run_loop([&](auto number) __attribute__((always_inline)) {
+            if constexpr (!(flags() & Flag::FINER) || !(flags() & (Flag::DIVERGENCE | Flag::BOTH))) run([&](auto number) __attribute__((always_inline)) {
               distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, x, vol, sum);
             });
           });

@@ -141,6 +141,25 @@ namespace FSI {
   template <int D> using Quintic = Kernel<D, QuinticShape>;
   template <int D> using Wendland = Kernel<D, WendlandShape>;
 
+  // Any of them, by its kind: for loops that need not be fast, of which there is then one.
+  template <int D> struct AnyKernel {
+    static constexpr int DIM = D;
+    int kind;
+    Cubic<D> cubic;
+    Quintic<D> quintic;
+    Wendland<D> wendland;
+    double h;
+
+    AnyKernel(int kind_in, double h_in) : kind(kind_in), cubic(h_in), quintic(h_in), wendland(h_in), h(h_in) {}
+    double W(double r) const { return kind == CUBIC ? cubic.W(r) : kind == QUINTIC ? quintic.W(r) : wendland.W(r); }
+    double gradient(double r) const { return kind == CUBIC ? cubic.gradient(r) : kind == QUINTIC ? quintic.gradient(r) : wendland.gradient(r); }
+    double sharper(double r, double e) const { return kind == CUBIC ? cubic.sharper(r, e) : kind == QUINTIC ? quintic.sharper(r, e) : wendland.sharper(r, e); }
+    double sharper_gradient(double r, double e) const
+    {
+      return kind == CUBIC ? cubic.sharper_gradient(r, e) : kind == QUINTIC ? quintic.sharper_gradient(r, e) : wendland.sharper_gradient(r, e);
+    }
+  };
+
   // Calls f with the kernel object that kind and dim name: the one run-time choice between kernels.
   template <class F> void with_kernel(int kind, int dim, double h, F &&f)
   {

@@ -11,13 +11,14 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Four numbers side by side in a vector register (AVX2), for loops that take four pairs at a time.
+// Four numbers side by side, for loops that take four pairs at a time: a vector register of AVX2, two of Arm's.
 //
 // Formulas are templates over the number, double or Pack, and written once: lesser, greater and where are what they use for
-// branches. FSI_INLINE makes them part of the loop that calls them, a function marked FSI_AVX2, which is compiled for a
+// branches. FSI_INLINE makes them part of the loop that calls them, a function marked FSI_TARGET, which on x86 is compiled for a
 // processor that has AVX2 and fused multiply-add whatever the rest is compiled for: ask have_packs() before calling it. Sums
 // differ from those of other processors by round-off. Where the compiler is another, FSI_PACKS is 0 and loops go pair by pair; with
-// the environment variable FSI_PACKS=no they do on any processor.
+// the environment variable FSI_PACKS=no they do on any processor. Those loops have all effects, with coefficients of zero for what is
+// off: they are for old processors.
 
 #ifndef LMP_FSI_PACK_H
 #define LMP_FSI_PACK_H
@@ -28,14 +29,17 @@
 #include <type_traits>
 
 // compilers with the front end of EDG (nvc++, icpc) call themselves GNU C without having its vectors
-#if defined(__GNUC__) && defined(__x86_64__) && !defined(__EDG__) && !defined(__NVCOMPILER) && !defined(__INTEL_COMPILER)
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__aarch64__)) && !defined(__EDG__) && !defined(__NVCOMPILER) && !defined(__INTEL_COMPILER)
 #define FSI_PACKS 1
 #define FSI_INLINE inline __attribute__((always_inline))
-#define FSI_AVX2 __attribute__((target("avx2,fma")))
 #else
 #define FSI_PACKS 0
 #define FSI_INLINE inline
-#define FSI_AVX2
+#endif
+#if FSI_PACKS && defined(__x86_64__)
+#define FSI_TARGET __attribute__((target("avx2,fma")))
+#else
+#define FSI_TARGET
 #endif
 
 namespace LAMMPS_NS {
@@ -59,7 +63,7 @@ namespace FSI {
     Pack() = default;
     FSI_INLINE Pack(double x)
     {
-#if defined(__clang__)
+#if defined(__clang__) || !defined(__x86_64__)
       v = Vector{x, x, x, x};
 #else
       // one instruction, outside loops: gcc 12 takes {x, x, x, x} apart, and valgrind does not know all of what comes of other forms
@@ -107,16 +111,16 @@ namespace FSI {
     FSI_INLINE static void add_rows(const Pack &x, const Pack &y, double *a, double *b, double *c, double *d)
     {
       const Pack low = shuffle<0, 4, 2, 6>(x, y), high = shuffle<1, 5, 3, 7>(x, y);
-      add(a, Half{low.v[0], low.v[1]});
-      add(b, Half{high.v[0], high.v[1]});
-      add(c, Half{low.v[2], low.v[3]});
-      add(d, Half{high.v[2], high.v[3]});
+      add(a, half<0>(low));
+      add(b, half<0>(high));
+      add(c, half<2>(low));
+      add(d, half<2>(high));
     }
 
     // the two doubles at each of a, b, c, d
     FSI_INLINE static void columns(const double *a, const double *b, const double *c, const double *d, Pack &first, Pack &second)
     {
-      const Pack A(a[0], a[1], c[0], c[1]), B(b[0], b[1], d[0], d[1]);
+      const Pack A = both(a, c), B = both(b, d);
       first = shuffle<0, 4, 2, 6>(A, B);
       second = shuffle<1, 5, 3, 7>(A, B);
     }
@@ -130,13 +134,25 @@ namespace FSI {
 
    private:
     typedef double Half __attribute__((vector_size(2 * sizeof(double))));
+    FSI_INLINE static Half load_half(const double *p)
+    {
+      Half x;
+      __builtin_memcpy(&x, p, sizeof(x));
+      return x;
+    }
     FSI_INLINE static void add(double *p, const Half &x)
     {
-      Half y;
-      __builtin_memcpy(&y, p, sizeof(y));
-      y += x;
+      const Half y = load_half(p) + x;
       __builtin_memcpy(p, &y, sizeof(y));
     }
+    // the two doubles at p and at q; those of a from number I on: as halves of registers where the compiler has words for it
+#if defined(__clang__) || __GNUC__ >= 12
+    FSI_INLINE static Pack both(const double *p, const double *q) { return make(__builtin_shufflevector(load_half(p), load_half(q), 0, 1, 2, 3)); }
+    template <int I> FSI_INLINE static Half half(const Pack &a) { return __builtin_shufflevector(a.v, a.v, I, I + 1); }
+#else
+    FSI_INLINE static Pack both(const double *p, const double *q) { return {p[0], p[1], q[0], q[1]}; }
+    template <int I> FSI_INLINE static Half half(const Pack &a) { return Half{a.v[I], a.v[I + 1]}; }
+#endif
     FSI_INLINE static Pack make(const Vector &x)
     {
       Pack p;
@@ -168,7 +184,12 @@ namespace FSI {
   inline bool have_packs()
   {
     const char *const wanted = std::getenv("FSI_PACKS");
-    return !(wanted && std::strcmp(wanted, "no") == 0) && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    const bool refused = wanted && std::strcmp(wanted, "no") == 0;
+#if defined(__x86_64__)
+    return !refused && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#else
+    return !refused;
+#endif
   }
 #else
   inline bool have_packs() { return false; }
@@ -178,6 +199,7 @@ namespace FSI {
   template <class T> struct Lanes;
   template <> struct Lanes<double> {
     static constexpr int WIDTH = 1;
+    FSI_INLINE static double load(const double *a) { return *a; }
     FSI_INLINE static double read(const double *a, const int *j) { return a[*j]; }
     FSI_INLINE static void add(double x, double *a, const int *j) { a[*j] += x; }
     FSI_INLINE static double sum(double x) { return x; }
@@ -193,6 +215,7 @@ namespace FSI {
 #if FSI_PACKS
   template <> struct Lanes<Pack> {
     static constexpr int WIDTH = Pack::WIDTH;
+    FSI_INLINE static Pack load(const double *a) { return Pack::load(a); }
     FSI_INLINE static Pack read(const double *a, const int *j) { return {a[j[0]], a[j[1]], a[j[2]], a[j[3]]}; }
     FSI_INLINE static void add(const Pack &x, double *a, const int *j)
     {
@@ -237,19 +260,19 @@ namespace FSI {
     }
   }
 
-  // loop(T()) with T = Pack where the processor has packs, compiled for it, else with T = double
+  // loop(T()) with T = Pack where the processor has packs, compiled for it, else with T = double, which there is if ONE_BY_ONE
 #if FSI_PACKS
-  template <class Loop> FSI_AVX2 inline void run_packed(Loop loop)
+  template <class Loop> FSI_TARGET inline void run_packed(Loop loop)
   {
     loop(Pack());
   }
 #endif
-  template <class Loop> void run_loop(Loop loop, bool packs = true)
+  template <bool ONE_BY_ONE = true, class Loop> void run_loop(Loop loop, bool packs = true)
   {
 #if FSI_PACKS
-    if (packs && have_packs()) return run_packed(loop);
+    if (!ONE_BY_ONE || (packs && have_packs())) return run_packed(loop);
 #endif
-    loop(0.0);
+    if constexpr (ONE_BY_ONE) loop(0.0);
   }
 
 }    // namespace FSI

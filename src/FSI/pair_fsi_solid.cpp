@@ -101,11 +101,11 @@ void PairFSISolid::init_style()
 
 template <class K, int TERMS> void PairFSISolid::select(int flags)
 {
-  // loops may have effects that are off, with coefficients of zero: with artificial stress artificial viscosity, with the ledger contact, too
-  const int with = flags | (flags & (ARTIFICIAL_STRESS | LEDGER) ? ARTIFICIAL_VISCOSITY : 0) | (flags & LEDGER ? BODIES : 0);
-  with_flags<ARTIFICIAL_VISCOSITY | BODIES | ARTIFICIAL_STRESS | LEDGER>(with, [this](auto f) {
-    constexpr bool more = (f() & (ARTIFICIAL_STRESS | LEDGER)) != 0, ledger = (f() & LEDGER) != 0;
-    if constexpr ((!more || (f() & ARTIFICIAL_VISCOSITY)) && (!ledger || (f() & BODIES))) force_loop = &PairFSISolid::force_pairs<K, TERMS, f()>;
+  // loops may have effects that are off, with coefficients of zero: all have artificial viscosity but the barest, and beyond that contact
+  constexpr int MORE = ARTIFICIAL_STRESS | LEDGER, COMMON = ARTIFICIAL_VISCOSITY | BODIES;
+  const int with = flags & MORE ? flags | COMMON : flags & BODIES ? flags | ARTIFICIAL_VISCOSITY : flags;
+  with_flags<COMMON | MORE>(with, [this](auto f) {
+    if constexpr ((f() & MORE) ? (f() & COMMON) == COMMON : f() != BODIES) force_loop = &PairFSISolid::force_pairs<K, TERMS, f()>;
   });
   gradient_loop =
       (flags & BODIES) ? &PairFSISolid::gradient_pairs<K, TERMS, BODIES> : &PairFSISolid::gradient_pairs<K, TERMS, 0>;
@@ -572,7 +572,8 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
 
   const auto &aux = fill_aux<D, TERMS>();
 
-  // energies: without newton a pair across ranks is computed on both
+  double by_gradient = 0.0, by_stress = 0.0, by_viscosity = 0.0;    // powers
+  // without newton a pair across ranks is computed on both
   const auto share = [&](int j) { return (newton || j < nlocal) ? 1.0 : 0.5; };
 
   for (int ii = 0; ii < list->inum; ii++) {
@@ -606,8 +607,8 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
           t += R;
           if (FLAGS & LEDGER) {
             const double power = contract<D>(R, xij, v[i], v[j]);
-            fix_fsi->tally(FixFSI::STRESS, -share(j) * g * power);
-            fix_fsi->tally(FixFSI::GRADIENT, share(j) * g * power);
+            by_stress -= share(j) * g * power;
+            by_gradient += share(j) * g * power;
           }
         }
       }
@@ -619,7 +620,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       if (FLAGS & LEDGER) {
         double power = 0.0;
         for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (v[i][d] - v[j][d]);
-        fix_fsi->tally(FixFSI::GRADIENT, -share(j) * power);
+        by_gradient -= share(j) * power;
       }
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
         double vdotx = 0.0;
@@ -627,7 +628,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
         const double q = viscosity(vdotx, rsq, 0.5 * (ai.rho + aj.rho), 0.5 * (state[type[i]].c + state[type[j]].c),
                                    ai.vol * aj.vol);
         for (int d = 0; d < D; d++) tx[d] -= q * xij[d];
-        if (FLAGS & LEDGER) fix_fsi->tally(FixFSI::ARTIFICIAL, share(j) * q * g * vdotx);
+        if (FLAGS & LEDGER) by_viscosity += share(j) * q * g * vdotx;
       }
       for (int d = 0; d < D; d++) {
         tx[d] *= g;
@@ -640,6 +641,11 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
         ev_tally_xyz(i, j, nlocal, newton, 0.0, 0.0, tx[0], tx[1], D == 3 ? tx[D - 1] : 0.0, xij[0], xij[1], D == 3 ? xij[D - 1] : 0.0);
     }
     for (int d = 0; d < D; d++) f[i][d] += fi[d];
+  }
+  if (FLAGS & LEDGER) {
+    fix_fsi->tally(FixFSI::STRESS, by_stress);
+    fix_fsi->tally(FixFSI::GRADIENT, by_gradient);
+    fix_fsi->tally(FixFSI::ARTIFICIAL, by_viscosity);
   }
 }
 

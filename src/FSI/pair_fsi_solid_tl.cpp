@@ -134,6 +134,7 @@ void PairFSISolidTL::init_style()
   comm_forward = has_artificial() || law == HYPO ? 2 * dim : dim;
   comm_reverse = dim;
 
+  changes_seen = -1;
   svk.clear();
   neohookean.clear();
   hypo.clear();
@@ -204,8 +205,6 @@ void PairFSISolidTL::internal_forces()
     memory->destroy(fsolid);
     memory->create(fsolid, nmax, row_of_bond_forces(fix_fsi->dim), "pair:fsolid");
   }
-  for (const auto *set : {&reference->solids, &reference->ghosts})
-    for (const int i : *set) std::fill_n(fsolid[i], fix_fsi->dim, 0.0);
   const auto forces_of = [&](auto law_of) {
     using L = decltype(law_of);
     fix_fsi->dim == 2 ? bond_forces<L, 2>() : bond_forces<L, 3>();
@@ -218,6 +217,27 @@ void PairFSISolidTL::internal_forces()
     else contact_forces<3>();
   }
   exchange(fix_fsi->profile, comm, this, true, [this]() { reference->swaps.reverse(this); }, reference->swaps.skip_empty());
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSISolidTL::find_rows()
+{
+  const int *const type = atom->type, *const mask = atom->mask, groupbit = fix_fsi->groupbit;
+  changes_seen = reference->changes;
+  one_material = true;
+  rows.clear();
+  for (const int i : reference->solids) {
+    const State &s = fix_fsi->state[type[i]], &first = fix_fsi->state[type[reference->solids[0]]];
+    one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
+    if (reference->count(i) == 0) continue;    // torn off by damage
+    rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i), reference->moments(i),
+                    atom->rmass[i] / s.rho0 * reference->weight(i), zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
+  }
+  const auto moves = [=](const BondRow &row) {
+    return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [=](int j) { return mask[j] & groupbit; });
+  };
+  nmoving = std::stable_partition(rows.begin(), rows.end(), moves) - rows.begin();
 }
 
 /* ----------------------------------------------------------------------
@@ -237,28 +257,22 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
       for (int d = 0; d < D; d++) {
         points[NP * i + d] = x[i][d];
         points[NP * i + D + d] = v[i][d];
+        fsolid[i][d] = 0.0;
       }
-  rows.clear();
-  bool one_material = true;
-  for (const int i : reference->solids) {
-    const State &s = state[type[i]], &first = state[type[reference->solids[0]]];
-    one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
-    if (reference->count(i) == 0) continue;    // torn off by damage
-    if (!only_on_held.empty() && only_on_held[i]) continue;
-    rows.push_back({i, reference->count(i), reference->partners(i), reference->values(i), atom->rmass[i] / s.rho0 * reference->weight(i),
-                    zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
-  }
+  if (changes_seen != reference->changes) find_rows();
 
+  const int nrows = only_moving ? nmoving : (int) rows.size();
   BondSums sums;
   const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr, alpha, beta, one_material, &sums};
   const L *const law_of = laws<L>();
   auto *const f = reinterpret_cast<double(*)[row_of_bond_forces(D)]>(fsolid ? fsolid[0] : nullptr);
-  const int flags = fix_fsi->ledger || vflag_global ? ALL : (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
-  with_flags<ALL>(flags, [&](auto which) {
-    // with sums there is one loop for all effects: those that are off have coefficients of zero
+  // with sums, or one by one, there is one loop for all effects: those that are off have coefficients of zero
+  const bool packs = have_packs() && (one_material || !has_artificial());
+  const int named = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
+  with_flags<ALL>(fix_fsi->ledger || vflag_global || !packs ? ALL : named, [&](auto which) {
     if constexpr (!(which() & SUMS) || which() == ALL)
-      run_loop([&](auto number) __attribute__((always_inline)) { bond_rows<decltype(number), L, D, which()>(rows, law_of, in, f); },
-               one_material || !has_artificial());
+      run_loop<which() == ALL>([&](auto number) __attribute__((always_inline)) { bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f); },
+                               packs);
   });
   strain_energy = sums.energy;
   fix_fsi->tally(FixFSI::ARTIFICIAL, sums.artificial);
@@ -322,12 +336,11 @@ template <int D> void PairFSISolidTL::contact_forces()
 template <int D> void PairFSISolidTL::deformation(int i, double *F) const
 {
   double **x = atom->x;
-  const double *b = reference->values(i);
   for (int a = 0; a < D * D; a++) F[a] = 0.0;
-  for (int k = 0; k < reference->count(i); k++, b += reference->nvalue) {
-    const double *const xj = x[reference->partners(i)[k]];
+  for (int k = 0; k < reference->count(i); k++) {
+    const double *const xj = x[reference->partners(i)[k]], *const G = reference->bond(i, k);
     for (int a = 0; a < D; a++)
-      for (int c = 0; c < D; c++) F[a * D + c] += (xj[a] - x[i][a]) * b[c];
+      for (int c = 0; c < D; c++) F[a * D + c] += (xj[a] - x[i][a]) * G[c * BOND_BLOCK];
   }
 }
 
@@ -350,15 +363,15 @@ template <int D> void PairFSISolidTL::advance_stress_of_all(double dt)
   const double dth = 0.5 * dt;
   for (const int i : reference->solids) {
     const int n = reference->count(i), *const partner = reference->partners(i);
-    const double *b = reference->values(i);
     double F[D * D] = {}, Fdot[D * D] = {}, C[D * D], L[D * D] = {};
-    for (int k = 0; k < n; k++, b += reference->nvalue) {
+    for (int k = 0; k < n; k++) {
       const int j = partner[k];
+      const double *const G = reference->bond(i, k);
       for (int a = 0; a < D; a++) {
         const double dv = v[j][a] - v[i][a], dx = x[j][a] - x[i][a] - dth * dv;
         for (int c = 0; c < D; c++) {
-          F[a * D + c] += dx * b[c];
-          Fdot[a * D + c] += dv * b[c];
+          F[a * D + c] += dx * G[c * BOND_BLOCK];
+          Fdot[a * D + c] += dv * G[c * BOND_BLOCK];
         }
       }
     }
@@ -517,10 +530,10 @@ void PairFSISolidTL::integrate_substeps()
   };
   fix_fsi->set_tally(dt);
   fix_fsi->check.before_substeps(solids());
-  if (!fix_fsi->ledger) find_only_on_held();
+  only_moving = !fix_fsi->ledger;
   drift(back);
   for (int n = 0; n < substeps; n++) {
-    if (n + 1 == substeps) only_on_held.clear();
+    if (n + 1 == substeps) only_moving = false;
     drift(dth);
     forward_positions();
     advance_stress(dt);
@@ -541,17 +554,6 @@ void PairFSISolidTL::integrate_substeps()
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   for (const int i : solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
-}
-
-void PairFSISolidTL::find_only_on_held()
-{
-  const int *const mask = atom->mask, groupbit = fix_fsi->groupbit;
-  only_on_held.assign(atom->nlocal, 0);
-  for (const int i : reference->solids) {
-    if (mask[i] & groupbit) continue;
-    const int *const partner = reference->partners(i);
-    only_on_held[i] = std::none_of(partner, partner + reference->count(i), [=](int j) { return mask[j] & groupbit; });
-  }
 }
 
 /* ---------------------------------------------------------------------- */

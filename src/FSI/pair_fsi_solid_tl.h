@@ -97,10 +97,11 @@ class PairFSISolidTL : public PairFSI {
 
   void refuse_constraints() const;
   template <class L> const L *laws() const;
+  // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces are seen from outside
   std::vector<FSI::BondRow> rows;
-  // rows that act on held particles alone: of no use to sub-steps but the last, whose forces are seen from outside
-  std::vector<char> only_on_held;    // per local atom; empty: all rows are wanted
-  void find_only_on_held();
+  int nmoving, changes_seen;    // how many do not; when they were found
+  bool only_moving, one_material;    // forces of those are wanted; all solids have one density and one speed of sound
+  void find_rows();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
   template <class L, int D> void bond_forces();
   template <int D> void contact_forces();

@@ -35,7 +35,7 @@ static void expect(const double *got, const double *want)
   for (int k = 0; k < 4; k++) EXPECT_NEAR(got[k], want[k], ROUND * (1.0 + std::fabs(want[k]))) << "place " << k;
 }
 
-FSI_AVX2 static void transpose(const double (*rows)[4], double (*columns)[4], double (*sums)[4])
+FSI_TARGET static void transpose(const double (*rows)[4], double (*columns)[4], double (*sums)[4])
 {
   Pack c[4];
   Pack::columns(rows[0], rows[1], rows[2], rows[3], c);
@@ -44,7 +44,7 @@ FSI_AVX2 static void transpose(const double (*rows)[4], double (*columns)[4], do
   Pack::add_rows(c[0], c[1], c[2], 0.0, sums[0], sums[1], sums[2], sums[3]);
 }
 
-FSI_AVX2 static void pairs_of_columns(const double (*rows)[4], double *first, double *second)
+FSI_TARGET static void pairs_of_columns(const double (*rows)[4], double *first, double *second)
 {
   Pack a, b;
   Pack::columns(rows[0], rows[1], rows[2], rows[3], a, b);
@@ -94,7 +94,7 @@ template <class K, class T> FSI_INLINE Values<T> evaluate(const T &q, const T &u
   return r;
 }
 
-template <class K> FSI_AVX2 static void side_by_side(const double *q, const double *u, bool central, double (*out)[4])
+template <class K> FSI_TARGET static void side_by_side(const double *q, const double *u, bool central, double (*out)[4])
 {
   const Values<Pack> r = evaluate<K>(Pack(q[0], q[1], q[2], q[3]), Pack(u[0], u[1], u[2], u[3]), central);
   const Pack *const all[] = {&r.W, &r.gradient, &r.artificial, &r.flux, &r.loss, &r.f[0], &r.f[1], &r.sum};
