@@ -1,0 +1,66 @@
+"""A channel between an inlet and an outlet, a hundred times through. tools/cost open_ends [ranks=N] [times=100]
+
+Oil, Poiseuille's profile in, pressure out, 30 by 10 particles, as in unittest/styles/test_inlet.py: what came, what left, how many there
+were, and the pressure drop of thirds of the run. Exit status 1 if one particle is unaccounted for.
+"""
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from fsi import launch, series
+
+DECK = """
+units si
+dimension 2
+boundary f f p
+atom_style fsi
+newton on
+region box block -0.6 3.6 -0.5 1.5 -0.05 0.05
+create_box 1 box
+lattice sq 0.1 origin 0.5 0.5 0
+region channel block 0 3 0 1 INF INF units box
+create_atoms 1 region channel
+pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2
+pair_coeff * * oil.fsi oil
+fix sph all fsi 0.1 wendland 1.5
+fix w all fsi/wall/mirror ylo 0 slip no yhi 1 slip no
+variable u atom 6*y*(1-y)*(1-exp(-time/0.5))
+fix i all fsi/inlet xlo 0 velocity v_u 0 0
+fix o all fsi/outlet xhi 3
+timestep 0.003
+neighbor 0.03 bin
+thermo_modify norm no lost error
+thermo 10000
+variable came equal f_i[2]-f_i[3]
+variable left equal f_o[3]-f_o[2]
+variable inside equal atoms-f_i[1]-f_o[1]
+variable drop equal f_i[6]-f_o[6]
+fix s all print 100 "$(time),$(atoms),$(v_inside),$(v_came),$(v_left),$(v_drop)" file s.csv title "time,atoms,inside,came,left,drop" screen no
+thermo_style custom step atoms v_inside v_came v_left v_drop
+"""
+
+
+def main(ranks=1, times=100):
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        (folder / "oil.fsi").write_text("# DATE: 2026-01-01 UNITS: si CITATION: none\noil fluid rho 1000 viscosity 100\n")
+        (folder / "in.channel").write_text(f"{DECK}run {1000 * times}\n")
+        done = subprocess.run(launch.lammps(folder / "in.channel", ranks), cwd=folder, env=launch.environment(), capture_output=True, text=True, check=False)
+        if done.returncode:
+            sys.exit(done.stdout[-2000:])
+        s = series.read(folder / "s.csv")
+    lost = s["inside"][-1] - 300 - s["came"][-1] + s["left"][-1]
+    thirds = [s["drop"][(s.time > a * s.time[-1]) & (s.time <= b * s.time[-1])].mean() for a, b in ((0.1, 1 / 3), (1 / 3, 2 / 3), (2 / 3, 1))]
+    print(f"{times} times through on {ranks}: {s['came'][-1]:.0f} came, {s['left'][-1]:.0f} left, {lost:.0f} lost; {s['atoms'].min():.0f} to {s['atoms'].max():.0f} particles with "
+          f"the buffers; mean pressure drop {', '.join(f'{p:.0f}' for p in thirds)} Pa in the run's thirds but for its first tenth, 3600 is Poiseuille's")
+    return int(lost != 0)
+
+
+if __name__ == "__main__":
+    words = [re.fullmatch(r"(ranks|times)=(\d+)", word) for word in sys.argv[1:]]
+    if not all(words):
+        sys.exit(__doc__)
+    sys.exit(main(**{word[1]: int(word[2]) for word in words}))
