@@ -4,13 +4,12 @@ Oil, Poiseuille's profile in, pressure out, 30 by 10 particles, as in unittest/s
 were, and the pressure drop of thirds of the run. Exit status 1 if one particle is unaccounted for.
 """
 
-import re
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
-from fsi import launch, series
+from fsi import launch, scene, series
+from fsi.command import Refusal, split, start, whole
 
 DECK = """
 units si
@@ -43,24 +42,32 @@ thermo_style custom step atoms v_inside v_came v_left v_drop
 """
 
 
-def main(ranks=1, times=100):
+def run(ranks, times):
+    """The series of one run."""
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         (folder / "oil.fsi").write_text("# DATE: 2026-01-01 UNITS: si CITATION: none\noil fluid rho 1000 viscosity 100\n")
         (folder / "in.channel").write_text(f"{DECK}run {1000 * times}\n")
         done = subprocess.run(launch.lammps(folder / "in.channel", ranks), cwd=folder, env=launch.environment(), capture_output=True, text=True, check=False)
         if done.returncode:
-            sys.exit(done.stdout[-2000:])
-        s = series.read(folder / "s.csv")
-    lost = s["inside"][-1] - 300 - s["came"][-1] + s["left"][-1]
-    thirds = [s["drop"][(s.time > a * s.time[-1]) & (s.time <= b * s.time[-1])].mean() for a, b in ((0.1, 1 / 3), (1 / 3, 2 / 3), (2 / 3, 1))]
-    print(f"{times} times through on {ranks}: {s['came'][-1]:.0f} came, {s['left'][-1]:.0f} left, {lost:.0f} lost; {s['atoms'].min():.0f} to {s['atoms'].max():.0f} particles with "
-          f"the buffers; mean pressure drop {', '.join(f'{p:.0f}' for p in thirds)} Pa in the run's thirds but for its first tenth, 3600 is Poiseuille's")
-    return int(lost != 0)
+            raise Refusal(done.stdout[-2000:])
+        return series.read(folder / "s.csv")
+
+
+def main(arguments):
+    """tools/cost open_ends"""
+    options, _ = split(arguments, ("ranks", "times"), "ranks=N or times=N", more=False)
+    ranks, times = whole("ranks", options.get("ranks", "1")), whole("times", options.get("times", "100"))
+    if not scene.build():
+        return 1
+    s = run(ranks, times)
+    lost = s["inside"][0] + s["came"] - s["left"] - s["inside"]
+    end = s.time[-1]
+    thirds = [s["drop"][(s.time > a * end) & (s.time <= b * end)].mean() for a, b in ((0.1, 1 / 3), (1 / 3, 2 / 3), (2 / 3, 1))]
+    print(f"{times} times through on {ranks}: {s['came'][-1]:.0f} came, {s['left'][-1]:.0f} left, {abs(lost).max():.0f} lost; {s['atoms'].min():.0f} to {s['atoms'].max():.0f} "
+          f"particles with the buffers; mean pressure drop {', '.join(f'{p:.0f}' for p in thirds)} Pa in the run's thirds but for its first tenth, 3600 is Poiseuille's")
+    return int(lost.any())
 
 
 if __name__ == "__main__":
-    words = [re.fullmatch(r"(ranks|times)=(\d+)", word) for word in sys.argv[1:]]
-    if not all(words):
-        sys.exit(__doc__)
-    sys.exit(main(**{word[1]: int(word[2]) for word in words}))
+    start("cost", main)
