@@ -14,7 +14,7 @@ set_property(SOURCE ${_instrumented} APPEND PROPERTY COMPILE_OPTIONS ${FSI_INSTR
 if(FSI_SANITIZE)
   # all that these loops call is part of them: optimised with all checks they take a quarter of an hour to compile. What the checks left out say
   # of a pointer, AddressSanitizer says where it is used
-  set(_loops "${FSI_SOURCE_DIR}/fsi_fluid_loops_wendland.cpp" "${FSI_SOURCE_DIR}/pair_fsi_solid.cpp" "${FSI_SOURCE_DIR}/pair_fsi_solid_tl.cpp")
+  set(_loops "${FSI_SOURCE_DIR}/fsi_fluid_loops_any.cpp" "${FSI_SOURCE_DIR}/fsi_fluid_loops_wendland.cpp" "${FSI_SOURCE_DIR}/pair_fsi_solid.cpp" "${FSI_SOURCE_DIR}/pair_fsi_solid_tl.cpp")
   set_property(SOURCE ${_loops} APPEND PROPERTY COMPILE_OPTIONS -O0 -g0 -fno-sanitize=null,vptr,pointer-overflow,object-size)
 endif()
 if(FSI_FFTW)

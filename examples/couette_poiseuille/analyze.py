@@ -85,11 +85,10 @@ def study(folder, cases):
         n = sorted(int(m[1]) for name in cases if (m := re.fullmatch(kind + r"_(\d+)", name)))
         if n == [10, 20, 40]:
             e = [starts[f"{kind}_{k}"] for k in n]
-            # of what falls with the spacing: the viscosity of the lattice stays (README)
             summary.add(f"order_{kind}", np.log2((e[0] - e[1]) / (e[1] - e[2])))
             curves.append((n, e, kind.replace("_", ", "), colour))
     if curves:
-        plot.lines(folder / "error.png", "particles between the plates", "RMS error / V", curves, log_scale=True)
+        plot.lines(folder / "error.png", "particles between the plates", "RMS error / V", curves, log_scale="xy")
     return summary.write()
 
 

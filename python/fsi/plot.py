@@ -40,7 +40,7 @@ def picture(path, width=6.4, height=4.0):
 def lines(path, time_label, value_label, curves, points=(), log_scale=False):
     """Curves against reference points.
 
-    curves: list of (x, y, label, colour); points: list of the same, drawn as markers.
+    curves: list of (x, y, label, colour); points: list of the same, drawn as markers; log_scale: of values, "xy": of both axes.
     """
     with picture(path) as figure:
         axes = figure.add_subplot()
@@ -50,6 +50,11 @@ def lines(path, time_label, value_label, curves, points=(), log_scale=False):
             axes.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgewidth=1.3, color=colour, label=label)
         if log_scale:
             axes.set_yscale("log")
+        if log_scale == "xy":
+            axes.set_xscale("log")
+            axes.set_xticks(sorted({k for x, *_ in curves for k in x}), minor=False)
+            axes.xaxis.set_major_formatter("{x:g}")
+            axes.minorticks_off()
         axes.set_xlabel(time_label)
         axes.set_ylabel(value_label)
         if len(curves) + len(points) > 1:

@@ -11,22 +11,23 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_fluid_rows.h"
+#include "fsi_fluid_loops.h"
+
+#include "fsi_kernel.h"
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-std::unique_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h)
+std::shared_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h, bool packs)
 {
 #if FSI_PACKS
-  if (have_packs()) {
+  if (packs) {
     if (kernel == CUBIC) return make_fluid_loops_cubic(dim, h);
     if (kernel == QUINTIC) return make_fluid_loops_quintic(dim, h);
     return make_fluid_loops_wendland(dim, h);
   }
 #endif
-  if (dim == 2) return std::make_unique<FluidLoopsOf<double, AnyKernel<2>>>(AnyKernel<2>(kernel, h));
-  return std::make_unique<FluidLoopsOf<double, AnyKernel<3>>>(AnyKernel<3>(kernel, h));
+  return make_fluid_loops_any(kernel, dim, h);
 }

@@ -15,7 +15,7 @@
 //
 // Pairs come as rows: a fluid particle i and neighbours j of one atom type, so that whatever depends on types is constant in a row.
 // The images of neighbours in a mirror wall are rows of their own. One text serves numbers one by one and several side by side
-// (fsi_pack.h); for several it is compiled once per kernel (fsi_fluid_loops_*.cpp), one by one for all (fsi_fluid_loops.cpp).
+// (fsi_pack.h); for several it is compiled once per kernel (fsi_fluid_loops_*.cpp), one by one for all (fsi_fluid_loops_any.cpp).
 
 #ifndef LMP_FSI_FLUID_LOOPS_H
 #define LMP_FSI_FLUID_LOOPS_H
@@ -154,11 +154,12 @@ namespace FSI {
                                      const double *vol, double *sum) const = 0;
   };
 
-  std::unique_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h);
-  // with packs
-  std::unique_ptr<FluidLoops> make_fluid_loops_cubic(int dim, double h);
-  std::unique_ptr<FluidLoops> make_fluid_loops_quintic(int dim, double h);
-  std::unique_ptr<FluidLoops> make_fluid_loops_wendland(int dim, double h);
+  // packs: several pairs at a time, of all kinds but WITH_SOLID_PRESSURE and WITH_SOLID_FULL
+  std::shared_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h, bool packs);
+  std::shared_ptr<FluidLoops> make_fluid_loops_any(int kernel, int dim, double h);
+  std::shared_ptr<FluidLoops> make_fluid_loops_cubic(int dim, double h);
+  std::shared_ptr<FluidLoops> make_fluid_loops_quintic(int dim, double h);
+  std::shared_ptr<FluidLoops> make_fluid_loops_wendland(int dim, double h);
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

@@ -19,9 +19,9 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 #if FSI_PACKS
-std::unique_ptr<FluidLoops> FSI::make_fluid_loops_cubic(int dim, double h)
+std::shared_ptr<FluidLoops> FSI::make_fluid_loops_cubic(int dim, double h)
 {
-  if (dim == 2) return std::make_unique<FluidLoopsOf<Pack, Cubic<2>>>(Cubic<2>(h));
-  return std::make_unique<FluidLoopsOf<Pack, Cubic<3>>>(Cubic<3>(h));
+  if (dim == 2) return std::make_shared<FluidLoopsOf<Pack, Cubic<2>>>(Cubic<2>(h));
+  return std::make_shared<FluidLoopsOf<Pack, Cubic<3>>>(Cubic<3>(h));
 }
 #endif

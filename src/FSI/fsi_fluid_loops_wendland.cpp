@@ -19,9 +19,9 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 #if FSI_PACKS
-std::unique_ptr<FluidLoops> FSI::make_fluid_loops_wendland(int dim, double h)
+std::shared_ptr<FluidLoops> FSI::make_fluid_loops_wendland(int dim, double h)
 {
-  if (dim == 2) return std::make_unique<FluidLoopsOf<Pack, Wendland<2>>>(Wendland<2>(h));
-  return std::make_unique<FluidLoopsOf<Pack, Wendland<3>>>(Wendland<3>(h));
+  if (dim == 2) return std::make_shared<FluidLoopsOf<Pack, Wendland<2>>>(Wendland<2>(h));
+  return std::make_shared<FluidLoopsOf<Pack, Wendland<3>>>(Wendland<3>(h));
 }
 #endif

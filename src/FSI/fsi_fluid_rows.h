@@ -38,7 +38,7 @@ namespace FSI {
 
   // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of finer lattices; shifting
   namespace Flag {
-    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, FINER = 128, SHIFT = 256 };
+    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, FINER = 128, SHIFT = 256, CENTRAL = 512 };
   }
 
   template <class T, int D> struct Particle {
@@ -331,7 +331,7 @@ namespace FSI {
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
-    const LaminarViscosity<D> viscous(kernel.h, laws.laminar == 2);
+    const LaminarViscosity<D> viscous(kernel.h, (FLAGS & Flag::CENTRAL) && laws.laminar == 2);
     Powers<T> by;
     T on_all[D];
     for (T &w : on_all) w = 0.0;
@@ -391,7 +391,9 @@ namespace FSI {
         if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) by.coupling += share * coupled;
         for (int d = 0; d < D; d++) on_j[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * force[d] : -force[d];
         if (FLAGS & Flag::LAMINAR) {
-          const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, of, g, rsq, x, v, force, on_j);
+          // walls and solids have another velocity than i itself in places that are left over
+          const T there = KIND == WITH_FLUID || (FLAGS & Flag::IMAGES) ? g : weight * g;
+          const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, of, there, rsq, x, v, force, on_j);
           if (FLAGS & Flag::SUMS) by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * share * loss : share * loss;
         }
         // what wall particles are given: they are not in the sum of energies
@@ -525,31 +527,28 @@ namespace FSI {
       const Mirror mirror = image ? *image : Mirror();
       auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
       // with sums, neighbours on a finer lattice, or pair by pair there is one loop for all effects: those that are off have
-      // coefficients of zero
-      constexpr int EFFECTS = ARTIFICIAL | LAMINAR;
+      // coefficients of zero; so it is with central laminar viscosity, which tells the two forms apart at run time
+      constexpr int EFFECTS = ARTIFICIAL | LAMINAR | CENTRAL;
       PairSums unused;
       if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL)) sums = &unused;
-      const auto loop = [&](auto packs, auto kind_is, auto flags) {
-        const auto rows_of = [&](auto number) __attribute__((always_inline)) {
+      const auto loop = [&](auto kind_is, auto flags) {
+        run([&](auto number) __attribute__((always_inline)) {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
-        };
-        if constexpr (packs()) run(rows_of);
-        else rows_of(0.0);
+        });
       };
-      const std::true_type packs;
-      const std::false_type no_packs;
-      const int named = (laws.alpha > 0.0 || laws.beta > 0.0 ? ARTIFICIAL : 0) | (laws.laminar ? LAMINAR : 0);
+      const int laminar = laws.laminar == 0 ? 0 : laws.laminar == 1 ? LAMINAR : EFFECTS;
+      const int named = (laws.alpha > 0.0 || laws.beta > 0.0 ? ARTIFICIAL : 0) | laminar;
       const int special = (sums ? SUMS : 0) | finer(kind, in);
       with_flags<EFFECTS | SUMS | IMAGES | FINER>((special || ONE_BY_ONE ? EFFECTS : named) | special | (image ? IMAGES : 0), [&](auto flags) {
-        if constexpr (!(ONE_BY_ONE || (flags() & (SUMS | FINER))) || (flags() & EFFECTS) == EFFECTS) {
+        if constexpr (!(ONE_BY_ONE || (flags() & (SUMS | FINER | CENTRAL))) || (flags() & EFFECTS) == EFFECTS) {
           if constexpr (!(flags() & FINER))
-            if (kind == WITH_FLUID) loop(packs, std::integral_constant<int, WITH_FLUID>(), flags);
-          if (kind == WITH_SOLID) loop(packs, std::integral_constant<int, WITH_SOLID>(), flags);
+            if (kind == WITH_FLUID) loop(std::integral_constant<int, WITH_FLUID>(), flags);
+          if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
           if constexpr (!(flags() & IMAGES))    // walls of particles have no images
-            if (kind == WITH_WALL) loop(packs, std::integral_constant<int, WITH_WALL>(), flags);
-          if constexpr ((flags() & SUMS) && !(flags() & FINER)) {
-            if (kind == WITH_SOLID_PRESSURE) loop(no_packs, std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
-            if (kind == WITH_SOLID_FULL) loop(no_packs, std::integral_constant<int, WITH_SOLID_FULL>(), flags);
+            if (kind == WITH_WALL) loop(std::integral_constant<int, WITH_WALL>(), flags);
+          if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & FINER)) {
+            if (kind == WITH_SOLID_PRESSURE) loop(std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
+            if (kind == WITH_SOLID_FULL) loop(std::integral_constant<int, WITH_SOLID_FULL>(), flags);
           }
         }
       });

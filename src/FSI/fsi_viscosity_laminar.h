@@ -13,9 +13,10 @@
 
 // Laminar viscosity, with V = m/rho and in both forms the mean viscosity of two fluids:
 //   plain (Morris, Fox and Zhu 1997, eq. 22):
-//     F_ij = V_i V_j (eta_i + eta_j) (x_ij.grad_i W_ij)/(r^2 + 0.01 h^2) v_ij
+//     F_ij = V_i V_j (eta_i + eta_j) (x_ij.grad_i W_ij)/r^2 v_ij
 //   central (Monaghan and Gingold 1983, with Monaghan's 2005 factor 2(d+2)), along the line of centres:
-//     F_ij = V_i V_j (d + 2)(eta_i + eta_j) (v_ij.x_ij)/(r^2 + 0.01 h^2) grad_i W_ij
+//     F_ij = V_i V_j (d + 2)(eta_i + eta_j) (v_ij.x_ij)/r^2 grad_i W_ij
+// Both papers add 0.01 h^2 to r^2, which makes the viscosity 0.6 % smaller; but nothing is singular here: grad_i W_ij = g x_ij, g is finite.
 // Both are the Laplacian of an incompressible flow. The plain one takes eta |grad v|^2 from the flow, the central one
 // 2 eta e:e, e the rate of strain: only that is right at a free surface (Colagrossi, Antuono, Souto-Iglesias and Le Touze
 // 2011), and only that keeps angular momentum; the plain one is quieter in shear.
@@ -29,23 +30,24 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   template <int D> struct LaminarViscosity {
-    double eta;    // 0.01 h^2
+    double tiny;    // for places that hold i itself
     bool central;
-    LaminarViscosity(double h, bool c) : eta(0.01 * h * h), central(c) {}
+    LaminarViscosity(double h, bool c) : tiny(1.0e-12 * h * h), central(c) {}
     // adds F_ij to f and returns the power it takes; g: grad_i W_ij = g x_ij; visc: eta_i + eta_j; vv = V_i V_j; T: double or Pack
     template <class T> FSI_INLINE T operator()(const T &g, const T &rsq, double visc, const T &vv, const T *x_ij, const T *v_ij, T *f) const
     {
-      const T k = vv * visc * g / (rsq + eta);
+      const T k = vv * visc * g;
       T power = 0.0;
       if (central) {
         T vx = 0.0;
         for (int d = 0; d < D; d++) vx += v_ij[d] * x_ij[d];
-        for (int d = 0; d < D; d++) f[d] += (D + 2) * k * vx * x_ij[d];
-        power = (D + 2) * k * vx * vx;
+        const T along = (D + 2) * k * vx / greater(rsq, T(tiny));
+        for (int d = 0; d < D; d++) f[d] += along * x_ij[d];
+        power = along * vx;
       } else
         for (int d = 0; d < D; d++) {
-          f[d] += k * rsq * v_ij[d];
-          power += k * rsq * v_ij[d] * v_ij[d];
+          f[d] += k * v_ij[d];
+          power += k * v_ij[d] * v_ij[d];
         }
       return -power;
     }

@@ -132,7 +132,9 @@ void PairFSIFluid::init_style()
   if (solids_slip && (!laminar || !has_solids()) && comm->me == 0)
     error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
                    has_solids() ? "there is no laminar/visc" : "there is no solid");
-  loops = make_fluid_loops(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h);
+  const auto make_loops = [this](bool packs) { return make_fluid_loops(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, packs); };
+  loops = make_loops(have_packs());
+  solid_loops = couple == WALL ? loops : make_loops(false);
   shares.assign(atom->ntypes + 1, Share());
   finer = false;
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -647,14 +649,14 @@ template <int D> void PairFSIFluid::compute_forces()
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   for (int kind = 0; kind < NROWS; kind++)
-    loops->forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, forces.data(), nullptr, of_pairs);
+    force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, forces.data(), nullptr, of_pairs);
 
   const Walls &walls = fix_fsi->walls;
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(walls, [&](int i) { return point[i].position(x[i]); },
              [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &s) {
                double total[D] = {};
-               loops->forces(kinds[kind], which, mirror, particles, laws, forces.data(), total, of_pairs);
+               force_loops(kind).forces(kinds[kind], which, mirror, particles, laws, forces.data(), total, of_pairs);
                for (int d = 0; d < D; d++) {
                  int w = s.w[0];
                  for (int k = 1; k < s.n; k++)
@@ -692,11 +694,11 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   laws.extrapolate = laws.gravity = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
-  for (const int kind : {WALLS, SOLIDS}) loops->forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
+  for (const int kind : {WALLS, SOLIDS}) force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
   for_images(fix_fsi->walls, [&](int i) { return point[i].position(atom->x[i]); },
              [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) {
                double unused[D] = {};
-               if (kind == SOLIDS) loops->forces(kinds[kind], which, mirror, particles, laws, viscous_forces.data(), unused, nullptr);
+               if (kind == SOLIDS) force_loops(kind).forces(kinds[kind], which, mirror, particles, laws, viscous_forces.data(), unused, nullptr);
              });
   for (auto *measure : force_computes)
     if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);

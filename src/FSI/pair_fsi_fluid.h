@@ -87,7 +87,8 @@ class PairFSIFluid : public PairFSI {
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
-  std::unique_ptr<FSI::FluidLoops> loops;
+  std::shared_ptr<FSI::FluidLoops> loops, solid_loops;    // those of forces with solids
+  const FSI::FluidLoops &force_loops(int kind) const { return kind == SOLIDS ? *solid_loops : *loops; }
   // rows of the neighbor list by what fluids meet: fluids, walls, solids
   enum { FLUIDS, WALLS, SOLIDS, NROWS };
   FSI::RowList rows[NROWS];

@@ -130,7 +130,7 @@ def test_pair_law(dim, couple, more):
             W = s.kernel.W(r)[:, None]
             of_fluid = sum_over(j, W * v[i], s.n) / np.maximum(sum_over(j, W, s.n), 1e-300)
             seen = np.where(solid[:, None] & of_fluid.any(1, keepdims=True), 2 * v - of_fluid, v)
-            u, k = v[i] - seen[j], (V[i] * V[j] * 2 * 20 / (r**2 + 0.01 * s.kernel.h**2))[:, None]
+            u, k = v[i] - seen[j], (V[i] * V[j] * 2 * 20 / r**2)[:, None]
             if "slip" in more:
                 k = np.where(solid[j][:, None], 0.0, k)
             pair += k * ((dim + 2) * (u * d).sum(1)[:, None] * d if "central" in more else r[:, None]**2 * u)

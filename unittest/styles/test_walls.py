@@ -87,7 +87,7 @@ def reference(scene, x, v, rho, walls, artificial, viscosity, central=False):
     Q = (rho[i] + rho[j]) / 2 * V[i] * V[j] * (-ALPHA * C * mu + BETA * mu**2)
     pair = -((p * V**2)[i] + (p * V**2)[j] + Q)[:, None] * g[:, None] * d
     along = (scene.dim + 2) * (uv * d).sum(1)[:, None] * d if central else r[:, None]**2 * uv
-    pair += (V[i] * V[j] * 2 * viscosity * g / (r**2 + 0.01 * k.h**2))[:, None] * along
+    pair += (V[i] * V[j] * 2 * viscosity * g / np.maximum(r, 1e-9 * k.h)**2)[:, None] * along
     force, rate = np.zeros((n, 3)), np.zeros(n)
     np.add.at(force, i, pair)
     np.add.at(rate, i, m[i] * g * (u * d).sum(1))

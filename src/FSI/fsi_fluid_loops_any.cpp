@@ -1,0 +1,25 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// The loops of pair_style fsi/fluid pair by pair, once for any kernel: for processors and compilers without packs, and for the paper's couplings.
+
+#include "fsi_fluid_rows.h"
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+std::shared_ptr<FluidLoops> FSI::make_fluid_loops_any(int kernel, int dim, double h)
+{
+  if (dim == 2) return std::make_shared<FluidLoopsOf<double, AnyKernel<2>>>(AnyKernel<2>(kernel, h));
+  return std::make_shared<FluidLoopsOf<double, AnyKernel<3>>>(AnyKernel<3>(kernel, h));
+}
