@@ -182,7 +182,10 @@ namespace FSI {
         const T rsq = product(x, x), r = root(rsq);
         T g = kernel.gradient(r);
         if (IMAGE) g = weight * g;
-        if (FLAGS & Flag::SHIFT) add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, (FLAGS & Flag::FINER) ? fill * pj.vol : pj.vol, x, j, displacement, shift);
+        if (FLAGS & Flag::SHIFT) {
+          const T vol_j = (FLAGS & Flag::FINER) ? fill * pj.vol : pj.vol;
+          add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j, x, j, displacement, shift);
+        }
         if (FLAGS & Flag::FINER) {
           g = kernel.sharper_gradient(r, sharper);
           if (IMAGE) g = weight * g;
@@ -250,9 +253,11 @@ namespace FSI {
       r.visc *= fill_weight_of(in, i, type_j);
     }
     r.thin = (FLAGS & Flag::FINER) && in.share[type_j].thin;
-    const auto *const g = KIND == WITH_WALL && r.thin ? laws.gravity : laws.extrapolate;
-    const double along = r.thin ? in.fill_weight[i] / in.fill[i] : 1.0;
-    for (int d = 0; d < D; d++) r.extrapolate[d] = g ? along * g[type_i][d] : 0.0;
+    if (KIND == WITH_SOLID || r.thin) {
+      const auto *const g = KIND == WITH_WALL ? laws.gravity : laws.extrapolate;
+      const double along = r.thin ? in.fill_weight[i] / in.fill[i] : 1.0;
+      for (int d = 0; d < D; d++) r.extrapolate[d] = g ? along * g[type_i][d] : 0.0;
+    }
     return r;
   }
 
@@ -457,7 +462,8 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i;
       // of neighbours on a finer lattice
-      const double volume = ((FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0) * (!in.fill ? 1.0 : (FLAGS & Flag::DIVERGENCE) ? fill_of(in, i, in.type[row.j[0]]) : fill_weight_of(in, i, in.type[row.j[0]]));
+      double volume = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0;
+      if (in.fill) volume *= ((FLAGS & Flag::DIVERGENCE) ? fill_of : fill_weight_of)(in, i, in.type[row.j[0]]);
       const double sharper = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].sharper : 0.0;
       T of_i = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
