@@ -176,6 +176,10 @@ class Scene:
         data = np.array(self.lmp.numpy.extract_compute(name, LMP_STYLE_ATOM, kind))[:self.n]
         return data[self._order()]
 
+    def compute_vector(self, name):
+        """that of a global compute"""
+        return np.array(self.lmp.numpy.extract_compute(name, LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR))
+
     @property
     def p(self):
         return self.compute("sigma")[:, 0]

@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_sight.h"
 #include "memory.h"
 #include "neighbor.h"
 #include "update.h"
@@ -219,6 +220,7 @@ void ComputeFSIProbe::sum_up()
     }
 
   double *const *const v = atom->v;
+  Sight *const sight = fix_fsi->sight.get();
   with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, [&](const auto &kernel) {
     for (const auto &place : places)
       for (const auto &p : place.near) {
@@ -230,6 +232,8 @@ void ComputeFSIProbe::sum_up()
         const bool fluid = state.species == FLUID;
         const double rho = atom->rho[i], vol = atom->rmass[i] / rho, pressure = fluid ? fix_fsi->pressure(i) : 0.0;
         const int mask_i = walls.any() ? walls.near(x, fix_fsi->cut) : 0;
+        const bool may_hide = sight && fluid && sight->near(atom->x[i]);
+        if (may_hide) sight->look_from(atom->x[i]);
         int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
         for (int d = 0; d < 3; d++) {
           if (place.n[d] == 1) continue;
@@ -250,6 +254,11 @@ void ComputeFSIProbe::sum_up()
                 head += rho * g[d] * (xk[d] - x[d]);
               }
               if (rsq >= kernel.cutsq) continue;
+              if (may_hide) {
+                double seen[3];
+                for (int d = 0; d < 3; d++) seen[d] = xk[d] - p.shift[d];
+                if (sight->blocked(seen)) continue;
+              }
               const auto add = [&](double w, const double *velocity) {
                 w *= vol;
                 if (place.line) {

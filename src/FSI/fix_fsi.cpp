@@ -24,6 +24,7 @@
 #include "fsi_part.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
+#include "fsi_sight.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -44,7 +45,7 @@ using namespace FSI;
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this),
     number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
-    states_entered(false), nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar_back(lmp, state), summed(nullptr)
+    states_entered(false), nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -59,12 +60,14 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("substeps").integer(given_substeps, 1, 1, 10000);
   keywords.key("surface/every").integer(surface_every, 1, 1);
   keywords.key("spacing").per_type(given_spacing, Range::above(0.0)).kept("that of the particles cannot change");
+  keywords.key("thin").types(thin);
   keywords.key("mach").number(mach, 1.0, Range::above(0.0)).or_word("off", Check::OFF);
   keywords.parse(narg - 3, arg + 3);
   substeps = given_substeps;
 
   dim = domain->dimension;
   resolve(hdx, given_spacing);
+  if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this);
 
   time_integrate = 1;
   force_reneighbor = 1;
@@ -93,9 +96,9 @@ void FixFSI::set_fields()
   number_density.add_messages(forward);
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
-  scalar_back.clear();
-  scalar_back.add(summed, {NONE, FLUID, SOLID, RIGID});
-  comm_forward = forward.size();
+  scalar.clear();
+  scalar.add(carried, {NONE, FLUID, SOLID, RIGID});
+  comm_forward = std::max(1, forward.size());
   comm_reverse = std::max(1, back.size());
 }
 
@@ -179,9 +182,7 @@ void FixFSI::give_defaults(int i)
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
 }
 
-/* ----------------------------------------------------------------------
-   what a pair style knows of an atom type
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixFSI::enter_state(int type, const State &s)
 {
@@ -354,15 +355,19 @@ void FixFSI::update_state(bool advance)
   for (auto *p : parts) p->end_state(advance);
 }
 
-/* ----------------------------------------------------------------------
-   to local atoms what pairs left on their ghosts
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixFSI::add_ghosts(double *n)
 {
-  summed = n;
+  carried = n;
   if (force->newton_pair) reverse_comm(profile, comm, this);
-  summed = nullptr;
+  carried = nullptr;
+}
+void FixFSI::send_to_ghosts(double *n)
+{
+  carried = n;
+  forward_comm(profile, comm, this);
+  carried = nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -372,22 +377,22 @@ void FixFSI::add_ghosts(double *n)
 
 int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
-  return forward.pack(n, list, buf);
+  return (carried ? scalar : forward).pack(n, list, buf);
 }
 
 void FixFSI::unpack_forward_comm(int n, int first, double *buf)
 {
-  forward.unpack(n, first, buf);
+  (carried ? scalar : forward).unpack(n, first, buf);
 }
 
 int FixFSI::pack_reverse_comm(int n, int first, double *buf)
 {
-  return (summed ? scalar_back : back).pack_back(n, first, buf);
+  return (carried ? scalar : back).pack_back(n, first, buf);
 }
 
 void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  (summed ? scalar_back : back).add_up(n, list, buf);
+  (carried ? scalar : back).add_up(n, list, buf);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -70,6 +70,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::NumberDensity number_density;
   FSI::SurfaceRoom surface_room;
   void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
+  void send_to_ghosts(double *n);
 
  private:
   void set_fields();
@@ -84,8 +85,8 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void find_parts();
   void gather_walls();
 
-  FSI::Message forward, back, scalar_back;    // to ghosts, and sums from them; of one array of numbers per atom
-  double *summed;                             // that array; null: the other
+  FSI::Message forward, back, scalar;    // to ghosts, and sums from them; of one array of numbers per atom, both ways
+  double *carried;                       // that array; null: the others
   bool fresh_start() const;
   template <int D> void drift();
   template <int D> void kick();

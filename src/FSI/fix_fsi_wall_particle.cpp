@@ -38,6 +38,8 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
+static constexpr double AUTO = -1.0;
+
 /* ---------------------------------------------------------------------- */
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
@@ -45,7 +47,7 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
-  keywords.key("guard").number(guard, 0.9, Range::between(0.0, 1.0));
+  keywords.key("guard").number(guard, AUTO, Range::between(0.0, 1.0)).or_word("auto", AUTO);
   keywords.parse(narg - 3, arg + 3);
   scalar_flag = vector_flag = 1;
   size_vector = 3;
@@ -105,7 +107,9 @@ void FixFSIWallParticle::init()
     if (s.kept) error->all(FLERR, "Atom type {} is in two fixes fsi/wall/particle", t);
     s.kept = true;
     s.noslip = !slip;
-    s.guard = guard * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t));    // of the distance from the fluid
+    // fluid with tension has no spray that loses its density, and where it flows along a wall the guard is noise
+    const double spacings = guard != AUTO ? guard : s.floor < 0.0 ? 0.0 : 0.9;
+    s.guard = spacings * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t));    // of the distance from the fluid
   }
   if (!slip && !fluid->has_laminar() && comm->me == 0)
     error->warning(FLERR, "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has no laminar/visc");

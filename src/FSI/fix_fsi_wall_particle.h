@@ -59,7 +59,7 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
 
  private:
   FSI::Keywords keywords;
-  double guard;    // distance of a fluid particle below which it is pushed off, in spacings
+  double guard;    // distance of a fluid particle below which it is pushed off, in spacings; < 0: as the fluid has tension or not
   std::string id_store;
   std::vector<class FixFSIMove *> movers;
   class FixStoreAtom *before;    // velocity at the last step, and whether there was one

@@ -107,6 +107,7 @@ void Check::materials()
       error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
   }
   spacings();
+  thin_bodies();
 }
 
 /* ----------------------------------------------------------------------
@@ -137,6 +138,24 @@ void Check::spacings() const
       error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most", what, dx / own, dx, FINEST);
     if (*static_cast<int *>(fluid->extract("couple", dim_of_extract)) != 0)
       error->all(FLERR, "{} requires couple wall in pair_style fsi/fluid: a pressure of the body's own is that of its own volumes", what);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Check::thin_bodies() const
+{
+  Pair *const fluid = force->pair_match("fsi/fluid", 1);
+  int dim_of_extract;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const int species = scene.state[t].species;
+    if (scene.thin[t] == 0.0 || species == NONE) continue;
+    const auto what = fmt::format("Fix fsi thin {}", t);
+    if (species == FLUID) error->all(FLERR, "{}: atom type {} is a fluid, expected a solid or a wall of particles", what, t);
+    if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY)
+      error->all(FLERR, "{} requires fix fsi fluid continuity and solid continuity: number densities would jump where a body comes between", what);
+    if (fluid && *static_cast<int *>(fluid->extract("couple", dim_of_extract)) != 0)
+      error->all(FLERR, "{} requires couple wall in pair_style fsi/fluid: each side has its own pressure", what);
   }
 }
 

@@ -49,6 +49,7 @@ namespace FSI {
     Finding found;                   // the first thing that is not finite, or the worst of this rank
 
     void spacings() const;
+    void thin_bodies() const;
     void enter(const Finding &);
     void examine(int i, double kick);
     void look(bool closely, double kick);

@@ -99,6 +99,7 @@ namespace FSI {
   struct Share {
     double volume = 1.0;     // of a particle of the lattice over that of a fluid particle
     double sharper = 0.0;    // e of Kernel::sharper_gradient()
+    bool thin = false;       // the body counts as if it went on behind, and under the pressure of the side that meets it
   };
 
   // Of all loops: by local and ghost particle.
@@ -109,6 +110,7 @@ namespace FSI {
     int nlocal;
     const Share *share;    // per type
     bool finer;            // does any type differ from fluids in it?
+    const double *fill, *fill_weight;    // per particle: by how much more thin bodies count (fsi_sight.h)
     bool newton;    // else a pair across ranks is visited on both: each counts half of powers and forces on walls
   };
 
@@ -127,6 +129,7 @@ namespace FSI {
     bool solids_slip;
     const double (*wall_velocity)[3];      // per particle, that no-slip walls of particles and solids have in viscous forces
     const double *const *stress;           // per particle, of solids (couple full); null: they have none
+    const std::array<double, 3> *gravity;  // per type
   };
 
   class FluidLoops {
@@ -147,8 +150,8 @@ namespace FSI {
     virtual void number_density(PairKind, const std::vector<Row> &, bool both, const Mirror *mirror, const FluidParticles &,
                                 const double (*x)[3], double *sum) const = 0;
     // adds V_j x_ji.grad_i W_ij to sum, likewise
-    virtual void position_divergence(const std::vector<Row> &, bool both, const Mirror *mirror, const double (*x)[3], const double *vol,
-                                     double *sum) const = 0;
+    virtual void position_divergence(const std::vector<Row> &, bool both, const Mirror *mirror, const FluidParticles &, const double (*x)[3],
+                                     const double *vol, double *sum) const = 0;
   };
 
   // packs: several pairs at a time, of all kinds but WITH_SOLID_PRESSURE and WITH_SOLID_FULL

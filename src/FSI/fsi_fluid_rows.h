@@ -133,6 +133,10 @@ namespace FSI {
     return Lanes<T>::make([&](int k) { return i < nlocal && j[k] < nlocal ? 1.0 : 0.5; });
   }
 
+  // How much more neighbours of this type count at i: in forces of pressure; in sums of W and along the face
+  FSI_INLINE double fill_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.fill[i] : 1.0; }
+  FSI_INLINE double fill_weight_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.fill_weight[i] : 1.0; }
+
   // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j. Solids and walls count, but are not shifted.
   template <class T, class K, bool BOTH, bool IMAGE, int D>
   FSI_INLINE void add_shift(const Shift<D> &law, const K &kernel, const Mirror &mirror, const T &r, const T &rsq, const T &g, const T &vol_i, const T &vol_j,
@@ -166,7 +170,7 @@ namespace FSI {
       const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
       const Particle<T, D> pi(point[i]);
       const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
-      const double sharper = (FLAGS & Flag::FINER) ? in.share[type_j].sharper : 0.0;
+      const double sharper = (FLAGS & Flag::FINER) ? in.share[type_j].sharper : 0.0, fill = (FLAGS & Flag::FINER) ? fill_of(in, i, type_j) : 1.0;
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -178,7 +182,10 @@ namespace FSI {
         const T rsq = product(x, x), r = root(rsq);
         T g = kernel.gradient(r);
         if (IMAGE) g = weight * g;
-        if (FLAGS & Flag::SHIFT) add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, pj.vol, x, j, displacement, shift);
+        if (FLAGS & Flag::SHIFT) {
+          const T vol_j = (FLAGS & Flag::FINER) ? fill * pj.vol : pj.vol;
+          add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j, x, j, displacement, shift);
+        }
         if (FLAGS & Flag::FINER) {
           g = kernel.sharper_gradient(r, sharper);
           if (IMAGE) g = weight * g;
@@ -198,7 +205,7 @@ namespace FSI {
         }
         L::add(rate_j, rate, j);
       });
-      const double volume = (FLAGS & Flag::FINER) ? in.share[type_j].volume : 1.0;
+      const double volume = (FLAGS & Flag::FINER) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if (FLAGS & Flag::SHIFT)
         for (int m = 0; m < N; m++) shift[i][m] += L::sum(displacement[m]);
@@ -207,14 +214,14 @@ namespace FSI {
   }
 
   // Pressure p_i V_i^2 + p_j V_j^2 that fluid particle i and its neighbour share (paper eq. 14); x_j: of the neighbour itself, not of its
-  // image; back: the fluid's volume over the neighbour's
+  // image; back: the fluid's volume over the neighbour's; own: is it the fluid's own, whatever the neighbour has?
   template <class T, int KIND, int D>
   FSI_INLINE T shared_pressure(const Particle<T, D> &pi, const Particle<T, D> &pj, const T *x_j, const double *extrapolate, double floor,
-                               double back)
+                               double back, bool own)
   {
     const T both = pi.pv2 + back * pj.pv2;
     if (KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL) return CouplePaper::pressure(both, KIND == WITH_SOLID_FULL);
-    if (KIND != WITH_SOLID) return both;
+    if (!own) return both;
     // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
     T p = pi.p;
     for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
@@ -226,9 +233,10 @@ namespace FSI {
     double c, bulk, floor;    // speed of sound of viscosity, modulus of the guard, lowest pressure
     double rubs, visc;        // does the wall? sum of both viscosities
     double volume, sharper;    // of neighbours on a finer lattice
-    double extrapolate[3];     // solids: gravity, if pressures beyond them are hydrostatic
+    bool thin;
+    double extrapolate[3];     // solids and thin walls: gravity, if pressures beyond them are hydrostatic
   };
-  template <int D, int KIND, int FLAGS> FSI_INLINE ForceRow force_row(const FluidParticles &in, const ForceLaws &laws, int type_i, int type_j)
+  template <int D, int KIND, int FLAGS> FSI_INLINE ForceRow force_row(const FluidParticles &in, const ForceLaws &laws, int i, int type_i, int type_j)
   {
     const State &fluid = in.state[type_i], &other = in.state[type_j];
     ForceRow r;
@@ -242,9 +250,14 @@ namespace FSI {
     if (FLAGS & Flag::FINER) {
       r.volume = in.share[type_j].volume;
       r.sharper = in.share[type_j].sharper;
+      r.visc *= fill_weight_of(in, i, type_j);
     }
-    if (KIND == WITH_SOLID)
-      for (int d = 0; d < D; d++) r.extrapolate[d] = laws.extrapolate ? laws.extrapolate[type_i][d] : 0.0;
+    r.thin = (FLAGS & Flag::FINER) && in.share[type_j].thin;
+    if (KIND == WITH_SOLID || r.thin) {
+      const auto *const g = KIND == WITH_WALL ? laws.gravity : laws.extrapolate;
+      const double along = r.thin ? in.fill_weight[i] / in.fill[i] : 1.0;
+      for (int d = 0; d < D; d++) r.extrapolate[d] = g ? along * g[type_i][d] : 0.0;
+    }
     return r;
   }
 
@@ -269,9 +282,14 @@ namespace FSI {
   // Adds laminar viscosity to the forces on both; what it takes from their energy, times 2 for images, which each pair meets from both sides.
   template <class T, int KIND, int FLAGS, int D>
   FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, const Mirror &mirror, const Particle<T, D> &pi, const Particle<T, D> &pj,
-                   const T (&velocity_of_j)[D], const int *j, double visc, const T &g, const T &rsq, const T (&x)[D], const T (&v)[D], T (&force)[D], T (&on_j)[D])
+                   const T (&velocity_of_j)[D], const int *j, const ForceRow &of, const T &g, const T &rsq, const T (&x)[D], const T (&v)[D], T (&force)[D], T (&on_j)[D])
   {
     using L = Lanes<T>;
+    const double visc = of.visc;
+    // what fluid would have in the place of j, of a wall or solid
+    const auto beyond_face = [&](int d) __attribute__((always_inline)) {
+      return of.thin ? 2.0 * velocity_of_j[d] - pi.v[d] : L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
+    };
     const T vv = pi.vol * pj.vol;
     T rubbing[D], loss = 0.0;
     for (T &r : rubbing) r = 0.0;
@@ -280,7 +298,7 @@ namespace FSI {
       const auto beyond = [&](int d, const T &u) __attribute__((always_inline)) { return mirror.rubbing_v[d] + mirror.rubbing_sign[d] * u; };
       T w[D], seen[D], back[D], of_j[D];
       for (int d = 0; d < D; d++) {
-        const T vj = KIND == WITH_FLUID ? velocity_of_j[d] : L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
+        const T vj = KIND == WITH_FLUID ? velocity_of_j[d] : beyond_face(d);
         w[d] = pi.v[d] - beyond(d, vj);
         back[d] = vj - beyond(d, pi.v[d]);
         seen[d] = -mirror.sign[d] * x[d];
@@ -297,7 +315,7 @@ namespace FSI {
     } else if (KIND != WITH_FLUID) {
       // fluid beyond the wall or inside the solid, with the velocity extrapolated
       T w[D];
-      for (int d = 0; d < D; d++) w[d] = pi.v[d] - L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
+      for (int d = 0; d < D; d++) w[d] = pi.v[d] - beyond_face(d);
       viscous(g, rsq, visc, vv, x, w, rubbing);
       if (FLAGS & Flag::SUMS) loss = -product(rubbing, v);
     } else
@@ -326,11 +344,12 @@ namespace FSI {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i, type_j = in.type[row.j[0]];
-      const ForceRow of = force_row<D, KIND, FLAGS>(in, laws, in.type[i], type_j);
+      const ForceRow of = force_row<D, KIND, FLAGS>(in, laws, i, in.type[i], type_j);
       Particle<T, D> pi(point[i]);
       // neighbours of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i of the lattices
-      const double back = (FLAGS & Flag::FINER) ? 1.0 / of.volume : 1.0;
-      if (FLAGS & Flag::FINER) pi.pv2 = of.volume * pi.pv2;
+      const double fill = (FLAGS & Flag::FINER) ? fill_of(in, i, type_j) : 1.0, back = (FLAGS & Flag::FINER) ? fill / of.volume : 1.0;
+      if (FLAGS & Flag::FINER) pi.pv2 = fill * of.volume * pi.pv2;
+      const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && of.thin);
       T sum[D];
       for (T &s : sum) s = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -351,7 +370,7 @@ namespace FSI {
         const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
 
         T viscous_push = 0.0;
-        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, of.extrapolate, of.floor, back);
+        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, of.extrapolate, of.floor, back, own);
         // beyond the compression of the fluid and, in density mode summation, of the solid
         T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
         if (FLAGS & Flag::ARTIFICIAL) {
@@ -379,7 +398,7 @@ namespace FSI {
         if (FLAGS & Flag::LAMINAR) {
           // walls and solids have another velocity than i itself in places that are left over
           const T there = KIND == WITH_FLUID || (FLAGS & Flag::IMAGES) ? g : weight * g;
-          const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, of.visc, there, rsq, x, v, force, on_j);
+          const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, of, there, rsq, x, v, force, on_j);
           if (FLAGS & Flag::SUMS) by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * share * loss : share * loss;
         }
         // what wall particles are given: they are not in the sum of energies
@@ -414,6 +433,7 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i;
       const Particle<T, D> pi(point[i]);
+      const double fill = !(FLAGS & Flag::BOTH) && in.fill ? fill_of(in, i, in.type[row.j[0]]) : 1.0;
       T sum[N];
       for (T &s : sum) s = 0.0;
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -424,7 +444,7 @@ namespace FSI {
         const T rsq = product(x, x), r = root(rsq);
         T g = kernel.gradient(r);
         if (IMAGE) g = weight * g;
-        add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, pj.vol, x, j, sum, shift);
+        add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, fill * pj.vol, x, j, sum, shift);
       });
       for (int m = 0; m < N; m++) shift[i][m] += L::sum(sum[m]);
     }
@@ -442,7 +462,8 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i;
       // of neighbours on a finer lattice
-      const double volume = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0;
+      double volume = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0;
+      if (in.fill) volume *= ((FLAGS & Flag::DIVERGENCE) ? fill_of : fill_weight_of)(in, i, in.type[row.j[0]]);
       const double sharper = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].sharper : 0.0;
       T of_i = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -557,10 +578,10 @@ namespace FSI {
       distances(finer(kind, in), rows, both, image, in, x, nullptr, sum);
     }
 
-    void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image, const double (*x)[3], const double *vol,
-                             double *sum) const override
+    void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
+                             const double *vol, double *sum) const override
     {
-      distances(Flag::DIVERGENCE, rows, both, image, FluidParticles(), x, vol, sum);
+      distances(Flag::DIVERGENCE, rows, both, image, in, x, vol, sum);
     }
 
    private:

@@ -164,6 +164,13 @@ Keywords &Keywords::per_type(std::vector<double> &where, const Range &range)
   return *this;
 }
 
+Keywords &Keywords::types(std::vector<double> &where)
+{
+  per_type(where);
+  rows.back().values.back().types_alone = true;
+  return *this;
+}
+
 Keywords &Keywords::set(int &where, int value)
 {
   Value &v = add(Value::SET, value);
@@ -230,7 +237,7 @@ std::string Keywords::Value::text() const
     case PER_TYPE: {
       std::string list;
       for (size_t t = 1; t < each->size(); t++)
-        if ((*each)[t] != start) list += fmt::format("{}{} {}", list.empty() ? "" : " ", t, (*each)[t]);
+        if ((*each)[t] != start) list += fmt::format("{}{}", list.empty() ? "" : " ", t) + (types_alone ? "" : fmt::format(" {}", (*each)[t]));
       return list.empty() ? "none" : list;
     }
     default: return (kind == SET ? *n == static_cast<int>(start) : *n) ? "yes" : "no";
@@ -250,7 +257,7 @@ void Keywords::take(const Row &row, const Value &v, const std::string &text) con
       const size_t gap = text.find(' ');
       int first, last;
       utils::bounds_typelabel(FLERR, text.substr(0, gap), 1, atom->ntypes, first, last, lmp, Atom::ATOM);
-      const double x = FSI::numeric(lmp, who + " " + name, text.substr(gap + 1), v.range);
+      const double x = v.types_alone ? 1.0 : FSI::numeric(lmp, who + " " + name, text.substr(gap + 1), v.range);
       std::fill(v.each->begin() + first, v.each->begin() + last + 1, x);
       break;
     }

@@ -64,6 +64,7 @@ namespace FSI {
     Keywords &logical(int &where, bool start);
     Keywords &word(std::string &where, const std::string &start);    // any
     Keywords &per_type(std::vector<double> &where, const Range & = {});    // atom types and a number, as often as wanted; 0: not given
+    Keywords &types(std::vector<double> &where);                     // atom types alone, 1 if named
     Keywords &set(int &where, int value);                            // no value follows: the keyword sets it; 0 without
     // of the last value: a word that stands for a number, or for no word
     Keywords &or_word(const std::string &word, double number = 0.0);
@@ -96,6 +97,7 @@ namespace FSI {
       std::string *word = nullptr;
       std::vector<double> *each = nullptr;
       double start = 0.0;    // number, integer, index of a choice, what a keyword sets
+      bool types_alone = false;
       std::string start_word;
       Range range;
       int least = 0, most = 0;
@@ -104,7 +106,7 @@ namespace FSI {
       std::string other;    // a word that stands for other_number
       double other_number = 0.0;
 
-      int count() const { return kind == SET ? 0 : kind == PER_TYPE ? 2 : 1; }    // words that follow
+      int count() const { return kind == SET ? 0 : kind == PER_TYPE && !types_alone ? 2 : 1; }    // words that follow
       void begin() const;
       bool at_start() const;
       std::string text() const;

@@ -22,6 +22,7 @@
 #include "fsi_resolution.h"
 #include "fsi_walls.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ class LAMMPS;
 namespace FSI {
   class Part;
   class Profile;
+  class Sight;
 
   class Scene {
    public:
@@ -53,6 +55,8 @@ namespace FSI {
     double largest_cut;                    // support of the coarsest
     double dx_of(int type) const { return resolution[type].dx; }
     double h_of(int type) const { return resolution[type].h; }
+    std::vector<double> thin;    // per atom type, 1: fluids do not see each other through it
+    std::shared_ptr<Sight> sight;    // past those; null: there are none
 
     // per atom type; pair styles enter theirs in init_style()
     std::vector<State> state;

@@ -39,7 +39,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), rate(nullptr), beyond(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), fill(nullptr), fill_weight(nullptr), rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -139,9 +139,10 @@ void PairFSIFluid::init_style()
   finer = false;
   for (int t = 1; t <= atom->ntypes; t++) {
     const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx, per_h = fix_fsi->dx / fix_fsi->h;
-    if (ratio == 1.0) continue;
+    const bool thin = fix_fsi->thin[t] != 0.0;
+    if (ratio == 1.0 && !thin) continue;
     finer = true;
-    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h};
+    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h, thin};
   }
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
@@ -191,6 +192,8 @@ void PairFSIFluid::set_fields(Scene &scene)
   fields.set("density rate", Fields::STEP, scene.density_fluid == FixFSI::CONTINUITY, rate);
   fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
   fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
+  fields.set("room behind thin bodies", Fields::STEP, scene.sight != nullptr, fill);
+  fields.set("weight behind thin bodies", Fields::STEP, scene.sight != nullptr, fill_weight);
   scene.noslip_walls = scene.noslip_walls || sticks_to_solids();
   scene.surface_ratio = surface_ratio;
   scene.surface_max = surface_max;
@@ -200,6 +203,8 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 {
   if (sticks_to_solids()) to_ghosts.add(fix_fsi->wall_velocity, 0, fix_fsi->dim, {SOLID});
   if (sticks_to_solids()) back.add(beyond, 0, fix_fsi->dim + 1, {SOLID});
+  if (fix_fsi->sight) to_ghosts.add(fill, {FLUID});
+  if (fix_fsi->sight) to_ghosts.add(fill_weight, {FLUID});
   if (fix_fsi->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
   if (shifting > 0.0) back.add(fix_fsi->shift, 0, 2 * fix_fsi->dim + 1, {FLUID, RIGID});
 }
@@ -210,6 +215,10 @@ void PairFSIFluid::add_costs(Costs &costs) const
   costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
+  if (fix_fsi->sight) {
+    costs.bytes += 16;
+    costs.fluid_ghost += 2;
+  }
   if (sticks_to_solids()) costs.solid_ghost += fix_fsi->dim + newton * (fix_fsi->dim + 1);
 }
 
@@ -223,7 +232,16 @@ void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
 void PairFSIFluid::begin_state(bool)
 {
   images_step = -1;
-  if (neighbor->ago == 0) find_rows();
+  if (neighbor->ago) return;
+  fields.grow();
+  if (fix_fsi->sight) fix_fsi->sight->find_bodies();
+  find_rows();
+  if (!fill) return;
+  std::fill_n(fill, atom->nlocal + atom->nghost, 1.0);
+  std::fill_n(fill_weight, atom->nlocal + atom->nghost, 1.0);
+  follow_thin_bodies();
+  fix_fsi->send_to_ghosts(fill);
+  fix_fsi->send_to_ghosts(fill_weight);
 }
 
 bool PairFSIFluid::add_rates(bool advance)
@@ -248,9 +266,20 @@ void PairFSIFluid::advance(bool advance)
 {
   const Phase phase(fix_fsi->profile, Profile::DENSITY);
   if (beyond) extrapolate_velocities();
+  follow_thin_bodies();
   if (!rate || !advance) return;
   advance_density();
   if (shifting > 0.0) displacements(update->dt);
+}
+
+// rates have what was found in the last step: the distance changes little from one to the next
+void PairFSIFluid::follow_thin_bodies()
+{
+  for (const auto &there : beside) {
+    const auto more = fix_fsi->sight->fill(there);
+    fill[there.i] = more.force;
+    fill_weight[there.i] = more.weight;
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -287,6 +316,7 @@ void PairFSIFluid::find_rows()
 {
   const int *const type = atom->type, nlocal = atom->nlocal, nall = nlocal + atom->nghost;
   const State *const state = fix_fsi->state.data();
+  double **const x = atom->x;
   std::vector<int> fluid_types, other_types;
   for (int t = 1; t <= atom->ntypes; t++)
     if (state[t].species == FLUID) fluid_types.push_back(t);
@@ -316,6 +346,8 @@ void PairFSIFluid::find_rows()
   }
 
   std::vector<int> unmasked;
+  Sight *const sight = fix_fsi->sight.get();
+  beside.clear();
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], n = list->numneigh[i], *const neighbors = list->firstneigh[i];
@@ -326,9 +358,16 @@ void PairFSIFluid::find_rows()
     }
     unmasked.resize(n);
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
+    if (sight && sight->near(x[i])) {
+      sight->look_from(x[i]);
+      const auto hidden = [&](int j) { return state[type[j]].species == FLUID && sight->blocked(x[j]); };
+      unmasked.erase(std::remove_if(unmasked.begin(), unmasked.end(), hidden), unmasked.end());
+      Sight::Beside there;
+      if (sight->beside(i, there)) beside.push_back(there);
+    }
     // that of its own type stays if it is empty, for its own images
     for (const int t : fluid_types)
-      rows[FLUIDS].add(i, unmasked.data(), n, false, t == type[i], [=](int j) { return type[j] == t; });
+      rows[FLUIDS].add(i, unmasked.data(), unmasked.size(), false, t == type[i], [=](int j) { return type[j] == t; });
   }
   if (!own) rows[FLUIDS].end();
   if (other_types.empty()) return;
@@ -404,7 +443,7 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 FluidParticles PairFSIFluid::particles_at(const double *points) const
 {
-  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, force->newton_pair != 0};
+  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill, fill_weight, force->newton_pair != 0};
 }
 
 template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest rest)
@@ -504,7 +543,7 @@ void PairFSIFluid::add_position_divergence(double *div)
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
   distance_sums(false, [&](PairKind, const std::vector<Row> &which, bool both, const Mirror *mirror) {
-    loops->position_divergence(which, both, mirror, FixFSI::rows(atom->x), volume.data(), div);
+    loops->position_divergence(which, both, mirror, particles_at(nullptr), FixFSI::rows(atom->x), volume.data(), div);
   });
 }
 
@@ -605,7 +644,8 @@ template <int D> void PairFSIFluid::compute_forces()
 
   const ForceLaws laws = {alpha, beta, laminar, extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
                     fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
-                    FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr};
+                    FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr,
+                    fix_fsi->body_forces.of_type.data()};
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   for (int kind = 0; kind < NROWS; kind++)
@@ -651,7 +691,7 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   for (int i = 0; i < nall; i++) point[i].p = point[i].pv2 = 0.0;
   const std::vector<Contact> no_guards(guards.size(), Contact(D, 0.0));
   laws.guard = no_guards.data();
-  laws.extrapolate = nullptr;
+  laws.extrapolate = laws.gravity = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
   for (const int kind : {WALLS, SOLIDS}) force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
@@ -680,6 +720,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
   static const char *const modes[] = {"wall", "pressure", "full"};
   auto list = keywords.effects();
   list.push_back({fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
+  if (fix_fsi && fix_fsi->sight) list.push_back({"line of sight: thin bodies hide fluids from each other", "fix fsi thin", true});
   list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});
   return list;
 }
@@ -689,7 +730,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 double PairFSIFluid::memory_usage()
 {
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity();
-  double bytes = fields.memory_usage() + (double) numbers * sizeof(double);
+  double bytes = fields.memory_usage() + (double) numbers * sizeof(double) + (double) beside.capacity() * sizeof(beside[0]);
   for (const auto &list_of : rows) bytes += list_of.memory_usage();
   for (const auto &lists : images)
     for (const auto &list_of : lists) bytes += list_of.memory_usage();

@@ -23,6 +23,7 @@ PairStyle(fsi/fluid,PairFSIFluid);
 #include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_fluid_loops.h"
+#include "fsi_sight.h"
 #include "fsi_walls.h"
 #include "pair_fsi.h"
 
@@ -102,7 +103,10 @@ class PairFSIFluid : public PairFSI {
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
   std::vector<FSI::Share> shares;    // per type: how its particles count at fluid particles
-  bool finer;                        // is any type finer than the fluid?
+  bool finer;                        // is any type finer than the fluid, or thin?
+  double *fill, *fill_weight;        // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
+  std::vector<FSI::Sight::Beside> beside;
+  void follow_thin_bodies();
   FSI::FluidParticles particles_at(const double *points) const;
   template <int D, class Rest> FSI::FluidParticles gather(double t, Rest);    // positions a time t later; what else a loop needs
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong

@@ -21,6 +21,7 @@ from fsi import gallery, launch, paths, scene
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import accuracy_cost  # noqa: E402
 import effects  # noqa: E402
+import open_ends  # noqa: E402
 import peers  # noqa: E402
 import robustness  # noqa: E402
 import scaling  # noqa: E402
@@ -31,7 +32,8 @@ PAGES = [paths.ROOT / "README.md", *(paths.ROOT / "doc").rglob("*.md"), *(paths.
 PROGRAMS = r"tools/\w+|build/lmp|mpirun |fsi |python3? -m |pip install |cmake -|export |cp |git |apt(?:-get)? "
 PLACEHOLDERS = {"NAME": "elastic_gate", "SCENE": "elastic_gate", "CASE": "10MPa_3_across", "FILE": "unittest/styles/test_dt.py", "R": "2.5", "FOLDER": "results/beam",
                 "COMMAND": "log"}
-COST = {"solids": solid_variants, "effects": effects, "peers": peers, "scaling": scaling, "robustness": robustness}  # as tools/cost chooses
+COST = {"solids": solid_variants, "effects": effects, "peers": peers, "scaling": scaling, "robustness": robustness,
+        "open_ends": open_ends}  # as tools/cost chooses
 
 
 def fenced(path, text):

@@ -258,6 +258,10 @@ CASES = [
     ("spacing coarser than the fluid", *tl_spacing("0.02"), r"spacing 0\.02 of type 2 is coarser than the fluid's dx 0\.01"),
     ("spacing too fine", *tl_spacing("0.002"), r"spacing 0\.002 of type 2 is 5 times finer than the fluid's dx 0\.01: expected 4 at most"),
     ("spacing zero of a type", SPH, SPH + " spacing 2 0", r"spacing 0 must be > 0"),
+    ("thin of a fluid", SPH, SPH + " thin 1", r"thin 1: atom type 1 is a fluid, expected a solid or a wall"),
+    ("thin without a type", SPH, SPH + " thin", r"fix fsi thin command: missing"),
+    ("thin of a type that is not", SPH, SPH + " thin 3", r"3.*out of|out of bounds.*3"),
+    ("thin with summation", SPH, SPH + " thin 2 solid ratio", r"thin 2 requires fix fsi fluid continuity and solid continuity"),
     ("substeps no integer", SPH, SPH + " substeps 2.5", r"2\.5"),
     ("substeps without value", SPH, SPH + " substeps", r"fix fsi substeps command: missing"),
     ("tl atom in no body", *tl("", more="group last id 1 \nset type 2 mol 2\nset group all mol 3\n"

@@ -151,6 +151,26 @@ def test_law(tmp_path, dim, slip):
     close(last.vector(("fx", "fy", "fz")), force, 1e-9)
 
 
+def test_no_guard_where_water_has_tension(tmp_path):
+    """Water that has no free surface passes walls nearer than 0.9 dx, and a push would be noise: by default it feels the same forces as with guard 0."""
+    x, kind = tank(6, 6)
+    x[kind == 1, 1] -= 0.3 * DX  # the first row at 0.7 dx from the wall's
+
+    def forces(wall, tension):
+        result = go(tmp_path, deck(f"tension {tension} background 100", wall=wall, gravity=0, more=f"""{shot()}thermo_style custom step f_walls
+run 0
+print "GUARDED $(f_walls)"
+"""), data(x, kind, None, BOX2))
+        return value(result, "GUARDED"), dump.read(result.folder / "atoms.dump")[0].vector(("fx", "fy", "fz"))
+
+    (none, without), (also_none, default), (some, given) = (forces(wall, "yes") for wall in ("guard 0", "", "guard 0.9"))
+    assert (none, also_none, some) == (0, 0, 6) and (default == without).all()
+    # K d (1/r - 1/d) on each of the row, d = 0.9 dx
+    push = (given - without)[(kind == 1) & (x[:, 1] < 0.5 * DX)]
+    close(push[:, 1], np.full(6, 1000 * C**2 * DX * (0.9 - 0.7)), 1e-6)
+    assert forces("", "no")[0] == 6  # a free surface may have spray
+
+
 def test_hydrostatic(tmp_path):
     """Weight on the floor and pressure on each wall particle that sees water. What is left after 0.6 s are slow waves of sound of a
     per cent; the row next to the water must read rho g h of its own depth, below the floor too."""

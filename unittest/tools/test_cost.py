@@ -5,6 +5,7 @@ Times are not asserted: only what is certain, that finer costs more work and tha
 
 import csv
 import json
+import re
 import sys
 
 import numpy as np
@@ -15,6 +16,7 @@ from fsi import log, paths, precision, scene, series, sweep
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import accuracy_cost  # noqa: E402
 import cost_report  # noqa: E402
+import open_ends  # noqa: E402
 
 H = np.array([0.1, 0.05, 0.025, 0.0125])
 
@@ -288,3 +290,15 @@ def test_definitions_of_all_scenes_fit_their_decks():
         deck = sweep.Deck(scene.deck(name), definition.get("edits"))
         for point in accuracy_cost.points(definition):
             deck.instance(point["settings"])  # refuses what the deck does not have
+
+
+def test_open_ends_counts_what_is_lost(monkeypatch, capsys):
+    """A short channel on two ranks, and the same with a particle taken out of the count."""
+    assert open_ends.main(["ranks=2", "times=2"]) == 0
+    told = capsys.readouterr().out
+    came, left = map(int, re.search(r"(\d+) came, (\d+) left, 0 lost", told).groups())
+    assert abs(came / 600 - 1) < 0.1 and abs(left / 600 - 1) < 0.1  # 300 in the channel; the inflow rises in half a second of six
+    found = open_ends.run(1, 1)
+    found["inside"][-1] -= 1
+    monkeypatch.setattr(open_ends, "run", lambda *_: found)
+    assert open_ends.main([]) == 1 and "1 lost" in capsys.readouterr().out

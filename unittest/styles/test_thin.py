@@ -1,0 +1,185 @@
+"""Bodies and walls thinner than the kernel's support (fix fsi thin): fluids on their two sides do not see each other."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
+from scenes import DX, RUBBER, WATER, Scene, close, cloud, difference, differing, lattice, pairs, run, sum_over, watch
+from test_restart import resume
+from test_spacing import GRIDS, beside, fine_gate, finer
+
+WALL = "wall rho 1000"
+
+
+def two_levels(kind, layers, ratio, dim=2, thin=True):
+    """Water 20 and 10 particles deep on the two sides of a wall or plate of some layers, `ratio` times finer. Means of the last quarter of the
+    time over hydrostatics: load, moment about the foot; the largest error of pressures at the faces, in rho g H; leaked particles."""
+    dx, c, width, deep, G = 0.01, 20.0, 7, (20, 10), 9810.0
+    ds, thick, z = dx / ratio, layers * dx / ratio, [7] * (dim - 2)
+    left = lattice([width, deep[0], *z], dx)
+    right = lattice([width, deep[1], *z], dx, origin=np.array([width * dx + thick, 0, 0][:dim]))
+    below = 3 * ratio * (kind == "wall")    # mirrors have no images of wall particles
+    body = lattice([layers, 23 * ratio + below, *(ratio * k for k in z)], ds, origin=np.array([width * dx, -below * ds, 0][:dim]))
+    x = np.concatenate([left, right, body])
+    solid = np.arange(len(x)) >= len(left) + len(right)
+    # stiff enough to bend by less than a hundredth of its height, whatever its thickness
+    young = 1e9 * (0.015 / thick)**3
+    styles = dict(materials=(WATER, WALL)) if kind == "wall" else dict(
+        materials=(WATER, f"solid rho 1000 young {young} poisson 0.3"), solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0")
+    dt = 0.25 * 1.5 * dx / c
+    substeps = 1 if kind == "wall" else int(np.ceil(c * ratio * np.sqrt(1.35 * young / 1000) / c**2))
+    levels, end = [n * dx for n in deep], 2 * width * dx + thick
+    heights = [0.02, 0.05, 0.08]
+    points = " ".join(f"point {at} {y} {0.035 * (dim - 2)}" for y in heights for at in (width * dx, width * dx + thick))
+    with Scene(x, dim=dim, dx=dx, type=1 + solid, mol=1 + solid, held=solid & ((x[:, 1] < 1.01 * ds) | (kind == "wall")), dt=dt,
+               fluid=f"sound {c} artificial/visc 0.2 0 density/diffusion 0.1 {'extrapolate yes' * (kind == 'plate')}", density=f"spacing 2 {ds!r} substeps {substeps} {'thin 2' * thin}", **styles,
+               **(dict(boundary="f f p", box=((-0.1, -0.1, 0), (end + 0.1, 0.4, 0.07))) if dim == 3 else {}),
+               commands=["fix g all gravity 9.81 vector 0 -1 0", f"fix w all fsi/wall/mirror xlo 0 xhi {end} ylo 0",
+                         "fix wp held fsi/wall/particle" if kind == "wall" else "", f"group left id 1:{len(left)}",
+                         f"group right id {len(left) + 1}:{len(left) + len(right)}", "group body type 2", f"fsi_set left hydrostatic {levels[0]}",
+                         f"fsi_set right hydrostatic {levels[1]}", "compute force body fsi/force", f"compute p all fsi/probe p extrapolate yes {points}"]) as s:
+        steps = round(0.6 / dt)
+        s.run(3 * steps // 4)
+        load, p = [], []
+        for _ in range(20):
+            s.run(steps // 80)
+            f, centre = s.compute_vector("force"), s.get("x")[solid].mean(0)
+            load.append([f[0], -f[5] - (centre[0] - (width * dx + thick / 2)) * f[1] + centre[1] * f[0]])
+            p.append(s.compute_vector("p"))
+        y = s.get("x")[:, 0]
+        leaked = (y[:len(left)] > width * dx + thick).sum() + (y[len(left):][~solid[len(left):]] < width * dx).sum()
+        depth = 0.07 if dim == 3 else 1.0
+        right_load = G * depth * np.array([(levels[0]**k - levels[1]**k) / d for k, d in ((2, 2), (3, 6))])
+        right_p = np.array([G * (level - y) for y in heights for level in levels])
+        return np.mean(load, 0) / right_load, np.abs(np.mean(p, 0) - right_p).max() / (G * levels[0]), leaked
+
+
+# of the scene; one particle across has too few bonds for an elastic body
+CASES = [("wall", layers, ratio, 2) for layers in (1, 2, 3) for ratio in (1, 2, 3)] + [("wall", 1, 1, 3), ("wall", 1, 2, 3)] + \
+    [("plate", layers, ratio, 2) for layers, ratio in ((2, 1), (3, 1), (2, 2))]
+
+
+@pytest.mark.parametrize("kind, layers, ratio, dim", CASES)
+def test_two_levels(kind, layers, ratio, dim):
+    """Load and moment within 2 % of hydrostatics, pressures at both faces within 2 % of that of the depth, nothing leaks"""
+    load, p, leaked = two_levels(kind, layers, ratio, dim)
+    print(f"{kind} {layers} thick, {ratio} times finer, {dim}D: load {load[0]:.4f}, moment {load[1]:.4f}, pressures {p:.4f}, leaked {leaked}")
+    assert np.abs(load - 1).max() < 0.02 and p < 0.02 and leaked == 0
+
+
+@pytest.mark.parametrize("layers, ratio", [(1, 1), (1, 3)])
+def test_without(layers, ratio):
+    """What the keyword is for: pressures mix through the wall, which carries 5 % less"""
+    load, p, _ = two_levels("wall", layers, ratio, thin=False)
+    print(f"wall {layers} thick, {ratio} times finer, not said to be thin: load {load[0]:.4f}, pressures {p:.4f}")
+    assert load[0] < 0.96 and p > 0.1
+
+
+# ---- which pairs ----
+
+def plate_between(dim, seed=3):
+    """A shaken cloud of fluid of spacing 0.1 and a plate of half that, one particle thick, in x = 0 below y = 0.03: x, which are of the plate"""
+    dx, ds, n = 0.1, 0.05, [8, 8] + [7] * (dim - 2)
+    fluid = cloud(n, dx, seed=seed, jitter=0.15, origin=np.array([-0.4, -0.4, 0][:dim]))[0]
+    fluid = fluid[(np.abs(fluid[:, 0]) > 0.02) | (fluid[:, 1] > 0.1)]
+    plate = lattice([1, 10] + [14] * (dim - 2), ds, origin=np.array([-ds / 2, 0.03 - 9.5 * ds, 0][:dim]))
+    x = np.concatenate([fluid, plate])
+    return x, np.arange(len(x)) >= len(fluid)
+
+
+def crosses(x, i, j, dim, top=0.03):
+    """Does the line between i and j go through the rectangle between the outermost of the plate's particles?"""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = x[i, 0] / (x[i, 0] - x[j, 0])
+        at = x[i] + t[:, None] * (x[j] - x[i])
+    inside = (t > 0) & (t < 1) & (at[:, 1] < top) & (at[:, 1] > top - 9 * 0.05)
+    return inside & (at[:, 2] > 0.025) & (at[:, 2] < 0.675) if dim == 3 else inside
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_which_pairs(dim):
+    """Pressure put up on the plate's right is felt on its left by those pairs alone whose line does not cross it: round its edges, not through it."""
+    x, plate = plate_between(dim)
+    with Scene(x, dim=dim, dx=0.1, type=1 + plate, mol=1 + plate, held=plate, materials=(WATER, WALL), density="spacing 2 0.05 thin 2",
+               fluid="tension yes", commands=["fix w held fsi/wall/particle"]) as s:
+        s.run()
+        f, V0, p0 = s.get("f"), s.get("rmass") / s.get("rho"), s.p
+        left, right = ~plate & (x[:, 0] < 0), ~plate & (x[:, 0] > 0)
+        s.put("rho", np.where(right, 1010.0, 1000.0))
+        s.run()
+        change, V, p = s.get("f") - f, s.get("rmass") / s.get("rho"), s.p
+        i, j, d, r = pairs(x, s.kernel.cut)
+        across = left[i] & right[j]
+        free = across & ~crosses(x, i, j, dim)
+        i, j, d, r = (a[free] for a in (i, j, d, r))
+        expected = sum_over(i, -((p * V**2 - p0 * V0**2)[j] * s.kernel.g(r))[:, None] * d, s.n)
+        assert free.sum() > 10 and (across & ~free).sum() > 40
+        close(change[left], expected[left], 1e-9)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_thick_bodies_do_not_change(dim):
+    """One deeper than the support hides nobody from anybody and counts as it is: a shaken cloud beside it, forces and rates"""
+    x, v, solid = beside(dim, 2, n=6)
+    found = []
+    for thin in ("", " thin 2"):
+        with Scene(x, v, dim=dim, dx=0.1, type=1 + solid, mol=1 + solid, materials=(WATER + " viscosity 20", RUBBER), dt=1e-4, solid_style="fsi/solid/tl",
+                   density="spacing 2 0.05" + thin, fluid="artificial/visc 0.3 0.5 solid/slip yes density/diffusion 0.1 shift 0.2") as s:
+            s.run(5)
+            found.append((s.get("f"), s.get("rho"), s.get("x")))
+    for plain, thin in zip(*found):
+        close(thin, plain, 1e-11)
+
+
+# ---- conservation, ranks, restart ----
+
+def with_plate(dim, **options):
+    """fine_gate with a plate two fine particles across, said to be thin, and with water behind it up to half its height"""
+    scene = fine_gate(dim, **options)
+    face = scene.x[scene.type == 2, 0].min() - DX / 4
+    kept = (scene.type == 1) | (scene.x[:, 0] < face + DX)
+    behind, v = cloud([4, 7, 7][:dim], DX, seed=4, jitter=0.1, origin=np.array([face + DX, 0, 0])[:dim], vmax=0.1)
+    x, v = np.concatenate([scene.x[kept], behind]), np.concatenate([scene.v[kept], v])
+    return replace(scene, x=x, v=v, type=np.append(scene.type[kept], np.ones(len(behind), int)), rho=np.append(scene.rho[kept], np.full(len(behind), 1000.0)),
+                   ids=np.arange(1, len(x) + 1), sph=scene.sph + " thin 2")
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("walls", [False, True])
+def test_momentum(dim, walls):
+    """Kept to round-off, what wall particles get included"""
+    x, plate = plate_between(dim)
+    v = np.where(plate[:, None], 0, np.random.default_rng(5).uniform(-0.3, 0.3, x.shape) * ([1, 1, dim - 2]))
+    body = dict(materials=(WATER + " viscosity 1", WALL)) if walls else dict(materials=(WATER + " viscosity 1", RUBBER), solid_style="fsi/solid")
+    with Scene(x, v, dim=dim, dx=0.1, type=1 + plate, mol=1 + plate, dt=2e-4, density=("spacing 2 0.05" if walls else "") + " thin 2", **body,
+               held=plate if walls else None, fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1 shift 0.1",
+               commands=["fix w held fsi/wall/particle slip no"] if walls else []) as s:
+        s.run()
+        before, given, m = s.momentum(), np.zeros(3), s.get("rmass")[:, None]
+        for _ in range(20):
+            s.run(1)
+            given += 2e-4 * s.get("f")[plate].sum(0) * walls
+        assert np.abs(s.momentum() + given - before).max() < 1e-13 * (m * np.abs(s.get("v"))).sum()
+        assert np.abs(s.get("v") - v)[~plate].max() > 0.01
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_ranks_and_newton(tmp_path, dim):
+    """As in test_spacing.py: who is hidden is the same on each rank"""
+    scene = with_plate(dim)
+    end = watch(every=30) + "run 30\n"
+    one = run(tmp_path / "one", scene.text() + end, scene_data=scene.data()).frames()
+    for ranks, grid, newton in GRIDS:
+        many = run(tmp_path / f"{ranks}{newton}", replace(scene, newton=newton).text(grid) + end, ranks, scene_data=scene.data()).frames()
+        assert difference(one[0], many[0], "f") < 2e-10
+        for quantity in ("x", "v", "rho", "stress"):
+            assert difference(one[-1], many[-1], quantity) < 1e-9, (ranks, grid, newton, quantity)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
+    scene = with_plate(2)
+    whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks, scene_data=scene.data()).frames()[-1]
+    rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n", ranks).frames("rest.dump")[-1]
+    assert whole.step == rest.step == 80 and differing(whole, rest) == []
