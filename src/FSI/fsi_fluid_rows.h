@@ -532,8 +532,8 @@ namespace FSI {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
-      // with sums, neighbours on a finer lattice, or pair by pair there is one loop for all effects: those that are off have
-      // coefficients of zero; so it is with central laminar viscosity, which tells the two forms apart at run time
+      // with sums, neighbours on a finer lattice, both viscosities, or pair by pair there is one loop for all effects: those that are off
+      // have coefficients of zero
       constexpr int EFFECTS = ARTIFICIAL | LAMINAR | CENTRAL;
       PairSums unused;
       if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL)) sums = &unused;
@@ -542,11 +542,14 @@ namespace FSI {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
         });
       };
-      const int laminar = laws.laminar == 0 ? 0 : laws.laminar == 1 ? LAMINAR : EFFECTS;
-      const int named = (laws.alpha > 0.0 || laws.beta > 0.0 ? ARTIFICIAL : 0) | laminar;
+      const int laminar = laws.laminar == 0 ? 0 : laws.laminar == 1 ? LAMINAR : LAMINAR | CENTRAL;
+      const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
+      const int named = artificial && laminar ? EFFECTS : artificial ? ARTIFICIAL : laminar;
       const int special = (sums ? SUMS : 0) | finer(kind, in);
       with_flags<EFFECTS | SUMS | IMAGES | FINER>((special || ONE_BY_ONE ? EFFECTS : named) | special | (image ? IMAGES : 0), [&](auto flags) {
-        if constexpr (!(ONE_BY_ONE || (flags() & (SUMS | FINER | CENTRAL))) || (flags() & EFFECTS) == EFFECTS) {
+        constexpr int effects = flags() & EFFECTS;
+        constexpr bool alone = effects == 0 || effects == ARTIFICIAL || effects == LAMINAR || effects == (LAMINAR | CENTRAL);
+        if constexpr (effects == EFFECTS || (alone && !ONE_BY_ONE && !(flags() & (SUMS | FINER)))) {
           if constexpr (!(flags() & FINER))
             if (kind == WITH_FLUID) loop(std::integral_constant<int, WITH_FLUID>(), flags);
           if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
