@@ -43,7 +43,8 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fsolid(nullptr), nmax(0)
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fsolid(nullptr), nmax(0), nmoving(0), changes_seen(-1), only_moving(false),
+    one_material(true)
 {
   no_virial_fdotr_compute = 1;
   artificial_row("solid");
