@@ -573,8 +573,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
   const auto &aux = fill_aux<D, TERMS>();
 
   double by_gradient = 0.0, by_stress = 0.0, by_viscosity = 0.0;    // powers
-  // without newton a pair across ranks is computed on both
-  const auto share = [&](int j) { return (newton || j < nlocal) ? 1.0 : 0.5; };
+  const auto share = [&](int j) { return (newton || j < nlocal) ? 1.0 : 0.5; };    // without newton a pair across ranks is computed on both
 
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
@@ -642,11 +641,9 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
     }
     for (int d = 0; d < D; d++) f[i][d] += fi[d];
   }
-  if (FLAGS & LEDGER) {
-    fix_fsi->tally(FixFSI::STRESS, by_stress);
-    fix_fsi->tally(FixFSI::GRADIENT, by_gradient);
-    fix_fsi->tally(FixFSI::ARTIFICIAL, by_viscosity);
-  }
+  fix_fsi->tally(FixFSI::STRESS, by_stress);
+  fix_fsi->tally(FixFSI::GRADIENT, by_gradient);
+  fix_fsi->tally(FixFSI::ARTIFICIAL, by_viscosity);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -1,4 +1,4 @@
-"""The structure of the sources: files include each other without a circle, fix fsi no style, laws nothing of LAMMPS."""
+"""The structure of the sources: files include each other without a circle, fix fsi no style, laws nothing of LAMMPS; functions fit on a page."""
 
 import re
 
@@ -51,6 +51,23 @@ def test_no_circle():
 def test_fix_fsi_knows_no_style():
     assert [name for name in includes("fix_fsi") if re.match(r"(fix|pair|compute)_", name)] == []
     assert len((SOURCES / "fix_fsi.cpp").read_text().splitlines()) < 450
+
+
+def long_functions(text, most):
+    """First lines of bodies of more lines than that: what stands between braces in the first column."""
+    begin, found = None, []
+    for number, line in enumerate(text.splitlines(), 1):
+        if line == "{":
+            begin = number
+        elif line == "}" and begin:
+            found += [begin] if number - begin - 1 > most else []
+            begin = None
+    return found
+
+
+def test_functions_fit_on_a_page():
+    assert long_functions("{\n" + "\n" * 91 + "}\n", 90) == [1]
+    assert {file.name: found for file in SOURCES.glob("*.cpp") if (found := long_functions(file.read_text(), 90))} == {}
 
 
 @pytest.mark.parametrize("law", LAWS)
