@@ -31,6 +31,7 @@ HEADLINES = (
     ("Taylor bar: final length", "taylor_bar", "final_length_8_across", "8_across"),
     ("Dam break: pressure on the wall after the impact", "dam_break", "pressure_plateau_80", "best"),
     ("Dam break on a box in 3D: arrival of the water", "dam_break_3d", "P1_arrival", None),
+    ("Cylinder in a channel, Re = 20: drag coefficient", "cylinder_channel", "drag_20_across", "20_across"),
     ("Rolling tank: period of the oil", "rolling_tank", "sloshing_period_free", "free"),
     ("Standing wave: period", "standing_wave", "period", "viscous"),
     ("Taylor-Green vortices: rate of decay", "taylor_green", "energy_decay_rate", "best"),
