@@ -54,6 +54,9 @@ turek_fsi3       solid rho 1000.0 young 5.6e6 poisson 0.4
 # Plate under a water column: Fourey, Oger, Le Touze and Alessandrini, IOP Conf. Ser.: Mater. Sci. Eng. 10 (2010) 012041
 hydrostatic_plate  solid rho 2700.0 young 67.5e9 poisson 0.34
 
+# Plate as thin as a shell (scene submerged_plate): a soft plastic
+shell            solid rho 1100.0 young 100.0e6 poisson 0.3
+
 # Columns that bend and twist: Lee, Gil and Bonet, Computers and Structures 118 (2013) 13
 column           solid rho 1100.0 young 17.0e6 poisson 0.45
 

@@ -67,7 +67,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
   dim = domain->dimension;
   resolve(hdx, given_spacing);
-  if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this);
+  if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this, thin);
 
   time_integrate = 1;
   force_reneighbor = 1;

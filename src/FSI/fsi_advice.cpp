@@ -22,6 +22,7 @@
 #include "fsi_lattice.h"
 #include "fsi_limits.h"
 #include "fsi_scene.h"
+#include "fsi_sight.h"
 #include "group.h"
 #include "math_eigen.h"
 #include "modify.h"
@@ -137,6 +138,7 @@ class Adviser : protected Pointers {
       idle_fluid();
       lattice();
       speeds();
+      see_through();
     }
     if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
     if (scene.substeps > 1) held_forces();
@@ -462,6 +464,49 @@ class Adviser : protected Pointers {
     for (int d = 0; d < scene.dim; d++) length = std::min(length, most[3 + d] + most[6 + d] + scene.dx);
     for (int t = 1; t <= atom->ntypes; t++)
       if (present[t] && scene.state[t].species == FLUID) viscosity(t, expected, length);
+  }
+
+  /* Bodies that fluids on two opposite sides see each other through, within the kernel's support less what hardly counts, where
+     thin would be accepted. Round the corner of a thick body normals are at right angles. Some fluid particles beside bodies are enough. */
+
+  void see_through() const
+  {
+    constexpr double PART = 0.95, OPPOSITE = -0.5;
+    constexpr int ENOUGH_OF_THEM = 2000;
+    if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY || number<int>("^fsi/fluid", "couple") != 0) return;
+    std::vector<double> bodies(atom->ntypes + 1, 0.0);
+    for (int t = 1; t <= atom->ntypes; t++) bodies[t] = scene.state[t].species != FLUID && scene.state[t].species != NONE && scene.thin[t] == 0.0;
+    if (std::count(bodies.begin(), bodies.end(), 1.0) == 0) return;
+    Sight sight(lmp, scene, bodies);
+    sight.find_bodies();
+    std::vector<int> near, hidden;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (fluid(i) && sight.near(atom->x[i])) near.push_back(i);
+    const double reach = PART * scene.cut;
+    const Cells cells(atom->x, near.empty() ? 0 : atom->nlocal + atom->nghost, scene.dim, reach);
+    std::vector<double> mine(bodies.size(), 0.0), thick(bodies.size());    // the largest thickness where it happens, by type
+    for (size_t k = 0; k < near.size(); k += near.size() / ENOUGH_OF_THEM + 1) {
+      const int i = near[k];
+      sight.look_from(atom->x[i]);
+      hidden.clear();
+      cells.around(atom->x[i], [&](int j, double rsq) {
+        if (rsq < reach * reach && fluid(j) && sight.blocked(atom->x[j])) hidden.push_back(j);
+      });
+      Sight::Beside here, there;
+      if (hidden.empty() || !sight.beside(i, here)) continue;
+      for (const int j : hidden) {
+        sight.look_from(atom->x[j]);
+        if (!sight.beside(j, there)) continue;
+        double dot = 0.0;
+        for (int d = 0; d < 3; d++) dot += here.normal[d] * there.normal[d];
+        if (dot < OPPOSITE) mine[here.type] = std::max(mine[here.type], here.layers * scene.dx_of(here.type));
+      }
+    }
+    MPI_Allreduce(mine.data(), thick.data(), (int) mine.size(), MPI_DOUBLE, MPI_MAX, world);
+    for (int t = 1; t <= atom->ntypes; t++)
+      if (thick[t] > 0.0)
+        warn(fmt::format("fluids see each other through what is of type {}, some {:.2g} thick, since the kernel reaches {:.2g}, so pressures mix through "
+                         "it: fix {} ... thin {}", t, thick[t], scene.cut, scene.mover->id, t));
   }
 
   /* what artificial viscosity is worth: half of alpha h c/2(d+2), since it acts on approach only (doc/src/theory.rst) */

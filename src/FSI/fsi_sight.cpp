@@ -30,11 +30,11 @@ static constexpr int NTABLE = 400;    // distances for which forces are tabulate
    A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice is finer than the fluid's.
 ------------------------------------------------------------------------- */
 
-Sight::Sight(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), scene(scene), reach(0.0), from{}, low{}, per_cell(0.0), n{}, half_space(scene.thin.size())
+Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
+    Pointers(lmp), scene(scene), types(types), reach(0.0), from{}, low{}, per_cell(0.0), n{}, half_space(types.size())
 {
-  for (size_t t = 1; t < scene.thin.size(); t++) {
-    if (scene.thin[t] == 0.0) continue;
+  for (size_t t = 1; t < types.size(); t++) {
+    if (types[t] == 0.0) continue;
     const double dx = scene.dx_of(t), ratio = dx / scene.dx, per_h = scene.dx / scene.h, sharper = (1.0 - ratio * ratio) / 24.0 * per_h * per_h;
     with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &kernel) {
       constexpr int D = std::decay_t<decltype(kernel)>::DIM, STEPS = 200;
@@ -76,7 +76,7 @@ void Sight::find_bodies()
   double high[3] = {};
   int count = 0;
   for (int i = 0; i < nall; i++) {
-    if (scene.thin[type[i]] == 0.0) continue;
+    if (types[type[i]] == 0.0) continue;
     for (int d = 0; d < 3; d++) {
       low[d] = count ? std::min(low[d], x[i][d]) : x[i][d];
       high[d] = count ? std::max(high[d], x[i][d]) : x[i][d];
@@ -92,10 +92,10 @@ void Sight::find_bodies()
     return c;
   };
   for (int i = 0; i < nall; i++)
-    if (scene.thin[type[i]] != 0.0) first[cell(x[i]) + 2]++;
+    if (types[type[i]] != 0.0) first[cell(x[i]) + 2]++;
   for (size_t c = 2; c < first.size(); c++) first[c] += first[c - 1];
   for (int i = 0; i < nall; i++)
-    if (scene.thin[type[i]] != 0.0) places[first[cell(x[i]) + 1]++] = {{x[i][0], x[i][1], x[i][2]}, i};
+    if (types[type[i]] != 0.0) places[first[cell(x[i]) + 1]++] = {{x[i][0], x[i][1], x[i][2]}, i};
 }
 
 template <class Visit> void Sight::for_near(const double *x, Visit visit) const

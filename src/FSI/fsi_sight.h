@@ -28,7 +28,7 @@ namespace FSI {
 
   class Sight : protected Pointers {
    public:
-    Sight(LAMMPS *, const Scene &);    // whose kernel and spacings are known
+    Sight(LAMMPS *, const Scene &, const std::vector<double> &types);    // whose kernel and spacings are known; past types that are not 0
     void find_bodies();    // where they are when neighbor lists are new: what follows is said of then
 
     bool near(const double *x) const;      // may one be within the reach of the lists?
@@ -50,6 +50,7 @@ namespace FSI {
 
    private:
     const Scene &scene;
+    const std::vector<double> types;
     double reach, from[3];
     double low[3], per_cell;
     int n[3];

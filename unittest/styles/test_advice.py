@@ -36,6 +36,10 @@ def mine(**what):
     return [("materials.fsi", "mine.fsi")], MATERIALS.format(**{"rho": 1000, "young": 2e6, **what})
 
 
+BOTH_SIDES = [("create_atoms 2 region plate", "lattice sq 0.01 origin 0 0.5 0\nregion behind block 0.065 0.1 0 0.08 INF INF units box\ncreate_atoms 1 region behind\n"
+               "lattice sq 0.005 origin 0.5 0.5 0\ncreate_atoms 2 region plate"), ("0.08 0 0.08 INF", "0.065 0 0.08 INF"),
+              ("wendland 1.5", "wendland 1.5 spacing 2 0.005"), ("4e-5", "3e-5"), ("xlo 0 ylo 0", "xlo 0 xhi 0.1 ylo 0")]
+
 CASES = {
     # largest c without a warning is 7 sqrt(2gH) = 8.77
     "sound": ([("sound 12.53", "sound 8.7")], None, r"speed of sound 8.7 .* 6.9 times sqrt\(2gH\) of its height H = 0.08, 1.25: .* sound 12.5$"),
@@ -77,6 +81,8 @@ CASES = {
     # 0.18 stretch + 0.27 shear = 0.079; 0.042 for the cubic spline; none for 1.5: 0.014
     "elastic lattice": ([("wendland 1.5", "wendland 1.3")], None, r"h = 1.3 dx a lattice .* by 0.43 .* and 0.00 in shear: waves are some 8 % too fast .* at h = 1.53 dx; quintic 0.94"),
     "elastic lattice, cubic": ([("wendland 1.5", "cubic 1.3"), ("4e-5", "3.5e-5")], None, r"by 0.13 .* 0.07 in shear: waves are some 4 % too fast .* h = 1.34 dx"),
+    # 3 across of half the spacing, water on both sides: 0.025 apart, where the kernel reaches 0.03
+    "thin between": (BOTH_SIDES, None, r"fluids see each other through what is of type 2, some 0.01[56] thick, since the kernel reaches 0.03, .*: fix sph \.\.\. thin 2$"),
     "skin": ([("neighbor 0.003", "neighbor 0.016")], None, r"skin 0.016 is 1.6 spacings wide, .*: neighbor 0.003 bin"),
 }
 ALSO = {  # what follows from the mistake as well
@@ -100,7 +106,7 @@ def test_sound_deck_is_not_criticised(tmp_path):
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
 
 
-ON_TWO_RANKS = ("sound", "spacing", "overlap", "thin", "rows", "idle", "long fluid")  # what is summed over ranks
+ON_TWO_RANKS = ("sound", "spacing", "overlap", "thin", "rows", "idle", "long fluid", "thin between")  # what is summed over ranks
 
 
 @pytest.mark.parametrize("name, ranks", [(name, 1) for name in CASES] + [(name, 2) for name in ON_TWO_RANKS])
@@ -147,6 +153,14 @@ def test_thin_sub_domains(tmp_path):
     narrow = [*wide, ("block -0.05 0.15", "block -0.02 0.10")]
     found = advice(tmp_path, narrow, ranks=4)
     assert len(found) == 1 and re.search(r"sub-domain is thinner .*0.91 of 0.033.*fewer ranks", found[0])
+
+
+def test_nobody_sees_through_a_body(tmp_path):
+    """That is said to be thin, or is a block as thick as the kernel's support, round whose corners they see each other"""
+    assert advice(tmp_path / "thin", [(old, new.replace("spacing 2 0.005", "spacing 2 0.005 thin 2")) for old, new in BOTH_SIDES]) == []
+    block = [("water block 0 0.05", "water block 0 0.14"), ("plate block 0.05 0.08 0 0.08 INF", "plate block 0.05 0.09 0 0.03 INF"), ("ylo 0", "xhi 0.14 ylo 0"),
+             ("create_atoms 1 region water", "region beside block 0.05 0.09 0 0.03 INF INF side out units box\nregion wet intersect 2 water beside\ncreate_atoms 1 region wet")]
+    assert advice(tmp_path / "block", block) == []
 
 
 @pytest.mark.parametrize("change", [("timestep 4e-5", "fix dt all fsi/dt 1"), ("timestep 4e-5", "fix dt all fsi/dt 1 substeps auto")])

@@ -117,6 +117,25 @@ def test_which_pairs(dim):
         close(change[left], expected[left], 1e-9)
 
 
+@pytest.mark.parametrize("first", [0, 1, 2])
+@pytest.mark.parametrize("beyond, seen", [(0.4, True), (-0.6, False)])
+def test_past_an_edge(first, beyond, seen):
+    """In 3D, on each axis: a line 0.4 of the plate's spacing beyond its edge is free, one 0.6 inside is not. Round it the plate's particles make no gap of
+    half a turn: a sign in the plane in which they are seen turns one of 45 degrees, where the nearest is, into one of the line."""
+    ds = 0.05
+    plate = np.array([[0, (k - 0.4) * ds, -(m + beyond) * ds] for k in range(-5, 7) for m in range(8)])
+    x = np.roll(np.concatenate([[[-0.05, 0, 0], [0.05, 0, 0]], plate]), first, axis=1)
+    rigid = np.arange(len(x)) > 1
+    with Scene(x, dim=3, dx=0.1, type=1 + rigid, mol=1 + rigid, held=rigid, materials=(WATER, WALL), density="spacing 2 0.05 thin 2", fluid="tension yes",
+               commands=["fix w held fsi/wall/particle"]) as s:
+        found = []
+        for rho in (1000.0, 1010.0):
+            s.put("rho", np.where(np.arange(len(x)) == 1, rho, 1000.0))
+            s.run()
+            found.append(s.get("f")[0, first])
+    assert (found[1] < found[0] - 1e-3) if seen else (found[1] == found[0])
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 def test_mirror_walls(dim):
     """A plate that stands on a mirror is one that goes on below it, with the water on its sides, explicit mirrored particles"""
