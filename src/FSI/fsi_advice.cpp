@@ -467,11 +467,11 @@ class Adviser : protected Pointers {
   }
 
   /* Bodies that fluids on two opposite sides see each other through, within the kernel's support less what hardly counts, where
-     thin would be accepted. Round the corner of a thick body normals are at right angles. Some fluid particles beside bodies are enough. */
+     thin would be accepted. Some of the fluid particles beside bodies are enough. */
 
   void see_through() const
   {
-    constexpr double PART = 0.95, OPPOSITE = -0.5;
+    constexpr double PART = 0.95;
     constexpr int ENOUGH_OF_THEM = 2000;
     if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY || number<int>("^fsi/fluid", "couple") != 0) return;
     std::vector<double> bodies(atom->ntypes + 1, 0.0);
@@ -497,16 +497,14 @@ class Adviser : protected Pointers {
       for (const int j : hidden) {
         sight.look_from(atom->x[j]);
         if (!sight.beside(j, there)) continue;
-        double dot = 0.0;
-        for (int d = 0; d < 3; d++) dot += here.normal[d] * there.normal[d];
-        if (dot < OPPOSITE) mine[here.type] = std::max(mine[here.type], here.layers * scene.dx_of(here.type));
+        if (Sight::opposite(here.normal, there.normal)) mine[here.type] = std::max(mine[here.type], here.layers * scene.dx_of(here.type));
       }
     }
     MPI_Allreduce(mine.data(), thick.data(), (int) mine.size(), MPI_DOUBLE, MPI_MAX, world);
     for (int t = 1; t <= atom->ntypes; t++)
       if (thick[t] > 0.0)
-        warn(fmt::format("fluids see each other through what is of type {}, some {:.2g} thick, since the kernel reaches {:.2g}, so pressures mix through "
-                         "it: fix {} ... thin {}", t, thick[t], scene.cut, scene.mover->id, t));
+        warn(fmt::format("fluids see each other through what is of type {}, some {:.2g} thick, since the kernel reaches {:.2g}: if pressures on its "
+                         "two sides differ, they mix. Then fix {} ... thin {}", t, thick[t], scene.cut, scene.mover->id, t));
   }
 
   /* what artificial viscosity is worth: half of alpha h c/2(d+2), since it acts on approach only (doc/src/theory.rst) */

@@ -197,19 +197,26 @@ void Sight::see_images()
    the body is as thick as it is along its normal through x
 ------------------------------------------------------------------------- */
 
+static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+bool Sight::opposite(const double *a, const double *b)
+{
+  return dot(a, b) < -0.5;
+}
+
 bool Sight::beside(int i, Beside &b)
 {
-  const auto dot = [](const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
-  const double cutsq = scene.cut * scene.cut;
+  b = Beside();
   const auto first = std::min_element(seen.begin(), seen.end(), [](const Seen &a, const Seen &b) { return a.rsq < b.rsq; });
-  if (first == seen.end() || first->rsq >= cutsq) return false;
+  if (first == seen.end()) return false;
   const Seen nearest = *first;
+  const double within = nearest.rsq < scene.cut * scene.cut ? scene.cut : reach, withinsq = within * within;
   see_images();
   // normal, from what is on the side of the nearest
   double normal[3] = {};
   for (const auto &s : seen)
-    if (s.rsq < cutsq && dot(s.x, nearest.x) > 0.0) {
-      const double rest = 1.0 - s.rsq / cutsq;
+    if (s.rsq < withinsq && dot(s.x, nearest.x) > 0.0) {
+      const double rest = 1.0 - s.rsq / withinsq;
       for (int d = 0; d < 3; d++) normal[d] += rest * rest * rest * s.x[d];
     }
   const double length = std::sqrt(dot(normal, normal)), dx = nearest.dx, tube = 0.75 * dx;
@@ -221,8 +228,30 @@ bool Sight::beside(int i, Beside &b)
     face = std::min(face, depth);
     back = std::max(back, depth);
   }
-  b = {i, nearest.i, atom->type[nearest.i], {normal[0], normal[1], normal[2]}, face - dot(nearest.x, normal), (back - face) / dx + 1.0};
-  return back > 0.0;
+  b = {i, nearest.i, atom->type[nearest.i], {normal[0], normal[1], normal[2]}, face - dot(nearest.x, normal), (back - face) / dx + 1.0, 1.0};
+  if (back == 0.0 || within == reach) return false;
+  b.behind = hidden_behind(normal, back + 0.5 * dx);
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   Of what a lattice of the fluid deeper than that would push, the part that the body hides: less than all beside an edge
+------------------------------------------------------------------------- */
+
+double Sight::hidden_behind(const double *normal, double depth) const
+{
+  const int n = static_cast<int>(scene.cut / scene.dx), nz = scene.dim == 3 ? n : 0;
+  double hidden = 0.0, all = 0.0;
+  for (int a = -n; a <= n; a++)
+    for (int b = -n; b <= n; b++)
+      for (int c = -nz; c <= nz; c++) {
+        const double d[3] = {a * scene.dx, b * scene.dx, c * scene.dx}, at = dot(d, normal), rest = 1.0 - dot(d, d) / (scene.cut * scene.cut);
+        if (at < depth || rest <= 0.0) continue;
+        const double y[3] = {from[0] + d[0], from[1] + d[1], from[2] + d[2]}, weight = rest * rest * rest * at;
+        all += weight;
+        if (blocked(y)) hidden += weight;
+      }
+  return all > 0.0 ? hidden / all : 1.0;
 }
 
 Sight::Fill Sight::fill(const Beside &b) const
@@ -231,7 +260,7 @@ Sight::Fill Sight::fill(const Beside &b) const
   double face = b.face;
   for (int d = 0; d < 3; d++) face += (xj[d] - xi[d]) * b.normal[d];
   const Fill all = beyond(b.type, face), missing = beyond(b.type, face + b.layers * scene.dx_of(b.type));
-  const auto over = [](double whole, double rest) { return whole > rest ? whole / (whole - rest) : 1.0; };
+  const auto over = [&](double whole, double rest) { return whole > rest ? 1.0 + b.behind * rest / (whole - rest) : 1.0; };
   return {over(all.force, missing.force), over(all.weight, missing.weight)};
 }
 

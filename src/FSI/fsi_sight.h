@@ -37,9 +37,11 @@ namespace FSI {
     // The body that a fluid particle has beside it: how deep, counted from one of its particles, and thick it is along its normal
     struct Beside {
       int i, j, type;            // fluid particle, particle of the body
-      double normal[3], face, layers;    // from x inwards; distance of the first layer less that of j along it; number of layers
+      double normal[3], face, layers;    // from x inwards, known beyond the support, too; distance of the first layer less that of j along it; number of layers
+      double behind;                     // part of what is deeper that it hides
     };
-    bool beside(int i, Beside &);    // of i, that x is of; false: none. What is seen goes on behind mirror walls afterwards
+    bool beside(int i, Beside &);    // of i, that x is of; false: none within the support. What is seen goes on behind mirror walls afterwards
+    static bool opposite(const double *normal, const double *other);    // are they of two sides of a body? A corner has right angles
     // of a half-space of its layers over those that there are, now: force on i, and weight in sums of W, as forces along the face are
     struct Fill {
       double force, weight;
@@ -70,6 +72,7 @@ namespace FSI {
     std::vector<std::vector<Fill>> half_space;    // per type: of its layers by the distance of the first
     Fill beyond(int type, double distance) const;
     void see_images();
+    double hidden_behind(const double *normal, double depth) const;
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true
   };
 

@@ -30,6 +30,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -234,7 +235,7 @@ void PairFSIFluid::begin_state(bool)
   images_step = -1;
   if (neighbor->ago) return;
   fields.grow();
-  if (fix_fsi->sight) fix_fsi->sight->find_bodies();
+  if (fix_fsi->sight) find_thin_bodies();
   find_rows();
   if (!fill) return;
   std::fill_n(fill, atom->nlocal + atom->nghost, 1.0);
@@ -270,6 +271,23 @@ void PairFSIFluid::advance(bool advance)
   if (!rate || !advance) return;
   advance_density();
   if (shifting > 0.0) displacements(update->dt);
+}
+
+// what is beside each fluid particle; normals cross ranks, since both of a pair have to agree
+void PairFSIFluid::find_thin_bodies()
+{
+  Sight *const sight = fix_fsi->sight.get();
+  sight->find_bodies();
+  beside.clear();
+  for (auto &n : normals) n.assign(atom->nlocal + atom->nghost, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (fix_fsi->state[atom->type[i]].species != FLUID || !sight->near(atom->x[i])) continue;
+    sight->look_from(atom->x[i]);
+    Sight::Beside there;
+    if (sight->beside(i, there)) beside.push_back(there);
+    for (int d = 0; d < 3; d++) normals[d][i] = there.normal[d];
+  }
+  for (int d = 0; d < fix_fsi->dim; d++) fix_fsi->send_to_ghosts(normals[d].data());
 }
 
 // rates have what was found in the last step: the distance changes little from one to the next
@@ -347,7 +365,7 @@ void PairFSIFluid::find_rows()
 
   std::vector<int> unmasked;
   Sight *const sight = fix_fsi->sight.get();
-  beside.clear();
+  const auto normal = [this](int i) { return std::array<double, 3>{normals[0][i], normals[1][i], normals[2][i]}; };
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], n = list->numneigh[i], *const neighbors = list->firstneigh[i];
@@ -360,10 +378,10 @@ void PairFSIFluid::find_rows()
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
     if (sight && sight->near(x[i])) {
       sight->look_from(x[i]);
-      const auto hidden = [&](int j) { return state[type[j]].species == FLUID && sight->blocked(x[j]); };
+      const auto hidden = [&](int j) {
+        return state[type[j]].species == FLUID && Sight::opposite(normal(i).data(), normal(j).data()) && sight->blocked(x[j]);
+      };
       unmasked.erase(std::remove_if(unmasked.begin(), unmasked.end(), hidden), unmasked.end());
-      Sight::Beside there;
-      if (sight->beside(i, there)) beside.push_back(there);
     }
     // that of its own type stays if it is empty, for its own images
     for (const int t : fluid_types)

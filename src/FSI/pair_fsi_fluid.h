@@ -106,6 +106,8 @@ class PairFSIFluid : public PairFSI {
   bool finer;                        // is any type finer than the fluid, or thin?
   double *fill, *fill_weight;        // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
   std::vector<FSI::Sight::Beside> beside;
+  std::vector<double> normals[3];    // of what fluid particles have beside them, when lists are new
+  void find_thin_bodies();
   void follow_thin_bodies();
   FSI::FluidParticles particles_at(const double *points) const;
   template <int D, class Rest> FSI::FluidParticles gather(double t, Rest);    // positions a time t later; what else a loop needs
