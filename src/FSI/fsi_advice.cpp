@@ -484,7 +484,7 @@ class Adviser : protected Pointers {
       if (fluid(i) && sight.near(atom->x[i])) near.push_back(i);
     const double reach = PART * scene.cut;
     const Cells cells(atom->x, near.empty() ? 0 : atom->nlocal + atom->nghost, scene.dim, reach);
-    std::vector<double> mine(bodies.size(), 0.0), thick(bodies.size());    // the largest thickness where it happens, by type
+    std::vector<double> mine(bodies.size(), BIG), thick(bodies.size());    // the least thickness where it happens, by type
     for (size_t k = 0; k < near.size(); k += near.size() / ENOUGH_OF_THEM + 1) {
       const int i = near[k];
       sight.look_from(atom->x[i]);
@@ -497,12 +497,12 @@ class Adviser : protected Pointers {
       for (const int j : hidden) {
         sight.look_from(atom->x[j]);
         if (!sight.beside(j, there)) continue;
-        if (Sight::opposite(here.normal, there.normal)) mine[here.type] = std::max(mine[here.type], here.layers * scene.dx_of(here.type));
+        if (Sight::opposite(here.normal, there.normal)) mine[here.type] = std::min(mine[here.type], here.layers * scene.dx_of(here.type));
       }
     }
-    MPI_Allreduce(mine.data(), thick.data(), (int) mine.size(), MPI_DOUBLE, MPI_MAX, world);
+    MPI_Allreduce(mine.data(), thick.data(), (int) mine.size(), MPI_DOUBLE, MPI_MIN, world);
     for (int t = 1; t <= atom->ntypes; t++)
-      if (thick[t] > 0.0)
+      if (thick[t] < BIG)
         warn(fmt::format("fluids see each other through what is of type {}, some {:.2g} thick, since the kernel reaches {:.2g}: if pressures on its "
                          "two sides differ, they mix. Then fix {} ... thin {}", t, thick[t], scene.cut, scene.mover->id, t));
   }
