@@ -214,6 +214,7 @@ def test_bad_cases_are_refused(examples, text, message):
 def test_bundled_cases_are_sound():
     for name in scene.scenes():
         scene.cases(name)
+        assert not set(scene.OPTIONS) & set(scene.deck_variables(scene.deck(name)))  # tools/run could not set it
 
 
 def test_cases_with_lammps(examples, monkeypatch):
