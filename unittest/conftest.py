@@ -3,5 +3,7 @@
 import os
 
 os.environ["PYTHONPATH"] = os.pathsep.join([os.path.dirname(__file__), *filter(None, [os.environ.get("PYTHONPATH")])])
-# tests run side by side: a rank that waits (of Open MPI) leaves its core to others, or most of the time is spent on waiting
-os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
+# Open MPI, of which tests start some two thousand processes for a moment each: a rank that waits leaves its core to others; nobody looks for
+# networks (0.2 s); one rank alone needs no daemon; and an error need not give other ranks a second to end
+for name, value in {"mpi_yield_when_idle": 1, "pml": "ob1", "ess_singleton_isolated": 1, "odls_base_sigkill_timeout": 0}.items():
+    os.environ.setdefault(f"OMPI_MCA_{name}", str(value))
