@@ -41,10 +41,10 @@ def pytest(arguments):
     """(passed, failed) of the tests in unittest/; an error in collecting or setting up counts as a failure."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
-        # files side by side, since most tests run on one core; a file's tests share what its fixtures have run. Long files first
+        # tests side by side, since most run on one core; those that share what a fixture has run stay together (unittest/conftest.py). Long ones first
         tests = [str(paths.ROOT / "unittest" / name) for name in ("tools", "scenes", "docs", "styles")]
         tests = [test for test in tests if f"--ignore={test}" not in arguments]  # pytest would collect what it is given, ignored or not
-        command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist", "loadfile", f"--junitxml={report}",
+        command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist", "loadgroup", f"--junitxml={report}",
                    *arguments, *tests]
         status = subprocess.run(command, cwd=paths.ROOT, env=launch.environment(), check=False).returncode
         passed = failed = 0
