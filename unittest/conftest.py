@@ -5,10 +5,14 @@ import os
 import pytest
 
 os.environ["PYTHONPATH"] = os.pathsep.join([os.path.dirname(__file__), *filter(None, [os.environ.get("PYTHONPATH")])])
-# Open MPI, of which tests start some two thousand processes for a moment each: a rank that waits leaves its core to others; nobody looks for
-# networks (0.2 s); one rank alone needs no daemon; and an error need not give other ranks a second to end
-for name, value in {"mpi_yield_when_idle": 1, "pml": "ob1", "ess_singleton_isolated": 1, "odls_base_sigkill_timeout": 0}.items():
-    os.environ.setdefault(f"OMPI_MCA_{name}", str(value))
+# Thousands of short runs side by side. A rank of Open MPI that waits leaves its core to others, or most of the time is spent on waiting; at its
+# start it looks for no networks and, without mpirun, starts no server; and who ends with an error gives nobody a second to think about it
+for name, value in {"mpi_yield_when_idle": "1", "pml": "ob1", "btl": "self,vader", "ess_singleton_isolated": "1", "odls_base_sigkill_timeout": "0"}.items():
+    os.environ.setdefault(f"OMPI_MCA_{name}", value)
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: takes seconds; another case asserts the same of the same code: not in tools/test --quick")
 
 
 @pytest.hookimpl(tryfirst=True)

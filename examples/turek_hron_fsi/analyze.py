@@ -39,7 +39,7 @@ def read(folder):
     s = series.read(Path(folder) / "series.csv")
     for name in ("ux", "uy"):
         s.columns[name] = 1e3 * s[name]
-    return found.values["case"], found.values, s
+    return found.values["benchmark"], found.values, s
 
 
 def add(summary, folder, suffix="", finest=True):

@@ -206,7 +206,7 @@ def write(results, page):
     if not any(entry["summary"] for entry in found["scenes"].values()):
         raise FileNotFoundError(f"{results} holds no summary.json of a scene")
     page.mkdir(parents=True, exist_ok=True)
-    before = _scenes_of(page)
+    before = scenes_of(page)
     for name, entry in found["scenes"].items():
         if entry["summary"]:
             for picture in before.get(name, {}).get("pictures", []):
@@ -231,8 +231,8 @@ def write_readme(found):
     path.write_text(before + MARKS[0] + "\n" + table + "\n\n" + MARKS[1] + rest.split(MARKS[1])[1])
 
 
-def _scenes_of(page):
-    """What the page's results.json has, by scene."""
+def scenes_of(page):
+    """What the results.json of a page has, by scene."""
     path = page / "results.json"
     return json.loads(path.read_text())["scenes"] if path.exists() else {}
 

@@ -14,7 +14,10 @@ import subprocess
 import sys
 import time
 import traceback
-from contextlib import contextmanager
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from io import StringIO
+from multiprocessing import get_context
 from pathlib import Path
 
 from . import launch, paths, report, results
@@ -28,6 +31,7 @@ MADE_FILE = ".made-by-tools-run"
 CASES_FILE = "cases.json"
 RANKS = 1  # where nobody says how many: small scenes gain nothing by more, and on a busy machine ranks wait for each other
 EDITS_FILE = "edits.json"  # {name: {"find": regular expression, "put": text with {value}}}: settings that no deck has a variable for
+ONE_RUN = {"variables": {}, "deck": None, "may_fail": False}  # of a scene without cases
 OWN_RUN = "custom"  # folder of a run with the user's variables beside the cases, whose results stay as they are
 SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools")  # what decides a result
 
@@ -133,23 +137,102 @@ def run_cases(scene, folder, ranks=None):
     """
     folder = Path(folder)
     wanted = cases(scene)
+    ran = []
+    for k, (name, case) in enumerate(wanted.items(), start=1):
+        print(f"run: {scene}, case {name} ({k} of {len(wanted)})", flush=True)
+        if run(scene, folder / name, ranks or case["ranks"] or RANKS, case["variables"], name, case["deck"],
+               case["may_fail"]) == 0:
+            ran.append(name)
+    return study(scene, folder, list(wanted), ran)
+
+
+def study(scene, folder, wanted, ran):
+    """What is said about all cases of a scene, of those that ran; returns 0 if these are all and the analysis came to its end."""
     with _record(folder):
-        ran = {}
-        for k, (name, case) in enumerate(wanted.items(), start=1):
-            print(f"run: {scene}, case {name} ({k} of {len(wanted)})", flush=True)
-            if run(scene, folder / name, ranks or case["ranks"] or RANKS, case["variables"], name, case["deck"],
-                   case["may_fail"]) == 0:
-                ran[name] = folder / name
         failed = [name for name in wanted if name not in ran]
-        _write_run(folder, {"scene": scene, "cases": list(ran), "failed": failed})
+        _write_run(folder, {"scene": scene, "cases": ran, "failed": failed})
         good = not failed
         module = analysis(scene)
         if ran and hasattr(module, "study"):
-            good &= _calls(module.study, folder, ran)
+            good &= _calls(module.study, folder, {name: folder / name for name in ran})
         _report(folder)
         print(f"run: {scene}: {len(ran)} of {len(wanted)} cases ran" +
               (f"; failed: {', '.join(failed)}" if failed else ""), flush=True)
         return 0 if good else 1
+
+
+def run_all(names, folder, ranks=None):
+    """Runs all cases of these scenes, as many side by side as there are cores, the longest first; returns the scenes of which something failed.
+
+    On `ranks` each, by default 1, since two runs on a core each take less time than one after the other on two. What an earlier call left at
+    this commit is not run again.
+    """
+    folder, ranks = Path(folder), ranks or RANKS
+    wanted = {scene: cases(scene) for scene in names}
+    tasks = [(scene, folder / scene / (name or ""), ranks, case["variables"], name, case["deck"], case["may_fail"])
+             for scene, found in wanted.items() for name, case in (found or {None: ONE_RUN}).items()]
+    commit = _commit()
+    good = {task[1] for task in tasks if _is_there(task, commit)}
+    todo = [task for task in tasks if task[1] not in good]
+    took = _seconds_of_page()
+    typical = sum(took.values()) / len(took) if took else 60.0  # of what was never run
+    estimates = {task[1]: took.get((task[0], task[4]), typical) for task in todo}
+    todo.sort(key=lambda task: -estimates[task[1]])
+    workers = max(1, launch.cores() // ranks)
+    if good:
+        print(f"run: {len(good)} of {len(tasks)} runs are there, of this commit", flush=True)
+    began, sum_of_done, left = time.monotonic(), 0.0, sum(estimates.values())
+    with ProcessPoolExecutor(workers, mp_context=get_context("fork")) as pool:
+        running = {pool.submit(_apart, task): task for task in todo}
+        for k, future in enumerate(as_completed(running), start=len(good) + 1):
+            scene, place, _, _, name, *_ = running[future]
+            status, seconds, output = future.result()
+            if status == 0:
+                good.add(place)
+            else:
+                print(output)
+            sum_of_done += estimates[place]
+            left -= estimates[place]
+            spent = time.monotonic() - began
+            print(f"run: {k} of {len(tasks)}: {' '.join(filter(None, (scene, name)))} {'took' if status == 0 else 'FAILED after'} {seconds:.0f} s; "
+                  f"{spent / 60:.0f} minutes, some {spent * left / sum_of_done / 60:.0f} left", flush=True)
+    failed = []
+    for scene, found in wanted.items():
+        ran = [name for name in found if folder / scene / name in good]
+        if study(scene, folder / scene, list(found), ran) if found else folder / scene not in good:
+            failed.append(scene)
+    return failed
+
+
+def _apart(task):
+    """(status, seconds, what it had to say) of a run in a process of its own."""
+    began = time.monotonic()
+    with redirect_stdout(StringIO()) as said, redirect_stderr(said):
+        status = run(*task)
+    return status, time.monotonic() - began, said.getvalue()
+
+
+def _is_there(task, commit):
+    """Whether an earlier call left this very run, of a commit without changes."""
+    _, folder, ranks, variables, *_ = task
+    if commit is None or commit.endswith("+") or not (folder / "summary.json").exists():
+        return False
+    try:
+        found = json.loads((folder / RUN_FILE).read_text())
+    except (OSError, ValueError):
+        return False
+    return (found["commit"], found["ranks"], found["given"]) == (commit, ranks, variables)
+
+
+def _seconds_of_page():
+    """{(scene, case): core seconds} of what the page of results knows."""
+    took = {}
+    for scene, entry in results.scenes_of(paths.PAGE).items():
+        summary = entry["summary"] or {}
+        for name, ran in (summary.get("cases") or {None: summary}).items():
+            if ran.get("wall_seconds"):
+                took[scene, name] = ran["wall_seconds"] * (ran.get("ranks") or 1)
+    return took
 
 
 def analysis(scene):
@@ -266,29 +349,23 @@ def main(arguments):
     """tools/run with at least one argument."""
     if not arguments:
         raise Refusal("which scene? " + ", ".join(scenes()))
-    every = arguments[0] == "all"
-    wanted = scenes() if every else [arguments[0]]
     options, variables = parse(arguments[1:])
-    if every and "case" in options:
-        raise Refusal("case= is for one scene, not for all")
-    jobs = {scene: _job(scene, options, variables, every) for scene in wanted}
+    if arguments[0] != "all":
+        job = _job(arguments[0], options, variables)
+        return job() if build() else 1
+    if "case" in options or variables:
+        raise Refusal("case= and variables are for one scene, not for all")
+    names = scenes()
+    for name in names:
+        cases(name)  # refused before the build
     if not build():
         return 1
-
-    statuses = {}
-    for k, (scene, job) in enumerate(jobs.items(), start=1):
-        if len(jobs) > 1:
-            print(f"run: scene {scene} ({k} of {len(jobs)})", flush=True)
-        statuses[scene] = job()
-    failed = [scene for scene, status in statuses.items() if status != 0]
-    if len(jobs) > 1:
-        print(f"run: {len(jobs) - len(failed)} scenes ran, {len(failed)} failed", *failed)
-    if every and not variables:
-        out = Path(options["out"]).resolve() if "out" in options else None
-        # with a folder of the user's own, the page in doc/ stays as it is
-        if not _calls(results.write, *((out, out / "page") if out else (paths.RESULTS, paths.PAGE))):
-            return 1
-    return 1 if failed else 0
+    out = Path(options["out"]).resolve() if "out" in options else None
+    failed = run_all(names, out or paths.RESULTS, options.get("ranks"))
+    print(f"run: {len(names) - len(failed)} scenes ran, {len(failed)} failed", *failed)
+    # with a folder of the user's own, the page in doc/ stays as it is
+    written = _calls(results.write, *((out, out / "page") if out else (paths.RESULTS, paths.PAGE)))
+    return 1 if failed or not written else 0
 
 
 def build():
@@ -296,13 +373,13 @@ def build():
     return subprocess.run([str(paths.ROOT / "tools" / "setup")], check=False).returncode == 0
 
 
-def _job(scene, options, variables, every):
+def _job(scene, options, variables):
     """What the command line asks of a scene, checked, as a function without arguments that returns an exit status."""
     check(scene, variables)
     known = cases(scene)
     ranks = options.get("ranks")
     out = Path(options["out"]).resolve() if "out" in options else None
-    folder = paths.RESULTS / scene if out is None else out / scene if every else out
+    folder = out or paths.RESULTS / scene
     if known and not variables and "case" not in options:
         return lambda: run_cases(scene, folder, ranks)
     if "case" not in options:

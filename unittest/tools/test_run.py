@@ -167,9 +167,20 @@ def test_all_goes_on_after_a_failure(examples, capsys):
     assert "bad has no results" in page and "| toy | `change` |" in page
 
 
-def test_all_with_own_variables_leaves_the_page_alone(examples):
-    assert scene.main(["all", "tend=2"]) == 0
-    assert not paths.PAGE.exists()
+def test_all_goes_on_where_it_ended(examples, capsys, monkeypatch):
+    """What is there of this commit is not run again; a case that is not there, was changed or has failed is."""
+    monkeypatch.setattr(scene, "_commit", lambda: "0123456789")
+    make_scene(examples / "single", cases=None)
+    assert scene.main(["all"]) == 0
+    assert "some 0 left" in capsys.readouterr().out
+    (paths.RESULTS / "toy" / "coarse" / "summary.json").unlink()
+    (examples / "toy" / "cases.json").write_text(json.dumps({**CASES, "fine": {"variables": {"dx": 0.2}}}))
+    assert scene.main(["all"]) == 0
+    output = capsys.readouterr().out
+    assert "1 of 3 runs are there" in output and figure(summary_of("toy"), "change")["value"] == pytest.approx(-1.2)
+    assert scene.main(["all"]) == 0 and "3 of 3 runs are there" in capsys.readouterr().out
+    monkeypatch.setattr(scene, "_commit", lambda: "0123456789+")
+    assert scene.main(["all"]) == 0 and "runs are there" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("arguments, message", [
@@ -179,6 +190,7 @@ def test_all_with_own_variables_leaves_the_page_alone(examples):
     (["toy", "dx=small"], "number"),
     (["toy", "ten=1"], "did you mean 'tend'"),
     (["all", "case=fine"], "one scene"),
+    (["all", "dx=1"], "one scene"),
 ])
 def test_refusals_come_before_the_build(examples, monkeypatch, arguments, message):
     monkeypatch.setattr(scene, "build", lambda: pytest.fail("built"))
@@ -202,6 +214,7 @@ def test_bad_cases_are_refused(examples, text, message):
 def test_bundled_cases_are_sound():
     for name in scene.scenes():
         scene.cases(name)
+        assert not set(scene.OPTIONS) & set(scene.deck_variables(scene.deck(name)))  # tools/run could not set it
 
 
 def test_cases_with_lammps(examples, monkeypatch):
