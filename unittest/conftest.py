@@ -12,7 +12,7 @@ for name, value in {"mpi_yield_when_idle": "1", "pml": "ob1", "btl": "self,vader
 
 
 def pytest_configure(config):
-    config.addinivalue_line("markers", "slow: takes seconds; another case asserts the same of the same code: not in tools/test --quick")
+    config.addinivalue_line("markers", "slow: not in tools/test --quick")
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -13,8 +13,8 @@ from xml.etree import ElementTree
 
 from . import launch, paths
 
-# What --quick and the line coverage leave out of unittest/: scenes, whose equations the tests of the styles look at one by one; what runs
-# tools, installs, builds or counts instructions, to which an instrumented build adds its own
+# What --quick and the line coverage leave out of unittest/, beside cases marked slow: scenes, whose equations the tests of the styles look at one
+# by one; what runs tools, installs, builds or counts instructions, to which an instrumented build adds its own
 SLOW = ["scenes", "tools", "docs", "styles/test_fuzz.py", "styles/test_faults.py"]
 
 
@@ -68,7 +68,7 @@ def other_builds():
 
 def quick():
     """pytest's options that leave the slow tests out."""
-    return [f"--ignore={paths.ROOT / 'unittest' / name}" for name in SLOW]
+    return ["-m", "not slow", *(f"--ignore={paths.ROOT / 'unittest' / name}" for name in SLOW)]
 
 
 def coverage():

@@ -27,6 +27,7 @@ def entered():
     return found
 
 
+@pytest.mark.slow
 def test_without_avx2_nothing_compiled_for_it_is_entered(monkeypatch):
     """FSI_PACKS=no is what a processor without it says; there one instruction of such a function ends the run, in a loop over nothing, too."""
     assert len(COMPILED_FOR_AVX2) >= 2
