@@ -47,7 +47,7 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   keywords.argument("interval").integer(interval, 1, 1);
-  keywords.key("cfl").number(cfl, 1.0, Range::above(0.0));
+  keywords.key("cfl").number(cfl, 0.0, Range::above(0.0));
   keywords.key("cfl/fluid").number(of_fluid, 0.0, Range::above(0.0));
   keywords.key("cfl/solid").number(of_solid, 0.0, Range::above(0.0));
   keywords.key("min").number(low, 0.0, Range::above(0.0));
@@ -57,8 +57,8 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("stop").number(end, BIG, Range::above(0.0));
   keywords.key("check").choice(check, NO_CHECK, {"no", "warn", "error"});
   keywords.parse(narg - 3, arg + 3);
-  if (of_fluid == 0.0) of_fluid = cfl;
-  if (of_solid == 0.0) of_solid = cfl;
+  if (of_fluid == 0.0) of_fluid = cfl > 0.0 ? cfl : Limits::FLUID_FACTOR;
+  if (of_solid == 0.0) of_solid = cfl > 0.0 ? cfl : Limits::SOLID_FACTOR;
   if (low >= high) error->all(FLERR, "Fix fsi/dt min {} must be below max {}", low, high);
   if (automatic && check) error->all(FLERR, "Fix fsi/dt substeps auto cannot be combined with check: a check changes nothing");
   if (end < BIG && check) error->all(FLERR, "Fix fsi/dt stop cannot be combined with check: a check changes nothing");

@@ -54,7 +54,7 @@ static std::string word(const std::string &text)
 /* ---------------------------------------------------------------------- */
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), every(100), fp(nullptr), worst{}, samples(0), sampled(-1), limits(lmp), first_step(0),
+    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), every(100), fp(nullptr), worst{}, samples(0), sampled(-1), limits(lmp), usual(lmp), first_step(0),
     natoms(0), first_time(0.0), counted(0), ghost_bytes(0.0), ghost_messages(0.0), any_held(false), listed(-1), momentum{}, by_gravity{}, by_walls{},
     by_held{}, collected(-1), output{}
 {
@@ -214,13 +214,15 @@ void FixFSIReport::sample()
   samples++;
   sampled = update->ntimestep;
   collected = -1;
-  limits.find(*fix_fsi, groupbit, fix_fsi->substeps > 1);
+  const bool substeps = fix_fsi->substeps > 1;
+  usual.find(*fix_fsi, groupbit, substeps);
+  limits.find(*fix_fsi, groupbit, substeps, 1.0, 1.0);    // Courant numbers are of no factor
   for (int k = 0; k < Limits::NLIMIT; k++)
     for (const bool sub : {false, true}) {
       const double limit = sub ? limits.sub[k] : limits.step[k];
       if (limit >= Limits::UNLIMITED) continue;
-      const double share = update->dt / (sub ? fix_fsi->substeps : 1) / limit;
-      enter(k, Limits::safe[k] * share, share,
+      const double dt = update->dt / (sub ? fix_fsi->substeps : 1);
+      enter(k, Limits::safe[k] * dt / limit, dt / (sub ? usual.sub[k] : usual.step[k]),
             k == Limits::SOUND ? limits.culprit[sub][0] : k == Limits::ACCELERATION ? limits.culprit[sub][1] : 0);
     }
 

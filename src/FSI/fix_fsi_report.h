@@ -64,7 +64,7 @@ class FixFSIReport : public Fix, public FSI::Part {
   Worst worst[NWORST];
   int samples;
   bigint sampled;    // last step
-  FSI::Limits limits;
+  FSI::Limits limits, usual;    // with factors of 1, and with the usual ones
 
   bigint first_step, natoms;
   double first_time;

@@ -34,7 +34,7 @@ Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
 }
 
 /* ----------------------------------------------------------------------
-   fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6 alpha); laminar: h^2/8nu;
+   fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6 alpha); laminar: h^2/16nu;
    acceleration: sqrt(h/|a|)/4
 ------------------------------------------------------------------------- */
 

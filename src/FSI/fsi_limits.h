@@ -26,15 +26,17 @@ namespace FSI {
    public:
     enum Limit { SOUND, ELASTIC, ARTIFICIAL, LAMINAR, ACCELERATION, NLIMIT };
     static constexpr double UNLIMITED = 1.0e20;
-    // limit = safe times the time that the Courant number of this cause divides dt by
-    static constexpr double safe[NLIMIT] = {0.25, 0.25, 0.4, 0.125, 0.25};
+    // limit = safe times the time that the Courant number of this cause divides dt by, times a factor of fluids or of solids;
+    // those that are usual (doc/choosing.md): fluids bear twice theirs, elastic solids 1.2 times
+    static constexpr double safe[NLIMIT] = {0.25, 0.25, 0.4, 0.0625, 0.25};
+    static constexpr double FLUID_FACTOR = 2.0, SOLID_FACTOR = 1.0;
 
     double step[NLIMIT], sub[NLIMIT];    // of the step, and of a sub-step of what takes sub-steps
     tagint culprit[2][2];                // particle behind sound and acceleration, of step and sub-step
 
     Limits(class LAMMPS *);
     // of this rank's particles, times a factor of fluids and one of solids
-    void find(const Scene &, int groupbit, bool substeps, double of_fluid = 1.0, double of_solid = 1.0);
+    void find(const Scene &, int groupbit, bool substeps, double of_fluid = FLUID_FACTOR, double of_solid = SOLID_FACTOR);
     void reduce();    // of all ranks
   };
 

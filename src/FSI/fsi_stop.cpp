@@ -20,6 +20,7 @@
 #include "fix.h"
 #include "force.h"
 #include "fsi_kernel.h"
+#include "fsi_limits.h"
 #include "fsi_part.h"
 #include "fsi_scene.h"
 #include "lmptype.h"
@@ -35,7 +36,7 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static constexpr double USUAL = 0.4;    // a Courant number that is not the cause
+static constexpr double SUSPECT = 1.6;    // over the usual Courant number: may be the cause
 
 /* ---------------------------------------------------------------------- */
 
@@ -128,12 +129,13 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when) cons
   };
   const auto shorter = [&]() {
     const double number = all.tag ? courant(scene, all.type) : 0.0;
+    const double usual = fluid ? Limits::FLUID_FACTOR * Limits::safe[Limits::SOUND] : Limits::SOLID_FACTOR * Limits::safe[Limits::ELASTIC];
     std::string tip;
-    if (number > USUAL) tip = fmt::format("a shorter time step (the Courant number is {:.2g}, 0.25 is usual): ", number);
+    if (number > SUSPECT * usual) tip = fmt::format("a shorter time step (the Courant number is {:.2g}, {:g} is usual): ", number, usual);
     if (!chooses("step")) tip += std::string("fix fsi/dt") + (solid_tl ? " with substeps auto" : "");
     else if (!fluid && solid_tl && !chooses("substeps")) tip += "substeps auto of fix fsi/dt";
     else tip += fluid ? "a smaller cfl/fluid of fix fsi/dt" : "a smaller cfl/solid of fix fsi/dt";
-    tips.insert(number > USUAL ? tips.begin() : tips.end(), tip);
+    tips.insert(number > SUSPECT * usual ? tips.begin() : tips.end(), tip);
   };
 
   switch (all.trouble) {

@@ -64,9 +64,9 @@ CASES = {
               r"artificial viscosity of type 1 is worth 0.0029, 2.9 times its laminar viscosity 0.001: take alpha 0.009 or less"),
     "periodic": ([("boundary f f p", "boundary p f p"), ("box block -0.05 0.15", "box block 0 0.05"), ("walls all fsi/wall/mirror xlo 0", "walls all fsi/wall/mirror"),
                   ("create_atoms 2 region plate", "")], None, r"periodic box is 0.05 long in x, less than twice the kernel's support 0.03"),
-    # 0.4 h/c_l = 9.25e-5, 0.5 h/c = 6.0e-4
+    # 0.4 h/c_l = 9.25e-5, h/c = 1.2e-3
     "long solid": ([("4e-5", "9.5e-5")], None, r"time step 9.5e-05 is too long for elastic waves in the solid, 9.25e-05 at most: timestep 5.78e-05"),
-    "long fluid": ([("4e-5", "6.2e-4"), ("1.5\n", "1.5 substeps 20\n")], None, r"too long for sound in the fluid, 0.000599 at most"),
+    "long fluid": ([("4e-5", "1.3e-3"), ("1.5\n", "1.5 substeps 40\n")], None, r"too long for sound in the fluid, 0.0012 at most"),
     "viscous": ([("sound 12.53", "sound 12.53 laminar/visc"), ("water_inviscid", "sirup"), ("materials.fsi", "mine.fsi")],
                 MATERIALS.format(rho=1000, young=2e6).replace("water_inviscid", "sirup").replace("fluid rho 1000", "fluid rho 1000 viscosity 2000"),
                 r"too long for viscosity, 2.81e-05 at most"),

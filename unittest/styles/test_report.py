@@ -185,12 +185,12 @@ def test_worst_values(tmp_path, ranks):
     held = (scene.type == 2) & (scene.x[:, 1] > 0.07)
     assert [f.step for f in frames] == [0, 40] and report["samples"] == 2
     nu = 1.0e-3 / 1000 if report["courant_laminar"] else 0.0
-    for name, limit, value in (
-            ("sound", 0.25, [dt * (10 + np.linalg.norm(f.vector(("vx", "vy"))[water], axis=1).max()) / H for f in frames]),
+    for name, limit, value in (  # limit of water or of rubber, whichever has the larger number
+            ("sound", 0.5, [dt * (10 + np.linalg.norm(f.vector(("vx", "vy"))[water], axis=1).max()) / H for f in frames]),
             ("elastic", 0.25, [dt / 3 * PLATE_C / H]),
             ("artificial", 0.4, [dt * 10 * (1 + 0.6 * 0.05) / H, dt / 3 * PLATE_BULK_C * (1 + 0.6 * 0.1) / H]),
             ("laminar", 0.125, [dt * nu / H**2]),
-            ("acceleration", 0.25, [t * np.sqrt((np.linalg.norm(f.vector(("fx", "fy")), axis=1) / f["mass"])[who].max() / H)
+            ("acceleration", 0.5, [t * np.sqrt((np.linalg.norm(f.vector(("fx", "fy")), axis=1) / f["mass"])[who].max() / H)
                                     for f in frames for t, who in ((dt, water), (dt / 3, ~water & ~held))])):
         assert report[f"courant_{name}"] == pytest.approx(max(value), rel=1e-9), name
         assert report[f"courant_{name}_of_limit"] == pytest.approx(max(value) / limit, rel=1e-9), name

@@ -159,7 +159,7 @@ def test_the_order_of_dt_and_watch_does_not_matter(tmp_path, order):
     text = re.sub("timestep .*", "timestep 1", total_lagrangian(scene.text())) + "".join(fixes[word] for word in order.split())
     done = run(tmp_path, text + 'run 5\nprint "N $(f_dt[7]) C $(f_watch[4])"\n', scene_data=scene.data())
     n, courant = map(float, re.search(r"^N (\S+) C (\S+)", done.output, re.M).groups())
-    assert n > 3 and courant == pytest.approx(0.25, rel=0.02)
+    assert n > 3 and courant == pytest.approx(0.5, rel=0.02)
 
 
 def test_the_courant_number_that_is_asked_for_is_allowed(tmp_path):

@@ -58,11 +58,11 @@ def test_sound_deck(folder, capsys):
 
 
 def test_runs_to_a_time(folder, capsys):
-    """Not the steps that run was given, but the time of the stop, over the first step's limit: h/4c with h = 0.015, c = 20."""
+    """Not the steps that run was given, but the time of the stop, over the first step's limit: h/2c with h = 0.015, c = 20."""
     deck = (folder / "in.deck").read_text().replace("timestep 1e-4", "fix dt all fsi/dt 1 stop 0.3").replace("run $n every 10", "run 1000000 every 10")
     (folder / "in.deck").write_text(deck)
     status, text = says(capsys)
-    assert status == 0 and f"100 particles, to t = 0.3 in {0.3 / (0.25 * 0.015 / 20):.2g} steps or more; nothing to warn of" in text
+    assert status == 0 and f"100 particles, to t = 0.3 in {0.3 / (0.5 * 0.015 / 20):.2g} steps or more; nothing to warn of" in text
 
 
 def test_advice(folder, capsys):
