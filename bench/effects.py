@@ -40,33 +40,33 @@ thermo 1000000
 """
 
 
-def fluid(n, m, style="", hub="", commands="", walls=""):
+def fluid(n, m, style="", sph="", commands="", walls=""):
     """A rectangle of water, swirling."""
     return _start(n, m) + f"""pair_style fsi/fluid sound 10 {style}
 pair_coeff * * materials.fsi water
-fix sph all fsi {1 / n!r} wendland 1.5 {hub}
+fix sph all fsi {1 / n!r} wendland 1.5 {sph}
 fix gravity all gravity 9.81 vector 0 -1 0
 {f'fix walls all fsi/wall/mirror xlo 0 xhi 1 ylo 0 yhi {m / n!r}' if walls else ''}
 """ + _end(n, commands, 0.02)
 
 
-def updated(n, m, style="", hub="", stress="", material="plate", commands="", bodies=1):
+def updated(n, m, style="", sph="", stress="", material="plate", commands="", bodies=1):
     """A plate, swirling, in updated-Lagrangian form."""
     body = "set group all mol 1" if bodies == 1 else f"region low block INF INF INF {0.5 * m / n!r} INF INF\nset group all mol 1\nset region low mol 2"
     return _start(n, m) + f"""{body}
 pair_style fsi/solid {style}
 pair_coeff * * materials.fsi {material}
-fix sph all fsi {1 / n!r} wendland 1.5 {hub}
+fix sph all fsi {1 / n!r} wendland 1.5 {sph}
 fix stress all fsi/stress {stress}
 """ + _end(n, commands, 0.004)
 
 
-def total(n, m, style="", hub="", stress=None, material="plate", commands=""):
+def total(n, m, style="", sph="", stress=None, material="plate", commands=""):
     """The same in total-Lagrangian form."""
     return _start(n, m) + f"""set group all mol 1
 pair_style fsi/solid/tl {style}
 pair_coeff * * materials.fsi {material}
-fix sph all fsi {1 / n!r} wendland 1.5 {hub}
+fix sph all fsi {1 / n!r} wendland 1.5 {sph}
 {'' if stress is None else f'fix stress all fsi/stress {stress}'}
 """ + _end(n, commands, 0.004)
 
@@ -101,9 +101,9 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "shifting": {"style": "shift 0.1"},
         "mirror walls": {"walls": "yes"},
         "free-surface rule": {"style": "surface 0.9 bulk"},
-        "free-surface rule, every 10 steps": {"style": "surface 0.9 bulk", "hub": "surface/every 10"},
-        "density by summation": {"hub": "fluid summation"},
-        "density by ratio": {"hub": "fluid ratio"},
+        "free-surface rule, every 10 steps": {"style": "surface 0.9 bulk", "sph": "surface/every 10"},
+        "density by summation": {"sph": "fluid summation"},
+        "density by ratio": {"sph": "fluid ratio"},
         "tension, Tait, background": {"style": "eos tait tension yes background 1"},
         "adaptive time step": {"commands": STEP},
         "watch": {"commands": WATCH},
@@ -116,8 +116,8 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "hourglass control": {"style": "hourglass 0.5"},
         "plasticity": {"stress": "plastic", "material": "metal"},
         "two bodies, contact": {"bodies": 2},
-        "density by summation": {"hub": "solid summation"},
-        "density by ratio": {"hub": "solid ratio"},
+        "density by summation": {"sph": "solid summation"},
+        "density by ratio": {"sph": "solid ratio"},
         "adaptive time step": {"commands": STEP},
         "watch": {"commands": WATCH},
         "energy ledger": {"commands": LEDGER}}),

@@ -1,11 +1,32 @@
 """Lies here so that pytest, and processes that tests start, find scenes.py from the folders below."""
 
 import os
+import shutil
+import tempfile
+
+import pytest
 
 os.environ["PYTHONPATH"] = os.pathsep.join([os.path.dirname(__file__), *filter(None, [os.environ.get("PYTHONPATH")])])
-# tests run side by side: a rank that waits (of Open MPI) leaves its core to others, or most of the time is spent on waiting
-os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
-# Thousands of short runs: Open MPI looks for networks at each start, starts a server beside a process without mpirun, and leaves each run that
-# ends with an error a second to think about it
-for name, value in {"pml": "ob1", "btl": "self,vader", "ess_singleton_isolated": "1", "odls_base_sigkill_timeout": "0"}.items():
+# Thousands of short runs side by side. A rank of Open MPI that waits leaves its core to others, or most of the time is spent on waiting; at its
+# start it looks for no networks and, without mpirun, starts no server; and who ends with an error gives nobody a second to think about it
+for name, value in {"mpi_yield_when_idle": "1", "pml": "ob1", "btl": "self,vader", "ess_singleton_isolated": "1", "odls_base_sigkill_timeout": "0"}.items():
     os.environ.setdefault(f"OMPI_MCA_{name}", value)
+# its folder of sessions is removed by who leaves it empty, maybe while another process begins one there: one for each worker
+os.environ["OMPI_MCA_orte_tmpdir_base"] = tempfile.mkdtemp(prefix="fsi_mpi_")
+
+
+def pytest_unconfigure():
+    shutil.rmtree(os.environ["OMPI_MCA_orte_tmpdir_base"], ignore_errors=True)
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: not in tools/test --quick")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Tests that share what a fixture of their file has run, or a folder, stay together (pytest-xdist, --dist loadgroup); others go where a core is free."""
+    for item in items:
+        fixtures = item._fixtureinfo.name2fixturedefs.values()  # pylint: disable=protected-access
+        if item.path.parent.name in ("tools", "docs") or any(definitions[-1].scope == "module" for definitions in fixtures):
+            item.add_marker(pytest.mark.xdist_group(item.path.name))

@@ -13,8 +13,8 @@ from xml.etree import ElementTree
 
 from . import launch, paths
 
-# What --quick and the line coverage leave out of unittest/: scenes, whose equations the tests of the styles look at one by one; what runs
-# tools, installs, builds or counts instructions, to which an instrumented build adds its own
+# What --quick and the line coverage leave out of unittest/, beside cases marked slow: scenes, whose equations the tests of the styles look at one
+# by one; what runs tools, installs, builds or counts instructions, to which an instrumented build adds its own
 SLOW = ["scenes", "tools", "docs", "styles/test_fuzz.py", "styles/test_faults.py"]
 
 
@@ -41,10 +41,10 @@ def pytest(arguments):
     """(passed, failed) of the tests in unittest/; an error in collecting or setting up counts as a failure."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
-        # files side by side, since most tests run on one core; a file's tests share what its fixtures have run. Long files first
+        # tests side by side, since most run on one core; those that share what a fixture has run stay together (unittest/conftest.py). Long ones first
         tests = [str(paths.ROOT / "unittest" / name) for name in ("tools", "scenes", "docs", "styles")]
         tests = [test for test in tests if f"--ignore={test}" not in arguments]  # pytest would collect what it is given, ignored or not
-        command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist", "loadfile", f"--junitxml={report}",
+        command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist", "loadgroup", f"--junitxml={report}",
                    *arguments, *tests]
         status = subprocess.run(command, cwd=paths.ROOT, env=launch.environment(), check=False).returncode
         passed = failed = 0
@@ -68,7 +68,7 @@ def other_builds():
 
 def quick():
     """pytest's options that leave the slow tests out."""
-    return [f"--ignore={paths.ROOT / 'unittest' / name}" for name in SLOW]
+    return ["-m", "not slow", *(f"--ignore={paths.ROOT / 'unittest' / name}" for name in SLOW)]
 
 
 def coverage():

@@ -27,7 +27,7 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), sum{}, about{}, reduced(false), fix_fsi(nullptr)
+ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), sum{}, origin{}, reduced(false), fix_fsi(nullptr)
 {
   FSI::Keywords keywords(lmp, "compute fsi/force");
   keywords.key("split").logical(split, false);
@@ -76,7 +76,7 @@ void ComputeFSIForce::find_body()
     }
   MPI_Allreduce(&mine, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
   if (mine != first) std::fill_n(place, 3, 0.0);
-  MPI_Allreduce(place, about, 3, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(place, origin, 3, MPI_DOUBLE, MPI_SUM, world);
 }
 
 /* ----------------------------------------------------------------------
@@ -87,7 +87,7 @@ void ComputeFSIForce::find_body()
 void ComputeFSIForce::add(int i, const double *f, double sign, int where)
 {
   double r[3];
-  for (int d = 0; d < 3; d++) r[d] = atom->x[i][d] - about[d];
+  for (int d = 0; d < 3; d++) r[d] = atom->x[i][d] - origin[d];
   domain->minimum_image(r);
   const int dim = fix_fsi->dim;
   for (int d = 0; d < 3; d++) {
@@ -140,6 +140,6 @@ void ComputeFSIForce::compute_vector()
     }
   }
   if (all[MASS] == 0.0) return;    // no such particle in the group
-  for (int d = 0; d < 3; d++) about[d] += all[MOMENT + d] / all[MASS];
-  domain->remap(about);
+  for (int d = 0; d < 3; d++) origin[d] += all[MOMENT + d] / all[MASS];
+  domain->remap(origin);
 }

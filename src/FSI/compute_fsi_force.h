@@ -40,8 +40,8 @@ class ComputeFSIForce : public Compute {
   int split;
 
  private:
-  enum { FORCE = 0, TORQUE = 3, VISCOUS = 6, VISCOUS_TORQUE = 9, MOMENT = 12, MASS = 15, NSUM };    // about and from `about`
-  double sum[NSUM], about[3];
+  enum { FORCE = 0, TORQUE = 3, VISCOUS = 6, VISCOUS_TORQUE = 9, MOMENT = 12, MASS = 15, NSUM };    // about and from `origin`
+  double sum[NSUM], origin[3];
   bool reduced;    // over ranks, since the last forces
   class FixFSI *fix_fsi;
 

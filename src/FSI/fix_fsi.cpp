@@ -339,9 +339,9 @@ void FixFSI::update_state(bool advance)
     gather_walls();
     const Row *const x = rows(atom->x);
     // walls of particles go on behind a mirror themselves
-    const Clearance away(walls.wall, cut);
+    const InnerBox inner(walls.wall, cut);
     for (int i = 0; i < nall; i++)
-      wmask[i] = away.holds(x[i]) || state[atom->type[i]].species == RIGID ? 0 : walls.near(x[i], cut);
+      wmask[i] = inner.contains(x[i]) || state[atom->type[i]].species == RIGID ? 0 : walls.near(x[i], cut);
   }
 
   phase.next(Profile::DENSITY);

@@ -55,7 +55,7 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("growth").number(growth, 1.1, Range::above(1.0));
   keywords.key("substeps").choice(automatic, 0, {"keep", "auto"});
   keywords.key("stop").number(end, BIG, Range::above(0.0));
-  keywords.key("check").choice(check, NO, {"no", "warn", "error"});
+  keywords.key("check").choice(check, NO_CHECK, {"no", "warn", "error"});
   keywords.parse(narg - 3, arg + 3);
   if (of_fluid == 0.0) of_fluid = cfl > 0.0 ? cfl : Limits::FLUID_FACTOR;
   if (of_solid == 0.0) of_solid = cfl > 0.0 ? cfl : Limits::SOLID_FACTOR;
@@ -70,7 +70,7 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
   extscalar = extvector = 0;
   global_freq = 1;
   dynamic_group_allow = 1;
-  time_depend = restart_global = check == NO;
+  time_depend = restart_global = check == NO_CHECK;
 }
 
 /* ---------------------------------------------------------------------- */

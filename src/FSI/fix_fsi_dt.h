@@ -47,14 +47,14 @@ class FixFSIDt : public Fix, public FSI::Part {
   void start_step() override;
   void *extract(const char *, int &) override;    // "step", "substeps": null where it does not choose them
   void find_idle(const Census &, const Idle &) const override;
-  bool chooses() const { return check == NO; }
+  bool chooses() const { return check == NO_CHECK; }
   bool chooses_substeps() const { return automatic; }
   double largest_courant() const;    // that it allows
 
  private:
   static constexpr int NLIMIT = FSI::Limits::NLIMIT;
   enum Cause { MAXIMUM = NLIMIT, GROWTH };
-  enum Check { NO, WARN, STOP };
+  enum CheckAction { NO_CHECK, WARN, STOP };
   class FixFSI *fix_fsi;
 
   FSI::Keywords keywords;

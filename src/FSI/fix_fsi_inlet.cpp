@@ -41,7 +41,7 @@ static constexpr double AUTO = -1.0;
 static constexpr int PRESSURE_COLUMN = 3, NCOLUMNS = 4;    // of the values of variables
 static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with; a column more or less is there at any time
 static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: no fluid to speak of
-static constexpr double TAKEN = 0.5;    // of the spacing: a place is taken by who is as near
+static constexpr double OCCUPIED = 0.5;    // of the spacing: a place is taken by who is as near
 
 /* ---------------------------------------------------------------------- */
 
@@ -91,8 +91,8 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   extvector = 0;
   global_freq = 1;
   restart_global = 1;
-  fields.set("of the buffer", Fields::FILE, true, of_buffer);
-  fields.set("place of the copy", Fields::FILE, true, behind, 3);
+  fields.set("of the buffer", Fields::RESTART, true, of_buffer);
+  fields.set("place of the copy", Fields::RESTART, true, behind, 3);
   register_fields();
 }
 
@@ -339,9 +339,9 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
 
   // along the lateral axis, then the distance
   const int a = axis == 0 ? 1 : 0;
-  const double reach = TAKEN * fix_fsi->dx;
+  const double reach = OCCUPIED * fix_fsi->dx;
   std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) { return b.x[a] < c.x[a] || (b.x[a] == c.x[a] && b.parent < c.parent); });
-  std::vector<int> is_taken(copies.size(), 0), taken(copies.size());
+  std::vector<int> is_occupied(copies.size(), 0), occupied(copies.size());
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (s < low - reach || s > high + reach) continue;
@@ -357,18 +357,18 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
         if (species != FLUID)
           error->one(FLERR, "{} {}: atom {} of a {} at {:g} {:g} {:g} is where fluid of its buffer should be", who, id, atom->tag[i],
                      species == RIGID ? "wall" : "solid", atom->x[i][0], atom->x[i][1], atom->x[i][2]);
-        is_taken[c - copies.begin()] = 1;
+        is_occupied[c - copies.begin()] = 1;
       }
     }
   }
-  MPI_Allreduce(is_taken.data(), taken.data(), taken.size(), MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(is_occupied.data(), occupied.data(), occupied.size(), MPI_INT, MPI_MAX, world);
 
   tagint largest = last_id, id_now;
   for (const auto &fix : modify->get_fix_by_style("^fsi/[inout]+let$")) largest = std::max(largest, dynamic_cast<FixFSIInlet *>(fix)->last_id);
   for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
   MPI_Allreduce(&largest, &id_now, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   for (size_t k = 0; k < copies.size(); k++)
-    if (taken[k]) copies[k].parent = 0;
+    if (occupied[k]) copies[k].parent = 0;
   std::sort(copies.begin(), copies.end(), [](const Copy &b, const Copy &c) { return b.parent < c.parent; });
 
   const int first = atom->nlocal;

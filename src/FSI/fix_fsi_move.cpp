@@ -98,7 +98,7 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
 
   time_integrate = 1;
   restart_global = 1;
-  fields.set("place before the motion", Fields::FILE, true, original, 3);
+  fields.set("place before the motion", Fields::RESTART, true, original, 3);
   register_fields();
   for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], original[i]);
 }

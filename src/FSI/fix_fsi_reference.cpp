@@ -106,7 +106,7 @@ void FixFSIReference::setup_post_neighbor()
   reserve(all);
   resolve();
   for (int i = 0; i < atom->nlocal; i++)
-    if (slot[i] == NONE) slot[i] = FOREIGN;
+    if (slot[i] == NO_BONDS) slot[i] = FOREIGN;
 }
 
 void FixFSIReference::post_neighbor()
@@ -619,7 +619,7 @@ void FixFSIReference::copy_arrays(int i, int j, int delflag)
 
 void FixFSIReference::set_arrays(int i)
 {
-  slot[i] = NONE;
+  slot[i] = NO_BONDS;
 }
 
 /* ----------------------------------------------------------------------

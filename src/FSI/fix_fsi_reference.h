@@ -87,8 +87,8 @@ class FixFSIReference : public Fix {
   std::string as_now() const;
   bool has_record;
   class NeighList *list;
-  int *slot;    // per local atom: where its bonds are, or NONE or FOREIGN
-  enum { NONE = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began
+  int *slot;    // per local atom: where its bonds are, or NO_BONDS or FOREIGN
+  enum { NO_BONDS = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began
   int maxbond;
   std::vector<int> nbond, local, unused;
   std::vector<tagint> partner, owner;    // owner: ID of the slot's atom when its bonds were last looked at

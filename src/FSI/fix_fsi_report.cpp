@@ -234,7 +234,7 @@ void FixFSIReport::sample()
     const bool fluid = s.species == FLUID;
     const double ratio = fix_fsi->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i) : fix_fsi->density_ratio(i);
     enter(fluid ? FLUID_DENSITY : SOLID_DENSITY, std::abs(ratio - 1.0), 0.0, atom->tag[i]);
-    if (fluid) enter(MACH, std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]) / s.c, 0.0, atom->tag[i]);
+    if (fluid) enter(MACH_NUMBER, std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]) / s.c, 0.0, atom->tag[i]);
   }
 }
 

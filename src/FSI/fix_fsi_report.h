@@ -54,7 +54,7 @@ class FixFSIReport : public Fix, public FSI::Part {
   FILE *fp;    // of rank 0; null: the log
 
   // worst values of the run
-  enum { MACH = FSI::Limits::NLIMIT, FLUID_DENSITY, SOLID_DENSITY, NWORST };
+  enum { MACH_NUMBER = FSI::Limits::NLIMIT, FLUID_DENSITY, SOLID_DENSITY, NWORST };
   struct Worst {
     double value;
     double of_limit;    // share of the largest Courant number allowed

@@ -201,7 +201,7 @@ std::vector<double> FixFSISpectrum::prepare(double &area) const
   }
   // weighted least squares, so that nothing is left at frequency 0
   const double slope = detrend == LINEAR ? (area * s1y - s1 * sy) / (area * s2 - s1 * s1) : 0.0;
-  const double level = detrend == NONE ? 0.0 : (sy - slope * s1) / area;
+  const double level = detrend == UNCHANGED ? 0.0 : (sy - slope * s1) / area;
   for (int k = 0; k < n; k++) y[k] = w[k] * (y[k] - level - slope * (k - 0.5 * n));
   return y;
 }

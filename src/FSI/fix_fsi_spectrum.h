@@ -45,7 +45,7 @@ class FixFSISpectrum : public Fix {
   double memory_usage() override;
 
  private:
-  enum Detrend { NONE, MEAN, LINEAR };
+  enum Detrend { UNCHANGED, MEAN, LINEAR };
   struct Peak {
     double frequency, amplitude;
   };

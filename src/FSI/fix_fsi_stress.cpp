@@ -61,9 +61,9 @@ void FixFSIStress::choose_fields()
 {
   Pair *const pair = force->pair ? force->pair_match("^fsi/solid$", 0) : nullptr;
   int dim_of_extract;
-  fields.set("stress", Fields::FILE, true, stress, ns);
-  fields.set("plastic strain", Fields::FILE, plastic, strain);
-  fields.set("hourglass force", Fields::FILE, pair && *static_cast<double *>(pair->extract("hourglass", dim_of_extract)) > 0.0, hourglass, domain->dimension);
+  fields.set("stress", Fields::RESTART, true, stress, ns);
+  fields.set("plastic strain", Fields::RESTART, plastic, strain);
+  fields.set("hourglass force", Fields::RESTART, pair && *static_cast<double *>(pair->extract("hourglass", dim_of_extract)) > 0.0, hourglass, domain->dimension);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -177,9 +177,9 @@ void FixFSIWallMirror::post_integrate()
 
   for (auto &w : walls) w.position += dth * w.velocity[w.axis];
 
-  const Clearance away(walls, near);
+  const InnerBox inner(walls, near);
   for (int i = 0; i < atom->nlocal; i++) {
-    if (away.holds(x[i]) || !(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID) continue;
+    if (inner.contains(x[i]) || !(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID) continue;
     for (const auto &w : walls) {
       const double a = w.distance(x[i]);
       if (a >= near || (w.finite && !w.spans(x[i], 0.0))) continue;

@@ -76,7 +76,7 @@ namespace FSI {
   }
 
   // Positions of partners from those of i, and velocities.
-  template <class T, int D> struct Apart {
+  template <class T, int D> struct Separation {
     T x[D], v[D];
 
     // from: x, v of i
@@ -150,7 +150,7 @@ namespace FSI {
 
   // adds artificial viscosity of a bond, g = V_i V_j (grad W)/x_ij, to the force on j; what it takes from their energy
   template <class T, int D>
-  FSI_INLINE T rub(const ArtificialViscosity &viscosity, const State &si, const State &sj, const T &g, const Apart<T, D> &b, T (&force)[D])
+  FSI_INLINE T rub(const ArtificialViscosity &viscosity, const State &si, const State &sj, const T &g, const Separation<T, D> &b, T (&force)[D])
   {
     T vdotx = 0.0, rsq = 0.0;
     for (int a = 0; a < D; a++) {
@@ -169,7 +169,7 @@ namespace FSI {
   {
     using namespace BondFlag;
     using L = Lanes<T>;
-    using Partners = Apart<T, D>;
+    using Partners = Separation<T, D>;
     constexpr int NV = 2 * D + 2, W = L::WIDTH;
     constexpr bool VELOCITIES = FLAGS & (VISCOSITY | SUMS);
     // partners of a row as read once, kept for the second pass over them; copied, since doubles need not be where packs may be

@@ -200,7 +200,7 @@ static const std::string FIELD = "field ";
 void Fields::write(Record &record) const
 {
   for (const auto &f : fields)
-    if (f.life == FILE) record.add(FIELD + f.name, std::to_string(f.columns));
+    if (f.life == RESTART) record.add(FIELD + f.name, std::to_string(f.columns));
 }
 
 void Fields::read(const Record &record, const std::vector<std::string> &forget)
@@ -213,7 +213,7 @@ void Fields::read(const Record &record, const std::vector<std::string> &forget)
     const std::string name = line.first.substr(FIELD.size());
     const int columns = std::stoi(line.second);
     Field *const f = find(name);
-    if (f && f->life == FILE && std::find(forget.begin(), forget.end(), name) == forget.end()) {
+    if (f && f->life == RESTART && std::find(forget.begin(), forget.end(), name) == forget.end()) {
       if (f->columns != columns)
         error->all(FLERR, "The restart file has {} numbers of {} for each atom, this script's {} needs {}", columns, name, record.style,
                    f->columns);
@@ -227,7 +227,7 @@ int Fields::restart_size() const
 {
   int n = 1;
   for (const auto &f : fields)
-    if (f.life == FILE) n += f.columns;
+    if (f.life == RESTART) n += f.columns;
   return n;
 }
 
@@ -235,7 +235,7 @@ int Fields::pack_restart(int i, double *buf) const
 {
   double *const first = buf++;
   for (const auto &f : fields)
-    if (f.life == FILE) buf = std::copy_n(f.at(i), f.columns, buf);
+    if (f.life == RESTART) buf = std::copy_n(f.at(i), f.columns, buf);
   first[0] = buf - first;
   return buf - first;
 }
@@ -275,7 +275,7 @@ void FixFields::register_fields()
     atom->add_callback(Atom::GROW);
     grows = true;
   }
-  if (!restarts && fields.any(Fields::FILE)) {
+  if (!restarts && fields.any(Fields::RESTART)) {
     atom->add_callback(Atom::RESTART);
     restarts = true;
     restart_peratom = 1;
@@ -345,12 +345,12 @@ static int mask_of(std::initializer_list<int> species)
 
 void Message::add(double *&array, std::initializer_list<int> species, const bool *when)
 {
-  parts.push_back({&array, nullptr, 0, 1, mask_of(species), when});
+  columns.push_back({&array, nullptr, 0, 1, mask_of(species), when});
 }
 
 void Message::add(double **&array, int first, int n, std::initializer_list<int> species)
 {
-  if (n > 0) parts.push_back({nullptr, &array, first, n, mask_of(species), nullptr});
+  if (n > 0) columns.push_back({nullptr, &array, first, n, mask_of(species), nullptr});
 }
 
 int Message::size() const
@@ -358,7 +358,7 @@ int Message::size() const
   int most = 0;
   for (int s = NONE; s <= RIGID; s++) {
     int n = 0;
-    for (const auto &p : parts)
+    for (const auto &p : columns)
       if (p.species & 1 << s) n += p.n;
     most = std::max(most, n);
   }
@@ -368,7 +368,7 @@ int Message::size() const
 template <class Visit> void Message::visit(int i, Visit visit) const
 {
   const int kind = 1 << state[atom->type[i]].species;
-  for (const auto &p : parts)
+  for (const auto &p : columns)
     if ((p.species & kind) && (!p.when || *p.when)) visit(p.at(i), p.n);
 }
 

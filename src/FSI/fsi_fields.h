@@ -32,7 +32,7 @@ namespace FSI {
    public:
     // how long its numbers last: until the next step finds them anew, for local and ghost atoms; or as long as the (local) atom, with
     // which they go from rank to rank; or that and in restart files
-    enum Life { STEP, ATOM, FILE };
+    enum Life { STEP, ATOM, RESTART };
 
     Fields(LAMMPS *lmp) : Pointers(lmp) {}
     Fields(const Fields &) = delete;
@@ -116,7 +116,7 @@ namespace FSI {
   class Message : protected Pointers {
    public:
     Message(LAMMPS *lmp, const std::vector<State> &state) : Pointers(lmp), state(state) {}
-    void clear() { parts.clear(); }
+    void clear() { columns.clear(); }
     // when: null, or whether it is carried now
     void add(double *&array, std::initializer_list<int> species, const bool *when = nullptr);
     void add(double **&array, int first, int n, std::initializer_list<int> species);
@@ -129,13 +129,13 @@ namespace FSI {
     void add_up(int n, const int *list, const double *buf) const;
 
    private:
-    struct Part {
+    struct Column {
       double **one, ***many;
       int first, n, species;
       const bool *when;
       double *at(int i) const { return one ? *one + i : (*many)[i] + first; }
     };
-    std::vector<Part> parts;
+    std::vector<Column> columns;
     const std::vector<State> &state;
     template <class Visit> void visit(int i, Visit) const;
   };

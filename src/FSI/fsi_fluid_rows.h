@@ -229,17 +229,17 @@ namespace FSI {
   }
 
   // What is constant in a row of forces.
-  struct ForceRow {
+  struct RowConstants {
     double c, bulk, floor;    // speed of sound of viscosity, modulus of the guard, lowest pressure
     double rubs, visc;        // does the wall? sum of both viscosities
     double volume, sharper;    // of neighbours on a finer lattice
     bool thin;
     double extrapolate[3];     // solids and thin walls: gravity, if pressures beyond them are hydrostatic
   };
-  template <int D, int KIND, int FLAGS> FSI_INLINE ForceRow force_row(const FluidParticles &in, const ForceLaws &laws, int i, int type_i, int type_j)
+  template <int D, int KIND, int FLAGS> FSI_INLINE RowConstants constants_of_row(const FluidParticles &in, const ForceLaws &laws, int i, int type_i, int type_j)
   {
     const State &fluid = in.state[type_i], &other = in.state[type_j];
-    ForceRow r;
+    RowConstants r;
     r.c = KIND == WITH_FLUID ? 0.5 * (fluid.c + other.c) : KIND == WITH_WALL || fluid.c < other.c ? fluid.c : other.c;
     r.bulk = fluid.rho0 * fluid.csq;
     r.floor = fluid.floor;
@@ -282,13 +282,13 @@ namespace FSI {
   // Adds laminar viscosity to the forces on both; what it takes from their energy, times 2 for images, which each pair meets from both sides.
   template <class T, int KIND, int FLAGS, int D>
   FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, const Mirror &mirror, const Particle<T, D> &pi, const Particle<T, D> &pj,
-                   const T (&velocity_of_j)[D], const int *j, const ForceRow &of, const T &g, const T &rsq, const T (&x)[D], const T (&v)[D], T (&force)[D], T (&on_j)[D])
+                   const T (&velocity_of_j)[D], const int *j, const RowConstants &constant, const T &g, const T &rsq, const T (&x)[D], const T (&v)[D], T (&force)[D], T (&on_j)[D])
   {
     using L = Lanes<T>;
-    const double visc = of.visc;
+    const double visc = constant.visc;
     // what fluid would have in the place of j, of a wall or solid
     const auto beyond_face = [&](int d) __attribute__((always_inline)) {
-      return of.thin ? 2.0 * velocity_of_j[d] - pi.v[d] : L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
+      return constant.thin ? 2.0 * velocity_of_j[d] - pi.v[d] : L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
     };
     const T vv = pi.vol * pj.vol;
     T rubbing[D], loss = 0.0;
@@ -344,12 +344,12 @@ namespace FSI {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i, type_j = in.type[row.j[0]];
-      const ForceRow of = force_row<D, KIND, FLAGS>(in, laws, i, in.type[i], type_j);
+      const RowConstants constant = constants_of_row<D, KIND, FLAGS>(in, laws, i, in.type[i], type_j);
       Particle<T, D> pi(point[i]);
       // neighbours of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i of the lattices
-      const double fill = (FLAGS & Flag::FINER) ? fill_of(in, i, type_j) : 1.0, back = (FLAGS & Flag::FINER) ? fill / of.volume : 1.0;
-      if (FLAGS & Flag::FINER) pi.pv2 = fill * of.volume * pi.pv2;
-      const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && of.thin);
+      const double fill = (FLAGS & Flag::FINER) ? fill_of(in, i, type_j) : 1.0, back = (FLAGS & Flag::FINER) ? fill / constant.volume : 1.0;
+      if (FLAGS & Flag::FINER) pi.pv2 = fill * constant.volume * pi.pv2;
+      const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && constant.thin);
       T sum[D];
       for (T &s : sum) s = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -364,18 +364,18 @@ namespace FSI {
         if (FLAGS & Flag::IMAGES) g = weight * g;
         T pushing = g;    // of pressures
         if (FLAGS & Flag::FINER) {
-          pushing = kernel.sharper_gradient(root(rsq), of.sharper);
+          pushing = kernel.sharper_gradient(root(rsq), constant.sharper);
           if (FLAGS & Flag::IMAGES) pushing = weight * pushing;
         }
         const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
 
         T viscous_push = 0.0;
-        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, of.extrapolate, of.floor, back, own);
+        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate, constant.floor, back, own);
         // beyond the compression of the fluid and, in density mode summation, of the solid
         T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
         if (FLAGS & Flag::ARTIFICIAL) {
-          T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), of.c, pi.vol * pj.vol);
-          if (KIND == WITH_WALL) q = of.rubs * q;
+          T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), constant.c, pi.vol * pj.vol);
+          if (KIND == WITH_WALL) q = constant.rubs * q;
           if (FLAGS & Flag::FINER) viscous_push = q * g;
           else p += q;
           if (FLAGS & Flag::SUMS) by.artificial += share * q * g * vdotx;
@@ -387,7 +387,7 @@ namespace FSI {
         for (int d = 0; d < D; d++) force[d] = p * x[d];
         if (KIND == WITH_WALL) {
           // the guard keeps out what has no pressure of its own
-          const T k = laws.guard[type_j](rsq, of.bulk, of.bulk);
+          const T k = laws.guard[type_j](rsq, constant.bulk, constant.bulk);
           for (int d = 0; d < D; d++) force[d] += k * x[d];
           coupled -= k * vdotx;
         }
@@ -398,7 +398,7 @@ namespace FSI {
         if (FLAGS & Flag::LAMINAR) {
           // walls and solids have another velocity than i itself in places that are left over
           const T there = KIND == WITH_FLUID || (FLAGS & Flag::IMAGES) ? g : weight * g;
-          const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, of, there, rsq, x, v, force, on_j);
+          const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, there, rsq, x, v, force, on_j);
           if (FLAGS & Flag::SUMS) by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * share * loss : share * loss;
         }
         // what wall particles are given: they are not in the sum of energies
@@ -494,14 +494,6 @@ namespace FSI {
     static constexpr bool ONE_BY_ONE = std::is_same_v<T, double>;
     const K kernel;
 
-    template <class Loop> static void run(Loop loop)
-    {
-      if constexpr (ONE_BY_ONE) loop(0.0);
-#if FSI_PACKS
-      else run_packed(loop);
-#endif
-    }
-
    public:
     explicit FluidLoopsOf(const K &kernel_in) : kernel(kernel_in) {}
 
@@ -511,7 +503,7 @@ namespace FSI {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       const auto loop = [&](auto kind_is, auto flags) {
-        run([&](auto number) __attribute__((always_inline)) {
+        run_loop<T>([&](auto number) __attribute__((always_inline)) {
           rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate,
                                                              reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums);
         });
@@ -538,7 +530,7 @@ namespace FSI {
       PairSums unused;
       if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL)) sums = &unused;
       const auto loop = [&](auto kind_is, auto flags) {
-        run([&](auto number) __attribute__((always_inline)) {
+        run_loop<T>([&](auto number) __attribute__((always_inline)) {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
         });
       };
@@ -568,7 +560,7 @@ namespace FSI {
     {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::IMAGES | Flag::BOTH>((image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0), [&](auto flags) {
-        run([&](auto number) __attribute__((always_inline)) {
+        run_loop<T>([&](auto number) __attribute__((always_inline)) {
           shift_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, wdx,
                                                    reinterpret_cast<double(*)[Shift<D>::ROW]>(shift));
         });
@@ -597,7 +589,7 @@ namespace FSI {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::FINER>(
           what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
-            if constexpr (!(flags() & Flag::FINER) || !(flags() & (Flag::DIVERGENCE | Flag::BOTH))) run([&](auto number) __attribute__((always_inline)) {
+            if constexpr (!(flags() & Flag::FINER) || !(flags() & (Flag::DIVERGENCE | Flag::BOTH))) run_loop<T>([&](auto number) __attribute__((always_inline)) {
               distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, x, vol, sum);
             });
           });

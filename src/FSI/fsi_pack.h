@@ -192,6 +192,7 @@ namespace FSI {
 #endif
   }
 #else
+  typedef double Pack;
   inline bool have_packs() { return false; }
 #endif
 
@@ -260,19 +261,20 @@ namespace FSI {
     }
   }
 
-  // loop(T()) with T = Pack where the processor has packs, compiled for it, else with T = double, which there is if ONE_BY_ONE
+  // loop(T()), compiled for a processor that has what T needs
 #if FSI_PACKS
   template <class Loop> FSI_TARGET inline void run_packed(Loop loop)
   {
     loop(Pack());
   }
 #endif
-  template <bool ONE_BY_ONE = true, class Loop> void run_loop(Loop loop, bool packs = true)
+  template <class T, class Loop> void run_loop(Loop loop)
   {
 #if FSI_PACKS
-    if (!ONE_BY_ONE || (packs && have_packs())) return run_packed(loop);
+    if constexpr (std::is_same_v<T, Pack>) run_packed(loop);
+    else
 #endif
-    if constexpr (ONE_BY_ONE) loop(0.0);
+      loop(T());
   }
 
 }    // namespace FSI

@@ -37,13 +37,13 @@ void Profile::clear()
 
 /* ---------------------------------------------------------------------- */
 
-int Profile::enter(int part)
+int Profile::enter(int section)
 {
   const int before = current;
   const double now = platform::walltime();
   seconds[current] += now - since;
   since = now;
-  current = part;
+  current = section;
   return before;
 }
 

@@ -26,7 +26,7 @@ namespace FSI {
 
   class Profile {
    public:
-    enum Part { DENSITY, STRESS, FLUID, SOLID, WALLS, MESSAGES, REPORT, NPART, OUTSIDE = NPART };
+    enum Section { DENSITY, STRESS, FLUID_FORCES, SOLID_FORCES, WALLS, MESSAGES, REPORT, NPART, OUTSIDE = NPART };
     double seconds[NPART + 1];    // each without what is nested in it
 
     bool counting;               // messages of this step
@@ -36,8 +36,8 @@ namespace FSI {
 
     Profile() { clear(); }
     void clear();
-    int current;            // part that is running
-    int enter(int part);    // returns the part before
+    int current;            // section that is running
+    int enter(int section);    // returns the one before
     template <class T> void count(Comm *, T *who, bool back, bool skip_empty);
 
     struct Message {
@@ -56,16 +56,16 @@ namespace FSI {
   class Phase {
    public:
     Phase(Profile *profile_in) : profile(profile_in), before(-1) {}
-    Phase(Profile *profile_in, int part) : Phase(profile_in) { next(part); }
+    Phase(Profile *profile_in, int section) : Phase(profile_in) { next(section); }
     Phase(const Phase &) = delete;
     ~Phase()
     {
       if (before >= 0) profile->enter(before);
     }
-    void next(int part)
+    void next(int section)
     {
-      if (!profile || profile->current == part) return;
-      const int last = profile->enter(part);
+      if (!profile || profile->current == section) return;
+      const int last = profile->enter(section);
       if (before < 0) before = last;
     }
 

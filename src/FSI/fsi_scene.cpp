@@ -39,14 +39,14 @@ Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) :
 void Scene::resolve(double hdx, const std::vector<double> &spacing)
 {
   const auto resolution_of = [&](double own) {
-    Resolution of;
-    of.dx = own;
-    of.h = hdx * own;
-    with_kernel(kernel, dim, of.h, [&](const auto &k) {
-      of.cut = k.cut;
-      of.psi_bulk = lattice_number_density(k, own);
+    Resolution r;
+    r.dx = own;
+    r.h = hdx * own;
+    with_kernel(kernel, dim, r.h, [&](const auto &k) {
+      r.cut = k.cut;
+      r.psi_bulk = lattice_number_density(k, own);
     });
-    return of;
+    return r;
   };
   const Resolution fluid = resolution_of(dx);
   h = fluid.h;

@@ -86,7 +86,7 @@ void SurfaceRoom::set_array(Fields &fields)
     int dim_of_extract;
     return fluid && *static_cast<int *>(fluid->extract("density/surface", dim_of_extract));
   };
-  fields.set("room at the surface", Fields::FILE, scene.density_fluid == Scene::CONTINUITY && wanted(), room, 2);
+  fields.set("room at the surface", Fields::RESTART, scene.density_fluid == Scene::CONTINUITY && wanted(), room, 2);
   if (room) of_plane = RoomOfPlane(scene.kernel, scene.dim, scene.h / scene.dx);
 }
 
@@ -190,7 +190,7 @@ void SurfaceRoom::follow()
     atom->rho[i] = std::max(before + (has - had) * state.rho0, atom->rmass[i] * scene.w0);
     changes[2 * i] = has - had;
     changes[2 * i + 1] = atom->rho[i] - before;
-    if (scene.ledger) scene.energy_out[Scene::DIFFUSION] += taken(i, before, atom->rho[i] - before);
+    if (scene.ledger) scene.energy_out[Scene::DIFFUSION] += energy_loss(i, before, atom->rho[i] - before);
   }
 }
 
@@ -199,7 +199,7 @@ void SurfaceRoom::follow()
    two densities, which is what the ledger's energy is of (where it takes half of a step's work, the other is in the next)
 ------------------------------------------------------------------------- */
 
-double SurfaceRoom::taken(int i, double now, double change) const
+double SurfaceRoom::energy_loss(int i, double now, double change) const
 {
   const State &state = scene.state[atom->type[i]];
   double sum = 0.0;

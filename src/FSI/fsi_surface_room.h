@@ -74,7 +74,7 @@ namespace FSI {
     void begin();
     std::vector<double> gradients() const;
     void follow();
-    double taken(int i, double now, double change) const;
+    double energy_loss(int i, double now, double change) const;
   };
 
 }    // namespace FSI

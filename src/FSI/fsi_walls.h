@@ -50,9 +50,9 @@ namespace FSI {
   };
 
   // Where no point is within a margin of a wall's plane or behind it: the many that are there need no look at each wall.
-  struct Clearance {
+  struct InnerBox {
     double lo[3], hi[3];
-    Clearance(const std::vector<Wall> &walls, double margin)
+    InnerBox(const std::vector<Wall> &walls, double margin)
     {
       for (int d = 0; d < 3; d++) {
         lo[d] = -INFINITY;
@@ -62,7 +62,7 @@ namespace FSI {
         if (w.side > 0.0) lo[w.axis] = std::fmax(lo[w.axis], w.position + margin);
         else hi[w.axis] = std::fmin(hi[w.axis], w.position - margin);
     }
-    bool holds(const double *x) const
+    bool contains(const double *x) const
     {
       return x[0] > lo[0] && x[0] < hi[0] && x[1] > lo[1] && x[1] < hi[1] && x[2] > lo[2] && x[2] < hi[2];
     }

@@ -464,7 +464,7 @@ FluidParticles PairFSIFluid::particles_at(const double *points) const
   return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill, fill_weight, force->newton_pair != 0};
 }
 
-template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest rest)
+template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, Complete complete)
 {
   constexpr size_t SIZE = sizeof(Point<D>) / sizeof(double);
   const int nall = atom->nlocal + atom->nghost;
@@ -480,7 +480,7 @@ template <int D, class Rest> FluidParticles PairFSIFluid::gather(double t, Rest 
     }
     p.rho = rho[i];
     p.vol = rmass[i] / p.rho;
-    rest(i, p);
+    complete(i, p);
   }
   return particles_at(points.data());
 }
@@ -627,7 +627,7 @@ void PairFSIFluid::extrapolate_velocities()
 
 void PairFSIFluid::compute(int eflag, int vflag)
 {
-  const Phase phase(fix_fsi->profile, Profile::FLUID);
+  const Phase phase(fix_fsi->profile, Profile::FLUID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
 

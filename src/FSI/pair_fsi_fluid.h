@@ -110,7 +110,7 @@ class PairFSIFluid : public PairFSI {
   void find_thin_bodies();
   void follow_thin_bodies();
   FSI::FluidParticles particles_at(const double *points) const;
-  template <int D, class Rest> FSI::FluidParticles gather(double t, Rest);    // positions a time t later; what else a loop needs
+  template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);    // positions a time t later; what else a loop needs is up to complete(i, point)
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
   FSI::Fields fields;
   double *rate;      // local after the reverse communication

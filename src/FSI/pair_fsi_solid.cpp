@@ -467,7 +467,7 @@ void PairFSISolid::add_number_density(double *psi, bool all_bodies)
 
 void PairFSISolid::compute(int eflag, int vflag)
 {
-  const Phase phase(fix_fsi->profile, Profile::SOLID);
+  const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
   (this->*force_loop)();

@@ -187,7 +187,7 @@ const std::vector<int> &PairFSISolidTL::solids() const
 
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
-  const Phase phase(fix_fsi->profile, Profile::SOLID);
+  const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
   if (fix_fsi->substeps > 1 && !update->setupflag) return;
@@ -271,9 +271,11 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
   const bool packs = have_packs() && (one_material || !has_artificial());
   const int named = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
   with_flags<ALL>(fix_fsi->ledger || vflag_global || !packs ? ALL : named, [&](auto which) {
-    if constexpr (!(which() & SUMS) || which() == ALL)
-      run_loop<which() == ALL>([&](auto number) __attribute__((always_inline)) { bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f); },
-                               packs);
+    if constexpr (!(which() & SUMS) || which() == ALL) {
+      const auto loop = [&](auto number) __attribute__((always_inline)) { bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f); };
+      if (packs) return run_loop<Pack>(loop);
+      if constexpr (which() == ALL) run_loop<double>(loop);
+    }
   });
   strain_energy = sums.energy;
   fix_fsi->tally(FixFSI::ARTIFICIAL, sums.artificial);
@@ -508,7 +510,7 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 void PairFSISolidTL::integrate_substeps()
 {
   Profile *const profile = fix_fsi->profile;
-  const Phase phase(profile, Profile::SOLID);
+  const Phase phase(profile, Profile::SOLID_FORCES);
   const int dim = fix_fsi->dim, substeps = fix_fsi->substeps;
   double **x = atom->x;
   double **v = atom->v;

@@ -53,9 +53,9 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("parallel")
 
 
-def frames(folder, scene, ranks=1, grid="* * *", extra=""):
-    """State at steps 0 and 100."""
-    return run(folder, scene.text(grid) + extra + watch() + "run 100\n", ranks, scene_data=scene.data()).frames()
+def frames(folder, scene, ranks=1, grid="* * *", extra="", steps=100):
+    """State at the first and the last step."""
+    return run(folder, scene.text(grid) + extra + watch(every=steps) + f"run {steps}\n", ranks, scene_data=scene.data()).frames()
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +73,7 @@ def reference(folder):
 
 
 def agree(want, got, force=FORCE):
-    assert [frame.step for frame in got] == [0, 100]
+    assert [frame.step for frame in got] == [frame.step for frame in want] and len(got) == 2
     assert difference(want[0], got[0], "f") < force
     for quantity in ("x", "v", "rho", "stress"):
         assert difference(want[1], got[1], quantity) < TRAJECTORY, quantity
@@ -99,10 +99,10 @@ def test_decomposition(tmp_path, reference, name, dim, ranks, grid, newton):
 @pytest.mark.parametrize("name, dim", OTHERS)
 def test_decomposition_of_other_effects(tmp_path, name, dim):
     scene = dam_gate(dim, **ALTERNATIVES[name])
-    want = frames(tmp_path / "one", scene)
+    want = frames(tmp_path / "one", scene, steps=30)
     force = FORCE_TL if scene.solid_style == "fsi/solid/tl" else FORCE
-    agree(want, frames(tmp_path / "four", replace(scene, newton="off"), 4, "2 2 1"), force)
-    agree(want, frames(tmp_path / "on", scene, 4, "2 2 1"), force)
+    agree(want, frames(tmp_path / "four", replace(scene, newton="off"), 4, "2 2 1", steps=30), force)
+    agree(want, frames(tmp_path / "on", scene, 4, "2 2 1", steps=30), force)
 
 
 @pytest.mark.parametrize("newton", ("on", "off"))

@@ -16,7 +16,7 @@ import measure  # noqa: E402
 COMPILED_FOR_AVX2 = {name for file in (paths.ROOT / "src/FSI").iterdir()
                      for name in re.findall(r"\bFSI_TARGET\s+(?:static\s+|inline\s+)?\w+\s+(\w+)\(", file.read_text())}
 DECKS = {"water": {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1", "walls": "yes"},
-         "number density": {"hub": "fluid summation"}, "bare": {}, "watched": {"commands": "fix watch all fsi/watch 1"}}
+         "number density": {"sph": "fluid summation"}, "bare": {}, "watched": {"commands": "fix watch all fsi/watch 1"}}
 
 
 def entered():
@@ -27,6 +27,7 @@ def entered():
     return found
 
 
+@pytest.mark.slow
 def test_without_avx2_nothing_compiled_for_it_is_entered(monkeypatch):
     """FSI_PACKS=no is what a processor without it says; there one instruction of such a function ends the run, in a loop over nothing, too."""
     assert len(COMPILED_FOR_AVX2) >= 2

@@ -146,6 +146,7 @@ def test_too_few_samples(tmp_path):
     assert peaks(result) == (0, 0, 0, 0, 7)
 
 
+@pytest.mark.slow
 def test_plate(tmp_path):
     """The natural frequency of the bundled plate: that of its zero crossings, and of finite elements."""
     figures = run_scene(tmp_path, "oscillating_plate", n=5)

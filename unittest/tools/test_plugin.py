@@ -19,7 +19,7 @@ def same_options():
     return [f"-D{line}" for line in cache if line.startswith(("FSI_NATIVE:", "LAMMPS_SIZES:", "BUILD_MPI:", "LAMMPS_SOURCE_DIR:"))]
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def plain():
     """The folder of a LAMMPS without the package, and the plugin: about a minute with the compiler cache of the usual build."""
     for command in (["cmake", "-S", paths.ROOT, "-B", PLAIN, "-G", "Ninja", "-DFSI_COMPILED_IN=OFF", *same_options()], ["cmake", "--build", PLAIN]):
