@@ -17,6 +17,7 @@ import traceback
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from io import StringIO
+from itertools import groupby
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -31,7 +32,7 @@ MADE_FILE = ".made-by-tools-run"
 CASES_FILE = "cases.json"
 RANKS = 1  # where nobody says how many: small scenes gain nothing by more, and on a busy machine ranks wait for each other
 EDITS_FILE = "edits.json"  # {name: {"find": regular expression, "put": text with {value}}}: settings that no deck has a variable for
-ONE_RUN = {"variables": {}, "deck": None, "may_fail": False}  # of a scene without cases
+ONE_RUN = {"variables": {}, "ranks": None, "deck": None, "may_fail": False}  # of a scene without cases
 OWN_RUN = "custom"  # folder of a run with the user's variables beside the cases, whose results stay as they are
 SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools")  # what decides a result
 
@@ -164,12 +165,11 @@ def study(scene, folder, wanted, ran):
 def run_all(names, folder, ranks=None):
     """Runs all cases of these scenes, as many side by side as there are cores, the longest first; returns the scenes of which something failed.
 
-    On `ranks` each, by default 1, since two runs on a core each take less time than one after the other on two. What an earlier call left at
-    this commit is not run again.
+    `ranks` overrides what the cases say; those on several ranks come last. What an earlier call left at this commit is not run again.
     """
-    folder, ranks = Path(folder), ranks or RANKS
+    folder = Path(folder)
     wanted = {scene: cases(scene) for scene in names}
-    tasks = [(scene, folder / scene / (name or ""), ranks, case["variables"], name, case["deck"], case["may_fail"])
+    tasks = [(scene, folder / scene / (name or ""), ranks or case["ranks"] or RANKS, case["variables"], name, case["deck"], case["may_fail"])
              for scene, found in wanted.items() for name, case in (found or {None: ONE_RUN}).items()]
     commit = _commit()
     good = {task[1] for task in tasks if _is_there(task, commit)}
@@ -177,25 +177,26 @@ def run_all(names, folder, ranks=None):
     took = _seconds_of_page()
     typical = sum(took.values()) / len(took) if took else 60.0  # of what was never run
     estimates = {task[1]: took.get((task[0], task[4]), typical) for task in todo}
-    todo.sort(key=lambda task: -estimates[task[1]])
-    workers = max(1, launch.cores() // ranks)
+    todo.sort(key=lambda task: (task[2], -estimates[task[1]]))
     if good:
         print(f"run: {len(good)} of {len(tasks)} runs are there, of this commit", flush=True)
-    began, sum_of_done, left = time.monotonic(), 0.0, sum(estimates.values())
-    with ProcessPoolExecutor(workers, mp_context=get_context("fork")) as pool:
-        running = {pool.submit(_apart, task): task for task in todo}
-        for k, future in enumerate(as_completed(running), start=len(good) + 1):
-            scene, place, _, _, name, *_ = running[future]
-            status, seconds, output = future.result()
-            if status == 0:
-                good.add(place)
-            else:
-                print(output)
-            sum_of_done += estimates[place]
-            left -= estimates[place]
-            spent = time.monotonic() - began
-            print(f"run: {k} of {len(tasks)}: {' '.join(filter(None, (scene, name)))} {'took' if status == 0 else 'FAILED after'} {seconds:.0f} s; "
-                  f"{spent / 60:.0f} minutes, some {spent * left / sum_of_done / 60:.0f} left", flush=True)
+    began, k, sum_of_done, left = time.monotonic(), len(good), 0.0, sum(estimates.values())
+    for on, some in groupby(todo, key=lambda task: task[2]):
+        with ProcessPoolExecutor(max(1, launch.cores() // on), mp_context=get_context("fork")) as pool:
+            running = {pool.submit(_apart, task): task for task in some}
+            for future in as_completed(running):
+                scene, place, _, _, name, *_ = running[future]
+                status, seconds, output = future.result()
+                if status == 0:
+                    good.add(place)
+                else:
+                    print(output)
+                k += 1
+                sum_of_done += estimates[place]
+                left -= estimates[place]
+                spent = time.monotonic() - began
+                print(f"run: {k} of {len(tasks)}: {' '.join(filter(None, (scene, name)))} {'took' if status == 0 else 'FAILED after'} {seconds:.0f} s; "
+                      f"{spent / 60:.0f} minutes, some {spent * left / sum_of_done / 60:.0f} left", flush=True)
     failed = []
     for scene, found in wanted.items():
         ran = [name for name in found if folder / scene / name in good]

@@ -162,6 +162,7 @@ def test_all_goes_on_after_a_failure(examples, capsys):
     assert scene.main(["all"]) == 1
     assert (paths.ROOT / "README.md").read_text() == readme  # another page's table is not for it
     assert figure(summary_of("toy"), "change") and summary_of("single")
+    assert summary_of("toy", "coarse")["ranks"] == 1 and summary_of("toy", "fine")["ranks"] == 3  # as the cases say
     assert "2 scenes ran, 1 failed bad" in capsys.readouterr().out
     page = (paths.PAGE / "README.md").read_text()
     assert "bad has no results" in page and "| toy | `change` |" in page
