@@ -101,16 +101,6 @@ namespace FSI {
     }
   };
 
-  // the law of a particle, a function of its own: it is no part of what takes several bonds at a time
-  template <class Law, int D>
-#if defined(__GNUC__)
-  __attribute__((noinline))
-#endif
-  PiolaStress<D> evaluate(const Law &law, const double *F, const double *deviator)
-  {
-    return law.template operator()<D>(F, deviator);
-  }
-
   // takes t F^T from a virial
   template <int D> FSI_INLINE void subtract_product(const double *t, const double *F, double *virial)
   {
@@ -204,7 +194,8 @@ namespace FSI {
 
       double Fi[D * D];
       for (int k = 0; k < D * D; k++) Fi[k] = L::sum(F[k]);
-      const auto piola = evaluate<Law, D>(laws[in.type[i]], Fi, in.stress ? in.stress[i] : nullptr);
+      // inline: a call would write F number by number and read it in pairs, which waits until all stores before it are done
+      const auto piola = laws[in.type[i]].template operator()<D>(Fi, in.stress ? in.stress[i] : nullptr);
       double t[D * D];    // derivative of the energy of i with respect to F_i
       for (int k = 0; k < D * D; k++) t[k] = row.volume * piola.P[k];
       if (FLAGS & HOURGLASS) subtract_hourglass<T, D>(row.stiffness, A, row.moments, Fi, t);
