@@ -111,6 +111,7 @@ namespace FSI {
     const Share *share;    // per type
     bool finer;            // does any type differ from fluids in it?
     const double *fill, *fill_weight;    // per particle: by how much more thin bodies count (fsi_sight.h)
+    const double *part, *part_rate;      // per particle: how much of solids is before mirror walls, and its rate; null: all is
     bool newton;    // else a pair across ranks is visited on both: each counts half of powers and forces on walls
   };
 

@@ -137,6 +137,9 @@ namespace FSI {
   FSI_INLINE double fill_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.fill[i] : 1.0; }
   FSI_INLINE double fill_weight_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.fill_weight[i] : 1.0; }
 
+  // Kernel or gradient of neighbours that mirror walls cut
+  template <class T> FSI_INLINE T cut_off(const FluidParticles &in, const int *j, const T &w) { return in.part ? Lanes<T>::read(in.part, j) * w : w; }
+
   // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j. Solids and walls count, but are not shifted.
   template <class T, class K, bool BOTH, bool IMAGE, int D>
   FSI_INLINE void add_shift(const Shift<D> &law, const K &kernel, const Mirror &mirror, const T &r, const T &rsq, const T &g, const T &vol_i, const T &vol_j,
@@ -159,7 +162,7 @@ namespace FSI {
                             const RateLaws laws, double *const rate, double (*const shift)[Shift<K::DIM>::ROW], PairSums *const sums)
   {
     constexpr int D = K::DIM, N = Shift<D>::N;
-    constexpr bool IMAGE = FLAGS & Flag::IMAGES;
+    constexpr bool IMAGE = FLAGS & Flag::IMAGES, CUT = KIND == WITH_SOLID && (FLAGS & Flag::FINER);
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
@@ -182,6 +185,7 @@ namespace FSI {
         const T rsq = product(x, x), r = root(rsq);
         T g = kernel.gradient(r);
         if (IMAGE) g = weight * g;
+        if (CUT) g = cut_off(in, j, g);
         if (FLAGS & Flag::SHIFT) {
           const T vol_j = (FLAGS & Flag::FINER) ? fill * pj.vol : pj.vol;
           add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j, x, j, displacement, shift);
@@ -189,8 +193,10 @@ namespace FSI {
         if (FLAGS & Flag::FINER) {
           g = kernel.sharper_gradient(r, sharper);
           if (IMAGE) g = weight * g;
+          if (CUT) g = cut_off(in, j, g);
         }
-        const T s = g * product(v, x);
+        T s = g * product(v, x);
+        if (CUT && in.part) s += kernel.sharper(r, sharper) * L::read(in.part_rate, j);    // of a place left over, i itself, it is 0
         sum += s;
         if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
         T rate_j = pj.rho * pj.vol * s;
@@ -333,6 +339,7 @@ namespace FSI {
                              const ForceLaws laws, double (*const f)[row_of_forces(K::DIM)], double *const total, PairSums *const sums)
   {
     constexpr int D = K::DIM;
+    constexpr bool CUT = KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL || (KIND == WITH_SOLID && (FLAGS & Flag::FINER));
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
@@ -362,10 +369,12 @@ namespace FSI {
         const T rsq = product(x, x), vdotx = product(v, x);
         T g = kernel.gradient(root(rsq));
         if (FLAGS & Flag::IMAGES) g = weight * g;
+        if (CUT) g = cut_off(in, j, g);
         T pushing = g;    // of pressures
         if (FLAGS & Flag::FINER) {
           pushing = kernel.sharper_gradient(root(rsq), constant.sharper);
           if (FLAGS & Flag::IMAGES) pushing = weight * pushing;
+          if (CUT) pushing = cut_off(in, j, pushing);
         }
         const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
 
@@ -442,7 +451,7 @@ namespace FSI {
         T x[D];
         difference(pi.x, pj.x, x);
         const T rsq = product(x, x), r = root(rsq);
-        T g = kernel.gradient(r);
+        T g = cut_off(in, j, kernel.gradient(r));
         if (IMAGE) g = weight * g;
         add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, fill * pj.vol, x, j, sum, shift);
       });
@@ -475,11 +484,11 @@ namespace FSI {
         }
         const T r = root(rsq);
         if (FLAGS & Flag::DIVERGENCE) {
-          const T w = -weight * rsq * kernel.gradient(r);
+          const T w = cut_off<T>(in, j, -weight * rsq * kernel.gradient(r));
           of_i += w * L::read(vol, j);
           if (FLAGS & Flag::BOTH) L::add(w * vol[i], sum, j);
         } else {
-          const T w = weight * ((FLAGS & Flag::FINER) ? kernel.sharper(r, sharper) : kernel.W(r));
+          const T w = cut_off<T>(in, j, weight * ((FLAGS & Flag::FINER) ? kernel.sharper(r, sharper) : kernel.W(r)));
           of_i += w;
           if (FLAGS & Flag::BOTH) L::add(w, sum, j);
         }
@@ -509,7 +518,7 @@ namespace FSI {
         });
       };
       const int diffusion = kind != WITH_FLUID || laws.delta == 0.0 ? 0 : sums ? DIFFUSION | SUMS : DIFFUSION;
-      with_flags<IMAGES | DIFFUSION | SUMS | FINER | SHIFT>((image ? IMAGES : 0) | finer(kind, in) | diffusion | (shift ? SHIFT : 0), [&](auto flags) {
+      with_flags<IMAGES | DIFFUSION | SUMS | FINER | SHIFT>((image ? IMAGES : 0) | finer_or_cut(kind, in) | diffusion | (shift ? SHIFT : 0), [&](auto flags) {
         if constexpr ((flags() & DIFFUSION) || !(flags() & SUMS)) {
           if constexpr (!(flags() & DIFFUSION))
             if (kind != WITH_FLUID) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
@@ -537,7 +546,7 @@ namespace FSI {
       const int laminar = laws.laminar == 0 ? 0 : laws.laminar == 1 ? LAMINAR : LAMINAR | CENTRAL;
       const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
       const int named = artificial && laminar ? EFFECTS : artificial ? ARTIFICIAL : laminar;
-      const int special = (sums ? SUMS : 0) | finer(kind, in);
+      const int special = (sums ? SUMS : 0) | (kind == WITH_SOLID || kind == WITH_WALL ? finer_or_cut(kind, in) : 0);
       with_flags<EFFECTS | SUMS | IMAGES | FINER>((special || ONE_BY_ONE ? EFFECTS : named) | special | (image ? IMAGES : 0), [&](auto flags) {
         constexpr int effects = flags() & EFFECTS;
         constexpr bool alone = effects == 0 || effects == ARTIFICIAL || effects == LAMINAR || effects == (LAMINAR | CENTRAL);
@@ -582,6 +591,8 @@ namespace FSI {
    private:
     // Rows of solids and walls with finer lattices; those with the fluid's among them have shares that change nothing.
     static int finer(PairKind kind, const FluidParticles &in) { return in.finer && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::FINER : 0; }
+    // Those that mirror walls cut are in the same loops.
+    static int finer_or_cut(PairKind kind, const FluidParticles &in) { return in.part && kind != WITH_FLUID ? Flag::FINER : finer(kind, in); }
 
     void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
                    const double *vol, double *sum) const

@@ -177,13 +177,19 @@ bool Sight::blocked(const double *y) const
 }
 
 /* ----------------------------------------------------------------------
-   images in mirror walls of the solids seen, which fluids meet, too
+   images in mirror walls of the solids seen, which fluids meet, in place of what of them is behind
 ------------------------------------------------------------------------- */
 
 void Sight::see_images()
 {
   const int mask = scene.walls.near(from, scene.cut);
   if (!mask) return;
+  const auto behind = [&](const Seen &s) {
+    const double y[3] = {from[0] + s.x[0], from[1] + s.x[1], from[2] + s.x[2]};
+    return scene.state[atom->type[s.i]].species == SOLID &&
+        std::any_of(scene.walls.wall.begin(), scene.walls.wall.end(), [&](const Wall &w) { return !w.finite && w.distance(y) < 0.0; });
+  };
+  seen.erase(std::remove_if(seen.begin(), seen.end(), behind), seen.end());
   for (size_t k = 0, n = seen.size(); k < n; k++) {
     const Seen s = seen[k];
     if (scene.state[atom->type[s.i]].species != SOLID) continue;

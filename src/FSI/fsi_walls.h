@@ -103,16 +103,41 @@ namespace FSI {
       }
     }
 
-    // bits of the walls that x is near enough to have images in
-    int near(const double *x, double cut) const
+    // bits of the walls that x is near enough to have images in; behind: so far may it be behind a plane without end
+    int near(const double *x, double cut, double behind = 0.0) const
     {
       int mask = 0;
       const int n = wall.size();
       for (int k = 0; k < n; k++) {
         const double a = wall[k].distance(x);
-        if (a >= 0.0 && a < cut && wall[k].spans(x, cut)) mask |= 1 << k;
+        if (a >= (wall[k].finite ? 0.0 : -behind) && a < cut && wall[k].spans(x, cut)) mask |= 1 << k;
       }
       return mask;
+    }
+
+    // To the fluid a body that passes through a plane without end goes on in its images: what is behind is not there. How much counts of a
+    // particle with spacing dx, and its rate: the part of its cell before the plane, so that nothing jumps when a body slides through,
+    // whatever its lattice. Bodies that end before the plane are whole, so it begins with the first dx/2 that they go behind it.
+    // depth[k]: how deep bodies of its type are behind wall k at most, with its rate
+    struct Depth {
+      double depth, rate;
+    };
+    double before(const double *x, const double *v, double dx, const Depth *depth, double &rate) const
+    {
+      double part = 1.0;
+      rate = 0.0;
+      for (size_t k = 0; k < wall.size(); k++) {
+        const Wall &w = wall[k];
+        const double cell = 0.5 + w.distance(x) / dx;
+        if (w.finite || depth[k].depth <= 0.0 || cell >= 1.0) continue;
+        const bool deep = depth[k].depth >= 0.5 * dx;
+        const double share = deep ? 1.0 : 2.0 * depth[k].depth / dx, behind = 1.0 - std::fmax(cell, 0.0);
+        const double left = 1.0 - share * behind;
+        const double grows = (cell > 0.0 ? share / dx * w.side * (v[w.axis] - w.velocity[w.axis]) : 0.0) - (deep ? 0.0 : 2.0 / dx * depth[k].rate * behind);
+        rate = rate * left + part * grows;
+        part *= left;
+      }
+      return part;
     }
 
     // Calls f(reflection, rsq, dx) for every image M x_j of x_j that x_i sees within the cutoff: rsq = |x_i - M x_j|^2,

@@ -40,7 +40,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), fields(lmp), fill(nullptr), fill_weight(nullptr), rate(nullptr), beyond(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -248,6 +248,7 @@ void PairFSIFluid::begin_state(bool)
 bool PairFSIFluid::add_rates(bool advance)
 {
   fields.grow();
+  find_cut_solids();
   const size_t nall = atom->nlocal + atom->nghost;
   if (rate) std::fill_n(rate, nall, 0.0);
   if (shifting > 0.0 && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
@@ -271,6 +272,56 @@ void PairFSIFluid::advance(bool advance)
   if (!rate || !advance) return;
   advance_density();
   if (shifting > 0.0) displacements(update->dt);
+}
+
+// solids that pass through mirror walls, or may before the next neighbor lists
+void PairFSIFluid::find_depths()
+{
+  const auto &wall = fix_fsi->walls.wall;
+  const int *const type = atom->type, n = wall.size();
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  std::vector<double> mine(n * (atom->ntypes + 1), -INFINITY), all(mine.size()), speeds(mine.size());
+  const auto for_near = [&](auto f) {
+    const InnerBox inner(wall, neighbor->skin);
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (inner.contains(x[i]) || fix_fsi->state[type[i]].species != SOLID) continue;
+      for (int k = 0; k < n; k++)
+        if (!wall[k].finite) f(i, n * type[i] + k, wall[k]);
+    }
+  };
+  for_near([&](int i, int m, const Wall &w) { mine[m] = std::max(mine[m], -w.distance(x[i])); });
+  MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_DOUBLE, MPI_MAX, world);
+  solids_pass = std::any_of(all.begin(), all.end(), [this](double depth) { return depth > -neighbor->skin; });
+  depths.assign(all.size(), {0.0, 0.0});
+  cut = std::any_of(all.begin(), all.end(), [](double depth) { return depth > 0.0; });
+  if (!cut) return;
+  std::fill(mine.begin(), mine.end(), -INFINITY);
+  for_near([&](int i, int m, const Wall &w) {
+    if (-w.distance(x[i]) == all[m]) mine[m] = std::max(mine[m], -w.side * (v[i][w.axis] - w.velocity[w.axis]));
+  });
+  MPI_Allreduce(mine.data(), speeds.data(), mine.size(), MPI_DOUBLE, MPI_MAX, world);
+  for (size_t m = 0; m < all.size(); m++)
+    if (all[m] > 0.0) depths[m] = {all[m], speeds[m]};
+}
+
+// how much of each solid particle is before the walls
+void PairFSIFluid::find_cut_solids()
+{
+  const Walls &walls = fix_fsi->walls;
+  cut = false;
+  if (!walls.any() || !has_solids() || (neighbor->ago && !solids_pass)) return;
+  find_depths();
+  if (!cut) return;
+  const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  parts.assign(nall, 1.0);
+  part_rates.assign(nall, 0.0);
+  for (int i = 0; i < nall; i++) {
+    if (fix_fsi->state[type[i]].species != SOLID) continue;
+    const double dx = fix_fsi->dx_of(type[i]);
+    parts[i] = walls.before(x[i], v[i], dx, &depths[walls.wall.size() * type[i]], part_rates[i]);
+    fix_fsi->wmask[i] = parts[i] > 0.0 ? walls.near(x[i], fix_fsi->cut, 0.5 * dx) : 0;
+  }
 }
 
 // what is beside each fluid particle; normals cross ranks, since both of a pair have to agree
@@ -461,7 +512,8 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 FluidParticles PairFSIFluid::particles_at(const double *points) const
 {
-  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill, fill_weight, force->newton_pair != 0};
+  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill, fill_weight,
+          cut ? parts.data() : nullptr, cut ? part_rates.data() : nullptr, force->newton_pair != 0};
 }
 
 template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, Complete complete)
@@ -747,7 +799,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity();
+  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity() + parts.capacity() + part_rates.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double) + (double) beside.capacity() * sizeof(beside[0]);
   for (const auto &list_of : rows) bytes += list_of.memory_usage();
   for (const auto &lists : images)

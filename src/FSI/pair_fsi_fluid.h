@@ -100,6 +100,12 @@ class PairFSIFluid : public PairFSI {
   template <class Position> void find_images(const FSI::Walls &, Position);
   template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
 
+  bool cut, solids_pass;    // does a solid pass through a mirror wall, may one before the next neighbor lists?
+  std::vector<FSI::Walls::Depth> depths;     // per type and wall
+  std::vector<double> parts, part_rates;    // how much of solids is before the walls, local and ghost, and its rate
+  void find_depths();
+  void find_cut_solids();
+
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
   std::vector<FSI::Share> shares;    // per type: how its particles count at fluid particles
