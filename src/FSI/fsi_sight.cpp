@@ -177,19 +177,24 @@ bool Sight::blocked(const double *y) const
 }
 
 /* ----------------------------------------------------------------------
-   images in mirror walls of the solids seen, which fluids meet, in place of what of them is behind
+   images in mirror walls of the solids seen, which fluids meet in place of what is behind
 ------------------------------------------------------------------------- */
 
-void Sight::see_images()
+void Sight::forget_behind_walls()
 {
-  const int mask = scene.walls.near(from, scene.cut);
-  if (!mask) return;
+  if (!scene.walls.near(from, scene.cut)) return;
   const auto behind = [&](const Seen &s) {
     const double y[3] = {from[0] + s.x[0], from[1] + s.x[1], from[2] + s.x[2]};
     return scene.state[atom->type[s.i]].species == SOLID &&
         std::any_of(scene.walls.wall.begin(), scene.walls.wall.end(), [&](const Wall &w) { return !w.finite && w.distance(y) < 0.0; });
   };
   seen.erase(std::remove_if(seen.begin(), seen.end(), behind), seen.end());
+}
+
+void Sight::see_images()
+{
+  const int mask = scene.walls.near(from, scene.cut);
+  if (!mask) return;
   for (size_t k = 0, n = seen.size(); k < n; k++) {
     const Seen s = seen[k];
     if (scene.state[atom->type[s.i]].species != SOLID) continue;
@@ -213,6 +218,7 @@ bool Sight::opposite(const double *a, const double *b)
 bool Sight::beside(int i, Beside &b)
 {
   b = Beside();
+  forget_behind_walls();
   const auto first = std::min_element(seen.begin(), seen.end(), [](const Seen &a, const Seen &b) { return a.rsq < b.rsq; });
   if (first == seen.end()) return false;
   const Seen nearest = *first;

@@ -71,6 +71,7 @@ namespace FSI {
     mutable std::vector<Seen> around;
     std::vector<std::vector<Fill>> half_space;    // per type: of its layers by the distance of the first
     Fill beyond(int type, double distance) const;
+    void forget_behind_walls();
     void see_images();
     double hidden_behind(const double *normal, double depth) const;
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true
