@@ -102,6 +102,16 @@ namespace FSI {
     bool thin = false;       // the body counts as if it went on behind, and under the pressure of the side that meets it
   };
 
+  // By particle: by how much more thin bodies count (fsi_sight.h), in forces and in sums of W
+  struct Thin {
+    const double *fill, *fill_weight;
+  };
+
+  // By particle: how much of solids is before mirror walls, and its rate (Walls::before)
+  struct Cut {
+    const double *part, *rate;
+  };
+
   // Of all loops: by local and ghost particle.
   struct FluidParticles {
     const double *points;    // Point<D>
@@ -110,8 +120,8 @@ namespace FSI {
     int nlocal;
     const Share *share;    // per type
     bool finer;            // does any type differ from fluids in it?
-    const double *fill, *fill_weight;    // per particle: by how much more thin bodies count (fsi_sight.h)
-    const double *part, *part_rate;      // per particle: how much of solids is before mirror walls, and its rate; null: all is
+    const Thin *thin;    // null: none is
+    const Cut *cut;      // null: none is
     bool newton;    // else a pair across ranks is visited on both: each counts half of powers and forces on walls
   };
 

@@ -134,11 +134,11 @@ namespace FSI {
   }
 
   // How much more neighbours of this type count at i: in forces of pressure; in sums of W and along the face
-  FSI_INLINE double fill_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.fill[i] : 1.0; }
-  FSI_INLINE double fill_weight_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.fill_weight[i] : 1.0; }
+  FSI_INLINE double fill_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.thin->fill[i] : 1.0; }
+  FSI_INLINE double fill_weight_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.thin->fill_weight[i] : 1.0; }
 
   // Kernel or gradient of neighbours that mirror walls cut
-  template <class T> FSI_INLINE T cut_off(const FluidParticles &in, const int *j, const T &w) { return in.part ? Lanes<T>::read(in.part, j) * w : w; }
+  template <class T> FSI_INLINE T cut_off(const FluidParticles &in, const int *j, const T &w) { return in.cut ? Lanes<T>::read(in.cut->part, j) * w : w; }
 
   // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j. Solids and walls count, but are not shifted.
   template <class T, class K, bool BOTH, bool IMAGE, int D>
@@ -196,7 +196,7 @@ namespace FSI {
           if (CUT) g = cut_off(in, j, g);
         }
         T s = g * product(v, x);
-        if (CUT && in.part) s += kernel.sharper(r, sharper) * L::read(in.part_rate, j);    // of a place left over, i itself, it is 0
+        if (CUT && in.cut) s += kernel.sharper(r, sharper) * L::read(in.cut->rate, j);    // of a place left over, i itself, it is 0
         sum += s;
         if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
         T rate_j = pj.rho * pj.vol * s;
@@ -261,7 +261,7 @@ namespace FSI {
     r.thin = (FLAGS & Flag::FINER) && in.share[type_j].thin;
     if (KIND == WITH_SOLID || r.thin) {
       const auto *const g = KIND == WITH_WALL ? laws.gravity : laws.extrapolate;
-      const double along = r.thin ? in.fill_weight[i] / in.fill[i] : 1.0;
+      const double along = r.thin ? in.thin->fill_weight[i] / in.thin->fill[i] : 1.0;
       for (int d = 0; d < D; d++) r.extrapolate[d] = g ? along * g[type_i][d] : 0.0;
     }
     return r;
@@ -442,7 +442,7 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i;
       const Particle<T, D> pi(point[i]);
-      const double fill = !(FLAGS & Flag::BOTH) && in.fill ? fill_of(in, i, in.type[row.j[0]]) : 1.0;
+      const double fill = !(FLAGS & Flag::BOTH) && in.thin ? fill_of(in, i, in.type[row.j[0]]) : 1.0;
       T sum[N];
       for (T &s : sum) s = 0.0;
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -451,7 +451,8 @@ namespace FSI {
         T x[D];
         difference(pi.x, pj.x, x);
         const T rsq = product(x, x), r = root(rsq);
-        T g = cut_off(in, j, kernel.gradient(r));
+        T g = kernel.gradient(r);
+        if (!(FLAGS & Flag::BOTH)) g = cut_off(in, j, g);
         if (IMAGE) g = weight * g;
         add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, fill * pj.vol, x, j, sum, shift);
       });
@@ -472,7 +473,7 @@ namespace FSI {
       const int i = row.i;
       // of neighbours on a finer lattice
       double volume = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0;
-      if (in.fill) volume *= ((FLAGS & Flag::DIVERGENCE) ? fill_of : fill_weight_of)(in, i, in.type[row.j[0]]);
+      if (in.thin) volume *= ((FLAGS & Flag::DIVERGENCE) ? fill_of : fill_weight_of)(in, i, in.type[row.j[0]]);
       const double sharper = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].sharper : 0.0;
       T of_i = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -488,7 +489,8 @@ namespace FSI {
           of_i += w * L::read(vol, j);
           if (FLAGS & Flag::BOTH) L::add(w * vol[i], sum, j);
         } else {
-          const T w = cut_off<T>(in, j, weight * ((FLAGS & Flag::FINER) ? kernel.sharper(r, sharper) : kernel.W(r)));
+          T w = weight * ((FLAGS & Flag::FINER) ? kernel.sharper(r, sharper) : kernel.W(r));
+          if (FLAGS & Flag::FINER) w = cut_off(in, j, w);
           of_i += w;
           if (FLAGS & Flag::BOTH) L::add(w, sum, j);
         }
@@ -579,7 +581,7 @@ namespace FSI {
     void number_density(PairKind kind, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
                         double *sum) const override
     {
-      distances(finer(kind, in), rows, both, image, in, x, nullptr, sum);
+      distances(finer_or_cut(kind, in), rows, both, image, in, x, nullptr, sum);
     }
 
     void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
@@ -592,7 +594,7 @@ namespace FSI {
     // Rows of solids and walls with finer lattices; those with the fluid's among them have shares that change nothing.
     static int finer(PairKind kind, const FluidParticles &in) { return in.finer && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::FINER : 0; }
     // Those that mirror walls cut are in the same loops.
-    static int finer_or_cut(PairKind kind, const FluidParticles &in) { return in.part && kind != WITH_FLUID ? Flag::FINER : finer(kind, in); }
+    static int finer_or_cut(PairKind kind, const FluidParticles &in) { return in.cut && kind != WITH_FLUID ? Flag::FINER : finer(kind, in); }
 
     void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
                    const double *vol, double *sum) const
@@ -600,7 +602,7 @@ namespace FSI {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::FINER>(
           what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
-            if constexpr (!(flags() & Flag::FINER) || !(flags() & (Flag::DIVERGENCE | Flag::BOTH))) run_loop<T>([&](auto number) __attribute__((always_inline)) {
+            if constexpr (!(flags() & Flag::FINER) || !(flags() & Flag::DIVERGENCE)) run_loop<T>([&](auto number) __attribute__((always_inline)) {
               distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, x, vol, sum);
             });
           });

@@ -19,6 +19,7 @@
 // Corners need the image of the image: every set of mutually perpendicular walls that both particles can see is a
 // reflection of its own. A wall segment reflects i onto j if the straight line from i to the image of j passes
 // through the segment; the rule is symmetric in i and j.
+// Bodies that pass through a wall: before().
 
 #ifndef LMP_FSI_WALLS_H
 #define LMP_FSI_WALLS_H

@@ -40,7 +40,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), rate(nullptr), beyond(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, cut_solids{}, rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -510,10 +510,12 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
 
 /* ---------------------------------------------------------------------- */
 
-FluidParticles PairFSIFluid::particles_at(const double *points) const
+FluidParticles PairFSIFluid::particles_at(const double *points)
 {
-  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill, fill_weight,
-          cut ? parts.data() : nullptr, cut ? part_rates.data() : nullptr, force->newton_pair != 0};
+  thin_bodies = {fill, fill_weight};
+  cut_solids = {parts.data(), part_rates.data()};
+  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill ? &thin_bodies : nullptr,
+          cut ? &cut_solids : nullptr, force->newton_pair != 0};
 }
 
 template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, Complete complete)

@@ -115,7 +115,9 @@ class PairFSIFluid : public PairFSI {
   std::vector<double> normals[3];    // of what fluid particles have beside them, when lists are new
   void find_thin_bodies();
   void follow_thin_bodies();
-  FSI::FluidParticles particles_at(const double *points) const;
+  FSI::Thin thin_bodies;
+  FSI::Cut cut_solids;
+  FSI::FluidParticles particles_at(const double *points);
   template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);    // positions a time t later; what else a loop needs is up to complete(i, point)
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
   FSI::Fields fields;

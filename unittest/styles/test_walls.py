@@ -1,10 +1,12 @@
 """Mirror walls against explicit mirrored particles."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 import pytest
-from scenes import KERNELS, WATER, Scene, close, cloud, fluid_box, lattice, run
+from scenes import DX as FINE, KERNELS, WATER, Scene, close, cloud, dam_gate, fluid_box, lattice, run
+from test_spacing import agree_on_ranks
 
 VISCOUS = "fluid rho 1000 viscosity 20"
 C, ALPHA, BETA, DX, H = 10.0, 0.3, 0.5, 0.1, 0.13
@@ -269,3 +271,103 @@ def test_slip_is_of_one_wall(tmp_path, slip, warned):
     scene = fluid_box(2)
     output = run(tmp_path, scene.text() + f"fix channel all fsi/wall/mirror {slip}\n", scene_data=scene.data()).output
     assert ("slip no is of wall yhi alone, wall ylo slips" in output) == warned
+
+
+# ---- solids that pass through a wall ----
+RUBBER = "solid rho 1100 young 1e5 poisson 0.3"
+
+
+def post(dim, below, moved=0.0, dx=DX, ratio=1, shaken=0.0):
+    """Water and a post of 4 columns that stands in it, from `below` spacings below the floor on, and `moved` spacings down: positions, types"""
+    fine, width, edge = dx / ratio, 4 * ratio, 8 if dim == 2 else 4
+    water = lattice((2 * edge + 4, 9, 5)[:dim], dx)
+    water = water[(water[:, 0] < edge * dx) | (water[:, 0] > (edge + 4) * dx)]
+    water[:, :dim] += np.random.default_rng(4).uniform(-shaken, shaken, water[:, :dim].shape) * dx
+    # in 3D it passes through the side z = 0, too
+    solid = lattice((width, 11 * ratio + below, *[3 * ratio + below] * (dim - 2)), fine, origin=np.array([edge * dx, -below * fine, -below * fine][:dim]))
+    solid[:, 1] -= moved * fine
+    return np.concatenate([water, solid]), np.repeat([1, 2], [len(water), len(solid)])
+
+
+def standing(x, type, dim, commands=(), fluid="", density="", style="fsi/solid/tl", v=None, dt=1e-4, held=2, **options):
+    side = " zlo 0" if dim == 3 else ""
+    return Scene(x, v, dim=dim, dx=DX, type=type, mol=type, held=type >= held, materials=(VISCOUS, RUBBER), solid_style=style, dt=dt,
+                 fluid=f"sound {C} {fluid}", density=density, commands=[f"fix w all fsi/wall/mirror ylo 0{side}", *commands], **options)
+
+
+@pytest.mark.parametrize("dim, ratio, couple", [(2, 1, "wall"), (3, 1, "wall"), (2, 2, "wall"), (2, 1, "pressure"), (2, 1, "full")])
+def test_solid_behind_a_wall_is_not_there(dim, ratio, couple):
+    """Forces on water and solid, density rates, displacements and the number density are those of a solid that ends at the wall."""
+    values = []
+    for below in (0, 6):
+        x, type = post(dim, below, ratio=ratio, shaken=0.2)
+        v = np.where(type[:, None] == 1, np.random.default_rng(5).uniform(-0.3, 0.3, x.shape) * ([1] * dim + [0] * (3 - dim)), 0)
+        with standing(x, type, dim, v=v, style="fsi/solid" if couple != "wall" else "fsi/solid/tl",
+                      fluid=f"couple {couple} artificial/visc {ALPHA} {BETA} laminar/visc shift 0.5", density=f"spacing 2 {DX / ratio!r}") as s:
+            water, there = type == 1, (x[:, 1:dim] > 0).all(1)
+            s.run()
+            s.put("rho", np.where(water, 1020.0, 1100.0))
+            s.run()
+            forces, wall = s.get("f"), s.fix_array("w", dim - 1)
+            s.run(2)
+            values.append((forces[water], forces[there & ~water], wall, s.get("rho")[water] - 1020, s.get("x")[water] - x[water]))
+            assert np.abs(forces[~there]).max(initial=0) < 1e-11 * np.abs(forces[there]).max()
+    for ended, behind in zip(*values):
+        close(behind, ended, 1e-11)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_solid_behind_a_wall_in_sums(dim):
+    values = []
+    for below in (0, 6):
+        x, type = post(dim, below, shaken=0.2)
+        with standing(x, type, dim, density="fluid summation solid continuity") as s:
+            values.append(s.run().get("rho")[type == 1])
+    close(values[1], values[0], 1e-12)
+
+
+def test_solid_slides_through_a_wall():
+    """Water at rest under pressure stays so, wherever the post's rows are; the first ones to come to the wall change no force suddenly."""
+    worst, speeds = 0.0, []
+    for below, moved in [(4, m) for m in np.linspace(0, 1, 11)] + [(0, m) for m in (0.499999, 0.500001, 0.999999, 1.000001)]:
+        x, type = post(2, below, moved)
+        with standing(x, type, 2) as s:
+            s.run()
+            s.put("rho", np.where(type == 1, 1010.0, 1100.0))
+            s.run()
+            near = (type == 1) & (x[:, 1] < 3 * DX) & (np.abs(x[:, 0] - 10 * DX) < 5 * DX)
+            a = s.get("f")[near] / s.get("rmass")[near, None] * DX / (0.01 * C**2)    # p/(rho dx) is 1
+            if below:
+                worst = max(worst, np.abs(a).max())
+            else:
+                speeds.append(a)
+    print(f"largest acceleration beside the post over p/(rho dx): {worst:.4f}")
+    assert worst < 0.03
+    assert np.abs(speeds[1] - speeds[0]).max() < 1e-4 and np.abs(speeds[3] - speeds[2]).max() < 1e-4
+
+
+@pytest.mark.parametrize("below, moved", [(0, 0.2), (0, 0.7), (0, 0.9), (3, 0.1), (3, 0.4), (3, 0.8)])
+def test_density_rate_at_a_sliding_solid(below, moved):
+    """Density by continuity follows the number density, of water that is held, while a post slides through the wall, or into it."""
+    change = []
+    for mode in ("continuity", "summation"):
+        x, type = post(2, below, moved, shaken=0.2)
+        with standing(x, type, 2, density=f"fluid {mode} solid continuity", dt=1e-5, held=1,
+                      commands=["group post type 2", "fix post post fsi/move linear 0 -1 0 units box"]) as s:
+            s.run(2)
+            before = s.get("rho")[type == 1]
+            change.append(s.run(20).get("rho")[type == 1] - before)
+    close(change[0], change[1], 0.02)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_solid_behind_a_wall_on_ranks(tmp_path, dim):
+    scene = dam_gate(dim, solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0.1 hourglass 0.1")
+    n = (5, 3) if dim == 2 else (3, 3, 7)
+    foot = lattice(n, FINE, origin=np.array([(14 if dim == 2 else 7), -3, 0][:dim]) * FINE)
+    walls = [(a, side, at, rest.split(" range x")[0] if a == 1 else rest) for a, side, at, rest in scene.walls]
+    box = scene.box.copy()
+    box[1, 0] -= 3 * FINE
+    add = lambda values, more: np.concatenate([values, more])
+    agree_on_ranks(tmp_path, replace(scene, x=add(scene.x, foot), v=add(scene.v, 0 * foot), type=add(scene.type, np.full(len(foot), 2)), box=box, walls=walls,
+                                     rho=add(scene.rho, np.full(len(foot), 1000.0)), ids=np.arange(1, len(scene.x) + len(foot) + 1)))
