@@ -101,11 +101,17 @@ void PairFSISolid::init_style()
 
 template <class K, int TERMS> void PairFSISolid::select(int flags)
 {
-  // loops may have effects that are off, with coefficients of zero: all have artificial viscosity but the barest, and beyond that contact
-  constexpr int MORE = ARTIFICIAL_STRESS | LEDGER, COMMON = ARTIFICIAL_VISCOSITY | BODIES;
-  const int with = flags & MORE ? flags | COMMON : flags & BODIES ? flags | ARTIFICIAL_VISCOSITY : flags;
-  with_flags<COMMON | MORE>(with, [this](auto f) {
-    if constexpr ((f() & MORE) ? (f() & COMMON) == COMMON : f() != BODIES) force_loop = &PairFSISolid::force_pairs<K, TERMS, f()>;
+  // loops may have effects that are off, with coefficients of zero: all but the barest have artificial viscosity, and contact those of the
+  // ledger and of artificial stress with corrected gradients, where it has no use
+  constexpr int STRESS = TERMS ? ARTIFICIAL_STRESS | BODIES : ARTIFICIAL_STRESS, ALL = ARTIFICIAL_VISCOSITY | BODIES | ARTIFICIAL_STRESS | LEDGER;
+  int with = flags;
+  if (with & ARTIFICIAL_STRESS) with |= STRESS;
+  if (with & LEDGER) with |= BODIES;
+  if (with & ~ARTIFICIAL_VISCOSITY) with |= ARTIFICIAL_VISCOSITY;
+  with_flags<ALL>(with, [this](auto f) {
+    constexpr int F = f();
+    if constexpr ((!(F & ARTIFICIAL_STRESS) || (F & STRESS) == STRESS) && (!(F & LEDGER) || (F & BODIES)) && (!(F & ~ARTIFICIAL_VISCOSITY) || (F & ARTIFICIAL_VISCOSITY)))
+      force_loop = &PairFSISolid::force_pairs<K, TERMS, F>;
   });
   gradient_loop =
       (flags & BODIES) ? &PairFSISolid::gradient_pairs<K, TERMS, BODIES> : &PairFSISolid::gradient_pairs<K, TERMS, 0>;
