@@ -251,7 +251,7 @@ void FixFSI::pre_exchange()
     if (neighbor->style) neighbor->setup_bins();
   }
   comm->exchange();
-  sort_by_place(atom, cut);
+  sort_by_place(atom, dx);
 }
 
 /* ----------------------------------------------------------------------

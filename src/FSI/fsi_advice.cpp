@@ -466,12 +466,12 @@ class Adviser : protected Pointers {
       if (present[t] && scene.state[t].species == FLUID) viscosity(t, expected, length);
   }
 
-  /* Bodies that fluids on two opposite sides see each other through, within the kernel's support less what hardly counts, where
-     thin would be accepted. Some of the fluid particles beside bodies are enough. */
+  /* Bodies thinner than the kernel's support, less what hardly counts, where thin would be accepted: that fluids on two opposite
+     sides see each other through, or that push on the fluid beside them with less than a thick one. Some of these particles are enough. */
 
   void see_through() const
   {
-    constexpr double PART = 0.95;
+    constexpr double PART = 0.95, LITTLE = 0.05;
     constexpr int ENOUGH_OF_THEM = 2000;
     if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY || number<int>("^fsi/fluid", "couple") != 0) return;
     std::vector<double> bodies(atom->ntypes + 1, 0.0);
@@ -484,27 +484,36 @@ class Adviser : protected Pointers {
       if (fluid(i) && sight.near(atom->x[i])) near.push_back(i);
     const double reach = PART * scene.cut;
     const Cells cells(atom->x, near.empty() ? 0 : atom->nlocal + atom->nghost, scene.dim, reach);
-    std::vector<double> mine(bodies.size(), BIG), thick(bodies.size());    // the least thickness where it happens, by type
+    const int n = bodies.size();
+    std::vector<double> mine(3 * n, BIG), least(3 * n);    // by type: thickness between fluids, thickness and -(1 + what is missing) beside one
     for (size_t k = 0; k < near.size(); k += near.size() / ENOUGH_OF_THEM + 1) {
       const int i = near[k];
       sight.look_from(atom->x[i]);
+      Sight::Beside here, there;
+      if (!sight.beside(i, here)) continue;
+      const int t = here.type;
+      const double thickness = here.layers * scene.dx_of(t);
+      if (sight.distance(here) < scene.dx) {
+        mine[n + t] = std::min(mine[n + t], thickness);
+        mine[2 * n + t] = std::min(mine[2 * n + t], -sight.fill(here).force);
+      }
       hidden.clear();
       cells.around(atom->x[i], [&](int j, double rsq) {
         if (rsq < reach * reach && fluid(j) && sight.blocked(atom->x[j])) hidden.push_back(j);
       });
-      Sight::Beside here, there;
-      if (hidden.empty() || !sight.beside(i, here)) continue;
       for (const int j : hidden) {
         sight.look_from(atom->x[j]);
-        if (!sight.beside(j, there)) continue;
-        if (Sight::opposite(here.normal, there.normal)) mine[here.type] = std::min(mine[here.type], here.layers * scene.dx_of(here.type));
+        if (sight.beside(j, there) && Sight::opposite(here.normal, there.normal)) mine[t] = std::min(mine[t], thickness);
       }
     }
-    MPI_Allreduce(mine.data(), thick.data(), (int) mine.size(), MPI_DOUBLE, MPI_MIN, world);
-    for (int t = 1; t <= atom->ntypes; t++)
-      if (thick[t] < BIG)
+    MPI_Allreduce(mine.data(), least.data(), 3 * n, MPI_DOUBLE, MPI_MIN, world);
+    for (int t = 1; t < n; t++)
+      if (least[t] < BIG)
         warn(fmt::format("fluids see each other through what is of type {}, some {:.2g} thick, since the kernel reaches {:.2g}: if pressures on its "
-                         "two sides differ, they mix. Then fix {} ... thin {}", t, thick[t], scene.cut, scene.mover->id, t));
+                         "two sides differ, they mix. Then fix {} ... thin {}", t, least[t], scene.cut, scene.mover->id, t));
+      else if (-least[2 * n + t] > 1.0 + LITTLE && least[2 * n + t] < BIG)
+        warn(fmt::format("what is of type {}, some {:.2g} thick, pushes {:.0f} % less on fluid beside it than a thick body would, since the kernel reaches {:.2g}: "
+                         "the fluid sinks in. Then fix {} ... thin {}", t, least[n + t], 100.0 * (1.0 + 1.0 / least[2 * n + t]), scene.cut, scene.mover->id, t));
   }
 
   /* what artificial viscosity is worth: half of alpha h c/2(d+2), since it acts on approach only (doc/src/theory.rst) */

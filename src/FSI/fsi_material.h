@@ -54,7 +54,7 @@ namespace FSI {
     int species = NONE;
     int form = 0;
     int tait = 0;
-    double rho0 = 0.0, c = 0.0, csq = 0.0, inv_csq = 0.0, p0 = 0.0;
+    double rho0 = 0.0, inv_rho0 = 0.0, c = 0.0, csq = 0.0, inv_csq = 0.0, p0 = 0.0;
     double floor = -1.0e300;    // lowest pressure; 0 where the material carries no tension
     double shear = 0.0;         // shear modulus G
     double viscosity = 0.0;     // dynamic viscosity

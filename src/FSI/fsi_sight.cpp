@@ -254,11 +254,17 @@ double Sight::hidden_behind(const double *normal, double depth) const
   return all > 0.0 ? hidden / all : 1.0;
 }
 
-Sight::Fill Sight::fill(const Beside &b) const
+double Sight::distance(const Beside &b) const
 {
   const double *const xi = atom->x[b.i], *const xj = atom->x[b.j];
   double face = b.face;
   for (int d = 0; d < 3; d++) face += (xj[d] - xi[d]) * b.normal[d];
+  return face;
+}
+
+Sight::Fill Sight::fill(const Beside &b) const
+{
+  const double face = distance(b);
   const Fill all = beyond(b.type, face), missing = beyond(b.type, face + b.layers * scene.dx_of(b.type));
   const auto over = [&](double whole, double rest) { return whole > rest ? 1.0 + b.behind * rest / (whole - rest) : 1.0; };
   return {over(all.force, missing.force), over(all.weight, missing.weight)};

@@ -47,6 +47,7 @@ namespace FSI {
       double force, weight;
     };
     Fill fill(const Beside &) const;
+    double distance(const Beside &) const;    // of i from the first layer, now
 
     double memory_usage() const;
 

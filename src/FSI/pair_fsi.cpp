@@ -196,6 +196,7 @@ State PairFSI::solid_state(const Material &m, bool plane_stress) const
   State s;
   s.species = SOLID;
   s.rho0 = m.rho0;
+  s.inv_rho0 = 1.0 / s.rho0;
   s.csq = (plane_stress ? m.plane_stress_modulus() : m.bulk_modulus()) / m.rho0;
   s.inv_csq = 1.0 / s.csq;
   s.c = std::sqrt(s.csq);

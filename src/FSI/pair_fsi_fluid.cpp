@@ -75,6 +75,7 @@ State PairFSIFluid::make_state(const Material &m) const
   State s;
   s.species = m.species;
   s.rho0 = m.rho0;
+  s.inv_rho0 = 1.0 / s.rho0;
   if (m.species == RIGID) {
     // its density is what says its pressure, its volume should be that of fluid under this pressure; if fluids differ in this, that
     // of the fluid that is near (fix fsi/wall/particle)

@@ -101,11 +101,17 @@ void PairFSISolid::init_style()
 
 template <class K, int TERMS> void PairFSISolid::select(int flags)
 {
-  // loops may have effects that are off, with coefficients of zero: all have artificial viscosity but the barest, and beyond that contact
-  constexpr int MORE = ARTIFICIAL_STRESS | LEDGER, COMMON = ARTIFICIAL_VISCOSITY | BODIES;
-  const int with = flags & MORE ? flags | COMMON : flags & BODIES ? flags | ARTIFICIAL_VISCOSITY : flags;
-  with_flags<COMMON | MORE>(with, [this](auto f) {
-    if constexpr ((f() & MORE) ? (f() & COMMON) == COMMON : f() != BODIES) force_loop = &PairFSISolid::force_pairs<K, TERMS, f()>;
+  // loops may have effects that are off, with coefficients of zero: all but the barest have artificial viscosity, and contact those of the
+  // ledger and of artificial stress with corrected gradients, where it has no use
+  constexpr int STRESS = TERMS ? ARTIFICIAL_STRESS | BODIES : ARTIFICIAL_STRESS, ALL = ARTIFICIAL_VISCOSITY | BODIES | ARTIFICIAL_STRESS | LEDGER;
+  int with = flags;
+  if (with & ARTIFICIAL_STRESS) with |= STRESS;
+  if (with & LEDGER) with |= BODIES;
+  if (with & ~ARTIFICIAL_VISCOSITY) with |= ARTIFICIAL_VISCOSITY;
+  with_flags<ALL>(with, [this](auto f) {
+    constexpr int F = f();
+    if constexpr ((!(F & ARTIFICIAL_STRESS) || (F & STRESS) == STRESS) && (!(F & LEDGER) || (F & BODIES)) && (!(F & ~ARTIFICIAL_VISCOSITY) || (F & ARTIFICIAL_VISCOSITY)))
+      force_loop = &PairFSISolid::force_pairs<K, TERMS, F>;
   });
   gradient_loop =
       (flags & BODIES) ? &PairFSISolid::gradient_pairs<K, TERMS, BODIES> : &PairFSISolid::gradient_pairs<K, TERMS, 0>;
@@ -293,7 +299,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
 
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
-    const double vol_i = rmass[i] / state[type[i]].rho0;
+    const double vol_i = rmass[i] * state[type[i]].inv_rho0;
     for (int jj = 0; jj < list->numneigh[i]; jj++) {
       const int j = list->firstneigh[i][jj] & NEIGHMASK;
       if ((FLAGS & BODIES) && molecule[i] != molecule[j]) continue;
@@ -303,7 +309,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
         xij[d] = x[i][d] - x[j][d] - dth * vij[d];
         rsq += xij[d] * xij[d];
       }
-      const double vol_j = rmass[j] / state[type[j]].rho0;
+      const double vol_j = rmass[j] * state[type[j]].inv_rho0;
       if constexpr (TERMS > 0) {
         double xji[D], phi[TERMS], mid = 0.0;
         for (int d = 0; d < D; d++) {
@@ -368,6 +374,7 @@ template <class K> void PairFSISolid::hourglass_pairs(double dt)
   const Hourglass hourglass{xi};
   double **x = atom->x;
   double **v = atom->v;
+  const double *const rmass = atom->rmass;
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
   const State *const state = fix_fsi->state.data();
@@ -385,7 +392,7 @@ template <class K> void PairFSISolid::hourglass_pairs(double dt)
       }
       if (rsq >= kernel.cutsq) continue;
       const State &sj = state[type[j]];
-      hourglass.operator()<D>(0.5 * (si.shear + sj.shear), atom->rmass[i] / si.rho0 * atom->rmass[j] / sj.rho0,
+      hourglass.operator()<D>(0.5 * (si.shear + sj.shear), rmass[i] * si.inv_rho0 * rmass[j] * sj.inv_rho0,
                               kernel.gradient(std::sqrt(rsq)), xij, vij, grad[i], grad[j], rate);
       for (int d = 0; d < D; d++) {
         hourglass_rate[i * D + d] += rate[d];
@@ -498,20 +505,23 @@ template <int D, int TERMS> const std::vector<PairFSISolid::Aux<D>> &PairFSISoli
   auto &aux = get_aux<D>();
   if ((int) aux.size() < nall) aux.resize(atom->nmax);
   for (int i = 0; i < nall; i++) {
-    if (state[type[i]].species != SOLID) continue;
+    const State &s = state[type[i]];
+    if (s.species != SOLID) continue;
     Aux<D> &a = aux[i];
     a.rho = rho[i];
+    a.c = s.c;
     a.vol = rmass[i] / rho[i];
     const double v2 = a.vol * a.vol;
-    a.pv2 = fix_fsi->pressure(i) * v2;
-    a.stress = Sym<D>::load(S[i]);
-    a.stress *= v2;
-    a.stress += Sym<D>::identity(-a.pv2);
-    a.artificial = epsilon > 0.0 ? artificial(a.stress) : Sym<D>();
+    auto stress = Sym<D>::load(S[i]);
+    stress *= v2;
+    stress += Sym<D>::identity(-fix_fsi->pressure(i) * v2);
+    a.stress = stress;
+    a.artificial = epsilon > 0.0 ? artificial(stress) : Sym<D>();
     if constexpr (TERMS > 0) {
       a.C = grad[i] + D * D;
-      a.vstress = a.stress;
-      a.vstress *= 1.0 / a.vol;
+      a.vol0 = rmass[i] * s.inv_rho0;
+      stress *= 1.0 / a.vol;
+      a.vstress = stress;
     }
   }
   return aux;
@@ -532,7 +542,7 @@ template <int D> static double contract(const Sym<D> &s, const double *x_ij, con
 ------------------------------------------------------------------------- */
 
 template <int D, int TERMS, class Aux>
-static void subtract_corrected(const Aux &ai, const Aux &aj, double wi, double wj, const double *x_ij, double hinv, double *t)
+static FSI_INLINE void subtract_corrected(const Aux &ai, const Aux &aj, double wi, double wj, const double *x_ij, double hinv, double *t)
 {
   double xji[D], phi[TERMS], Gi[D] = {}, Gj[D] = {}, si[D], sj[D];
   for (int d = 0; d < D; d++) xji[d] = -x_ij[d] * hinv;
@@ -559,7 +569,6 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
   constexpr int D = K::DIM;
   const K kernel(fix_fsi->h);
   double **x = atom->x, **v = atom->v, **f = atom->f;
-  const double *const rmass = atom->rmass;
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
   const int nlocal = atom->nlocal;
@@ -615,7 +624,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       dot<D>(t, xij, tx);
       if constexpr (TERMS > 0)
         if (!(FLAGS & BODIES) || molecule[i] == molecule[j])
-          subtract_corrected<D, TERMS>(ai, aj, rmass[j] / state[type[j]].rho0, rmass[i] / state[type[i]].rho0, xij, kernel.hinv, tx);
+          subtract_corrected<D, TERMS>(ai, aj, aj.vol0, ai.vol0, xij, kernel.hinv, tx);
       if (FLAGS & LEDGER) {
         double power = 0.0;
         for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (v[i][d] - v[j][d]);
@@ -624,8 +633,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
         double vdotx = 0.0;
         for (int d = 0; d < D; d++) vdotx += (v[i][d] - v[j][d]) * xij[d];
-        const double q = viscosity(vdotx, rsq, 0.5 * (ai.rho + aj.rho), 0.5 * (state[type[i]].c + state[type[j]].c),
-                                   ai.vol * aj.vol);
+        const double q = viscosity(vdotx, rsq, 0.5 * (ai.rho + aj.rho), 0.5 * (ai.c + aj.c), ai.vol * aj.vol);
         for (int d = 0; d < D; d++) tx[d] -= q * xij[d];
         if (FLAGS & LEDGER) by_viscosity += share(j) * q * g * vdotx;
       }

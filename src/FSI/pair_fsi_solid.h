@@ -90,7 +90,8 @@ class PairFSISolid : public PairFSI {
     FSI::Sym<D> stress, artificial;
     const double *C;    // coefficients of the gradient
     FSI::Sym<D> vstress;    // V sigma
-    double pv2, vol, rho;
+    double vol, rho, c;
+    double vol0;    // m/rho0
   };
   std::vector<Aux<2>> aux2;
   std::vector<Aux<3>> aux3;

@@ -39,6 +39,8 @@ def mine(**what):
 BOTH_SIDES = [("create_atoms 2 region plate", "lattice sq 0.01 origin 0 0.5 0\nregion behind block 0.065 0.1 0 0.08 INF INF units box\ncreate_atoms 1 region behind\n"
                "lattice sq 0.005 origin 0.5 0.5 0\ncreate_atoms 2 region plate"), ("0.08 0 0.08 INF", "0.065 0 0.08 INF"),
               ("wendland 1.5", "wendland 1.5 spacing 2 0.005"), ("4e-5", "3e-5"), ("xlo 0 ylo 0", "xlo 0 xhi 0.1 ylo 0")]
+ONE_SIDE = [("create_atoms 2 region plate", "lattice sq 0.0025 origin 0.5 0.5 0\ncreate_atoms 2 region plate"), ("0.05 0.08 0 0.08 INF", "0.05 0.0625 0 0.08 INF"),
+            ("wendland 1.5", "wendland 1.5 spacing 2 0.0025"), ("4e-5", "1.5e-5")]
 
 CASES = {
     # largest c without a warning is 7 sqrt(2gH) = 8.77
@@ -83,6 +85,8 @@ CASES = {
     "elastic lattice, cubic": ([("wendland 1.5", "cubic 1.3"), ("4e-5", "3.5e-5")], None, r"by 0.13 .* 0.07 in shear: waves are some 4 % too fast .* h = 1.34 dx"),
     # 3 across of half the spacing, water on both sides: 0.025 apart, where the kernel reaches 0.03
     "thin between": (BOTH_SIDES, None, r"fluids see each other through what is of type 2, some 0.015 thick, since the kernel reaches 0.03: .* Then fix sph \.\.\. thin 2$"),
+    # 1.25 spacings of the water thick, nothing behind
+    "thin, one side": (ONE_SIDE, None, r"what is of type 2, some 0.012 thick, pushes 8 % less on fluid beside it .*, since the kernel reaches 0.03: .* Then fix sph \.\.\. thin 2$"),
     "skin": ([("neighbor 0.003", "neighbor 0.016")], None, r"skin 0.016 is 1.6 spacings wide, .*: neighbor 0.003 bin"),
 }
 ALSO = {  # what follows from the mistake as well
