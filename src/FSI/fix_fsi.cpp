@@ -314,7 +314,7 @@ template <int D> void FixFSI::kick()
       x[i][d] += dth * v[i][d];
     }
     if (shift && state[type[i]].species == FLUID)
-      for (int d = 0; d < D; d++) x[i][d] += shift[i][d];
+      for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
   }
 }
 

@@ -235,7 +235,7 @@ namespace FSI {
           if (FLAGS & SUMS) force[a] += other[a];
           sum[a] += force[a];
         }
-        L::add_rows(force, f, row.partner + k, D);
+        L::add_rows(force, f, row.partner + k);
       }
       for (int a = 0; a < D; a++) f[i][a] -= L::sum(sum[a]);
     }

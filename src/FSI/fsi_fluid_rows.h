@@ -141,18 +141,20 @@ namespace FSI {
   template <class T> FSI_INLINE T cut_off(const FluidParticles &in, const int *j, const T &w) { return in.cut ? Lanes<T>::read(in.cut->part, j) * w : w; }
 
   // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j. Solids and walls count, but are not shifted.
-  template <class T, class K, bool BOTH, bool IMAGE, int D>
+  // v: difference of velocities, if ALL of the sums are wanted
+  template <class T, class K, bool BOTH, bool IMAGE, int D, int N>
   FSI_INLINE void add_shift(const Shift<D> &law, const K &kernel, const Mirror &mirror, const T &r, const T &rsq, const T &g, const T &vol_i, const T &vol_j,
-                            const T (&x)[D], const int *j, T (&sum)[Shift<D>::N], double (*const shift)[Shift<D>::ROW])
+                            const T (&x)[D], const T *v, const int *j, T (&sum)[N], double (*const shift)[Shift<D>::ROW])
   {
     const T w = kernel.W(r);
     law.add(sum, vol_j, g, w, rsq, x);
     if (!BOTH) return;
-    T back[D], of_j[Shift<D>::N];
+    T back[D], of_j[N];
     for (int d = 0; d < D; d++) back[d] = IMAGE ? -mirror.sign[d] * x[d] : -x[d];
     for (T &s : of_j) s = 0.0;
     law.add(of_j, vol_i, g, w, rsq, back);
-    Lanes<T>::add_rows(of_j, shift, j, Shift<D>::N);
+    if constexpr (N == Shift<D>::ALL) law.add_slopes(sum, of_j, vol_i, vol_j, g, x, v);
+    Lanes<T>::add_rows(of_j, shift, j);
   }
 
   // d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which makes the work of the pair force
@@ -161,8 +163,9 @@ namespace FSI {
   FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
                             const RateLaws laws, double *const rate, double (*const shift)[Shift<K::DIM>::ROW], PairSums *const sums)
   {
-    constexpr int D = K::DIM, N = Shift<D>::N;
+    constexpr int D = K::DIM;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES, CUT = KIND == WITH_SOLID && (FLAGS & Flag::FINER);
+    constexpr int N = KIND == WITH_FLUID && !IMAGE ? Shift<D>::ALL : Shift<D>::N;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
@@ -188,7 +191,7 @@ namespace FSI {
         if (CUT) g = cut_off(in, j, g);
         if (FLAGS & Flag::SHIFT) {
           const T vol_j = (FLAGS & Flag::FINER) ? fill * pj.vol : pj.vol;
-          add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j, x, j, displacement, shift);
+          add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j, x, v, j, displacement, shift);
         }
         if (FLAGS & Flag::FINER) {
           g = kernel.sharper_gradient(r, sharper);
@@ -418,7 +421,7 @@ namespace FSI {
           sum[d] += force[d];
           if (FLAGS & Flag::IMAGES) on_all[d] += share * (force[d] + on_j[d]);
         }
-        L::add_rows(on_j, f, j, D);
+        L::add_rows(on_j, f, j);
       });
       for (int d = 0; d < D; d++) f[i][d] += L::sum(sum[d]);
     }
@@ -454,7 +457,7 @@ namespace FSI {
         T g = kernel.gradient(r);
         if (!(FLAGS & Flag::BOTH)) g = cut_off(in, j, g);
         if (IMAGE) g = weight * g;
-        add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, fill * pj.vol, x, j, sum, shift);
+        add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, fill * pj.vol, x, nullptr, j, sum, shift);
       });
       for (int m = 0; m < N; m++) shift[i][m] += L::sum(sum[m]);
     }

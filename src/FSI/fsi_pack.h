@@ -208,7 +208,8 @@ namespace FSI {
     template <class F> FSI_INLINE static double make(F f) { return f(0); }
     // 1 in the first n places, else 0
     FSI_INLINE static double first(int n) { return n; }
-    template <int N> FSI_INLINE static void add_rows(const double *x, double (*a)[N], const int *j, int n)
+    // adds x to the first n numbers of a row of N
+    template <int n, int N> FSI_INLINE static void add_rows(const double (&x)[n], double (*a)[N], const int *j)
     {
       for (int d = 0; d < n; d++) a[*j][d] += x[d];
     }
@@ -229,23 +230,22 @@ namespace FSI {
       static constexpr double ones[2 * WIDTH] = {1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0};
       return Pack::load(ones + WIDTH - n);
     }
-    FSI_INLINE static void add_rows(const Pack *x, double (*a)[2], const int *j, int)
+    template <int n, int N> FSI_INLINE static void add_rows(const Pack (&x)[n], double (*a)[N], const int *j)
     {
-      Pack::add_rows(x[0], x[1], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
+      static_assert(N == 2 || N % 4 == 0, "a row is two or fours of numbers");
+      if constexpr (N == 2)
+        Pack::add_rows(x[0], x[1], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
+      else
+        add_fours<0>(x, a, j);
     }
-    FSI_INLINE static void add_rows(const Pack *x, double (*a)[4], const int *j, int)
+
+   private:
+    // from number K on; what x lacks in its last four is zero
+    template <int K, int n, int N> FSI_INLINE static void add_fours(const Pack (&x)[n], double (*a)[N], const int *j)
     {
-      Pack::add_rows(x[0], x[1], x[2], 0.0, a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
-    }
-    FSI_INLINE static void add_rows(const Pack *x, double (*a)[5], const int *j, int)
-    {
-      Pack::add_rows(x[0], x[1], x[2], x[3], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
-      for (int k = 0; k < WIDTH; k++) a[j[k]][4] += x[4].v[k];
-    }
-    FSI_INLINE static void add_rows(const Pack *x, double (*a)[8], const int *j, int)
-    {
-      Pack::add_rows(x[0], x[1], x[2], x[3], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
-      Pack::add_rows(x[4], x[5], x[6], 0.0, a[j[0]] + 4, a[j[1]] + 4, a[j[2]] + 4, a[j[3]] + 4);
+      const auto at = [&](int k) __attribute__((always_inline)) { return k < n ? x[k < n ? k : 0] : Pack(0.0); };
+      Pack::add_rows(x[K], at(K + 1), at(K + 2), at(K + 3), a[j[0]] + K, a[j[1]] + K, a[j[2]] + K, a[j[3]] + K);
+      if constexpr (K + 4 < n) add_fours<K + 4>(x, a, j);
     }
   };
 #endif

@@ -19,16 +19,21 @@
 // Where kernels are cut off by a free surface the sum points out of the fluid. There the part along the normal
 // n ~ sum_j V_j grad_i W_ij is taken out, and nothing is left on edges, in jets and drops. What tells is how much of the
 // divergence of position is missing, d - sum_j V_j x_ji.grad_i W_ij: 0 inside, 0.7 to 0.8 in the first row of a plane surface
-// and 0.1 to 0.4 in the second, 1.3 on a straight edge, in 2D and 3D. Walls (images) and solids count as full.
+// and 0.1 to 0.4 in the second, 1.3 on a straight edge, in 2D and 3D. Walls (images) and solids count as full. A fluid that fills
+// its box has no surface: what is missing there is a gap, which the whole sum closes.
 //
-// Velocity and density go along unchanged: what is neglected, delta r.grad v and delta r.grad rho, is what Sun et al. neglect.
-// With C doubled the error of Taylor-Green vortices changes by less than 0.001 (doc/src/theory.rst), which bounds it. Linear momentum
-// is kept exactly; angular momentum and potential energy are not, and the energy ledger knows nothing of shifting.
+// The flow does not move with the particles: where a particle comes to it takes the velocity of the flow there (Sun, Colagrossi, Marrone,
+// Antuono and Zhang 2019, Comput. Phys. Commun. 244, 36, have it as a term of the rate):
+//   delta v_i = delta r_i.grad v,  grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,  g_ij = grad_i W_ij,
+// of fluid neighbours alone, exact for linear fields wherever they are. Without it vortices behind a cylinder are too weak
+// (doc/src/theory.rst). Density goes along unchanged: delta r.grad rho is sound, which goes as it comes. Linear and angular momentum and
+// energy are not kept exactly, and the energy ledger knows nothing of shifting.
 
 #ifndef LMP_FSI_SHIFT_H
 #define LMP_FSI_SHIFT_H
 
 #include "fsi_pack.h"
+#include "fsi_tensor.h"
 
 #include <cmath>
 
@@ -37,7 +42,8 @@ namespace FSI {
 
   template <int D> struct Shift {
     static constexpr int N = 2 * D + 1;             // sums of a particle: weighted and plain sum of V_j grad_i W_ij, divergence
-    static constexpr int ROW = D == 2 ? N : N + 1;    // numbers from one particle to the next: fours are added at once
+    static constexpr int ALL = N + Sym<D>::N + D * D;    // of fluid neighbours also those of x (x) g and v (x) g
+    static constexpr int ROW = (ALL + 3) / 4 * 4;    // numbers from one particle to the next: fours are added at once
     double wdx;                            // W(dx)
     explicit Shift(double w) : wdx(w) {}
 
@@ -52,8 +58,40 @@ namespace FSI {
       sum[2 * D] -= vg * rsq;
     }
 
-    // the sums become the displacement, in their first D places; scale = C c h dt, most = C c dt/4
-    static void displacement(double *sum, double scale, double most)
+    // adds to the sums of two fluid particles what the gradient of the velocity comes of; v_ij: v_i - v_j
+    template <class T> FSI_INLINE static void add_slopes(T *of_i, T *of_j, const T &vol_i, const T &vol_j, const T &g, const T *x_ij, const T *v_ij)
+    {
+      const auto add = [&](int k, const T &product) __attribute__((always_inline)) {
+        of_i[k] -= vol_j * product;
+        of_j[k] -= vol_i * product;
+      };
+      for (int a = 0; a < D; a++) {
+        const T gx = g * x_ij[a], gv = g * v_ij[a];
+        for (int b = a; b < D; b++) add(N + Sym<D>::id(a, b), gx * x_ij[b]);
+        for (int b = 0; b < D; b++) add(N + Sym<D>::N + a * D + b, gv * x_ij[b]);
+      }
+    }
+
+    // The sums become the displacement, in their first D places, and the change of velocity, in the next; fills: the fluid has no
+    // surface; scale = C c h dt, most = C c dt/4
+    static void displacement(double *sum, bool fills, double scale, double most)
+    {
+      if (fills)
+        for (int d = 0; d < D; d++) sum[d] *= -scale;
+      else
+        along_surface(sum, scale);
+      const double size = std::sqrt(dot(sum, sum));
+      if (size > most)
+        for (int d = 0; d < D; d++) sum[d] *= most / size;
+
+      double step[D];
+      const double share = solve(Sym<D>::load(sum + N), sum, step);
+      const double *const slopes = sum + N + Sym<D>::N;
+      for (int a = 0; a < D; a++) sum[D + a] = share * dot(slopes + a * D, step);
+    }
+
+   private:
+    static void along_surface(double *sum, double scale)
     {
       const double missing = D - sum[2 * D];
       const double *const n = sum + D;
@@ -62,12 +100,31 @@ namespace FSI {
       const double along = share(missing, 0.9, 1.0), across = share(missing, 0.04, 0.16);
       const double normal = nn > 0.0 ? (1.0 - across) * dot(sum, n) / nn : 0.0;
       for (int d = 0; d < D; d++) sum[d] = -scale * along * (sum[d] - normal * n[d]);
-      const double size = std::sqrt(dot(sum, sum));
-      if (size > most)
-        for (int d = 0; d < D; d++) sum[d] *= most / size;
     }
 
-   private:
+    // y = m^-1 x, and the share it has: none where neighbours do not span the space. The determinant of m is 1 inside, about 1/2 at a
+    // face and 1/4 or 1/8 in a corner
+    static double solve(const Sym<D> &m, const double *x, double *y)
+    {
+      Sym<D> adjoint;
+      if constexpr (D == 2) {
+        adjoint(0, 0) = m(1, 1);
+        adjoint(1, 1) = m(0, 0);
+        adjoint(0, 1) = -m(0, 1);
+      } else
+        for (int a = 0; a < D; a++)
+          for (int b = a; b < D; b++) {
+            const int p = (a + 1) % 3, q = (a + 2) % 3, r = (b + 1) % 3, s = (b + 2) % 3;
+            adjoint(a, b) = m(p, r) * m(q, s) - m(p, s) * m(q, r);
+          }
+      FSI::dot(adjoint, x, y);
+      double det = 0.0;
+      for (int b = 0; b < D; b++) det += m(0, b) * adjoint(0, b);
+      const double spanned = share(-det, -0.1, -0.02);
+      if (spanned == 0.0) return 0.0;
+      for (int d = 0; d < D; d++) y[d] /= det;
+      return spanned;
+    }
     static double dot(const double *a, const double *b)
     {
       double s = 0.0;

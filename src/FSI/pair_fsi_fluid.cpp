@@ -182,11 +182,16 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
 
 /* ---------------------------------------------------------------------- */
 
-// numbers of an atom in the array of shifting
+// numbers of an atom in the array of shifting, and those of them that are sums
 
 int PairFSIFluid::nshift() const
 {
   return fix_fsi->dim == 2 ? Shift<2>::ROW : Shift<3>::ROW;
+}
+
+int PairFSIFluid::shift_sums() const
+{
+  return fix_fsi->dim == 2 ? Shift<2>::ALL : Shift<3>::ALL;
 }
 
 void PairFSIFluid::set_fields(Scene &scene)
@@ -208,12 +213,12 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
   if (fix_fsi->sight) to_ghosts.add(fill, {FLUID});
   if (fix_fsi->sight) to_ghosts.add(fill_weight, {FLUID});
   if (fix_fsi->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
-  if (shifting > 0.0) back.add(fix_fsi->shift, 0, 2 * fix_fsi->dim + 1, {FLUID, RIGID});
+  if (shifting > 0.0) back.add(fix_fsi->shift, 0, shift_sums(), {FLUID, RIGID});
 }
 
 void PairFSIFluid::add_costs(Costs &costs) const
 {
-  const int newton = force->newton_pair, continuity = fix_fsi->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? 2 * fix_fsi->dim + 1 : 0;
+  const int newton = force->newton_pair, continuity = fix_fsi->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? shift_sums() : 0;
   costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
@@ -583,12 +588,13 @@ void PairFSIFluid::displacements(double dt)
 {
   const int *const type = atom->type;
   double *const *const sums = fix_fsi->shift;
+  const bool fills = background > 0.0;    // with a free surface it would blow up
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = fix_fsi->state[type[i]];
     if (s.species != FLUID) continue;
     const double reach = shifting * s.c * dt;
-    if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], reach * fix_fsi->h, 0.25 * reach);
-    else Shift<3>::displacement(sums[i], reach * fix_fsi->h, 0.25 * reach);
+    if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], fills, reach * fix_fsi->h, 0.25 * reach);
+    else Shift<3>::displacement(sums[i], fills, reach * fix_fsi->h, 0.25 * reach);
   }
 }
 

@@ -122,8 +122,8 @@ class PairFSIFluid : public PairFSI {
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
   FSI::Fields fields;
   double *rate;      // local after the reverse communication
-  double **shift;    // its sums; afterwards the displacement at the end of the step
-  int nshift() const;
+  double **shift;    // its sums; afterwards the displacement at the end of the step, and what it changes of the velocity
+  int nshift() const, shift_sums() const;
   double **beyond;    // of solids that fluid sticks to: the sums of v W, and of W, of the fluid around
   void add_velocities_at_solids();
   void extrapolate_velocities();

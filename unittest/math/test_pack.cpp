@@ -72,6 +72,42 @@ TEST(Pack, Columns)
   }
 }
 
+// numbers of four particles go to the rows of those, the rest of which stays
+template <int n, int N> FSI_TARGET static void scatter(const double (*of)[4], double (*rows)[N], const int *j)
+{
+  Pack x[n];
+  for (int d = 0; d < n; d++) x[d] = Pack::load(of[d]);
+  Lanes<Pack>::add_rows(x, rows, j);
+}
+
+template <int n, int N> static void expect_scattered()
+{
+  double of[n][4], rows[9][N] = {};
+  const int j[4] = {7, 2, 0, 5};
+  for (int d = 0; d < n; d++)
+    for (int k = 0; k < 4; k++) of[d][k] = 100 * d + k + 1;
+  for (int d = 0; d < N; d++) rows[2][d] = 0.5;
+  scatter<n, N>(of, rows, j);
+  for (int i = 0; i < 9; i++)
+    for (int d = 0; d < N; d++) {
+      double want = i == 2 ? 0.5 : 0.0;
+      for (int k = 0; k < 4; k++)
+        if (j[k] == i && d < n) want += of[d][k];
+      EXPECT_EQ(rows[i][d], want) << n << " of " << N << ": row " << i << ", number " << d;
+    }
+}
+
+TEST(Pack, Rows)
+{
+  if (!have_packs()) return;
+  expect_scattered<2, 2>();
+  expect_scattered<3, 4>();
+  expect_scattered<5, 12>();
+  expect_scattered<12, 12>();
+  expect_scattered<7, 24>();
+  expect_scattered<22, 24>();
+}
+
 // every formula that loops over packs use, of numbers in which each branch is taken
 template <class T> struct Values {
   T W, gradient, artificial, flux, loss, f[2], sum;

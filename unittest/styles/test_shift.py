@@ -10,8 +10,8 @@ C, SOUND, DT = 0.5, 10.0, 2e-3
 BOTH = pytest.mark.parametrize("n", [(12, 11), (7, 6, 6)], ids=["2D", "3D"])
 
 
-def expected(x, volume, moves, kernel, dx, dim, walls):
-    """Displacements (n, dim) of one step; walls: axes with a mirror at 0."""
+def expected(x, volume, moves, kernel, dx, dim, walls, fills):
+    """Displacements (n, dim) of one step; walls: axes with a mirror at 0; fills: there is no free surface."""
     x = x[:, :dim]
     sums, normal, divergence = np.zeros_like(x), np.zeros_like(x), np.zeros(len(x))
     for reflected in product((False, True), repeat=len(walls)):
@@ -34,7 +34,9 @@ def expected(x, volume, moves, kernel, dx, dim, walls):
     share = lambda all_, none: np.clip((none - missing) / (none - all_), 0, 1)
     n = normal / np.linalg.norm(normal, axis=1)[:, None]
     across = (sums * n).sum(1)[:, None] * n
-    out = -C * SOUND * kernel.h * DT * share(0.9, 1.0)[:, None] * (sums - (1 - share(0.04, 0.16))[:, None] * across)
+    if not fills:
+        sums = share(0.9, 1.0)[:, None] * (sums - (1 - share(0.04, 0.16))[:, None] * across)
+    out = -C * SOUND * kernel.h * DT * sums
     size = np.linalg.norm(out, axis=1)
     most = 0.25 * C * SOUND * DT
     out *= np.minimum(1.0, most / np.maximum(size, 1e-300))[:, None]
@@ -42,35 +44,92 @@ def expected(x, volume, moves, kernel, dx, dim, walls):
     return out, missing, size > most
 
 
-@pytest.mark.parametrize("kernel", KERNELS)
-@BOTH
-def test_displacement(n, kernel):
-    """Two runs of one step, with and without: positions differ by the displacement, nothing else differs."""
+def change_of_velocity(x, v, volume, fluid, kernel, dim, step):
+    """step.grad v of fluid neighbours, by least squares with the weights -V_j g_ij, and the determinant of its matrix."""
+    x, v, step = x[fluid, :dim], v[fluid, :dim], step[fluid]
+    d, dv = x[None] - x[:, None], v[None] - v[:, None]
+    r = np.linalg.norm(d, axis=2)
+    np.fill_diagonal(r, np.inf)
+    weight = np.zeros_like(r)
+    weight[r < kernel.cut] = -kernel.g(r[r < kernel.cut])
+    weight *= volume[fluid][None]
+    matrix = np.einsum("ij,ija,ijb->iab", weight, d, d)
+    slopes = np.einsum("ij,ija,ijb->iab", weight, dv, d)
+    det = np.linalg.det(matrix)
+    change = np.einsum("iab,ibc,ic->ia", slopes, np.linalg.inv(matrix), step)
+    return np.clip((det - 0.02) / 0.08, 0, 1)[:, None] * change, det
+
+
+def one_step(n, kernel, flow, background=0):
+    """Two runs of one step, with and without: the fluid's, walls', volumes', kernel's arrays, and what is had by each."""
     dim, dx = len(n), 0.1
     x, v = cloud(n, dx, jitter=0.3, vmax=0.1)
     middle = np.argsort(np.linalg.norm(x - x.mean(0), axis=1))[:7]
     x[middle] = 0.5 * x[middle] + 0.5 * x[middle[0]]  # a clump that the bound must hold back
+    v = flow(x, v)
     walls = [1, 2][:dim - 1]
     type_ = np.where(x[:, 0] > x[:, 0].max() - 2 * dx, 2, 1)
     commands = ["fix walls all fsi/wall/mirror " + " ".join(f"{'xyz'[a]}lo 0 guard 0" for a in walls)]
     got = {}
     for shift in (0, C):
         with Scene(x, v, dim=dim, dx=dx, kernel=kernel, hdx=1.2, type=type_, materials=(WATER, RUBBER), dt=DT,
-                   fluid=f"sound {SOUND} tension yes shift {shift}", commands=commands) as s:
+                   fluid=f"sound {SOUND} tension yes background {background} shift {shift}", commands=commands) as s:
             s.run()
             volume = s.get("rmass") / s.get("rho")
             s.run(1)
             got[shift] = {name: s.get(name) for name in ("x", "v", "rho")}
             support = s.kernel
-    want, missing, bounded = expected(x, volume, type_ == 1, support, dx, dim, walls)
+    difference = {name: got[C][name] - got[0][name] for name in got[0]}
+    return x, v, volume, type_ == 1, support, walls, {name: d[:, :dim] if d.ndim == 2 else d for name, d in difference.items()}
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+@pytest.mark.parametrize("background", [0, 5])
+@BOTH
+def test_displacement(n, kernel, background):
+    """Positions differ by the displacement, velocities by what the flow has there, densities not at all."""
+    x, v, volume, fluid, support, walls, difference = one_step(n, kernel, lambda x, v: v, background)
+    want, missing, bounded = expected(x, volume, fluid, support, 0.1, len(n), walls, background > 0)
     # worth comparing: inside, on surfaces and in corners; bounded and not
     assert (missing > 1).any() and (missing < 0.04).any() and ((missing > 0.16) & (missing < 0.9)).any()
     assert bounded.any() and not bounded.all()
     # coordinates of order 1 and displacements of 1e-3: round-off of the difference
-    assert np.abs(got[C]["x"][:, :dim] - got[0]["x"][:, :dim] - want).max() < 1e-13
-    # nothing else: with shifting pairs go one by one, which adds up rates in another order
-    for name in ("v", "rho"):
-        assert np.abs(got[C][name] - got[0][name]).max() < 1e-13 * np.abs(got[0][name]).max(), name
+    assert np.abs(difference["x"] - want).max() < 1e-13
+    change, det = change_of_velocity(x, v, volume, fluid, support, len(n), want)
+    assert (det > 0.1).any() and np.abs(change).max() > 1e-3
+    assert np.abs(difference["v"][fluid] - change).max() < 1e-13
+    # with shifting pairs go one by one, which adds up rates in another order
+    assert not difference["v"][~fluid].any() and np.abs(difference["rho"]).max() < 1e-13 * 1000
+
+
+@BOTH
+def test_velocity_is_that_of_the_flow(n):
+    """In a flow whose velocity is linear in place particles have exactly that after the step, at surfaces, walls and solids, too."""
+    slope = np.array([[0.3, -0.2, 0.1], [0.5, 0.1, -0.4], [-0.3, 0.2, -0.4]])
+    slope[:, len(n):] = slope[len(n):] = 0.0
+    x, v, volume, fluid, support, _, difference = one_step(n, "quintic", lambda x, v: x @ slope.T)
+    _, det = change_of_velocity(x, v, volume, fluid, support, len(n), difference["x"])
+    there = det > 0.1
+    assert there.sum() > 0.6 * fluid.sum()
+    want = difference["x"] @ slope[:len(n), :len(n)].T
+    assert np.abs(want[fluid][there]).max() > 1e-4
+    assert np.abs(difference["v"] - want)[fluid][there].max() < 1e-13
+
+
+def test_gaps_close_where_there_is_no_surface():
+    """A hole of four particles in a lattice that fills its box: with a background pressure its rim moves into it."""
+    n, dx = (20, 20), 0.1
+    x = lattice(n, dx)
+    hole = (np.abs(x[:, :2] - 1.0) < dx).all(1)
+    x = x[~hole]
+    inward = {}
+    for background in (0, 5):
+        with Scene(x, dx=dx, boundary="p p p", box=((0, 0, 0), (2, 2, 2)), dt=DT,
+                   fluid=f"sound {SOUND} tension yes background {background} shift {C}", commands=[]) as s:
+            s.run(1)
+            rim = np.linalg.norm(x[:, :2] - 1.0, axis=1) < 2.2 * dx
+            inward[background] = -((s.get("x") - x)[:, :2] * (x[:, :2] - 1.0)).sum(1)[rim] / np.linalg.norm(x[:, :2] - 1.0, axis=1)[rim]
+    assert inward[5].min() > 0.02 * C * SOUND * DT and np.abs(inward[0]).max() < 0.3 * inward[5].min()
 
 
 @BOTH
