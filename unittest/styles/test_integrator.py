@@ -134,13 +134,13 @@ def test_reversible(dim, mode, material):
 
 @pytest.mark.parametrize("dim", (2, 3))
 def test_neighbours_in_space_are_neighbours_in_memory(dim):
-    """IDs that say nothing of places: in cells as wide as the support (3 dx) the next particle is in the same cell or the next one,
-    but where a row of cells ends. By ID it would be a third of the box away."""
+    """IDs that say nothing of places: in cells of dx the next particle is in the same cell or the next one, but where a row of
+    cells ends. By ID it would be a third of the box away."""
     n = 24 if dim == 2 else 12
     x = np.random.default_rng(2).permutation(lattice([n] * dim, 0.1))
     with Scene(x, dim=dim, dx=0.1, dt=1e-4) as s:
         s.run(1)
         stored = s.lmp.numpy.extract_atom("x")[:len(x)]
         jump = np.linalg.norm(np.diff(stored, axis=0), axis=1)
-    rows = (n // 3 + 1)**(dim - 1)
-    assert np.sort(jump)[-rows - 1] < (0.5**2 + (dim - 1) * 0.2**2)**0.5 + 1e-9 and len(jump) == len(x) - 1
+    rows = (n + 1)**(dim - 1)
+    assert np.sort(jump)[-rows - 1] < (0.2**2 + (dim - 1) * 0.1**2)**0.5 + 1e-9 and len(jump) == len(x) - 1
