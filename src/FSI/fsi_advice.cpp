@@ -511,7 +511,7 @@ class Adviser : protected Pointers {
       if (least[t] < BIG)
         warn(fmt::format("fluids see each other through what is of type {}, some {:.2g} thick, since the kernel reaches {:.2g}: if pressures on its "
                          "two sides differ, they mix. Then fix {} ... thin {}", t, least[t], scene.cut, scene.mover->id, t));
-      else if (-least[2 * n + t] > 1.0 + LITTLE && least[2 * n + t] < BIG)
+      else if (-least[2 * n + t] > 1.0 + LITTLE)
         warn(fmt::format("what is of type {}, some {:.2g} thick, pushes {:.0f} % less on fluid beside it than a thick body would, since the kernel reaches {:.2g}: "
                          "the fluid sinks in. Then fix {} ... thin {}", t, least[n + t], 100.0 * (1.0 + 1.0 / least[2 * n + t]), scene.cut, scene.mover->id, t));
   }

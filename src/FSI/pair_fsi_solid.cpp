@@ -24,6 +24,7 @@
 #include "fsi_gradient.h"
 #include "fsi_hourglass.h"
 #include "fsi_kernel.h"
+#include "fsi_pack.h"
 #include "fsi_profile.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_tensor.h"
@@ -101,17 +102,8 @@ void PairFSISolid::init_style()
 
 template <class K, int TERMS> void PairFSISolid::select(int flags)
 {
-  // loops may have effects that are off, with coefficients of zero: all but the barest have artificial viscosity, and contact those of the
-  // ledger and of artificial stress with corrected gradients, where it has no use
-  constexpr int STRESS = TERMS ? ARTIFICIAL_STRESS | BODIES : ARTIFICIAL_STRESS, ALL = ARTIFICIAL_VISCOSITY | BODIES | ARTIFICIAL_STRESS | LEDGER;
-  int with = flags;
-  if (with & ARTIFICIAL_STRESS) with |= STRESS;
-  if (with & LEDGER) with |= BODIES;
-  if (with & ~ARTIFICIAL_VISCOSITY) with |= ARTIFICIAL_VISCOSITY;
-  with_flags<ALL>(with, [this](auto f) {
-    constexpr int F = f();
-    if constexpr ((!(F & ARTIFICIAL_STRESS) || (F & STRESS) == STRESS) && (!(F & LEDGER) || (F & BODIES)) && (!(F & ~ARTIFICIAL_VISCOSITY) || (F & ARTIFICIAL_VISCOSITY)))
-      force_loop = &PairFSISolid::force_pairs<K, TERMS, F>;
+  with_flags<ARTIFICIAL_VISCOSITY | BODIES | ARTIFICIAL_STRESS | LEDGER>(completed<TERMS>(flags), [this](auto f) {
+    if constexpr (completed<TERMS>(f()) == f()) force_loop = &PairFSISolid::force_pairs<K, TERMS, f()>;
   });
   gradient_loop =
       (flags & BODIES) ? &PairFSISolid::gradient_pairs<K, TERMS, BODIES> : &PairFSISolid::gradient_pairs<K, TERMS, 0>;

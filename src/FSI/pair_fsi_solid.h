@@ -99,6 +99,13 @@ class PairFSISolid : public PairFSI {
   template <int D, int TERMS> const std::vector<Aux<D>> &fill_aux();
 
   enum { ARTIFICIAL_VISCOSITY = 1, BODIES = 2, ARTIFICIAL_STRESS = 4, LEDGER = 8 };
+  // Loops may have effects that are off, with coefficients of zero: all but the barest have artificial viscosity, and contact those of the
+  // ledger and of artificial stress with corrected gradients, where it has no use.
+  template <int TERMS> static constexpr int completed(int flags)
+  {
+    if ((flags & LEDGER) || (TERMS && (flags & ARTIFICIAL_STRESS))) flags |= BODIES;
+    return flags & ~ARTIFICIAL_VISCOSITY ? flags | ARTIFICIAL_VISCOSITY : flags;
+  }
   void (PairFSISolid::*force_loop)();
   void (PairFSISolid::*gradient_loop)(double);
   template <class K, int TERMS, int FLAGS> void force_pairs();
