@@ -129,6 +129,7 @@ namespace FSI {
     double delta;                         // of density diffusion; 0: none
     const double *pressure_over_density;  // per particle, with sums
     double wdx;                           // W(dx), for shifting
+    bool slopes;                          // shifting changes velocities, too
   };
 
   struct ForceLaws {

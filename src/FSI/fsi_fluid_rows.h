@@ -36,9 +36,10 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of finer lattices; shifting
+  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of finer lattices; shifting,
+  // and what it changes of velocities
   namespace Flag {
-    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, FINER = 128, SHIFT = 256, CENTRAL = 512 };
+    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, FINER = 128, SHIFT = 256, CENTRAL = 512, SLOPES = 1024 };
   }
 
   template <class T, int D> struct Particle {
@@ -165,7 +166,7 @@ namespace FSI {
   {
     constexpr int D = K::DIM;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES, CUT = KIND == WITH_SOLID && (FLAGS & Flag::FINER);
-    constexpr int N = KIND == WITH_FLUID && !IMAGE ? Shift<D>::ALL : Shift<D>::N;
+    constexpr int N = (FLAGS & Flag::SLOPES) ? Shift<D>::ALL : Shift<D>::N;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
@@ -522,13 +523,16 @@ namespace FSI {
                                                              reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums);
         });
       };
-      const int diffusion = kind != WITH_FLUID || laws.delta == 0.0 ? 0 : sums ? DIFFUSION | SUMS : DIFFUSION;
-      with_flags<IMAGES | DIFFUSION | SUMS | FINER | SHIFT>((image ? IMAGES : 0) | finer_or_cut(kind, in) | diffusion | (shift ? SHIFT : 0), [&](auto flags) {
-        if constexpr ((flags() & DIFFUSION) || !(flags() & SUMS)) {
-          if constexpr (!(flags() & DIFFUSION))
-            if (kind != WITH_FLUID) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
-          if constexpr (!(flags() & FINER)) loop(std::integral_constant<int, WITH_FLUID>(), flags);
-        }
+      // density diffusion, with a coefficient of zero where it is off, comes with what is rarely alone: images and shifting
+      const bool fluid = kind == WITH_FLUID, diffuses = fluid && (laws.delta > 0.0 || shift || image);
+      const int named = (shift ? SHIFT : 0) | (fluid && !image && laws.slopes ? SLOPES : 0) | (diffuses ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
+      with_flags<IMAGES | DIFFUSION | SUMS | FINER | SHIFT | SLOPES>((image ? IMAGES : 0) | finer_or_cut(kind, in) | named, [&](auto flags) {
+        constexpr int effects = flags() & (DIFFUSION | SUMS | SHIFT | SLOPES);
+        if constexpr (effects == 0 || effects == SHIFT)
+          if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
+        constexpr bool has_slopes = effects & SLOPES, diffusing = effects & DIFFUSION, plain = !(flags() & IMAGES);
+        if constexpr (!(flags() & FINER) && (diffusing || (effects == 0 && plain)) && (!has_slopes || (plain && (effects & SHIFT))))
+          loop(std::integral_constant<int, WITH_FLUID>(), flags);
       });
     }
 
@@ -538,8 +542,8 @@ namespace FSI {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
-      // with sums, neighbours on a finer lattice, both viscosities, or pair by pair there is one loop for all effects: those that are off
-      // have coefficients of zero
+      // with sums, images, neighbours on a finer lattice, both viscosities, the central one, or pair by pair there is one loop for all
+      // effects: those that are off have coefficients of zero
       constexpr int EFFECTS = ARTIFICIAL | LAMINAR | CENTRAL;
       PairSums unused;
       if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL)) sums = &unused;
@@ -548,14 +552,13 @@ namespace FSI {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
         });
       };
-      const int laminar = laws.laminar == 0 ? 0 : laws.laminar == 1 ? LAMINAR : LAMINAR | CENTRAL;
       const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
-      const int named = artificial && laminar ? EFFECTS : artificial ? ARTIFICIAL : laminar;
-      const int special = (sums ? SUMS : 0) | (kind == WITH_SOLID || kind == WITH_WALL ? finer_or_cut(kind, in) : 0);
-      with_flags<EFFECTS | SUMS | IMAGES | FINER>((special || ONE_BY_ONE ? EFFECTS : named) | special | (image ? IMAGES : 0), [&](auto flags) {
+      const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | (kind == WITH_SOLID || kind == WITH_WALL ? finer_or_cut(kind, in) : 0);
+      const bool all = special || ONE_BY_ONE || laws.laminar == 2 || (artificial && laws.laminar);
+      with_flags<EFFECTS | SUMS | IMAGES | FINER>(special | (all ? EFFECTS : artificial ? ARTIFICIAL : laws.laminar ? LAMINAR : 0), [&](auto flags) {
         constexpr int effects = flags() & EFFECTS;
-        constexpr bool alone = effects == 0 || effects == ARTIFICIAL || effects == LAMINAR || effects == (LAMINAR | CENTRAL);
-        if constexpr (effects == EFFECTS || (alone && !ONE_BY_ONE && !(flags() & (SUMS | FINER)))) {
+        constexpr bool alone = flags() == 0 || flags() == ARTIFICIAL || flags() == LAMINAR;
+        if constexpr (effects == EFFECTS || (alone && !ONE_BY_ONE)) {
           if constexpr (!(flags() & FINER))
             if (kind == WITH_FLUID) loop(std::integral_constant<int, WITH_FLUID>(), flags);
           if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);

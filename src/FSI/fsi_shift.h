@@ -26,8 +26,9 @@
 // Antuono and Zhang 2019, Comput. Phys. Commun. 244, 36, have it as a term of the rate):
 //   delta v_i = delta r_i.grad v,  grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,  g_ij = grad_i W_ij,
 // of fluid neighbours alone, exact for linear fields wherever they are. Without it vortices behind a cylinder are too weak
-// (doc/src/theory.rst). Density goes along unchanged: delta r.grad rho is sound, which goes as it comes. Linear and angular momentum and
-// energy are not kept exactly, and the energy ledger knows nothing of shifting.
+// (doc/src/theory.rst). This does not keep momentum, so it is done where the fluid fills its box: there walls and streams give and take
+// momentum all the time; a jet or a drop has but its own. Density goes along unchanged: delta r.grad rho is sound, which goes as it comes.
+// Angular momentum and energy are not kept exactly, and the energy ledger knows nothing of shifting.
 
 #ifndef LMP_FSI_SHIFT_H
 #define LMP_FSI_SHIFT_H
@@ -42,7 +43,7 @@ namespace FSI {
 
   template <int D> struct Shift {
     static constexpr int N = 2 * D + 1;             // sums of a particle: weighted and plain sum of V_j grad_i W_ij, divergence
-    static constexpr int ALL = N + Sym<D>::N + D * D;    // of fluid neighbours also those of x (x) g and v (x) g
+    static constexpr int ALL = N + Sym<D>::N + D * D;    // with those of fluid neighbours' x (x) g and v (x) g
     static constexpr int ROW = (ALL + 3) / 4 * 4;    // numbers from one particle to the next: fours are added at once
     double wdx;                            // W(dx)
     explicit Shift(double w) : wdx(w) {}
@@ -73,7 +74,7 @@ namespace FSI {
     }
 
     // The sums become the displacement, in their first D places, and the change of velocity, in the next; fills: the fluid has no
-    // surface; scale = C c h dt, most = C c dt/4
+    // surface, and the sums are ALL; scale = C c h dt, most = C c dt/4
     static void displacement(double *sum, bool fills, double scale, double most)
     {
       if (fills)
@@ -84,6 +85,8 @@ namespace FSI {
       if (size > most)
         for (int d = 0; d < D; d++) sum[d] *= most / size;
 
+      for (int d = 0; d < D; d++) sum[D + d] = 0.0;
+      if (!fills) return;
       double step[D];
       const double share = solve(Sym<D>::load(sum + N), sum, step);
       const double *const slopes = sum + N + Sym<D>::N;

@@ -191,7 +191,8 @@ int PairFSIFluid::nshift() const
 
 int PairFSIFluid::shift_sums() const
 {
-  return fix_fsi->dim == 2 ? Shift<2>::ALL : Shift<3>::ALL;
+  if (fills()) return fix_fsi->dim == 2 ? Shift<2>::ALL : Shift<3>::ALL;
+  return fix_fsi->dim == 2 ? Shift<2>::N : Shift<3>::N;
 }
 
 void PairFSIFluid::set_fields(Scene &scene)
@@ -559,6 +560,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   const FluidParticles particles = gather<D>(-dth, [&](int i, Point<D> &p) {
     // Diffusion smooths pressures, so both of a pair must have one. What has none, spray and surfaces, has the density that its few
     // neighbours leave: their exchange would empty the spray, beyond zero, and take volume from the rest.
+    p.p = p.pv2 = 0.0;
     if (delta == 0.0) return;
     const State &s = fix_fsi->state[type[i]];
     p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
@@ -569,7 +571,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
     for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx};
+  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, shifting > 0.0 && fills()};
   double *const shift = shifting > 0.0 ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror) {
@@ -588,13 +590,12 @@ void PairFSIFluid::displacements(double dt)
 {
   const int *const type = atom->type;
   double *const *const sums = fix_fsi->shift;
-  const bool fills = background > 0.0;    // with a free surface it would blow up
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = fix_fsi->state[type[i]];
     if (s.species != FLUID) continue;
     const double reach = shifting * s.c * dt;
-    if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], fills, reach * fix_fsi->h, 0.25 * reach);
-    else Shift<3>::displacement(sums[i], fills, reach * fix_fsi->h, 0.25 * reach);
+    if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
+    else Shift<3>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
   }
 }
 

@@ -103,7 +103,8 @@ class PairFSISolid : public PairFSI {
   // ledger and of artificial stress with corrected gradients, where it has no use.
   template <int TERMS> static constexpr int completed(int flags)
   {
-    if ((flags & LEDGER) || (TERMS && (flags & ARTIFICIAL_STRESS))) flags |= BODIES;
+    if (flags & LEDGER) flags |= ARTIFICIAL_STRESS | BODIES;
+    if (TERMS && (flags & ARTIFICIAL_STRESS)) flags |= BODIES;
     return flags & ~ARTIFICIAL_VISCOSITY ? flags | ARTIFICIAL_VISCOSITY : flags;
   }
   void (PairFSISolid::*force_loop)();

@@ -87,7 +87,7 @@ def one_step(n, kernel, flow, background=0):
 @pytest.mark.parametrize("background", [0, 5])
 @BOTH
 def test_displacement(n, kernel, background):
-    """Positions differ by the displacement, velocities by what the flow has there, densities not at all."""
+    """Positions differ by the displacement, velocities in a full box by what the flow has there, densities not at all."""
     x, v, volume, fluid, support, walls, difference = one_step(n, kernel, lambda x, v: v, background)
     want, missing, bounded = expected(x, volume, fluid, support, 0.1, len(n), walls, background > 0)
     # worth comparing: inside, on surfaces and in corners; bounded and not
@@ -97,8 +97,8 @@ def test_displacement(n, kernel, background):
     assert np.abs(difference["x"] - want).max() < 1e-13
     change, det = change_of_velocity(x, v, volume, fluid, support, len(n), want)
     assert (det > 0.1).any() and np.abs(change).max() > 1e-3
-    assert np.abs(difference["v"][fluid] - change).max() < 1e-13
-    # with shifting pairs go one by one, which adds up rates in another order
+    assert np.abs(difference["v"][fluid] - (change if background else 0)).max() < 1e-13
+    # rates with shifting may add up in another order
     assert not difference["v"][~fluid].any() and np.abs(difference["rho"]).max() < 1e-13 * 1000
 
 
@@ -107,7 +107,7 @@ def test_velocity_is_that_of_the_flow(n):
     """In a flow whose velocity is linear in place particles have exactly that after the step, at surfaces, walls and solids, too."""
     slope = np.array([[0.3, -0.2, 0.1], [0.5, 0.1, -0.4], [-0.3, 0.2, -0.4]])
     slope[:, len(n):] = slope[len(n):] = 0.0
-    x, v, volume, fluid, support, _, difference = one_step(n, "quintic", lambda x, v: x @ slope.T)
+    x, v, volume, fluid, support, _, difference = one_step(n, "quintic", lambda x, v: x @ slope.T, background=5)
     _, det = change_of_velocity(x, v, volume, fluid, support, len(n), difference["x"])
     there = det > 0.1
     assert there.sum() > 0.6 * fluid.sum()

@@ -199,12 +199,12 @@ def with_plate(dim, **options):
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("walls", [False, True])
 def test_momentum(dim, walls):
-    """Kept to round-off, what wall particles get included; not with shifting, whose particles take the velocity of the flow"""
+    """Kept to round-off, what wall particles get included"""
     x, plate = plate_between(dim)
     v = np.where(plate[:, None], 0, np.random.default_rng(5).uniform(-0.3, 0.3, x.shape) * ([1, 1, dim - 2]))
     body = dict(materials=(WATER + " viscosity 1", WALL)) if walls else dict(materials=(WATER + " viscosity 1", RUBBER), solid_style="fsi/solid")
     with Scene(x, v, dim=dim, dx=0.1, type=1 + plate, mol=1 + plate, dt=2e-4, density=("spacing 2 0.05" if walls else "") + " thin 2", **body,
-               held=plate if walls else None, fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1",
+               held=plate if walls else None, fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1 shift 0.1",
                commands=["fix w held fsi/wall/particle slip no"] if walls else []) as s:
         s.run()
         before, given, m = s.momentum(), np.zeros(3), s.get("rmass")[:, None]
