@@ -176,5 +176,5 @@ def _price(found):
 def _cases(folder, summary):
     """Links to the pages of a study's cases."""
     rows = [[f'<a href="{escape(name)}/{OUT}">{escape(name)}</a>' if (folder / name / OUT).exists() else escape(name), number(case.get("particles")),
-             number(case.get("steps")), number(case.get("wall_seconds"))] for name, case in summary.get("cases", {}).items()]
+             number(case.get("steps")), number(case.get("cpu_seconds"))] for name, case in summary.get("cases", {}).items()]
     return "<h2>Cases</h2>\n" + _table(("case", "particles", "steps", "seconds"), rows, ("particles", "steps", "seconds")) if rows else ""

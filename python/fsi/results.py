@@ -17,7 +17,7 @@ from . import paths
 from .summary import bound, deviation, number
 
 REMARKS = "Where it is off"  # section of a scene's README that the page quotes
-COST = ("wall_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; columns of their own
+COST = ("cpu_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; columns of their own
 SHOWN = 2  # pictures per scene
 MARKS = ("<!-- results: written by tools/run all -->\n", "<!-- end of results -->\n")  # where the README has them
 # The first table: what, scene, figure, case that it is of (None: all)
@@ -124,7 +124,7 @@ def _head(every, scenes):
         commits.setdefault(entry["summary"].get("commit") or "unknown", []).append(name)
     used = " and ".join(c if len(commits) == 1 else f"{c} ({', '.join(n)})" for c, n in commits.items())
     changed = " (+: with changes that are not committed)" if any(c.endswith("+") for c in commits) else ""
-    seconds = sum(entry["summary"]["wall_seconds"] or 0 for entry in scenes.values())
+    seconds = sum(entry["summary"]["cpu_seconds"] or 0 for entry in scenes.values())
     lines += ["", f"LAMMPS {', '.join(sorted(versions))}; commit {used}{changed}; {_duration(seconds)} in all."]
     return "\n".join(lines)
 
@@ -140,8 +140,8 @@ def headlines(scenes, examples):
         found = next((f for f in summary["figures"] if f["name"] == figure), None)
         ran = summary.get("cases", {}).get(case) if case else summary
         rows.append([what, _ours(found), f"{number(found['reference'])} ({found['source']})", deviation(found), f"{ran['particles']:,}",
-                     f"{_duration(ran['wall_seconds'])} on {ran['ranks']}"] if found and ran else [what, "no result", "", "", "", ""])
-    return _markdown(["figure", "ours", "truth", "error", "particles", "time on cores"], rows) if rows else ""
+                     f"{_duration(ran['cpu_seconds'])} on {ran['ranks']}"] if found and ran else [what, "no result", "", "", "", ""])
+    return _markdown(["figure", "ours", "truth", "error", "particles", "CPU time on cores"], rows) if rows else ""
 
 
 def _gallery(scenes, examples):
@@ -155,7 +155,7 @@ def _gallery(scenes, examples):
 def _explanation(scenes):
     text = ("`error` is relative to the reference. The target bounds its size, or, where the reference is none or 0, that of "
             "the value. What is no experiment, theory or finite elements says so in `source`. Particles: of the largest "
-            "case; wall seconds: of all cases.")
+            "case; CPU seconds: of all cases, on each of the ranks.")
     own = [f"{name} with {' '.join(f'{k}={v}' for k, v in entry['summary']['given'].items())}"
            for name, entry in scenes.items() if entry["summary"].get("given")]
     return text + (f" **Not as bundled: {'; '.join(own)}.**" if own else "")
@@ -163,11 +163,11 @@ def _explanation(scenes):
 
 def _table(scenes, judged):
     """The figures that have a reference or a target, or the others; empty if there are none."""
-    head = ["scene", "figure", "ours", "reference", "source", "error", "target", "particles", "wall seconds", "ranks"]
+    head = ["scene", "figure", "ours", "reference", "source", "error", "target", "particles", "CPU seconds", "ranks"]
     rows = []
     for name, entry in scenes.items():
         summary = entry["summary"]
-        cost = [number(summary["particles"]), f"{summary['wall_seconds'] or 0:.1f}", number(summary["ranks"])]
+        cost = [number(summary["particles"]), f"{summary['cpu_seconds'] or 0:.1f}", number(summary["ranks"])]
         if len(summary.get("cases", ())) > 1:
             cost[0] = f"{len(summary['cases'])} cases, {cost[0]}"
         figures = [f for f in summary["figures"] if f["name"] not in COST and judged ==
@@ -186,7 +186,7 @@ def _table(scenes, judged):
 
 def _markdown(head, rows):
     """A table; columns of numbers at the right."""
-    numbers = ("ours", "reference", "error", "particles", "wall seconds", "ranks", "time on cores")
+    numbers = ("ours", "reference", "error", "particles", "CPU seconds", "ranks", "CPU time on cores")
     lines = [head, ["---:" if title in numbers else "---" for title in head], *rows]
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
 

@@ -9,6 +9,7 @@ another scene's deck, with any of its variables and the edits that edits.json na
 import difflib
 import importlib.util
 import json
+import os
 import re
 import subprocess
 import sys
@@ -113,16 +114,15 @@ def run(scene, folder, ranks, variables, case=None, borrowed=None, may_fail=Fals
             text, settings = _borrowed(scene, borrowed).instance(variables)
             path = folder / f"in.{borrowed}"
             path.write_text(text)
-        status, wall, output = _simulate(path, folder, ranks, settings)
+        status, seconds, output = _simulate(path, folder, ranks, settings)
         if status != 0:
             _explain(folder, status, output)
             if not may_fail:
                 _report(folder)
                 return status
         _write_run(folder, {"scene": scene, **({"case": case} if case else {}), "ranks": ranks,
-                            "wall_seconds": round(wall, 3), "given": variables, **({"status": status} if status else {}),
+                            "cpu_seconds": round(seconds, 3), "given": variables, **({"status": status} if status else {}),
                             "variables": {**deck_variables(path), **variables}})
-        print(f"run: LAMMPS took {wall:.1f} s; analysing", flush=True)
         module = analysis(scene)
         good = module is None or _calls(module.main, folder)
         _report(folder)
@@ -231,8 +231,8 @@ def _seconds_of_page():
     for scene, entry in results.scenes_of(paths.PAGE).items():
         summary = entry["summary"] or {}
         for name, ran in (summary.get("cases") or {None: summary}).items():
-            if ran.get("wall_seconds"):
-                took[scene, name] = ran["wall_seconds"] * (ran.get("ranks") or 1)
+            if ran.get("cpu_seconds"):
+                took[scene, name] = ran["cpu_seconds"] * (ran.get("ranks") or 1)
     return took
 
 
@@ -299,7 +299,7 @@ def _commit():
 
 
 def _simulate(path, folder, ranks, variables):
-    """Runs LAMMPS, its output going to the terminal; returns (status, wall seconds, last lines)."""
+    """Runs LAMMPS, its output going to the terminal; returns (status, CPU seconds per rank, last lines)."""
     command = launch.lammps(Path(path).resolve(), ranks, variables)
     started = time.perf_counter()
     tail = []
@@ -308,7 +308,11 @@ def _simulate(path, folder, ranks, variables):
         for line in process.stdout:
             print(line, end="", flush=True)
             tail = [*tail[-199:], line.rstrip()]
-    return process.returncode, time.perf_counter() - started, tail
+        _, status, usage = os.wait4(process.pid, 0)  # what it waited for included: the ranks of mpirun
+        process.returncode = os.waitstatus_to_exitcode(status)
+    seconds = (usage.ru_utime + usage.ru_stime) / ranks
+    print(f"run: LAMMPS took {time.perf_counter() - started:.1f} s, {seconds:.1f} s of CPU time on each core; analysing", flush=True)
+    return process.returncode, seconds, tail
 
 
 def _explain(folder, status, output):

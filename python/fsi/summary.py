@@ -51,12 +51,12 @@ class Summary:
     def write(self):
         """Writes summary.json, prints it as a table, returns it as a dictionary."""
         cost = self._cost() if self.log else self._cost_of_cases()
-        for name, unit in (("wall_seconds", "s"), ("particle_steps_per_second", "1/s"), ("bytes_per_particle", "B")):
+        for name, unit in (("cpu_seconds", "s"), ("particle_steps_per_second", "1/s"), ("bytes_per_particle", "B")):
             self.add(name, cost[name], unit)
         summary = {"scene": self.run.get("scene", self.folder.name), "figures": self.figures, **cost,
                    "commit": self.run.get("commit")}
         if self.cases:
-            kept = ("given", "particles", "steps", "ranks", "wall_seconds")
+            kept = ("given", "particles", "steps", "ranks", "cpu_seconds")
             summary["cases"] = {name: {key: case.get(key) for key in kept} for name, case in self.cases.items()}
             summary["failed_cases"] = self.run.get("failed", [])
         else:
@@ -67,9 +67,9 @@ class Summary:
         return summary
 
     def _cost(self):
-        """Size and speed. The speed is that of the time loop; wall_seconds is the whole of LAMMPS' run."""
+        """Size and speed. The speed is that of the time loop; cpu_seconds is the whole of LAMMPS' run. CPU time, of one rank: what else the machine does hardly counts."""
         runs = self.log.finished
-        loop = sum(run.loop_seconds for run in runs)
+        loop = sum(run.cpu_seconds for run in runs)
         work = sum(run.atoms * run.steps for run in runs)
         ranks = runs[-1].ranks if runs else self.run.get("ranks")
         particles = runs[0].atoms if runs else None
@@ -78,7 +78,7 @@ class Summary:
             "particles": particles,
             "steps": sum(run.steps for run in runs),
             "ranks": ranks,
-            "wall_seconds": self.run.get("wall_seconds", loop if runs else None),
+            "cpu_seconds": self.run.get("cpu_seconds", loop if runs else None),
             "loop_seconds": loop,
             "particle_steps": work,
             **_speed(work, loop, loop * (ranks or 0)),
@@ -90,13 +90,13 @@ class Summary:
         """As above: particles, ranks and memory of the largest case, the rest over all."""
         cases = list(self.cases.values())
         largest = max(cases, key=lambda case: case["particles"] or 0)
-        work, loop, steps, wall = (sum(case[key] or 0 for case in cases)
-                                   for key in ("particle_steps", "loop_seconds", "steps", "wall_seconds"))
+        work, loop, steps, whole = (sum(case[key] or 0 for case in cases)
+                                   for key in ("particle_steps", "loop_seconds", "steps", "cpu_seconds"))
         return {
             "particles": largest["particles"],
             "steps": steps,
             "ranks": largest["ranks"],
-            "wall_seconds": wall,
+            "cpu_seconds": whole,
             "loop_seconds": loop,
             "particle_steps": work,
             **_speed(work, loop, sum(case["loop_seconds"] * (case["ranks"] or 0) for case in cases)),

@@ -20,7 +20,7 @@ def write_run(folder, tip, values, leaked=0, outflow=0):
     figures = [{"name": "particles_leaked", "value": leaked}, {"name": "outflow_particles", "value": outflow},
                {"name": "mass_error", "value": 0.0}]
     (folder / "summary.json").write_text(json.dumps({
-        "particles": 10, "ranks": 1, "steps": 1, "wall_seconds": 1.0, "loop_seconds": 1.0, "particle_steps": 10,
+        "particles": 10, "ranks": 1, "steps": 1, "cpu_seconds": 1.0, "loop_seconds": 1.0, "particle_steps": 10,
         "bytes_per_particle": 1.0, "lammps": "", "figures": figures}))
 
 

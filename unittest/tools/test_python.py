@@ -281,7 +281,7 @@ def test_report(tmp_path, frames):
     for data in re.findall(r'src="data:image/png;base64,([^"]*)"', page):
         assert base64.b64decode(data).startswith(b"\x89PNG")
     (folder / "summary.json").write_text('{"scene": "x", "figures": [{"name": "peak", "value": 4.5, "unit": "mm", "reference": 4.0, "source": "theory", '
-                                         '"relative_error": 0.125, "target": 0.1, "met": false}], "cases": {"fine": {"particles": 7, "steps": 8, "wall_seconds": 9.0}}}')
+                                         '"relative_error": 0.125, "target": 0.1, "met": false}], "cases": {"fine": {"particles": 7, "steps": 8, "cpu_seconds": 9.0}}}')
     (folder / "shot.png").write_bytes(b"\x89PNGmine")
     page = report.write(folder, tmp_path / "other.html").read_text()
     assert '+12.5 %' in page and "missed" in page and base64.b64encode(b"\x89PNGmine").decode() in page and "some.dump" not in page and "<td>fine</td>" in page

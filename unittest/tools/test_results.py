@@ -23,7 +23,7 @@ Air.
 ## Literature
 Not to be quoted.
 """
-COST = {"particles": 1234, "steps": 10, "ranks": 2, "wall_seconds": 12.34, "particle_steps_per_second": 1e6,
+COST = {"particles": 1234, "steps": 10, "ranks": 2, "cpu_seconds": 12.34, "particle_steps_per_second": 1e6,
         "particle_steps_per_second_per_rank": 5e5, "bytes_per_particle": 800.0, "lammps": "4 Feb 2025", "commit": "abc"}
 
 
@@ -45,7 +45,7 @@ def tree(tmp_path, monkeypatch):
         figure("speed", 11.0, "m/s", 10.0, "experiment, A | B 1999", 0.05, False, 0.1),
         figure("time", 1.01, "s", 1.0, "theory", 0.05, True, 0.01),
         figure("lost", 0, "", None, None, 0, True),
-        figure("colour", None, "nm"), figure("wall_seconds", 12.34, "s")]}
+        figure("colour", None, "nm"), figure("cpu_seconds", 12.34, "s")]}
     study = {"scene": "study", **COST, "commit": "def+", "failed_cases": ["wide"],
              "cases": {"small": {"particles": 10}, "large": {"particles": 1234}},
              "figures": [figure("order", 1.98, "", 2.0, "theory", None, None, -0.01)]}
@@ -86,7 +86,7 @@ def test_table(tree):
     # nothing to judge it by: below the table; what a run costs: not as a figure
     judged, rest = page.split("### Further figures")
     assert "`colour`" not in judged and "| stone | `colour` | - nm |" in rest
-    assert "`wall_seconds`" not in page
+    assert "`cpu_seconds`" not in page
 
 
 def test_gallery_shows_what_the_readme_shows_else_everything(tree):
@@ -110,7 +110,7 @@ def test_headlines(tree, monkeypatch):
     monkeypatch.setattr(paths, "ROOT", tree)
     write(tree / "README.md", f"# Title\n{results.MARKS[0]}old\n{results.MARKS[1]}## Rest\n")
     summary = json.loads((tree / "results/study/summary.json").read_text())
-    summary["cases"]["large"] |= {"wall_seconds": 200.0, "ranks": 3}
+    summary["cases"]["large"] |= {"cpu_seconds": 200.0, "ranks": 3}
     write(tree / "results/study/summary.json", json.dumps(summary))
     rows = ["| [How fast](examples/stone/README.md) | 11 m/s | 10 (experiment, A \\| B 1999) | +10.0 % | 1,234 | 12 s on 2 |",
             "| [Order \\| slope](examples/study/README.md) | 1.98 | 2 (theory) | -1.0 % | 1,234 | 3 minutes on 3 |",

@@ -91,7 +91,7 @@ def test_scene_without_variables_runs_all_cases(examples, capsys):
     # 2 atoms and 20 steps, 4 atoms and 40 steps, each 1 s of time loop and 2 s in all
     study = summary_of("toy")
     assert figure(study, "change")["value"] == pytest.approx(-1.0)
-    assert (study["particles"], study["steps"], study["wall_seconds"], study["ranks"]) == (4, 60, 4.0, 3)
+    assert (study["particles"], study["steps"], study["cpu_seconds"], study["ranks"]) == (4, 60, 4.0, 3)
     assert study["particle_steps_per_second"] == pytest.approx((2 * 20 + 4 * 40) / 2.0)
     rank_seconds = 1 + 3  # one rank where a case does not say
     assert study["particle_steps_per_second_per_rank"] == pytest.approx(200.0 / rank_seconds)
