@@ -23,6 +23,7 @@ REFERENCE = {
 TARGETS = {"drag": 0.03, "lift": 0.07, "strouhal": 0.02}
 DIAMETER = 0.1
 PERIODS = 5
+START = 1.0  # of the curves: what the sudden start does before is off the scale
 COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
 
 
@@ -47,13 +48,23 @@ def figures(time, found):
     return out
 
 
+def faster(drag, width):
+    """By how much the stream beside the cylinder is faster, since the box repeats it across: of wake and body, Allen & Vincenti 1944 (NACA
+    Report 782), for walls that slip; drag coefficient and width in D."""
+    return drag / (4.0 * width) + 0.82 / width**2
+
+
 def add(summary, folder, suffix="", judged=False):
-    """The figures of one run; returns the time and the smoothed coefficients."""
+    """The figures of one run, as they are and (..._free) as they would be without the box; returns the time and the smoothed coefficients."""
     values, time, found = read(folder)
     references = REFERENCE.get(round(values["reynolds"]), {})
-    for name, value in figures(time, found).items():
+    here = figures(time, found)
+    more = 1.0 + faster(here["drag"], values["width"])
+    for name, value in here.items():
+        summary.add(name + suffix, value, "", *references.get(name, (None, None)))
+    for name, power in (("drag", 2), ("lift", 2), ("strouhal", 1)):
         reference, source = references.get(name, (None, None))
-        summary.add(name + suffix, value, "", reference, source, TARGETS[name] if judged and reference else None)
+        summary.add(f"{name}_free{suffix}", here[name] / more**power, "", reference, source, TARGETS[name] if judged and reference else None)
     return time, {name: series.smooth(time, c, 0.5) for name, c in found.items()}
 
 
@@ -62,8 +73,9 @@ def main(folder):
     folder = Path(folder)
     summary = Summary(folder)
     time, found = add(summary, folder)
+    shown = time > START
     plot.lines(folder / "forces.png", "t U/D", "coefficient, means of 0.5 D/U",
-               [(time, found[name], name, colour) for name, colour in zip(("drag", "lift"), COLOURS)])
+               [(time[shown], found[name][shown], name, colour) for name, colour in zip(("drag", "lift"), COLOURS)])
     values = summary.log.values
     last = dump.read(folder / "particles.dump")[-1].of_types(1)
     spin = geometry.vorticity(*(last[name] for name in ("x", "y", "vx", "vy")), 2.5 * values["dx"]) * DIAMETER / values["velocity"]
@@ -81,7 +93,8 @@ def study(folder, cases):
     curves = []
     for (name, path), colour in zip(cases.items(), COLOURS):
         time, found = add(summary, path, f"_{name}", name in finest.values())
-        curves.append((time, found["lift"], name.replace("_", " "), colour))
+        shown = time > START
+        curves.append((time[shown], found["lift"][shown], name.replace("_", " "), colour))
     plot.lines(folder / "lift.png", "t U/D", "lift coefficient, means of 0.5 D/U", curves)
     return summary.write()
 
