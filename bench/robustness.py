@@ -27,6 +27,7 @@ SCENES = {  # scene: (variable of the resolution, its value, whether it is a num
     "column": ("dx", 0.01, False, {}),
     "couette_poiseuille": ("n", 10, True, {"wall": "solid"}),
     "cylinder_channel": ("across", 8, True, {"length": 0.5}),
+    "cylinder_free": ("across", 6, True, {"width": 8}),
     "dam_break": ("resolution", 20, True, {}),
     "dam_break_3d": ("dx", 0.055, False, {}),
     "dam_break_elastic": ("dx", 0.004, False, {"dim": 2, "column": 0.292, "depth": 0.12}),

@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 import numpy as np  # noqa: E402
 
-from fsi import dump, log, plot, series  # noqa: E402
+from fsi import dump, geometry, log, plot, series  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
 SOURCE = "Schaefer & Turek 1996"
@@ -47,28 +47,6 @@ def figures(folder):
     return found, s, scale, window
 
 
-def vorticity(frame, dx):
-    """dv/dx - du/dy at the particles: moments of the differences to the neighbors within 2.5 spacings"""
-    x, y, u, v = (np.asarray(frame[name]) for name in ("x", "y", "vx", "vy"))
-    size = 2.5 * dx
-    cells = {}
-    for k, cell in enumerate(zip((x // size).astype(int).tolist(), (y // size).astype(int).tolist())):
-        cells.setdefault(cell, []).append(k)
-    out = np.zeros(len(x))
-    for (a, b), members in cells.items():
-        near = np.array([k for i in (-1, 0, 1) for j in (-1, 0, 1) for k in cells.get((a + i, b + j), ())])
-        for k in members:
-            ex, ey = x[near] - x[k], y[near] - y[k]
-            w = np.maximum(0.0, 1 - (ex**2 + ey**2) / size**2)
-            m = np.array([[np.sum(w * ex * ex), np.sum(w * ex * ey)], [np.sum(w * ex * ey), np.sum(w * ey * ey)]])
-            if np.linalg.det(m) <= 1e-3 * np.trace(m)**2:
-                continue
-            du, dv = u[near] - u[k], v[near] - v[k]
-            gu, gv = np.linalg.solve(m, np.array([[np.sum(w * ex * du), np.sum(w * ex * dv)], [np.sum(w * ey * du), np.sum(w * ey * dv)]])).T
-            out[k] = gv[0] - gu[1]
-    return out
-
-
 def main(folder):
     """Analyses the run in `folder`; returns the summary."""
     folder = Path(folder)
@@ -86,7 +64,8 @@ def main(folder):
     last = dump.read(folder / "particles.dump")[-1]
     last = last.of_types(1)
     dx = float(summary.log.values["dx"])
-    plot.clouds(folder / "vorticity.png", [(f"t = {last.time:.2f} s", last["x"], last["y"], np.clip(vorticity(last, dx), -40, 40))],
+    spin = geometry.vorticity(*(last[name] for name in ("x", "y", "vx", "vy")), 2.5 * dx)
+    plot.clouds(folder / "vorticity.png", [(f"t = {last.time:.2f} s", last["x"], last["y"], np.clip(spin, -40, 40))],
                 dx, ((last["x"].min(), last["x"].max()), (0, 0.41)), "vorticity [1/s]", panel_width=8.0)
     return summary.write()
 

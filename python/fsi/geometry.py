@@ -19,13 +19,16 @@ def min_pair_distance(points, spacing):
 
 def _min_within(points, cutoff):
     """As above, exact if the answer is at most `cutoff`; infinity if no two points share neighbouring cells."""
+    return float(min((np.sqrt(((points[i] - points[j]) ** 2).sum(axis=1).min()) for i, j in _near(points, cutoff)), default=np.inf))
+
+
+def _near(points, cutoff):
+    """Pairs (i, j), each once, among which are all that are nearer than `cutoff`, in parts."""
     cells = np.floor((points - points.min(axis=0)) / cutoff).astype(np.int64) + 1
     strides = np.cumprod(np.concatenate([[1], cells.max(axis=0)[:-1] + 2]))
     keys = cells @ strides
     order = np.argsort(keys, kind="stable")
-    keys, points = keys[order], points[order]
-
-    smallest = np.inf
+    keys = keys[order]
     offsets = [o for o in product((-1, 0, 1), repeat=points.shape[1]) if np.dot(o, strides) >= 0]
     for offset in offsets:
         shift = np.dot(offset, strides)
@@ -35,8 +38,24 @@ def _min_within(points, cutoff):
         i = np.repeat(np.arange(len(keys)), counts)
         j = np.arange(counts.sum()) + np.repeat(first - np.cumsum(counts) + counts, counts)
         if i.size:
-            smallest = min(smallest, np.sqrt(((points[i] - points[j]) ** 2).sum(axis=1).min()))
-    return float(smallest)
+            yield order[i], order[j]
+
+
+def vorticity(x, y, u, v, reach):
+    """dv/dx - du/dy at points in the plane, of the differences to the neighbors within `reach`: the gradient that fits them best. Zero where
+    there are too few, or all in one line."""
+    moments = np.zeros((7, len(x)))  # of xx, xy, yy, x u, y u, x v, y v
+    points = np.column_stack([x, y])
+    for i, j in _near(points, reach):
+        (dx, dy), du, dv = (points[j] - points[i]).T, u[j] - u[i], v[j] - v[i]
+        weight = np.maximum(0.0, 1.0 - (dx**2 + dy**2) / reach**2)
+        for moment, value in zip(moments, (dx * dx, dx * dy, dy * dy, dx * du, dy * du, dx * dv, dy * dv)):
+            for k in (i, j):  # both differences change their sign
+                moment += np.bincount(k, weight * value, len(x))
+    xx, xy, yy, xu, yu, xv, yv = moments
+    size = xx * yy - xy**2
+    enough = size > 1e-3 * (xx + yy)**2
+    return np.where(enough, (yy * xv - xy * yv - xx * yu + xy * xu) / np.where(enough, size, 1.0), 0.0)
 
 
 def project_on_polyline(points, line):

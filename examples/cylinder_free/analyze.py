@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Figures and pictures of the flow around a cylinder in a free stream.   usage: analyze.py FOLDER
+
+main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases) compares runs.
+"""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+
+import numpy as np  # noqa: E402
+
+from fsi import dump, geometry, log, plot, series  # noqa: E402
+from fsi.summary import Summary  # noqa: E402
+
+# {Reynolds number: {figure: (value, source)}}
+WILLIAMSON = "experiment, Williamson 1988: 0.1816 - 3.3265/Re + 1.6e-4 Re"
+REFERENCE = {
+    100: {"drag": (1.35, "code: several, 1.33 to 1.37"), "lift": (0.33, "code: several, 0.32 to 0.34"), "strouhal": (0.1643, WILLIAMSON)},
+    200: {"strouhal": (0.2015, "code: several, in the plane, 0.197 to 0.206")},
+}
+TARGETS = {"drag": 0.03, "lift": 0.07, "strouhal": 0.02}
+DIAMETER = 0.1
+PERIODS = 5
+START = 1.0  # of the curves: what the sudden start does before is off the scale
+COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
+
+
+def read(folder):
+    """(values of the log, time in D/U, coefficients by name)"""
+    s = series.read(Path(folder) / "series.csv")
+    values = log.read(Path(folder) / "log.lammps").values
+    factor = 2.0 / (1000.0 * values["velocity"]**2 * DIAMETER)
+    return values, s.time * values["velocity"] / DIAMETER, {name: s[name] * factor for name in ("drag", "lift", "push")}
+
+
+def figures(time, found):
+    """Of the last five periods: mean drag, amplitude of the lift's harmonics, Strouhal number, what the stream's zone pushes in the mean;
+    and the amplitude of the five before, which is the same once the vortices have grown up. Sound, whose frequencies are others, does not count."""
+    late = time >= 0.5 * time[-1]
+    rate = series.frequency(time[late], series.smooth(time, found["lift"], 2.0)[late])
+    end = time >= time[-1] - PERIODS / rate
+    out = {"drag": found["drag"][end].mean(), "lift": series.swing(time, found["lift"], rate, PERIODS)[1], "strouhal": rate,
+           "push": found["push"][end].mean()}
+    if time[~end][-1] * rate >= PERIODS:
+        out["lift_before"] = series.swing(time[~end], found["lift"][~end], rate, PERIODS)[1]
+    return out
+
+
+def faster(drag, width):
+    """By how much the stream beside the cylinder is faster, since the box repeats it across: of wake and body, Allen & Vincenti 1944 (NACA
+    Report 782), for walls that slip; drag coefficient and width in D."""
+    return drag / (4.0 * width) + 0.82 / width**2
+
+
+def add(summary, folder, suffix="", judged=False):
+    """The figures of one run, as they are and (..._free) as they would be without the box; returns the time and the smoothed coefficients."""
+    values, time, found = read(folder)
+    references = REFERENCE.get(round(values["reynolds"]), {})
+    here = figures(time, found)
+    more = 1.0 + faster(here["drag"], values["width"])
+    for name, value in here.items():
+        summary.add(name + suffix, value, "", *references.get(name, (None, None)))
+    for name, power in (("drag", 2), ("lift", 2), ("strouhal", 1)):
+        reference, source = references.get(name, (None, None))
+        summary.add(f"{name}_free{suffix}", here[name] / more**power, "", reference, source, TARGETS[name] if judged and reference else None)
+    return time, {name: series.smooth(time, c, 0.5) for name, c in found.items()}
+
+
+def main(folder):
+    """Analyses the run in `folder`; returns the summary."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    time, found = add(summary, folder)
+    shown = time > START
+    plot.lines(folder / "forces.png", "t U/D", "coefficient, means of 0.5 D/U",
+               [(time[shown], found[name][shown], name, colour) for name, colour in zip(("drag", "lift"), COLOURS)])
+    values = summary.log.values
+    last = dump.read(folder / "particles.dump")[-1].of_types(1)
+    spin = geometry.vorticity(*(last[name] for name in ("x", "y", "vx", "vy")), 2.5 * values["dx"]) * DIAMETER / values["velocity"]
+    x, y = last["x"] / DIAMETER, last["y"] / DIAMETER
+    plot.clouds(folder / "vorticity.png", [(f"t U/D = {last.time * values['velocity'] / DIAMETER:.0f}", x, y, np.clip(spin, -3, 3))],
+                values["dx"] / DIAMETER, ((x.min(), x.max()), (-4, 4)), "vorticity D/U", axis_labels=("x/D", "y/D"), panel_width=7.0, colours="RdBu_r")
+    return summary.write()
+
+
+def study(folder, cases):
+    """Figures of all cases, their lift in one picture."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    finest = {round(read(path)[0]["reynolds"]): name for name, path in cases.items()}  # they are in the order of resolution
+    curves = []
+    for (name, path), colour in zip(cases.items(), COLOURS):
+        time, found = add(summary, path, f"_{name}", name in finest.values())
+        shown = time > START
+        curves.append((time[shown], found["lift"][shown], name.replace("_", " "), colour))
+    plot.lines(folder / "lift.png", "t U/D", "lift coefficient, means of 0.5 D/U", curves)
+    return summary.write()
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])
