@@ -76,3 +76,7 @@ obstacle_1MPa    solid rho 2500.0 young 1.0e6 poisson 0.0
 
 # Copper of the Taylor bar: Zhu and Cescotto, Int. J. Numer. Methods Eng. 38 (1995) 987; linear hardening
 copper           solid rho 8930.0 young 117.0e9 poisson 0.35 yield 400.0e6 hardening 100.0e6
+
+# Foam of Luhar and Nepf, Limnol. Oceanogr. 56 (2011) 2003, as Tian, Dai, Luo, Doyle and Rousseau, J. Comput. Phys. 258 (2014) 451, have it:
+# E/(rho U^2) = 19054.9 with U = 0.16 m/s, which makes their Re 1600 with a width of 1 cm
+foam             solid rho 678.0 young 4.87805e5 poisson 0.4
