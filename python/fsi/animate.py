@@ -12,21 +12,34 @@ from . import dump, plot
 from .dump import spacing
 from .progress import Progress
 
-OPTIONS = ("solid", "view", "colour", "types")  # of pictures, as the command line has them
+OPTIONS = ("solid", "wall", "view", "colour", "types")  # of pictures, as the command line has them
 
 
-def species(frames, solid=None):
-    """(types of fluids, types of solids); solid is what has a molecule ID, unless given."""
+def species(frames, solid=None, wall=None):
+    """(types of fluids, of solids, of walls); unless given, solid is what has a molecule ID, and a wall what has none and never moves beside what does."""
     types = sorted({int(t) for frame in frames for t in np.unique(frame["type"])})
     if solid is None:
         bodies = [frame["type"][frame["mol"] != 0] for frame in frames if "mol" in frame]
         solid = {int(t) for part in bodies for t in np.unique(part)}
-    return tuple(t for t in types if t not in solid), tuple(t for t in types if t in solid)
+    if wall is None:
+        wall = {t for t in types if t not in solid and _at_rest([frame.of_types(t) for frame in frames])}
+        if wall == set(types) - solid:  # all of it: fluid of a run that has not begun
+            wall = set()
+    return (tuple(t for t in types if t not in solid | wall), tuple(t for t in types if t in solid - wall), tuple(t for t in types if t in wall))
+
+
+def _at_rest(parts):
+    """Whether particles are the same in all frames, at the same places, without velocities. One frame does not tell."""
+    first, *others = parts
+    fixed = [name for name in ("x", "y", "z") if name in first]
+    return bool(others) and len(first) > 0 and all(
+        len(part) == len(first) and all(np.array_equal(part[name], first[name]) for name in fixed)
+        and not any(part[name].any() for name in ("vx", "vy", "vz") if name in part) for part in others)
 
 
 def prepared(frames, options):
     """(frames, arguments of plot's functions) with what `options` say of view, colour and types."""
-    colour, solid = options.get("colour"), _types(options, "solid")
+    colour, solid, wall = options.get("colour"), _types(options, "solid"), _types(options, "wall")
     wanted = _types(options, "types")
     if wanted:
         frames = [frame.of_types(*wanted) for frame in frames]
@@ -40,12 +53,12 @@ def prepared(frames, options):
     elif not colour and not any("p" in frame or "vonmises" in frame for frame in frames):
         raise ValueError("the dump has neither column p nor vonmises: dump_modify ... colname c_ID[1] p colname c_ID[2] vonmises, "
                          "with ID that of compute fsi/atom p vonmises; or colour=COLUMN")
-    fluid, solid = species(frames, solid)
+    fluid, solid, wall = species(frames, solid, wall)
     distance = spacing(frames[0])
     labels = plot.LABELS
     if "view" in options or any("z" in frame and np.ptp(frame["z"]) > 0.0 for frame in frames):
         frames, labels = plot.seen(frames, options.get("view", "30,20"))
-    return frames, {"spacing": distance, "fluid": fluid, "solid": solid, "colour": colour, "labels": labels}
+    return frames, {"spacing": distance, "fluid": fluid, "solid": solid, "wall": wall, "colour": colour, "labels": labels}
 
 
 def _types(options, name):

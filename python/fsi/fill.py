@@ -17,6 +17,7 @@ import numpy as np
 # rays of lattice points would meet the vertices of surfaces that fit the lattice: they go so much beside them, in spacings
 BESIDE = np.array([3.1e-6, 1.7e-6])
 LARGEST = 2e8  # points of the lattice that covers a surface
+SAME = 1e-6  # corners nearer than this, of the largest extent, are one: programs that write STL round each triangle by itself
 
 
 def read_outline(path):
@@ -41,7 +42,7 @@ def read_outline(path):
 
 
 def read_stl(path):
-    """Triangles (n, 3, 3) of an STL file; an error if an edge does not have two of them."""
+    """Triangles (n, 3, 3) of an STL file, closed; an error if an edge does not have two of them."""
     data = Path(path).read_bytes()
     count = struct.unpack_from("<I", data, 80)[0] if len(data) >= 84 else 0
     if len(data) == 84 + 50 * count and count:
@@ -55,14 +56,34 @@ def read_stl(path):
             raise SystemExit(f"{path}: not an STL file") from None
     if not len(triangles):
         raise SystemExit(f"{path}: not an STL file")
-    _, vertex = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
+    corners, vertex = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
     vertex = vertex.reshape(-1, 3)
+    rim = open_edges(vertex)
+    if len(rim):
+        vertex = welded(corners, np.unique(rim))[vertex]
+        rim = open_edges(vertex)
+    if len(rim):
+        place = " ".join(f"{x:g}" for x in corners[rim[0]].mean(0))
+        raise SystemExit(f"{path}: the surface is not closed: {len(rim)} of its edges have an odd number of triangles, the first near {place}")
+    return corners[vertex]
+
+
+def open_edges(vertex):
+    """Edges (n, 2) that have an odd number of triangles."""
     edges = np.sort(np.concatenate([vertex[:, [0, 1]], vertex[:, [1, 2]], vertex[:, [2, 0]]]), axis=1)
-    edges = edges[edges[:, 0] != edges[:, 1]]
-    _, uses = np.unique(edges, axis=0, return_counts=True)
-    if (uses % 2).any():
-        raise SystemExit(f"{path}: the surface is not closed: {int((uses % 2).sum())} of its edges have an odd number of triangles")
-    return triangles
+    edges, uses = np.unique(edges[edges[:, 0] != edges[:, 1]], axis=0, return_counts=True)
+    return edges[uses % 2 == 1]
+
+
+def welded(corners, rim):
+    """Numbers of the corners, where those of `rim` that are as good as at one place have the first one's."""
+    first = np.arange(len(corners))
+    near = SAME * np.ptp(corners, axis=0).max()
+    for k, i in enumerate(rim):
+        if first[i] == i:
+            others = rim[k + 1:]
+            first[others[(np.abs(corners[others] - corners[i]) < near).all(1)]] = i
+    return first
 
 
 def crossings(simplex, rays, low, dx, counts):

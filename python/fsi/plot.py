@@ -6,12 +6,12 @@ from dataclasses import replace
 import matplotlib
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import Normalize, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 BLUE, ORANGE, GREY, GREEN, RED = "#1b5e96", "#d1611a", "#555555", "#3a923a", "#c23b3b"
-FLUID_COLOURS, SOLID_COLOURS = "viridis", "inferno"
+FLUID_COLOURS, SOLID_COLOURS, WALL_COLOUR = "viridis", "inferno", "#a8a8a8"
 LABELS = ("x [m]", "y [m]")
 STYLE = {
     "font.size": 9,
@@ -74,10 +74,10 @@ def scatter_against_line(path, x, y, line_x, line_y, labels, axis_labels):
         figure.tight_layout()
 
 
-def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=3, panel_width=2.6, colour=None, labels=LABELS):
-    """A strip of snapshots: fluid coloured by pressure (column p), solids by von Mises stress (column vonmises), or all by column `colour`.
+def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=3, panel_width=2.6, colour=None, labels=LABELS, wall=()):
+    """A strip of snapshots: fluid coloured by pressure (column p), solids by von Mises stress (column vonmises), or both by column `colour`; walls are grey.
 
-    fluid, solid: atom types; limits ((xlo, xhi), (ylo, yhi)): the part of the plane that is shown, by default all
+    fluid, solid, wall: atom types; limits ((xlo, xhi), (ylo, yhi)): the part of the plane that is shown, by default all
     particles; panel_width [inch]. Each particle is a square a little wider than `spacing` [m], so that a body has no
     gaps. Colours mean the same in all panels.
     """
@@ -99,7 +99,7 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
             row, column = divmod(k, columns)
             axes = _axes(figure, left + column * (panel_width + gap), bottom + (rows - 1 - row) * (panel_height + title + gap),
                          panel_width, panel_height)
-            _particles(axes, frame, scales, 1.3 * spacing * panel_width / (xhi - xlo))
+            _particles(axes, frame, scales, 1.3 * spacing * panel_width / (xhi - xlo), wall)
             axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal")
             axes.set_title(f"t = {frame.time:.{decimals}f} s", loc="left", pad=3)
             if labels is None:
@@ -117,7 +117,7 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
             _bar(figure, scale, left + columns * (panel_width + gap) + 0.1 + bar_distance * k, bottom, height - bottom - title - gap)
 
 
-def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0, colour=None, labels=LABELS, progress=None):
+def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0, colour=None, labels=LABELS, progress=None, wall=()):
     """Numbered pictures folder/00000.png ... of all frames, as snapshots in one panel each with the same limits and colours."""
     (xlo, xhi), (ylo, yhi) = _extent(frames, spacing)
     scales = _scales(frames, fluid, solid, colour)
@@ -128,7 +128,7 @@ def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0, colour=None,
     for k, frame in enumerate(frames):
         with picture(folder / f"{k:05d}.png", width, height + 0.75) as figure:
             axes = _axes(figure, 0.7, 0.45, panel, height)
-            _particles(axes, frame, scales, 1.3 * spacing * panel / (xhi - xlo))
+            _particles(axes, frame, scales, 1.3 * spacing * panel / (xhi - xlo), wall)
             axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal")
             axes.set_title(f"t = {frame.time:.{decimals}f} s", loc="left", pad=3)
             if labels is None:
@@ -185,14 +185,15 @@ def _axes(figure, left, bottom, width, height):
     return figure.add_axes((left / across, bottom / up, width / across, height / up))
 
 
-def _particles(axes, frame, scales, side):
+def _particles(axes, frame, scales, side, wall=()):
     """A square of `side` [inch] for each particle of a frame; the nearer of those with a depth hides the farther, which are darker."""
-    which, colours = [], []
+    which = [np.flatnonzero(np.isin(frame["type"], wall))]
+    colours = [np.tile(to_rgba(WALL_COLOUR), (len(which[0]), 1))]
     for types, name, cmap, norm, scale, _ in scales:
         part = np.flatnonzero(np.isin(frame["type"], types))
         which.append(part)
         colours.append(matplotlib.colormaps[cmap](norm(frame[name][part] / scale)))
-    which, colours = (np.concatenate(parts) if parts else np.empty(0, int) for parts in (which, colours))
+    which, colours = np.concatenate(which), np.concatenate(colours)
     if "depth" in frame and len(which):
         depth = frame["depth"][which]
         order = np.argsort(depth, kind="stable")
@@ -206,7 +207,7 @@ def _particles(axes, frame, scales, side):
 def _bar(figure, scale, left, bottom, height):
     """The colours of one of _scales()."""
     _, _, colours, norm, _, label = scale
-    figure.colorbar(ScalarMappable(norm, colours), cax=_axes(figure, left, bottom, 0.13, height), label=label, extend="max")
+    figure.colorbar(ScalarMappable(norm, colours), cax=_axes(figure, left, bottom, 0.13, height), label=label, extend="both" if norm.vmin else "max")
 
 
 def _extent(frames, spacing):
@@ -218,7 +219,7 @@ def _extent(frames, spacing):
 def _scales(frames, fluid, solid, colour=None):
     """(types, column, colour map, range, unit's size, label) for each kind of particle, over all frames."""
     if colour:
-        values = np.concatenate([frame[colour] for frame in frames])
+        values = np.concatenate([frame.of_types(*fluid, *solid)[colour] for frame in frames])
         low, high = np.nanpercentile(values, (0.5, 99.5))
         return [((*fluid, *solid), colour, FLUID_COLOURS, Normalize(low, max(high, low + 1e-30)), 1.0, colour)]
     scales = []
@@ -228,9 +229,12 @@ def _scales(frames, fluid, solid, colour=None):
         if not types or not any(len(part) for part in parts):
             continue
         # single particles far off the rest would leave the picture in one colour
-        top = float(np.nanpercentile(np.concatenate([part[name] for part in parts]), 99.5))
-        unit, scale = ("MPa", 1e6) if top >= 1e6 else ("kPa", 1e3) if top >= 100.0 else ("Pa", 1.0)
-        scales.append((types, name, colours, Normalize(0.0, max(top / scale, 1e-30)), scale, f"{title} [{unit}]"))
+        low, top = np.nanpercentile(np.concatenate([part[name] for part in parts]), (0.5, 99.5))
+        # from 0, unless a background keeps all pressures far above it, or suction well below
+        low = float(low) if low > 0.3 * top or low < -0.05 * abs(top) else 0.0
+        size = max(top, -low)
+        unit, scale = ("MPa", 1e6) if size >= 1e6 else ("kPa", 1e3) if size >= 100.0 else ("Pa", 1.0)
+        scales.append((types, name, colours, Normalize(low / scale, max(top / scale, low / scale + 1e-30)), scale, f"{title} [{unit}]"))
     return scales
 
 

@@ -22,7 +22,7 @@ from itertools import groupby
 from multiprocessing import get_context
 from pathlib import Path
 
-from . import launch, paths, report, results
+from . import launch, log, paths, report, results
 from .command import Refusal, split, start, whole
 from .paths import scenes
 from .summary import RUN_FILE
@@ -127,6 +127,8 @@ def run(scene, folder, ranks, variables, case=None, borrowed=None, may_fail=Fals
         good = module is None or _calls(module.main, folder)
         _report(folder)
         if good:
+            for line in dict.fromkeys(log.read(folder / "log.lammps").warnings):  # far up among LAMMPS' own lines by now
+                print(f"run: {line}")
             print(f"run: figures, pictures and log are in {folder}; all on one page: {folder / report.OUT}", flush=True)
         return 0 if good else 1
 

@@ -54,7 +54,7 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("max").number(high, BIG, Range::above(0.0));
   keywords.key("growth").number(growth, 1.1, Range::above(1.0));
   keywords.key("substeps").choice(automatic, 0, {"keep", "auto"});
-  keywords.key("stop").number(end, BIG, Range::above(0.0));
+  keywords.key("stop").number(end, BIG, Range::above(0.0)).of_a_run();
   keywords.key("check").choice(check, NO_CHECK, {"no", "warn", "error"});
   keywords.parse(narg - 3, arg + 3);
   if (of_fluid == 0.0) of_fluid = cfl > 0.0 ? cfl : Limits::FLUID_FACTOR;

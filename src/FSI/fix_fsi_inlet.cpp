@@ -398,6 +398,7 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
   MPI_Allreduce(&mine, &made, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (made != wanted) error->all(FLERR, "{} {}: {} of {} new particles are outside the box", who, id, wanted - made, wanted);
   atom->natoms += made;
+  net += made;
   if (atom->map_style != Atom::MAP_NONE) {
     atom->map_init();
     atom->map_set();
@@ -463,6 +464,7 @@ void FixFSIInlet::pre_exchange()
     atom->nlocal--;
   }
   atom->natoms -= static_cast<bigint>(all[4]);
+  net -= static_cast<bigint>(all[4]);
   tagint largest = last_id;
   MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (atom->map_style != Atom::MAP_NONE) {

@@ -36,6 +36,8 @@ namespace LAMMPS_NS {
 
 class FixFSIInlet : public FSI::FixFields, public FSI::Part {
  public:
+  bigint net = 0;    // particles made less those deleted, since this fix is there
+
   FixFSIInlet(class LAMMPS *, int, char **);
   ~FixFSIInlet() override;
   int setmask() override;

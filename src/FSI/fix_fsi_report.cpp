@@ -19,6 +19,7 @@
 #include "compute_fsi_energy.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_inlet.h"
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_watch.h"
 #include "pair_fsi_solid_tl.h"
@@ -55,7 +56,7 @@ static std::string word(const std::string &text)
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), every(100), fp(nullptr), worst{}, samples(0), sampled(-1), limits(lmp), usual(lmp), first_step(0),
-    natoms(0), first_time(0.0), counted(0), ghost_bytes(0.0), ghost_messages(0.0), any_held(false), listed(-1), momentum{}, by_gravity{}, by_walls{},
+    natoms(0), flowed(0), first_time(0.0), counted(0), ghost_bytes(0.0), ghost_messages(0.0), any_held(false), listed(-1), momentum{}, by_gravity{}, by_walls{},
     by_held{}, collected(-1), output{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/report requires atom_style fsi");
@@ -122,6 +123,7 @@ void FixFSIReport::begin()
   first_time = elapsed();
   bigint mine = atom->nlocal;
   MPI_Allreduce(&mine, &natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  flowed = through_open_ends();
 
   std::fill_n(worst, NWORST, Worst{0.0, 0.0, 0, 0});
   samples = counted = 0;
@@ -326,6 +328,17 @@ double FixFSIReport::compute_vector(int k)
 }
 
 /* ----------------------------------------------------------------------
+   particles made by inlets and outlets, less those that they deleted
+------------------------------------------------------------------------- */
+
+bigint FixFSIReport::through_open_ends() const
+{
+  bigint sum = 0;
+  for (const auto *end : modify->get_fix_by_style("^fsi/[inout]+let$")) sum += static_cast<const FixFSIInlet *>(end)->net;
+  return sum;
+}
+
+/* ----------------------------------------------------------------------
    the report
 ------------------------------------------------------------------------- */
 
@@ -350,13 +363,16 @@ void FixFSIReport::post_run()
   enter_line("last_step", update->ntimestep);
   enter_line("ranks", comm->nprocs);
   enter_line("particles", now);
-  enter_line("lost", natoms - now);
+  const bigint came = through_open_ends() - flowed, missing = natoms + came - now;
+  std::string change;
+  if (came) change = fmt::format("{} {} through open ends", std::abs(came), came > 0 ? "more" : "fewer");
+  if (missing) change += fmt::format("{}{} lost", came ? ", " : "", missing);
+  enter_line("lost", missing);
   enter_line("time", elapsed() - first_time);
   enter_line("loop_seconds", loop);
   std::string text = fmt::format("\nFSI report: steps {} to {}, a time of {:.6g}; {} particles{} on {} rank{}, {:.4g} s\n", first_step,
                                  update->ntimestep, elapsed() - first_time, now,
-                                 now == natoms ? "" : fmt::format(" ({} lost)", natoms - now), comm->nprocs, comm->nprocs > 1 ? "s" : "",
-                                 loop);
+                                 change.empty() ? "" : fmt::format(" ({})", change), comm->nprocs, comm->nprocs > 1 ? "s" : "", loop);
   std::string line = "  on:", effects;
   auto on = fix_fsi->effects_on;
   if (fix_fsi->substeps > 1 && !modify->get_fix_by_style("^fsi/dt$").empty()) on.push_back(fmt::format("{} solid sub-steps at the end", fix_fsi->substeps));
@@ -372,12 +388,12 @@ void FixFSIReport::post_run()
   text += line;
   enter_line("effects", effects);
 
-  const bool lost = now != natoms;
   natoms = now;
+  flowed += came;
   text += time_table(loop);
   text += cost_table(loop);
   text += accuracy_table();
-  text += momentum_table(lost);
+  text += momentum_table(missing != 0);
   text += energy_table();
   if (comm->me == 0) {
     utils::logmesg(lmp, text + "\n");
@@ -513,6 +529,7 @@ std::string FixFSIReport::momentum_table(bool lost)
   const auto b = balance();
   const double relative = std::sqrt(b.rest[0] * b.rest[0] + b.rest[1] * b.rest[1] + b.rest[2] * b.rest[2]) / (b.scale > 0.0 ? b.scale : 1.0);
   std::string others = lost ? " lost particles," : "";
+  if (!modify->get_fix_by_style("^fsi/[inout]+let$").empty()) others += " flow through open ends,";
   for (auto &fix : modify->get_fix_list())
     if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^fsi/") && !utils::strmatch(fix->style, "^gravity"))
       others += fmt::format(" fix {},", fix->id);

@@ -66,7 +66,7 @@ class FixFSIReport : public Fix, public FSI::Part {
   bigint sampled;    // last step
   FSI::Limits limits, usual;    // with factors of 1, and with the usual ones
 
-  bigint first_step, natoms;
+  bigint first_step, natoms, flowed;    // flowed: natoms is with so many that came in through open ends
   double first_time;
   int counted;    // steps whose messages were
   double ghost_bytes, ghost_messages;    // of positions, velocities and forces, in those
@@ -104,6 +104,7 @@ class FixFSIReport : public Fix, public FSI::Part {
   std::string time_table(double loop);
   std::string cost_table(double loop);
   std::string accuracy_table();
+  bigint through_open_ends() const;
   std::string momentum_table(bool lost);
   std::string energy_table();
 };

@@ -17,6 +17,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fix.h"
 #include "force.h"
 #include "fsi_advice.h"
 #include "fsi_kernel.h"
@@ -49,8 +50,13 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
     const int n = lmp->modify->get_fix_by_style("^fsi/wall/particle$").size();
     effects.push_back({fmt::format("{} groups of wall particles", n), "fix fsi/wall/particle", n > 0});
   }
-  if (lmp->force->pair_match("fsi/solid/tl", 1))
-    effects.push_back({fmt::format("{} solid sub-steps", scene.substeps), "fix fsi substeps", scene.substeps > 1});
+  if (lmp->force->pair_match("fsi/solid/tl", 1)) {
+    int dim;
+    bool chosen = false;
+    for (auto *fix : lmp->modify->get_fix_by_style("^fsi/dt$")) chosen |= fix->extract("substeps", dim) != nullptr;
+    effects.push_back({chosen ? "solid sub-steps, as many as fix fsi/dt chooses" : fmt::format("{} solid sub-steps", scene.substeps), "fix fsi substeps",
+                       chosen || scene.substeps > 1});
+  }
   if (scene.surface_ratio > 0.0)
     effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every), "fix fsi surface/every", scene.keep_psi});
   effects.push_back({"energy ledger", "compute fsi/energy", scene.ledger});
@@ -71,7 +77,7 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
   if (fluid)
     with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &k) {
       const auto s = lattice_stiffness(k, scene.dx);
-      text += fmt::format("  a lattice of the fluid under a pressure p has, for 0, a modulus of {:.3f} p when stretched, {:.3f} p in shear\n",
+      text += fmt::format("  a lattice of the fluid under a pressure p has a modulus of {:.3f} p when stretched, {:.3f} p in shear (a fluid: 0)\n",
                           s.stretch, s.shear);
     });
 }

@@ -206,6 +206,12 @@ Keywords &Keywords::changes(const std::string &what_happens)
   return *this;
 }
 
+Keywords &Keywords::of_a_run()
+{
+  rows.back().may_change = true;
+  return *this;
+}
+
 /* ----------------------------------------------------------------------
    one value
 ------------------------------------------------------------------------- */
@@ -360,7 +366,7 @@ bool Keywords::differs(const Record &record, const std::string &name) const
 void Keywords::compare(const Record &record) const
 {
   for (const auto &row : rows) {
-    if (!differs(record, row.name)) continue;
+    if (row.may_change || !differs(record, row.name)) continue;
     const auto text = fmt::format("{}: {} was {} when the restart file was written, and is {} now{}", who, row.name, record.value(row.name),
                                   row.text(), row.restart.empty() ? "" : ": " + row.restart);
     if (row.must_not_change) error->all(FLERR, text);

@@ -73,6 +73,7 @@ namespace FSI {
     // of the last row: a run that goes on from a restart file must not change it, or may, and what that does
     Keywords &kept(const std::string &why);
     Keywords &changes(const std::string &what_happens);
+    Keywords &of_a_run();    // or may as a matter of course, without a warning
 
     void parse(int narg, char **arg);    // what is not named gets what it has at the start
 
@@ -116,7 +117,7 @@ namespace FSI {
       bool keyword = false;
       std::vector<Value> values;
       std::string effect, restart;
-      bool must_not_change = false;
+      bool must_not_change = false, may_change = false;
 
       int count() const;    // words that follow
       std::string text() const;

@@ -386,6 +386,9 @@ def test_a_run_to_a_time_restarts_bit_for_bit(tmp_path):
     done = run(tmp_path, rest + more + watch("rest.dump", 1000000) + "restart 20 other.*\nrun 1000000\nwrite_dump all custom b.dump id x y vx vy modify time yes sort id format float %.17g\n")
     a, b = whole.frames("a.dump")[-1], done.frames("b.dump")[-1]
     assert a.step == b.step > 30 and differing(a, b) == []
+    # another end is what such a run is for: no warning
+    later = run(tmp_path, rest + more.replace("0.01", "0.011") + watch("later.dump", 1000000) + "run 1000000\n")
+    assert "reached on step" in later.output and "when the restart file was written" not in later.output
 
 
 BAD = [

@@ -10,6 +10,7 @@ from scenes import DX, dam_gate, differing, fluid_box, run, watch
 
 from fsi import log
 from test_dt import total_lagrangian
+from test_inlet import go_on, open_box, vector as output_of
 
 H = 1.5 * DX
 YOUNG, POISSON = 1.9984472e6, 0.39751553  # of the plate
@@ -291,3 +292,16 @@ def test_what_is_lost_takes_its_momentum(tmp_path):
     assert report["lost"] == gone.sum() == 1 and "(1 lost)" in done.output and "unaccounted for: lost particles, error" in done.output
     # it flew off under gravity alone, but for its first steps at the surface: a tenth
     np.testing.assert_allclose(report["momentum_rest_y"], -frames[0]["mass"][gone][0] * 4.5, rtol=0.1)
+
+
+def test_what_flows_in_is_not_lost(tmp_path):
+    """A stream that begins behind an inlet, in two runs."""
+    dx, U = 0.1, 1.0
+    with open_box((16, 6), dx, 0, f"fix i all fsi/inlet xlo 0 velocity {U} 0 0", f"fix r all fsi/report file {tmp_path / 'report'}", v=(U, 0, 0)) as s:
+        came = [0]
+        for _ in range(2):
+            go_on(s, 60)
+            came.append(output_of(s, "i", 2))
+    first, second = log.reports(tmp_path / "report")
+    assert came[0] < came[1] < came[2]
+    assert [first["particles"], second["particles"]] == [(16 + 5) * 6 + n for n in came[1:]] and first["lost"] == second["lost"] == 0

@@ -221,3 +221,16 @@ def test_what_cannot_be_filled(tmp_path, capsys, name, content, says):
         fill.main([str(path), "0.1", str(tmp_path / "out.data")])
     assert says in str(stop.value) + capsys.readouterr().err
     assert not (tmp_path / "out.data").exists()
+
+
+@pytest.mark.parametrize("off, closed", [(2e-7, True), (1e-5, False)])
+def test_corners_that_were_rounded_apart(tmp_path, off, closed):
+    """Each triangle of a box has corners of its own, off by part of the size: as one up to a millionth of it."""
+    triangles = box((0.1, -0.2, 0.0), (0.5, 0.3, 0.6))
+    path = write_stl(tmp_path / "box.stl", triangles + 0.6 * off * np.random.default_rng(1).uniform(-1, 1, triangles.shape), binary=False)
+    if closed:
+        fill.main([path, "0.1", str(tmp_path / "box.data")])
+        assert len(atoms(tmp_path / "box.data")) == 4 * 5 * 6
+    else:
+        with pytest.raises(SystemExit, match="not closed: .* the first near "):
+            fill.main([path, "0.1", str(tmp_path / "box.data")])

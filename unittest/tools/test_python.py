@@ -131,9 +131,33 @@ run 4
 
 def test_species_and_spacing(frames):
     read = dump.read(frames)
-    assert animate.species(read) == ((1,), (2,))
-    assert animate.species(read, {1}) == ((2,), (1,))
+    assert animate.species(read) == ((1,), (2,), ())
+    assert animate.species(read, {1}) == ((2,), (1,), ())
+    assert animate.species(read, wall={1}) == ((), (2,), (1,))
     assert animate.spacing(read[0]) == pytest.approx(np.hypot(0.1, 0.05))
+
+
+def moved(k, x1, x2, v2=0.0):
+    """Frame k of a particle of fluid, one of a wall or fluid, and one of a body."""
+    return dump.Frame(k, float(k), None, {"type": np.array([1, 2, 3]), "mol": np.array([0, 0, 1]), "x": np.array([x1, x2, 2.0]), "y": np.zeros(3),
+                                          "vx": np.array([1.0, v2, 0.0])})
+
+
+def test_walls_are_what_stands_still():
+    assert animate.species([moved(0, 0.0, 1.0), moved(1, 0.1, 1.0)]) == ((1,), (3,), (2,))
+    for others in ([], [moved(1, 0.1, 1.1)], [moved(1, 0.1, 1.0, v2=1e-9)]):  # one frame does not tell; it moves; it is about to
+        assert animate.species([moved(0, 0.0, 1.0), *others]) == ((1, 2), (3,), ())
+    still = [moved(k, 0.0, 1.0) for k in range(2)]
+    for frame in still:
+        frame["vx"][:] = 0.0
+    assert animate.species(still) == ((1, 2), (3,), ())  # nothing has begun to move
+
+
+@pytest.mark.parametrize("low, high, start", [(0, 1000, 0), (-10, 1000, 0), (900, 1100, 900), (-500, 1000, -500), (-500, 0, -500)])
+def test_where_colours_begin(low, high, start):
+    frame = dump.Frame(0, 0.0, None, {"type": np.ones(1001, int), "p": np.linspace(low, high, 1001)})
+    (*_, norm, scale, _), = plot._scales([frame], (1,), ())
+    assert norm.vmin * scale == pytest.approx(start, abs=0.006 * (high - low)) and norm.vmax > norm.vmin
 
 
 def test_animation(frames, tmp_path, monkeypatch, capsys):
