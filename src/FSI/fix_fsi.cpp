@@ -69,10 +69,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   resolve(hdx, given_spacing);
   if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this, thin);
 
-  time_integrate = 1;
-  force_reneighbor = 1;
-  create_attribute = 1;
-  restart_global = 1;
+  time_integrate = force_reneighbor = create_attribute = restart_global = 1;
   set_fields();
   register_fields();
   comm_reverse = 1;    // more with solids, see init()
@@ -87,6 +84,7 @@ void FixFSI::set_fields()
   const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
   number_density.set_fields(fields);
   surface_room.set_array(fields);
+  for (int d = 0; d < 3; d++) fields.set(std::string("velocity of shifting along ") + "xyz"[d], Fields::RESTART, d < dim && density_follows_shift(), shift_velocity[d]);
   fields.set("walls near", Fields::STEP, walls.any(), wmask);
   fields.set("wall velocity", Fields::STEP, noslip_walls, wall_velocity, 3);
   fields.set("wall stiffness", Fields::STEP, particle_walls && several_stiffnesses(), wall_stiffness);

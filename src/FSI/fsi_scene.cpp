@@ -15,9 +15,11 @@
 
 #include "atom.h"
 #include "fix.h"
+#include "force.h"
 #include "fsi_kernel.h"
 #include "lammps.h"
 #include "modify.h"
+#include "pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +31,7 @@ using namespace FSI;
 
 Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) :
     mover(fix_fsi), state(lmp->atom->ntypes + 1), substeps(1), body_forces(lmp), profile(nullptr), dt_offset(0.0), psi(nullptr),
-    shift(nullptr), wmask(nullptr), wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
+    shift(nullptr), shift_velocity{}, wmask(nullptr), wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
     surface_max(false), need_psi(false), keep_psi(false), ledger(false), energy_out{}, tally_dt(0.0), instance(lmp)
 {
 }
@@ -61,6 +63,16 @@ void Scene::resolve(double hdx, const std::vector<double> &spacing)
     resolution.push_back(own > 0.0 ? resolution_of(own) : fluid);
     largest_cut = std::max(largest_cut, resolution.back().cut);
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool Scene::density_follows_shift() const
+{
+  Force *const force = instance->force;
+  Pair *const fluid = force->pair ? force->pair_match("fsi/fluid", 1) : nullptr;
+  int dim_of_extract;
+  return fluid && *static_cast<bool *>(fluid->extract("density follows shift", dim_of_extract));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -77,6 +77,9 @@ namespace FSI {
     // Per atom, local and ghost; valid from pre_force on. Null: nothing needs it.
     double *psi;               // number density
     double **shift;            // fluids, pair_style fsi/fluid shift: displacement and change of velocity at the end of the step
+    // per component: displacement of the last step over its length, which the density of a fluid that fills its box follows; null: it does not
+    double *shift_velocity[3];
+    bool density_follows_shift() const;
     int *wmask;                // bits of the mirror walls that an atom is near
     double **wall_velocity;    // viscous velocity of no-slip walls of particles (fix fsi/wall/particle) and solids
     double *wall_stiffness;    // rho dp/drho of wall particles, that of the fluid around them; null: it is the same for all fluids, and in the wall's state

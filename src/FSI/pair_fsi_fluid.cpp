@@ -177,6 +177,11 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
     dim_of_extract = 0;
     return &couple;
   }
+  if (strcmp(name, "density follows shift") == 0) {
+    dim_of_extract = 0;
+    density_follows = shifting > 0.0 && fills();
+    return &density_follows;
+  }
   return PairFSI::extract(name, dim_of_extract);
 }
 
@@ -223,6 +228,10 @@ void PairFSIFluid::add_costs(Costs &costs) const
   costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
+  if (fix_fsi->shift_velocity[0]) {
+    costs.bytes += 8 * fix_fsi->dim;
+    costs.fluid_ghost += fix_fsi->dim;
+  }
   if (fix_fsi->sight) {
     costs.bytes += 16;
     costs.fluid_ghost += 2;
@@ -557,7 +566,12 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   double **x = atom->x;
   const int *const type = atom->type;
   const Walls walls = fix_fsi->walls.moved(-dth);
+  double *const *const by_shifting = fix_fsi->shift_velocity;
+  if (by_shifting[0])
+    for (int d = 0; d < D; d++) fix_fsi->send_to_ghosts(by_shifting[d]);
   const FluidParticles particles = gather<D>(-dth, [&](int i, Point<D> &p) {
+    if (by_shifting[0])
+      for (int d = 0; d < D; d++) p.v[d] += by_shifting[d][i];
     // Diffusion smooths pressures, so both of a pair must have one. What has none, spray and surfaces, has the density that its few
     // neighbours leave: their exchange would empty the spray, beyond zero, and take volume from the rest.
     p.p = p.pv2 = 0.0;
@@ -588,6 +602,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
 
 void PairFSIFluid::displacements(double dt)
 {
+  double *const *const velocity = fix_fsi->shift_velocity;
   const int *const type = atom->type;
   double *const *const sums = fix_fsi->shift;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -596,6 +611,8 @@ void PairFSIFluid::displacements(double dt)
     const double reach = shifting * s.c * dt;
     if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
     else Shift<3>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
+    if (velocity[0])
+      for (int d = 0; d < fix_fsi->dim; d++) velocity[d][i] = dt > 0.0 ? sums[i][d] / dt : 0.0;
   }
 }
 
