@@ -77,7 +77,7 @@ namespace FSI {
     // Per atom, local and ghost; valid from pre_force on. Null: nothing needs it.
     double *psi;               // number density
     double **shift;            // fluids, pair_style fsi/fluid shift: displacement and change of velocity at the end of the step
-    // per component: displacement of the last step over its length, which the density of a fluid that fills its box follows; null: it does not
+    // per component: displacement of the last step over its length, which density follows between open ends where fluid fills the box
     double *shift_velocity[3];
     bool density_follows_shift() const;
     int *wmask;                // bits of the mirror walls that an atom is near

@@ -27,9 +27,11 @@
 //   delta v_i = delta r_i.grad v,  grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,  g_ij = grad_i W_ij,
 // of fluid neighbours alone, exact for linear fields wherever they are. Without it vortices behind a cylinder are too weak
 // (doc/src/theory.rst). This does not keep momentum, so it is done where the fluid fills its box: there walls and streams give and take
-// momentum all the time; a jet or a drop has but its own. There density, too, follows: displaced particles fill their places with the mass
-// that they have, so the rate of density has the velocity v + delta r/dt (delta r of the step before). Else density and volume drift apart:
-// water between open ends becomes too many particles, in a closed stream its pressure falls.
+// momentum all the time; a jet or a drop has but its own. Density goes along
+// unchanged: delta r.grad rho is sound, which goes as it comes. But displaced particles fill their places with the mass that they have, and
+// density and volume drift apart: in a closed stream pressure falls, and between open ends, where nothing else holds the number of particles, it
+// grows until some are pressed out. So there the rate of density has the velocity v + delta r/dt (delta r of the step before), at the price
+// of sound: half as much again in forces.
 // Angular momentum and energy are not kept exactly, and the energy ledger knows nothing of shifting.
 
 #ifndef LMP_FSI_SHIFT_H

@@ -157,6 +157,7 @@ void PairFSIFluid::init_style()
   if (couple != WALL && solid && *static_cast<int *>(solid->extract("gradient", dim_of_extract)) != 0)
     error->all(FLERR, "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid gradient plain: with corrected gradients "
                       "use couple wall");
+  open_ends = !modify->get_fix_by_style("^fsi/inlet$").empty() || !modify->get_fix_by_style("^fsi/outlet$").empty();
   fix_stress = FixFSIStress::find(lmp);
   kinds[SOLIDS] = couple == WALL ? WITH_SOLID : couple == PRESSURE ? WITH_SOLID_PRESSURE : WITH_SOLID_FULL;
 }
@@ -186,6 +187,12 @@ void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
 }
 
 /* ---------------------------------------------------------------------- */
+
+// what density follows: between open ends, where nothing else holds the number of particles
+double *const *PairFSIFluid::velocity_of_shifting() const
+{
+  return fix_fsi->shift_velocity[0] && open_ends ? fix_fsi->shift_velocity : nullptr;
+}
 
 // numbers of an atom in the array of shifting, and those of them that are sums
 
@@ -228,10 +235,8 @@ void PairFSIFluid::add_costs(Costs &costs) const
   costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + ns);
-  if (fix_fsi->shift_velocity[0]) {
-    costs.bytes += 8 * fix_fsi->dim;
-    costs.fluid_ghost += fix_fsi->dim;
-  }
+  if (fix_fsi->shift_velocity[0]) costs.bytes += 8 * fix_fsi->dim;
+  if (velocity_of_shifting()) costs.fluid_ghost += fix_fsi->dim;
   if (fix_fsi->sight) {
     costs.bytes += 16;
     costs.fluid_ghost += 2;
@@ -566,11 +571,11 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   double **x = atom->x;
   const int *const type = atom->type;
   const Walls walls = fix_fsi->walls.moved(-dth);
-  double *const *const by_shifting = fix_fsi->shift_velocity;
-  if (by_shifting[0])
+  double *const *const by_shifting = velocity_of_shifting();
+  if (by_shifting)
     for (int d = 0; d < D; d++) fix_fsi->send_to_ghosts(by_shifting[d]);
   const FluidParticles particles = gather<D>(-dth, [&](int i, Point<D> &p) {
-    if (by_shifting[0])
+    if (by_shifting)
       for (int d = 0; d < D; d++) p.v[d] += by_shifting[d][i];
     // Diffusion smooths pressures, so both of a pair must have one. What has none, spray and surfaces, has the density that its few
     // neighbours leave: their exchange would empty the spray, beyond zero, and take volume from the rest.
@@ -602,7 +607,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
 
 void PairFSIFluid::displacements(double dt)
 {
-  double *const *const velocity = fix_fsi->shift_velocity;
+  double *const *const velocity = velocity_of_shifting();
   const int *const type = atom->type;
   double *const *const sums = fix_fsi->shift;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -611,8 +616,8 @@ void PairFSIFluid::displacements(double dt)
     const double reach = shifting * s.c * dt;
     if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
     else Shift<3>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
-    if (velocity[0])
-      for (int d = 0; d < fix_fsi->dim; d++) velocity[d][i] = dt > 0.0 ? sums[i][d] / dt : 0.0;
+    if (velocity && dt > 0.0)
+      for (int d = 0; d < fix_fsi->dim; d++) velocity[d][i] = sums[i][d] / dt;
   }
 }
 

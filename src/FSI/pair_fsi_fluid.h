@@ -125,7 +125,9 @@ class PairFSIFluid : public PairFSI {
   double **shift;    // its sums; afterwards the displacement at the end of the step, and what it changes of the velocity
   int nshift() const, shift_sums() const;
   bool fills() const { return background > 0.0; }    // no free surfaces: with a background pressure they would blow up
-  bool density_follows;    // as extract() says
+  bool density_follows;    // as extract() says: it may, if there are open ends
+  bool open_ends;
+  double *const *velocity_of_shifting() const;
   double **beyond;    // of solids that fluid sticks to: the sums of v W, and of W, of the fluid around
   void add_velocities_at_solids();
   void extrapolate_velocities();

@@ -100,7 +100,7 @@ boundary {ends} p
 atom_style fsi
 newton {newton}
 {start}
-pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2
+pair_style fsi/fluid sound 10 tension yes{background} laminar/visc density/diffusion 0.1 shift 0.2
 pair_coeff * * oil.fsi {materials}
 fix sph {moving} fsi 0.1 wendland 1.5
 fix walls all fsi/wall/mirror ylo 0 yhi 1 slip no ylo 0 slip no
@@ -123,28 +123,33 @@ create_atoms 1 region water
 INLET, OUTLET = "fix i all fsi/inlet xlo 0 velocity v_u 0 0", "fix o all fsi/outlet xhi 3"
 
 
-def deck(start=ATOMS, ends="f f", newton="on", moving="all", materials="oil oil", more="", inlet=INLET, outlet=OUTLET):
-    return DECK.format(start=start, ends=ends, newton=newton, moving=moving, materials=materials, more=more, inlet=inlet, outlet=outlet).replace(
+def deck(start=ATOMS, ends="f f", newton="on", moving="all", materials="oil oil", more="", inlet=INLET, outlet=OUTLET, background=""):
+    return DECK.format(start=start, ends=ends, newton=newton, background=background, moving=moving, materials=materials, more=more, inlet=inlet, outlet=outlet).replace(
         "fsi/wall/mirror ylo 0 yhi 1 slip no ylo 0 slip no", "fsi/wall/mirror ylo 0 slip no yhi 1 slip no")
 
 
-def test_restart_goes_on_bit_for_bit(tmp_path):
+OPEN = pytest.mark.parametrize("background", ["", " background 100"], ids=["", "density follows shifting"])
+
+
+@OPEN
+def test_restart_goes_on_bit_for_bit(tmp_path, background):
     """And so do IDs, counts and the memory of what absorbs sound."""
     printed = "\nfix p all print 400 '$(f_i:%.17g) $(f_o:%.17g) $(f_o[2]) $(f_o[3]) $(f_o[6]:%.17g) $(f_i[6]:%.17g)' file {}.txt screen no\n"
     more = "compute e all fsi/energy"
-    whole = run(tmp_path, deck(more=more) + watch(every=400) + printed.format("whole") + "restart 200 mid.*\nrun 400\n", **FILES).frames()[-1]
-    rest = run(tmp_path, deck("read_restart mid.200", more=more) + watch("rest.dump", 400) + printed.format("rest") + "restart 200 other.*\nrun 200\n",
+    whole = run(tmp_path, deck(more=more, background=background) + watch(every=400) + printed.format("whole") + "restart 200 mid.*\nrun 400\n", **FILES).frames()[-1]
+    rest = run(tmp_path, deck("read_restart mid.200", more=more, background=background) + watch("rest.dump", 400) + printed.format("rest") + "restart 200 other.*\nrun 200\n",
                **FILES).frames("rest.dump")[-1]
     assert whole["id"].max() > 420    # some came in
     assert differing(whole, rest) == []
     assert (tmp_path / "whole.txt").read_text().splitlines()[-1] == (tmp_path / "rest.txt").read_text().splitlines()[-1]
 
 
+@OPEN
 @pytest.mark.parametrize("ranks, newton", [(2, "on"), (4, "off")])
-def test_ranks_agree(tmp_path, ranks, newton):
-    run(tmp_path, deck(newton=newton) + "run 1\nwrite_restart start\n", **FILES)
-    one = run(tmp_path, deck("read_restart start", newton=newton) + watch(every=300) + "run 299\n", **FILES).frames()[-1]
-    more = run(tmp_path, deck("read_restart start", newton=newton) + watch(every=300) + "run 299\n", ranks, **FILES).frames()[-1]
+def test_ranks_agree(tmp_path, ranks, newton, background):
+    run(tmp_path, deck(newton=newton, background=background) + "run 1\nwrite_restart start\n", **FILES)
+    one = run(tmp_path, deck("read_restart start", newton=newton, background=background) + watch(every=300) + "run 299\n", **FILES).frames()[-1]
+    more = run(tmp_path, deck("read_restart start", newton=newton, background=background) + watch(every=300) + "run 299\n", ranks, **FILES).frames()[-1]
     assert one["id"].max() > 400
     for quantity in ("x", "v", "rho"):    # the same IDs, and round-off of 300 steps, see test_parallel
         assert difference(one, more, quantity) < 1e-11, quantity
