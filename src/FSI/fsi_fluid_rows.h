@@ -546,19 +546,21 @@ namespace FSI {
       // effects: those that are off have coefficients of zero
       constexpr int EFFECTS = ARTIFICIAL | LAMINAR | CENTRAL;
       PairSums unused;
-      if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL)) sums = &unused;
+      const int finer_rows = kind == WITH_SOLID || kind == WITH_WALL ? finer_or_cut(kind, in) : 0;
+      if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL || (image && finer_rows))) sums = &unused;
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop<T>([&](auto number) __attribute__((always_inline)) {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
         });
       };
       const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
-      const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | (kind == WITH_SOLID || kind == WITH_WALL ? finer_or_cut(kind, in) : 0);
+      const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | finer_rows;
       const bool all = special || ONE_BY_ONE || laws.laminar == 2 || (artificial && laws.laminar);
       with_flags<EFFECTS | SUMS | IMAGES | FINER>(special | (all ? EFFECTS : artificial ? ARTIFICIAL : laws.laminar ? LAMINAR : 0), [&](auto flags) {
         constexpr int effects = flags() & EFFECTS;
         constexpr bool alone = flags() == 0 || flags() == ARTIFICIAL || flags() == LAMINAR;
-        if constexpr (effects == EFFECTS || (alone && !ONE_BY_ONE)) {
+        constexpr bool counted = (flags() & SUMS) || !((flags() & IMAGES) && (flags() & FINER));    // few: their sums may be for nothing
+        if constexpr ((effects == EFFECTS && counted) || (alone && !ONE_BY_ONE)) {
           if constexpr (!(flags() & FINER))
             if (kind == WITH_FLUID) loop(std::integral_constant<int, WITH_FLUID>(), flags);
           if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
