@@ -313,7 +313,7 @@ def _simulate(path, folder, ranks, variables):
         _, status, usage = os.wait4(process.pid, 0)  # what it waited for included: the ranks of mpirun
         process.returncode = os.waitstatus_to_exitcode(status)
     seconds = (usage.ru_utime + usage.ru_stime) / ranks
-    print(f"run: LAMMPS took {time.perf_counter() - started:.1f} s, {seconds:.1f} s of CPU time on each core; analysing", flush=True)
+    print(f"run: LAMMPS took {time.perf_counter() - started:.1f} s, {seconds:.1f} s of CPU time on each core", flush=True)
     return process.returncode, seconds, tail
 
 
