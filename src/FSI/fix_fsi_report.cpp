@@ -530,7 +530,7 @@ std::string FixFSIReport::momentum_table(bool lost)
   const auto b = balance();
   const double relative = std::sqrt(b.rest[0] * b.rest[0] + b.rest[1] * b.rest[1] + b.rest[2] * b.rest[2]) / (b.scale > 0.0 ? b.scale : 1.0);
   std::string others = lost ? " lost particles," : "";
-  if (!modify->get_fix_by_style("^fsi/inlet$").empty() || !modify->get_fix_by_style("^fsi/outlet$").empty()) others += " flow through open ends,";
+  if (fix_fsi->has_open_ends()) others += " flow through open ends,";
   for (auto &fix : modify->get_fix_list())
     if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^fsi/") && !utils::strmatch(fix->style, "^gravity"))
       others += fmt::format(" fix {},", fix->id);

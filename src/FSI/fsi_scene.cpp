@@ -77,6 +77,14 @@ bool Scene::density_follows_shift() const
 
 /* ---------------------------------------------------------------------- */
 
+bool Scene::has_open_ends() const
+{
+  Modify *const modify = instance->modify;
+  return !modify->get_fix_by_style("^fsi/inlet$").empty() || !modify->get_fix_by_style("^fsi/outlet$").empty();
+}
+
+/* ---------------------------------------------------------------------- */
+
 bool Scene::several_stiffnesses() const
 {
   double first = 0.0;

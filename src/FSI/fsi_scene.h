@@ -80,6 +80,7 @@ namespace FSI {
     // per component: displacement of the last step over its length, which density follows between open ends where fluid fills the box
     double *shift_velocity[3];
     bool density_follows_shift() const;
+    bool has_open_ends() const;    // fixes fsi/inlet and fsi/outlet
     int *wmask;                // bits of the mirror walls that an atom is near
     double **wall_velocity;    // viscous velocity of no-slip walls of particles (fix fsi/wall/particle) and solids
     double *wall_stiffness;    // rho dp/drho of wall particles, that of the fluid around them; null: it is the same for all fluids, and in the wall's state

@@ -157,7 +157,7 @@ void PairFSIFluid::init_style()
   if (couple != WALL && solid && *static_cast<int *>(solid->extract("gradient", dim_of_extract)) != 0)
     error->all(FLERR, "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid gradient plain: with corrected gradients "
                       "use couple wall");
-  open_ends = !modify->get_fix_by_style("^fsi/inlet$").empty() || !modify->get_fix_by_style("^fsi/outlet$").empty();
+  open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);
   kinds[SOLIDS] = couple == WALL ? WITH_SOLID : couple == PRESSURE ? WITH_SOLID_PRESSURE : WITH_SOLID_FULL;
 }
