@@ -24,6 +24,7 @@
 #include "fsi_pack.h"
 
 #include <cmath>
+#include <type_traits>
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -141,6 +142,8 @@ namespace FSI {
   template <int D> using Quintic = Kernel<D, QuinticShape>;
   template <int D> using Wendland = Kernel<D, WendlandShape>;
 
+  inline double kernel_support(int kind) { return kind == QUINTIC ? QuinticShape::support : 2.0; }
+
   // Any of them, by its kind: for loops that need not be fast, of which there is then one.
   template <int D> struct AnyKernel {
     static constexpr int DIM = D;
@@ -148,9 +151,12 @@ namespace FSI {
     Cubic<D> cubic;
     Quintic<D> quintic;
     Wendland<D> wendland;
-    double h;
+    double h, hinv, cut, cutsq;
 
-    AnyKernel(int kind_in, double h_in) : kind(kind_in), cubic(h_in), quintic(h_in), wendland(h_in), h(h_in) {}
+    AnyKernel(int kind_in, double h_in) :
+        kind(kind_in), cubic(h_in), quintic(h_in), wendland(h_in), h(h_in), hinv(1.0 / h_in), cut(kernel_support(kind_in) * h_in), cutsq(cut * cut)
+    {
+    }
     double W(double r) const { return kind == CUBIC ? cubic.W(r) : kind == QUINTIC ? quintic.W(r) : wendland.W(r); }
     double gradient(double r) const { return kind == CUBIC ? cubic.gradient(r) : kind == QUINTIC ? quintic.gradient(r) : wendland.gradient(r); }
     double sharper(double r, double e) const { return kind == CUBIC ? cubic.sharper(r, e) : kind == QUINTIC ? quintic.sharper(r, e) : wendland.sharper(r, e); }
@@ -159,6 +165,13 @@ namespace FSI {
       return kind == CUBIC ? cubic.sharper_gradient(r, e) : kind == QUINTIC ? quintic.sharper_gradient(r, e) : wendland.sharper_gradient(r, e);
     }
   };
+
+  // The kernel of this kind as a K, one of them or any.
+  template <class K> K make_kernel(int kind, double h)
+  {
+    if constexpr (std::is_constructible_v<K, double>) return K(h);
+    else return K(kind, h);
+  }
 
   // Calls f with the kernel object that kind and dim name: the one run-time choice between kernels.
   template <class F> void with_kernel(int kind, int dim, double h, F &&f)
@@ -173,8 +186,6 @@ namespace FSI {
       else f(Wendland<3>(h));
     }
   }
-
-  inline double kernel_support(int kind) { return kind == QUINTIC ? QuinticShape::support : 2.0; }
 
   // sum_j W_ij of a particle inside an infinite square (2D) or simple cubic (3D) lattice of spacing dx, self included
   template <class K> double lattice_number_density(const K &kernel, double dx)

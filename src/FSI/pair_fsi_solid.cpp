@@ -96,7 +96,7 @@ void PairFSISolid::init_style()
     using K = std::decay_t<decltype(k)>;
     if (gradient == PLAIN) select<K, 0>(flags);
     else if (gradient == CORRECTED_LINEAR) select<K, K::DIM>(flags);
-    else select<K, Gradient<K::DIM>::NQUADRATIC>(flags);
+    else select<AnyKernel<K::DIM>, Gradient<K::DIM>::NQUADRATIC>(flags);
   });
 }
 
@@ -279,10 +279,10 @@ static inline void add_moments(const double *phi, double wi, double wj, double *
 template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(double dt)
 {
   constexpr int D = K::DIM;
-  const K kernel(fix_fsi->h);
+  const K kernel = make_kernel<K>(fix_fsi->kernel, fix_fsi->h);
   const double dth = 0.5 * dt, hinv = kernel.hinv;
-  double **x = atom->x;
-  double **v = atom->v;
+  constexpr int NGRAD = TERMS ? D * TERMS + 2 * packed_size(TERMS) : D * D;
+  double **const x = atom->x, **const v = atom->v;
   const double *const rmass = atom->rmass;
   const int *const type = atom->type;
   const State *const state = fix_fsi->state.data();
@@ -292,33 +292,39 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
     const double vol_i = rmass[i] * state[type[i]].inv_rho0;
-    for (int jj = 0; jj < list->numneigh[i]; jj++) {
-      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+    const int *const jlist = list->firstneigh[i], jnum = list->numneigh[i];
+    // of i in variables of their own: stores to neighbours might change what is in memory, and it would be read for each anew
+    double xi[D], vi[D], gi[NGRAD];
+    std::copy_n(x[i], D, xi);
+    std::copy_n(v[i], D, vi);
+    std::copy_n(grad[i], NGRAD, gi);
+    for (int jj = 0; jj < jnum; jj++) {
+      const int j = jlist[jj] & NEIGHMASK;
       if ((FLAGS & BODIES) && molecule[i] != molecule[j]) continue;
       double xij[D], vij[D], rsq = 0.0;
       for (int d = 0; d < D; d++) {
-        vij[d] = v[i][d] - v[j][d];
-        xij[d] = x[i][d] - x[j][d] - dth * vij[d];
+        vij[d] = vi[d] - v[j][d];
+        xij[d] = xi[d] - x[j][d] - dth * vij[d];
         rsq += xij[d] * xij[d];
       }
+      double *const gj = grad[j];
       const double vol_j = rmass[j] * state[type[j]].inv_rho0;
       if constexpr (TERMS > 0) {
         double xji[D], phi[TERMS], mid = 0.0;
         for (int d = 0; d < D; d++) {
-          xji[d] = (x[j][d] - x[i][d]) * hinv;
+          xji[d] = (x[j][d] - xi[d]) * hinv;
           mid += xji[d] * xji[d];
         }
         mid *= kernel.h * kernel.h;
         if (mid < kernel.cutsq) {
           const double g = kernel.gradient(std::sqrt(mid));
           gradient_basis<D, TERMS>(xji, phi);
-          add_moments<D, TERMS>(phi, -g * vol_j, -g * vol_i, grad[i] + D * TERMS + packed_size(TERMS),
-                                grad[j] + D * TERMS + packed_size(TERMS));
+          add_moments<D, TERMS>(phi, -g * vol_j, -g * vol_i, gi + D * TERMS + packed_size(TERMS),
+                                gj + D * TERMS + packed_size(TERMS));
         }
       }
       if (rsq >= kernel.cutsq) continue;
       const double g = kernel.gradient(std::sqrt(rsq));
-      double *gi = grad[i], *gj = grad[j];
       if constexpr (TERMS == 0) {
         // v_ji (x) g_ij is the same seen from i and from j; only the volumes differ
         for (int a = 0; a < D; a++)
@@ -341,6 +347,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
         add_moments<D, TERMS>(phi, wi, wj, gi + D * TERMS, gj + D * TERMS);
       }
     }
+    std::copy_n(gi, NGRAD, grad[i]);
   }
 }
 
@@ -362,10 +369,10 @@ void PairFSISolid::advance_hourglass(double dt)
 template <class K> void PairFSISolid::hourglass_pairs(double dt)
 {
   constexpr int D = K::DIM;
-  const K kernel(fix_fsi->h);
+  const K kernel = make_kernel<K>(fix_fsi->kernel, fix_fsi->h);
   const Hourglass hourglass{xi};
-  double **x = atom->x;
-  double **v = atom->v;
+  double **const x = atom->x, **const v = atom->v, **const grad = this->grad;
+  double *const total = hourglass_rate.data();
   const double *const rmass = atom->rmass;
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
@@ -373,24 +380,32 @@ template <class K> void PairFSISolid::hourglass_pairs(double dt)
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
     const State &si = state[type[i]];
-    for (int jj = 0; jj < list->numneigh[i]; jj++) {
-      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+    const double shear = si.shear, vol = rmass[i] * si.inv_rho0;
+    const int *const jlist = list->firstneigh[i], jnum = list->numneigh[i];
+    double xi[D], vi[D], Li[D * D], sum[D];
+    std::copy_n(x[i], D, xi);
+    std::copy_n(v[i], D, vi);
+    std::copy_n(grad[i], D * D, Li);
+    std::copy_n(total + i * D, D, sum);
+    for (int jj = 0; jj < jnum; jj++) {
+      const int j = jlist[jj] & NEIGHMASK;
       if (molecule[i] != molecule[j]) continue;
       double xij[D], vij[D], rsq = 0.0, rate[D];
       for (int d = 0; d < D; d++) {
-        vij[d] = v[i][d] - v[j][d];
-        xij[d] = x[i][d] - x[j][d] - 0.5 * dt * vij[d];
+        vij[d] = vi[d] - v[j][d];
+        xij[d] = xi[d] - x[j][d] - 0.5 * dt * vij[d];
         rsq += xij[d] * xij[d];
       }
       if (rsq >= kernel.cutsq) continue;
       const State &sj = state[type[j]];
-      hourglass.operator()<D>(0.5 * (si.shear + sj.shear), rmass[i] * si.inv_rho0 * rmass[j] * sj.inv_rho0,
-                              kernel.gradient(std::sqrt(rsq)), xij, vij, grad[i], grad[j], rate);
+      hourglass.operator()<D>(0.5 * (shear + sj.shear), vol * rmass[j] * sj.inv_rho0,
+                              kernel.gradient(std::sqrt(rsq)), xij, vij, Li, grad[j], rate);
       for (int d = 0; d < D; d++) {
-        hourglass_rate[i * D + d] += rate[d];
-        hourglass_rate[j * D + d] -= rate[d];
+        sum[d] += rate[d];
+        total[j * D + d] -= rate[d];
       }
     }
+    std::copy_n(sum, D, total + i * D);
   }
 }
 
@@ -559,8 +574,8 @@ static FSI_INLINE void subtract_corrected(const Aux &ai, const Aux &aj, double w
 template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
 {
   constexpr int D = K::DIM;
-  const K kernel(fix_fsi->h);
-  double **x = atom->x, **v = atom->v, **f = atom->f;
+  const K kernel = make_kernel<K>(fix_fsi->kernel, fix_fsi->h);
+  double **const x = atom->x, **const v = atom->v, **const f = atom->f;
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
   const int nlocal = atom->nlocal;
@@ -578,13 +593,16 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
 
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
-    const Aux<D> &ai = aux[i];
-    double fi[D] = {};
-    for (int jj = 0; jj < list->numneigh[i]; jj++) {
-      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+    const Aux<D> ai = aux[i];
+    const int *const jlist = list->firstneigh[i], jnum = list->numneigh[i];
+    double fi[D] = {}, xi[D], vi[D];
+    std::copy_n(x[i], D, xi);
+    std::copy_n(v[i], D, vi);
+    for (int jj = 0; jj < jnum; jj++) {
+      const int j = jlist[jj] & NEIGHMASK;
       double xij[D], rsq = 0.0;
       for (int d = 0; d < D; d++) {
-        xij[d] = x[i][d] - x[j][d];
+        xij[d] = xi[d] - x[j][d];
         rsq += xij[d] * xij[d];
       }
       if (rsq >= kernel.cutsq) continue;
@@ -606,7 +624,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
           R *= artificial.weight(kernel.W(r));
           t += R;
           if (FLAGS & LEDGER) {
-            const double power = contract<D>(R, xij, v[i], v[j]);
+            const double power = contract<D>(R, xij, vi, v[j]);
             by_stress -= share(j) * g * power;
             by_gradient += share(j) * g * power;
           }
@@ -619,12 +637,12 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
           subtract_corrected<D, TERMS>(ai, aj, aj.vol0, ai.vol0, xij, kernel.hinv, tx);
       if (FLAGS & LEDGER) {
         double power = 0.0;
-        for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (v[i][d] - v[j][d]);
+        for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (vi[d] - v[j][d]);
         by_gradient -= share(j) * power;
       }
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
         double vdotx = 0.0;
-        for (int d = 0; d < D; d++) vdotx += (v[i][d] - v[j][d]) * xij[d];
+        for (int d = 0; d < D; d++) vdotx += (vi[d] - v[j][d]) * xij[d];
         const double q = viscosity(vdotx, rsq, 0.5 * (ai.rho + aj.rho), 0.5 * (ai.c + aj.c), ai.vol * aj.vol);
         for (int d = 0; d < D; d++) tx[d] -= q * xij[d];
         if (FLAGS & LEDGER) by_viscosity += share(j) * q * g * vdotx;

@@ -99,13 +99,15 @@ class PairFSISolid : public PairFSI {
   template <int D, int TERMS> const std::vector<Aux<D>> &fill_aux();
 
   enum { ARTIFICIAL_VISCOSITY = 1, BODIES = 2, ARTIFICIAL_STRESS = 4, LEDGER = 8 };
-  // Loops may have effects that are off, with coefficients of zero: all but the barest have artificial viscosity, and contact those of the
-  // ledger and of artificial stress with corrected gradients, where it has no use.
+  // Loops may have effects that are off, with coefficients of zero: what rarely is alone shares a loop with what it is mostly with. Loops of
+  // quadratic gradients are for any kernel.
   template <int TERMS> static constexpr int completed(int flags)
   {
-    if (flags & LEDGER) flags |= ARTIFICIAL_STRESS | BODIES;
-    if (TERMS && (flags & ARTIFICIAL_STRESS)) flags |= BODIES;
-    return flags & ~ARTIFICIAL_VISCOSITY ? flags | ARTIFICIAL_VISCOSITY : flags;
+    const bool ledger = flags & LEDGER;
+    if (TERMS && ledger && (flags & BODIES)) flags |= ARTIFICIAL_STRESS;
+    if ((TERMS || ledger) && (flags & ARTIFICIAL_STRESS)) flags |= BODIES;
+    if ((TERMS && ledger) || (flags & BODIES)) flags |= ARTIFICIAL_VISCOSITY;
+    return flags;
   }
   void (PairFSISolid::*force_loop)();
   void (PairFSISolid::*gradient_loop)(double);
