@@ -99,6 +99,7 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "laminar viscosity, central": {"style": "laminar/visc/central"},
         "density diffusion": {"style": "density/diffusion 0.1"},
         "shifting": {"style": "shift 0.1"},
+        "shifting, every 4 steps": {"style": "shift 0.1 shift/every 4"},
         "mirror walls": {"walls": "yes"},
         "free-surface rule": {"style": "surface 0.9 bulk"},
         "free-surface rule, every 10 steps": {"style": "surface 0.9 bulk", "sph": "surface/every 10"},

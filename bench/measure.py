@@ -13,7 +13,7 @@ from pathlib import Path
 from fsi import launch, log, paths
 from fsi.command import Refusal
 
-SHORT, LONG = 2, 12  # steps of the two runs whose difference is taken: what is done once per run cancels
+SHORT, LONG = 4, 24  # steps of the two runs whose difference is taken: what is done once per run cancels
 MATERIALS = """# DATE: 2026-11-21 UNITS: si CITATION: none
 water fluid rho 1000 viscosity 1
 plate solid rho 1000 young 2e6 poisson 0.4

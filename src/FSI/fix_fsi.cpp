@@ -311,7 +311,7 @@ template <int D> void FixFSI::kick()
       v[i][d] += dtfm * f[i][d];
       x[i][d] += dth * v[i][d];
     }
-    if (shift && state[type[i]].species == FLUID)
+    if (shifts && state[type[i]].species == FLUID)
       for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
   }
 }

@@ -708,7 +708,7 @@ void FixFSIInlet::advance(bool advance)
     const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
     atom->rho[i] = state.density(std::max(p, state.floor));
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
-    if (shift) std::fill_n(shift[i], 2 * fix_fsi->dim, 0.0);
+    if (fix_fsi->shifts) std::fill_n(shift[i], 2 * fix_fsi->dim, 0.0);
     for (double *const v : fix_fsi->shift_velocity)
       if (v) v[i] = 0.0;
   }

@@ -108,6 +108,7 @@ static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
   if (psi && !send)
     text += fmt::format("  every {} steps: {} message back and {} bytes of a ghost more, number density\n", scene.surface_every, (int) newton,
                         8 * (1 + newton));
+  text += costs.rarely;
 }
 
 /* ----------------------------------------------------------------------

@@ -348,9 +348,9 @@ void Message::add(double *&array, std::initializer_list<int> species, const bool
   columns.push_back({&array, nullptr, 0, 1, mask_of(species), when});
 }
 
-void Message::add(double **&array, int first, int n, std::initializer_list<int> species)
+void Message::add(double **&array, int first, int n, std::initializer_list<int> species, const bool *when)
 {
-  if (n > 0) columns.push_back({nullptr, &array, first, n, mask_of(species), nullptr});
+  if (n > 0) columns.push_back({nullptr, &array, first, n, mask_of(species), when});
 }
 
 int Message::size() const

@@ -119,7 +119,7 @@ namespace FSI {
     void clear() { columns.clear(); }
     // when: null, or whether it is carried now
     void add(double *&array, std::initializer_list<int> species, const bool *when = nullptr);
-    void add(double **&array, int first, int n, std::initializer_list<int> species);
+    void add(double **&array, int first, int n, std::initializer_list<int> species, const bool *when = nullptr);
     int size() const;    // at most, of an atom
 
     int pack(int n, const int *list, double *buf) const;

@@ -523,15 +523,15 @@ namespace FSI {
                                                              reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums);
         });
       };
-      // density diffusion, with a coefficient of zero where it is off, comes with what is rarely alone: images and shifting
-      const bool fluid = kind == WITH_FLUID, diffuses = fluid && (laws.delta > 0.0 || shift || image);
+      // density diffusion, with a coefficient of zero where it is off, comes with what is rarely without: images and slopes
+      const bool fluid = kind == WITH_FLUID, diffuses = fluid && (laws.delta > 0.0 || laws.slopes || image);
       const int named = (shift ? SHIFT : 0) | (fluid && !image && laws.slopes ? SLOPES : 0) | (diffuses ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
       with_flags<IMAGES | DIFFUSION | SUMS | FINER | SHIFT | SLOPES>((image ? IMAGES : 0) | finer_or_cut(kind, in) | named, [&](auto flags) {
         constexpr int effects = flags() & (DIFFUSION | SUMS | SHIFT | SLOPES);
         if constexpr (effects == 0 || effects == SHIFT)
           if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
         constexpr bool has_slopes = effects & SLOPES, diffusing = effects & DIFFUSION, plain = !(flags() & IMAGES);
-        if constexpr (!(flags() & FINER) && (diffusing || (effects == 0 && plain)) && (!has_slopes || (plain && (effects & SHIFT))))
+        if constexpr (!(flags() & FINER) && (diffusing || (plain && (effects == 0 || effects == SHIFT))) && (!has_slopes || (plain && (effects & SHIFT))))
           loop(std::integral_constant<int, WITH_FLUID>(), flags);
       });
     }

@@ -64,6 +64,7 @@ namespace FSI {
       int forward = 0, back = 0;                   // messages to a neighbor rank, beyond positions and forces
       int fluid_ghost = 0, solid_ghost = 0;        // numbers that they carry for a ghost
       std::string solids;                          // messages to neighbors with solids
+      std::string rarely;                          // lines of what goes in some steps only
     };
     virtual void add_costs(Costs &) const {}
     // effects with nothing to act on: what, why

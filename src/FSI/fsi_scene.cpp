@@ -31,7 +31,7 @@ using namespace FSI;
 
 Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) :
     mover(fix_fsi), state(lmp->atom->ntypes + 1), substeps(1), body_forces(lmp), profile(nullptr), dt_offset(0.0), psi(nullptr),
-    shift(nullptr), shift_velocity{}, wmask(nullptr), wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
+    shift(nullptr), shifts(false), shift_velocity{}, wmask(nullptr), wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
     surface_max(false), need_psi(false), keep_psi(false), ledger(false), energy_out{}, tally_dt(0.0), instance(lmp)
 {
 }

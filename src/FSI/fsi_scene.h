@@ -77,7 +77,8 @@ namespace FSI {
     // Per atom, local and ghost; valid from pre_force on. Null: nothing needs it.
     double *psi;               // number density
     double **shift;            // fluids, pair_style fsi/fluid shift: displacement and change of velocity at the end of the step
-    // per component: displacement of the last step over its length, which density follows between open ends where fluid fills the box
+    bool shifts;               // is it one of the steps that have them?
+    // per component: displacement of the last step that had one over the time it is for, which density follows between open ends where fluid fills the box
     double *shift_velocity[3];
     bool density_follows_shift() const;
     bool has_open_ends() const;    // fixes fsi/inlet and fsi/outlet

@@ -51,6 +51,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
   keywords.key("density/surface").logical(surfaces, false);
   keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
+  keywords.key("shift/every").integer(shift_every, 1, 1);
   keywords.key("surface")
       .number(surface_ratio, 0.0, Range::from_to_below(0.0, 1.0), "ratio")
       .choice(surface_max, 0, {"bulk", "max"}, "reference")
@@ -226,7 +227,7 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
   if (fix_fsi->sight) to_ghosts.add(fill, {FLUID});
   if (fix_fsi->sight) to_ghosts.add(fill_weight, {FLUID});
   if (fix_fsi->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
-  if (shifting > 0.0) back.add(fix_fsi->shift, 0, shift_sums(), {FLUID, RIGID});
+  if (shifting > 0.0) back.add(fix_fsi->shift, 0, shift_sums(), {FLUID, RIGID}, &fix_fsi->shifts);
 }
 
 void PairFSIFluid::add_costs(Costs &costs) const
@@ -234,7 +235,9 @@ void PairFSIFluid::add_costs(Costs &costs) const
   const int newton = force->newton_pair, continuity = fix_fsi->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? shift_sums() : 0;
   costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
-  costs.fluid_ghost += newton * continuity * (1 + ns);
+  costs.fluid_ghost += newton * continuity * (1 + (shift_every == 1 ? ns : 0));
+  if (ns && shift_every > 1)
+    costs.rarely += fmt::format("  every {} steps: {} bytes of a ghost more, particle shifting\n", shift_every, 8 * newton * ns);
   if (fix_fsi->shift_velocity[0]) costs.bytes += 8 * fix_fsi->dim;
   if (velocity_of_shifting()) costs.fluid_ghost += fix_fsi->dim;
   if (fix_fsi->sight) {
@@ -246,14 +249,16 @@ void PairFSIFluid::add_costs(Costs &costs) const
 
 void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
 {
+  if (shift_every > 1 && shifting == 0.0) nothing("Pair style fsi/fluid shift/every", "keyword shift is 0");
   if (all.fluids == 0) nothing("Pair style fsi/fluid" + named_effects(), "no particle is a fluid");
 }
 
 /* ---------------------------------------------------------------------- */
 
-void PairFSIFluid::begin_state(bool)
+void PairFSIFluid::begin_state(bool advance)
 {
   images_step = -1;
+  fix_fsi->shifts = advance && shifting > 0.0 && update->ntimestep % shift_every == 0;
   if (neighbor->ago) return;
   fields.grow();
   if (fix_fsi->sight) find_thin_bodies();
@@ -272,7 +277,7 @@ bool PairFSIFluid::add_rates(bool advance)
   find_cut_solids();
   const size_t nall = atom->nlocal + atom->nghost;
   if (rate) std::fill_n(rate, nall, 0.0);
-  if (shifting > 0.0 && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
+  if (fix_fsi->shifts && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
   const Phase phase(fix_fsi->profile, Profile::DENSITY);
   if (rate && advance) {
     if (fix_fsi->dim == 2) add_density_rate<2>(update->dt);
@@ -292,7 +297,7 @@ void PairFSIFluid::advance(bool advance)
   follow_thin_bodies();
   if (!rate || !advance) return;
   advance_density();
-  if (shifting > 0.0) displacements(update->dt);
+  if (fix_fsi->shifts) displacements(update->dt * shift_every);
 }
 
 // solids that pass through mirror walls, or may before the next neighbor lists
@@ -590,8 +595,8 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
     for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, shifting > 0.0 && fills()};
-  double *const shift = shifting > 0.0 ? fix_fsi->shift[0] : nullptr;
+  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fix_fsi->shifts && fills()};
+  double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror) {
     loops->rates(kinds[kind], which, mirror, particles, laws, rate, shift, fix_fsi->ledger ? &sums : nullptr);
@@ -613,7 +618,7 @@ void PairFSIFluid::displacements(double dt)
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = fix_fsi->state[type[i]];
     if (s.species != FLUID) continue;
-    const double reach = shifting * s.c * dt;
+    const double reach = std::min(shifting * s.c * dt, 0.5 * fix_fsi->h);    // from 0.9 h on it overshoots (theory.rst)
     if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
     else Shift<3>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
     if (velocity && dt > 0.0)
@@ -822,6 +827,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
   static const char *const modes[] = {"wall", "pressure", "full"};
   auto list = keywords.effects();
   list.push_back({fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
+  if (shifting > 0.0 && shift_every > 1) list.push_back({fmt::format("shifted every {} steps", shift_every), "shift/every", true});
   if (fix_fsi && fix_fsi->sight) list.push_back({"line of sight: thin bodies hide fluids from each other", "fix fsi thin", true});
   list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});
   return list;

@@ -78,6 +78,7 @@ class PairFSIFluid : public PairFSI {
   // settings
   double sound, background, delta;    // sound: of fluids whose material has none; 0: there is no default
   double shifting;                    // coefficient C of particle shifting; 0 = off
+  int shift_every;                    // steps from one displacement to the next
   // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi of all fluid
   // particles); 0 = off
   double surface_ratio;
@@ -122,7 +123,6 @@ class PairFSIFluid : public PairFSI {
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
   FSI::Fields fields;
   double *rate;      // local after the reverse communication
-  double **shift;    // its sums; afterwards the displacement at the end of the step, and what it changes of the velocity
   int nshift() const, shift_sums() const;
   bool fills() const { return background > 0.0; }    // no free surfaces: with a background pressure they would blow up
   bool density_follows;    // as extract() says: it may, if there are open ends

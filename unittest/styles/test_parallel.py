@@ -36,6 +36,7 @@ ALTERNATIVES = {  # what else crosses ranks: options of the scene, in 2D and 3D
     "quadratic": {"solid": "artificial/visc 0.1 0 artificial/stress 0.2 gradient quadratic"},
     "no slip": {"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.1 0", "fluid": "sound 10 laminar/visc"},
     "shift": {"fluid": "sound 10 laminar/visc/central shift 0.5"},
+    "shift every third step": {"fluid": "sound 10 laminar/visc shift 0.5 shift/every 3"},
     "shift in a full box": {"fluid": "sound 10 laminar/visc tension yes background 50 density/diffusion 0.1 shift 0.5"},
     "surfaces": {"fluid": "sound 10 artificial/visc 0.05 0 density/diffusion 0.1 density/surface yes"},
     "extrapolate": {"fluid": NO_DIFFUSION + " extrapolate yes"},

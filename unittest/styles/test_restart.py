@@ -22,6 +22,7 @@ MODES = {
     "summation": lambda: dam_gate(2, density="fluid summation solid ratio", fluid="sound 10 artificial/visc 0.05 0"),
     "fluid": lambda: fluid_box(2),
     "shift": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5"),
+    "shift every third step": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5 shift/every 3"),
     "shift in a full box": lambda: dam_gate(2, fluid="sound 10 tension yes background 50 density/diffusion 0.1 shift 0.5"),
     "surface": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 surface 0.9 max", sph="surface/every 7"),
     "surfaces": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 density/surface yes"),
