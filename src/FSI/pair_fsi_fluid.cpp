@@ -618,7 +618,7 @@ void PairFSIFluid::displacements(double dt)
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = fix_fsi->state[type[i]];
     if (s.species != FLUID) continue;
-    const double reach = std::min(shifting * s.c * dt, 0.5 * fix_fsi->h);    // from 0.9 h on it overshoots (theory.rst)
+    const double reach = std::min(shifting * s.c * dt, 0.5 * fix_fsi->h);    // lattices overshoot from 0.51 h on (theory.rst)
     if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
     else Shift<3>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
     if (velocity && dt > 0.0)
