@@ -182,6 +182,7 @@ CASES = [
     ("surfaces with tension", "density/diffusion 0.1", "density/surface yes tension yes", r"density/surface is for fluids with a free surface"),
     ("shift negative", "density/diffusion 0.1", "shift -0.1", r"shift -0\.1 must be between 0 and 1"),
     ("shift large", "density/diffusion 0.1", "shift 2", r"shift 2 must be between 0 and 1"),
+    ("shift/every zero", "density/diffusion 0.1", "shift 0.1 shift/every 0", r"shift/every 0 must be >= 1"),
     ("shift with ratio", re.compile("density/diffusion 0.1(.*)fluid continuity", re.S), r"shift 0.5\1fluid ratio",
      r"shift requires .*fluid continuity"),
     *[(f"{key} without value", "density/diffusion 0.1", key, rf"fsi/fluid {key.split()[0]} command: missing")
@@ -355,7 +356,7 @@ NUMBERS = [
     *[(word, *fluid("", f"sound {keyword} ".replace("sound sound", "sound"))) for word, keyword in (
         ("sound", "sound {}"), ("background", "10 background {}"), ("artificial/visc alpha", "10 artificial/visc {} 0"),
         ("artificial/visc beta", "10 artificial/visc 0 {}"), ("density/diffusion", "10 density/diffusion {}"), ("shift", "10 shift {}"),
-        ("surface ratio", "10 surface {} bulk"))],
+        ("shift/every", "10 shift 0.1 shift/every {}"), ("surface ratio", "10 surface {} bulk"))],
     *[(word, "artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected", keyword) for word, keyword in (
         ("artificial/visc alpha", "artificial/visc {} 0"), ("artificial/visc beta", "artificial/visc 0 {}"),
         ("artificial/stress", "artificial/stress {}"), ("hourglass", "hourglass {}"), ("contact", "contact {}"))],
