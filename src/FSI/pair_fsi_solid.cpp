@@ -294,17 +294,17 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
     const double vol_i = rmass[i] * state[type[i]].inv_rho0;
     const int *const jlist = list->firstneigh[i], jnum = list->numneigh[i];
     // of i in variables of their own: stores to neighbours might change what is in memory, and it would be read for each anew
-    double xi[D], vi[D], gi[NGRAD];
-    std::copy_n(x[i], D, xi);
-    std::copy_n(v[i], D, vi);
+    double x_i[D], v_i[D], gi[NGRAD];
+    std::copy_n(x[i], D, x_i);
+    std::copy_n(v[i], D, v_i);
     std::copy_n(grad[i], NGRAD, gi);
     for (int jj = 0; jj < jnum; jj++) {
       const int j = jlist[jj] & NEIGHMASK;
       if ((FLAGS & BODIES) && molecule[i] != molecule[j]) continue;
       double xij[D], vij[D], rsq = 0.0;
       for (int d = 0; d < D; d++) {
-        vij[d] = vi[d] - v[j][d];
-        xij[d] = xi[d] - x[j][d] - dth * vij[d];
+        vij[d] = v_i[d] - v[j][d];
+        xij[d] = x_i[d] - x[j][d] - dth * vij[d];
         rsq += xij[d] * xij[d];
       }
       double *const gj = grad[j];
@@ -312,7 +312,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::gradient_pairs(doubl
       if constexpr (TERMS > 0) {
         double xji[D], phi[TERMS], mid = 0.0;
         for (int d = 0; d < D; d++) {
-          xji[d] = (x[j][d] - xi[d]) * hinv;
+          xji[d] = (x[j][d] - x_i[d]) * hinv;
           mid += xji[d] * xji[d];
         }
         mid *= kernel.h * kernel.h;
@@ -369,7 +369,7 @@ void PairFSISolid::advance_hourglass(double dt)
 template <class K> void PairFSISolid::hourglass_pairs(double dt)
 {
   constexpr int D = K::DIM;
-  const K kernel = make_kernel<K>(fix_fsi->kernel, fix_fsi->h);
+  const K kernel(fix_fsi->h);
   const Hourglass hourglass{xi};
   double **const x = atom->x, **const v = atom->v, **const grad = this->grad;
   double *const total = hourglass_rate.data();
@@ -382,9 +382,9 @@ template <class K> void PairFSISolid::hourglass_pairs(double dt)
     const State &si = state[type[i]];
     const double shear = si.shear, vol = rmass[i] * si.inv_rho0;
     const int *const jlist = list->firstneigh[i], jnum = list->numneigh[i];
-    double xi[D], vi[D], Li[D * D], sum[D];
-    std::copy_n(x[i], D, xi);
-    std::copy_n(v[i], D, vi);
+    double x_i[D], v_i[D], Li[D * D], sum[D];
+    std::copy_n(x[i], D, x_i);
+    std::copy_n(v[i], D, v_i);
     std::copy_n(grad[i], D * D, Li);
     std::copy_n(total + i * D, D, sum);
     for (int jj = 0; jj < jnum; jj++) {
@@ -392,8 +392,8 @@ template <class K> void PairFSISolid::hourglass_pairs(double dt)
       if (molecule[i] != molecule[j]) continue;
       double xij[D], vij[D], rsq = 0.0, rate[D];
       for (int d = 0; d < D; d++) {
-        vij[d] = vi[d] - v[j][d];
-        xij[d] = xi[d] - x[j][d] - 0.5 * dt * vij[d];
+        vij[d] = v_i[d] - v[j][d];
+        xij[d] = x_i[d] - x[j][d] - 0.5 * dt * vij[d];
         rsq += xij[d] * xij[d];
       }
       if (rsq >= kernel.cutsq) continue;
@@ -595,14 +595,14 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
     const int i = list->ilist[ii];
     const Aux<D> ai = aux[i];
     const int *const jlist = list->firstneigh[i], jnum = list->numneigh[i];
-    double fi[D] = {}, xi[D], vi[D];
-    std::copy_n(x[i], D, xi);
-    std::copy_n(v[i], D, vi);
+    double fi[D] = {}, x_i[D], v_i[D];
+    std::copy_n(x[i], D, x_i);
+    std::copy_n(v[i], D, v_i);
     for (int jj = 0; jj < jnum; jj++) {
       const int j = jlist[jj] & NEIGHMASK;
       double xij[D], rsq = 0.0;
       for (int d = 0; d < D; d++) {
-        xij[d] = xi[d] - x[j][d];
+        xij[d] = x_i[d] - x[j][d];
         rsq += xij[d] * xij[d];
       }
       if (rsq >= kernel.cutsq) continue;
@@ -624,7 +624,7 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
           R *= artificial.weight(kernel.W(r));
           t += R;
           if (FLAGS & LEDGER) {
-            const double power = contract<D>(R, xij, vi, v[j]);
+            const double power = contract<D>(R, xij, v_i, v[j]);
             by_stress -= share(j) * g * power;
             by_gradient += share(j) * g * power;
           }
@@ -637,12 +637,12 @@ template <class K, int TERMS, int FLAGS> void PairFSISolid::force_pairs()
           subtract_corrected<D, TERMS>(ai, aj, aj.vol0, ai.vol0, xij, kernel.hinv, tx);
       if (FLAGS & LEDGER) {
         double power = 0.0;
-        for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (vi[d] - v[j][d]);
+        for (int d = 0; d < D; d++) power += (g * tx[d] + push * xij[d]) * (v_i[d] - v[j][d]);
         by_gradient -= share(j) * power;
       }
       if (FLAGS & ARTIFICIAL_VISCOSITY) {
         double vdotx = 0.0;
-        for (int d = 0; d < D; d++) vdotx += (vi[d] - v[j][d]) * xij[d];
+        for (int d = 0; d < D; d++) vdotx += (v_i[d] - v[j][d]) * xij[d];
         const double q = viscosity(vdotx, rsq, 0.5 * (ai.rho + aj.rho), 0.5 * (ai.c + aj.c), ai.vol * aj.vol);
         for (int d = 0; d < D; d++) tx[d] -= q * xij[d];
         if (FLAGS & LEDGER) by_viscosity += share(j) * q * g * vdotx;
