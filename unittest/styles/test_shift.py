@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from scenes import KERNELS, RUBBER, WATER, Scene, cloud, lattice
+from scenes import KERNELS, RUBBER, WATER, Kernel, Scene, cloud, lattice
 
 C, SOUND, DT = 0.5, 10.0, 2e-3
 BOTH = pytest.mark.parametrize("n", [(12, 11), (7, 6, 6)], ids=["2D", "3D"])
@@ -212,3 +212,22 @@ def test_density_follows_between_open_ends(n):
     print(f"rho - m psi has changed by {lag[True]:.4f} of the range in which m psi has, without open ends by {lag[False]:.3f}")
     # the displacement of the last step is not in it yet, and gradients of W are those of the middle of a step
     assert lag[True] < 0.02 and lag[False] > 0.2
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("kernel, hdx", [("quintic", 1.0), ("quintic", 0.94), ("wendland", 1.5), ("wendland", 1.8), ("cubic", 1.3)])
+def test_bound_is_below_what_overshoots(kernel, hdx, dim):
+    """Plane waves of displacements on a lattice: N C c dt = L turns their part along an eigenvector into 1 - L h lambda of it, which grows from
+    L = 2/(h lambda) on. The bound, h/2, has to be less for all wave vectors, kernels as they are recommended, in 2D and 3D."""
+    k = Kernel(kernel, dim, hdx)
+    x = lattice([9] * dim, 1.0, centre=True)[:, :dim]
+    r = np.linalg.norm(x, axis=1)
+    x, r = x[(r > 0) & (r < k.cut)], r[(r > 0) & (r < k.cut)]
+    pull = lambda s: k.g(s) * (1 + 0.2 * (k.W(s) / k.W(1.0))**4)
+    slope = (pull(r * (1 + 1e-6)) - pull(r * (1 - 1e-6))) / (2e-6 * r)
+    gradient = pull(r)[:, None, None] * np.eye(dim) + (slope / r)[:, None, None] * x[:, :, None] * x[:, None, :]
+    largest = max(np.linalg.eigvalsh(np.einsum("jab,j->ab", gradient, 1 - np.cos(x @ np.array(wave))))[-1]
+                  for wave in product(np.linspace(0, np.pi, 13), repeat=dim))
+    grows_from = 2 / (hdx**2 * largest)
+    print(f"{kernel} {hdx} in {dim}D: displacements grow from N C c dt = {grows_from:.2f} h on")
+    assert 0.5 < grows_from < 0.9
