@@ -8,7 +8,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 
 from tool import PAGE, write_csv
 
-from fsi import plot
+from fsi import plot, scene, sweep
 from fsi.precision import crossings, extrapolate, order, pareto, reach
 
 BOUNDS = (10.0, 5.0, 2.0, 1.0)  # per cent
@@ -39,7 +39,8 @@ def write(folder, name, definition, points, source):
     summary = {
         "scene": name, "title": definition["title"], "figure": definition["figure"], "reference": about,
         "command": definition["command"],
-        "source": source, "points": len(rows), "failed": sum(r["status"] == "failed" for r in rows),
+        "source": source, "commit": scene.commit() if source == sweep.source_hash() else None,
+        "points": len(rows), "failed": sum(r["status"] == "failed" for r in rows),
         "spread": float(np.median(spreads)) if (spreads := [r["spread"] for r in rows if r["spread"] is not None]) else None,
         "cpu_seconds": sum({json.dumps(p["run"]["settings"]): sum(p["run"]["cpu_seconds"]) for p in points}.values()),
         "methods": methods, "knobs": _knobs(definition, rows), "reach": _reach(methods),
@@ -541,7 +542,8 @@ def _page(definition, summary, rows, curves):
     variable = definition["resolution"]["variable"]
     lines = [f"# What accuracy costs: {definition['title']}", "",
              f"Made by `{summary['command']}`; all {summary['points']} points are in [points.csv](points.csv). Do not edit: "
-             f"it is written anew. Contents of src and potentials: {summary['source']}.", "",
+             f"it is written anew. Contents of src and potentials: {summary['source']}" +
+             (f", as in commit {summary['commit']}." if summary.get("commit") else "."), "",
              f"Error: {definition['label']} (figure `{summary['figure']}`). Reference: {summary['reference']['source']}. "
              f"{definition.get('notes', '')}",
              "Time: CPU seconds of the time loop on one core, " +

@@ -13,7 +13,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from tool import say
+from tool import say, stamped
 
 from fsi import launch, log, paths, scene, sweep
 from fsi.command import Refusal, split, start
@@ -135,7 +135,7 @@ def main(arguments):
     target = Path(options["out"]).resolve() / PAGE.name if "out" in options else PAGE
     target.parent.mkdir(parents=True, exist_ok=True)
     if "out" in options or not chosen:
-        target.write_text(page(rows), encoding="utf-8")
+        target.write_text(stamped(page(rows)), encoding="utf-8")
     return 0 if all(row["good"] for row in rows) else 1
 
 

@@ -42,6 +42,12 @@ def write_csv(path, columns, rows, digits=None):
         writer.writerows([f"{v:.{digits}g}" if digits and isinstance(v, float) else v for v in map(row.get, columns)] for row in rows)
 
 
+def stamped(page):
+    """The page, with the commit that it was made of below its heading."""
+    heading, _, text = page.partition("\n\n")
+    return f"{heading}\n\nOf commit {scene.commit() or 'unknown'}.\n\n{text}"
+
+
 class Job:
     """A tool's command line, `turns` being what it is where it may be given; brings the build up to date.
 
@@ -65,8 +71,8 @@ class Job:
         return Kept(self.folder / "points")
 
     def write(self, columns, rows, digits, text, everything=None):
-        """The table, the page, and as JSON beside what is kept `everything`; what a table of its own is called."""
+        """The table, the page with its commit, and as JSON beside what is kept `everything`; what a table of its own is called."""
         if everything is not None:
             (self.folder / f"{self.name}.json").write_text(json.dumps(everything, indent=1) + "\n")
         write_csv(self.target / f"{self.name}.csv", columns, rows, digits)
-        (self.target / f"{self.name}.md").write_text(text, encoding="utf-8")
+        (self.target / f"{self.name}.md").write_text(stamped(text), encoding="utf-8")

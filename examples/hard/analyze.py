@@ -404,12 +404,12 @@ def terminal(table):
             print(f"    {recipe:12} {verdict(e, recipe):4}  {told(e, recipe)}")
 
 
-def page(table, pictures, work):
+def page(table, pictures, work, commit):
     """The page as Markdown."""
     missed = [e["case"] for e in table if "best" in e and not e["best"]["pass"]]
     fails = [e for e in table if "paper" in e and not e["paper"]["pass"]]
     judged = sum("best" in e for e in table)
-    lines = ["# Hard cases", "", "Made by `tools/run hard`: every number and picture comes from its runs. What the cases are, and why a row is missed, is in "
+    lines = ["# Hard cases", "", f"Made by `tools/run hard` of commit {commit or 'unknown'}: every number and picture comes from its runs. What the cases are, and why a row is missed, is in "
              "[examples/hard](../../examples/hard/README.md).", "",
              f"**The recommended scheme passes {judged - len(missed)} of {judged} rows**" + (f"; missed: {'; '.join(missed)}." if missed else ".")
              + f" The source paper's recipe fails {len(fails)} of the {sum('paper' in e for e in table)} that it was tried on. {1e-9 * work:.1f} billion particle-steps in all.", "",
@@ -476,7 +476,7 @@ def study(folder, cases):
         (home / "hard.png").write_bytes((folder / "hard.png").read_bytes())
     pictures = [("hard.png", "the last picture of some runs, best above paper")] if (folder / "hard.png").exists() else []
     work = sum(case["particle_steps"] or 0 for case in summary.cases.values())
-    (home / "README.md").write_text(page(table, pictures, work))
+    (home / "README.md").write_text(page(table, pictures, work, summary.run.get("commit")))
     (home / "hard.json").write_text(json.dumps(table, indent=1) + "\n")
     with open(home / "hard.csv", "w", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")

@@ -105,7 +105,15 @@ def render(found, examples="../../examples"):
 
 def _head(every, scenes):
     """What somebody in a hurry has to know: targets met and missed, what did not run, what it was run with."""
-    lines = ["# Results", "", "Made by `tools/run all`: every number and picture comes from its runs, none is typed."]
+    versions = {entry["summary"].get("lammps") or "unknown" for entry in scenes.values()}
+    commits = {}
+    for name, entry in scenes.items():
+        commits.setdefault(entry["summary"].get("commit") or "unknown", []).append(name)
+    used = " and ".join(c if len(commits) == 1 else f"{c} ({', '.join(n)})" for c, n in commits.items())
+    changed = " (+: with changes that are not committed)" if any(c.endswith("+") for c in commits) else ""
+    seconds = sum(entry["summary"]["cpu_seconds"] or 0 for entry in scenes.values())
+    lines = ["# Results", "", "Made by `tools/run all`: every number and picture comes from its runs, none is typed. "
+             f"LAMMPS {', '.join(sorted(versions))}; commit {used}{changed}; {_duration(seconds)} in all."]
     judged = [(name, f) for name, entry in scenes.items() for f in entry["summary"]["figures"] if f["met"] is not None]
     missed = [(name, f) for name, f in judged if not f["met"]]
     if judged:
@@ -118,14 +126,6 @@ def _head(every, scenes):
             lines += ["", f"**{name} has no results**: it was not run, or failed."]
         elif entry["summary"].get("failed_cases"):
             lines += ["", f"**{name}: failed** in {', '.join(entry['summary']['failed_cases'])}."]
-    versions = {entry["summary"].get("lammps") or "unknown" for entry in scenes.values()}
-    commits = {}
-    for name, entry in scenes.items():
-        commits.setdefault(entry["summary"].get("commit") or "unknown", []).append(name)
-    used = " and ".join(c if len(commits) == 1 else f"{c} ({', '.join(n)})" for c, n in commits.items())
-    changed = " (+: with changes that are not committed)" if any(c.endswith("+") for c in commits) else ""
-    seconds = sum(entry["summary"]["cpu_seconds"] or 0 for entry in scenes.values())
-    lines += ["", f"LAMMPS {', '.join(sorted(versions))}; commit {used}{changed}; {_duration(seconds)} in all."]
     return "\n".join(lines)
 
 

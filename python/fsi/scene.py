@@ -35,7 +35,7 @@ RANKS = 1  # where nobody says how many: small scenes gain nothing by more, and 
 EDITS_FILE = "edits.json"  # {name: {"find": regular expression, "put": text with {value}}}: settings that no deck has a variable for
 ONE_RUN = {"variables": {}, "ranks": None, "deck": None, "may_fail": False}  # of a scene without cases
 OWN_RUN = "custom"  # folder of a run with the user's variables beside the cases, whose results stay as they are
-SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools")  # what decides a result
+SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools", "bench")  # what decides a result
 
 
 def deck(scene):
@@ -173,8 +173,8 @@ def run_all(names, folder, ranks=None):
     wanted = {scene: cases(scene) for scene in names}
     tasks = [(scene, folder / scene / (name or ""), ranks or case["ranks"] or RANKS, case["variables"], name, case["deck"], case["may_fail"])
              for scene, found in wanted.items() for name, case in (found or {None: ONE_RUN}).items()]
-    commit = _commit()
-    good = {task[1] for task in tasks if _is_there(task, commit)}
+    now = commit()
+    good = {task[1] for task in tasks if _is_there(task, now)}
     todo = [task for task in tasks if task[1] not in good]
     took = _seconds_of_page()
     typical = sum(took.values()) / len(took) if took else 60.0  # of what was never run
@@ -215,16 +215,16 @@ def _apart(task):
     return status, time.monotonic() - began, said.getvalue()
 
 
-def _is_there(task, commit):
+def _is_there(task, now):
     """Whether an earlier call left this very run, of a commit without changes."""
     _, folder, ranks, variables, *_ = task
-    if commit is None or commit.endswith("+") or not (folder / "summary.json").exists():
+    if now is None or now.endswith("+") or not (folder / "summary.json").exists():
         return False
     try:
         found = json.loads((folder / RUN_FILE).read_text())
     except (OSError, ValueError):
         return False
-    return (found["commit"], found["ranks"], found["given"]) == (commit, ranks, variables)
+    return (found["commit"], found["ranks"], found["given"]) == (now, ranks, variables)
 
 
 def _seconds_of_page():
@@ -287,10 +287,10 @@ def _record(folder):
 
 def _write_run(folder, record):
     """run.json: what was run, for the summary."""
-    (folder / RUN_FILE).write_text(json.dumps({**record, "commit": _commit()}, indent=2) + "\n")
+    (folder / RUN_FILE).write_text(json.dumps({**record, "commit": commit()}, indent=2) + "\n")
 
 
-def _commit():
+def commit():
     """The commit that is checked out, "+" behind it where sources differ from it; None without git."""
     def git(*words):
         return subprocess.run(["git", "-C", str(paths.ROOT), *words], capture_output=True, text=True, check=True).stdout

@@ -163,3 +163,14 @@ def test_manual(tmp_path):
     assert re.search(r'<script[^>]*src="[./]*_static/mathjax/MathJax.js\?config=', pages["doc/src/theory.html"])
     assert (tmp_path / "_static/mathjax/jax/output/SVG/fonts/TeX/Main/Regular/Main.js").exists()
     assert "doc/src/index.html" in pages["index.html"]
+
+
+MEASURED = [page for folder in ("results", "cost", "hard") for page in sorted((paths.ROOT / "doc" / folder).glob("*.md"))
+            if (folder, page.stem) not in (("cost", "README"), ("cost", "peers_notes"))]
+
+
+@pytest.mark.parametrize("page", MEASURED, ids=lambda page: f"{page.parent.name}/{page.stem}")
+def test_measured_pages_name_their_commit(page):
+    """At their top, one without changes beside it: who reads a number can go back to what gave it."""
+    top = page.read_text(encoding="utf-8").split("\n\n")[1]
+    assert re.search(r"commit [0-9a-f]{10}[.:;]", top)

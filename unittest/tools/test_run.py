@@ -170,7 +170,7 @@ def test_all_goes_on_after_a_failure(examples, capsys):
 
 def test_all_goes_on_where_it_ended(examples, capsys, monkeypatch):
     """What is there of this commit is not run again; a case that is not there, was changed or has failed is."""
-    monkeypatch.setattr(scene, "_commit", lambda: "0123456789")
+    monkeypatch.setattr(scene, "commit", lambda: "0123456789")
     make_scene(examples / "single", cases=None)
     assert scene.main(["all"]) == 0
     assert "some 0 left" in capsys.readouterr().out
@@ -180,7 +180,7 @@ def test_all_goes_on_where_it_ended(examples, capsys, monkeypatch):
     output = capsys.readouterr().out
     assert "1 of 3 runs are there" in output and figure(summary_of("toy"), "change")["value"] == pytest.approx(-1.2)
     assert scene.main(["all"]) == 0 and "3 of 3 runs are there" in capsys.readouterr().out
-    monkeypatch.setattr(scene, "_commit", lambda: "0123456789+")
+    monkeypatch.setattr(scene, "commit", lambda: "0123456789+")
     assert scene.main(["all"]) == 0 and "runs are there" not in capsys.readouterr().out
 
 
