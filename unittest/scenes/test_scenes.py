@@ -1,9 +1,12 @@
 """Short forms of the bundled scenes, judged by the figures of their own analysis."""
 
+import subprocess
+
 import numpy as np
+import pytest
 from scenes import run_scene
 
-from fsi import series
+from fsi import launch, scene, series
 
 
 def test_elastic_gate_swings_as_it_should(tmp_path):
@@ -48,3 +51,11 @@ def test_still_water_never_wakes(tmp_path):
     history = series.read(tmp_path / "series.csv")
     assert np.max((history["ke"] / history["pe"])[history.time > 2]) < 1e-8
     assert history["reflected"][-1] == 0
+
+
+@pytest.mark.parametrize("name, given", [("elastic_gate", {"coarser": 3}), ("hydrostatic_plate", {"coarser": 3}), ("submerged_plate", {"across": 3, "coarser": 2}),
+                                         ("rolling_tank", {"dx": 0.001, "coarser": 3})])
+def test_water_that_does_not_fit_is_refused(tmp_path, name, given):
+    """The plate under water ran with coarser=3 once, its pressure 16 % off."""
+    run = subprocess.run(launch.lammps(scene.deck(name), 1, given), cwd=tmp_path, env=launch.environment(), capture_output=True, text=True, timeout=60)
+    assert run.returncode == 1 and "ERROR: coarser=" in run.stdout and "does not divide" in run.stdout
