@@ -99,17 +99,18 @@ def length(lines, found):
 
 
 def main(deck, variables):
-    """Prints what there is to say; 0 if the deck runs and there is no advice."""
+    """Prints what there is to say; 0 if the deck runs and there is no advice of the package; LAMMPS has warnings that are of no concern here."""
     status, output, found = run(deck, variables)
     lines = output.splitlines()
     for start, line in enumerate(lines):
         if line.startswith("FSI: "):  # the effects: up to where LAMMPS goes on
             end = next((k for k in range(start + 1, len(lines)) if not lines[k].startswith("  ")), len(lines))
             print("\n".join(lines[start:end]))
-    advice = list(dict.fromkeys(line for line in lines if line.startswith("WARNING")))
+    warnings = list(dict.fromkeys(line for line in lines if line.startswith("WARNING")))
+    advice = [line for line in warnings if re.search("fsi", line.rpartition(" (")[0] or line, re.I)]  # before the place in the source
     errors = [line for line in lines if line.startswith(("ERROR", "Last input line"))]
-    if advice or errors:
-        print(*advice, *errors, sep="\n")
+    if warnings or errors:
+        print(*warnings, *errors, sep="\n")
     ran = found.finished if found else []
     if status:
         if not errors:
@@ -121,5 +122,6 @@ def main(deck, variables):
         print(f"fsi check: {deck} has no run")
         return 1
     print(f"fsi check: {ran[0].atoms} particles{length(lines, found)}; "
-          + (f"{len(advice)} warning{'s' * (len(advice) > 1)}" if advice else "nothing to warn of"))
+          + (f"{len(advice)} warning{'s' * (len(advice) > 1)}" if advice else "nothing to warn of")
+          + (f" (and {len(warnings) - len(advice)} of LAMMPS' own)" if len(warnings) > len(advice) else ""))
     return 1 if advice else 0

@@ -72,6 +72,12 @@ def test_advice(folder, capsys):
     assert status == 1 and "WARNING: Fix fsi" in text and "30 steps; " in text and "nothing to warn" not in text
 
 
+def test_warnings_of_lammps_are_told_but_are_no_advice(folder, capsys):
+    (folder / "in.deck").write_text(DECK.replace("timestep 1e-4", "timestep 1e-4\nthermo_modify lost error\nthermo_style one"))
+    status, text = says(capsys)
+    assert status == 0 and "WARNING: New thermo_style" in text and "nothing to warn of (and 1 of LAMMPS' own)" in text
+
+
 def test_no_step_is_computed(folder):
     status, output, _ = check.run("in.deck", {})
     assert status == 0 and "steps done: 0" in output
