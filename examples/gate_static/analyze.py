@@ -25,7 +25,7 @@ JUDGED = ("tl", 5)  # solid and particles across to which the target applies
 SOLIDS = {  # value of `solid` in the deck -> label, marker
     "tl": ("total Lagrangian", "o"), "ul": ("updated Lagrangian", "s"), "paper": ("updated, plain gradients", "^")}
 AT_REST = 1e-3  # largest share of the displacement that the last tenth of a run may add
-CLAMP = 1.25  # spacings from the last free row's cell to where the held rows act as a clamp (deck; doc/src/theory.rst)
+CLAMP = 1.0  # spacings from the last free row's cell to where the held rows act as a clamp (deck; doc/src/theory.rst)
 FREE_END = (0.1025, 0.0)  # [m] where its middle is before
 
 

@@ -19,10 +19,19 @@
 // neighbours are on one side, a gradient that is only exact for linear fields is that of a place about 0.6 dx inside the
 // body: a bent plate with n particles across comes out soft by an error of order 1/n. Exactness for quadratic fields
 // removes that error and costs nothing per step where the weights are computed once, in the reference configuration.
+//
+// There is one quadratic term that a face is better without: the square of the distance along its normal. Neighbours on one
+// side hardly tell it from the linear term, and the weights that do, -3/2, 2, -1/2 for three layers, make the stiffest mode of
+// the body. Without it a body bears steps twice as long, and a free plate's frequency is nearer to the exact one
+// (doc/src/theory.rst, Total-Lagrangian solids).
 
 #ifndef LMP_FSI_GRADIENT_H
 #define LMP_FSI_GRADIENT_H
 
+#include "math_eigen.h"
+
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -49,13 +58,16 @@ namespace FSI {
   // G_ij = w_ij C phi_j/length. Terms that the neighbours cannot tell from lower ones are left out (PARTIAL; LINEAR if all
   // quadratic ones are, as in a body two particles thick); DEFICIENT, with C not set, where neighbours lie in a line (2D)
   // or plane (3D) or are too few.
-  template <int D, int TERMS> inline typename Gradient<D>::Order gradient_coefficients(const double *A, double *C)
+  //
+  // quadratic_tolerance: part of a quadratic term's own square that must be independent of earlier terms. Nearly dependent terms
+  // give large weights of both signs, which amplify particle noise and cost time step: a body two particles thick whose particles
+  // are 0.01 dx off their lattice would have 1/40 of the usual one. In the axes of the lattice terms have 0.05 or more (Wendland,
+  // h = 1.3 to 2 dx; 0.03 for quintic, h = 0.9 dx), 0.02 or less in such a body up to 0.1 dx.
+  constexpr double WELL_TOLD = 0.025;
+  constexpr double FLAT = 1.0e-4;    // so much, for linear terms
+  template <int D, int TERMS>
+  inline typename Gradient<D>::Order gradient_coefficients(const double *A, double *C, double quadratic_tolerance = WELL_TOLD)
   {
-    // part of a term's own square that must be independent of earlier terms. Nearly dependent terms give large weights of both
-    // signs, which amplify particle noise and cost time step: a body two particles thick whose particles are 0.01 dx off their
-    // lattice would have 1/40 of the usual one. Quadratic terms have 0.05 or more on lattices (Wendland, h = 1.3 to 2 dx; 0.03 for
-    // quintic, h = 0.9 dx), 0.02 or less in such a body up to 0.1 dx.
-    constexpr double TOLERANCE = 1.0e-4, QUADRATIC_TOLERANCE = 0.025;
     const auto at = [](int a, int b) { return packed_size(a) + b; };
 
     // A = L d L^T
@@ -70,7 +82,7 @@ namespace FSI {
       }
       d[a] = A[at(a, a)];
       for (int k = 0; k < a; k++) d[a] -= L[a][k] * L[a][k] * d[k];
-      if (!(d[a] > (a < D ? TOLERANCE : QUADRATIC_TOLERANCE) * A[at(a, a)])) {
+      if (!(d[a] > (a < D ? FLAT : quadratic_tolerance) * A[at(a, a)])) {
         if (a < D) return Gradient<D>::DEFICIENT;
         d[a] = 0.0;
         for (int k = 0; k < a; k++) L[a][k] = 0.0;
@@ -105,27 +117,66 @@ namespace FSI {
     }
 
    private:
+    // squares along the normal of a face keep 0.05 to 0.15 of themselves (cubic to quintic kernel, h = 1 to 2 dx), all others 0.38 or
+    // more, in the axes of the neighbourhood
+    static constexpr double ONE_SIDED = 0.3;
+
     std::vector<double> basis;
+
+    // Axes (rows) in which a face's normal comes last, whichever way the body lies: the principal ones of sum_j w_j x_j x_j, in the
+    // order of how one-sided the neighbours are along them. Where these are as good as equal, as at a cube's corner, the 1e-4
+    // choose, and not round-off. False if the neighbours lie in a line (2D) or plane (3D).
+    bool find_axes(int n, const double *dX, const double *w, double (*axes)[D])
+    {
+      double first[D] = {}, one_sided[D], length = 0.0;
+      double moment[3][3] = {}, value[3], principal[3][3];    // in 2D a third axis, the last, without neighbours along it
+      for (int j = 0; j < n; j++)
+        for (int a = 0; a < D; a++) {
+          first[a] += w[j] * dX[j * D + a];
+          length += w[j] * std::fabs(dX[j * D + a]);
+          for (int b = 0; b < D; b++) moment[a][b] += w[j] * dX[j * D + a] * dX[j * D + b];
+        }
+      for (int a = 0; a < D; a++) moment[a][a] *= 1.0 - 1.0e-4 * a;
+      MathEigen::jacobi3(moment, value, principal);    // as columns, by decreasing value
+      if (!(value[D - 1] > FLAT * value[0])) return false;
+      int order[D];
+      for (int k = 0; k < D; k++) {
+        order[k] = k;
+        one_sided[k] = 0.0;
+        for (int a = 0; a < D; a++) one_sided[k] += first[a] * principal[a][k];
+        one_sided[k] = std::max(std::fabs(one_sided[k]), 1.0e-3 * length);
+      }
+      std::stable_sort(order, order + D, [&](int a, int b) { return one_sided[a] < one_sided[b]; });
+      for (int k = 0; k < D; k++)
+        for (int a = 0; a < D; a++) axes[k][a] = principal[a][order[k]];
+      return true;
+    }
 
     template <int TERMS> Order solve(int n, const double *dX, const double *w, double inv, double *G)
     {
       basis.resize((size_t) n * TERMS);
-      double A[packed_size(TERMS)] = {}, C[D * TERMS];
+      double A[packed_size(TERMS)] = {}, C[D * TERMS], axes[D][D];
+      if (!find_axes(n, dX, w, axes)) return Gradient<D>::DEFICIENT;
       for (int j = 0; j < n; j++) {
-        double x[D], *phi = &basis[(size_t) j * TERMS];
-        for (int a = 0; a < D; a++) x[a] = dX[j * D + a] * inv;
+        double x[D] = {}, *phi = &basis[(size_t) j * TERMS];
+        for (int k = 0; k < D; k++)
+          for (int a = 0; a < D; a++) x[k] += axes[k][a] * dX[j * D + a] * inv;
         gradient_basis<D, TERMS>(x, phi);
         for (int a = 0, m = 0; a < TERMS; a++)
           for (int b = 0; b <= a; b++) A[m++] += w[j] * phi[a] * phi[b];
       }
-      const Order order = gradient_coefficients<D, TERMS>(A, C);
+      const Order order = gradient_coefficients<D, TERMS>(A, C, ONE_SIDED);
       if (order == Gradient<D>::DEFICIENT) return order;
-      for (int j = 0; j < n; j++)
+      for (int j = 0; j < n; j++) {
+        double along[D] = {};
+        for (int a = 0; a < D; a++)
+          for (int k = 0; k < TERMS; k++) along[a] += C[a * TERMS + k] * basis[(size_t) j * TERMS + k];
         for (int a = 0; a < D; a++) {
           double s = 0.0;
-          for (int k = 0; k < TERMS; k++) s += C[a * TERMS + k] * basis[(size_t) j * TERMS + k];
+          for (int k = 0; k < D; k++) s += along[k] * axes[k][a];
           G[j * D + a] = w[j] * s * inv;
         }
+      }
       return order;
     }
   };
