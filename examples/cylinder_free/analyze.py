@@ -14,11 +14,12 @@ import numpy as np  # noqa: E402
 from fsi import dump, geometry, log, plot, series  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
-# {Reynolds number: {figure: (value, source)}}
-WILLIAMSON = "experiment, Williamson 1988: 0.1816 - 3.3265/Re + 1.6e-4 Re"
+# {(Reynolds number, width, upstream, downstream of the box [D]): {figure: value}}: finite elements in the same box (box.edp)
+BOX = "finite elements in the same box (box.edp)"
 REFERENCE = {
-    100: {"drag": (1.35, "code: several, 1.33 to 1.37"), "lift": (0.33, "code: several, 0.32 to 0.34"), "strouhal": (0.1643, WILLIAMSON)},
-    200: {"strouhal": (0.2015, "code: several, in the plane, 0.197 to 0.206")},
+    (100, 16, 6, 8): {"drag": 1.457, "lift": 0.421, "strouhal": 0.1795},
+    (200, 16, 6, 8): {"drag": 1.463, "lift": 0.802, "strouhal": 0.2095},
+    (100, 10, 5, 6): {"drag": 1.493, "lift": 0.295, "strouhal": 0.1783},
 }
 TARGETS = {"drag": 0.03, "lift": 0.07, "strouhal": 0.02}
 DIAMETER = 0.1
@@ -48,23 +49,14 @@ def figures(time, found):
     return out
 
 
-def faster(drag, width):
-    """By how much the stream beside the cylinder is faster, since the box repeats it across: of wake and body, Allen & Vincenti 1944 (NACA
-    Report 782), for walls that slip; drag coefficient and width in D."""
-    return drag / (4.0 * width) + 0.82 / width**2
-
-
 def add(summary, folder, suffix="", judged=False):
-    """The figures of one run, as they are and (..._free) as they would be without the box; returns the time and the smoothed coefficients."""
+    """The figures of one run; returns the time and the smoothed coefficients."""
     values, time, found = read(folder)
-    references = REFERENCE.get(round(values["reynolds"]), {})
-    here = figures(time, found)
-    more = 1.0 + faster(here["drag"], values["width"])
-    for name, value in here.items():
-        summary.add(name + suffix, value, "", *references.get(name, (None, None)))
-    for name, power in (("drag", 2), ("lift", 2), ("strouhal", 1)):
-        reference, source = references.get(name, (None, None))
-        summary.add(f"{name}_free{suffix}", here[name] / more**power, "", reference, source, TARGETS[name] if judged and reference else None)
+    box = tuple(round(values[name]) for name in ("reynolds", "width", "upstream", "downstream"))
+    references = REFERENCE.get(box, {})
+    for name, value in figures(time, found).items():
+        reference = references.get(name)
+        summary.add(name + suffix, value, "", reference, BOX if reference else None, TARGETS[name] if judged and reference else None)
     return time, {name: series.smooth(time, c, 0.5) for name, c in found.items()}
 
 
