@@ -139,6 +139,20 @@ namespace FSI {
       for (int a = 0; a < D; a++) moment[a][a] *= 1.0 - 1.0e-4 * a;
       MathEigen::jacobi3(moment, value, principal);    // as columns, by decreasing value
       if (!(value[D - 1] > FLAT * value[0])) return false;
+      // a lattice along the box's axes has those: of a bar two by two across other products of coordinates would lock
+      bool along_box = true;
+      for (int a = 0; a < D; a++) {
+        bool any = false;
+        for (int j = 0; j < n && !any; j++) {
+          double rsq = 0.0;
+          for (int b = 0; b < D; b++) rsq += dX[j * D + b] * dX[j * D + b];
+          any = dX[j * D + a] * dX[j * D + a] > 0.999 * rsq;
+        }
+        along_box = along_box && any;
+      }
+      if (along_box)
+        for (int a = 0; a < D; a++)
+          for (int k = 0; k < D; k++) principal[a][k] = a == k;
       int order[D];
       for (int k = 0; k < D; k++) {
         order[k] = k;
