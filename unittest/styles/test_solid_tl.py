@@ -943,7 +943,7 @@ def test_free_body(n, exact, error):
     bears = 2 / omega[-1] * np.sqrt(young * 0.6 / (1.4 * 0.2) / rho) / (1.5 * DX)
     print(f"free body {n}: {100 * (found / exact - 1)} %, bears {bears:.3f} h/c_l")
     assert found == pytest.approx(exact, rel=error / 100)
-    assert bears > (0.78 if dim == 2 else 0.6)    # 0.34 to 0.40 and 0.34 with that gradient
+    assert bears > (0.7 if dim == 2 else 0.59)    # 0.34 to 0.40 and 0.34 with that gradient
 
 
 def test_cantilever_tip_under_its_weight():
