@@ -32,8 +32,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <vector>
+#include <limits>
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -62,16 +61,18 @@ namespace FSI {
   // quadratic_tolerance: part of a quadratic term's own square that must be independent of earlier terms. Nearly dependent terms
   // give large weights of both signs, which amplify particle noise and cost time step: a body two particles thick whose particles
   // are 0.01 dx off their lattice would have 1/40 of the usual one. In the axes of the lattice terms have 0.05 or more (Wendland,
-  // h = 1.3 to 2 dx; 0.03 for quintic, h = 0.9 dx), 0.02 or less in such a body up to 0.1 dx.
+  // h = 1.3 to 2 dx; 0.03 for quintic, h = 0.9 dx), 0.02 or less in such a body up to 0.1 dx. least: the smallest such part among
+  // the quadratic terms kept, 0 if there are none.
   constexpr double WELL_TOLD = 0.025;
   constexpr double FLAT = 1.0e-4;    // so much, for linear terms
   template <int D, int TERMS>
-  inline typename Gradient<D>::Order gradient_coefficients(const double *A, double *C, double quadratic_tolerance = WELL_TOLD)
+  inline typename Gradient<D>::Order gradient_coefficients(const double *A, double *C, double quadratic_tolerance = WELL_TOLD,
+                                                           double *least = nullptr)
   {
     const auto at = [](int a, int b) { return packed_size(a) + b; };
 
     // A = L d L^T
-    double L[TERMS][TERMS] = {}, d[TERMS];
+    double L[TERMS][TERMS] = {}, d[TERMS], part = 1.0;
     int dropped = 0;
     for (int a = 0; a < TERMS; a++) {
       for (int b = 0; b < a; b++) {
@@ -87,8 +88,10 @@ namespace FSI {
         d[a] = 0.0;
         for (int k = 0; k < a; k++) L[a][k] = 0.0;
         dropped++;
-      }
+      } else if (a >= D)
+        part = std::min(part, d[a] / A[at(a, a)]);
     }
+    if (least) *least = dropped < TERMS - D ? part : 0.0;
     for (int a = 0; a < D; a++) {
       double *const c = C + a * TERMS;
       for (int k = 0; k < TERMS; k++) {
@@ -110,7 +113,7 @@ namespace FSI {
 
     // G (n x D, 1/length) for n neighbours at X_j - X_i = dX (n x D) with weights w > 0; scale = length of the order of |dX|;
     // quadratic = false asks for linear exactness only. Returns what was reached.
-    Order operator()(int n, const double *dX, const double *w, double scale, bool quadratic, double *G)
+    Order operator()(int n, const double *dX, const double *w, double scale, bool quadratic, double *G) const
     {
       return quadratic ? solve<Gradient<D>::NQUADRATIC>(n, dX, w, 1.0 / scale, G)
                        : solve<Gradient<D>::NLINEAR>(n, dX, w, 1.0 / scale, G);
@@ -118,80 +121,126 @@ namespace FSI {
 
    private:
     // squares along the normal of a face keep 0.05 to 0.15 of themselves (cubic to quintic kernel, h = 1 to 2 dx), all others 0.38 or
-    // more, in the axes of the neighbourhood
+    // more, in the axes chosen
     static constexpr double ONE_SIDED = 0.3;
+    // among equals a preference of this size for the box's axes chooses, and not round-off
+    static constexpr double PREFERENCE = 1.0e-4;
 
-    std::vector<double> basis;
+    template <int TERMS> struct Fit {
+      double axes[D][D], C[D * TERMS], least;
+      Order order;
+    };
 
-    // Axes (rows) in which a face's normal comes last, whichever way the body lies: the principal ones of sum_j w_j x_j x_j, in the
-    // order of how one-sided the neighbours are along them. Where these are as good as equal, as at a cube's corner, the 1e-4
-    // choose, and not round-off. False if the neighbours lie in a line (2D) or plane (3D).
-    bool find_axes(int n, const double *dX, const double *w, double (*axes)[D])
+    // Of two sets of axes (rows), both the neighbourhood's own whichever way the body lies, that is taken in which the terms kept are
+    // best told from each other. The principal ones of sum_j w_j x_j x_j have the normal of a plane face, that of a lattice cut aslant,
+    // too. At an edge they are diagonal; there a lattice's own are normal to both faces, and other terms would lock a bar two by two
+    // across. False if the neighbours lie in a line (2D) or plane (3D).
+    static bool principal_axes(int n, const double *dX, const double *w, double (*axes)[D])
     {
-      double first[D] = {}, one_sided[D], length = 0.0;
       double moment[3][3] = {}, value[3], principal[3][3];    // in 2D a third axis, the last, without neighbours along it
+      for (int j = 0; j < n; j++)
+        for (int a = 0; a < D; a++)
+          for (int b = 0; b < D; b++) moment[a][b] += w[j] * dX[j * D + a] * dX[j * D + b];
+      for (int a = 0; a < D; a++) moment[a][a] *= 1.0 - PREFERENCE * a;
+      MathEigen::jacobi3(moment, value, principal);    // as columns, by decreasing value
+      for (int k = 0; k < D; k++)
+        for (int a = 0; a < D; a++) axes[k][a] = principal[a][k];
+      return value[D - 1] > FLAT * value[0];
+    }
+
+    // Those of a lattice: directions of the nearest neighbours, made orthogonal. False if there are not D of them, 45 degrees apart.
+    static bool lattice_axes(int n, const double *dX, double (*axes)[D])
+    {
+      for (int k = 0; k < D; k++) {
+        double nearest = std::numeric_limits<double>::max();
+        for (int j = 0; j < n; j++) {
+          double e[D], rsq = 0.0, distance = 0.0, across = 0.0;
+          for (int a = 0; a < D; a++) {
+            e[a] = dX[j * D + a];
+            rsq += e[a] * e[a];
+            distance += (1.0 + PREFERENCE * a) * e[a] * e[a];
+          }
+          for (int m = 0; m < k; m++) {
+            double along = 0.0;
+            for (int a = 0; a < D; a++) along += e[a] * axes[m][a];
+            for (int a = 0; a < D; a++) e[a] -= along * axes[m][a];
+          }
+          for (int a = 0; a < D; a++) across += e[a] * e[a];
+          if (!(across > 0.5 * rsq) || distance >= nearest) continue;
+          nearest = distance;
+          for (int a = 0; a < D; a++) axes[k][a] = e[a] / std::sqrt(across);
+        }
+        if (nearest == std::numeric_limits<double>::max()) return false;
+      }
+      return true;
+    }
+
+    // by how one-sided the neighbours are along them, so that squares along normals come last
+    static void sort_axes(int n, const double *dX, const double *w, double (*axes)[D])
+    {
+      double first[D] = {}, one_sided[D], length = 0.0, unsorted[D][D];
+      int order[D];
       for (int j = 0; j < n; j++)
         for (int a = 0; a < D; a++) {
           first[a] += w[j] * dX[j * D + a];
           length += w[j] * std::fabs(dX[j * D + a]);
-          for (int b = 0; b < D; b++) moment[a][b] += w[j] * dX[j * D + a] * dX[j * D + b];
         }
-      for (int a = 0; a < D; a++) moment[a][a] *= 1.0 - 1.0e-4 * a;
-      MathEigen::jacobi3(moment, value, principal);    // as columns, by decreasing value
-      if (!(value[D - 1] > FLAT * value[0])) return false;
-      // a lattice along the box's axes has those: of a bar two by two across other products of coordinates would lock
-      bool along_box = true;
-      for (int a = 0; a < D; a++) {
-        bool any = false;
-        for (int j = 0; j < n && !any; j++) {
-          double rsq = 0.0;
-          for (int b = 0; b < D; b++) rsq += dX[j * D + b] * dX[j * D + b];
-          any = dX[j * D + a] * dX[j * D + a] > 0.999 * rsq;
-        }
-        along_box = along_box && any;
-      }
-      if (along_box)
-        for (int a = 0; a < D; a++)
-          for (int k = 0; k < D; k++) principal[a][k] = a == k;
-      int order[D];
       for (int k = 0; k < D; k++) {
         order[k] = k;
         one_sided[k] = 0.0;
-        for (int a = 0; a < D; a++) one_sided[k] += first[a] * principal[a][k];
+        for (int a = 0; a < D; a++) {
+          one_sided[k] += first[a] * axes[k][a];
+          unsorted[k][a] = axes[k][a];
+        }
         one_sided[k] = std::max(std::fabs(one_sided[k]), 1.0e-3 * length);
       }
       std::stable_sort(order, order + D, [&](int a, int b) { return one_sided[a] < one_sided[b]; });
-      for (int k = 0; k < D; k++)
-        for (int a = 0; a < D; a++) axes[k][a] = principal[a][order[k]];
-      return true;
+      for (int k = 0; k < D; k++) std::copy_n(unsorted[order[k]], D, axes[k]);
     }
 
-    template <int TERMS> Order solve(int n, const double *dX, const double *w, double inv, double *G)
+    // basis in the axes of a fit
+    template <int TERMS> static void terms_of(const Fit<TERMS> &fit, const double *dX, double inv, double *phi)
     {
-      basis.resize((size_t) n * TERMS);
-      double A[packed_size(TERMS)] = {}, C[D * TERMS], axes[D][D];
-      if (!find_axes(n, dX, w, axes)) return Gradient<D>::DEFICIENT;
+      double x[D] = {};
+      for (int k = 0; k < D; k++)
+        for (int a = 0; a < D; a++) x[k] += fit.axes[k][a] * dX[a] * inv;
+      gradient_basis<D, TERMS>(x, phi);
+    }
+
+    template <int TERMS> static void solve_in_axes(int n, const double *dX, const double *w, double inv, Fit<TERMS> &fit)
+    {
+      double A[packed_size(TERMS)] = {}, phi[TERMS];
+      sort_axes(n, dX, w, fit.axes);
       for (int j = 0; j < n; j++) {
-        double x[D] = {}, *phi = &basis[(size_t) j * TERMS];
-        for (int k = 0; k < D; k++)
-          for (int a = 0; a < D; a++) x[k] += axes[k][a] * dX[j * D + a] * inv;
-        gradient_basis<D, TERMS>(x, phi);
+        terms_of<TERMS>(fit, dX + j * D, inv, phi);
         for (int a = 0, m = 0; a < TERMS; a++)
           for (int b = 0; b <= a; b++) A[m++] += w[j] * phi[a] * phi[b];
       }
-      const Order order = gradient_coefficients<D, TERMS>(A, C, ONE_SIDED);
-      if (order == Gradient<D>::DEFICIENT) return order;
+      fit.order = gradient_coefficients<D, TERMS>(A, fit.C, ONE_SIDED, &fit.least);
+    }
+
+    template <int TERMS> static Order solve(int n, const double *dX, const double *w, double inv, double *G)
+    {
+      Fit<TERMS> fit, other;
+      if (!principal_axes(n, dX, w, fit.axes)) return Gradient<D>::DEFICIENT;
+      solve_in_axes<TERMS>(n, dX, w, inv, fit);
+      if (lattice_axes(n, dX, other.axes)) {
+        solve_in_axes<TERMS>(n, dX, w, inv, other);
+        if (other.least > fit.least) fit = other;
+      }
+      if (fit.order == Gradient<D>::DEFICIENT) return fit.order;
       for (int j = 0; j < n; j++) {
-        double along[D] = {};
+        double phi[TERMS], along[D] = {};
+        terms_of<TERMS>(fit, dX + j * D, inv, phi);
         for (int a = 0; a < D; a++)
-          for (int k = 0; k < TERMS; k++) along[a] += C[a * TERMS + k] * basis[(size_t) j * TERMS + k];
+          for (int k = 0; k < TERMS; k++) along[a] += fit.C[a * TERMS + k] * phi[k];
         for (int a = 0; a < D; a++) {
           double s = 0.0;
-          for (int k = 0; k < D; k++) s += along[k] * axes[k][a];
+          for (int k = 0; k < D; k++) s += along[k] * fit.axes[k][a];
           G[j * D + a] = w[j] * s * inv;
         }
       }
-      return order;
+      return fit.order;
     }
   };
 

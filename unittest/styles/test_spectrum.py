@@ -152,6 +152,6 @@ def test_plate(tmp_path):
     figures = run_scene(tmp_path, "oscillating_plate", n=5)
     # 5.75 swings: a part (2 x 5.75)^-3 of a frequency step, which is 1/5.75 of the frequency, leaks from the mirror frequency
     assert abs(figures["frequency"] * figures["period"] - 1.0) < 2e-4
-    # as its period in test_scene_oscillating_plate.py
-    assert abs(1.0 / (0.2553 * figures["frequency"]) - 1.0) < 0.05 / 5 + 0.1 / 25
+    # the sweep of doc/cost has it 0.35 % too short at 5 across
+    assert abs(1.0 / (0.2553 * figures["frequency"]) - 1.0) < 0.007
     assert (tmp_path / "spectrum.csv").exists()
