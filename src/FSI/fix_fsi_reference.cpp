@@ -314,6 +314,7 @@ void FixFSIReference::unpack_forward_comm(int n, int first, double *buf)
 
 template <int D> void FixFSIReference::take_reference(const std::vector<int> &bare)
 {
+  constexpr double WITHIN = 1.0 - 1.0e-9;    // sites of a lattice at the cutoff weigh nothing: round-off does not choose among them
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
   const int *const type = atom->type;
@@ -337,16 +338,18 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
           const int j = list->firstneigh[i][jj] & NEIGHMASK;
           if (molecule[j] != molecule[i] || !is_solid(j)) continue;
           double rsq = 0.0, d[D];
+          bool halfway = false;    // round the box: the image on the other side is as near
           for (int a = 0; a < D; a++) {
             d[a] = x[j][a] - x[i][a];
             rsq += d[a] * d[a];
+            halfway = halfway || (domain->periodicity[a] && 2.0 * std::fabs(d[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
           }
-          if (rsq >= kernel.cutsq) continue;
+          if (rsq >= WITHIN * kernel.cutsq) continue;
           if (fix_fsi->h_of(type[j]) != h)
             error->one(FLERR, "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types {} and {}: a body has one", tag[i], tag[j],
                        molecule[i], fix_fsi->dx_of(type[i]), fix_fsi->dx_of(type[j]), type[i], type[j]);
           if (rsq == 0.0) error->one(FLERR, "Solid atoms {} and {} of body {} are at the same place", tag[i], tag[j], molecule[i]);
-          if (domain->closest_image(i, j) != j)
+          if (halfway || domain->closest_image(i, j) != j)
             error->one(FLERR, "Solid atoms {} and {} are neighbors through more than one image: a periodic box must be wider than two "
                               "supports, {}, of the kernel", tag[i], tag[j], 2.0 * kernel.cut);
           near.push_back(j);

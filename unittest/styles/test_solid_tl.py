@@ -855,7 +855,7 @@ def test_bond_beyond_the_ghosts_is_an_error(tmp_path, ranks):
     assert cured.status == 0, cured.output[-1500:]
 
 
-@pytest.mark.parametrize("layers, ends", [(5, False), (7, True)])
+@pytest.mark.parametrize("layers, ends", [(3, False), (4, False), (5, True), (7, True)])
 def test_periodic_body(layers, ends):
     """A plate without end along y: no force from its own images, or an error where bonds could not tell them apart."""
     x = lattice([6, layers], DX)
