@@ -20,7 +20,7 @@ from fsi.summary import Summary  # noqa: E402
 WATER, BLOCK, FLOOR = 1, 2, 3
 SOURCE = "Archimedes"
 HALF = 0.5  # [dx] largest error of a draft or a gap
-COLOURS = (plot.BLUE, plot.ORANGE, plot.GREY, "#2a8c57", "#8b3fa0")
+COLOURS = (plot.BLUE, plot.ORANGE, plot.GREY, "#2a8c57", "#8b3fa0", "#7fb2d9", "#c79fd3")
 
 
 def water_level(water, values):
@@ -100,7 +100,9 @@ def study(folder, cases):
             if figure["name"] == "draft":
                 places.append((values["ratio"], figure["value"]))
         block = series.read(Path(path) / "block.csv")
-        curves.append((block.time, 1e3 * block["y"], f"density ratio {values['ratio']:g}", colour))
+        coarser = values["block_dx"] / values["dx"]
+        of = "" if coarser == 1.0 else f", spacing {coarser:g} times the water's"
+        curves.append((block.time, 1e3 * block["y"], f"density ratio {values['ratio']:g}{of}", colour))
     plot.lines(Path(folder) / "height.png", "time [s]", "height of the block's centre [mm]", curves)
     if places:
         ratio, draft = np.array(places).T

@@ -111,13 +111,13 @@ void Check::materials()
 }
 
 /* ----------------------------------------------------------------------
-   The fluid's spacing is dx. Bodies and walls may be finer: a fluid finer than a body would meet it through the body's wider kernel,
-   which pushes less at the face than the fluid itself does, and flow into it.
+   The fluid's spacing is dx. Bodies and walls meet it with the fluid's kernel: they may be coarser as long as its support holds so many
+   of their spacings. With fewer it tells their particles one by one (theory.rst).
 ------------------------------------------------------------------------- */
 
 void Check::spacings() const
 {
-  constexpr double FINEST = 4.0, ROUND = 1.0 + 1.0e-6;
+  constexpr double FINEST = 4.0, HELD = 1.5, ROUND = 1.0 + 1.0e-6;
   Pair *const fluid = force->pair_match("fsi/fluid", 1);
   int dim_of_extract;
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -132,8 +132,9 @@ void Check::spacings() const
     if (scene.density_solid != Scene::CONTINUITY)
       error->all(FLERR, "{} requires fix fsi solid continuity: number densities are those of one spacing", what);
     if (!fluid) continue;
-    if (own > ROUND * dx)
-      error->all(FLERR, "{} is coarser than the fluid's dx {:g}: the fluid would flow between its particles. Make it dx or finer", what, dx);
+    if (HELD * own > ROUND * scene.cut)
+      error->all(FLERR, "{} is {:.3g} times coarser than the fluid's dx {:g}: expected {:.3g} at most, so that the support {:g} of the kernel is {:g} "
+                        "of its spacings", what, own / dx, dx, scene.cut / HELD / dx, scene.cut, HELD);
     if (ROUND * FINEST * own < dx)
       error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most", what, dx / own, dx, FINEST);
     if (*static_cast<int *>(fluid->extract("couple", dim_of_extract)) != 0)

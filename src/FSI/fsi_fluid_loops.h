@@ -95,10 +95,10 @@ namespace FSI {
     double artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, diffusion = 0.0, virial[6] = {};
   };
 
-  // How particles of a type count at a fluid particle, if their lattice is finer (theory.rst)
+  // How particles of a type count at a fluid particle, if their spacing is another (theory.rst)
   struct Share {
     double volume = 1.0;     // of a particle of the lattice over that of a fluid particle
-    double sharper = 0.0;    // e of Kernel::sharper_gradient()
+    double sharper = 0.0;    // e of Kernel::sharper_gradient(): negative where it is coarser
     bool thin = false;       // the body counts as if it went on behind, and under the pressure of the side that meets it
   };
 
@@ -119,7 +119,7 @@ namespace FSI {
     const State *state;
     int nlocal;
     const Share *share;    // per type
-    bool finer;            // does any type differ from fluids in it?
+    bool unequal;          // does any type differ from fluids in it?
     const Thin *thin;    // null: none is
     const Cut *cut;      // null: none is
     bool newton;    // else a pair across ranks is visited on both: each counts half of powers and forces on walls

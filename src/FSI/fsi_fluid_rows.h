@@ -36,10 +36,10 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of finer lattices; shifting,
+  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of another spacing; shifting,
   // and what it changes of velocities
   namespace Flag {
-    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, FINER = 128, SHIFT = 256, CENTRAL = 512, SLOPES = 1024 };
+    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, UNEQUAL = 128, SHIFT = 256, CENTRAL = 512, SLOPES = 1024 };
   }
 
   template <class T, int D> struct Particle {
@@ -165,7 +165,7 @@ namespace FSI {
                             const RateLaws laws, double *const rate, double (*const shift)[Shift<K::DIM>::ROW], PairSums *const sums)
   {
     constexpr int D = K::DIM;
-    constexpr bool IMAGE = FLAGS & Flag::IMAGES, CUT = KIND == WITH_SOLID && (FLAGS & Flag::FINER);
+    constexpr bool IMAGE = FLAGS & Flag::IMAGES, CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL);
     constexpr int N = (FLAGS & Flag::SLOPES) ? Shift<D>::ALL : Shift<D>::N;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
@@ -177,7 +177,7 @@ namespace FSI {
       const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
       const Particle<T, D> pi(point[i]);
       const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
-      const double sharper = (FLAGS & Flag::FINER) ? in.share[type_j].sharper : 0.0, fill = (FLAGS & Flag::FINER) ? fill_of(in, i, type_j) : 1.0;
+      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0, fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0;
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
@@ -191,10 +191,10 @@ namespace FSI {
         if (IMAGE) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
         if (FLAGS & Flag::SHIFT) {
-          const T vol_j = (FLAGS & Flag::FINER) ? fill * pj.vol : pj.vol;
+          const T vol_j = (FLAGS & Flag::UNEQUAL) ? fill * pj.vol : pj.vol;
           add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j, x, v, j, displacement, shift);
         }
-        if (FLAGS & Flag::FINER) {
+        if (FLAGS & Flag::UNEQUAL) {
           g = kernel.sharper_gradient(r, sharper);
           if (IMAGE) g = weight * g;
           if (CUT) g = cut_off(in, j, g);
@@ -215,7 +215,7 @@ namespace FSI {
         }
         L::add(rate_j, rate, j);
       });
-      const double volume = (FLAGS & Flag::FINER) ? fill * in.share[type_j].volume : 1.0;
+      const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if (FLAGS & Flag::SHIFT)
         for (int m = 0; m < N; m++) shift[i][m] += L::sum(displacement[m]);
@@ -242,7 +242,7 @@ namespace FSI {
   struct RowConstants {
     double c, bulk, floor;    // speed of sound of viscosity, modulus of the guard, lowest pressure
     double rubs, visc;        // does the wall? sum of both viscosities
-    double volume, sharper;    // of neighbours on a finer lattice
+    double volume, sharper;    // of neighbours of another spacing
     bool thin;
     double extrapolate[3];     // solids and thin walls: gravity, if pressures beyond them are hydrostatic
   };
@@ -257,12 +257,12 @@ namespace FSI {
     const bool slips = KIND == WITH_FLUID ? false : KIND == WITH_WALL ? !other.noslip : laws.solids_slip;
     r.rubs = KIND == WITH_WALL && slips ? 0.0 : 1.0;
     r.visc = !laws.laminar || slips ? 0.0 : fluid.viscosity + (KIND == WITH_FLUID ? other : fluid).viscosity;
-    if (FLAGS & Flag::FINER) {
+    if (FLAGS & Flag::UNEQUAL) {
       r.volume = in.share[type_j].volume;
       r.sharper = in.share[type_j].sharper;
       r.visc *= fill_weight_of(in, i, type_j);
     }
-    r.thin = (FLAGS & Flag::FINER) && in.share[type_j].thin;
+    r.thin = (FLAGS & Flag::UNEQUAL) && in.share[type_j].thin;
     if (KIND == WITH_SOLID || r.thin) {
       const auto *const g = KIND == WITH_WALL ? laws.gravity : laws.extrapolate;
       const double along = r.thin ? in.thin->fill_weight[i] / in.thin->fill[i] : 1.0;
@@ -343,7 +343,7 @@ namespace FSI {
                              const ForceLaws laws, double (*const f)[row_of_forces(K::DIM)], double *const total, PairSums *const sums)
   {
     constexpr int D = K::DIM;
-    constexpr bool CUT = KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL || (KIND == WITH_SOLID && (FLAGS & Flag::FINER));
+    constexpr bool CUT = KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL || (KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL));
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
@@ -358,8 +358,8 @@ namespace FSI {
       const RowConstants constant = constants_of_row<D, KIND, FLAGS>(in, laws, i, in.type[i], type_j);
       Particle<T, D> pi(point[i]);
       // neighbours of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i of the lattices
-      const double fill = (FLAGS & Flag::FINER) ? fill_of(in, i, type_j) : 1.0, back = (FLAGS & Flag::FINER) ? fill / constant.volume : 1.0;
-      if (FLAGS & Flag::FINER) pi.pv2 = fill * constant.volume * pi.pv2;
+      const double fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0, back = (FLAGS & Flag::UNEQUAL) ? fill / constant.volume : 1.0;
+      if (FLAGS & Flag::UNEQUAL) pi.pv2 = fill * constant.volume * pi.pv2;
       const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && constant.thin);
       T sum[D];
       for (T &s : sum) s = 0.0;
@@ -375,7 +375,7 @@ namespace FSI {
         if (FLAGS & Flag::IMAGES) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
         T pushing = g;    // of pressures
-        if (FLAGS & Flag::FINER) {
+        if (FLAGS & Flag::UNEQUAL) {
           pushing = kernel.sharper_gradient(root(rsq), constant.sharper);
           if (FLAGS & Flag::IMAGES) pushing = weight * pushing;
           if (CUT) pushing = cut_off(in, j, pushing);
@@ -389,11 +389,11 @@ namespace FSI {
         if (FLAGS & Flag::ARTIFICIAL) {
           T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), constant.c, pi.vol * pj.vol);
           if (KIND == WITH_WALL) q = constant.rubs * q;
-          if (FLAGS & Flag::FINER) viscous_push = q * g;
+          if (FLAGS & Flag::UNEQUAL) viscous_push = q * g;
           else p += q;
           if (FLAGS & Flag::SUMS) by.artificial += share * q * g * vdotx;
         }
-        p = (FLAGS & Flag::FINER) ? -(p * pushing + viscous_push) : -p * g;
+        p = (FLAGS & Flag::UNEQUAL) ? -(p * pushing + viscous_push) : -p * g;
         coupled = coupled * pushing * vdotx;
 
         T force[D], on_j[D];    // on i, on j
@@ -475,10 +475,10 @@ namespace FSI {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i;
-      // of neighbours on a finer lattice
-      double volume = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].volume : 1.0;
+      // of neighbours of another spacing
+      double volume = (FLAGS & Flag::UNEQUAL) ? in.share[in.type[row.j[0]]].volume : 1.0;
       if (in.thin) volume *= ((FLAGS & Flag::DIVERGENCE) ? fill_of : fill_weight_of)(in, i, in.type[row.j[0]]);
-      const double sharper = (FLAGS & Flag::FINER) ? in.share[in.type[row.j[0]]].sharper : 0.0;
+      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[in.type[row.j[0]]].sharper : 0.0;
       T of_i = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         T rsq = 0.0;
@@ -493,8 +493,8 @@ namespace FSI {
           of_i += w * L::read(vol, j);
           if (FLAGS & Flag::BOTH) L::add(w * vol[i], sum, j);
         } else {
-          T w = weight * ((FLAGS & Flag::FINER) ? kernel.sharper(r, sharper) : kernel.W(r));
-          if (FLAGS & Flag::FINER) w = cut_off(in, j, w);
+          T w = weight * ((FLAGS & Flag::UNEQUAL) ? kernel.sharper(r, sharper) : kernel.W(r));
+          if (FLAGS & Flag::UNEQUAL) w = cut_off(in, j, w);
           of_i += w;
           if (FLAGS & Flag::BOTH) L::add(w, sum, j);
         }
@@ -526,12 +526,12 @@ namespace FSI {
       // density diffusion, with a coefficient of zero where it is off, comes with what is rarely without: images and slopes
       const bool fluid = kind == WITH_FLUID, diffuses = fluid && (laws.delta > 0.0 || laws.slopes || image);
       const int named = (shift ? SHIFT : 0) | (fluid && !image && laws.slopes ? SLOPES : 0) | (diffuses ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
-      with_flags<IMAGES | DIFFUSION | SUMS | FINER | SHIFT | SLOPES>((image ? IMAGES : 0) | finer_or_cut(kind, in) | named, [&](auto flags) {
+      with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES>((image ? IMAGES : 0) | unequal_or_cut(kind, in) | named, [&](auto flags) {
         constexpr int effects = flags() & (DIFFUSION | SUMS | SHIFT | SLOPES);
         if constexpr (effects == 0 || effects == SHIFT)
           if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
         constexpr bool has_slopes = effects & SLOPES, diffusing = effects & DIFFUSION, plain = !(flags() & IMAGES);
-        if constexpr (!(flags() & FINER) && (diffusing || (plain && (effects == 0 || effects == SHIFT))) && (!has_slopes || (plain && (effects & SHIFT))))
+        if constexpr (!(flags() & UNEQUAL) && (diffusing || (plain && (effects == 0 || effects == SHIFT))) && (!has_slopes || (plain && (effects & SHIFT))))
           loop(std::integral_constant<int, WITH_FLUID>(), flags);
       });
     }
@@ -542,31 +542,31 @@ namespace FSI {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
-      // with sums, images, neighbours on a finer lattice, both viscosities, the central one, or pair by pair there is one loop for all
+      // with sums, images, neighbours of another spacing, both viscosities, the central one, or pair by pair there is one loop for all
       // effects: those that are off have coefficients of zero
       constexpr int EFFECTS = ARTIFICIAL | LAMINAR | CENTRAL;
       PairSums unused;
-      const int finer_rows = kind == WITH_SOLID || kind == WITH_WALL ? finer_or_cut(kind, in) : 0;
-      if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL || (image && finer_rows))) sums = &unused;
+      const int unequal_rows = kind == WITH_SOLID || kind == WITH_WALL ? unequal_or_cut(kind, in) : 0;
+      if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL || (image && unequal_rows))) sums = &unused;
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop<T>([&](auto number) __attribute__((always_inline)) {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
         });
       };
       const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
-      const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | finer_rows;
+      const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | unequal_rows;
       const bool all = special || ONE_BY_ONE || laws.laminar == 2 || (artificial && laws.laminar);
-      with_flags<EFFECTS | SUMS | IMAGES | FINER>(special | (all ? EFFECTS : artificial ? ARTIFICIAL : laws.laminar ? LAMINAR : 0), [&](auto flags) {
+      with_flags<EFFECTS | SUMS | IMAGES | UNEQUAL>(special | (all ? EFFECTS : artificial ? ARTIFICIAL : laws.laminar ? LAMINAR : 0), [&](auto flags) {
         constexpr int effects = flags() & EFFECTS;
         constexpr bool alone = flags() == 0 || flags() == ARTIFICIAL || flags() == LAMINAR;
-        constexpr bool counted = (flags() & SUMS) || !((flags() & IMAGES) && (flags() & FINER));    // few: their sums may be for nothing
+        constexpr bool counted = (flags() & SUMS) || !((flags() & IMAGES) && (flags() & UNEQUAL));    // few: their sums may be for nothing
         if constexpr ((effects == EFFECTS && counted) || (alone && !ONE_BY_ONE)) {
-          if constexpr (!(flags() & FINER))
+          if constexpr (!(flags() & UNEQUAL))
             if (kind == WITH_FLUID) loop(std::integral_constant<int, WITH_FLUID>(), flags);
           if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
           if constexpr (!(flags() & IMAGES))    // walls of particles have no images
             if (kind == WITH_WALL) loop(std::integral_constant<int, WITH_WALL>(), flags);
-          if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & FINER)) {
+          if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & UNEQUAL)) {
             if (kind == WITH_SOLID_PRESSURE) loop(std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
             if (kind == WITH_SOLID_FULL) loop(std::integral_constant<int, WITH_SOLID_FULL>(), flags);
           }
@@ -589,7 +589,7 @@ namespace FSI {
     void number_density(PairKind kind, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
                         double *sum) const override
     {
-      distances(finer_or_cut(kind, in), rows, both, image, in, x, nullptr, sum);
+      distances(unequal_or_cut(kind, in), rows, both, image, in, x, nullptr, sum);
     }
 
     void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
@@ -599,18 +599,18 @@ namespace FSI {
     }
 
    private:
-    // Rows of solids and walls with finer lattices; those with the fluid's among them have shares that change nothing.
-    static int finer(PairKind kind, const FluidParticles &in) { return in.finer && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::FINER : 0; }
+    // Rows of solids and walls of another spacing than the fluid's; those that have it, among them, have shares that change nothing.
+    static int unequal(PairKind kind, const FluidParticles &in) { return in.unequal && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::UNEQUAL : 0; }
     // Those that mirror walls cut are in the same loops.
-    static int finer_or_cut(PairKind kind, const FluidParticles &in) { return in.cut && kind != WITH_FLUID ? Flag::FINER : finer(kind, in); }
+    static int unequal_or_cut(PairKind kind, const FluidParticles &in) { return in.cut && kind != WITH_FLUID ? Flag::UNEQUAL : unequal(kind, in); }
 
     void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
                    const double *vol, double *sum) const
     {
       const Mirror mirror = image ? *image : Mirror();
-      with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::FINER>(
+      with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::UNEQUAL>(
           what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
-            if constexpr (!(flags() & Flag::FINER) || !(flags() & Flag::DIVERGENCE)) run_loop<T>([&](auto number) __attribute__((always_inline)) {
+            if constexpr (!(flags() & Flag::UNEQUAL) || !(flags() & Flag::DIVERGENCE)) run_loop<T>([&](auto number) __attribute__((always_inline)) {
               distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, x, vol, sum);
             });
           });

@@ -48,7 +48,7 @@ namespace FSI {
     template <class T> FSI_INLINE T W(const T &r) const { return norm * Shape::w(r * hinv); }
     // factor g with grad_i W_ij = g x_ij
     template <class T> FSI_INLINE T gradient(const T &r) const { return gnorm * Shape::dwq(r * hinv); }
-    // For neighbours on a lattice finer than that of i, the kernel less its Laplacian times e h^2, and the same factor of its gradient: the mean of
+    // For neighbours on a lattice finer than that of i (coarser: e < 0), the kernel less its Laplacian times e h^2, and the same factor of its gradient: the mean of
     // it over a cell of i's lattice is what a neighbour in the middle of this cell has (theory.rst). Bounded where they meet.
     template <class T> FSI_INLINE T sharper(const T &r, double e) const
     {

@@ -139,12 +139,12 @@ void PairFSIFluid::init_style()
   loops = make_loops(have_packs());
   solid_loops = couple == WALL ? loops : make_loops(false);
   shares.assign(atom->ntypes + 1, Share());
-  finer = false;
+  unequal = false;
   for (int t = 1; t <= atom->ntypes; t++) {
     const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx, per_h = fix_fsi->dx / fix_fsi->h;
     const bool thin = fix_fsi->thin[t] != 0.0;
     if (ratio == 1.0 && !thin) continue;
-    finer = true;
+    unequal = true;
     shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h, thin};
   }
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
@@ -540,7 +540,7 @@ FluidParticles PairFSIFluid::particles_at(const double *points)
 {
   thin_bodies = {fill, fill_weight};
   cut_solids = {parts.data(), part_rates.data()};
-  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), finer, fill ? &thin_bodies : nullptr,
+  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), unequal, fill ? &thin_bodies : nullptr,
           cut ? &cut_solids : nullptr, force->newton_pair != 0};
 }
 

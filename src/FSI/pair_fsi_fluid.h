@@ -110,7 +110,7 @@ class PairFSIFluid : public PairFSI {
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
   std::vector<FSI::Share> shares;    // per type: how its particles count at fluid particles
-  bool finer;                        // is any type finer than the fluid, or thin?
+  bool unequal;                      // is any type of another spacing than the fluid, or thin?
   double *fill, *fill_weight;        // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
   std::vector<FSI::Sight::Beside> beside;
   std::vector<double> normals[3];    // of what fluid particles have beside them, when lists are new
