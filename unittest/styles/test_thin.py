@@ -18,8 +18,8 @@ def two_levels(kind, layers, ratio, dim=2, thin=True):
     ds, thick, z = dx / ratio, layers * dx / ratio, [7] * (dim - 2)
     left = lattice([width, deep[0], *z], dx)
     right = lattice([width, deep[1], *z], dx, origin=np.array([width * dx + thick, 0, 0][:dim]))
-    below = 3 * ratio * (kind == "wall")    # mirrors have no images of wall particles
-    body = lattice([layers, 23 * ratio + below, *(ratio * k for k in z)], ds, origin=np.array([width * dx, -below * ds, 0][:dim]))
+    below = round(3 * ratio + 0.4) * (kind == "wall")    # mirrors have no images of wall particles
+    body = lattice([layers, round(23 * ratio) + below, *(ratio * k for k in z)], ds, origin=np.array([width * dx, -below * ds, 0][:dim]))
     x = np.concatenate([left, right, body])
     solid = np.arange(len(x)) >= len(left) + len(right)
     # stiff enough to bend by less than a hundredth of its height, whatever its thickness
@@ -56,7 +56,7 @@ def two_levels(kind, layers, ratio, dim=2, thin=True):
 
 # of the scene; one particle across has too few bonds for an elastic body
 CASES = [("wall", layers, ratio, 2) for layers in (1, 2, 3) for ratio in (1, 2, 3)] + [("wall", 1, 1, 3), ("wall", 1, 2, 3)] + \
-    [("plate", layers, ratio, 2) for layers, ratio in ((2, 1), (3, 1), (2, 2))]
+    [("plate", layers, ratio, 2) for layers, ratio in ((2, 1), (3, 1), (2, 2), (2, 0.5))] + [("wall", 1, 0.5, 2)]
 LONG = [("plate", 2, 2, 2), ("wall", 1, 2, 3)]
 
 
