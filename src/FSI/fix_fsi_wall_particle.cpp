@@ -20,6 +20,7 @@
 #include "fix_fsi_move.h"
 #include "fix_store_atom.h"
 #include "force.h"
+#include "fsi_elastic.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
 #include "group.h"
@@ -47,6 +48,7 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
+  keywords.key("pressure").choice(linear, 0, {"mean", "linear"});
   keywords.key("guard").number(guard, AUTO, Range::between(0.0, 1.0)).or_word("auto", AUTO);
   keywords.parse(narg - 3, arg + 3);
   scalar_flag = vector_flag = 1;
@@ -117,9 +119,12 @@ void FixFSIWallParticle::init()
   movers.clear();
   for (auto &fix : modify->get_fix_by_style("^fsi/move$")) movers.push_back(dynamic_cast<FixFSIMove *>(fix));
   const bool stiffness = fix_fsi->several_stiffnesses();
-  nsum = 2 + fix_fsi->dim * (slip ? 1 : 2) + stiffness;
+  const int dim = fix_fsi->dim;
+  first_moment = 2 + dim * (slip ? 1 : 2);
+  first_stiffness = first_moment + (linear ? dim * (dim + 5) / 2 : 0);
+  nsum = first_stiffness + stiffness;
   comm_reverse = nsum;
-  comm_forward = 1 + (slip ? 0 : fix_fsi->dim) + stiffness;
+  comm_forward = 1 + (slip ? 0 : dim) + stiffness;
   nmax = 0;    // sums of another size than in the last run
 }
 
@@ -161,6 +166,31 @@ void FixFSIWallParticle::find_pairs()
 }
 
 /* ----------------------------------------------------------------------
+   What is added to the mean of the fluid's pressures p at a wall particle by weighted least squares for a pressure linear in
+   d = x_wall - x: -mean(d).C^-1 cov(d, p), C = cov(d, d). In both means p has on it what body forces and the wall's acceleration a add
+   on the way, -rho a.d, so that only the rest is extrapolated. Particles in a line or plane tell nothing across it: 0.005 dx^2 more of
+   variance in all directions takes the rest for constant there.
+------------------------------------------------------------------------- */
+
+template <int D> double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p, double rho, const double *a) const
+{
+  const double *const d = moments, *const dd = d + D, *const pd = dd + D * (D + 1) / 2;
+  double C[D * D], adjoint[D * D], covariance[D];
+  for (int k = 0, m = 0; k < D; k++) {
+    for (int l = k; l < D; l++, m++) C[k * D + l] = C[l * D + k] = dd[m] / W - d[k] * d[l] / (W * W);
+    covariance[k] = (pd[k] - p * d[k]) / W;
+  }
+  for (int k = 0; k < D; k++)
+    for (int l = 0; l < D; l++) covariance[k] -= rho * a[l] * C[k * D + l];
+  for (int k = 0; k < D; k++) C[k * D + k] += 0.005 * fix_fsi->dx * fix_fsi->dx;
+  cofactor<D>(C, adjoint);
+  double sum = 0.0;
+  for (int k = 0; k < D; k++)
+    for (int l = 0; l < D; l++) sum -= d[k] / W * adjoint[k * D + l] * covariance[l];
+  return sum / determinant<D>(C);
+}
+
+/* ----------------------------------------------------------------------
    p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq. 27), a_w: acceleration of the
    wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of fluids of different rho c^2 the wall has the mean, likewise
 ------------------------------------------------------------------------- */
@@ -199,7 +229,14 @@ void FixFSIWallParticle::end_state(bool advance)
         s[2 + k] += W * rho[j] * d[k];
       }
       s[1] += W * p;
-      if (stiffness) s[nsum - 1] += W * fix_fsi->state[type[j]].rho0 * fix_fsi->state[type[j]].csq;
+      if (linear) {
+        double *m = s + first_moment;
+        for (int k = 0; k < dim; k++) *m++ += W * d[k];
+        for (int k = 0; k < dim; k++)
+          for (int l = k; l < dim; l++) *m++ += W * d[k] * d[l];
+        for (int k = 0; k < dim; k++) *m++ += W * p * d[k];
+      }
+      if (stiffness) s[first_stiffness] += W * fix_fsi->state[type[j]].rho0 * fix_fsi->state[type[j]].csq;
       if (!slip)
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     }
@@ -221,16 +258,20 @@ void FixFSIWallParticle::end_state(bool advance)
         known = 1.0;
         span = update->dt;
       }
-    double p = s[1];
+    double p = s[1], a[3];
     for (int k = 0; k < dim; k++) {
-      const double a = advance && known > 0.0 ? (to[k] - from[k]) / span : 0.0;
-      p -= a * s[2 + k];
+      a[k] = advance && known > 0.0 ? (to[k] - from[k]) / span : 0.0;
+      p -= a[k] * s[2 + k];
       if (!slip) fix_fsi->wall_velocity[i][k] = 2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
     }
     p = s[0] > 0.0 ? p / s[0] : state.p0;
+    if (linear && s[0] > 0.0) {
+      const double *const m = s + first_moment, mean = s[1] / s[0];
+      p += dim == 2 ? beyond_mean<2>(m, s[0], mean, state.rho0, a) : beyond_mean<3>(m, s[0], mean, state.rho0, a);
+    }
     p = std::max(p, state.floor);
     if (stiffness) {
-      const double K = fix_fsi->wall_stiffness[i] = s[0] > 0.0 ? s[nsum - 1] / s[0] : state.rho0 * state.csq;
+      const double K = fix_fsi->wall_stiffness[i] = s[0] > 0.0 ? s[first_stiffness] / s[0] : state.rho0 * state.csq;
       rho[i] = state.rho0 * (1.0 + (p - state.p0) / K);
     } else
       rho[i] = state.density(p);

@@ -52,7 +52,7 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   double compute_vector(int) override;
   double memory_usage() override;
 
-  int slip;
+  int slip, linear;    // linear: pressure is extrapolated with its gradient, not as a mean
   void set_fields(FSI::Scene &) override;
   void end_state(bool advance) override;    // the fluid's densities and the positions are those at which forces are computed
   void add_costs(Costs &) const override;
@@ -65,11 +65,12 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   class FixStoreAtom *before;    // velocity at the last step, and whether there was one
   class FixFSI *fix_fsi;
   std::vector<std::pair<int, int>> pairs;    // wall and fluid particles that may be within the kernel's support
-  double **sum;    // per atom: of W, p W, rho (x_wall - x) W, v W over the fluid
-  int nmax, nsum;
+  double **sum;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d W, d d W, p d W, d = x_wall - x
+  int nmax, nsum, first_moment, first_stiffness;
   double force_on[3];    // this group, this rank's part
 
   void find_pairs();
+  template <int D> double beyond_mean(const double *moments, double W, double p, double rho, const double *a) const;
 };
 
 }    // namespace LAMMPS_NS
