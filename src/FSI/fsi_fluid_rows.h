@@ -178,7 +178,7 @@ namespace FSI {
       const Particle<T, D> pi(point[i]);
       const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
       const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0, fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0;
-      T sum = 0.0, flux = 0.0, displacement[N];
+      T sum = 0.0, flux = 0.0, opened = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
@@ -200,7 +200,11 @@ namespace FSI {
           if (CUT) g = cut_off(in, j, g);
         }
         T s = g * product(v, x);
-        if (CUT && in.cut) s += kernel.sharper(r, sharper) * L::read(in.cut->rate, j);    // of a place left over, i itself, it is 0
+        if (CUT && in.cut) {
+          const T change = kernel.sharper(r, sharper) * L::read(in.cut->rate, j);    // of a place left over, i itself, it is 0
+          s += change;
+          opened += change;
+        }
         sum += s;
         if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
         T rate_j = pj.rho * pj.vol * s;
@@ -217,6 +221,9 @@ namespace FSI {
       });
       const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
+      // m p/rho^2 of what a solid adds to rho that comes out of a wall: no force on it does this work
+      if (CUT && in.cut && sums && (in.newton || i < in.nlocal))
+        sums->walls -= laws.pressure_over_density[i] * point[i].rho * volume * point[i].vol * point[i].vol * L::sum(opened);
       if (FLAGS & Flag::SHIFT)
         for (int m = 0; m < N; m++) shift[i][m] += L::sum(displacement[m]);
     }

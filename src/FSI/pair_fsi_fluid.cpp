@@ -606,6 +606,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   for_images(walls, [&](int i) { return point[i].position(x[i]); },
              [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { loop(kind, which, mirror); });
   fix_fsi->tally(FixFSI::DIFFUSION, sums.diffusion);
+  fix_fsi->tally(FixFSI::WALLS, sums.walls);
 }
 
 /* ---------------------------------------------------------------------- */
