@@ -230,8 +230,14 @@ void ComputeFSIProbe::sum_up()
         const State &state = fix_fsi->state[atom->type[i]];
         const auto &g = fix_fsi->body_forces.of_type[atom->type[i]];
         const bool fluid = state.species == FLUID;
-        const double rho = atom->rho[i], vol = atom->rmass[i] / rho, pressure = fluid ? fix_fsi->pressure(i) : 0.0;
-        const int mask_i = walls.any() ? walls.near(x, fix_fsi->cut) : 0;
+        const double rho = atom->rho[i], pressure = fluid ? fix_fsi->pressure(i) : 0.0;
+        double vol = atom->rmass[i] / rho;
+        // behind a mirror wall a solid is not there, but its image; walls of particles have no images, and are
+        if (state.species == SOLID)
+          for (const auto &w : walls.wall)
+            if (!w.finite) vol *= std::min(std::max(0.5 + w.distance(x) / fix_fsi->dx_of(atom->type[i]), 0.0), 1.0);
+        if (vol == 0.0) continue;
+        const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, fix_fsi->cut) : 0;
         const bool may_hide = sight && fluid && sight->near(atom->x[i]);
         if (may_hide) sight->look_from(atom->x[i]);
         int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};

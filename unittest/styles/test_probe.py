@@ -196,6 +196,25 @@ def test_level_beside_and_through_solids(gap):
     assert abs(top - 1.6) < 0.2 * DX and abs(wet - 1.6) < 0.2 * DX
 
 
+@pytest.mark.parametrize("kind", ["solid", "wall"])
+def test_level_beside_a_post_through_the_floor(kind):
+    """What goes on behind a mirror wall is not there twice: along the floor water ends at the post's face, as it does where the post ends at the floor. Walls of
+    particles have no images, and go on behind."""
+    water = lattice((20, 7), DX)
+    water = water[water[:, 0] < 1.2]
+
+    def wet(below, kind):
+        post = lattice((4, 10 + below), DX, origin=np.array([1.2, -below * DX]))
+        solid = np.arange(len(water) + len(post)) >= len(water)
+        body = dict(materials=(WATER, RUBBER)) if kind == "solid" else dict(materials=(WATER, "wall rho 1000"), held=solid)
+        commands = [*TANK, *(["fix wp held fsi/wall/particle"] if kind == "wall" else [])]
+        return level(np.vstack([water, post]), "0 0 0 1.9 0 0", commands, type=1 + solid, mol=1 + solid, **body)
+
+    expected = wet(0, "solid")
+    assert np.abs(expected - 1.2).max() < 0.2 * DX
+    assert np.abs(wet(4, kind) - expected).max() < 1e-9
+
+
 # ---- as a command of LAMMPS ----------------------------------------------------------------------------------------
 
 PROBES = """
