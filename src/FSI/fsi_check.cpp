@@ -117,7 +117,7 @@ void Check::materials()
 
 void Check::spacings() const
 {
-  constexpr double FINEST = 4.0, HELD = 1.5, ROUND = 1.0 + 1.0e-6;
+  constexpr double FINEST = 4.0, COARSEST = 2.0, HELD = 1.5, ROUND = 1.0 + 1.0e-6;
   Pair *const fluid = force->pair_match("fsi/fluid", 1);
   int dim_of_extract;
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -132,9 +132,9 @@ void Check::spacings() const
     if (scene.density_solid != Scene::CONTINUITY)
       error->all(FLERR, "{} requires fix fsi solid continuity: number densities are those of one spacing", what);
     if (!fluid) continue;
-    if (HELD * own > ROUND * scene.cut)
-      error->all(FLERR, "{} is {:.3g} times coarser than the fluid's dx {:g}: expected {:.3g} at most, so that the support {:g} of the kernel is {:g} "
-                        "of its spacings", what, own / dx, dx, scene.cut / HELD / dx, scene.cut, HELD);
+    if (own > ROUND * std::min(COARSEST * dx, scene.cut / HELD))
+      error->all(FLERR, "{} is {:.3g} times coarser than the fluid's dx {:g}: expected {:g} at most, and the kernel's support, {:g}, to be {:g} of its "
+                        "spacings", what, own / dx, dx, COARSEST, scene.cut, HELD);
     if (ROUND * FINEST * own < dx)
       error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most", what, dx / own, dx, FINEST);
     if (*static_cast<int *>(fluid->extract("couple", dim_of_extract)) != 0)

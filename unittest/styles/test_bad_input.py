@@ -257,7 +257,7 @@ CASES = [
     ("spacing without value", SPH, SPH + " spacing 2", r"fix fsi spacing command: missing"),
     ("spacing no type", SPH, SPH + " spacing 0.005 2", r"0\.005"),
     ("spacing of a type that is not", SPH, SPH + " spacing 3 0.005", r"3.*out of|out of bounds.*3"),
-    ("spacing too coarse", *tl_spacing("0.021"), r"spacing 0\.021 of type 2 is 2\.1 times coarser than the fluid's dx 0\.01: expected 2 at most"),
+    ("spacing too coarse", *tl_spacing("0.021"), r"spacing 0\.021 of type 2 is 2\.1 times coarser than the fluid's dx 0\.01: expected 2 at most, and the kernel's support, 0\.03, to be 1\.5"),
     ("spacing too fine", *tl_spacing("0.002"), r"spacing 0\.002 of type 2 is 5 times finer than the fluid's dx 0\.01: expected 4 at most"),
     ("spacing zero of a type", SPH, SPH + " spacing 2 0", r"spacing 0 must be > 0"),
     ("thin of a fluid", SPH, SPH + " thin 1", r"thin 1: atom type 1 is a fluid, expected a solid or a wall"),
