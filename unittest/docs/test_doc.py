@@ -173,4 +173,4 @@ MEASURED = [page for folder in ("results", "cost", "hard") for page in sorted((p
 def test_measured_pages_name_their_commit(page):
     """At their top, one without changes beside it: who reads a number can go back to what gave it."""
     top = page.read_text(encoding="utf-8").split("\n\n")[1]
-    assert re.search(r"commit [0-9a-f]{10}( \([^)]*\)(,| and) [0-9a-f]{10} \([^)]*\))*[.:;]", top)    # of the scenes each, where there are more
+    assert re.search(r"commit [0-9a-f]{10}( \([^)]*\)((,| and) [0-9a-f]{10} \([^)]*\))+)?[.:;]", top)    # of the scenes each, where there are more
