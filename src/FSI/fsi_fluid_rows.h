@@ -158,6 +158,26 @@ namespace FSI {
     Lanes<T>::add_rows(of_j, shift, j);
   }
 
+  // sum_j W_ij d part_j/dt over solids that come out of walls. To rho_i they add m_i of it, and to the energy of i m_i p_i/rho_i^2 of that,
+  // which no force on them does. A loop of its own: with it the loop of all rows would cost 6 % more where there are none.
+  template <class T, class K, bool IMAGE>
+  FSI_INLINE double coming_out(const Row &row, const Mirror &mirror, const K &kernel, const FluidParticles &in, double sharper)
+  {
+    constexpr int D = K::DIM;
+    using L = Lanes<T>;
+    const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+    const Particle<T, D> pi(point[row.i]);
+    T sum = 0.0;
+    for_neighbors<T, IMAGE>(row, [&](const int *j, const T &) __attribute__((always_inline)) {
+      Particle<T, D> pj(point, j);
+      if (IMAGE) pj.reflect(mirror);
+      T x[D];
+      difference(pi.x, pj.x, x);
+      sum += kernel.sharper(root(product(x, x)), sharper) * L::read(in.cut->rate, j);    // of a place left over, i itself, the rate is 0
+    });
+    return L::sum(sum);
+  }
+
   // d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which makes the work of the pair force
   // -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures; and the sums of particle shifting
   template <class T, class K, int KIND, int FLAGS>
@@ -178,7 +198,7 @@ namespace FSI {
       const Particle<T, D> pi(point[i]);
       const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
       const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0, fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0;
-      T sum = 0.0, flux = 0.0, opened = 0.0, displacement[N];
+      T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
@@ -200,11 +220,7 @@ namespace FSI {
           if (CUT) g = cut_off(in, j, g);
         }
         T s = g * product(v, x);
-        if (CUT && in.cut) {
-          const T change = kernel.sharper(r, sharper) * L::read(in.cut->rate, j);    // of a place left over, i itself, it is 0
-          s += change;
-          opened += change;
-        }
+        if (CUT && in.cut) s += kernel.sharper(r, sharper) * L::read(in.cut->rate, j);    // of a place left over, i itself, it is 0
         sum += s;
         if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
         T rate_j = pj.rho * pj.vol * s;
@@ -221,9 +237,9 @@ namespace FSI {
       });
       const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
-      // m p/rho^2 of what a solid adds to rho that comes out of a wall: no force on it does this work
-      if (CUT && in.cut && sums && (in.newton || i < in.nlocal))
-        sums->walls -= laws.pressure_over_density[i] * point[i].rho * volume * point[i].vol * point[i].vol * L::sum(opened);
+      if constexpr (CUT)
+        if (in.cut && sums && (in.newton || i < in.nlocal))
+          sums->walls -= laws.pressure_over_density[i] * point[i].rho * volume * point[i].vol * point[i].vol * coming_out<T, K, IMAGE>(row, mirror, kernel, in, sharper);
       if (FLAGS & Flag::SHIFT)
         for (int m = 0; m < N; m++) shift[i][m] += L::sum(displacement[m]);
     }
