@@ -180,6 +180,11 @@ class Scene:
         """that of a global compute"""
         return np.array(self.lmp.numpy.extract_compute(name, LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR))
 
+    def ledger(self):
+        """entries of compute fsi/energy, named e, of now"""
+        self.lmp.extract_compute("e", LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR)
+        return self.compute_vector("e")
+
     @property
     def p(self):
         return self.compute("sigma")[:, 0]

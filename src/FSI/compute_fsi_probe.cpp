@@ -234,8 +234,7 @@ void ComputeFSIProbe::sum_up()
         double vol = atom->rmass[i] / rho;
         // behind a mirror wall a solid is not there, but its image; walls of particles have no images, and are
         if (state.species == SOLID)
-          for (const auto &w : walls.wall)
-            if (!w.finite) vol *= std::min(std::max(0.5 + w.distance(x) / fix_fsi->dx_of(atom->type[i]), 0.0), 1.0);
+          for (const auto &w : walls.wall) vol *= w.before(x, fix_fsi->dx_of(atom->type[i]));
         if (vol == 0.0) continue;
         const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, fix_fsi->cut) : 0;
         const bool may_hide = sight && fluid && sight->near(atom->x[i]);

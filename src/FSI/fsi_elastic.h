@@ -32,34 +32,6 @@ namespace FSI {
     double energy = 0.0;    // per reference volume
   };
 
-  template <int D> inline double determinant(const double *F)
-  {
-    if constexpr (D == 2) return F[0] * F[3] - F[1] * F[2];
-    else
-      return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-  }
-
-  // det(F) F^-T
-  template <int D> inline void cofactor(const double *F, double *C)
-  {
-    if constexpr (D == 2) {
-      C[0] = F[3];
-      C[1] = -F[2];
-      C[2] = -F[1];
-      C[3] = F[0];
-    } else {
-      C[0] = F[4] * F[8] - F[5] * F[7];
-      C[1] = F[5] * F[6] - F[3] * F[8];
-      C[2] = F[3] * F[7] - F[4] * F[6];
-      C[3] = F[2] * F[7] - F[1] * F[8];
-      C[4] = F[0] * F[8] - F[2] * F[6];
-      C[5] = F[1] * F[6] - F[0] * F[7];
-      C[6] = F[1] * F[5] - F[2] * F[4];
-      C[7] = F[2] * F[3] - F[0] * F[5];
-      C[8] = F[0] * F[4] - F[1] * F[3];
-    }
-  }
-
   // St. Venant-Kirchhoff: S = lambda tr(E) I + 2 mu E, E = (F^T F - I)/2, P = F S. Plane stress: lambda* = 2 lambda mu/(lambda + 2 mu)
   struct StVenantKirchhoff {
     double lambda, mu;

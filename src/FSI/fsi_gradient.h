@@ -224,7 +224,7 @@ namespace FSI {
       Fit<TERMS> fit, other;
       if (!principal_axes(n, dX, w, fit.axes)) return Gradient<D>::DEFICIENT;
       solve_in_axes<TERMS>(n, dX, w, inv, fit);
-      if (lattice_axes(n, dX, other.axes)) {
+      if (TERMS > D && lattice_axes(n, dX, other.axes)) {
         solve_in_axes<TERMS>(n, dX, w, inv, other);
         if (other.least > fit.least) fit = other;
       }

@@ -55,6 +55,12 @@ namespace FSI {
     double largest_cut;                    // support of the coarsest
     double dx_of(int type) const { return resolution[type].dx; }
     double h_of(int type) const { return resolution[type].h; }
+    // e of Kernel::sharper() for fluids beside particles of this type
+    double sharper_of(int type) const
+    {
+      const double ratio = dx_of(type) / dx, per_h = dx / h;
+      return (1.0 - ratio * ratio) / 24.0 * per_h * per_h;
+    }
     std::vector<double> thin;    // per atom type, 1: fluids do not see each other through it
     std::shared_ptr<Sight> sight;    // past those; null: there are none
 

@@ -27,6 +27,35 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
+  // of full matrices
+  template <int D> inline double determinant(const double *F)
+  {
+    if constexpr (D == 2) return F[0] * F[3] - F[1] * F[2];
+    else
+      return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+  }
+
+  // det(F) F^-T
+  template <int D> inline void cofactor(const double *F, double *C)
+  {
+    if constexpr (D == 2) {
+      C[0] = F[3];
+      C[1] = -F[2];
+      C[2] = -F[1];
+      C[3] = F[0];
+    } else {
+      C[0] = F[4] * F[8] - F[5] * F[7];
+      C[1] = F[5] * F[6] - F[3] * F[8];
+      C[2] = F[3] * F[7] - F[4] * F[6];
+      C[3] = F[2] * F[7] - F[1] * F[8];
+      C[4] = F[0] * F[8] - F[2] * F[6];
+      C[5] = F[1] * F[6] - F[0] * F[7];
+      C[6] = F[1] * F[5] - F[2] * F[4];
+      C[7] = F[2] * F[3] - F[0] * F[5];
+      C[8] = F[0] * F[4] - F[1] * F[3];
+    }
+  }
+
   template <int D> struct Sym {
     static constexpr int N = (D == 2) ? 3 : 6;
     double c[N] = {};

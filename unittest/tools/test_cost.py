@@ -95,7 +95,7 @@ def test_plate_finer_costs_more_and_errs_less(plate):
         if method == "TL linear":
             assert np.all(np.diff(errors) < 0.0)
         else:    # 4 across is the odd one of quadratic gradients (doc/src/theory.rst)
-            assert errors[2] < errors[0]
+            assert max(errors[1:]) < 0.7 * errors[0]
         assert summary["methods"][method]["order"] > 0.0
     # bending is a quadratic displacement: gradients exact for it err far less, by a factor of 3 at the least at three across
     assert abs(float(rows["TL quadratic, n = 3"]["error"])) < abs(float(rows["TL linear, n = 3"]["error"])) / 3.0
