@@ -28,6 +28,7 @@
 #include "fsi_gradient.h"
 #include "fsi_material.h"
 #include "fsi_pack.h"
+#include "fsi_rows.h"
 #include "fsi_viscosity_artificial.h"
 
 #include <type_traits>
@@ -52,10 +53,6 @@ namespace FSI {
     double stiffness; // zeta E of hourglass control
     double h;         // smoothing length of its body
   };
-
-  // Doubles of a particle's position and velocity, of the force on it.
-  constexpr int row_of_points(int dim) { return dim == 3 ? 8 : 4; }
-  constexpr int row_of_bond_forces(int dim) { return dim == 3 ? 4 : 2; }
 
   struct BondSums {
     double energy = 0.0, artificial = 0.0, virial[6] = {};    // artificial: power that it takes
@@ -152,10 +149,10 @@ namespace FSI {
     return q * vdotx;
   }
 
-  // f: rows of row_of_bond_forces(D), of local and ghost particles; laws: per type
+  // f: rows of row_of_forces(D), of local and ghost particles; laws: per type
   template <class T, class Law, int D, int FLAGS>
   FSI_INLINE void bond_rows(const BondRow *const rows, const int nrows, const Law *const laws, const BondArguments in,
-                            double (*const f)[row_of_bond_forces(D)])
+                            double (*const f)[row_of_forces(D)])
   {
     using namespace BondFlag;
     using L = Lanes<T>;

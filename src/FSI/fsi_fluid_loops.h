@@ -21,6 +21,7 @@
 #define LMP_FSI_FLUID_LOOPS_H
 
 #include "fsi_material.h"
+#include "fsi_rows.h"
 #include "fsi_walls.h"
 
 #include <array>
@@ -29,52 +30,6 @@
 
 namespace LAMMPS_NS {
 namespace FSI {
-
-  // A fluid particle i (local or ghost) and n neighbours j of one type, each pair of particles in one row. In a row of images the last
-  // neighbour may be i itself.
-  struct Row {
-    int i, n;
-    const int *j;
-  };
-
-  // Rows and, where they are not those of LAMMPS' neighbour list, their neighbours.
-  class RowList {
-   public:
-    std::vector<Row> rows;
-    void clear()
-    {
-      rows.clear();
-      used = 0;
-    }
-    // a row of i with the n of the neighbours that choose(j) holds for, and then i itself if with_own; none if it would be empty
-    template <class Choose> void add(int i, const int *neighbors, int n, bool with_own, bool even_empty, Choose choose)
-    {
-      if (used + n + 1 > pool.size()) pool.resize(2 * (used + n + 1));
-      int *const first = pool.data() + used, *last = first;
-      for (int k = 0; k < n; k++) {
-        *last = neighbors[k];
-        last += choose(neighbors[k]) ? 1 : 0;
-      }
-      if (with_own) *last++ = i;
-      const int found = last - first;
-      if (found || even_empty) rows.push_back({i, found, nullptr});
-      used += found;
-    }
-    // no more rows: points them at their neighbours
-    void end()
-    {
-      const int *first = pool.data();
-      for (auto &row : rows) {
-        row.j = first;
-        first += row.n;
-      }
-    }
-    double memory_usage() const { return (double) rows.capacity() * sizeof(Row) + (double) pool.capacity() * sizeof(int); }
-
-   private:
-    std::vector<int> pool;
-    size_t used = 0;
-  };
 
   // What a fluid particle meets, and by which rule: couple wall; the paper's rules, couple pressure and full.
   enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_PRESSURE, WITH_SOLID_FULL };
@@ -86,9 +41,6 @@ namespace FSI {
     double p, pv2;
     std::array<double, 3> position(const double *atom_x) const { return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]}; }
   };
-
-  // Doubles from the force on a particle to that on the next.
-  constexpr int row_of_forces(int dim) { return dim == 3 ? 4 : 2; }
 
   // Powers that terms take from the particles of all pairs visited, and their virial xx yy zz xy xz yz.
   struct PairSums {

@@ -26,6 +26,7 @@
 #include "fsi_density_diffusion.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
+#include "fsi_rows.h"
 #include "fsi_shift.h"
 #include "fsi_tensor.h"
 #include "fsi_viscosity_artificial.h"
@@ -93,46 +94,6 @@ namespace FSI {
       }
     }
   };
-
-  template <int D, class T> FSI_INLINE T product(const T (&a)[D], const T (&b)[D])
-  {
-    T s = a[0] * b[0];
-    for (int d = 1; d < D; d++) s += a[d] * b[d];
-    return s;
-  }
-  template <int D, class T> FSI_INLINE void difference(const T (&a)[D], const T (&b)[D], T (&c)[D])
-  {
-    for (int d = 0; d < D; d++) c[d] = a[d] - b[d];
-  }
-
-  // Calls pairs(j, weight) with the places of as many neighbours as T holds. The weight is 1, but 0 for places that are left over
-  // and, in rows of images, 1/2 for i itself: it is seen from both sides of the pair.
-  template <class T, bool MIRRORED, class Pairs> FSI_INLINE void for_neighbors(const Row &row, Pairs pairs)
-  {
-    constexpr int W = Lanes<T>::WIDTH;
-    const auto weight = [&](const int *j, int n) __attribute__((always_inline)) {
-      const T there = W == 1 ? T(1.0) : Lanes<T>::first(n < W ? n : W);
-      return MIRRORED ? there * Lanes<T>::make([&](int k) { return j[k] == row.i ? 0.5 : 1.0; }) : there;
-    };
-    // one place for the text of a pair: written out again for the last ones loops are twice as long
-    int last[W];
-    const int *j = row.j;
-    for (int left = row.n;; left -= W, j += W) {
-      if (left < W) {
-        if (left <= 0) return;
-        for (int k = 0; k < W; k++) last[k] = k < left ? j[k] : row.i;
-        j = last;
-      }
-      pairs(j, weight(j, left));
-    }
-  }
-
-  // 1 for a pair that only this rank visits, else 1/2
-  template <class T> FSI_INLINE T share_of(int i, const int *j, int nlocal, bool newton)
-  {
-    if (newton) return T(1.0);
-    return Lanes<T>::make([&](int k) { return i < nlocal && j[k] < nlocal ? 1.0 : 0.5; });
-  }
 
   // How much more neighbours of this type count at i: in forces of pressure; in sums of W and along the face
   FSI_INLINE double fill_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.thin->fill[i] : 1.0; }

@@ -28,6 +28,7 @@
 #ifndef LMP_FSI_GRADIENT_H
 #define LMP_FSI_GRADIENT_H
 
+#include "fsi_pack.h"
 #include "math_eigen.h"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ namespace FSI {
   constexpr int packed_size(int n) { return n * (n + 1) / 2; }
 
   // basis about a particle, x = offset times 1/length: x, y, (z), then, for quadratic exactness, their products
-  template <int D, int TERMS> inline void gradient_basis(const double *x, double *phi)
+  template <int D, int TERMS, class T> FSI_INLINE void gradient_basis(const T *x, T *phi)
   {
     int k = 0;
     for (; k < D; k++) phi[k] = x[k];

@@ -21,20 +21,21 @@
 #ifndef LMP_FSI_HOURGLASS_H
 #define LMP_FSI_HOURGLASS_H
 
+#include "fsi_pack.h"
+
 namespace LAMMPS_NS {
 namespace FSI {
 
   struct Hourglass {
     double xi;
-    // rate (D) of the force on i; Li, Lj row-major; xij, vij = i minus j
-    template <int D>
-    void operator()(double shear, double vv, double g, const double *xij, const double *vij, const double *Li, const double *Lj,
-                    double *rate) const
+    // rate of the force on i; shear: mean of the pair, vv = V_i V_j, x, v: i minus j, L: L_i + L_j, row-major; T: double or Pack
+    template <int D, class T>
+    FSI_INLINE void operator()(const T &shear, const T &vv, const T &g, const T (&x)[D], const T (&v)[D], const T (&L)[D * D], T (&rate)[D]) const
     {
-      const double k = xi * shear * vv * g;
+      const T k = xi * shear * vv * g;
       for (int a = 0; a < D; a++) {
-        double mismatch = vij[a];
-        for (int b = 0; b < D; b++) mismatch -= 0.5 * (Li[a * D + b] + Lj[a * D + b]) * xij[b];
+        T mismatch = v[a];
+        for (int b = 0; b < D; b++) mismatch -= 0.5 * L[a * D + b] * x[b];
         rate[a] = k * mismatch;
       }
     }

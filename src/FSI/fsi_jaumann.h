@@ -23,19 +23,19 @@ namespace FSI {
 
   // Deviatoric stress s^{n-1/2} -> s^{n+1/2} with the velocity gradient L (row-major D x D) of time n, G = shear:
   //   ds/dt = 2G dev(e) + w s - s w,  e, w = symmetric and antisymmetric part of L,
-  // as s' = Q s Q^T + Qh (2G dt dev(e)) Qh^T with Q = exp(dt w), Qh = exp(dt w/2): second order in dt, and exact for rigid
-  // rotation. The deviator takes away a third of the trace in 3D and in plane strain, half of it in plane stress.
+  // as s' = Q (Q s Q^T + 2G dt dev(e)) Q^T with Q = exp(dt w/2): second order in dt, and exact for rigid rotation.
+  // The deviator takes away a third of the trace in 3D and in plane strain, half of it in plane stress.
   template <int D> void jaumann_update(Sym<D> &s, const double *L, double dt, double shear, bool plane_stress)
   {
-    double Q[D * D], Qh[D * D];
-    rotation<D>(L, dt, Q);
-    rotation<D>(L, 0.5 * dt, Qh);
+    double Q[D * D];
+    rotation<D>(L, 0.5 * dt, Q);
     Sym<D> de = symmetric<D>(L);
     const double mean = de.trace() / (plane_stress ? 2.0 : 3.0);
     for (int a = 0; a < D; a++) de.c[a] -= mean;
     de *= 2.0 * shear * dt;
     s = rotate<D>(s, Q);
-    s += rotate<D>(de, Qh);
+    s += de;
+    s = rotate<D>(s, Q);
   }
 
 }    // namespace FSI

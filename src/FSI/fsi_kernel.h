@@ -157,8 +157,8 @@ namespace FSI {
         kind(kind_in), cubic(h_in), quintic(h_in), wendland(h_in), h(h_in), hinv(1.0 / h_in), cut(kernel_support(kind_in) * h_in), cutsq(cut * cut)
     {
     }
-    double W(double r) const { return kind == CUBIC ? cubic.W(r) : kind == QUINTIC ? quintic.W(r) : wendland.W(r); }
-    double gradient(double r) const { return kind == CUBIC ? cubic.gradient(r) : kind == QUINTIC ? quintic.gradient(r) : wendland.gradient(r); }
+    template <class T> FSI_INLINE T W(const T &r) const { return kind == CUBIC ? cubic.W(r) : kind == QUINTIC ? quintic.W(r) : wendland.W(r); }
+    template <class T> FSI_INLINE T gradient(const T &r) const { return kind == CUBIC ? cubic.gradient(r) : kind == QUINTIC ? quintic.gradient(r) : wendland.gradient(r); }
     double sharper(double r, double e) const { return kind == CUBIC ? cubic.sharper(r, e) : kind == QUINTIC ? quintic.sharper(r, e) : wendland.sharper(r, e); }
     double sharper_gradient(double r, double e) const
     {

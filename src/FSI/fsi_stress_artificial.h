@@ -35,9 +35,9 @@ namespace FSI {
       return r;
     }
     // (W/W(dx))^q with the paper's q = 4
-    double weight(double w) const
+    template <class T> FSI_INLINE T weight(const T &w) const
     {
-      const double f = w * inv_wdx, f2 = f * f;
+      const T f = w * inv_wdx, f2 = f * f;
       return f2 * f2;
     }
   };

@@ -56,9 +56,15 @@ namespace FSI {
     }
   }
 
-  template <int D> struct Sym {
+  // T: double, or Pack for those of several particles side by side (fsi_pack.h)
+  template <int D, class T = double> struct Sym {
     static constexpr int N = (D == 2) ? 3 : 6;
-    double c[N] = {};
+    T c[N];
+
+    FSI_INLINE Sym()
+    {
+      for (T &s : c) s = 0.0;
+    }
 
     // index of component (a,b) in c
     static constexpr int id(int a, int b)
@@ -66,8 +72,8 @@ namespace FSI {
       if (a == b) return a;
       return (D == 2) ? 2 : a + b + 2;
     }
-    double &operator()(int a, int b) { return c[id(a, b)]; }
-    double operator()(int a, int b) const { return c[id(a, b)]; }
+    T &operator()(int a, int b) { return c[id(a, b)]; }
+    const T &operator()(int a, int b) const { return c[id(a, b)]; }
 
     static Sym identity(double s)
     {
@@ -75,7 +81,7 @@ namespace FSI {
       for (int a = 0; a < D; a++) t.c[a] = s;
       return t;
     }
-    static Sym load(const double *p)
+    FSI_INLINE static Sym load(const T *p)
     {
       Sym t;
       for (int k = 0; k < N; k++) t.c[k] = p[k];
@@ -85,14 +91,14 @@ namespace FSI {
     {
       for (int k = 0; k < N; k++) p[k] = c[k];
     }
-    Sym &operator+=(const Sym &b)
+    FSI_INLINE Sym &operator+=(const Sym &b)
     {
       for (int k = 0; k < N; k++) c[k] += b.c[k];
       return *this;
     }
-    Sym &operator*=(double s)
+    FSI_INLINE Sym &operator*=(const T &s)
     {
-      for (int k = 0; k < N; k++) c[k] *= s;
+      for (int k = 0; k < N; k++) c[k] = s * c[k];
       return *this;
     }
     double trace() const
@@ -112,7 +118,7 @@ namespace FSI {
   };
 
   // out = t . x
-  template <int D> inline void dot(const Sym<D> &t, const double *x, double *out)
+  template <int D, class T> FSI_INLINE void dot(const Sym<D, T> &t, const T *x, T *out)
   {
     if constexpr (D == 2) {
       out[0] = t.c[0] * x[0] + t.c[2] * x[1];

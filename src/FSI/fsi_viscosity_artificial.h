@@ -28,8 +28,8 @@ namespace FSI {
         alpha(alpha_in), beta(beta_in), h(h_in), eta(0.01 * h_in * h_in)
     {
     }
-    // vdotx = v_ij.x_ij; rho: mean of the pair; vv = V_i V_j; T: double or Pack
-    template <class T> FSI_INLINE T operator()(const T &vdotx, const T &rsq, const T &rho, double c, const T &vv) const
+    // vdotx = v_ij.x_ij; rho, c: means of the pair; vv = V_i V_j; T: double or Pack, C, too
+    template <class T, class C> FSI_INLINE T operator()(const T &vdotx, const T &rsq, const T &rho, const C &c, const T &vv) const
     {
       if (none(vdotx < T(0.0))) return T(0.0);
       const T mu = h * lesser(vdotx, T(0.0)) / (rsq + eta);

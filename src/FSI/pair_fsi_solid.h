@@ -21,7 +21,7 @@ PairStyle(fsi/solid,PairFSISolid);
 #define LMP_PAIR_FSI_SOLID_H
 
 #include "fsi_fields.h"
-#include "fsi_tensor.h"
+#include "fsi_rows.h"
 #include "pair_fsi.h"
 
 #include <vector>
@@ -46,6 +46,7 @@ class PairFSISolid : public PairFSI {
   void *extract(const char *, int &) override;
   void set_fields(FSI::Scene &) override;
   void add_messages(FSI::Message &, FSI::Message &) override;
+  void begin_state(bool) override;    // with new neighbor lists new rows
   bool add_rates(bool) override;
   void advance(bool) override;
   void add_number_density(double *, bool of_all_bodies) override;
@@ -80,40 +81,20 @@ class PairFSISolid : public PairFSI {
 
   enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };
   double epsilon, xi;
-  std::vector<double> hourglass_rate;    // local and ghost
-  template <class K> void hourglass_pairs(double);
-  template <int D> void rotate_hourglass(double);
   int gradient;
+  bool bodies, packs;
+  FSI::RowList own, others;
+  void find_rows();
+  std::vector<double> hourglass_rate, forces;    // local and ghost, rows of row_of_forces
+  template <int D> void rotate_hourglass(double);
 
-  // local and ghost, filled at the start of compute(): stress and artificial stress, both times V^2
-  template <int D> struct Aux {
-    FSI::Sym<D> stress, artificial;
-    const double *C;    // coefficients of the gradient
-    FSI::Sym<D> vstress;    // V sigma
-    double vol, rho, c;
-    double vol0;    // m/rho0
-  };
-  std::vector<Aux<2>> aux2;
-  std::vector<Aux<3>> aux3;
-  template <int D> std::vector<Aux<D>> &get_aux();
-  template <int D, int TERMS> const std::vector<Aux<D>> &fill_aux();
+  // of local and ghost solids (fsi_solid_rows.h)
+  std::vector<double> rate_records, force_records;
+  template <int D> void fill_rate_records(double half);
+  template <int D, int TERMS> void fill_force_records();
 
-  enum { ARTIFICIAL_VISCOSITY = 1, BODIES = 2, ARTIFICIAL_STRESS = 4, LEDGER = 8 };
-  // Loops may have effects that are off, with coefficients of zero: what rarely is alone shares a loop with what it is mostly with. Loops of
-  // quadratic gradients are for any kernel.
-  template <int TERMS> static constexpr int completed(int flags)
-  {
-    const bool ledger = flags & LEDGER;
-    if (TERMS && ledger && (flags & BODIES)) flags |= ARTIFICIAL_STRESS;
-    if ((TERMS || ledger) && (flags & ARTIFICIAL_STRESS)) flags |= BODIES;
-    if ((TERMS && ledger) || (flags & BODIES)) flags |= ARTIFICIAL_VISCOSITY;
-    return flags;
-  }
-  void (PairFSISolid::*force_loop)();
-  void (PairFSISolid::*gradient_loop)(double);
-  template <class K, int TERMS, int FLAGS> void force_pairs();
-  template <class K, int TERMS, int FLAGS> void gradient_pairs(double);
-  template <class K, int TERMS> void select(int flags);
+  template <class F> void with_loops(F) const;
+  template <bool PACKED, int TERMS, class K> void pair_forces(const K &);
 };
 
 }    // namespace LAMMPS_NS

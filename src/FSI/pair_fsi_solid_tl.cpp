@@ -204,7 +204,7 @@ void PairFSISolidTL::internal_forces()
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
     memory->destroy(fsolid);
-    memory->create(fsolid, nmax, row_of_bond_forces(fix_fsi->dim), "pair:fsolid");
+    memory->create(fsolid, nmax, row_of_forces(fix_fsi->dim), "pair:fsolid");
   }
   const auto forces_of = [&](auto law_of) {
     using L = decltype(law_of);
@@ -266,7 +266,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
   BondSums sums;
   const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr, alpha, beta, one_material, &sums};
   const L *const law_of = laws<L>();
-  auto *const f = reinterpret_cast<double(*)[row_of_bond_forces(D)]>(fsolid ? fsolid[0] : nullptr);
+  auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid ? fsolid[0] : nullptr);
   // with sums, or one by one, there is one loop for all effects: those that are off have coefficients of zero
   const bool packs = have_packs() && (one_material || !has_artificial());
   const int named = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
@@ -607,6 +607,6 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 
 double PairFSISolidTL::memory_usage()
 {
-  return (double) nmax * row_of_bond_forces(domain->dimension) * sizeof(double) + (double) points.capacity() * sizeof(double) +
+  return (double) nmax * row_of_forces(domain->dimension) * sizeof(double) + (double) points.capacity() * sizeof(double) +
       (double) rows.capacity() * sizeof(BondRow);
 }

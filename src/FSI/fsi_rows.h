@@ -1,0 +1,122 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Pairs as rows, of a particle and its neighbours, and how loops go over them, as many neighbours at a time as the number type T holds
+// (fsi_pack.h).
+
+#ifndef LMP_FSI_ROWS_H
+#define LMP_FSI_ROWS_H
+
+#include "fsi_pack.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  // A particle i (local or ghost) and n neighbours j, each pair of particles in one row. In a row of images the last neighbour may be i
+  // itself.
+  struct Row {
+    int i, n;
+    const int *j;
+  };
+
+  // Rows and, where they are not those of LAMMPS' neighbour list, their neighbours.
+  class RowList {
+   public:
+    std::vector<Row> rows;
+    void clear()
+    {
+      rows.clear();
+      used = 0;
+    }
+    // a row of i with the n of the neighbours that choose(j) holds for, and then i itself if with_own; none if it would be empty
+    template <class Choose> void add(int i, const int *neighbors, int n, bool with_own, bool even_empty, Choose choose)
+    {
+      if (used + n + 1 > pool.size()) pool.resize(2 * (used + n + 1));
+      int *const first = pool.data() + used, *last = first;
+      for (int k = 0; k < n; k++) {
+        *last = neighbors[k];
+        last += choose(neighbors[k]) ? 1 : 0;
+      }
+      if (with_own) *last++ = i;
+      const int found = last - first;
+      if (found || even_empty) rows.push_back({i, found, nullptr});
+      used += found;
+    }
+    // no more rows: points them at their neighbours
+    void end()
+    {
+      const int *first = pool.data();
+      for (auto &row : rows) {
+        row.j = first;
+        first += row.n;
+      }
+    }
+    double memory_usage() const { return (double) rows.capacity() * sizeof(Row) + (double) pool.capacity() * sizeof(int); }
+
+   private:
+    std::vector<int> pool;
+    size_t used = 0;
+  };
+
+  // Doubles from the force on a particle to that on the next.
+  constexpr int row_of_forces(int dim) { return dim == 3 ? 4 : 2; }
+
+  // the same for positions and velocities
+  constexpr int row_of_points(int dim) { return dim == 3 ? 8 : 4; }
+
+  template <int D, class T> FSI_INLINE T product(const T (&a)[D], const T (&b)[D])
+  {
+    T s = a[0] * b[0];
+    for (int d = 1; d < D; d++) s += a[d] * b[d];
+    return s;
+  }
+  template <int D, class T> FSI_INLINE void difference(const T (&a)[D], const T (&b)[D], T (&c)[D])
+  {
+    for (int d = 0; d < D; d++) c[d] = a[d] - b[d];
+  }
+
+  // Calls pairs(j, weight) with the places of as many neighbours as T holds. The weight is 1, but 0 for places that are left over
+  // and, in rows of images, 1/2 for i itself: it is seen from both sides of the pair.
+  template <class T, bool MIRRORED, class Pairs> FSI_INLINE void for_neighbors(const Row &row, Pairs pairs)
+  {
+    constexpr int W = Lanes<T>::WIDTH;
+    const auto weight = [&](const int *j, int n) __attribute__((always_inline)) {
+      const T there = W == 1 ? T(1.0) : Lanes<T>::first(n < W ? n : W);
+      return MIRRORED ? there * Lanes<T>::make([&](int k) { return j[k] == row.i ? 0.5 : 1.0; }) : there;
+    };
+    // one place for the text of a pair: written out again for the last ones loops are twice as long
+    int last[W];
+    const int *j = row.j;
+    for (int left = row.n;; left -= W, j += W) {
+      if (left < W) {
+        if (left <= 0) return;
+        for (int k = 0; k < W; k++) last[k] = k < left ? j[k] : row.i;
+        j = last;
+      }
+      pairs(j, weight(j, left));
+    }
+  }
+
+  // 1 for a pair that only this rank visits, else 1/2
+  template <class T> FSI_INLINE T share_of(int i, const int *j, int nlocal, bool newton)
+  {
+    if (newton) return T(1.0);
+    return Lanes<T>::make([&](int k) { return i < nlocal && j[k] < nlocal ? 1.0 : 0.5; });
+  }
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
