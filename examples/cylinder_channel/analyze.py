@@ -46,12 +46,17 @@ def vortices(folder):
     return *(sum(series.swing(time, values, rate)) for values in (drag, lift)), rate * DIAMETER / speed
 
 
-def curve(folder):
-    """Time in D/U and drag coefficient, means of 0.2 D/U"""
-    speed, time, drag, _ = forces(folder)
+def smoothed(time, values, speed):
+    """Time in D/U and means of 0.2 D/U"""
     n = max(1, round(0.2 * DIAMETER / speed / (time[1] - time[0])))
     m = len(time) // n * n
-    return time[:m].reshape(-1, n).mean(1) * speed / DIAMETER, drag[:m].reshape(-1, n).mean(1)
+    return time[:m].reshape(-1, n).mean(1) * speed / DIAMETER, values[:m].reshape(-1, n).mean(1)
+
+
+def curve(folder):
+    """Drag coefficient over time; where there are vortices, the lift coefficient"""
+    speed, time, drag, lift = forces(folder)
+    return smoothed(time, drag if is_steady(folder) else lift, speed)
 
 
 def is_steady(folder):
@@ -72,12 +77,20 @@ def add(summary, folder, suffix="", finest=False):
             summary.add(name + suffix, value, "", reference, UNSTEADY, target if finest else None)
 
 
+def draw(folder, cases):
+    """drag.png of steady flows, lift.png of those with vortices."""
+    for steady, name in ((True, "drag"), (False, "lift")):
+        curves = [(*curve(path), label.replace("_", " ")) for label, path in cases.items() if is_steady(path) == steady]
+        if curves:
+            plot.lines(folder / f"{name}.png", "t U/D", f"{name} coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves, COLOURS)])
+
+
 def main(folder):
     """Analyses the run in `folder`; returns the summary."""
     folder = Path(folder)
     summary = Summary(folder)
     add(summary, folder)
-    plot.lines(folder / "drag.png", "t U/D", "drag coefficient", [(*curve(folder), "SPH, means of 0.2 D/U", plot.BLUE)])
+    draw(folder, {"SPH": folder})
     last = dump.read(folder / "particles.dump")[-1]
     last = last.of_types(1)
     plot.clouds(folder / "speed.png", [(f"t = {last.time:.1f} s", last["x"], last["y"], np.hypot(last["vx"], last["vy"]))],
@@ -86,15 +99,13 @@ def main(folder):
 
 
 def study(folder, cases):
-    """Drag of all cases in one picture."""
+    """Drag of all steady cases in one picture, lift of the others in another."""
     folder = Path(folder)
     summary = Summary(folder)
     finest = {is_steady(path): name for name, path in cases.items()}  # they are in the order of resolution
-    curves = []
-    for (name, path), colour in zip(cases.items(), COLOURS):
+    for name, path in cases.items():
         add(summary, path, f"_{name}", name in finest.values())
-        curves.append((*curve(path), name.replace("_", " "), colour))
-    plot.lines(folder / "drag.png", "t U/D", "drag coefficient, means of 0.2 D/U", curves)
+    draw(folder, cases)
     return summary.write()
 
 

@@ -29,7 +29,7 @@ TARGETS = {("fsi1", "uy"): 0.05, ("fsi1", "drag"): 0.03, ("cfd1", "drag"): 0.02,
            ("fsi2", "uy_amplitude"): 0.03, ("fsi2", "frequency"): 0.03, ("fsi2", "drag_mean"): 0.03, ("fsi2", "drag_amplitude"): 0.1,
            ("fsi2", "lift_amplitude"): 0.1, ("fsi3", "uy_amplitude"): 0.05, ("fsi3", "frequency"): 0.03, ("fsi3", "drag_mean"): 0.03,
            ("fsi3", "lift_amplitude"): 0.1}
-PERIODS = 3
+PERIODS, GROUPS = 3, 3  # figures are means over so many successive groups of the last periods: flags at Re = 200 swing unevenly
 COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
 
 
@@ -40,6 +40,12 @@ def read(folder):
     for name in ("ux", "uy"):
         s.columns[name] = 1e3 * s[name]
     return found.values["benchmark"], found.values, s
+
+
+def swings(time, values, rate):
+    """(mean, amplitude) of the last GROUPS of PERIODS periods, of as many as there are (GROUPS, 2)"""
+    groups = [time <= time[-1] - k * PERIODS / rate for k in range(GROUPS)]
+    return np.array([series.swing(time[g], values[g], rate, PERIODS) for g in groups if g.any() and (time[g][-1] - time[0]) * rate >= 1.0])
 
 
 def add(summary, folder, suffix="", finest=True):
@@ -60,9 +66,11 @@ def add(summary, folder, suffix="", finest=True):
         rate = series.frequency(s.time[half], s[fundamental][half])
         figure("frequency", rate, "Hz", REFERENCE[case][fundamental][2])
         for name, (mean, amplitude, _) in REFERENCE[case].items():
-            found = series.swing(s.time, s[name], rate, PERIODS)
-            figure(f"{name}_mean", found[0], UNITS[name], mean)
-            figure(f"{name}_amplitude", found[1], UNITS[name], amplitude)
+            found = swings(s.time, s[name], rate)
+            figure(f"{name}_mean", found[:, 0].mean(), UNITS[name], mean)
+            figure(f"{name}_amplitude", found[:, 1].mean(), UNITS[name], amplitude)
+            if name == fundamental:
+                summary.add(f"{name}_amplitude_scatter{suffix}", found[:, 1].std(), UNITS[name])
     if steady:
         for name in ("drag", "lift"):
             summary.add(f"{name}_scatter{suffix}", s[name][late].std(), "N/m")
