@@ -108,18 +108,19 @@ def main(folder):
 
 
 def study(folder, cases):
-    """All cases; the motion of the flag in FSI2 at every resolution."""
+    """All cases; the motion of the flag in FSI2 (forces.png) and in FSI3 (forces_fsi3.png) at every resolution."""
     folder = Path(folder)
     summary = Summary(folder)
     finest = {read(path)[0]: name for name, path in cases.items()}  # they are in the order of resolution
-    runs = []
+    runs = {"fsi2": [], "fsi3": []}
     for name, path in cases.items():
         add(summary, path, f"_{name}", name in finest.values())
         case, values, s = read(path)
-        if case == "fsi2":
-            runs.append((s, f"FSI2, {values['across']:.0f} particles across the flag"))
-    if runs:
-        picture(folder / "forces.png", runs)
+        if case in runs:
+            runs[case].append((s, f"{case.upper()}, {values['across']:.0f} particles across the flag"))
+    for case, file in (("fsi2", "forces.png"), ("fsi3", "forces_fsi3.png")):
+        if runs[case]:
+            picture(folder / file, runs[case])
     return summary.write()
 
 
