@@ -475,10 +475,11 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
   const SolidLaws laws = {ArtificialViscosity(alpha, beta, fix_fsi->h), ArtificialStress(epsilon, fix_fsi->wdx), Contact(D, fix_fsi->dx, contact_range),
                           atom->type, fix_fsi->state.data(), atom->nlocal, newton, &sums};
 
-  // loops may have effects that are off, with coefficients of zero: what rarely is alone shares one with what it is mostly with
-  const int named = (has_artificial() ? VISCOSITY : 0) | (epsilon > 0.0 ? STRESS | VISCOSITY : 0) | (TERMS > D ? VISCOSITY : 0);
-  with_flags<ALL>(!PACKED || fix_fsi->ledger || tally_pairs ? ALL : named, [&](auto flags) {
-    if constexpr (flags() == ALL || (PACKED && (flags() == VISCOSITY || flags() == (VISCOSITY | STRESS) || (flags() == 0 && TERMS <= D))))
+  // sums and quadratic gradients come with viscosity, pairs one by one with all effects: what is off has coefficients of zero
+  const int sums_too = fix_fsi->ledger || tally_pairs ? SUMS : 0;
+  const int named = (epsilon > 0.0 ? STRESS : 0) | sums_too | (has_artificial() || sums_too || TERMS > D ? VISCOSITY : 0);
+  with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {
+    if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D) : flags() == ALL)
       run_loop<Numbers<PACKED>>([&](auto number) __attribute__((always_inline)) {
         force_rows<decltype(number), K, TERMS, flags()>(own.rows.data(), own.rows.size(), kernel, force_records.data(), laws, of_rows);
       });
