@@ -82,6 +82,7 @@ namespace FSI {
     const double *pressure_over_density;  // per particle, with sums
     double wdx;                           // W(dx), for shifting
     bool slopes;                          // shifting changes velocities, too
+    double reach;
   };
 
   struct ForceLaws {
@@ -101,9 +102,9 @@ namespace FSI {
     virtual ~FluidLoops() = default;
 
     // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting to shift, rows of Shift<D>::ROW; mirror: the
-    // rows' neighbours are images in it; shift, sums: or null
+    // rows' neighbours are images in it; shift, sums: or null; near: the rows become those of what is within laws.reach
     virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, const RateLaws &, double *rate,
-                       double *shift, PairSums *sums) const = 0;
+                       double *shift, PairSums *sums, RowList &near) const = 0;
     // adds pressure, viscosity and what keeps fluid out of walls to force, rows of row_of_forces(D); with mirror the sum of the
     // forces on all particles to total[D]
     virtual void forces(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, const ForceLaws &, double *force,

@@ -143,7 +143,7 @@ namespace FSI {
   // -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures; and the sums of particle shifting
   template <class T, class K, int KIND, int FLAGS>
   FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
-                            const RateLaws laws, double *const rate, double (*const shift)[Shift<K::DIM>::ROW], PairSums *const sums)
+                            const RateLaws laws, double *const rate, double (*const shift)[Shift<K::DIM>::ROW], PairSums *const sums, RowList &near)
   {
     constexpr int D = K::DIM;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES, CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL);
@@ -151,7 +151,9 @@ namespace FSI {
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
+    const T reachsq = laws.reach * laws.reach;
     T by_diffusion = 0.0;
+    near.clear();
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
       if (row.n == 0) continue;
@@ -161,6 +163,8 @@ namespace FSI {
       const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0, fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0;
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
+      int *last = near.begin(row.n);
+      int picked = 0;
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
         if (IMAGE) pj.reflect(mirror);
@@ -168,6 +172,7 @@ namespace FSI {
         difference(pi.x, pj.x, x);
         difference(pi.v, pj.v, v);
         const T rsq = product(x, x), r = root(rsq);
+        picked = L::pick(reachsq < rsq, j, last);
         T g = kernel.gradient(r);
         if (IMAGE) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
@@ -196,6 +201,8 @@ namespace FSI {
         }
         L::add(rate_j, rate, j);
       });
+      if (picked >> (L::WIDTH - 1)) last -= -row.n & (L::WIDTH - 1);    // i itself, in places left over
+      near.add(i, last);
       const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if constexpr (CUT)
@@ -204,6 +211,7 @@ namespace FSI {
       if (FLAGS & Flag::SHIFT)
         for (int m = 0; m < N; m++) shift[i][m] += L::sum(displacement[m]);
     }
+    near.end();
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);
   }
 
@@ -221,6 +229,10 @@ namespace FSI {
     for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
     return pi.pv2 + greater(p, T(floor)) * (back * pj.vol) * pj.vol;
   }
+
+  // Viscosity between two fluids: the harmonic mean, with which the stress is the same on both sides of their interface, as the flux of
+  // heat in Cleary and Monaghan, J. Comput. Phys. 148 (1999) 227
+  FSI_INLINE double between(double a, double b) { return a == b ? a : 2.0 * a * b / (a + b); }
 
   // What is constant in a row of forces.
   struct RowConstants {
@@ -240,7 +252,7 @@ namespace FSI {
     // beyond a wall or solid with no slip there is fluid, where it slips it does not rub
     const bool slips = KIND == WITH_FLUID ? false : KIND == WITH_WALL ? !other.noslip : laws.solids_slip;
     r.rubs = KIND == WITH_WALL && slips ? 0.0 : 1.0;
-    r.visc = !laws.laminar || slips ? 0.0 : fluid.viscosity + (KIND == WITH_FLUID ? other : fluid).viscosity;
+    r.visc = !laws.laminar || slips ? 0.0 : 2.0 * (KIND == WITH_FLUID ? between(fluid.viscosity, other.viscosity) : fluid.viscosity);
     if (FLAGS & Flag::UNEQUAL) {
       r.volume = in.share[type_j].volume;
       r.sharper = in.share[type_j].sharper;
@@ -497,14 +509,14 @@ namespace FSI {
     explicit FluidLoopsOf(const K &kernel_in) : kernel(kernel_in) {}
 
     void rates(PairKind kind, const std::vector<Row> &rows, const Mirror *image, const FluidParticles &in, const RateLaws &laws, double *rate,
-               double *shift, PairSums *sums) const override
+               double *shift, PairSums *sums, RowList &near) const override
     {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop<T>([&](auto number) __attribute__((always_inline)) {
           rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate,
-                                                             reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums);
+                                                             reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums, near);
         });
       };
       // density diffusion, with a coefficient of zero where it is off, comes with what is rarely without: images and slopes

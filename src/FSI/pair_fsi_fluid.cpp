@@ -40,7 +40,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, cut_solids{}, rate(nullptr), beyond(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, cut_solids{}, rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -258,6 +258,11 @@ void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
 void PairFSIFluid::begin_state(bool advance)
 {
   images_step = -1;
+  near_known = false;
+  const auto *const v = FixFSI::rows(atom->v);
+  double most = 0.0;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++) most = std::max(most, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+  fastest = std::sqrt(most);
   fix_fsi->shifts = advance && shifting > 0.0 && update->ntimestep % shift_every == 0;
   if (neighbor->ago) return;
   fields.grow();
@@ -269,6 +274,13 @@ void PairFSIFluid::begin_state(bool advance)
   follow_thin_bodies();
   fix_fsi->send_to_ghosts(fill);
   fix_fsi->send_to_ghosts(fill_weight);
+}
+
+double PairFSIFluid::reach() const
+{
+  double speed = 2.0 * fastest;
+  for (const Wall &wall : fix_fsi->walls.wall) speed += 2.0 * std::fabs(wall.velocity[wall.axis]);
+  return fix_fsi->largest_cut + update->dt * speed;
 }
 
 bool PairFSIFluid::add_rates(bool advance)
@@ -477,14 +489,16 @@ void PairFSIFluid::find_rows()
 }
 
 /* ----------------------------------------------------------------------
-   rows of images, one list per reflection: of the neighbors that are near its walls, too, and of local fluid particles themselves;
-   segments of walls reflect a pair only if the line between them passes through. position(i) says where particles are
+   rows of images, one list per reflection: of local fluid particles themselves, and of the neighbors that are near its walls, too, both
+   together not farther than the support; segments of walls reflect a pair only if the line between them passes
+   through. position(i) says where particles are
 ------------------------------------------------------------------------- */
 
 template <class Position> void PairFSIFluid::find_images(const Walls &walls, Position position)
 {
   const int *const wmask = fix_fsi->wmask, *const type = atom->type, nlocal = atom->nlocal;
-  const double cutsq = fix_fsi->cut * fix_fsi->cut;
+  const auto *const x = FixFSI::rows(atom->x);
+  const double cutsq = fix_fsi->cut * fix_fsi->cut, within = reach();
   const int n = walls.reflections.size();
   const bool finite = walls.finite();
   const auto sees = [&](int i, int j, int k) {
@@ -507,18 +521,21 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
       for (int k = 0; k < n; k++) {
         const int mask = walls.reflections[k].mask;
         if ((wmask[i] & mask) != mask) continue;
+        const Wall &wall = fix_fsi->walls.wall[walls.reflections[k].w[0]];
+        const double farthest = within - wall.distance(x[i]);
         if (finite)
           lists[k].add(i, row.j, row.n, of_own_type && sees(i, i, k), false, [&](int j) { return (wmask[j] & mask) == mask && sees(i, j, k); });
         else
-          lists[k].add(i, row.j, row.n, of_own_type, false, [=](int j) { return (wmask[j] & mask) == mask; });
+          lists[k].add(i, row.j, row.n, of_own_type, false, [&](int j) { return (wmask[j] & mask) == mask && wall.distance(x[j]) < farthest; });
       }
     }
     for (auto &list_of : lists) list_of.end();
+    near_images[kind].resize(n);
   }
 }
 
 /* ----------------------------------------------------------------------
-   calls loop(kind of rows, rows, mirror, reflection) for all rows of images; without extent of walls they are the same in all of a
+   calls loop(kind of rows, number of reflection, mirror) for all rows of images; without extent of walls they are the same in all of a
    step's loops
 ------------------------------------------------------------------------- */
 
@@ -530,7 +547,7 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
   for (size_t k = 0; k < walls.reflections.size(); k++) {
     const Mirror mirror(walls, walls.reflections[k]);
     for (const int kind : {FLUIDS, SOLIDS})
-      if (!images[kind][k].rows.empty()) loop(kind, images[kind][k].rows, &mirror, walls.reflections[k]);
+      if (!images[kind][k].rows.empty()) loop(kind, k, &mirror);
   }
 }
 
@@ -590,21 +607,28 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
     p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
     p.pv2 = DensityDiffusion::hydrostatic(fix_fsi->body_forces.of_type[type[i]].data(), p.position(x[i]).data(), s.rho0 * s.inv_csq);
   });
+  // the density of walls is that of the pressures in the last step or setup, which a restart does not know
+  if (fix_fsi->shifts && !rows[WALLS].rows.empty()) {
+    auto *const point = reinterpret_cast<Point<D> *>(points.data());
+    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+      if (fix_fsi->state[type[i]].species == RIGID) point[i].vol = atom->rmass[i] * fix_fsi->state[type[i]].inv_rho0;
+  }
   if (fix_fsi->ledger) {
     pressure_over_density.resize(atom->nmax);
     for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fix_fsi->shifts && fills()};
+  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fix_fsi->shifts && fills(), reach()};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
-  const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror) {
-    loops->rates(kinds[kind], which, mirror, particles, laws, rate, shift, fix_fsi->ledger ? &sums : nullptr);
+  const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror, RowList &found) {
+    loops->rates(kinds[kind], which, mirror, particles, laws, rate, shift, fix_fsi->ledger ? &sums : nullptr, found);
   };
-  for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind].rows, nullptr);
+  for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind].rows, nullptr, near[kind]);
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(walls, [&](int i) { return point[i].position(x[i]); },
-             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { loop(kind, which, mirror); });
+             [&](int kind, int k, const Mirror *mirror) { loop(kind, images[kind][k].rows, mirror, near_images[kind][k]); });
+  near_known = true;
   fix_fsi->tally(FixFSI::DIFFUSION, sums.diffusion);
   fix_fsi->tally(FixFSI::WALLS, sums.walls);
 }
@@ -636,7 +660,7 @@ template <class Sum> void PairFSIFluid::distance_sums(bool others_too, Sum sum)
   for (int kind = 0; kind < NROWS; kind++) sum(kinds[kind], rows[kind].rows, both(kind), nullptr);
   double **x = atom->x;
   for_images(fix_fsi->walls, [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
-             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) { sum(kinds[kind], which, both(kind), mirror); });
+             [&](int kind, int k, const Mirror *mirror) { sum(kinds[kind], images[kind][k].rows, both(kind), mirror); });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
@@ -757,14 +781,16 @@ template <int D> void PairFSIFluid::compute_forces()
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   for (int kind = 0; kind < NROWS; kind++)
-    force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, forces.data(), nullptr, of_pairs);
+    force_loops(kind).forces(kinds[kind], (near_known ? near : rows)[kind].rows, nullptr, particles, laws, forces.data(), nullptr, of_pairs);
 
   const Walls &walls = fix_fsi->walls;
+  const auto &which = near_known && !walls.finite() ? near_images : images;
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(walls, [&](int i) { return point[i].position(x[i]); },
-             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &s) {
+             [&](int kind, int reflection, const Mirror *mirror) {
+               const auto &s = walls.reflections[reflection];
                double total[D] = {};
-               force_loops(kind).forces(kinds[kind], which, mirror, particles, laws, forces.data(), total, of_pairs);
+               force_loops(kind).forces(kinds[kind], which[kind][reflection].rows, mirror, particles, laws, forces.data(), total, of_pairs);
                for (int d = 0; d < D; d++) {
                  int w = s.w[0];
                  for (int k = 1; k < s.n; k++)
@@ -774,9 +800,11 @@ template <int D> void PairFSIFluid::compute_forces()
              });
 
   split_forces<D>(particles, laws);
+  near_known = false;    // who moves particles and asks again has no new rates
 
+  // LAMMPS sends what ghosts have home even without newton_pair, if newton_bond is on
   auto *const f = FixFSI::rows(atom->f);
-  for (int i = 0; i < nall; i++)
+  for (int i = 0; i < (force->newton_pair ? nall : atom->nlocal); i++)
     for (int d = 0; d < D; d++) f[i][d] += forces[ROW * i + d];
   fix_fsi->tally(FixFSI::ARTIFICIAL, sums.artificial);
   fix_fsi->tally(FixFSI::LAMINAR, sums.laminar);
@@ -804,9 +832,9 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   viscous_forces.assign((size_t) ROW * nall, 0.0);
   for (const int kind : {WALLS, SOLIDS}) force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
   for_images(fix_fsi->walls, [&](int i) { return point[i].position(atom->x[i]); },
-             [&](int kind, const std::vector<Row> &which, const Mirror *mirror, const Walls::Reflection &) {
+             [&](int kind, int k, const Mirror *mirror) {
                double unused[D] = {};
-               if (kind == SOLIDS) force_loops(kind).forces(kinds[kind], which, mirror, particles, laws, viscous_forces.data(), unused, nullptr);
+               if (kind == SOLIDS) force_loops(kind).forces(kinds[kind], images[kind][k].rows, mirror, particles, laws, viscous_forces.data(), unused, nullptr);
              });
   for (auto *measure : force_computes)
     if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
@@ -840,8 +868,10 @@ double PairFSIFluid::memory_usage()
 {
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity() + parts.capacity() + part_rates.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double) + (double) beside.capacity() * sizeof(beside[0]);
-  for (const auto &list_of : rows) bytes += list_of.memory_usage();
-  for (const auto &lists : images)
-    for (const auto &list_of : lists) bytes += list_of.memory_usage();
+  for (const auto *lists : {rows, near})
+    for (int kind = 0; kind < NROWS; kind++) bytes += lists[kind].memory_usage();
+  for (const auto *lists : {images, near_images})
+    for (int kind = 0; kind < NROWS; kind++)
+      for (const auto &list_of : lists[kind]) bytes += list_of.memory_usage();
   return bytes;
 }

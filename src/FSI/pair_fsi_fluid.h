@@ -100,6 +100,12 @@ class PairFSIFluid : public PairFSI {
   bigint images_step;
   template <class Position> void find_images(const FSI::Walls &, Position);
   template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
+  // of these, what the loop of rates finds within the support, for the next loop of forces: the lists have the skin's pairs, too
+  double fastest;    // of local and ghost particles
+  double reach() const;    // the support, and what a particle and another or its image may come nearer in a step
+  FSI::RowList near[NROWS];
+  std::vector<FSI::RowList> near_images[NROWS];
+  bool near_known;
 
   bool cut, solids_pass;    // does a solid pass through a mirror wall, may one before the next neighbor lists?
   std::vector<FSI::Walls::Depth> depths;     // per type and wall

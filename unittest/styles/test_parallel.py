@@ -20,7 +20,7 @@ FORCE_TL = 1e-11
 TRAJECTORY = 1e-9
 
 GRIDS = [(1, "1 1 1", "off"), (2, "2 1 1", "on"), (2, "1 2 1", "off"), (4, "4 1 1", "on"), (4, "2 2 1", "on"),
-         (4, "1 4 1", "off")]
+         (4, "1 4 1", "off"), (2, "2 1 1", "off on")]
 GRIDS_3D = [*GRIDS, (2, "1 1 2", "on"), (4, "1 2 2", "off")]
 CASES = [(name, dim, *grid) for name in SCENES for dim in (2, 3) for grid in (GRIDS if dim == 2 else GRIDS_3D)]
 NO_DIFFUSION = "sound 10 couple wall artificial/visc 0.05 0.1"

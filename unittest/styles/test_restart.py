@@ -55,6 +55,39 @@ def test_restart_n_goes_on_bit_for_bit(tmp_path, mode, ranks):
     assert differing(whole, rest) == []
 
 
+WALL_PARTICLES = """
+pair_style fsi/fluid sound 10 background 500 tension yes laminar/visc shift 0.2 density/diffusion 0.1
+pair_coeff * * materials.fsi water wall
+fix sph water fsi 0.05 wendland 1.5
+fix mirror water fsi/wall/mirror xlo 0 xhi 1 yhi 0.6 slip no velocity 0.5 0 0
+fix wall wall fsi/wall/particle slip no
+timestep 2e-4
+neighbor 0.015 bin
+thermo_modify norm no
+"""
+
+
+@pytest.mark.parametrize("ranks", (1, 2))
+def test_shifting_beside_wall_particles_goes_on_bit_for_bit(tmp_path, ranks):
+    """The density of walls, found in setup, too, is another than the running simulation had there."""
+    begin = "units si\ndimension 2\nboundary f f p\natom_style fsi\n"
+    make = begin + """region box block -0.4 1.4 -0.4 1 -0.025 0.025
+create_box 2 box
+lattice sq 0.05 origin 0.5 0.5 0
+region water block 0 1 0 0.6 INF INF units box
+region wall block 0 1 -0.2 0 INF INF units box
+create_atoms 1 region water
+create_atoms 2 region wall
+displace_atoms all random 0.005 0.005 0 7 units box
+group water type 1
+group wall type 2
+""" + WALL_PARTICLES
+    whole = run(tmp_path, make + watch(every=120) + "restart 60 mid.*\nrun 120\n", ranks).frames()[-1]
+    rest = run(tmp_path, begin + "read_restart mid.60\n" + WALL_PARTICLES + watch("rest.dump", 120) + "restart 60 other.*\nrun 60\n", ranks).frames("rest.dump")[-1]
+    assert whole.step == rest.step == 120
+    assert differing(whole, rest) == []
+
+
 @pytest.mark.parametrize("mode", MODES)
 def test_write_restart_changes_rank_count(tmp_path, mode):
     """write_restart on one rank, going on with four (and pair styles given again, which must be the same)."""

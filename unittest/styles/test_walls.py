@@ -391,3 +391,22 @@ def test_solid_behind_a_wall_on_ranks(tmp_path, dim):
     add = lambda values, more: np.concatenate([values, more])
     agree_on_ranks(tmp_path, replace(scene, x=add(scene.x, foot), v=add(scene.v, 0 * foot), type=add(scene.type, np.full(len(foot), 2)), box=box, walls=walls,
                                      rho=add(scene.rho, np.full(len(foot), 1000.0)), ids=np.arange(1, len(scene.x) + len(foot) + 1)))
+
+
+@pytest.mark.parametrize("form, tolerance", (("laminar/visc", 0.004), ("laminar/visc/central", 0.02)))
+def test_layers_of_two_fluids_share_a_stress(form, tolerance):
+    """Couette flow of two layers, one ten times as viscous: velocities go as 1/eta. The arithmetic mean of viscosities, between the layers, had the lower one 5 % too fast."""
+    n, speed, eta = 12, 0.1, (100.0, 1000.0)
+    x = lattice((8, n), 1 / n)
+    lower = x[:, 1] < 0.5
+    with Scene(x, dx=1 / n, kernel="quintic", hdx=1.0, type=2 - lower, materials=[f"{WATER} viscosity {e}" for e in eta], boundary="p f p",
+               box=((0, -0.5, 0), (8 / n, 1.5, 0)), dt=1e-3, fluid=f"sound 1 tension yes {form}",
+               commands=[f"fix w all fsi/wall/mirror ylo 0 slip no yhi 1 slip no velocity {speed} 0 0"]) as s:
+        s.run(12000)
+        at, v = s.get("x")[:, 1], s.get("v")[:, 0]
+    stress = speed / (0.5 / eta[0] + 0.5 / eta[1])
+    exact = np.where(lower, stress * at / eta[0], speed - stress * (1 - at) / eta[1])
+    away = np.abs(at - 0.5) > 1.5 / n  # the kink is as sharp as the lattice
+    error = np.abs(v - exact)[away].max() / speed
+    print(f"{form}: {error:.4f} of the wall's speed")
+    assert error < tolerance
