@@ -1,5 +1,7 @@
 """The package beside LAMMPS' own particle methods, in one program and one run: tools/cost peers"""
 
+import random
+import re
 import statistics
 import subprocess
 from pathlib import Path
@@ -14,17 +16,23 @@ DECKS = Path(__file__).resolve().parent / "peers"
 BUILD = paths.ROOT / "build-peers"
 LMP = BUILD / "lmp"
 PACKAGES = ("SPH", "BPM", "RHEO", "MACHDYN")  # RHEO needs BPM
-SETTINGS = ("dim", "nx", "ny", "nz", "steps", "support", "kernel", "hdx", "form", "correction")
+SETTINGS = ("dim", "nx", "ny", "nz", "shake", "steps", "support", "kernel", "hdx", "form", "correction")
 WATER2D = {"nx": 400, "ny": 250}
+WATER3D = {"dim": 3, "nx": 50, "ny": 50, "nz": 50}
+MIXED = {"shake": 0.2}  # of a spacing; particles and their IDs are in random order, too
 FULL = "artificial viscosity, density diffusion, mirror walls"
 
 # name: what is compared, settings of both, deck and further settings of ours, of the peer's, target of the ratio of their speeds. Steps are
 # multiples of those between neighbour lists, so that the list that fix fsi builds at the start of a run weighs no more than one of the peer's
 SPEEDS = {
     "sph 2d": ("sph/taitwater, 2D dam break, 100k particles, support 2.6 dx", {**WATER2D, "steps": 200},
-               ("water_fsi", {"kernel": "wendland"}), ("water_sph", {}), 1.3),
-    "sph 3d": ("sph/taitwater, 3D dam break, 125k particles, support 2.6 dx", {"dim": 3, "nx": 50, "ny": 50, "nz": 50, "steps": 60},
-               ("water_fsi", {"kernel": "wendland"}), ("water_sph", {}), 1.3),
+               ("water_fsi", {"kernel": "wendland"}), ("water_sph", {}), 1.6),
+    "sph 3d": ("sph/taitwater, 3D dam break, 125k particles, support 2.6 dx", {**WATER3D, "steps": 60},
+               ("water_fsi", {"kernel": "wendland"}), ("water_sph", {}), 1.7),
+    "sph 2d mixed": ("the same water in 2D, mixed", {**WATER2D, **MIXED, "steps": 200},
+                     ("water_fsi", {"kernel": "wendland"}), ("water_sph", {}), 1.36),
+    "sph 3d mixed": ("the same water in 3D, mixed", {**WATER3D, **MIXED, "steps": 60},
+                     ("water_fsi", {"kernel": "wendland"}), ("water_sph", {}), 1.45),
     "rheo 2d": ("RHEO, 2D dam break, 20k particles, quintic, support 3 dx", {"nx": 160, "ny": 125, "steps": 120},
                 ("water_fsi", {"kernel": "quintic", "hdx": 1.0}), ("water_rheo", {}), 5.0),
     "rheo 3d": ("RHEO, 3D dam break, 14k particles, quintic, support 3 dx", {"dim": 3, "nx": 24, "ny": 24, "nz": 24, "steps": 60},
@@ -66,12 +74,40 @@ def deck(name, settings):
     return forget + "".join(f"variable {n} index {v}\n" for n, v in settings.items()) + text
 
 
+def made(text):
+    """A deck up to where its particles have been made, and the rest."""
+    at = text.index("\npair_style")
+    return text[:at], text[at:]
+
+
+def mixed(text, data):
+    """The deck with its particles from a file, made here, in which they and their IDs are in random order."""
+    start, rest = made(text)
+    lines = start.splitlines()
+    if not data.exists():
+        plain = data.with_suffix(".plain")
+        measure.simulate(f"{start}\nwrite_data {plain} nocoeff", binary=LMP)
+        head, atoms = re.split(r"(?<=\n)(?=Atoms)", plain.read_text())
+        title, _, *atoms = atoms.split("\n\nVelocities")[0].splitlines()
+        order = random.Random(1)
+        order.shuffle(atoms)
+        names = [a.split()[0] for a in atoms]
+        order.shuffle(names)
+        data.write_text(f"{head}{title}\n\n" + "".join(f"{n} {a.split(maxsplit=1)[1]}\n" for n, a in zip(names, atoms)))
+        plain.unlink()
+    before = next(k for k, line in enumerate(lines) if line.startswith("region"))
+    return "\n".join([*lines[:before], f"read_data {data}", *(line for line in lines if line.startswith("group"))]) + rest
+
+
 def speeds(kept, packages, turns):
     rows = []
     for key, (what, both, *sides, target) in SPEEDS.items():
         if key.startswith(("tlsph", "ulsph")) and "MACHDYN" not in packages:
             continue
-        found = kept.pair(*(deck(name, {**both, **own}) for name, own in sides), turns, LMP)
+        texts = [deck(name, {**both, **own}) for name, own in sides]
+        if "shake" in both:
+            texts = [mixed(text, kept.folder / f"{key.replace(' ', '_')}_{name}.data") for text, (name, _) in zip(texts, sides)]
+        found = kept.pair(*texts, turns, LMP)
         ratio = found.ratio
         rows.append({"what": what, "ours": 1 / statistics.median(found.a), "peer": 1 / statistics.median(found.b), "ratio": ratio,
                      "spread": found.spread, "neighbours_ours": found.neighbours[0],
