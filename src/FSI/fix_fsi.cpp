@@ -327,6 +327,7 @@ void FixFSI::update_state(bool advance)
   fields.grow();
   nlocal_ready = atom->nlocal;
 
+  inverted = -1;
   tally_dt = (ledger && advance) ? update->dt : 0.0;
   body_forces.evaluate();
   if (ledger && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_fields.h"
+#include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_record.h"
@@ -123,26 +124,6 @@ bool FixFSIReference::is_solid(int i) const
 
 /* ---------------------------------------------------------------------- */
 
-// of all ranks
-static std::vector<tagint> gather(const std::vector<tagint> &mine, MPI_Comm world)
-{
-  int nprocs;
-  MPI_Comm_size(world, &nprocs);
-  int n = mine.size();
-  std::vector<int> count(nprocs), first(nprocs, 0);
-  MPI_Allgather(&n, 1, MPI_INT, count.data(), 1, MPI_INT, world);
-  for (int k = 1; k < nprocs; k++) first[k] = first[k - 1] + count[k - 1];
-  std::vector<tagint> all(first.back() + count.back());
-  MPI_Allgatherv(const_cast<tagint *>(mine.data()), n, MPI_LMP_TAGINT, all.data(), count.data(), first.data(), MPI_LMP_TAGINT, world);
-  return all;
-}
-
-static std::set<tagint> gather(const std::set<tagint> &mine, MPI_Comm world)
-{
-  const auto all = gather(std::vector<tagint>(mine.begin(), mine.end()), world);
-  return {all.begin(), all.end()};
-}
-
 /* ----------------------------------------------------------------------
    What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless told not to: each bonded atom knows
    its old one. Bonds to those that are gone are cut, as by damage. Solids cannot become something else, nor the reverse.
@@ -160,6 +141,11 @@ void FixFSIReference::follow_commands()
     if (!is_solid(i))
       error->one(FLERR, "Atom {} of type {} is bonded to body {} and no solid any more: delete it and create another in its place", tag[i],
                  atom->type[i], atom->molecule[i]);
+    // volumes are masses over densities
+    const double rho = atom->rho[i], rho0 = fix_fsi->state[atom->type[i]].rho0;
+    if (std::fabs(rho - rho0) > 1.0e-9 * rho0)
+      error->one(FLERR, "Solid atom {} has the mass of a material of density {:g}, but that of its type {} has {:g} now: make the body anew", tag[i], rho,
+                 atom->type[i], rho0);
     if (owner[slot[i]] != tag[i]) mine = 1;
     for (int k = 0; k < nbond[slot[i]] && !mine; k++) {
       const tagint t = partner[(size_t) slot[i] * maxbond + k];
@@ -241,6 +227,7 @@ void FixFSIReference::take()
                         "the atom a molecule ID of its own", atom->tag[i], atom->molecule[i]);
 
   made = as_now();
+  for (const int i : bare) atom->rho[i] = fix_fsi->state[atom->type[i]].rho0;    // from now on its strain says what it is
   neighbor->build_one(list);
   if (domain->dimension == 2) take_reference<2>(bare);
   else take_reference<3>(bare);
@@ -400,10 +387,10 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSIReference::break_bonds(double stretch)
+void FixFSIReference::break_bonds(double stretch, const Energy &energy)
 {
-  if (domain->dimension == 2) break_bonds_of_all<2>(stretch);
-  else break_bonds_of_all<3>(stretch);
+  if (domain->dimension == 2) break_bonds_of_all<2>(stretch, energy);
+  else break_bonds_of_all<3>(stretch, energy);
 }
 
 // Nobody of this rank's solids moves relative to anybody else by more than the diagonal of the box that holds all their displacements.
@@ -432,7 +419,7 @@ template <int D> void FixFSIReference::move_apart()
   apart = anew ? 0.0 : apart + std::sqrt(sum) + 1e-9 * fix_fsi->dx;    // more than round-off
 }
 
-template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
+template <int D> void FixFSIReference::break_bonds_of_all(double stretch, const Energy &energy)
 {
   double **x = atom->x;
   const double limit = stretch * stretch;
@@ -455,15 +442,21 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch)
       reserve = std::min(reserve, apart + stretch * std::sqrt(Rsq) - std::sqrt(rsq));
       return false;
     };
+    double before = -1.0;
     int kept = 0;
     for (int k = 0; k < n; k++) {
-      if (longer(k)) continue;
+      if (longer(k)) {
+        if (before < 0.0) before = energy(i);
+        continue;
+      }
       if (kept < k) move_bond(slot[i], k, kept);
       kept++;
     }
     if (kept == n) continue;
     n = kept;
     renew<D>(i);
+    const double after = energy(i);
+    if (after > before) quadrature[slot[i]] *= before / after;
     changes++;
   }
 }

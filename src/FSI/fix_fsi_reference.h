@@ -27,6 +27,7 @@ FixStyle(fsi/reference,FixFSIReference);
 #include "fsi_swaps.h"
 
 #include <string>
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -73,8 +74,11 @@ class FixFSIReference : public Fix {
   double weight(int i) const { return quadrature[slot[i]]; }    // of i in the energy's integral, times its volume
 
   // removes bonds longer than stretch times their reference length, and makes the gradient anew from those left; a particle
-  // whose bonds no longer suffice loses them all. Looks only at particles of which a bond may have become too long since
-  void break_bonds(double stretch);
+  // whose bonds no longer suffice loses them all. The gradient of those left may be another than that of all: where the energy (per volume,
+  // of local atom i) would grow by it, the particle's weight shrinks instead, so that breaking makes no energy. Looks only at particles of
+  // which a bond may have become too long since
+  typedef std::function<double(int)> Energy;
+  void break_bonds(double stretch, const Energy &energy);
 
   int changes;    // how often bonds, or where their partners are, have changed
   // local solid atoms, and ghosts of solid atoms
@@ -105,7 +109,7 @@ class FixFSIReference : public Fix {
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
   bool is_solid(int i) const;
-  template <int D> void break_bonds_of_all(double stretch);
+  template <int D> void break_bonds_of_all(double stretch, const Energy &energy);
   template <int D> bool renew(int i);
   template <int D> void move_apart();
   double *bond_in(int s, int k) { return &data[(size_t) s * maxbond * nvalue] + FSI::number_of_bond(k, nvalue); }

@@ -493,7 +493,7 @@ class Adviser : protected Pointers {
       if (!sight.beside(i, here)) continue;
       const int t = here.type;
       const double thickness = here.layers * scene.dx_of(t);
-      if (sight.distance(here) < scene.dx) {
+      if (sight.distance(here) < 1.01 * scene.dx) {    // the next row of the same lattice, too
         mine[n + t] = std::min(mine[n + t], thickness);
         mine[2 * n + t] = std::min(mine[2 * n + t], -sight.fill(here).force);
       }

@@ -29,6 +29,7 @@
 #include "fsi_material.h"
 #include "fsi_pack.h"
 #include "fsi_rows.h"
+#include "fsi_tensor.h"
 #include "fsi_viscosity_artificial.h"
 
 #include <type_traits>
@@ -56,6 +57,7 @@ namespace FSI {
 
   struct BondSums {
     double energy = 0.0, artificial = 0.0, virial[6] = {};    // artificial: power that it takes
+    int inverted = -1;    // a particle with det F <= 0
   };
 
   struct BondArguments {
@@ -193,6 +195,7 @@ namespace FSI {
       for (int k = 0; k < D * D; k++) Fi[k] = L::sum(F[k]);
       // inline: a call would write F number by number and read it in pairs, which waits until all stores before it are done
       const auto piola = laws[in.type[i]].template operator()<D>(Fi, in.stress ? in.stress[i] : nullptr);
+      if (determinant<D>(Fi) <= 0.0) in.sums->inverted = i;
       double t[D * D];    // derivative of the energy of i with respect to F_i
       for (int k = 0; k < D * D; k++) t[k] = row.volume * piola.P[k];
       if (FLAGS & HOURGLASS) subtract_hourglass<T, D>(row.stiffness, A, row.moments, Fi, t);

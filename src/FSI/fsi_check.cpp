@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_pack.h"
 #include "fsi_scene.h"
 #include "modify.h"
@@ -108,6 +109,30 @@ void Check::materials()
   }
   spacings();
   thin_bodies();
+  held_parts();
+}
+
+/* ----------------------------------------------------------------------
+   A part of a body that has a velocity, but that nothing moves, strains the rest of it for ever. (A whole body is a surface that drags fluid along.)
+------------------------------------------------------------------------- */
+
+void Check::held_parts() const
+{
+  std::set<tagint> mine;
+  std::vector<int> suspects;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (scene.state[atom->type[i]].species != SOLID) continue;
+    const double *const v = atom->v[i];
+    if (scene.is_moved(i)) mine.insert(atom->molecule[i]);
+    else if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0) suspects.push_back(i);
+  }
+  const auto moving = gather(mine, world);
+  for (const int i : suspects)
+    if (moving.count(atom->molecule[i])) {
+      const double *const v = atom->v[i];
+      error->one(FLERR, "Atom {} of a solid has the velocity {:g} {:g} {:g}, but neither fix fsi nor another fix moves it: it would strain its body "
+                        "{} without end. Set it to 0, or let a fix move it", atom->tag[i], v[0], v[1], v[2], atom->molecule[i]);
+    }
 }
 
 /* ----------------------------------------------------------------------
@@ -241,6 +266,7 @@ void Check::after_substeps()
   const int *const type = atom->type;
   for (const int i : *substepped)
     if (!(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2] <= limit_sq[type[i]])) examine(i, 0.0);
+  inside_out();
   judge(Stop::MIDDLE);
 }
 
@@ -265,6 +291,12 @@ void Check::look(bool closely, double kick)
     if (!calm)
       for (int k = i; k < i + m; k++) examine(k, kick);
   }
+  inside_out();
+}
+
+void Check::inside_out()
+{
+  if (scene.inverted >= 0) enter(stop.finding(DENSITY, scene.inverted, scene.inverted_density));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -49,9 +49,11 @@ namespace FSI {
     Finding found;                   // the first thing that is not finite, or the worst of this rank
 
     void spacings() const;
+    void held_parts() const;
     void thin_bodies() const;
     void enter(const Finding &);
     void examine(int i, double kick);
+    void inside_out();
     void look(bool closely, double kick);
     void judge(Stop::When);
   };

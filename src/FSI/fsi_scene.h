@@ -101,6 +101,10 @@ namespace FSI {
     bool need_psi;         // for any mode or rule
     bool keep_psi;         // it is that of some steps only: it travels with its atom and through restarts
 
+    // A total-Lagrangian solid that this step found turned inside out, det F <= 0: -1 if there is none; its density
+    int inverted;
+    double inverted_density;
+
     // Energy ledger (compute fsi/energy): what each term took from the particles' energy since fix fsi was defined, this
     // rank's part; kept only while such a compute exists
     enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, FIELDS, NTERM };

@@ -86,6 +86,7 @@ void FSISet::command(int narg, char **arg)
       continue;
     }
     if (s.species == RIGID) continue;    // has its pressure from the fluid, and its mass
+    if (s.form == TOTAL_LAGRANGIAN) continue;    // has its density from its strain
     double rho = value;
     if (hydrostatic) {
       const auto g = fix_fsi->body_forces.on(i);

@@ -126,6 +126,11 @@ void PairFSISolidTL::init_style()
   refuse_constraints();
   fix_stress = FixFSIStress::find(lmp);
   if (hypoelastic() && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
+  if (hypoelastic() && fix_stress->plane_stress != plane_stress) {
+    static const char *const planes[] = {"strain", "stress"};
+    error->all(FLERR, "Pair style fsi/solid/tl law hypo has plane {} and fix fsi/stress plane {}: expected the same in both", planes[plane_stress],
+               planes[fix_stress->plane_stress]);
+  }
 
   reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(REFERENCE));
   if (!reference)
@@ -172,6 +177,23 @@ void PairFSISolidTL::refuse_constraints() const
         error->all(FLERR, "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see forces inside the solid: to hold "
                           "particles leave them out of the group of fix {}", fix->id, fix->style, first, fix_fsi->id);
     }
+}
+
+/* ----------------------------------------------------------------------
+   A rigid part of an elastic body is kicked once in a step, by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
+------------------------------------------------------------------------- */
+
+void PairFSISolidTL::refuse_rigid_parts() const
+{
+  for (auto &fix : modify->get_fix_list()) {
+    if (!utils::strmatch(fix->style, "^rigid") && !utils::strmatch(fix->style, "^poems")) continue;
+    for (const BondRow &row : rows) {
+      const auto elastic = [&](int i) { return atom->mask[i] & fix_fsi->groupbit; };
+      if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int j) { return !elastic(j) && atom->mask[j] & fix->groupbit; }))
+        error->one(FLERR, "Fix {} (style {}) moves a part of the elastic body of atom {}, which takes sub-steps: the part would gain energy. Use "
+                          "substeps 1 in fix fsi, or fix fsi/move if its motion is known", fix->id, fix->style, atom->tag[row.i]);
+    }
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -235,6 +257,7 @@ void PairFSISolidTL::find_rows()
     rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i), reference->moments(i),
                     atom->rmass[i] / s.rho0 * reference->weight(i), zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
   }
+  if (fix_fsi->substeps > 1) refuse_rigid_parts();
   const auto moves = [=](const BondRow &row) {
     return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [=](int j) { return mask[j] & groupbit; });
   };
@@ -278,6 +301,11 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
     }
   });
   strain_energy = sums.energy;
+  // fragments of a body that damage tears have few bonds, whose F may be anything
+  if (sums.inverted >= 0 && damage == 0.0) {
+    fix_fsi->inverted = sums.inverted;
+    fix_fsi->inverted_density = state[type[sums.inverted]].rho0 / volume_ratio(sums.inverted);
+  }
   fix_fsi->tally(FixFSI::ARTIFICIAL, sums.artificial);
   if (vflag_global)
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
@@ -396,7 +424,21 @@ void PairFSISolidTL::break_bonds()
 {
   if (damage <= 0.0) return;
   const Phase phase(fix_fsi->profile, Profile::STRESS);
-  reference->break_bonds(1.0 + damage);
+  reference->break_bonds(1.0 + damage, [this](int i) { return stored(i); });
+}
+
+// elastic energy per reference volume; of law hypo, whose stress is no function of F, 0
+double PairFSISolidTL::stored(int i) const
+{
+  if (law == HYPO || reference->count(i) == 0) return 0.0;
+  const auto evaluate = [&](auto dimension) {
+    constexpr int D = decltype(dimension)::value;
+    double F[D * D];
+    deformation<D>(i, F);
+    const int t = atom->type[i];
+    return law == SVK ? svk[t].template operator()<D>(F, nullptr).energy : neohookean[t].template operator()<D>(F, nullptr).energy;
+  };
+  return fix_fsi->dim == 2 ? evaluate(std::integral_constant<int, 2>()) : evaluate(std::integral_constant<int, 3>());
 }
 
 double PairFSISolidTL::volume_ratio(int i) const

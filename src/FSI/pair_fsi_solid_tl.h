@@ -96,6 +96,8 @@ class PairFSISolidTL : public PairFSI {
   int nmax;
 
   void refuse_constraints() const;
+  void refuse_rigid_parts() const;
+  double stored(int i) const;
   template <class L> const L *laws() const;
   // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces are seen from outside
   std::vector<FSI::BondRow> rows;

@@ -27,7 +27,7 @@ def gate(substeps=3, held=True):
     text = total_lagrangian(scene.text()).replace(f"timestep {scene.dt!r}", f"timestep {substeps * scene.dt!r}")
     if held:
         text = text.replace("fix sph all", "group plate type 2\nregion up block INF INF 0.07 INF INF INF\ngroup up region up\n"
-                            "group clamp intersect plate up\ngroup mobile subtract all clamp\nfix sph mobile")
+                            "group clamp intersect plate up\nvelocity clamp set 0 0 0\ngroup mobile subtract all clamp\nfix sph mobile")
     return scene, text
 
 

@@ -1050,6 +1050,74 @@ def test_constraints_on_substepped_solids_are_refused(line, how, refused):
             s.run()
 
 
+@pytest.mark.parametrize("substeps, tip, refused", [(4, "rigid single", True), (1, "rigid single", False), (4, "fsi/move linear 0.1 0 0", False)])
+def test_rigid_part_of_a_substepped_body_is_refused(substeps, tip, refused):
+    """It is kicked once in a step by forces that the sub-steps do not see: its beam gained energy without end."""
+    x = lattice([12, 4], DX)
+    with solid(x, held=x[:, 0] > 8 * DX, density=f"substeps {substeps}", commands=[f"fix tip held {tip}"]) as s:
+        if refused:
+            with pytest.raises(Exception, match=r"Fix tip \(style rigid\) moves a part of the elastic body of atom \d+"):
+                s.run()
+        else:
+            s.run()
+
+
+@pytest.mark.parametrize("style, more", [("fsi/solid", ""), ("fsi/solid/tl", ""), ("fsi/solid/tl", "law hypo")])
+def test_velocity_of_what_nothing_moves_is_refused(style, more):
+    """It would strain its neighbours for ever; not if another fix moves it."""
+    x = lattice([8, 4], DX)
+    held, v = x[:, 0] < 2 * DX, np.zeros_like(x)
+    v[:, 1] = 0.2
+    stress = ["fix stress all fsi/stress"] if more else []
+    with Scene(x, v, dx=DX, materials=(MATERIAL,), held=held, solid_style=style, solid=more, commands=stress) as s:
+        with pytest.raises(Exception, match=r"Atom \d+ of a solid has the velocity 0 0.2 0, but neither fix fsi nor"):
+            s.run()
+        s.run_lines("velocity held set 0 0 0")
+        s.run()
+    with Scene(x, v, dx=DX, materials=(MATERIAL,), held=held, solid_style=style, solid=more, commands=[*stress, "fix m held fsi/move linear 0 0.2 0"]) as s:
+        s.run(2)
+
+
+def test_mass_is_that_of_the_material():
+    """The volume of a bond is the mass over the density: another density would make another body of it."""
+    with Scene(lattice([6, 4], DX), dx=DX, materials=(MATERIAL, "solid rho 3000 young 1e5 poisson 0.3"), solid_style="fsi/solid/tl") as s:
+        s.run()
+        s.run_lines("set group all type 2")
+        with pytest.raises(Exception, match="Solid atom 1 has the mass of a material of density 1000, but"):
+            s.run()
+
+
+@pytest.mark.parametrize("command", ("density 1100", "pressure 1e5", "hydrostatic 10"))
+def test_fsi_set_leaves_the_mass_alone(command):
+    with Scene(lattice([6, 4], DX), dx=DX, materials=(MATERIAL,), solid_style="fsi/solid/tl", commands=["fix g all gravity 9.81 vector 0 -1 0"]) as s:
+        mass = s.run().get("rmass")
+        s.run_lines(f"fsi_set all {command}")
+        np.testing.assert_array_equal(s.run().get("rmass"), mass)
+        assert (s.get("rho") == 1000.0).all()
+
+
+def test_planes_must_agree():
+    with Scene(lattice([6, 4], DX), dx=DX, materials=(MATERIAL,), solid_style="fsi/solid/tl", solid="law hypo plane stress", commands=["fix stress all fsi/stress"]) as s:
+        with pytest.raises(Exception, match="law hypo has plane stress and fix fsi/stress plane strain: expected"):
+            s.run()
+
+
+@pytest.mark.parametrize("substeps", (1, 4))
+@pytest.mark.parametrize("when", ("start", "later"))
+def test_body_turned_inside_out_stops_the_run(tmp_path, monkeypatch, substeps, when):
+    """St. Venant-Kirchhoff has no energy against it: a bar that is its own mirror image is at rest, and one that is pushed hard enough goes through itself."""
+    monkeypatch.chdir(tmp_path)
+    x = lattice([8, 4], DX)
+    v = np.zeros_like(x)
+    if when == "later":
+        v[:, 0] = -40.0 * np.sign(x[:, 0] - 4 * DX)
+    with Scene(x, v, dx=DX, dt=1e-4, materials=(MATERIAL,), density=f"substeps {substeps} mach off", solid_style="fsi/solid/tl") as s:
+        if when == "start":
+            s.run().put("x", x * [-1, 1, 1])
+        with pytest.raises(Exception, match=r"density -\S+ is not above 0 on step \d+, atom \d+ "):
+            s.run(200)
+
+
 def test_added_forces_and_substeps():
     """Fix addforce on one side of a solid with sub-steps gives it its momentum."""
     x = lattice([6, 5], DX)

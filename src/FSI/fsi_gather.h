@@ -1,0 +1,50 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// What all ranks have, on each of them.
+
+#ifndef LMP_FSI_GATHER_H
+#define LMP_FSI_GATHER_H
+
+#include "lmptype.h"
+
+#include <mpi.h>
+#include <set>
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  inline std::vector<tagint> gather(const std::vector<tagint> &mine, MPI_Comm world)
+  {
+    int nprocs;
+    MPI_Comm_size(world, &nprocs);
+    int n = mine.size();
+    std::vector<int> count(nprocs), first(nprocs, 0);
+    MPI_Allgather(&n, 1, MPI_INT, count.data(), 1, MPI_INT, world);
+    for (int k = 1; k < nprocs; k++) first[k] = first[k - 1] + count[k - 1];
+    std::vector<tagint> all(first.back() + count.back());
+    MPI_Allgatherv(const_cast<tagint *>(mine.data()), n, MPI_LMP_TAGINT, all.data(), count.data(), first.data(), MPI_LMP_TAGINT, world);
+    return all;
+  }
+
+  inline std::set<tagint> gather(const std::set<tagint> &mine, MPI_Comm world)
+  {
+    const auto all = gather(std::vector<tagint>(mine.begin(), mine.end()), world);
+    return {all.begin(), all.end()};
+  }
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
