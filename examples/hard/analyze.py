@@ -23,7 +23,7 @@ from fsi.geometry import min_pair_distance  # noqa: E402
 from fsi.leaks import Leaks  # noqa: E402
 from fsi.summary import RUN_FILE, Summary, number  # noqa: E402
 
-CAUSES = r"Fix fsi(?:/watch)?: .*(Mach number|distance over|density error|Courant number|kinetic energy|not finite)"
+CAUSES = r"Fix fsi(?:/watch)?: .*(Mach number|distance over|density error|density \S+ is not above 0|Courant number|kinetic energy|not finite)"
 LINK = 1.5  # [dx] farther apart, two particles do not hang together
 
 

@@ -184,6 +184,9 @@ void FixFSIInlet::init()
       error->all(FLERR, "{} buffer {} is too short: expected at least {:g}, the kernel's support {:g}, a spacing and half the skin", who, given_length,
                  fix_fsi->dx * std::ceil(least / fix_fsi->dx - 1.0e-9), fix_fsi->cut);
   }
+  if (!made.empty() && (std::fabs(position - made[0]) > 1.0e-6 * fix_fsi->dx || std::fabs(length - made[1]) > 1.0e-6 * fix_fsi->dx))
+    error->all(FLERR, "{} {}: the restart file has its plane at {:g} with a buffer of {:g}, here it is {:g} with {:g}: expected the same, since the buffer is "
+                      "full. Give keyword buffer if the skin has changed", who, id, made[0], made[1], position, length);
   // a number in a script may be that of the box but for its last digits
   const double end = position - side * length, little = 1.0e-9 * domain->prd[axis], lo = domain->boxlo[axis], hi = domain->boxhi[axis];
   if (position < lo - little || position > hi + little)
@@ -775,6 +778,7 @@ void FixFSIInlet::write_restart(FILE *fp)
 {
   Record record(lmp, style);
   record.add("filled", std::vector<double>{double(filled), served});
+  record.add("buffer", std::vector<double>{position, length});
   record.add("absorption", std::vector<double>{wave, before, double(has_before)});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
   record.add("last ID", std::to_string(last_id));
@@ -788,6 +792,7 @@ void FixFSIInlet::restart(char *buf)
   auto numbers = record.numbers("filled");
   filled = numbers[0] != 0.0;
   served = numbers[1];
+  if (record.has("buffer")) made = record.numbers("buffer");
   numbers = record.numbers("absorption");
   wave = numbers[0];
   before = numbers[1];

@@ -86,6 +86,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   Value velocity[3], pressure;
   double absorb;    // 1/time; < 0: of the domain's length
   double given_length, length;
+  std::vector<double> made;    // of a restart file: plane and length of its buffer
   class Region *region;
   class FixFSI *fix_fsi;
 

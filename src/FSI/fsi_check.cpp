@@ -80,6 +80,9 @@ void Check::before_init()
     error->all(FLERR, "Fix fsi does not support minimize: there is no energy of all particles; run with fix viscous or artificial/visc to a state of rest");
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix fsi does not support run_style respa");
+  if (force->pair_match("fsi/fluid", 1))
+    for (const auto &fix : modify->get_fix_by_style("^deform"))
+      error->all(FLERR, "Fix {} (style deform) moves particles with the box, and densities of fluids would not follow: move walls instead", fix->id);
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
   if (comm->cutghostuser > 0.0 && comm->cutghostuser < scene.largest_cut)
     error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", scene.largest_cut, comm->cutghostuser);

@@ -134,6 +134,7 @@ CASES = [
     ("minimize fluid", re.compile(HYBRID.pattern + r"([\s\S]*)fix stress.*([\s\S]*)\nrun 0"),
      r"pair_style fsi/fluid sound 10\npair_coeff * * materials.fsi water water\n\1\2\nminimize 0 1e-6 10 10", r"Fix fsi does not support minimize"),
     ("respa", RUN, "run_style respa 2 2\nrun 0", r"does not support run_style respa"),
+    ("fluid in a box that is deformed", RUN, "fix d all deform 1 x scale 1.1\nrun 1", r"Fix d \(style deform\) moves particles with the box, and densities of fluids"),
     ("communication cutoff small", RUN, "comm_modify cutoff 0.02\nrun 0",
      r"support 0\.03 of fix fsi is larger than the comm_modify cutoff 0\.02"),
     ("triclinic box", RUN, "change_box all triclinic\nrun 0", r"triclinic"),

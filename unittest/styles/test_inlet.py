@@ -144,6 +144,16 @@ def test_restart_goes_on_bit_for_bit(tmp_path, background):
     assert (tmp_path / "whole.txt").read_text().splitlines()[-1] == (tmp_path / "rest.txt").read_text().splitlines()[-1]
 
 
+@pytest.mark.parametrize("inlet", (INLET + " buffer 0.8", INLET.replace("xlo 0", "xlo 0.1"), INLET), ids=("buffer", "plane", "same"))
+def test_restart_keeps_the_buffer(tmp_path, inlet):
+    """It is full: with another length, or elsewhere, the stream would lack a slice or have one twice."""
+    room = ATOMS.replace("-0.6 3.6", "-1.2 3.6")
+    run(tmp_path, deck(room) + "run 1\nwrite_restart start\n", **FILES)
+    done = lammps(tmp_path, deck("read_restart start", inlet=inlet) + "run 1\n", **FILES)
+    assert (done.status == 0) == (inlet == INLET)
+    assert inlet == INLET or "the restart file has its plane at 0 with a buffer of 0.5, here it is 0" in done.errors[0]
+
+
 @OPEN
 @pytest.mark.parametrize("ranks, newton", [(2, "on"), (4, "off")])
 def test_ranks_agree(tmp_path, ranks, newton, background):
