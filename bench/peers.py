@@ -74,15 +74,9 @@ def deck(name, settings):
     return forget + "".join(f"variable {n} index {v}\n" for n, v in settings.items()) + text
 
 
-def made(text):
-    """A deck up to where its particles have been made, and the rest."""
-    at = text.index("\npair_style")
-    return text[:at], text[at:]
-
-
 def mixed(text, data):
     """The deck with its particles from a file, made here, in which they and their IDs are in random order."""
-    start, rest = made(text)
+    start, rest = text.split("\npair_style", 1)
     lines = start.splitlines()
     if not data.exists():
         plain = data.with_suffix(".plain")
@@ -96,7 +90,7 @@ def mixed(text, data):
         data.write_text(f"{head}{title}\n\n" + "".join(f"{n} {a.split(maxsplit=1)[1]}\n" for n, a in zip(names, atoms)))
         plain.unlink()
     before = next(k for k, line in enumerate(lines) if line.startswith("region"))
-    return "\n".join([*lines[:before], f"read_data {data}", *(line for line in lines if line.startswith("group"))]) + rest
+    return "\n".join([*lines[:before], f"read_data {data}", *(line for line in lines if line.startswith("group")), "", f"pair_style{rest}"])
 
 
 def speeds(kept, packages, turns):

@@ -122,8 +122,6 @@ bool FixFSIReference::is_solid(int i) const
   return fix_fsi->state[atom->type[i]].species == SOLID;
 }
 
-/* ---------------------------------------------------------------------- */
-
 /* ----------------------------------------------------------------------
    What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless told not to: each bonded atom knows
    its old one. Bonds to those that are gone are cut, as by damage. Solids cannot become something else, nor the reverse.

@@ -26,8 +26,8 @@ FixStyle(fsi/reference,FixFSIReference);
 #include "fsi_bond_rows.h"
 #include "fsi_swaps.h"
 
-#include <string>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {

@@ -40,7 +40,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, cut_solids{}, rate(nullptr), beyond(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), reach(INFINITY), near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, cut_solids{}, rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -259,10 +259,6 @@ void PairFSIFluid::begin_state(bool advance)
 {
   images_step = -1;
   near_known = false;
-  const auto *const v = FixFSI::rows(atom->v);
-  double most = 0.0;
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++) most = std::max(most, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
-  fastest = std::sqrt(most);
   fix_fsi->shifts = advance && shifting > 0.0 && update->ntimestep % shift_every == 0;
   if (neighbor->ago) return;
   fields.grow();
@@ -276,17 +272,21 @@ void PairFSIFluid::begin_state(bool advance)
   fix_fsi->send_to_ghosts(fill_weight);
 }
 
-double PairFSIFluid::reach() const
+void PairFSIFluid::find_reach()
 {
-  double speed = 2.0 * fastest;
+  const auto *const v = FixFSI::rows(atom->v);
+  double most = 0.0;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++) most = std::max(most, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+  double speed = 2.0 * std::sqrt(most);
   for (const Wall &wall : fix_fsi->walls.wall) speed += 2.0 * std::fabs(wall.velocity[wall.axis]);
-  return fix_fsi->largest_cut + update->dt * speed;
+  reach = fix_fsi->largest_cut + update->dt * speed;
 }
 
 bool PairFSIFluid::add_rates(bool advance)
 {
   fields.grow();
   find_cut_solids();
+  if (rate || fix_fsi->walls.any()) find_reach();
   const size_t nall = atom->nlocal + atom->nghost;
   if (rate) std::fill_n(rate, nall, 0.0);
   if (fix_fsi->shifts && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
@@ -498,7 +498,7 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
 {
   const int *const wmask = fix_fsi->wmask, *const type = atom->type, nlocal = atom->nlocal;
   const auto *const x = FixFSI::rows(atom->x);
-  const double cutsq = fix_fsi->cut * fix_fsi->cut, within = reach();
+  const double cutsq = fix_fsi->cut * fix_fsi->cut, within = reach;
   const int n = walls.reflections.size();
   const bool finite = walls.finite();
   const auto sees = [&](int i, int j, int k) {
@@ -618,7 +618,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
     for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fix_fsi->shifts && fills(), reach()};
+  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fix_fsi->shifts && fills(), reach};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror, RowList &found) {

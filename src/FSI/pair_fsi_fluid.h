@@ -101,8 +101,8 @@ class PairFSIFluid : public PairFSI {
   template <class Position> void find_images(const FSI::Walls &, Position);
   template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
   // of these, what the loop of rates finds within the support, for the next loop of forces: the lists have the skin's pairs, too
-  double fastest;    // of local and ghost particles
-  double reach() const;    // the support, and what a particle and another or its image may come nearer in a step
+  double reach;    // the support, and what a particle and another or its image may come nearer in a step
+  void find_reach();
   FSI::RowList near[NROWS];
   std::vector<FSI::RowList> near_images[NROWS];
   bool near_known;
