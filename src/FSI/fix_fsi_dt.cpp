@@ -126,12 +126,37 @@ void FixFSIDt::setup(int)
   const bool go_on = restored || (dt > 0.0 && update->dt == dt);
   restored = false;
   if (!go_on) {
+    find_outside();
     find_limits();
     // down at once; up only where no time step was given
     if (check) report();
     else choose(update->dt_default ? BIG : update->dt);
   }
   if (end < BIG) approach_end();
+}
+
+/* ----------------------------------------------------------------------
+   what moves, but is not looked at
+------------------------------------------------------------------------- */
+
+void FixFSIDt::find_outside() const
+{
+  bigint mine[2] = {0, 0}, all[2];
+  tagint one = MAXTAGINT, first;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int species = fix_fsi->state[atom->type[i]].species;
+    if ((atom->mask[i] & groupbit) || !(atom->mask[i] & fix_fsi->groupbit) || (species != FLUID && species != SOLID)) continue;
+    mine[0]++;
+    mine[1] += species == SOLID;
+    one = std::min(one, atom->tag[i]);
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&one, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  if (all[0] == 0) return;
+  const auto text = fmt::format("Fix fsi/dt: {} particles that fix {} moves, the first of them atom {}, are not in group {}", all[0], fix_fsi->id, first,
+                                group->names[igroup]);
+  if (automatic && all[1]) error->all(FLERR, "{}: substeps auto must know all solids", text);
+  if (comm->me == 0) error->warning(FLERR, "{}: they do not limit the time step", text);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -75,6 +75,7 @@ class FixFSIDt : public Fix, public FSI::Part {
   int warned;    // bits of causes
   bool restored;
 
+  void find_outside() const;
   void find_limits();
   void choose(double most);
   void approach_end();

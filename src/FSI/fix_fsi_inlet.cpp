@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_record.h"
 #include "group.h"
@@ -40,6 +41,7 @@ using namespace FSI;
 static constexpr double AUTO = -1.0;
 static constexpr int PRESSURE_COLUMN = 3, NCOLUMNS = 4;    // of the values of variables
 static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with; a column more or less is there at any time
+static constexpr double TOLD = 0.05;    // part of a term of the fit that the fluid must tell from lower ones
 static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: no fluid to speak of
 static constexpr double OCCUPIED = 0.5;    // of the spacing: a place is taken by who is as near
 
@@ -47,7 +49,7 @@ static constexpr double OCCUPIED = 0.5;    // of the spacing: a place is taken b
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
-    length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0),
+    length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0), gradient(0.0),
     before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), given{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
@@ -153,7 +155,7 @@ void FixFSIInlet::evaluate(Value *values, int n, int column)
 
 double FixFSIInlet::value(const Value &v, int i, int column) const
 {
-  const double x = v.source == ATOM ? target[i][column] : v.number;
+  const double x = raw(v, i, column);
   if (!std::isfinite(x))
     error->one(FLERR, "{} {}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", who, id,
                column == PRESSURE_COLUMN ? "pressure" : fmt::format("velocity along {}", "xyz"[column]), x, atom->tag[i], atom->x[i][0],
@@ -505,8 +507,9 @@ void FixFSIInlet::find_places()
 }
 
 /* ----------------------------------------------------------------------
-   Pressure or normal velocity of the fluid at the nodes of a lattice in the plane: a fit, linear along the plane, of the fluid within the
-   kernel's support, which is on one side only. The nodes are the same on all ranks.
+   Pressure or normal velocity of the fluid at the nodes of a lattice in the plane: a fit, quadratic along the plane, of the fluid within the
+   kernel's support, which is on one side only. (A linear one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is
+   missing in the pressure, too.) The nodes are the same on all ranks. Terms that the fluid there cannot tell from lower ones are left out.
 ------------------------------------------------------------------------- */
 
 template <class Visit> void FixFSIInlet::at_nodes(const double *x, double reach, Visit visit) const
@@ -556,11 +559,27 @@ int FixFSIInlet::place_nodes()
   return nodes;
 }
 
+// the row of a fit's inverse that gives its value at the node: terms 1, x, xx or 1, x, y, xx, xy, yy
+template <int TERMS> static void value_weights(const double *moment, double *row)
+{
+  constexpr bool PLANE = TERMS == 6;
+  constexpr int degree[] = {0, 1, PLANE ? 1 : 2, 2, 2, 2}, power_of_y[] = {0, 0, PLANE ? 1 : 0, 0, 1, 2};
+  double A[packed_size(TERMS)];
+  for (int a = 0, k = 0; a < TERMS; a++)
+    for (int b = 0; b <= a; b++, k++) {
+      const int n = degree[a] + degree[b];
+      A[k] = moment[PLANE ? n * (n + 1) / 2 + power_of_y[a] + power_of_y[b] : n];
+    }
+  gradient_coefficients<1, TERMS>(A, row, TOLD);
+}
+
 void FixFSIInlet::measure()
 {
   const int dim = fix_fsi->dim, nodes = place_nodes();
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
-  const int nfit = 1 + nlateral, nmoment = nfit * (nfit + 1) / 2;
+  // monomials of the offset over dx, by their degree: those of the fit, and all that its matrix has
+  const bool plane = nlateral == 2;
+  const int nfit = plane ? 6 : 3, nmoment = plane ? 15 : 5;
   ncolumns = nmoment + nfit * (wants_velocity + wants_pressure);
   mine.assign(nodes * ncolumns + NMEAN, 0.0);
   sums.resize(mine.size());
@@ -583,6 +602,14 @@ void FixFSIInlet::measure()
       if (s >= fix_fsi->cut) continue;
       double p = state.pressure(atom->rho[i]);
       const double w = m * (1.0 - s / fix_fsi->cut);
+      // a variable need not know a value before the plane
+      const double q = wants_pressure ? NAN : p - (pressure.source == BACKGROUND ? state.p0 : raw(pressure, i, PRESSURE_COLUMN));
+      if (std::isfinite(q)) {
+        total[BEYOND] += w * q;
+        total[FIRST] += w * s;
+        total[SECOND] += w * s * s;
+        total[SLOPE] += w * q * s;
+      }
       p -= atom->rho[i] * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * s;
       total[WEIGHT] += w;
       total[SPEED] += w * side * u;
@@ -590,12 +617,19 @@ void FixFSIInlet::measure()
       total[OVER_IMPEDANCE] += w * p / (state.rho0 * state.c);
       at_nodes(x, std::sqrt(kernel.cutsq - s * s), [&](int node, const double *d) {
         const double W = kernel.W(std::sqrt(std::min(s * s + d[0] * d[0] + d[1] * d[1], kernel.cutsq)));
-        const double f[] = {W, W * d[0], W * d[1]};
+        const double y[] = {d[0] / fix_fsi->dx, d[1] / fix_fsi->dx};
+        double f[15] = {W};
+        for (int degree = 1, k = 1, before = 0; degree <= 4; degree++) {
+          const int from = k;
+          for (; k - from < (plane ? degree : 1); k++) f[k] = f[before + k - from] * y[0];
+          if (plane) {
+            f[k] = f[from - 1] * y[1];
+            k++;
+          }
+          before = from;
+        }
         double *c = &mine[node * ncolumns];
-        *c++ += W;
-        for (int a = 0; a < nlateral; a++) *c++ += f[1 + a];
-        for (int a = 0; a < nlateral; a++)
-          for (int b = 0; b <= a; b++) *c++ += f[1 + a] * d[b];
+        for (int a = 0; a < nmoment; a++) *c++ += f[a];
         if (wants_velocity)
           for (int a = 0; a < nfit; a++) *c++ += f[a] * u;
         if (wants_pressure)
@@ -606,32 +640,28 @@ void FixFSIInlet::measure()
   MPI_Allreduce(mine.data(), sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, world);
   std::copy_n(sums.data() + nodes * ncolumns, NMEAN, mean);
 
-  // values at nodes: the mean, and the slope where there is fluid on both sides or enough on one
   for (int node = 0; node < nodes; node++) {
-    double *const c = &sums[node * ncolumns], S = c[0];
-    if (S <= LITTLE * fix_fsi->psi_bulk) {
+    double *const c = &sums[node * ncolumns], *const moment = c, row[6];
+    if (moment[0] <= LITTLE * fix_fsi->psi_bulk) {
       c[0] = 0.0;
       continue;
     }
-    double m[2] = {0.0, 0.0}, C[3] = {0.0, 0.0, 0.0};
-    for (int a = 0; a < nlateral; a++) m[a] = c[1 + a] / S;
-    for (int a = 0, k = 0; a < nlateral; a++)
-      for (int b = 0; b <= a; b++, k++) C[k] = c[nfit + k] / S - m[a] * m[b];
-    const double enough = 0.1 * fix_fsi->dx * fix_fsi->dx, det = nlateral == 1 ? C[0] : C[0] * C[2] - C[1] * C[1];
-    const bool linear = det > (nlateral == 1 ? enough : enough * enough);
+    plane ? value_weights<6>(moment, row) : value_weights<3>(moment, row);
     for (int field = 0; field < wants_velocity + wants_pressure; field++) {
       const double *const F = c + nmoment + field * nfit;
-      double result = F[0] / S;
-      if (linear) {
-        double g[2] = {0.0, 0.0};
-        for (int a = 0; a < nlateral; a++) g[a] = F[1 + a] / S - F[0] / S * m[a];
-        if (nlateral == 1) result -= g[0] / C[0] * m[0];
-        else result -= ((C[2] * g[0] - C[1] * g[1]) * m[0] + (C[0] * g[1] - C[1] * g[0]) * m[1]) / det;
-      }
+      double result = 0.0;
+      for (int k = 0; k < nfit; k++) result += row[k] * F[k];
       c[1 + field] = result;
     }
     c[0] = 1.0;
   }
+}
+
+// exact for quadratics (Keys 1981, IEEE Trans. Acoust. Speech Signal Process. 29, 1153, eq. 15); linear interpolation cuts maxima
+static double cubic_convolution(double t)
+{
+  if (t < 1.0) return 1.0 + t * t * (1.5 * t - 2.5);
+  return t < 2.0 ? 2.0 - t * (4.0 - t * (2.5 - 0.5 * t)) : 0.0;
 }
 
 // fit of a place from the nodes around it: normal velocity, pressure
@@ -640,16 +670,15 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
   const int n = (velocity[0].source == EXTRAPOLATED) + (pressure.source == EXTRAPOLATED);
   double weight = 0.0;
   std::fill_n(values, n, 0.0);
-  // the next node may be a whole distance away, but for round-off
-  at_nodes(x, *std::max_element(node_distance, node_distance + nlateral), [&](int node, const double *d) {
+  at_nodes(x, 2.0 * *std::max_element(node_distance, node_distance + nlateral), [&](int node, const double *d) {
     const double *const c = &sums[node * ncolumns];
     if (c[0] == 0.0) return;
     double w = 1.0;
-    for (int k = 0; k < nlateral; k++) w *= std::max(0.0, 1.0 - std::fabs(d[k]) / node_distance[k]);
+    for (int k = 0; k < nlateral; k++) w *= cubic_convolution(std::fabs(d[k]) / node_distance[k]);
     weight += w;
     for (int k = 0; k < n; k++) values[k] += w * c[1 + k];
   });
-  if (weight <= 0.0) return false;
+  if (weight < 0.5) return false;    // no fluid near
   for (int k = 0; k < n; k++) values[k] /= weight;
   return true;
 }
@@ -658,7 +687,8 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
    The density of the buffer is that of its pressure: the fluid's at the plane with the weight of what lies between, or as given.
    Sound that leaves meets its own impedance: to a change of the fluid's velocity the pressure at the plane answers with rho c times that, or
    the velocity to one of its pressure, and goes back to what is given at the rate of absorption. Of the mean over the plane: vortices
-   that pass do not change it.
+   that pass do not change it. A pressure that is given is that of the plane; along the buffer it goes on as the mean of the fluid does, or
+   the fluid would be pushed by less than its gradient for as long as it sees the buffer. What is slower than sound through the box counts.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::advance(bool advance)
@@ -667,16 +697,17 @@ void FixFSIInlet::advance(bool advance)
   if (!advance) return;
   const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
+  if (pressure.source == EQUAL || pressure.source == ATOM) evaluate(&pressure, 1, PRESSURE_COLUMN);
   measure();
 
-  double rate = absorb;
-  if (wants_velocity && wants_pressure) rate = 0.0;
-  else if (rate == AUTO) {
-    double c = 0.0;
-    for (const auto &s : fix_fsi->state)
-      if (s.species == FLUID) c = std::max(c, s.c);
-    rate = 0.5 * c / domain->prd[axis];
-  }
+  double c = 0.0;
+  for (const auto &s : fix_fsi->state)
+    if (s.species == FLUID) c = std::max(c, s.c);
+  const double slow = 0.5 * c / domain->prd[axis];
+  const double rate = wants_velocity && wants_pressure ? 0.0 : absorb == AUTO ? slow : absorb;
+  const double spread = mean[WEIGHT] * mean[SECOND] - mean[FIRST] * mean[FIRST];
+  if (spread > LITTLE * std::pow(mean[WEIGHT] * fix_fsi->dx, 2))
+    gradient += (1.0 - std::exp(-slow * dt)) * ((mean[WEIGHT] * mean[SLOPE] - mean[FIRST] * mean[BEYOND]) / spread - gradient);
   if (rate > 0.0 && mean[WEIGHT] > 0.0) {
     const double now = (wants_velocity ? mean[SPEED] : mean[OVER_IMPEDANCE]) / mean[WEIGHT];
     if (has_before) wave -= now - before;
@@ -692,7 +723,6 @@ void FixFSIInlet::advance(bool advance)
     error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. The fluid does not follow the velocity that is given: "
                "it tears under suction, without keyword tension yes or background of pair_style fsi/fluid", who, id, served, "xyz"[axis], position, mean[BUFFER]);
 
-  if (pressure.source == EQUAL || pressure.source == ATOM) evaluate(&pressure, 1, PRESSURE_COLUMN);
   double **const shift = fix_fsi->shift;
   for (auto &place : places) {
     const int i = place.i;
@@ -707,7 +737,7 @@ void FixFSIInlet::advance(bool advance)
     if (wants_pressure)
       p = place.known ? values[wants_velocity] + state.rho0 * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * place.inside : state.p0;
     else
-      p = (pressure.source == BACKGROUND ? state.p0 : value(pressure, i, PRESSURE_COLUMN)) + state.rho0 * state.c * wave;
+      p = (pressure.source == BACKGROUND ? state.p0 : value(pressure, i, PRESSURE_COLUMN)) + gradient * place.inside + state.rho0 * state.c * wave;
     const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
     atom->rho[i] = state.density(std::max(p, state.floor));
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
@@ -780,6 +810,7 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("filled", std::vector<double>{double(filled), served});
   record.add("buffer", std::vector<double>{position, length});
   record.add("absorption", std::vector<double>{wave, before, double(has_before)});
+  record.add("gradient", std::vector<double>{gradient});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
   record.add("last ID", std::to_string(last_id));
   fields.write(record);
@@ -797,6 +828,7 @@ void FixFSIInlet::restart(char *buf)
   wave = numbers[0];
   before = numbers[1];
   has_before = numbers[2] != 0.0;
+  if (record.has("gradient")) gradient = record.numbers("gradient")[0];
   numbers = record.numbers("passed");
   passed_in = numbers[0];
   passed_out = numbers[1];

@@ -75,7 +75,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     tagint parent, molecule;
     int type, mask;
   };
-  enum { WEIGHT, SPEED, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, NMEAN };    // sums over the fluid at the plane
+  enum { WEIGHT, SPEED, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
 
   const std::string who;    // Fix fsi/inlet
   const bool outlet;
@@ -106,6 +106,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   // what is kept
   bool filled;
   double wave, before;       // of absorption: velocity or pressure over impedance that it adds; the mean from which it has that
+  double gradient;           // of the fluid's pressure beyond that given, into the fluid: mean over the plane and some time
   double served;             // particles near the plane at first
   bool has_before;
   double passed_in, passed_out, mass_in;
@@ -118,7 +119,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void read(Value &, const std::string &word, const std::string &what, const std::string &other);
   void find_variable(Value &);
   void evaluate(Value *, int n, int column);
-  double value(const Value &, int i, int column) const;
+  double raw(const Value &v, int i, int column) const { return v.source == ATOM ? target[i][column] : v.number; }
+  double value(const Value &, int i, int column) const;    // which is a number
   double energy(int i) const;
   void fill();
   void make(std::vector<Copy> &, bool at_start);

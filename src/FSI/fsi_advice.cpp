@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_lattice.h"
 #include "fsi_limits.h"
 #include "fsi_scene.h"
@@ -36,6 +37,8 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numeric>
+#include <set>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -43,6 +46,7 @@ using namespace FSI;
 
 static constexpr double BIG = 1.0e300;
 static constexpr double NEARLY_INCOMPRESSIBLE = 10.0;    // bulk over shear modulus: Poisson's ratio above 0.45
+static constexpr double SAME_PLACE = 1.0e-3;    // of the spacing
 static constexpr int ENOUGH = 3;    // particles across a body (doc/choosing.md)
 
 namespace {
@@ -131,8 +135,11 @@ class Adviser : protected Pointers {
     box();
     const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest());
     if (spacing(cells) && pair("^fsi/solid")) {
-      thickness();
+      const Cells wide(atom->x, atom->nlocal + atom->nghost, scene.dim, 2.5 * coarsest());
+      thickness(wide);
+      parts(wide);
       rows();
+      yields();
     }
     if (pair("^fsi/fluid")) {
       idle_fluid();
@@ -241,6 +248,9 @@ class Adviser : protected Pointers {
       mine[2]++;
       if (who < 0) continue;
       const double r = std::sqrt(nearest);
+      if (r < SAME_PLACE && (fluid(i) || solid(i)))
+        error->one(FLERR, "Fix fsi: atoms {} and {} are at the same place, {:g} {:g} {:g}: were they created twice? delete_atoms overlap", atom->tag[i],
+                   atom->tag[who], atom->x[i][0], atom->x[i][1], atom->x[i][2]);
       mine[0] += r;
       mine[1]++;
       if (r < closest.r) {
@@ -274,9 +284,8 @@ class Adviser : protected Pointers {
   /* Particles across a moving body, however it lies: n layers have the variance (n^2-1)/12 dx^2 across, the least eigenvalue of the
      covariance of a particle's surroundings. A body is thin if most of its particles say so. */
 
-  void thickness() const
+  void thickness(const Cells &cells) const
   {
-    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 2.5 * coarsest());
     std::map<tagint, std::array<double, ENOUGH>> bodies;    // particles with 1, 2, ENOUGH or more across
     for (int i = 0; i < atom->nlocal; i++) {
       if (!moves(i)) continue;
@@ -321,6 +330,58 @@ class Adviser : protected Pointers {
     });
   }
 
+  /* Bodies touch if their molecule IDs differ; parts of one body that lie apart do not. A part is named by one of its tags, and a tag
+     that is in two parts, of different ranks or across a periodic boundary, makes them one. */
+
+  void parts(const Cells &cells) const
+  {
+    const int n = atom->nlocal + atom->nghost;
+    std::vector<int> up(n);
+    std::iota(up.begin(), up.end(), 0);
+    const auto root = [&](int i) {
+      while (up[i] != i) i = up[i] = up[up[i]];
+      return i;
+    };
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!solid(i)) continue;
+      const double reach = 2.5 * dx(i);
+      cells.around(atom->x[i], [&](int j, double rsq) {
+        if (rsq < reach * reach && solid(j) && atom->molecule[j] == atom->molecule[i]) up[root(j)] = root(i);
+      });
+    }
+    std::map<tagint, tagint> home, one_of;    // parts by the tags of their own atoms; a part by another name
+    std::vector<tagint> ghosts, same;
+    for (int i = 0; i < n; i++) {
+      if (!solid(i)) continue;
+      const tagint part = atom->tag[root(i)];
+      if (i < atom->nlocal) home[atom->tag[i]] = part;
+      else ghosts.insert(ghosts.end(), {part, atom->tag[i]});
+    }
+    ghosts = gather(ghosts, world);
+    for (size_t k = 0; k < ghosts.size(); k += 2)
+      if (home.count(ghosts[k + 1])) same.insert(same.end(), {ghosts[k], home[ghosts[k + 1]]});
+    same = gather(same, world);
+    const auto name = [&](tagint part) {
+      for (auto it = one_of.find(part); it != one_of.end(); it = one_of.find(part)) part = it->second;
+      return part;
+    };
+    for (size_t k = 0; k < same.size(); k += 2) {
+      const tagint a = name(same[k]), b = name(same[k + 1]);
+      if (a != b) one_of[std::max(a, b)] = std::min(a, b);
+    }
+    std::map<tagint, std::set<tagint>> mine;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (moves(i)) mine[atom->molecule[i]].insert(name(home[atom->tag[i]]));
+    for_bodies(mine, {}, [&](tagint body, const std::set<tagint> &here) {
+      const auto all = gather(here, world);
+      if (all.size() > 1)
+        warn(fmt::format("body {} lies in {} parts, with atoms {} and {} in different ones: parts of one molecule ID {} when they meet. "
+                         "If they are bodies of their own: set ... mol", body, all.size(), *all.begin(), *all.rbegin(),
+                         pair("^fsi/solid/tl$") ? "pass through each other" : "grow together"));
+      return all.size() < 2;    // one is enough
+    });
+  }
+
   /* A moving body that was cut out by a block, as its bounding box within that of the region says, has as many rows as lattice points
      fell into it: they may not be the block's width over the spacing, and stiffness goes with the cube. */
 
@@ -362,6 +423,17 @@ class Adviser : protected Pointers {
       }
       return true;
     });
+  }
+
+  /* fix fsi/stress says so of itself; law svk and neohookean do without it */
+
+  void yields() const
+  {
+    if (!modify->get_fix_by_style("^fsi/stress$").empty()) return;
+    for (int t = 1; t <= atom->ntypes; t++)
+      if (present[t] && scene.state[t].species == SOLID && scene.state[t].yield > 0.0)
+        warn(fmt::format("the material of type {} has a yield stress, but stays elastic: it acts with law hypo of pair_style fsi/solid/tl, or with "
+                         "pair_style fsi/solid, and fix fsi/stress ... plastic", t));
   }
 
   /* calls f(body, its entry) for the bodies of all ranks, with `none` on ranks that have nothing of it, until it says false. Bodies

@@ -116,10 +116,24 @@ void PairFSI::init_style()
   if (force->pair_match(style, 1, 1) != force->pair_match(style, 1, 2))
     error->all(FLERR, "Pair style hybrid has {} more than once: one is for the materials of all atom types{}", style,
                style == "fsi/fluid" ? ", and a speed of sound of its own is keyword sound of a fluid in the material file" : "");
+  check_same_materials();
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) fix_fsi->enter_state(t, make_state(material[t]));
   if (needs_neighbors()) neighbor->add_request(this);
   else list = nullptr;    // that of an earlier run is gone
+}
+
+// a solid that has several styles has one material
+void PairFSI::check_same_materials() const
+{
+  for (const char *name : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"}) {
+    const auto *const other = dynamic_cast<PairFSI *>(force->pair_match(name, 1));
+    for (int t = 1; other && t <= atom->ntypes; t++) {
+      const Material &a = material[t], &b = other->material[t];
+      if (a.species == SOLID && b.species == SOLID && strcmp(a.name, b.name) != 0)
+        error->all(FLERR, "Pair_coeff of pair style {} gives atom type {} the material {}, that of {} {}: expected the same", style, t, a.name, name, b.name);
+    }
+  }
 }
 
 /* ---------------------------------------------------------------------- */

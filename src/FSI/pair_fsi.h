@@ -69,6 +69,7 @@ class PairFSI : public Pair, public FSI::Part {
   void artificial_row(const std::string &of);
   void contact_row();
   void check_contact() const;
+  void check_same_materials() const;
   bool has_artificial() const { return alpha > 0.0 || beta > 0.0; }
   void set_flags();
   void allocate();

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from scenes import run
+from scenes import lammps, run
 
 # 5 x 8 particles of water, 0.08 m high, beside a plate of 3; sqrt(2gH) = 1.25 m/s; the plate's longitudinal waves run at 64.8 m/s
 DECK = """units si
@@ -51,6 +51,9 @@ CASES = {
     "spacing": ([("fsi 0.01", "fsi 0.0085"), ("4e-5", "3e-5")], None, r"nearest neighbors are 0.01 apart on average, but the spacing is 0.0085"),
     "coarse": ([("sq 0.01", "sq 0.013")], None, r"most particles have no neighbor within 0.0125: is 0.01 the spacing"),
     "overlap": ([("run 0", "create_atoms 1 single 0.028 0.025 0 units box\nrun 0")], None, r"atoms 13 and 65 are 0.3 spacings apart"),
+    # two plates 2 spacings apart would be one; these are 3 apart, and across them there is no bond
+    "parts": ([("0.05 0.08 0 0.08 INF", "0.05 0.14 0 0.08 INF"), ("run 0", "region gap block 0.08 0.11 INF INF INF INF units box\ndelete_atoms region gap\nrun 0")],
+              None, r"body 1 lies in 2 parts, with atoms \d+ and \d+ in different ones: parts of one molecule ID pass through each other when they meet"),
     "thin": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF")], None, r"body 1 is 2 particles across: it will bend too little, some 25 %"),
     "thin, nearly incompressible": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF"), ("materials.fsi", "mine.fsi")],
                                     MATERIALS.format(rho=1000, young=1e5).replace("poisson 0.4", "poisson 0.49"),
@@ -87,6 +90,8 @@ CASES = {
     "thin between": (BOTH_SIDES, None, r"fluids see each other through what is of type 2, some 0.015 thick, since the kernel reaches 0.03: .* Then fix sph \.\.\. thin 2$"),
     # 1.25 spacings of the water thick, nothing behind
     "thin, one side": (ONE_SIDE, None, r"what is of type 2, some 0.012 thick, pushes 8 % less on fluid beside it .*, since the kernel reaches 0.03: .* Then fix sph \.\.\. thin 2$"),
+    "yield": ([("materials.fsi", "mine.fsi")], MATERIALS.format(rho=1000, young=2e6).replace("poisson 0.4", "poisson 0.4 yield 1e4"),
+              r"material of type 2 has a yield stress, but stays elastic: .* fix fsi/stress \.\.\. plastic"),
     "skin": ([("neighbor 0.003", "neighbor 0.016")], None, r"skin 0.016 is 1.6 spacings wide, .*: neighbor 0.003 bin"),
 }
 ALSO = {  # what follows from the mistake as well
@@ -110,7 +115,7 @@ def test_sound_deck_is_not_criticised(tmp_path):
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
 
 
-ON_TWO_RANKS = ("sound", "spacing", "overlap", "thin", "rows", "idle", "long fluid", "thin between")  # what is summed over ranks
+ON_TWO_RANKS = ("sound", "spacing", "overlap", "parts", "thin", "rows", "idle", "long fluid", "thin between")  # what is summed over ranks
 
 
 @pytest.mark.parametrize("name, ranks", [(name, 1) for name in CASES] + [(name, 2) for name in ON_TWO_RANKS])
@@ -121,6 +126,28 @@ def test_warning(tmp_path, name, ranks):
     assert len(matching) == 1, found
     others = [line for line in found if line not in matching]
     assert all(name in ALSO and re.search(ALSO[name], line) for line in others), others
+
+
+@pytest.mark.parametrize("ranks, more", [(1, ""), (4, "processors 4 1 1\n"), (4, "processors 2 2 1\n")])
+def test_one_body_is_one(tmp_path, ranks, more):
+    """A horseshoe, whose legs are of one piece on no rank but those that have its bow, and a ring around a periodic box."""
+    horseshoe = [("plate block 0.05 0.08 0 0.08 INF INF", "plate block 0.05 0.15 0 0.03 INF INF"),
+                 ("run 0", "region legs block 0.05 0.15 0.03 0.12 INF INF units box\ncreate_atoms 2 region legs\nregion gap block 0.08 0.12 0.03 0.12 INF INF units box\n"
+                  "delete_atoms region gap\nset type 2 mol 1\nrun 0"), ("boundary", more + "boundary")]
+    assert [line for line in advice(tmp_path / "horseshoe", horseshoe, ranks=ranks) if "part" in line] == []
+    ring = [("box block -0.05 0.15 -0.05 0.15", "box block -0.05 0.15 0 0.08"), ("boundary f f p", more + "boundary f p p"), ("xlo 0 ylo 0", "xlo 0"), ("fix g all", "#"),
+            ("run 0", "region gap block 0.05 0.08 0.02 0.06 INF INF units box\ndelete_atoms region gap\nrun 0")]
+    assert [line for line in advice(tmp_path / "ring", ring, ranks=ranks) if "part" in line] == []
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("type, body", [(1, 0), (2, 2)])
+def test_created_twice(tmp_path, type, body, ranks):
+    """What is at one place feels no force between, and whatever comes near feels twice."""
+    again = DECK.replace("run 0", f"create_atoms {type} region {'water' if type == 1 else 'plate'}\ngroup plate type 2\ngroup old id <= 64\nset group all mol 0\n"
+                         f"set group plate mol {body}\ngroup both intersect plate old\nset group both mol 1\nrun 0")
+    done = lammps(tmp_path, again, ranks)
+    assert done.status != 0 and re.search(r"Fix fsi: atoms \d+ and \d+ are at the same place, .* delete_atoms overlap", done.errors[0])
 
 
 @pytest.mark.parametrize("angle", [-3, -9, -20, -45])

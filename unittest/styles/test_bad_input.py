@@ -248,6 +248,8 @@ CASES = [
      "pair_coeff * * fsi/solid/tl materials.fsi NULL plate\n"), r"either pair_style fsi/solid or fsi/solid/tl, not both"),
     ("tl couple full", *tl("", more="pair_style hybrid fsi/fluid sound 10 couple full fsi/solid/tl\n"
      "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi NULL plate\n"), r"couple wall"),
+    ("two materials of a solid", HYBRID, "pair_style hybrid fsi/fluid sound 10 fsi/solid/tl\npair_coeff * * fsi/fluid materials.fsi water plate\n"
+     "pair_coeff * * fsi/solid/tl materials.fsi NULL baffle_6MPa\n", r"fsi/fluid gives atom type 2 the material plate, that of fsi/solid/tl baffle_6MPa: expected the same"),
     ("tl density summation", re.compile(HYBRID.pattern + r"\nfix sph .*\n"), tl()[1] + "fix sph all fsi 0.01 wendland 1.5 solid summation\n",
      r"solid density .*fsi/solid/tl"),
     ("substeps without tl", SPH, SPH + " substeps 4", r"substeps requires pair_style fsi/solid/tl"),

@@ -257,6 +257,17 @@ def test_stop_changes_nothing_and_says_so(tmp_path):
     assert "Fix fsi/dt" not in quiet.output
 
 
+def test_what_is_not_looked_at(tmp_path):
+    """Solids outside its group would get one sub-step, whatever they need."""
+    text, data = gate_tl("", "")
+    base = text[:text.index("fix dt")] + "group some type {}\nfix dt some fsi/dt 1 {}\nrun 0\n"
+    water = lammps(tmp_path / "auto", base.format(1, "substeps auto"), 1, scene_data=data)
+    assert water.status != 0 and re.search(r"Fix fsi/dt: \d+ particles that fix sph moves, .* are not in group some: substeps auto must know all solids", water.errors[0])
+    solid = run(tmp_path / "solid", base.format(2, ""), scene_data=data)
+    assert len(re.findall("particles that fix sph moves, the first of them atom 1, are not in group some: they do not limit the time step", solid.output)) == 1
+    assert "are not in group" not in run(tmp_path / "all", base.format("1 2", "substeps auto"), scene_data=data).output
+
+
 def test_prints_the_cause_when_it_changes(tmp_path):
     """Sound first; when the walls are hit at 60 m/s, something else, once."""
     scene = fluid_box(2, sph="mach off")

@@ -211,8 +211,27 @@ def test_channel():
         print(f"channel: {fewest} to {most} particles of 300, profile's error {error:.4f} U, flow in {come / (m * 100 * U):.4f}, out {gone / come:.4f} of it, "
               f"pressure drop {np.mean(drop) / (12 * mu * U * L):.3f} of Poiseuille's")
         assert max(abs(most / 300 - 1), abs(fewest / 300 - 1)) < 0.06
-        assert error < 0.06 and abs(gone / come - 1) < 0.03    # ten spacings between the walls, 25 moments
+        assert error < 0.03 and abs(gone / come - 1) < 0.03    # ten spacings between the walls, 25 moments
         assert abs(np.mean(drop) / (12 * mu * U * L) - 1) < 0.10
+
+
+def test_flow_between_pressures():
+    """Poiseuille's flow from one pressure to another in a channel twice as long as high: what a plane takes from the profile, or from the
+    gradient behind it, is missing in the flow: 17 % with a linear fit and the given pressure all along the buffer, 5 % without the gradient."""
+    n, U, mu, L = 12, 1.0, 100.0, 2.0
+    dx, drop = 1.0 / n, 12 * mu * U * L
+    with Scene(lattice((2 * n, n), dx), dx=dx, box=((-7 * dx, -0.5, 0), (L + 7 * dx, 1.5, 0)), materials=(OIL,), dt=0.4 * 1.5 * dx / 21,
+               fluid="sound 20 tension yes laminar/visc density/diffusion 0.1 shift 0.1",
+               commands=["fix w all fsi/wall/mirror ylo 0 slip no yhi 1 slip no", f"variable p equal {drop}*(1-exp(-time/0.3))",
+                         "fix i all fsi/inlet xlo 0 pressure v_p", f"fix o all fsi/outlet xhi {L} pressure 0 absorb 0"]) as s:
+        go_on(s, 2500)    # 6 s, and what a start from rest lacks goes as exp(-pi^2 t/s)
+        flow = []
+        for _ in range(10):
+            go_on(s, 100)
+            flow.append((vector(s, "i", 5), -vector(s, "o", 5)))
+        come, gone = np.mean(flow, axis=0) / U
+        print(f"between pressures: {come:.4f}, {gone:.4f} of Poiseuille's flow")
+        assert abs(come - 1) < 0.04 and abs(gone - 1) < 0.04
 
 
 @pytest.mark.parametrize("room", [6, 5.16])
