@@ -148,7 +148,7 @@ void FixFSIInlet::evaluate(Value *values, int n, int column)
   modify->clearstep_compute();
   for (int k = 0; k < n; k++) {
     if (values[k].source == EQUAL) values[k].number = input->variable->compute_equal(values[k].variable);
-    if (values[k].source == ATOM) input->variable->compute_atom(values[k].variable, igroup, &target[0][column + k], NCOLUMNS, 0);
+    if (values[k].source == ATOM) input->variable->compute_atom(values[k].variable, zone_group, &target[0][column + k], NCOLUMNS, 0);
   }
   modify->addstep_compute(update->ntimestep + 1);
 }
@@ -216,6 +216,9 @@ void FixFSIInlet::init()
   }
   for (auto &v : velocity) find_variable(v);
   find_variable(pressure);
+  zone_group = igroup;
+  if (pressure.source == ATOM || std::any_of(velocity, velocity + 3, [](const Value &v) { return v.source == ATOM; }))
+    zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -492,7 +495,7 @@ void FixFSIInlet::copy_place(int i)
 }
 
 /* ----------------------------------------------------------------------
-   fluid at the plane and in the buffer, of this rank: from one list to the next
+   Fluid at the plane and in the buffer, of this rank: from one list to the next. Variables are evaluated for a group: it gets one of its own.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::find_places()
@@ -502,7 +505,10 @@ void FixFSIInlet::find_places()
   const double from = -2.0 * length, to = fix_fsi->cut + neighbor->skin;
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
-    if (s > from && s < to && is_fluid(i) && in_patch(atom->x[i])) places.push_back({i, 0.0, 0.0, false});
+    if (zone_group != igroup) atom->mask[i] &= ~group->bitmask[zone_group];
+    if (!(s > from && s < to && is_fluid(i) && in_patch(atom->x[i]))) continue;
+    places.push_back({i, 0.0, 0.0, false});
+    atom->mask[i] |= group->bitmask[zone_group];
   }
 }
 

@@ -94,6 +94,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double *of_buffer;     // per atom
   double **behind;       // of one that has passed: where its copy would be now, had it been made then
   std::vector<Place> places;
+  int zone_group;       // that of the places
   double **target;      // values of atom-style variables: velocity and pressure
   int nmax;
 

@@ -117,6 +117,8 @@ void FixFSIStream::init()
     else if (input->variable->atomstyle(variable[d])) source[d] = ATOM;
     else error->all(FLERR, "Variable {} of fix fsi/stream must be equal-style or atom-style", name[d]);
   }
+  zone_group = igroup;
+  if (std::count(source, source + 3, ATOM)) zone_group = group->find_or_create(("fsi_stream_" + std::string(id)).c_str());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -125,10 +127,44 @@ void FixFSIStream::setup(int vflag)
 {
   step = -1;
   find_weights();
-  int mine = std::any_of(weight.begin(), weight.end(), [](double w) { return w > 0.0; }), any;
+  int mine = std::any_of(zone.begin(), zone.end(), [](const Member &m) { return m.weight > 0.0; }), any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (!any) error->all(FLERR, "Region {} of fix fsi/stream has no fluid of group {}", region_id, group->names[igroup]);
   post_force(vflag);
+}
+
+/* ----------------------------------------------------------------------
+   Fluid that may be in the zone before the next list. Variables are evaluated for a group: it gets one of its own.
+------------------------------------------------------------------------- */
+
+void FixFSIStream::find_zone()
+{
+  zone.clear();
+  const int bit = group->bitmask[zone_group];
+  int *const mask = atom->mask;
+  const double L = domain->prd[along], from = -neighbor->skin, to = high - low + neighbor->skin;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (zone_group != igroup) mask[i] &= ~bit;
+    const int species = fix_fsi->state[atom->type[i]].species;
+    const bool fluid = species == FLUID && (mask[i] & groupbit);
+    if (!fluid && species != SOLID) continue;
+    double s = atom->x[i][along] - low;
+    if (domain->periodicity[along]) s -= L * std::floor((s - from) / L);
+    if (s < from || s > to) continue;
+    if (fluid) {
+      zone.push_back({i, 0.0});
+      mask[i] |= bit;
+    } else if (in_zone(i) >= 0.0)
+      error->one(FLERR, "Atom {} of a solid is in region {} of fix fsi/stream, which is for fluid alone", atom->tag[i], region_id);
+  }
+}
+
+// from its lower end, over its length; < 0: not in it
+double FixFSIStream::in_zone(int i) const
+{
+  double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+  domain->remap(x);
+  return x[along] > low && x[along] < high && region->match(x[0], x[1], x[2]) ? (x[along] - low) / (high - low) : -1.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -138,21 +174,12 @@ void FixFSIStream::setup(int vflag)
 void FixFSIStream::find_weights()
 {
   if (step == update->ntimestep) return;
-  step = update->ntimestep;
-  weight.assign(atom->nlocal, 0.0);
   region->prematch();
-  const int *const mask = atom->mask, *const type = atom->type;
-  const bool look_for_solids = neighbor->ago == 0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const int species = fix_fsi->state[type[i]].species;
-    const bool fluid = species == FLUID && (mask[i] & groupbit);
-    if (!fluid && !(species == SOLID && look_for_solids)) continue;
-    double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
-    domain->remap(x);
-    if (x[along] <= low || x[along] >= high || !region->match(x[0], x[1], x[2])) continue;
-    if (!fluid) error->one(FLERR, "Atom {} of a solid is in region {} of fix fsi/stream, which is for fluid alone", atom->tag[i], region_id);
-    const double s = std::sin(MathConst::MY_PI * (x[along] - low) / (high - low));
-    weight[i] = s * s;
+  if (step < 0 || neighbor->ago == 0) find_zone();
+  step = update->ntimestep;
+  for (auto &member : zone) {
+    const double s = std::sin(MathConst::MY_PI * std::max(in_zone(member.i), 0.0));
+    member.weight = s * s;
   }
 }
 
@@ -169,18 +196,18 @@ void FixFSIStream::advance(bool advance)
   const int *const type = atom->type, n = atom->ntypes + 1;
   double *const rho = atom->rho;
   std::vector<double> mine(2 * n, 0.0), all(2 * n);
-  const auto part = [&](int i) { return -std::expm1(-density_rate * weight[i] * dt); };
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (weight[i] == 0.0) continue;
-    const double a = part(i);
+  const auto part = [&](double weight) { return -std::expm1(-density_rate * weight * dt); };
+  for (const auto &[i, weight] : zone) {
+    if (weight == 0.0) continue;
+    const double a = part(weight);
     mine[2 * type[i]] += a;
     mine[2 * type[i] + 1] += a * rho[i];
   }
   MPI_Allreduce(mine.data(), all.data(), 2 * n, MPI_DOUBLE, MPI_SUM, world);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (weight[i] == 0.0) continue;
+  for (const auto &[i, weight] : zone) {
+    if (weight == 0.0) continue;
     const double before = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
-    rho[i] += part(i) * (all[2 * type[i] + 1] / all[2 * type[i]] - rho[i]);
+    rho[i] += part(weight) * (all[2 * type[i] + 1] / all[2 * type[i]] - rho[i]);
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += before - fix_fsi->stored(i);
   }
 }
@@ -200,16 +227,16 @@ void FixFSIStream::post_force(int)
   modify->clearstep_compute();
   for (int d = 0; d < 3; d++) {
     if (source[d] == EQUAL) value[d] = input->variable->compute_equal(variable[d]);
-    if (source[d] == ATOM) input->variable->compute_atom(variable[d], igroup, &target[0][d], 3, 0);
+    if (source[d] == ATOM) input->variable->compute_atom(variable[d], zone_group, &target[0][d], 3, 0);
   }
   modify->addstep_compute(update->ntimestep + 1);
 
   std::fill_n(given, 4, 0.0);
   const double dt = update->dt;
   if (dt == 0.0) return;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (weight[i] == 0.0) continue;
-    const double m = atom->rmass[i], part = -std::expm1(-rate * weight[i] * dt);
+  for (const auto &[i, weight] : zone) {
+    if (weight == 0.0) continue;
+    const double m = atom->rmass[i], part = -std::expm1(-rate * weight * dt);
     double *const f = atom->f[i], *const v = atom->v[i];
     for (int d = 0; d < 3; d++) {
       if (source[d] == FREE) continue;
@@ -262,5 +289,5 @@ void FixFSIStream::restart(char *buf)
 
 double FixFSIStream::memory_usage()
 {
-  return (double) weight.capacity() * sizeof(double) + 3.0 * nmax * sizeof(double);
+  return (double) zone.capacity() * sizeof(Member) + 3.0 * nmax * sizeof(double);
 }

@@ -61,12 +61,19 @@ class FixFSIStream : public Fix, public FSI::Part {
   class Region *region;
   class FixFSI *fix_fsi;
   bigint step;                   // of the weights
-  std::vector<double> weight;    // of local atoms: 0 outside of the zone and at its ends, 1 in its middle
+  struct Member {
+    int i;
+    double weight;    // 0 outside of the zone and at its ends, 1 in its middle
+  };
+  std::vector<Member> zone;    // local fluid in and near it, as of the last list
+  int zone_group;
   double **target;
   int nmax;
   double given[4];               // force on the fluid and its power, this rank's part
   double work;                   // since the fix was defined, likewise
 
+  void find_zone();
+  double in_zone(int i) const;
   void find_weights();
 };
 
