@@ -55,6 +55,18 @@ def test_force_in_the_zone():
         close(s.get("f")[:, 0], s.get("rmass") * 0.5 * -np.expm1(-8 * weight * dt) / dt, 1e-12)
 
 
+def test_zone_between_lists():
+    """Fluid that comes into the zone, round the box, between two lists is driven at once; what a variable says elsewhere does not matter."""
+    def end(lists, u):
+        with channel((40, 6), 0.1, "v_u NULL NULL rate 50", f"variable u atom {u}", f"neigh_modify {lists}", v=[1.0, 0.0, 0.0], dt=1e-3, zone="0 1.2") as s:
+            return s.run(400).get("v")
+    seldom, often = (end(lists, "1.5+0*sqrt((x-1.7)*(x-3.5))") for lists in ("every 1 delay 0 check yes", "every 1 delay 0 check no"))
+    assert np.abs(often[:, 0] - 1).max() > 0.1
+    assert np.abs(seldom - often).max() < 1e-10
+    # no number from x = 1.7 to 3.5; the same speed as a number
+    assert np.abs(seldom - end("every 1 delay 0 check yes", "1.5")).max() < 1e-10
+
+
 def pulse(stream):
     """Sound that goes to the right, a packet without mean from 1.5 to 6.5: size of the velocity beyond the zone, and before it and in it"""
     n, dx, c, rho, dt = (240, 4), 0.05, 10.0, 1000.0, 1.5e-3
