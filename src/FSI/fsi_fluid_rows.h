@@ -163,7 +163,7 @@ namespace FSI {
       const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0, fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0;
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
-      int *last = near.begin(row.n);
+      int *last = near.room(row.n);
       int picked = 0;
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
@@ -202,7 +202,7 @@ namespace FSI {
         L::add(rate_j, rate, j);
       });
       if (picked >> (L::WIDTH - 1)) last -= -row.n & (L::WIDTH - 1);    // i itself, in places left over
-      near.add(i, last);
+      near.close(i, last);
       const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if constexpr (CUT)

@@ -54,13 +54,14 @@ namespace FSI {
       if (found || even_empty) rows.push_back({i, found, nullptr});
       used += found;
     }
-    // likewise a row of those of another's neighbours that pick() chooses, which are at most n: room for them, and for what it writes behind them
-    int *begin(int n)
+    // likewise a row that a loop over another's n neighbours writes: room for them, and for what Lanes::pick() writes behind them
+    int *room(int n)
     {
       if (used + n + Lanes<Pack>::WIDTH > pool.size()) pool.resize(5 * (used + n + Lanes<Pack>::WIDTH) / 4);
       return pool.data() + used;
     }
-    void add(int i, const int *last)
+    // ends that row
+    void close(int i, const int *last)
     {
       const int found = last - (pool.data() + used);
       if (found) rows.push_back({i, found, nullptr});
