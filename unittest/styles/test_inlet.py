@@ -70,6 +70,30 @@ def test_uniform_stream(n, axis, sign):
         assert energy() == pytest.approx(start, rel=1e-9)
 
 
+@pytest.mark.parametrize("n, axis", [((6, 16), 0), ((16, 6), 1), ((6, 16, 16), 0), ((16, 16, 6), 2)], ids=["x", "y", "x in 3D", "z in 3D"])
+def test_profile_at_a_plane(n, axis):
+    """A quadratic velocity along the plane is the buffer's, to round-off: fit and interpolation are exact for it, between the nodes, too."""
+    dx = 0.1
+    with open_box(n, dx, axis, "fix i all fsi/inlet {0}lo 0 pressure 0".format("xyz"[axis]), f"fix o all fsi/outlet {'xyz'[axis]}hi {n[axis] * dx} pressure 0",
+                  dt=1e-12) as s:
+        def profile(x):
+            y, z = (x[:, d] - 0.83 for d in range(3) if d != axis)
+            return 1 + 0.3 * y - 0.2 * z + 0.5 * y**2 + 0.4 * y * z - 0.7 * z**2
+        go_on(s, 0)
+        v = np.zeros((s.n, 3))
+        v[:, axis] = profile(s.get("x"))
+        s.put("v", v)
+        behind = (s.get("x")[:, axis] < 0) | (s.get("x")[:, axis] > n[axis] * dx)
+        v[behind] = 0
+        s.put("v", v)
+        go_on(s, 1)
+        x = s.get("x")
+        # the profile is not periodic: three spacings of support and two of interpolation away from the box's faces
+        middle = np.all([(x[:, d] > 0.5) & (x[:, d] < 1.1) for d in range(len(n)) if d != axis], axis=0)
+        assert (behind & middle).sum() >= 40
+        assert np.abs(s.get("v")[:, axis] - profile(x))[behind & middle].max() < 1e-9
+
+
 def pulse(inlet, outlet, direction):
     """Sound that goes to an end of a channel: amplitude of what comes back"""
     n, dx, c, dt = (160, 4), 0.05, 10.0, 1.5e-3
