@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_record.h"
 #include "group.h"
 #include "modify.h"
@@ -141,21 +142,14 @@ void FixFSIDt::setup(int)
 
 void FixFSIDt::find_outside() const
 {
-  bigint mine[2] = {0, 0}, all[2];
-  tagint one = MAXTAGINT, first;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const int species = fix_fsi->state[atom->type[i]].species;
-    if ((atom->mask[i] & groupbit) || !(atom->mask[i] & fix_fsi->groupbit) || (species != FLUID && species != SOLID)) continue;
-    mine[0]++;
-    mine[1] += species == SOLID;
-    one = std::min(one, atom->tag[i]);
-  }
-  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-  MPI_Allreduce(&one, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  if (all[0] == 0) return;
-  const auto text = fmt::format("Fix fsi/dt: {} particles that fix {} moves, the first of them atom {}, are not in group {}", all[0], fix_fsi->id, first,
-                                group->names[igroup]);
-  if (automatic && all[1]) error->all(FLERR, "{}: substeps auto must know all solids", text);
+  const auto outside = [&](int i, int species) {
+    return !(atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit) && fix_fsi->state[atom->type[i]].species == species;
+  };
+  const auto found = find_particles(atom, world, [&](int i) { return outside(i, FLUID) || outside(i, SOLID); });
+  if (found.count == 0) return;
+  const auto text = fmt::format("Fix fsi/dt: {} particles that fix {} moves, the first of them atom {}, are not in group {}", found.count, fix_fsi->id,
+                                found.first, group->names[igroup]);
+  if (automatic && find_particles(atom, world, [&](int i) { return outside(i, SOLID); }).count) error->all(FLERR, "{}: substeps auto must know all solids", text);
   if (comm->me == 0) error->warning(FLERR, "{}: they do not limit the time step", text);
 }
 

@@ -456,17 +456,9 @@ class Adviser : protected Pointers {
 
   void idle_fluid() const
   {
-    bigint mine = 0, all;
-    tagint one = MAXTAGINT, first;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (fluid(i) && !scene.is_moved(i)) {
-        mine++;
-        one = std::min(one, atom->tag[i]);
-      }
-    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    MPI_Allreduce(&one, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-    if (all)
-      warn(fmt::format("{} fluid particles, the first of them atom {}, are not in group {} of fix {}: they stay where they are", all, first,
+    const auto found = find_particles(atom, world, [&](int i) { return fluid(i) && !scene.is_moved(i); });
+    if (found.count)
+      warn(fmt::format("{} fluid particles, the first of them atom {}, are not in group {} of fix {}: they stay where they are", found.count, found.first,
                        group->names[scene.mover->igroup], scene.mover->id));
   }
 

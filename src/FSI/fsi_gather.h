@@ -16,8 +16,9 @@
 #ifndef LMP_FSI_GATHER_H
 #define LMP_FSI_GATHER_H
 
-#include "lmptype.h"
+#include "atom.h"
 
+#include <algorithm>
 #include <mpi.h>
 #include <set>
 #include <vector>
@@ -42,6 +43,25 @@ namespace FSI {
   {
     const auto all = gather(std::vector<tagint>(mine.begin(), mine.end()), world);
     return {all.begin(), all.end()};
+  }
+
+  // how many particles there are that is(i) holds for, and the least of their tags
+  struct Found {
+    bigint count = 0;
+    tagint first = MAXTAGINT;
+  };
+
+  template <class Is> inline Found find_particles(const Atom *atom, MPI_Comm world, Is is)
+  {
+    Found mine, all;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (is(i)) {
+        mine.count++;
+        mine.first = std::min(mine.first, atom->tag[i]);
+      }
+    MPI_Allreduce(&mine.count, &all.count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    MPI_Allreduce(&mine.first, &all.first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+    return all;
   }
 
 }    // namespace FSI

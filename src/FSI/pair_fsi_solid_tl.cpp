@@ -23,6 +23,7 @@
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_contact.h"
+#include "fsi_gather.h"
 #include "fsi_profile.h"
 #include "fsi_viscosity_artificial.h"
 #include "memory.h"
@@ -168,14 +169,12 @@ void PairFSISolidTL::refuse_constraints() const
     for (const char *style : styles) {
       const std::string name = style;
       if (fix->style != name && !utils::strmatch(fix->style, "^" + name + "/")) continue;
-      tagint mine = MAXTAGINT, first;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (material[atom->type[i]].species == SOLID && atom->mask[i] & fix_fsi->groupbit && atom->mask[i] & fix->groupbit)
-          mine = std::min(mine, atom->tag[i]);
-      MPI_Allreduce(&mine, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-      if (first < MAXTAGINT)
+      const auto held = find_particles(atom, world, [&](int i) {
+        return material[atom->type[i]].species == SOLID && atom->mask[i] & fix_fsi->groupbit && atom->mask[i] & fix->groupbit;
+      });
+      if (held.count)
         error->all(FLERR, "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see forces inside the solid: to hold "
-                          "particles leave them out of the group of fix {}", fix->id, fix->style, first, fix_fsi->id);
+                          "particles leave them out of the group of fix {}", fix->id, fix->style, held.first, fix_fsi->id);
     }
 }
 
