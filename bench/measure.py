@@ -14,6 +14,8 @@ from fsi import launch, log, paths
 from fsi.command import Refusal
 
 SHORT, LONG = 4, 24  # steps of the two runs whose difference is taken: what is done once per run cancels
+# glibc's allocator from within: how long it looks for a block depends on what was freed before, not on what is asked for
+ALLOCATOR = re.compile(r"_(int|mid)_(malloc|free|realloc|memalign)|malloc_consolidate|unlink_chunk")
 MATERIALS = """# DATE: 2026-11-21 UNITS: si CITATION: none
 water fluid rho 1000 viscosity 1
 plate solid rho 1000 young 2e6 poisson 0.4
@@ -96,7 +98,7 @@ def pair(a, b, turns, binary=None):
 def profiles(texts):
     """What the time loop executes: ({function: instructions} of SHORT steps, that of LONG steps) of each of some inputs without run command.
 
-    One process for all, since valgrind starts slowly.
+    One process for all, since valgrind starts slowly. Without the insides of ALLOCATOR, that a list built in either run calls.
     """
     if shutil.which("valgrind") is None:
         raise Failed("valgrind is not installed: tools/setup installs it")
@@ -121,7 +123,7 @@ def _functions(text):
         elif line.startswith("calls="):
             called = True  # the next line is what the called function took
         elif current and (match := re.match(r"(?:[+-]?\d+|\*) (\d+)$", line)):
-            if not called:
+            if not called and not ALLOCATOR.match(current):
                 found[current] = found.get(current, 0) + int(match[1])
             called = False
     return found

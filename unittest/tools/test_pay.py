@@ -15,7 +15,7 @@ import effects  # noqa: E402
 import measure  # noqa: E402
 
 SMALL = (24, 16)
-SAME = 2e-3  # counts of the same work differ by so much: what MPI and the allocator do between is not the same every time
+SAME = 2e-3  # counts of the same work differ by so much: what MPI does between is not the same every time
 DECKS = {"fluid": effects.fluid, "updated": effects.updated, "total": effects.total}
 ZERO = {  # every effect of a style that has a size, of size zero, or as it is where nothing is named
     "fluid": "artificial/visc 0 0 density/diffusion 0 shift 0 surface 0 bulk tension no background 0 couple wall extrapolate no",
