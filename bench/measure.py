@@ -59,6 +59,7 @@ class Pair:
 def execute(command, folder, binary=None):
     """Runs a command in a folder."""
     env = launch.environment()
+    env["LD_BIND_NOW"] = "1"  # else the first call of a library's function looks for it, in whichever run that is
     if binary:  # with the library beside it
         env["LD_LIBRARY_PATH"] = str(Path(binary).parent)
     done = subprocess.run(command, cwd=folder, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,

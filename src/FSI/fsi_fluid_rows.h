@@ -285,7 +285,7 @@ namespace FSI {
     }
   };
 
-  // Adds laminar viscosity to the forces on both; what it takes from their energy, times 2 for images, which each pair meets from both sides.
+  // Adds laminar viscosity to the force on i and, of images, on j; what it takes from their energy, times 2 for images, which each pair meets from both sides.
   template <class T, int KIND, int FLAGS, int D>
   FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, const Mirror &mirror, const Particle<T, D> &pi, const Particle<T, D> &pj,
                    const T (&velocity_of_j)[D], const int *j, const RowConstants &constant, const T &g, const T &rsq, const T (&x)[D], const T (&v)[D], T (&force)[D], T (&on_j)[D])
@@ -326,10 +326,7 @@ namespace FSI {
       if (FLAGS & Flag::SUMS) loss = -product(rubbing, v);
     } else
       loss = viscous(g, rsq, visc, vv, x, v, rubbing);
-    for (int d = 0; d < D; d++) {
-      force[d] += rubbing[d];
-      if (!(FLAGS & Flag::IMAGES)) on_j[d] -= rubbing[d];
-    }
+    for (int d = 0; d < D; d++) force[d] += rubbing[d];
     return loss;
   }
 
@@ -403,13 +400,16 @@ namespace FSI {
         if constexpr (KIND == WITH_SOLID_FULL)
           if (laws.stress) coupled -= CouplePaper::add_stress<(FLAGS & Flag::IMAGES) != 0>(laws.stress[*j], mirror, pj.vol * pj.vol * g, x, v, force);
         if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) by.coupling += share * coupled;
-        for (int d = 0; d < D; d++) on_j[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * force[d] : -force[d];
+        if (FLAGS & Flag::IMAGES)
+          for (int d = 0; d < D; d++) on_j[d] = -mirror.sign[d] * force[d];
         if (FLAGS & Flag::LAMINAR) {
           // walls and solids have another velocity than i itself in places that are left over
           const T there = KIND == WITH_FLUID || (FLAGS & Flag::IMAGES) ? g : weight * g;
           const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, there, rsq, x, v, force, on_j);
           if (FLAGS & Flag::SUMS) by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * share * loss : share * loss;
         }
+        if (!(FLAGS & Flag::IMAGES))
+          for (int d = 0; d < D; d++) on_j[d] = -force[d];
         // what wall particles are given: they are not in the sum of energies
         if ((FLAGS & Flag::SUMS) && KIND == WITH_WALL) by.walls -= share * product(force, pj.v);
         if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES))
