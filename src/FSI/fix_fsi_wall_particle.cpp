@@ -26,14 +26,12 @@
 #include "group.h"
 #include "memory.h"
 #include "modify.h"
-#include "neigh_list.h"
 #include "neighbor.h"
 #include "pair_fsi_fluid.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -141,27 +139,15 @@ void FixFSIWallParticle::add_costs(Costs &costs) const
   costs.back += force->newton_pair;
 }
 
-/* ----------------------------------------------------------------------
-   those of the group within reach of the neighbour list
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void FixFSIWallParticle::find_pairs()
+template <class F> void FixFSIWallParticle::for_pairs(F f) const
 {
-  pairs.clear();
-  const NeighList *const list = force->pair_match("fsi/fluid", 1)->list;
-  const int *const mask = atom->mask, *const type = atom->type;
-  const auto is_fluid = [&](int i) { return fix_fsi->state[type[i]].species == FLUID; };
-  for (int ii = 0; ii < list->inum; ii++) {
-    const int i = list->ilist[ii];
-    const bool wall = mask[i] & groupbit;
-    if (!wall && !is_fluid(i)) continue;
-    for (int jj = 0; jj < list->numneigh[i]; jj++) {
-      const int j = list->firstneigh[i][jj] & NEIGHMASK;
-      if (wall) {
-        if (is_fluid(j)) pairs.emplace_back(i, j);
-      } else if (mask[j] & groupbit)
-        pairs.emplace_back(j, i);
-    }
+  const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
+  if (!fluid) return;    // a script has put another style in its place since the last run
+  for (const Row &row : fluid->rows_with_walls()) {
+    if (!(atom->mask[row.j[0]] & groupbit)) continue;    // a type is in one such fix
+    for (int k = 0; k < row.n; k++) f(row.j[k], row.i);
   }
 }
 
@@ -198,27 +184,31 @@ template <int D> double FixFSIWallParticle::beyond_mean(const double *moments, d
 void FixFSIWallParticle::end_state(bool advance)
 {
   const Phase phase(fix_fsi->profile, Profile::WALLS);
-  const int dim = fix_fsi->dim, nall = atom->nlocal + atom->nghost;
+  const int dim = fix_fsi->dim;
   double **x = atom->x;
   double **v = atom->v;
   double *rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
   const bool stiffness = fix_fsi->wall_stiffness;
-  if (neighbor->ago == 0) find_pairs();
+  if (neighbor->ago == 0) {
+    members.clear();
+    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+      if (mask[i] & groupbit) members.push_back(i);
+  }
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
     memory->grow(sum, nmax, nsum, "fsi/wall/particle:sum");
   }
-  if (nall) memset(sum[0], 0, (size_t) nall * nsum * sizeof(double));
+  for (const int i : members) std::fill_n(sum[i], nsum, 0.0);
 
   with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
-    for (const auto &[w, j] : pairs) {
+    for_pairs([&](int w, int j) {
       double d[3], rsq = 0.0;
       for (int k = 0; k < dim; k++) {
         d[k] = x[w][k] - x[j][k];
         rsq += d[k] * d[k];
       }
-      if (rsq >= kernel.cutsq) continue;
+      if (rsq >= kernel.cutsq) return;
       const double W = kernel.W(std::sqrt(rsq));
       double *const s = sum[w];
       s[0] += W;
@@ -239,12 +229,12 @@ void FixFSIWallParticle::end_state(bool advance)
       if (stiffness) s[first_stiffness] += W * fix_fsi->state[type[j]].rho0 * fix_fsi->state[type[j]].csq;
       if (!slip)
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
-    }
+    });
   });
   if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
 
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(mask[i] & groupbit)) continue;
+  for (const int i : members) {
+    if (i >= atom->nlocal) break;    // ghosts come last
     const State &state = fix_fsi->state[type[i]];
     const double *const s = sum[i];
     double *const old = before->astore[i];
@@ -296,8 +286,8 @@ void FixFSIWallParticle::pre_reverse(int, int)
 {
   const int n = atom->nlocal + (force->newton_pair ? atom->nghost : 0);
   std::fill_n(force_on, 3, 0.0);
-  for (int i = 0; i < n; i++)
-    if (atom->mask[i] & groupbit)
+  for (const int i : members)
+    if (i < n)
       for (int d = 0; d < 3; d++) force_on[d] += atom->f[i][d];
 }
 
@@ -317,15 +307,15 @@ double FixFSIWallParticle::compute_vector(int n)
 double FixFSIWallParticle::compute_scalar()
 {
   if (!fix_fsi) return 0.0;    // before the first run
-  double mine = 0.0, all;
-  for (const auto &[w, j] : pairs) {
+  double counted = 0.0, all;
+  for_pairs([&](int w, int j) {
     double rsq = 0.0;
     for (int k = 0; k < fix_fsi->dim; k++) rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
     const double limit = fix_fsi->state[atom->type[w]].guard;
     // without newton a pair across ranks is in the lists of both
-    if (rsq < limit * limit) mine += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
-  }
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+    if (rsq < limit * limit) counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
+  });
+  MPI_Allreduce(&counted, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 
@@ -384,5 +374,5 @@ void FixFSIWallParticle::unpack_reverse_comm(int n, int *list, double *buf)
 
 double FixFSIWallParticle::memory_usage()
 {
-  return (double) nmax * nsum * sizeof(double) + (double) pairs.capacity() * sizeof(pairs[0]);
+  return (double) nmax * nsum * sizeof(double) + (double) members.capacity() * sizeof(members[0]);
 }

@@ -25,7 +25,6 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 #include "fsi_part.h"
 
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -64,12 +63,12 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   std::vector<class FixFSIMove *> movers;
   class FixStoreAtom *before;    // velocity at the last step, and whether there was one
   class FixFSI *fix_fsi;
-  std::vector<std::pair<int, int>> pairs;    // wall and fluid particles that may be within the kernel's support
+  std::vector<int> members;    // the group's particles, local and ghost
+  template <class F> void for_pairs(F f) const;    // f(wall particle, fluid particle) of those that may be within the kernel's support
   double **sum;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d W, d d W, p d W, d = x_wall - x
   int nmax, nsum, first_moment, first_stiffness;
   double force_on[3];    // this group, this rank's part
 
-  void find_pairs();
   template <int D> double beyond_mean(const double *moments, double W, double p, double rho, const double *a) const;
 };
 

@@ -421,7 +421,7 @@ void PairFSIFluid::go_back()
 
 void PairFSIFluid::find_rows()
 {
-  const int *const type = atom->type, nlocal = atom->nlocal, nall = nlocal + atom->nghost;
+  const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
   const State *const state = fix_fsi->state.data();
   double **const x = atom->x;
   std::vector<int> fluid_types, other_types;
@@ -432,52 +432,55 @@ void PairFSIFluid::find_rows()
   for (const auto &s : fix_fsi->state) guards.emplace_back(fix_fsi->dim, s.guard);
   for (auto &list_of : rows) list_of.clear();
 
-  // neighbors of other species by fluid particle, whose row they may be in or not: counted, then filled in
-  std::vector<int> first, other;
-  const auto for_pairs_with_others = [&](auto f) {
-    for (int ii = 0; ii < list->inum; ii++) {
-      const int i = list->ilist[ii];
-      const bool is_fluid = state[type[i]].species == FLUID;
-      for (int jj = 0; jj < list->numneigh[i]; jj++) {
-        const int j = list->firstneigh[i][jj] & NEIGHMASK;
-        if (is_fluid != (state[type[j]].species == FLUID)) is_fluid ? f(i, j) : f(j, i);
-      }
-    }
+  struct Pair {
+    int i, j;
   };
-  if (!other_types.empty()) {
-    first.assign(nall + 2, 0);
-    for_pairs_with_others([&](int i, int) { first[i + 2]++; });
-    for (int i = 0; i < nall; i++) first[i + 2] += first[i + 1];
-    other.resize(first[nall + 1]);
-    for_pairs_with_others([&](int i, int j) { other[first[i + 1]++] = j; });
-  }
+  std::vector<Pair> with_others;    // fluid particles and neighbors of other species, whichever of both has the other in its list
+  std::vector<char> is_fluid(atom->ntypes + 1, 0);
+  for (const int t : fluid_types) is_fluid[t] = 1;
 
   std::vector<int> unmasked;
   Sight *const sight = fix_fsi->sight.get();
   const auto normal = [this](int i) { return std::array<double, 3>{normals[0][i], normals[1][i], normals[2][i]}; };
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
   for (int ii = 0; ii < list->inum; ii++) {
-    const int i = list->ilist[ii], n = list->numneigh[i], *const neighbors = list->firstneigh[i];
-    if (state[type[i]].species != FLUID) continue;
-    if (own) {
+    const int i = list->ilist[ii], *neighbors = list->firstneigh[i];
+    int n = list->numneigh[i];
+    if (own && is_fluid[type[i]]) {
       rows[FLUIDS].rows.push_back({i, n, neighbors});
       continue;
     }
-    unmasked.resize(n);
-    for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
-    if (sight && sight->near(x[i])) {
-      sight->look_from(x[i]);
-      const auto hidden = [&](int j) {
-        return state[type[j]].species == FLUID && Sight::opposite(normal(i).data(), normal(j).data()) && sight->blocked(x[j]);
-      };
-      unmasked.erase(std::remove_if(unmasked.begin(), unmasked.end(), hidden), unmasked.end());
+    const bool looks = is_fluid[type[i]] && sight && sight->near(x[i]);
+    if (atom->molecular || looks) {
+      unmasked.resize(n);
+      for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
+      if (looks) {
+        sight->look_from(x[i]);
+        const auto hidden = [&](int j) { return is_fluid[type[j]] && Sight::opposite(normal(i).data(), normal(j).data()) && sight->blocked(x[j]); };
+        unmasked.erase(std::remove_if(unmasked.begin(), unmasked.end(), hidden), unmasked.end());
+      }
+      neighbors = unmasked.data();
+      n = unmasked.size();
+    }
+    if (!is_fluid[type[i]]) {
+      for (int jj = 0; jj < n; jj++)
+        if (is_fluid[type[neighbors[jj]]]) with_others.push_back({neighbors[jj], i});
+      continue;
     }
     // that of its own type stays if it is empty, for its own images
     for (const int t : fluid_types)
-      rows[FLUIDS].add(i, unmasked.data(), unmasked.size(), false, t == type[i], [=](int j) { return type[j] == t; });
+      rows[FLUIDS].add(i, neighbors, n, false, t == type[i], [&](int j) {
+        if (type[j] == t) return true;
+        if (t == fluid_types[0] && !is_fluid[type[j]]) with_others.push_back({i, j});
+        return false;
+      });
   }
   if (!own) rows[FLUIDS].end();
   if (other_types.empty()) return;
+  std::vector<int> first(nall + 2, 0), other(with_others.size());
+  for (const auto &pair : with_others) first[pair.i + 2]++;
+  for (int i = 0; i < nall; i++) first[i + 2] += first[i + 1];
+  for (const auto &pair : with_others) other[first[pair.i + 1]++] = pair.j;
   for (int i = 0; i < nall; i++) {
     if (first[i] == first[i + 1]) continue;
     for (const int t : other_types)

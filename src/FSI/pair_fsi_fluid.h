@@ -62,6 +62,8 @@ class PairFSIFluid : public PairFSI {
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
   void add_position_divergence(double *div);
   void add_gradient_sum(double *) override;
+  // fluid particles and wall particles that may be within the support
+  const std::vector<FSI::Row> &rows_with_walls() const { return (near_known ? near : rows)[WALLS].rows; }
 
  protected:
   bool handles(int, int) const override;
