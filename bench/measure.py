@@ -174,7 +174,7 @@ def _count(number):
     for k in range(number):
         lmp.command("clear")
         lmp.file(f"in.{k}")
-        lmp.command("run 0")
+        lmp.command("run 1")  # what only a first run asks for is behind it
         counts = []
         for steps in (SHORT, LONG):
             before = [cell.value for cell in cells]
