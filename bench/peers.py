@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 import measure
-from tool import PAGE, Job, say
+from tool import Job, say
 
 from fsi import paths, scene
 from fsi.command import start
@@ -199,8 +199,7 @@ def page(rows):
         lists = f"{r['neighbours_ours']:.1f}, {r['neighbours_peer']:.1f}" if r.get("neighbours_ours") else ""
         lines.append(f"| {r['what']} | {number(r.get('ours'))} | {number(r.get('peer'))} | {ratio} | {lists} | {r['target'].replace('>=', 'at least').replace('<', 'under')} "
                      f"| {'not measured' if r['met'] is None else 'met' if r['met'] else '**missed**'} |")
-    notes = PAGE / "peers_notes.md"
-    return "\n".join(lines) + "\n" + ("\n" + notes.read_text() if notes.exists() else "")
+    return "\n".join(lines) + "\n"
 
 
 def main(arguments):

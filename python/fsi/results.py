@@ -16,7 +16,7 @@ from pathlib import Path
 from . import paths
 from .summary import bound, deviation, number
 
-REMARKS = "Where it is off"  # section of a scene's README that the page quotes
+REMARKS = "Deviations"  # section of a scene's README that the page quotes
 COST = ("cpu_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; columns of their own
 SHOWN = 2  # pictures per scene
 MARKS = ("<!-- results: written by tools/run all -->\n", "<!-- end of results -->\n")  # where the README has them

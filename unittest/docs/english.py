@@ -26,7 +26,7 @@ _BRITISH = (
     r"neighbour\w*|colour\w*|behaviour\w*|favour\w*|honour\w*|labour\w*|vapour\w*|rigour|endeavour\w*|armour|harbour\w*|"
     r"cent(?:re|res|red|ring)|(?:kilo|centi|milli|micro|nano)?met(?:re|res)|lit(?:re|res)|fib(?:re|res)|theatres?|sabre|calibre|"
     r"modell(?:ed|ing|er)|travell(?:ed|ing|er)|cancell(?:ed|ing)|labell(?:ed|ing)|channell(?:ed|ing)|signall(?:ed|ing)|levell(?:ed|ing)|"
-    r"grey\w*|analys(?:e|es|ed|ing)|paralys(?:e|es|ed)|catalys(?:e|es|ed)|fulfils?|licence\w*|defence\w*|offence\w*|artefacts?|whilst|amongst|"
+    r"grey\w*|analys(?:e|ed|er|ing)|paralys(?:e|es|ed)|catalys(?:e|es|ed)|fulfils?|licence\w*|defence\w*|offence\w*|artefacts?|whilst|amongst|"
     r"programmes?|judgement\w*|ageing|ploughs?|plough\w*|sceptic\w*|aluminium|moulds?|mouldings?|manoeuv\w+|tyres?|storeys?|"
     rf"(?:{'|'.join(_ISE)})is(?:e|es|ed|ing|ation|ations)")
 HASH = r"\b(?=[0-9a-f]*[0-9])(?=[0-9a-f]*[a-f])[0-9a-f]{7,40}\b"

@@ -27,7 +27,8 @@ import robustness  # noqa: E402
 import scaling  # noqa: E402
 import solid_variants  # noqa: E402
 
-PAGES = [paths.ROOT / "README.md", *(paths.ROOT / "doc").rglob("*.md"), *(paths.ROOT / "doc/src").glob("*.rst"),
+NOTES = paths.ROOT / "doc/notes"    # of what was tried at its time
+PAGES = [paths.ROOT / "README.md", *(page for page in (paths.ROOT / "doc").rglob("*.md") if NOTES not in page.parents), *(paths.ROOT / "doc/src").glob("*.rst"),
          *paths.EXAMPLES.glob("*/README.md")]
 PROGRAMS = r"tools/\w+|build/lmp|mpirun |fsi |python3? -m |pip install |cmake -|export |cp |git |apt(?:-get)? "
 PLACEHOLDERS = {"NAME": "elastic_gate", "SCENE": "elastic_gate", "CASE": "10MPa_3_across", "FILE": "unittest/styles/test_dt.py", "R": "2.5", "FOLDER": "results/beam",
@@ -168,6 +169,13 @@ class Reader:
             return self.execute(command)
         crowded = "OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe"  # where there is one core
         return self.execute(f"{crowded} {command} -skiprun -log none")
+
+    def lmp(self, _, words):
+        """A scene's deck, in its folder: here in another, where what it writes is no litter."""
+        assert words[0] == "-in" and len(words) == 2
+        deck = paths.EXAMPLES / words[1].removeprefix("in.") / words[1]
+        assert deck.exists(), f"there is no {deck}"
+        self.execute(shlex.join([str(paths.BUILD / "lmp"), "-in", str(deck), "-skiprun", "-log", "none"]))
 
     def fsi(self, command, words):
         """Of files that a run left: in its folder."""

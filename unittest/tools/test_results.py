@@ -14,7 +14,7 @@ A stone falls.
 ![the fall](fall.png)
 ![as everybody knows it](../../doc/unrelated.png)
 
-## Where it is off
+## Deviations
 Too *fast*, see ![curve](curve.png) and [theory](../../doc/testing.md), [web](https://example.org), [below](#x).
 
 ### In detail
@@ -130,7 +130,7 @@ def test_headlines_are_of_the_bundled_scenes():
 
 
 def test_remarks_are_quoted_with_links_that_work(tree):
-    remarks = page_of(tree).split("## Where it is off")[1]
+    remarks = page_of(tree).split("## Deviations")[1]
     assert ("Too *fast*, see ![curve](../../examples/stone/curve.png) and [theory](../../examples/stone/../../doc/testing.md), "
             "[web](https://example.org), [below](#x).\n\n### In detail\nAir.") in remarks
     assert "quoted" not in remarks and "Study" not in remarks
