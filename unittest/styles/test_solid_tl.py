@@ -910,7 +910,7 @@ def plate_period(n, keywords="", columns=1):
     return 2 * (t - 10 * dt * new / (new - old))
 
 
-# the table of doc/src/theory.rst at 5 across and at 3: per cent that the period is too long
+# the table of doc/notes/solids.md at 5 across and at 3: per cent that the period is too long
 PERIODS = [(3, "", 1, -0.9), (5, "", 1, -0.36), (3, "hourglass 0", 1, 1.2), (5, "hourglass 0", 1, 0.4), (5, "hourglass 0 volumes plain", 1, 2.4),
            (5, "hourglass 0 gradient linear", 1, 17.0), (5, "hourglass 0", 0, 4.4)]
 
