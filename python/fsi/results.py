@@ -64,19 +64,16 @@ def judged(entry):
     return [f for f in entry["summary"]["figures"] if f["target"] is not None]
 
 
-def store(found, page):
-    """results.json, all that pages are made of, and results.csv, one line a figure."""
-    page = Path(page)
-    page.mkdir(parents=True, exist_ok=True)
-    (page / "results.json").write_text(json.dumps(found, indent=1) + "\n")
-    table = io.StringIO()
-    rows = csv.writer(table, lineterminator="\n")
+def table(found):
+    """results.csv: one line a figure."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
     rows.writerow((*COLUMNS, "commit", "date"))
     for name, entry in found["scenes"].items():
         if summary := entry["summary"]:
             rows.writerows((name, f["name"], f["value"], f["unit"], f["reference"], f["source"], f["relative_error"], f["target"], f["met"],
                             summary["commit"], summary.get("date")) for f in summary["figures"] if f["name"] not in COST)
-    (page / "results.csv").write_text(table.getvalue())
+    return text.getvalue()
 
 
 def render(found, examples="../../examples"):
@@ -130,9 +127,15 @@ def headlines(scenes, examples):
             rows.append([what, "no result", "", "", "", ""])
             continue
         worst = max(outside, key=lambda f: abs(f["relative_error"]))
-        rows.append([what, words(worst["name"]), _value(worst), number(worst["reference"]), deviation(worst),
+        rows.append([what, words(worst["name"]), _value(worst), f"{number(worst['reference'])} ({_whose(worst, judged(entry))})", deviation(worst),
                      f"{sum(f['met'] for f in known)} of {len(known)}", duration(core_seconds(entry["summary"]["cases"][case]))])
     return _markdown(["scene", "its worst figure", "computed", "reference", "error", "targets met", "time on one core"], rows)
+
+
+def _whose(figure, figures):
+    """The source of a figure in short: up to a comma or colon, that of an earlier one where it is the same."""
+    sources = [f["source"] for f in figures[:figures.index(figure) + 1] if f["source"] and not f["source"].startswith("the same")]
+    return re.split("[,:]", (sources or ["?"])[-1])[0]
 
 
 def words(figure):
