@@ -1,4 +1,4 @@
-"""What accuracy costs: the command line of tools/cost. A scene's sweep is its cost.json, see doc/cost/README.md."""
+"""What accuracy costs: the command line of tools/cost. A scene's sweep is its cost.json."""
 
 import contextlib
 import json
