@@ -325,7 +325,7 @@ def page(summary, picture, table):
               f"![Error against resolution and against CPU time]({picture})", "",
               "- Green band: errors below 1 %. Open symbols: the error changes its sign there, so its size says nothing.",
               "- Time: CPU seconds of the time loop on one core, "
-              + ("one run each." if summary["spread"] is None else f"median of up to three runs. They differ by {100 * summary['spread']:.0f} % (median)."),
+              + ("each point is one run." if summary["spread"] is None else f"median of up to three runs. They differ by {100 * summary['spread']:.0f} % (median)."),
               f"- All {summary['points']} runs, with settings changed one at a time, are in [{table}]({table}). {summary['failed']} of them stopped or do not count."]
     if summary.get("thinnest"):
         lines.append(f"- The thinnest body has, at {summary['variable']} = "

@@ -186,7 +186,7 @@ def page(rows):
              "![Ratio of speeds](peers.png)", "",
              "- Speed: particle-steps in a CPU second of the time loop on one core, wall particles included.",
              "- Both run in turns in one process. Kernel supports, skins and numbers of neighbor lists are equal. Input scripts: `bench/peers`.",
-             f"- The package's water has {FULL}. The total-Lagrangian plate has quadratic gradients, that of MACHDYN linear ones.",
+             f"- The package's water has {FULL}.", "- The total-Lagrangian plate has quadratic gradients, that of MACHDYN linear ones.",
              "- *sph/taitwater* has artificial viscosity and walls of particles, RHEO artificial viscosity and density damping.",
              "- Neighbors: entries of the list for each particle. 0: a total-Lagrangian solid needs no list here.",
              "- `tools/cost peers` measures this on your machine.", "",

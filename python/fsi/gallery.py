@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import textwrap
 from datetime import datetime
 from pathlib import Path
 
@@ -86,7 +87,8 @@ def page():
         runs = [log.read(path).finished[-1] for path in sorted((paths.EXAMPLES / name).glob(f"log.*.{name}.1"))]
         settings = "".join(f" {k}={v}" for k, v in short().get(name, {}).items()) if runs else ""
         size = f": {runs[0].atoms:,} particles, {runs[0].steps:,} steps" if runs else ""
-        lines += [f"      :doc:`{title(name)} <../../examples/{name}/README>`. {_rst(description(name))}", "", f"      ``tools/run {name}{settings}``{size}.", ""]
+        lines += [*textwrap.wrap(f":doc:`{title(name)} <../../examples/{name}/README>`. {_rst(description(name))}", 140, initial_indent=6 * " ",
+                                 subsequent_indent=6 * " ", break_long_words=False, break_on_hyphens=False), "", f"      ``tools/run {name}{settings}``{size}.", ""]
     return "\n".join([*lines, ".. toctree::", "   :hidden:", "", *(f"   ../../examples/{name}/README" for name in names)]) + "\n"
 
 

@@ -124,10 +124,10 @@ def headlines(scenes, examples):
         outside = [f for f in known if f["relative_error"] is not None and not f["source"].startswith("our ")]
         what = f"[{what}]({examples}/{name}/README.md)"
         if not outside or case not in entry["summary"].get("cases", {}):
-            rows.append([what, "no result", "", "", "", ""])
+            rows.append([what, "no result", *[""] * 5])
             continue
         worst = max(outside, key=lambda f: abs(f["relative_error"]))
-        rows.append([what, words(worst["name"]), _value(worst), f"{number(worst['reference'])} ({_whose(worst, judged(entry))})", deviation(worst),
+        rows.append([what, words(worst["name"]), _value(worst), f"{number(worst['reference'])} ({_whose(worst, entry['summary']['figures'])})", deviation(worst),
                      f"{sum(f['met'] for f in known)} of {len(known)}", duration(core_seconds(entry["summary"]["cases"][case]))])
     return _markdown(["scene", "its worst figure", "computed", "reference", "error", "targets met", "time on one core"], rows)
 
@@ -169,10 +169,9 @@ def draw(found, path):
         for k, entry in enumerate(scenes.values()):
             size = [abs((f["relative_error"] if f["reference"] else f["value"]) or 0.0) / f["target"] if f["target"] else 0.0 if f["met"] else np.inf
                     for f in judged(entry)]
-            x = np.clip(size, least, 30.0)
-            axes.plot(x, np.full(len(x), k), "o", markersize=5, color=plot.GREEN, markeredgecolor="white", markeredgewidth=0.5)
-            axes.plot(x[np.array(size) > 1.0], np.full((np.array(size) > 1.0).sum(), k), "o", markersize=5, color=plot.RED, markeredgecolor="white",
-                      markeredgewidth=0.5)
+            for missed, colour in ((False, plot.GREEN), (True, plot.RED)):
+                x = [min(max(s, least), 30.0) for s in size if (s > 1.0) == missed]
+                axes.plot(x, [k] * len(x), "o", markersize=5, color=colour, markeredgecolor="white", markeredgewidth=0.5)
         axes.axvline(1.0, color=plot.GREY, linewidth=1.0)
         axes.set_yticks(range(len(scenes)), [title(name) for name in scenes], fontsize=7.5)
         axes.set(xscale="log", xlim=(0.7 * least, 40.0), ylim=(len(scenes) - 0.4, -0.6), xlabel="size of the error over its target")
