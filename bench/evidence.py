@@ -95,7 +95,8 @@ def cost_table():
         cells = []
         for bound in BOUNDS:
             found = cheapest(summary, bound)
-            text = "-" if found is None else f"{seconds(found[1]['cpu_seconds'])} ({summary['variable']} {found[1]['at']:.3g})"
+            at = "{:.3g} particles" if summary["resolution"].startswith("particles") else f"{summary['variable']} = {{:.3g}}"
+            text = "none" if found is None else f"{seconds(found[1]['cpu_seconds'])} ({at.format(found[1]['at'])})"
             cells.append(f"< {text}" if found and found[1]["kind"] == "coarsest run" else text)
         rows.append([summary["title"], name, summary["label"].removeprefix("error of the ").removeprefix("mean L1 error of the "), *cells])
     return rows
@@ -139,7 +140,7 @@ def cost_page():
              "| scene | error of | 10 % | 2 % | 1 % |", "|---|---|---|---|---|"]
     lines += [f"| [{title}]({name}.md) | {what} | {' | '.join(cells)} |" for title, name, what, *cells in cost_table()]
     lines += ["", "CPU seconds on one core that keep an error bound, with the cheapest method; in brackets its resolution. All finer runs keep the bound, too.",
-              "`<`: the coarsest run keeps it. -: no run does.", "",
+              "`<`: the coarsest run keeps it. None: no run does.", "",
               "What [each effect](effects.md) adds to a step. [LAMMPS' own styles](peers.md) in comparison. [Several ranks](scaling.md).",
               "[How to choose](../choosing.md) resolution and effects."]
     return "\n".join(lines) + "\n"
@@ -227,11 +228,11 @@ def page():
              "Blue is the recommended method, orange what is usual in SPH. The green band marks errors below 1 %.", "",
              ".. list-table:: CPU seconds on one core that keep an error bound", "   :header-rows: 1", "",
              *_rst(["scene", "error of", "10 %", "2 %", "1 %"], [[f":doc:`{title} <../cost/{name}>`", what, *cells] for title, name, what, *cells in cost_table()]), "",
-             "In brackets the resolution; ``<``: the coarsest run keeps the bound; -: no run does.", sentences()[-2],
+             "In brackets the resolution; ``<``: the coarsest run keeps the bound; none: no run does.", sentences()[-2],
              "The :doc:`page of all sweeps <../cost/README>` says how to read this, and how to get it for your own input script.", "",
              "Which hard cases stay stable", "----------------------------", "", ".. image:: ../hard/hard.png",
              "   :alt: Hard cases, here and with classic SPH", "   :target: ../hard/README.html", "",
-             f"Of {len(here)} cases on which SPH codes fail, {sum(here)} pass here. With classic SPH {sum(classic)} of {len(classic)} pass.",
+             f"Of {len(here)} cases on which SPH codes commonly fail, {sum(here)} pass here. With classic SPH {sum(classic)} of {len(classic)} pass.",
              "The :doc:`page of hard cases <../hard/README>` has the bounds and the measured values.", "", "What is *not* stable or not accurate:", "",
              *(f"- {text}" for text in unstable()), "",
              "What effects cost", "-----------------", "", ".. image:: ../cost/named.png", "   :alt: Types of scenes and the effects that they name",
@@ -239,9 +240,9 @@ def page():
              "A dot stands where the bundled scene of a type names an effect, as *fix fsi* prints it at the start of a run.",
              "The numbers are instructions that the effect adds to a step, in per cent of the bare scene. Open dots were not measured on their own.", "",
              "An effect that a script does not name is not computed, not stored and not sent:", "",
-             "- +0 instructions: effects of size zero and the bare scene take the same number, counted by valgrind.",
-             "- +0 bytes for each particle: memory is the same as before to the byte.",
-             "- +0 messages between ranks: they are counted around the MPI calls.", "",
+             "- +0 instructions: the bare scene runs no function of an effect that is not named. Counted by valgrind, to 0.2 %.",
+             "- +0 bytes: a particle takes what the bare loops and each named effect need, counted by hand.",
+             "- +0 messages: what two ranks send is counted around the MPI calls and equals what *fix fsi* announces.", "",
              "``unittest/tools/test_pay.py`` proves each of the three in every run of the tests. What each effect adds is on the page of",
              ":doc:`effects <../cost/effects>`."]
     return "\n".join(lines) + "\n"
