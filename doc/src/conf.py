@@ -14,7 +14,7 @@ project = "FSI package for LAMMPS"
 author = copyright = "the FSI package"
 root_doc = "doc/src/index"
 include_patterns = ["doc/**", "examples/*/README.md"]
-exclude_patterns = ["build*", "results", ".*", "doc/cost/peers_notes.md", "doc/notes"]
+exclude_patterns = ["build*", "results", ".*", "doc/notes"]
 extensions = ["sphinx_rtd_theme", "myst_parser", "sphinx.ext.mathjax", "sphinx.ext.extlinks"]
 extlinks = {"lammps": ("https://docs.lammps.org/%s.html", "%s")}
 myst_heading_anchors = 3
