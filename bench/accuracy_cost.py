@@ -1,4 +1,4 @@
-"""What accuracy costs: the command line of tools/cost. A scene's sweep is its cost.json, see doc/cost/README.md."""
+"""What accuracy costs: the command line of tools/cost. A scene's sweep is its cost.json."""
 
 import contextlib
 import json
@@ -209,7 +209,6 @@ def main(arguments):
         return 1
 
     store = sweep.Store(folder / "points", deck, measure, files, options["limit"] or 600.0, options["repeats"], options.get("source"))
-    complete = True
     if options.get("draw") is None:
         complete = sweep.sweep(store, [(p["label"], p["settings"], work(definition, p["settings"])) for p in wanted],
                                say, options["budget"])
@@ -217,14 +216,10 @@ def main(arguments):
             sweep.count(store, representatives(definition, store), say)
     for point in wanted:
         point["run"] = store.get(point["settings"])
-    complete &= all(point["run"] for point in wanted)
     summary = cost_report.write(folder, name, definition, [p for p in wanted if p["run"]], store.source)
     if summary["moving"]:
         say(f"cost: warning: {cost_report.moving(summary)}")
-    print(f"cost: figures, pictures and tables are in {folder}")
-    if bundled and complete and not given and "out" not in options:
-        cost_report.publish(folder, name)
-        print(f"cost: page in {cost_report.PAGE}")
+    print(f"cost: page, picture and table are in {folder}")
     return 0
 
 

@@ -3,6 +3,7 @@
 import re
 
 import measure
+import solid_variants
 from measure import write_materials
 from tool import Job, say
 
@@ -107,8 +108,8 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "density by ratio": {"sph": "fluid ratio"},
         "tension, Tait, background": {"style": "eos tait tension yes background 1"},
         "adaptive time step": {"commands": STEP},
-        "watch": {"commands": WATCH},
-        "energy ledger": ({"style": "artificial/visc 0.05 0"}, {"style": "artificial/visc 0.05 0", "commands": LEDGER})}),
+        "monitor (fix fsi/watch)": {"commands": WATCH},
+        "energy balance": ({"style": "artificial/visc 0.05 0"}, {"style": "artificial/visc 0.05 0", "commands": LEDGER})}),
     "updated": ("Solid, updated Lagrangian", updated, {
         "artificial viscosity": {"style": "artificial/visc 0.1 0"},
         "artificial stress": {"style": "artificial/stress 0.3"},
@@ -120,8 +121,8 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "density by summation": {"sph": "solid summation"},
         "density by ratio": {"sph": "solid ratio"},
         "adaptive time step": {"commands": STEP},
-        "watch": {"commands": WATCH},
-        "energy ledger": {"commands": LEDGER}}),
+        "monitor (fix fsi/watch)": {"commands": WATCH},
+        "energy balance": {"commands": LEDGER}}),
     "total": ("Solid, total Lagrangian", total, {
         "artificial viscosity": {"style": "artificial/visc 0.1 0"},
         "hourglass control": ({"style": "hourglass 0"}, {}),
@@ -130,8 +131,8 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "plasticity (hypoelastic)": {"style": "law hypo", "stress": "plastic", "material": "metal"},
         "damage": {"style": "damage 0.5"},
         "adaptive time step": {"commands": STEP},
-        "watch": {"commands": WATCH},
-        "energy ledger": {"commands": LEDGER}}),
+        "monitor (fix fsi/watch)": {"commands": WATCH},
+        "energy balance": {"commands": LEDGER}}),
     "gate": ("Elastic gate", gate, {
         "artificial viscosity of the water": ({"without": ("viscosity",)}, {}),
         "density diffusion": ({"without": ("diffusion",)}, {}),
@@ -142,8 +143,8 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "hourglass control": ({"rubber": "hourglass 0"}, {}),
         "damage": {"rubber": "damage 0.5"},
         "adaptive time step": {"commands": STEP},
-        "watch": {"commands": WATCH},
-        "energy ledger": {"commands": LEDGER}})}
+        "monitor (fix fsi/watch)": {"commands": WATCH},
+        "energy balance": {"commands": LEDGER}})}
 TIMED, COUNTED = {"gate": (1000, 0)}, {"gate": (400, 0)}  # n, m of the timed and of the counted runs; elsewhere:
 SIZE, SMALL, STEPS = (160, 100), (40, 25), {"fluid": 60, "updated": 60, "total": 120, "gate": 60}
 
@@ -160,7 +161,7 @@ def deck(name, settings, size):
 
 
 def rows_of(name, kept, turns):
-    """The table of a scene, and what is sent in a step of the first case without its effect."""
+    """The table of a scene."""
     small = [deck(name, s, COUNTED.get(name, SMALL)) for _, *both in cases(name) for s in both]
     say(f"cost: {SCENES[name][0]}: counting instructions of {len(small)} runs")
     counts = kept.get(["instructions", small], lambda: measure.instructions(small))
@@ -177,59 +178,60 @@ def rows_of(name, kept, turns):
         say("cost:   {effect}: time {time:+.1%} ± {spread:.1%}, instructions {instructions:+.1%}, {memory:+.0f} B a particle, "
             "{messages:+.2g} messages and {bytes:+.1f} B a ghost".format(**row))
         rows.append(row)
-    a = sent[0]
-    return rows, {"messages": a["messages"], "bytes": a["bytes"] / a["ghosts"], "collectives": a["collectives"]}
+    return rows
 
 
-def draw(path, tables):
-    """Added time and instructions of each effect, a panel for each scene."""
-    with plot.picture(path, 8.6, 0.19 * sum(len(rows) + 3 for rows, _ in tables.values())) as figure:
-        heights = [len(rows) + 1 for rows, _ in tables.values()]
-        panels = figure.subplots(len(tables), 1, squeeze=False, sharex=True, gridspec_kw={"height_ratios": heights})[:, 0]
-        for axes, (name, (rows, _)) in zip(panels, tables.items()):
-            y = range(len(rows))
-            axes.barh([k - 0.2 for k in y], [100 * r["time"] for r in rows], 0.4, color=plot.BLUE, label="CPU time",
-                      xerr=[100 * r["spread"] for r in rows], error_kw={"elinewidth": 0.8, "ecolor": plot.GREY})
-            axes.barh([k + 0.2 for k in y], [100 * r["instructions"] for r in rows], 0.4, color=plot.ORANGE, label="instructions")
-            axes.set_yticks(list(y), [r["effect"] for r in rows])
-            axes.invert_yaxis()
-            axes.set_title(SCENES[name][0], loc="left")
+HIGHEST = 1.0  # where bars are cut
+
+
+def draw(path, rows):
+    """Instructions that each effect adds, the dearest first, a panel for each scene; cut at HIGHEST, where the number stands instead."""
+    tables = [[r for r in rows if r["scene"] == name] for name in SCENES]
+    with plot.picture(path, 9.6, 6.0) as figure:
+        grid = figure.add_gridspec(2, 2, height_ratios=[max(len(t) for t in tables[:2]) + 2, max(len(t) for t in tables[2:]) + 2])
+        for place, name, table in zip(grid, SCENES, tables):
+            axes = figure.add_subplot(place)
+            table = sorted(table, key=lambda r: -r["instructions"])
+            value = [min(r["instructions"], HIGHEST) for r in table]
+            axes.barh(range(len(table)), [100 * v for v in value], 0.7, color=[plot.GREEN if v < 0 else plot.BLUE for v in value])
+            for k, row in enumerate(table):
+                axes.text(100 * max(value[k], 0.0), k, f" {100 * row['instructions']:+.0f}" + " →" * (row["instructions"] > HIGHEST), va="center", fontsize=7)
+            axes.set_yticks(range(len(table)), [r["effect"] for r in table], fontsize=7.5)
+            axes.set(xlim=(-12, 118), ylim=(len(table) - 0.4, -0.6), xlabel="instructions added to a step [%]")
+            axes.set_title(SCENES[name][0], loc="left", weight="bold")
             axes.axvline(0.0, color=plot.GREY, linewidth=0.8)
             axes.grid(axis="y", visible=False)
-        panels[0].legend()
-        panels[-1].set_xlabel("added per step [% of the same scene without]")
         figure.tight_layout()
 
 
-def page(tables):
-    """The page's text."""
+def page(rows, variants):
+    """The page's text; variants: rows of tools/cost solids, of which the same in three dimensions."""
     lines = ["# What each effect costs", "",
-             "An effect that a deck does not name is not computed, stored or sent. This is what naming it adds to a step. Written by "
-             "`tools/cost effects`; the numbers are in [effects.csv](effects.csv).", "",
-             "![Added time and instructions of each effect](effects.png)", "",
-             "* time: CPU time with over without, in one process in turns (A B B A A B); median, ± half the range",
-             "* instructions: of the time loop by valgrind's callgrind, difference of two run lengths; the same in every repetition",
-             "* memory: what LAMMPS reports, bytes per particle (arrays grow in steps, some per cent more than there are particles)",
-             "* messages, bytes: what a rank of two sends in a step, beyond the scene without; bytes over its number of ghosts. Counted around the "
-             "MPI calls; collective calls are mean numbers per step"]
-    for name, (rows, base) in tables.items():
-        lines += ["", f"## {SCENES[name][0]}", "",
-                  f"Without: {base['messages']:.3g} messages, {base['bytes']:.0f} bytes a ghost and {base['collectives']:.2g} collective calls in a step.", "",
-                  "| effect | time | instructions | memory [B/particle] | messages | bytes a ghost | collective calls |", "|---|---|---|---|---|---|---|"]
-        for r in rows:
-            lines.append(f"| {r['effect']} | {r['time']:+.1%} ± {r['spread']:.1%} | {r['instructions']:+.2%} | {r['memory']:+.0f} | "
-                         f"{r['messages']:+.2g} | {r['bytes']:+.1f} | {r['collectives']:+.2g} |")
+             "An effect that a script does not name is not computed, stored or sent. This is what naming it adds to a step.", "",
+             "![Instructions that each effect adds](effects.png)", "",
+             "- Instructions of the time loop are counted by valgrind. They do not depend on the machine's load. Bars are cut at 100 %.",
+             "- Time: CPU time with the effect over that without, in turns in one process: median ± half the range.",
+             "- Memory: bytes of each particle. Messages and bytes: what one of two ranks sends in a step, bytes for each ghost particle.",
+             "- The scenes are small: 1,000 particles. Walls are near many of them, and cost less in larger scenes.",
+             "- The gate is the bundled one, solids included. There an effect of the water is a smaller share.", "",
+             "| scene | effect | instructions | in 3D | time | memory [B] | messages | bytes | collective calls |", "|---|---|---:|---:|---:|---:|---:|---:|---:|"]
+    for name, (title, *_) in SCENES.items():
+        for r in (r for r in rows if r["scene"] == name):
+            three = solid_variants.added(variants, 3, name, r["effect"])
+            lines.append(f"| {title} | {r['effect']} | {r['instructions']:+.1%} | {'' if three is None else f'{three:+.1%}'} | {r['time']:+.0%} ± {r['spread']:.0%} | "
+                         f"{r['memory']:+.0f} | {r['messages']:+.2g} | {r['bytes']:+.1f} | {r['collectives']:+.2g} |")
+    for what, (variant, over) in solid_variants.FORMS.items():
+        two, three = (solid_variants.ratio(variants, dim, variant, over) - 1.0 for dim in (2, 3))
+        lines.append(f"| Solid | {what} | {two:+.1%} | {three:+.1%} | | | | | |")
     return "\n".join(lines) + "\n"
 
 
 def main(arguments):
     """tools/cost effects"""
     job = Job("effects", arguments, turns=3, words=SCENES)
-    tables = {name: rows_of(name, job.kept, job.turns) for name in job.chosen or SCENES}
-    rows = [row for table, _ in tables.values() for row in table]
-    draw(job.target / "effects.png", tables)
-    job.write(COLUMNS, rows, 5, page(tables), {"effects": rows, "bases": {n: b for n, (_, b) in tables.items()}})
-    say(f"cost: page, picture and table are in {job.target}")
+    rows = [row for name in job.chosen or SCENES for row in rows_of(name, job.kept, job.turns)]
+    draw(job.folder / "effects.png", rows)
+    job.write(COLUMNS, rows, 5, page(rows, []))
     return 0
 
 

@@ -1,7 +1,7 @@
-"""What a step of each variant of the solid costs beside the plain one: tools/cost solids [out=FOLDER] [turns=N]
+"""What a step of each variant of the solid costs next to the plain one: tools/cost solids [out=FOLDER] [turns=N]
 
 A block that vibrates, 2D and 3D, one core. Each variant is timed next to the plain one in one process, in turns, and instructions of the
-time loop are counted by callgrind, which does not depend on the machine's load. Writes solids.md, solids.csv and solids.png.
+time loop are counted by callgrind, which does not depend on the machine's load. Its table is a part of the page of tools/cost effects.
 """
 
 import math
@@ -10,7 +10,6 @@ from dataclasses import replace
 import measure
 from tool import Job, say
 
-from fsi import plot
 from fsi.command import start
 
 PLAIN = "updated Lagrangian, plain gradients"
@@ -38,6 +37,20 @@ VARIANTS = {
     "TL, hypoelastic": (HYPO, ""),
     "TL, hypoelastic + plasticity": (HYPO, "plastic"),
 }
+SAME = {  # scene and effect of tools/cost effects: the variant, and over which
+    ("updated", "artificial viscosity"): ("+ artificial viscosity", PLAIN), ("updated", "artificial stress"): ("+ artificial stress", PLAIN),
+    ("updated", "corrected gradients"): ("corrected gradients", PLAIN), ("updated", "quadratic gradients"): ("quadratic gradients", PLAIN),
+    ("updated", "plasticity"): ("+ plasticity", PLAIN),
+    ("total", "artificial viscosity"): ("TL + both", "TL + hourglass control"),
+    ("total", "hourglass control"): ("TL + hourglass control", "total Lagrangian, St. Venant-Kirchhoff"),
+    ("total", "neo-Hookean"): ("TL, neo-Hookean", "total Lagrangian, St. Venant-Kirchhoff"),
+    ("total", "damage"): ("TL + damage", "total Lagrangian, St. Venant-Kirchhoff"),
+    ("total", "hypoelastic"): ("TL, hypoelastic", "total Lagrangian, St. Venant-Kirchhoff"),
+    ("total", "plasticity (hypoelastic)"): ("TL, hypoelastic + plasticity", "total Lagrangian, St. Venant-Kirchhoff")}
+FORMS = {  # comparisons of forms: the variant, and over which
+    "total instead of updated Lagrangian": ("total Lagrangian, St. Venant-Kirchhoff", PLAIN),
+    "the same with hourglass control, the default": ("TL + hourglass control", PLAIN),
+    "updated Lagrangian as stiff as that: quadratic gradients, hourglass control": ("quadratic + hourglass control", PLAIN)}
 SIZE = {2: (60, 50), 3: (15, 14, 14)}  # particles
 STEPS = {2: 60, 3: 12}
 
@@ -91,51 +104,30 @@ def table(dim, turns):
     return rows
 
 
-def picture(path, tables):
-    """Bars of time per particle-step, a panel per dimension."""
-    with plot.picture(path, 8.2, 5.0) as figure:
-        panels = figure.subplots(1, len(tables), sharey=True, squeeze=False)[0]
-        for axes, (dim, rows) in zip(panels, tables.items()):
-            place = range(len(rows))
-            axes.barh(place, [row["ns"] for row in rows], 0.72, color=[plot.ORANGE if "TL" in row["variant"] or "total" in row["variant"]
-                                                                       else plot.BLUE for row in rows])
-            for k, row in enumerate(rows):
-                axes.text(row["ns"], k, f" {row['ratio']:.2f}", va="center", fontsize=7)
-            axes.set_yticks(list(place), [row["variant"] for row in rows], fontsize=8)
-            axes.set(xlabel="ns per particle-step", xlim=(0, 1.15 * max(row["ns"] for row in rows)))
-            axes.set_title(f"{dim}D", loc="left")
-            axes.grid(False, axis="y")
-        panels[0].invert_yaxis()
-        figure.tight_layout()
+def ratio(rows, dim, variant, over):
+    """Instructions of a variant over those of another."""
+    counts = {row["variant"]: row["instructions"] for row in rows if row["dimension"] == dim}
+    return counts[variant] / counts[over]
 
 
-def page(tables, turns):
-    """The page as Markdown."""
-    two, three = tables[2], tables[3]
-    lines = ["# What each variant of the solid costs", "",
-             f"Made by `tools/cost solids{f' turns={turns}' if turns != 5 else ''}`; all figures are in [solids.csv](solids.csv). Do not edit: it is written anew.", "",
-             f"A vibrating block, {SIZE[2][0]} x {SIZE[2][1]} particles in 2D and {' x '.join(map(str, SIZE[3]))} in 3D, Wendland kernel with h = 1.5 dx, one core. "
-             "Time: CPU nanoseconds per particle-step of the whole time loop, the least of all turns. Ratio: to the plain updated-Lagrangian solid, timed next to "
-             "it in the same process, the median of the turns with half their range. Instructions: per particle-step, by callgrind.", "",
-             "![Time per particle-step](solids.png)", "",
-             "The number at a bar is its ratio to the first.", "",
-             "| variant | 2D: ns | ratio | instructions | ratio | 3D: ns | ratio | instructions | ratio |", "|---|---|---|---|---|---|---|---|---|"]
-    for a, b in zip(two, three):
-        lines.append(f"| {a['variant']} | " + " | ".join(
-            f"{r['ns']:.0f} | {r['ratio']:.2f} ± {r['spread']:.2f} | {r['instructions']:.0f} | {r['instruction_ratio']:.2f}" for r in (a, b)) + " |")
-    lines += ["", "| variant | pair_style (fix fsi/stress) |", "|---|---|"] + [f"| {row['variant']} | `{row['command']}` |" for row in two]
-    lines += ["", "A particle-step is not a step of the same length everywhere: total-Lagrangian solids beside a fluid take theirs as sub-steps, of which nothing "
-              "but the bonds is computed, while the updated-Lagrangian solid holds the fluid to its own short step."]
+def added(rows, dim, scene, effect):
+    """Share of instructions that the same effect adds to this block; None where there is no such variant, or no rows."""
+    pair = SAME.get((scene, effect))
+    return ratio(rows, dim, *pair) - 1.0 if pair and rows else None
+
+
+def page(rows):
+    """The table for a look; the manual has it on the page of effects."""
+    lines = ["# Variants of the solid", "", "| dimension | variant | command | ns | over the plain one | instructions |", "|---|---|---|---|---|---|"]
+    lines += [f"| {r['dimension']} | {r['variant']} | `{r['command']}` | {r['ns']:.0f} | {r['ratio']:.2f} ± {r['spread']:.2f} | {r['instructions']:.0f} |" for r in rows]
     return "\n".join(lines) + "\n"
 
 
 def main(arguments):
     """tools/cost solids"""
     job = Job("solids", arguments, turns=5)
-    tables = {dim: table(dim, job.turns) for dim in (2, 3)}
-    picture(job.target / "solids.png", tables)
-    job.write(list(tables[2][0]), tables[2] + tables[3], 4, page(tables, job.turns))
-    say(f"cost: {job.target / 'solids.md'}")
+    rows = [row for dim in (2, 3) for row in table(dim, job.turns)]
+    job.write(list(rows[0]), rows, 4, page(rows))
     return 0
 
 

@@ -1,9 +1,11 @@
 """What the tools of this folder have in common: command lines, results that are kept, tables."""
 
+import contextlib
 import csv
 import hashlib
 import json
 import sys
+from datetime import date
 from functools import cached_property, partial
 from pathlib import Path
 
@@ -34,24 +36,29 @@ class Kept:
         return measure.Pair(**self.get(["pair", *map(str, arguments)], lambda: vars(measure.pair(*arguments))))
 
 
-def write_csv(path, columns, rows, digits=None):
-    """Columns of some rows, {column: value}; digits: of all floating-point numbers."""
+def write_csv(path, command, columns, rows, digits=None):
+    """Columns of some rows, {column: value}, below a line that says what wrote them; digits: of all floating-point numbers."""
     with open(path, "w", newline="", encoding="utf-8") as file:
+        file.write(f"# {command}; commit {scene.commit() or 'unknown'}, {date.today().isoformat()}\n")
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
         writer.writerows([f"{v:.{digits}g}" if digits and isinstance(v, float) else v for v in map(row.get, columns)] for row in rows)
 
 
-def stamped(page):
-    """The page, with the commit that it was made of below its heading."""
-    heading, _, text = page.partition("\n\n")
-    return f"{heading}\n\nOf commit {scene.commit() or 'unknown'}.\n\n{text}"
+def read_csv(path):
+    """The rows of such a table, {column: number, text or None}."""
+    def value(text):
+        with contextlib.suppress(ValueError):
+            return float(text)
+        return {"": None, "True": True, "False": False}.get(text, text)
+    with open(path, newline="", encoding="utf-8") as file:
+        return [{column: value(text) for column, text in row.items()} for row in csv.DictReader(line for line in file if not line.startswith("#"))]
 
 
 class Job:
     """A tool's command line, `turns` being what it is where it may be given; brings the build up to date.
 
-    chosen: those of the `words` that were given; folder: of what is kept; target: of page, pictures and table.
+    chosen: those of the `words` that were given; folder: of table and page, and of what is kept.
     """
 
     def __init__(self, name, arguments, turns=None, words=()):
@@ -62,17 +69,15 @@ class Job:
         if not scene.build():
             sys.exit(1)
         self.name, self.folder = name, Path(options.get("out", paths.RESULTS / "cost" / name)).resolve()
-        self.target = self.folder if "out" in options or self.chosen else PAGE
-        self.target.mkdir(parents=True, exist_ok=True)
+        self.folder.mkdir(parents=True, exist_ok=True)
 
     @cached_property
     def kept(self):
         """What was measured before."""
         return Kept(self.folder / "points")
 
-    def write(self, columns, rows, digits, text, everything=None):
-        """The table, the page with its commit, and as JSON beside what is kept `everything`; what a table of its own is called."""
-        if everything is not None:
-            (self.folder / f"{self.name}.json").write_text(json.dumps(everything, indent=1) + "\n")
-        write_csv(self.target / f"{self.name}.csv", columns, rows, digits)
-        (self.target / f"{self.name}.md").write_text(stamped(text), encoding="utf-8")
+    def write(self, columns, rows, digits, text):
+        """The table and its page; tools/renew takes the table to doc/cost and makes the page and its picture there."""
+        write_csv(self.folder / f"{self.name}.csv", " ".join(["tools/cost", self.name, *self.chosen]), columns, rows, digits)
+        (self.folder / f"{self.name}.md").write_text(text, encoding="utf-8")
+        say(f"cost: table and page are in {self.folder}")

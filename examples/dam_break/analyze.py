@@ -27,7 +27,7 @@ MPS = "code, Koshizuka & Oka 1996"
 BUCHNER = "experiment, Buchner 2002"
 MEASURED = {1: ("martin_moyce_57mm", "Martin & Moyce 1952, L = 57 mm", plot.ORANGE),
             2: ("martin_moyce_29mm", "Martin & Moyce 1952, L = 29 mm", GREEN),
-            3: ("koshizuka_oka_pysph", "Koshizuka & Oka 1996, digitised in PySPH", PURPLE),
+            3: ("koshizuka_oka_pysph", "Koshizuka & Oka 1996, digitized in PySPH", PURPLE),
             4: ("koshizuka_oka_dualsphysics", "Koshizuka & Oka 1996, in DualSPHysics", plot.GREY)}
 CODE_SET = 5
 TIME_LABEL, FRONT_LABEL = "t sqrt(2g/L)", "front x/L"

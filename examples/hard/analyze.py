@@ -18,7 +18,7 @@ sys.path.insert(0, str(HERE.parents[1] / "python"))
 
 import numpy as np  # noqa: E402
 
-from fsi import dump, log, paths, plot, scene, series, sweep  # noqa: E402
+from fsi import dump, log, plot, scene, series, sweep  # noqa: E402
 from fsi.geometry import min_pair_distance  # noqa: E402
 from fsi.leaks import Leaks  # noqa: E402
 from fsi.summary import RUN_FILE, Summary, number  # noqa: E402
@@ -261,14 +261,14 @@ ROWS = {
     "drop": Row("stretched patch: drop of water", "drop", liquid, WATER, "shifting"),
     "patch": Row("spinning patch of water, to omega t = 2", "patch", liquid, WATER, "shifting"),
     "spin": Row("spinning patch of rubber, 5 turns", "spin", solid, BODY, TL),
-    "plate": Row("plate, 5 across, 300 periods, alpha from 0", r"plate_a.*", plate, {"periods_missed": ("<=", 0), **BODY},
+    "plate": Row("plate, 5 particles thick, 300 periods (classic SPH: 20)", r"plate_a.*", plate, {"periods_missed": ("<=", 0), **BODY},
                  f"{TL}, quadratic gradients"),
-    **{f"gate_{n}": Row(f"gate {n} across, static load", f"gate_{n}", gate, {"deflection_error": ("<=", bound)}, "quadratic gradients")
+    **{f"gate_{n}": Row(f"gate, {n} particles thick, static load", f"gate_{n}", gate, {"deflection_error": ("<=", bound)}, "quadratic gradients")
        for n, bound in ((3, 0.4), (4, 0.25), (5, 0.15), (8, 0.08))},
-    "break": Row("gates 3, 4, 5, 8 across, dam break", r"break_\d", breaking, {"leaked": ("<=", 0)}, f"{TL}, couple wall"),
+    "break": Row("gates, 3, 4, 5, 8 particles thick, dam break", r"break_\d", breaking, {"leaked": ("<=", 0)}, f"{TL}, couple wall"),
     "density_gate": Row("gates of 0.1 and 10 times the density of water", "break_density_.*", breaking, {"leaked": ("<=", 0)},
                         f"{TL}, couple wall"),
-    "sound": Row("speeds of sound solid/fluid 5, 20, 100", "sound_.*", drift, {"drift": ("<", 0.02)}, f"{TL}, couple wall, sub-steps"),
+    "sound": Row("speed of sound of the solid 5, 20, 100 times that of the fluid", "sound_.*", drift, {"drift": ("<", 0.02)}, f"{TL}, couple wall, sub-steps"),
     "float": Row("floating and sunken blocks, density ratio 0.1 to 10", "float_.*", floating, {"draft_error": ("<=", 0.5), "leaked": ("<=", 0)},
                  "couple wall, density diffusion"),
     "obstacle": Row("dam break on an elastic obstacle", "obstacle", impact, {"mach": ("<", 0.3), "density_error": ("<", 0.05)},
@@ -276,19 +276,19 @@ ROWS = {
     "jet": Row("jet on a plate", "jet", jet, {"mach": ("<", 0.3), "density_error": ("<", 0.05), "impulse_error": ("<", 0.01)},
                "continuity, shifting"),
     "still": Row("still water, 10 s, three resolutions, four walls", r"still_(\d+|lid)", still, STILL, "continuity, density diffusion, Wendland kernel"),
-    "still_jitter": Row("the same from a jittered lattice", r"still_\d+_jitter", still, STILL, "continuity, density diffusion, Wendland kernel"),
+    "still_jitter": Row("still water, from a jittered lattice", r"still_\d+_jitter", still, STILL, "continuity, density diffusion, Wendland kernel"),
     "corner": Row("still water, 10 s, obstacle with corners", r"still_corner_\d+", still, STILL, "continuity, density diffusion, couple wall"),
     "spray": Row("spray of 1, 2, 3 particles", "spray_.*", ballistic, {"off_parabola": ("<", 1e-12)}, "no tension"),
-    "splash": Row("cube of water falls on a floor at 1, 2, 3, 5 m/s, until at rest (3D)", r"splash_.*", splash,
+    "splash": Row("cube of water falls on a floor at 1 to 5 m/s, until at rest (3D)", r"splash_.*", splash,
                   {"energy_error": ("<", 0.01), "smallest_density": (">", 0.1), "lost": ("<=", 0)}, "density diffusion within water under pressure"),
-    "settle": Row("volume at rest after a dam break, and of a block that fell into a box (3D)", r"settle_.*", settled, {"volume_error": ("<", 0.01)}, "density/surface, density diffusion within water under pressure"),
+    "settle": Row("volume at rest after a dam break, and after a fall into a box (3D)", r"settle_.*", settled, {"volume_error": ("<", 0.01)}, "density/surface, density diffusion within water under pressure"),
     "wall": Row("a million steps against a wall: a particle, and a drop of nine", "wall.*", wall, {"leaked": ("<=", 0), "steps": (">=", 1000000)}, "guard of 0.4 dx, continuity"),
     "pull": Row("plate pulled out of water", "pull", pull, {"hanging": ("<=", 0), "pull": ("<", 1e-12)}, "couple wall: no suction"),
     "tear": Row("solid torn between two ranks", "tear.*", tear, {"pieces": ("==", 2), "ranks_differ": ("<", 1e-6)}, "damage"),
     "empty": Row("box that empties on a rank", "empty", momentum, {"momentum_error": ("<", 1e-12)}, ""),
     "jump_water": Row("sudden steps, 10 times longer and shorter: still water", "jump_water", still, STILL, "continuity, density diffusion, Wendland kernel"),
     "jump_plate": Row("sudden steps: spinning plate", "jump_plate", solid, BODY, TL),
-    "dt": Row("elastic gate, 1 to 6 times the stable step, with and without the check of Courant numbers", r"dt_(off_)?\d", honest, {"honest": ("==", 1)}, "fix fsi/watch", stops=True),
+    "dt": Row("gate, 1 to 6 times the stable step, Courant check on and off", r"dt_(off_)?\d", honest, {"honest": ("==", 1)}, "fix fsi/watch", stops=True),
 }
 RELATIONS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal, "==": np.equal}
 LABELS = {"distance": "nearest pair [dx]", "neighbours_kept": "first neighbours kept", "ke_over_pe": "kinetic/potential energy",
@@ -404,81 +404,45 @@ def terminal(table):
             print(f"    {recipe:12} {verdict(e, recipe):4}  {told(e, recipe)}")
 
 
-def page(table, pictures, work, commit):
-    """The page as Markdown."""
-    missed = [e["case"] for e in table if "best" in e and not e["best"]["pass"]]
-    fails = [e for e in table if "paper" in e and not e["paper"]["pass"]]
-    judged = sum("best" in e for e in table)
-    lines = ["# Hard cases", "", f"Made by `tools/run hard` of commit {commit or 'unknown'}: every number and picture comes from its runs. What the cases are, and why a row is missed, is in "
-             "[examples/hard](../../examples/hard/README.md).", "",
-             f"**The recommended scheme passes {judged - len(missed)} of {judged} rows**" + (f"; missed: {'; '.join(missed)}." if missed else ".")
-             + f" The source paper's recipe fails {len(fails)} of the {sum('paper' in e for e in table)} that it was tried on. {1e-9 * work:.1f} billion particle-steps in all.", "",
-             "| case | criterion | best | | paper | | what saves it |", "|---|---|---|---|---|---|---|"]
-    for e in table:
-        wanted = ", ".join(f"{label(f)} {bound}" for f, bound in e["criterion"].items())
-        saves = e["saves"] if e in fails and verdict(e, "best") == "pass" else ""
-        lines.append("| " + " | ".join((e["case"], wanted, told(e, "best"), verdict(e, "best"), told(e, "paper"), verdict(e, "paper"), saves)) + " |")
-    lines += ["", "Figures are the worst of all runs of a row. Paper: updated-Lagrangian solid with plain gradients, artificial stress 0.3, artificial "
-              "viscosity 0.1, cubic spline with h = 1.3 dx, density of fluids by summation with the rule of 0.9 and tension, of solids relative to the start, "
-              "the whole stress across the interface.", "", "## One effect at a time", "", "| case | recipe | measured | |", "|---|---|---|---|"]
-    for e in table:
-        lines += [f"| {e['case']} | {r.replace('-', ' ')} | {told(e, r)} | {verdict(e, r)} |" for r in e["recipes"] if r not in ("best", "paper") and e["row"] != "plate"]
-    lines += ["", "## Smallest stable artificial viscosity of the plate", "", "| solid | tried | periods | smallest from which on all are stable |", "|---|---|---|---|"]
-    lines += [f"| {recipe} | {', '.join(f'{a:g}' for a in tried)} | {periods:g} | {'none' if alpha is None else f'{alpha:g}'} |"
-              for recipe, alpha, tried, periods in stable_alphas(table)]
-    return "\n".join([*lines, "", *(f"![{alt}]({file})" for file, alt in pictures)]) + "\n"
+PICTURED = {"drop": "stretched drop", "patch": "spinning patch of water", "still_10": "still water", "obstacle": "elastic obstacle",
+            "pull": "plate pulled out of water"}
 
 
-PICTURED = {"rings_0.1": "rings, 0.1 c0", "drop": "stretched drop", "patch": "spinning patch", "still_10": "still water, 10 s",
-            "float_0.1": "floating, ratio 0.1", "obstacle": "elastic obstacle", "pull": "plate pulled out", "tear": "torn strip"}
-
-
-def picture(path, cases):
-    """The last picture of some runs, best above paper; water blue, solids orange and grey."""
-    shown = [group for group in PICTURED if f"{group}.best" in cases]
+def thumbnails(path, cases):
+    """The last picture of some pairs of runs in equal squares, best above paper; what they show, for hard.json. Water is blue, solids are orange."""
+    shown = [group for group in PICTURED if all(f"{group}.{recipe}" in cases for recipe in ("best", "paper"))]
     if not shown:
-        return
-    with plot.picture(path, 11.0, 9.6) as figure:
-        axes = figure.subplots(4, 4)
-        for axis in axes.ravel():
-            axis.axis("off")
-        for k, group in enumerate(shown[:8]):
-            for below, recipe in enumerate(("best", "paper")):
-                axis = axes[2 * (k // 4) + below, k % 4]
-                if f"{group}.{recipe}" not in cases:
-                    continue
-                frames = frames_of(cases[f"{group}.{recipe}"])
-                if not frames:
-                    continue
-                frame, first = frames[-1], frames[0]
-                fluids = () if group in ("rings_0.1", "tear") else (1,)
-                for kind in np.unique(frame["type"]):
-                    part = frame.of_types(kind)
-                    colour = plot.BLUE if kind in fluids else {1: plot.ORANGE, 2: plot.ORANGE if fluids else plot.GREY}.get(int(kind), plot.GREY)
-                    axis.plot(part["x"], part["y"], ".", markersize=1.2 if len(frame) > 1500 else 2.2, color=colour, rasterized=True)
-                low, high = (np.quantile(np.concatenate([first.vector("xy"), frame.vector("xy")]), q, axis=0) for q in (0.002, 0.998))
-                low, high = low - 0.03 * (high - low).max(), high + 0.03 * (high - low).max()
-                axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-                axis.set_title(f"{PICTURED[group]}: {recipe}, t = {frame.time:.3g} s", loc="left", fontsize=8)
-        figure.tight_layout()
+        return []
+    found = []
+    with plot.picture(path, 2.0 * len(shown), 4.0) as figure:
+        for k, group in enumerate(shown):
+            runs = [frames_of(cases[f"{group}.{recipe}"]) for recipe in ("best", "paper")]
+            found.append({"group": group, "title": PICTURED[group], "here": runs[0][-1].time, "classic": runs[1][-1].time})
+            for row, frames in enumerate(runs):
+                axes = figure.add_axes((k / len(shown) + 0.01, 0.52 - 0.5 * row, 1 / len(shown) - 0.02, 0.46))
+                for kind, colour in ((1, plot.BLUE), (2, plot.ORANGE)):
+                    part = frames[-1].of_types(kind)
+                    axes.plot(part["x"], part["y"], ".", markersize=1.0 if len(frames[-1]) > 1500 else 1.8, color=colour)
+                ends = np.concatenate([frames[0].vector("xy"), frames[-1].vector("xy")])
+                low, high = (np.quantile(ends, q, axis=0) for q in (0.002, 0.998))
+                middle, half = 0.5 * (low + high), 0.54 * (high - low).max()
+                axes.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), aspect="equal")
+                axes.axis("off")
+    return found
 
 
 def study(folder, cases):
-    """The table of all rows: hard.json, hard.csv, README.md and pictures; an error names the rows that `best` misses."""
+    """hard.json, hard.csv and thumbnails.png of all rows, which tools/renew makes a page of; an error names the rows that `best` misses."""
     folder = Path(folder)
     summary = Summary(folder)
     table = collect(summary.cases)
-    # a run of the bundled suite refreshes the page in doc/
-    home = paths.ROOT / "doc" / "hard" if folder == paths.RESULTS / "hard" else folder
-    home.mkdir(parents=True, exist_ok=True)
-    picture(folder / "hard.png", cases)
-    if home != folder and (folder / "hard.png").exists():
-        (home / "hard.png").write_bytes((folder / "hard.png").read_bytes())
-    pictures = [("hard.png", "the last picture of some runs, best above paper")] if (folder / "hard.png").exists() else []
-    work = sum(case["particle_steps"] or 0 for case in summary.cases.values())
-    (home / "README.md").write_text(page(table, pictures, work, summary.run.get("commit")))
-    (home / "hard.json").write_text(json.dumps(table, indent=1) + "\n")
-    with open(home / "hard.csv", "w", newline="") as file:
+    about = {key: summary.run.get(key) for key in ("commit", "date")}
+    (folder / "hard.json").write_text(json.dumps(
+        {"command": "tools/run hard", **about, "cpu_seconds": round(sum(case["cpu_seconds"] or 0 for case in summary.cases.values())),
+         "particle_steps": sum(case["particle_steps"] or 0 for case in summary.cases.values()), "runs": len(summary.cases),
+         "pictures": thumbnails(folder / "thumbnails.png", cases), "rows": table}, indent=1) + "\n")
+    with open(folder / "hard.csv", "w", newline="", encoding="utf-8") as file:
+        file.write(f"# tools/run hard; commit {about['commit']}, {about['date']}\n")
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(("row", "figure", "relation", "bound", "recipe", "run", "value", "stopped"))
         for e in table:

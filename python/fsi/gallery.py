@@ -1,25 +1,24 @@
-"""Reference logs of the scenes' short forms, their pictures, and the gallery in the manual. The command line of tools/gallery.
+"""Reference logs of the scenes' short forms, and the gallery in the manual. The command line of tools/gallery.
 
-    tools/gallery                 all scenes, then the page
-    tools/gallery SCENE ...       these, then the page
-    tools/gallery page            the page alone
+    tools/gallery                 all scenes
+    tools/gallery SCENE ...       these
 
 Runs what examples/short.json says of a scene on 1 and 2 ranks and writes examples/SCENE/log.DATE.SCENE.RANKS (DATE of LAMMPS, as in LAMMPS'
-own examples). Pictures that a scene's README shows are renewed from results/SCENE where tools/run has left some. Writes doc/src/gallery.rst.
+own examples). The page doc/src/gallery.rst is one of those that tools/renew writes.
 """
 
 import json
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
+import textwrap
 from datetime import datetime
 from pathlib import Path
 
 from . import launch, log, paths, scene
 from .command import Refusal, start
-from .results import _pictures, _readme
+from .results import title
 
 SHORT = "short.json"
 RANKS = (1, 2)
@@ -62,37 +61,35 @@ def reference_logs(name):
     return True
 
 
-def renew_pictures(name):
-    """Those of the README from what tools/run left."""
-    folder = paths.RESULTS / name
-    summary = folder / "summary.json"
-    if summary.exists():
-        for picture in _pictures(name, folder, json.loads(summary.read_text())):
-            shutil.copyfile(folder / picture["file"], paths.EXAMPLES / name / Path(picture["file"]).name)
+def description(name):
+    """The first line of a scene's README that is no heading."""
+    return next(line for line in (paths.EXAMPLES / name / "README.md").read_text().splitlines() if line.strip() and not line.startswith("#"))
+
+
+def pictures(name):
+    """[(alternative text, file)] that a scene's README shows of its folder."""
+    return re.findall(r"!\[([^\]]*)\]\(([^)\s/]+)\)", (paths.EXAMPLES / name / "README.md").read_text())
 
 
 def page():
-    """doc/src/gallery.rst, from READMEs, pictures and reference logs; starters first."""
-    lines = [".. Written by tools/gallery; edits are lost.", "", "Gallery", "=======", "",
-             "Each scene runs with ``tools/run NAME``; its folder ``examples/NAME`` holds deck, README with what to expect, and reference logs of a short",
-             "form, ``log.DATE.NAME.RANKS``, with the settings given here. What all of them give is on the page of :doc:`results <../results/README>`. Times",
-             "are those of the short forms' loop on 1 and 2 ranks, on a machine with other work: an order of magnitude.", "",
+    """The text of doc/src/gallery.rst, from READMEs, pictures and reference logs; starters first."""
+    lines = [".. Written by tools/renew; edits are lost.", "", "Gallery", "=======", "",
+             "Each scene runs with ``tools/run NAME``. Its folder ``examples/NAME`` holds the input script, a page with what to expect, and reference logs.",
+             "The command below a picture runs the short form that the logs are of. The :doc:`results <../results/README>` of all scenes are on one page.", "",
              ".. container:: cards", ""]
-    readmes = {name: _readme(name) for name in paths.scenes()}
-    names = sorted(readmes, key=lambda name: ("starter" not in readmes[name]["description"], name))
+    names = sorted(paths.scenes(), key=lambda name: ("starter" not in description(name), name))
     for name in names:
         lines += ["   .. container:: card", ""]
-        picture = re.search(r"!\[([^\]]*)\]\(([^)\s/]+)\)", (paths.EXAMPLES / name / "README.md").read_text())
-        if picture and (paths.EXAMPLES / name / picture[2]).exists():
-            lines += [f"      .. image:: ../../examples/{name}/{picture[2]}", f"         :alt: {picture[1]}",
+        shown = [found for found in pictures(name) if (paths.EXAMPLES / name / found[1]).exists()]
+        if shown:
+            lines += [f"      .. image:: ../../examples/{name}/{shown[0][1]}", f"         :alt: {shown[0][0]}",
                       f"         :target: ../../examples/{name}/README.html", ""]
-        runs = [log.read(path).finished[-1] for ranks in RANKS for path in sorted((paths.EXAMPLES / name).glob(f"log.*.{name}.{ranks}"))]
-        settings = "".join(f" {k}={v}" for k, v in short().get(name, {}).items())
-        cost = (f": {runs[0].atoms:,} particles, {runs[0].steps:,} steps, " + ", ".join(f"{run.loop_seconds:.1f} s on {run.ranks}" for run in runs)) if runs else ""
-        lines += [f"      :doc:`{readmes[name]['title']} <../../examples/{name}/README>`. {_rst(readmes[name]['description'])}", "",
-                  f"      ``tools/run {name}{settings if runs else ''}``{cost}.", ""]
-    lines += [".. toctree::", "   :hidden:", "", *(f"   ../../examples/{name}/README" for name in names)]
-    (paths.ROOT / "doc/src/gallery.rst").write_text("\n".join(lines) + "\n")
+        runs = [log.read(path).finished[-1] for path in sorted((paths.EXAMPLES / name).glob(f"log.*.{name}.1"))]
+        settings = "".join(f" {k}={v}" for k, v in short().get(name, {}).items()) if runs else ""
+        size = f": {runs[0].atoms:,} particles, {runs[0].steps:,} steps" if runs else ""
+        lines += [*textwrap.wrap(f":doc:`{title(name)} <../../examples/{name}/README>`. {_rst(description(name))}", 140, initial_indent=6 * " ",
+                                 subsequent_indent=6 * " ", break_long_words=False, break_on_hyphens=False), "", f"      ``tools/run {name}{settings}``{size}.", ""]
+    return "\n".join([*lines, ".. toctree::", "   :hidden:", "", *(f"   ../../examples/{name}/README" for name in names)]) + "\n"
 
 
 def _rst(text):
@@ -104,18 +101,13 @@ def main(arguments):
     """tools/gallery"""
     if any(word.startswith("-") for word in arguments):
         sys.exit(__doc__)
-    wanted = [] if arguments == ["page"] else arguments or sorted(short())
+    wanted = arguments or sorted(short())
     unknown = [name for name in wanted if name not in short()]
     if unknown:
         raise Refusal(f"examples/{SHORT} has no {', '.join(unknown)}; it has {', '.join(short())}")
-    failed = []
-    if wanted and not scene.build():
+    if not scene.build():
         return 1
-    for name in wanted:
-        if not reference_logs(name):
-            failed.append(name)
-        renew_pictures(name)
-    page()
+    failed = [name for name in wanted if not reference_logs(name)]
     if failed:
         print("gallery: failed:", *failed, file=sys.stderr)
     return 1 if failed else 0

@@ -1,7 +1,9 @@
 """Pictures in one style. Nothing here opens a window."""
 
+import io
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -9,10 +11,12 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from PIL import Image
 
 BLUE, ORANGE, GREY, GREEN, RED = "#1b5e96", "#d1611a", "#555555", "#3a923a", "#c23b3b"
 FLUID_COLOURS, SOLID_COLOURS, WALL_COLOUR = "viridis", "inferno", "#a8a8a8"
 LABELS = ("x [m]", "y [m]")
+LARGEST = 150_000  # bytes of a picture
 STYLE = {
     "font.size": 9,
     "axes.titlesize": 9,
@@ -34,7 +38,22 @@ def picture(path, width=6.4, height=4.0):
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(width, height))
         yield figure
-        figure.savefig(path)
+        drawn = io.BytesIO()
+        figure.savefig(drawn, format="png")
+    Path(path).write_bytes(packed(drawn))
+
+
+def packed(file, largest=LARGEST):
+    """A picture as PNG with a palette of 256 colours and, while it is larger than `largest` bytes, fewer pixels: at least half as many each way."""
+    whole = Image.open(file).convert("RGB")
+    for share in (1.0, 0.85, 0.7, 0.6, 0.5):
+        small = whole if share == 1.0 else whole.resize([round(share * n) for n in whole.size], Image.Resampling.LANCZOS)
+        found = io.BytesIO()
+        # colours that cover what there is, not what there is most of: the ends of a colour bar are rare
+        small.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE).save(found, "PNG", optimize=True)
+        if found.tell() <= largest:
+            break
+    return found.getvalue()
 
 
 def lines(path, time_label, value_label, curves, points=(), log_scale=False):

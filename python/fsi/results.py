@@ -1,246 +1,186 @@
-"""One page about what all scenes gave, from their summaries, pictures and READMEs alone.
+"""The figures of all scenes, from the summaries that tools/run leaves, and the page of those that have a target. tools/renew writes it."""
 
-    python -m fsi.results [RESULTS [PAGE]]     default: results doc/results; tools/run all ends with it
-
-Writes README.md, results.json (all that the page is made of) and copies of the pictures into the folder PAGE. What was not run keeps what the page
-has of it; the page names the commit of each. Its first table is also put between the marks in the README.md of the repository, where PAGE is in one.
-"""
-
+import csv
+import io
 import json
-import os
 import re
-import shutil
-import sys
 from pathlib import Path
 
-from . import paths
+import numpy as np
+
+from . import paths, plot
+from .command import Refusal
 from .summary import bound, deviation, number
 
-REMARKS = "Deviations"  # section of a scene's README that the page quotes
-COST = ("cpu_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; columns of their own
-SHOWN = 2  # pictures per scene
-MARKS = ("<!-- results: written by tools/run all -->\n", "<!-- end of results -->\n")  # where the README has them
-# The first table: what, scene, figure, case that it is of (None: all)
+COST = ("cpu_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; no figures of a scene
+COLUMNS = ("scene", "figure", "value", "unit", "reference", "source", "error", "target", "met")
+MARKS = ("<!-- results: written by tools/renew -->\n", "<!-- end of results -->\n")  # where the README has its table
+# The README's table: what, scene, its figures as a regular expression, the case whose time stands beside. The worst judged figure is shown
 HEADLINES = (
-    ("Plate under 2 m of water: deflection", "hydrostatic_plate", "deflection_11", "11_across"),
-    ("Elastic gate: furthest displacement of its tip", "elastic_gate", "10MPa_tip_x_peak", "10MPa_5_across"),
-    ("The same gate under a load known exactly: displacement", "gate_static", "tip_x_5_across", "5_across"),
-    ("Oscillating plate: period", "oscillating_plate", "period_10", "tl_10"),
-    ("Turek and Hron's beam under gravity (CSM3): frequency", "turek_hron_csm", "frequency_10", "csm3_10"),
-    ("Bending column in 3D: first peak", "bending_column", "peak_10", "10_across"),
-    ("Taylor bar: final length", "taylor_bar", "final_length_8_across", "8_across"),
-    ("Dam break: pressure on the wall after the impact", "dam_break", "pressure_plateau_80", "best"),
-    ("Dam break on a box in 3D: arrival of the water", "dam_break_3d", "P1_arrival", None),
-    ("Cylinder in a channel, Re = 20: drag coefficient", "cylinder_channel", "drag_20_across", "20_across"),
-    ("Rolling tank: period of the oil", "rolling_tank", "sloshing_period_free", "free"),
-    ("Standing wave: period", "standing_wave", "period", "viscous"),
-    ("Taylor-Green vortices: rate of decay", "taylor_green", "energy_decay_rate", "best"),
-    ("Elliptical drop: long axis", "elliptical_drop", "semi_axis_b", "best"),
-    ("Rotating square patch: pressure at its centre", "rotating_square_patch", "centre_pressure", "best"),
-    ("Floating block: draft", "floating_blocks", "draft_0.5", "0.5"),
-)
-_IMAGE = re.compile(r"!\[([^\]]*)\]\(([^)\s]+)\)")
-_RELATIVE_LINK = re.compile(r"(\]\()(?![a-z]+:|[#/])([^)\s]+\))")
+    ("Elastic flag behind a cylinder, steady (FSI1)", "turek_hron_fsi", r".*_fsi1_4", "fsi1_4"),
+    ("The same, swinging widely (FSI2)", "turek_hron_fsi", r".*_fsi2_4", "fsi2_4"),
+    ("The same, swinging fast (FSI3)", "turek_hron_fsi", r".*_fsi3_4", "fsi3_4"),
+    ("Elastic gate that lets water out", "elastic_gate", r"12MPa_.*", "12MPa_5_across"),
+    ("Plate under 2 m of water", "hydrostatic_plate", r".*", "11_across"),
+    ("Dam break on an elastic plate, 3D", "dam_break_elastic", r".*", "plate"),
+    ("Elastic plate alone", "oscillating_plate", r".*", "tl_10"),
+    ("Rigid cylinder in a channel, Re = 20 and 100", "cylinder_channel", r".*", "re_100_28"))
+WORDS = (  # of names of figures, for readers who do not know them; the first that fits
+    (r"(ux|uy)_fsi1", "displacement of the tip"), (r"uy_amplitude", "amplitude of the tip"), (r"drag_amplitude", "amplitude of the drag"),
+    (r"lift_amplitude", "amplitude of the lift"), (r"drag", "drag"), (r"lift", "lift"), (r"strouhal", "Strouhal number"), (r"frequency", "frequency"),
+    (r"tip_x_peak_time", "time of the peak"), (r"tip_y_peak", "rise of the tip at the peak"), (r"tip_x_peak", "deflection at the peak"),
+    (r"tip_x_rest", "deflection at rest"), (r"deflection", "deflection at the middle"), (r"a100_a1.*_ul", "amplitude after 100 swings, updated Lagrangian"),
+    (r"a100_a1", "amplitude after 100 swings"), (r"period.*_ul", "period, updated Lagrangian"), (r"period", "period"))
 
 
 def collect(results):
-    """What is to be said, as a dictionary that JSON can hold; scenes in the order of their names."""
+    """What tools/run left in `results`, {"command", "scenes": {name: {"summary" or None}}}: all of one commit without changes."""
     found = {}
     for name in paths.scenes():
         path = Path(results) / name / "summary.json"
-        summary = json.loads(path.read_text()) if path.exists() else None
-        found[name] = {**_readme(name), "summary": summary,
-                       "pictures": _pictures(name, path.parent, summary) if summary else []}
-    return {"scenes": found}
+        found[name] = {"summary": json.loads(path.read_text()) if path.exists() else None}
+    commits = {entry["summary"].get("commit") or "unknown" for entry in found.values() if entry["summary"]}
+    if not commits:
+        raise Refusal(f"{results} holds no summary.json of a scene: tools/run all makes them")
+    if len(commits) > 1 or any(not re.fullmatch("[0-9a-f]+", commit) for commit in commits):
+        raise Refusal(f"{results} holds results of {', '.join(sorted(commits))}: pages are of one commit without changes (+); tools/run all renews the others")
+    return {"command": "tools/run all", "scenes": found}
 
 
-def _readme(name):
-    """Title, first line and remarks of a scene's README."""
+def title(name):
+    """The heading of a scene's README."""
     path = paths.EXAMPLES / name / "README.md"
-    text = path.read_text() if path.exists() else ""
-    lines = text.splitlines()
-    title = next((line.lstrip("# ") for line in lines if line.startswith("# ")), name)
-    description = next((line for line in lines if line.strip() and not line.startswith("#")), "")
-    section = re.search(rf"^## {REMARKS}[ \t]*\n(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)
-    return {"title": title, "description": description, "remarks": section[1].strip() if section else ""}
+    return next((line.lstrip("# ") for line in path.read_text().splitlines() if line.startswith("# ")), name) if path.exists() else name
 
 
-def _pictures(name, folder, summary):
-    """[{file, alt}], `file` below `folder`: those that the README shows, else all; of a study's cases the largest's."""
-    cases = sorted(summary.get("cases", {}), key=lambda case: -(summary["cases"][case]["particles"] or 0))
-    places = [folder, *(folder / case for case in cases)]
-    readme = paths.EXAMPLES / name / "README.md"
-    shown = _IMAGE.findall(readme.read_text()) if readme.exists() else []
-    if not shown:
-        shown = [("", path.name) for place in places for path in sorted(place.glob("*.png"))]
-    found = {}
-    for alt, target in shown:
-        path = next((place / target for place in places if (place / target).is_file()), None)
-        if path:
-            found.setdefault(str(path.relative_to(folder)), alt)
-    return [{"file": file, "alt": alt or f"{name}: {Path(file).stem}"} for file, alt in found.items()][:SHOWN]
+def scenes_of(page):
+    """What the results.json of a folder has, by scene."""
+    path = Path(page) / "results.json"
+    return json.loads(path.read_text())["scenes"] if path.exists() else {}
 
 
-def copied(name, picture):
-    """Name of a picture's copy on the page: scene, case and file in one."""
-    return "_".join([name, *Path(picture["file"]).parts])
+def judged(entry):
+    """The figures of a scene that have a target."""
+    return [f for f in entry["summary"]["figures"] if f["target"] is not None]
+
+
+def table(found):
+    """results.csv: one line a figure."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow((*COLUMNS, "commit", "date"))
+    for name, entry in found["scenes"].items():
+        if summary := entry["summary"]:
+            rows.writerows((name, f["name"], f["value"], f["unit"], f["reference"], f["source"], f["relative_error"], f["target"], f["met"],
+                            summary["commit"], summary.get("date")) for f in summary["figures"] if f["name"] not in COST)
+    return text.getvalue()
 
 
 def render(found, examples="../../examples"):
     """The page as Markdown; `examples` leads from it to the scenes."""
     scenes = {name: entry for name, entry in found["scenes"].items() if entry["summary"]}
-    parts = [_head(found["scenes"], scenes)]
-    if short := headlines(scenes, examples):
-        parts += ["## In short", short]
-    parts += ["## Gallery", _gallery(scenes, examples), "## Figures", _explanation(scenes), _table(scenes, judged=True)]
-    rest = _table(scenes, judged=False)
-    if rest:
-        parts += ["### Further figures, which there is nothing to judge by", rest]
-    remarks = [f"### {entry['title']}\n\n" + _RELATIVE_LINK.sub(rf"\g<1>{examples}/{name}/\2", entry["remarks"])
-               for name, entry in scenes.items() if entry["remarks"]]
-    if remarks:
-        parts += [f"## {REMARKS}", *remarks]
-    return "\n\n".join(parts) + "\n"
+    every = [f for entry in scenes.values() for f in judged(entry)]
+    hours = sum(core_seconds(entry["summary"]) for entry in scenes.values()) / 3600
+    lines = ["# Results", "",
+             "What the scenes compute, next to experiments, theory and finite elements.",
+             f"**{sum(f['met'] for f in every)} of {len(every)} targets are met.**",
+             f"All {len(scenes)} scenes together take {hours:.1f} hours on one core.", "",
+             "![Size of each figure's error over its target](results.png)", "",
+             "Each dot is a figure that has a target. Right of the line the target is missed.", "",
+             "- The error is relative to the reference. Where there is none, the target bounds the value itself.",
+             "- References are experiments and theory unless they say otherwise. *Code* is another program.",
+             "- CPU seconds are those of all runs of a scene on one core.",
+             "- All figures, also those without a target, are in [results.csv](results.csv).", ""]
+    missing = [name for name, entry in found["scenes"].items() if not entry["summary"] or entry["summary"].get("failed_cases")]
+    if missing:
+        lines += [f"**Failed, in part or as a whole: {', '.join(missing)}.**", ""]
+    return "\n".join(lines) + "\n" + _table(scenes, examples) + "\n"
 
 
-def _head(every, scenes):
-    """What somebody in a hurry has to know: targets met and missed, what did not run, what it was run with."""
-    versions = {entry["summary"].get("lammps") or "unknown" for entry in scenes.values()}
-    commits = {}
+def _table(scenes, examples):
+    rows = []
     for name, entry in scenes.items():
-        commits.setdefault(entry["summary"].get("commit") or "unknown", []).append(name)
-    used = " and ".join(c if len(commits) == 1 else f"{c} ({', '.join(n)})" for c, n in commits.items())
-    changed = " (+: with changes that are not committed)" if any(c.endswith("+") for c in commits) else ""
-    seconds = sum(entry["summary"]["cpu_seconds"] or 0 for entry in scenes.values())
-    lines = ["# Results", "", "Made by `tools/run all`: every number and picture comes from its runs, none is typed. "
-             f"LAMMPS {', '.join(sorted(versions))}; commit {used}{changed}; {_duration(seconds)} in all."]
-    judged = [(name, f) for name, entry in scenes.items() for f in entry["summary"]["figures"] if f["met"] is not None]
-    missed = [(name, f) for name, f in judged if not f["met"]]
-    if judged:
-        lines += ["", f"**{len(judged) - len(missed)} of {len(judged)} targets met.**" + (" Missed:" if missed else "")]
-        lines += [f"- {name}, `{f['name']}`: {_ours(f)}" +
-                  (f" against {number(f['reference'])}, {deviation(f)}" if f["reference"] is not None else "") +
-                  f" (allowed: {bound(f)})" for name, f in missed]
-    for name, entry in every.items():
-        if not entry["summary"]:
-            lines += ["", f"**{name} has no results**: it was not run, or failed."]
-        elif entry["summary"].get("failed_cases"):
-            lines += ["", f"**{name}: failed** in {', '.join(entry['summary']['failed_cases'])}."]
-    return "\n".join(lines)
+        for k, f in enumerate(judged(entry)):
+            reference = "" if f["reference"] is None else number(f["reference"])
+            if f["source"]:
+                reference = f"{reference} ({f['source']})" if reference else f["source"]
+            rows.append([f"[{title(name)}]({examples}/{name}/README.md)" if k == 0 else "", f"`{f['name']}`", _value(f), reference, deviation(f), bound(f),
+                         "yes" if f["met"] else "**no**", f"{core_seconds(entry['summary']):,.0f}" if k == 0 else ""])
+    return _markdown(["scene", "quantity", "computed", "reference", "error", "target", "met", "CPU s"], rows)
+
+
+def core_seconds(ran):
+    """CPU seconds of a run, or of all cases of a summary, on one core."""
+    cases = ran.get("cases", {}).values() or [ran]
+    return sum((case["cpu_seconds"] or 0) * (case["ranks"] or 1) for case in cases)
 
 
 def headlines(scenes, examples):
-    """The first table: some figures that have a truth to be judged by, with what they cost. Empty without results of any."""
+    """The README's table: of each line the judged figure that is off by most, of those with a reference from outside."""
     rows = []
-    for what, name, figure, case in HEADLINES:
-        summary = scenes[name]["summary"] if name in scenes else None
-        if summary is None:
-            continue
+    for what, name, figures, case in HEADLINES:
+        entry = scenes.get(name)
+        known = [f for f in judged(entry) if re.fullmatch(figures, f["name"])] if entry and entry["summary"] else []
+        outside = [f for f in known if f["relative_error"] is not None and not f["source"].startswith("our ")]
         what = f"[{what}]({examples}/{name}/README.md)"
-        found = next((f for f in summary["figures"] if f["name"] == figure), None)
-        ran = summary.get("cases", {}).get(case) if case else summary
-        rows.append([what, _ours(found), f"{number(found['reference'])} ({found['source']})", deviation(found), f"{ran['particles']:,}",
-                     f"{_duration(ran['cpu_seconds'])} on {ran['ranks']}"] if found and ran else [what, "no result", "", "", "", ""])
-    return _markdown(["figure", "ours", "truth", "error", "particles", "CPU time on cores"], rows) if rows else ""
+        if not outside or case not in entry["summary"].get("cases", {}):
+            rows.append([what, "no result", *[""] * 5])
+            continue
+        worst = max(outside, key=lambda f: abs(f["relative_error"]))
+        rows.append([what, words(worst["name"]), _value(worst), f"{number(worst['reference'])} ({_whose(worst, entry['summary']['figures'])})", deviation(worst),
+                     f"{sum(f['met'] for f in known)} of {len(known)}", duration(core_seconds(entry["summary"]["cases"][case]))])
+    return _markdown(["scene", "its worst figure", "computed", "reference", "error", "targets met", "time on one core"], rows)
 
 
-def _gallery(scenes, examples):
-    """Two scenes side by side, each with its title, what it is, and at most two pictures."""
-    cells = ["<br>".join([f"**[{entry['title']}]({examples}/{name}/README.md)**", entry["description"],
-                          *(f"![{p['alt']}]({copied(name, p)})" for p in entry["pictures"])]).replace("|", "\\|") for name, entry in scenes.items()]
-    rows = [f"| {left} | {right} |" for left, right in zip(cells[::2], [*cells[1::2], ""])]
-    return "\n".join(["|  |  |", "|---|---|", *rows])
+def _whose(figure, figures):
+    """The source of a figure in short: up to a comma or colon, that of an earlier one where it is the same."""
+    sources = [f["source"] for f in figures[:figures.index(figure) + 1] if f["source"] and not f["source"].startswith("the same")]
+    return re.split("[,:]", (sources or ["?"])[-1])[0]
 
 
-def _explanation(scenes):
-    text = ("`error` is relative to the reference. The target bounds its size, or, where the reference is none or 0, that of "
-            "the value. What is no experiment, theory or finite elements says so in `source`. Particles: of the largest "
-            "case; CPU seconds: of all cases, on each of the ranks.")
-    own = [f"{name} with {' '.join(f'{k}={v}' for k, v in entry['summary']['given'].items())}"
-           for name, entry in scenes.items() if entry["summary"].get("given")]
-    return text + (f" **Not as bundled: {'; '.join(own)}.**" if own else "")
-
-
-def _table(scenes, judged):
-    """The figures that have a reference or a target, or the others; empty if there are none."""
-    head = ["scene", "figure", "ours", "reference", "source", "error", "target", "particles", "CPU seconds", "ranks"]
-    rows = []
-    for name, entry in scenes.items():
-        summary = entry["summary"]
-        cost = [number(summary["particles"]), f"{summary['cpu_seconds'] or 0:.1f}", number(summary["ranks"])]
-        if len(summary.get("cases", ())) > 1:
-            cost[0] = f"{len(summary['cases'])} cases, {cost[0]}"
-        figures = [f for f in summary["figures"] if f["name"] not in COST and judged ==
-                   (f["reference"] is not None or f["target"] is not None)]
-        for k, f in enumerate(figures):
-            met = {None: "", True: "✓ ", False: "**✗ missed** "}[f["met"]]
-            reference = "" if f["reference"] is None else number(f["reference"])
-            rows.append([name, f"`{f['name']}`", _ours(f), reference, f["source"] or "", deviation(f),
-                         met + bound(f), *(cost if k == 0 else [""] * 3)])
-    if not judged:
-        head, rows = head[:3], [row[:3] for row in rows]
-    if not rows:
-        return ""
-    return _markdown(head, rows)
+def words(figure):
+    """What a figure's name says."""
+    return next((text for pattern, text in WORDS if re.search(pattern, figure)), figure.replace("_", " "))
 
 
 def _markdown(head, rows):
     """A table; columns of numbers at the right."""
-    numbers = ("ours", "reference", "error", "particles", "CPU seconds", "ranks", "CPU time on cores")
-    lines = [head, ["---:" if title in numbers else "---" for title in head], *rows]
+    left = ("scene", "quantity", "reference", "met", "its worst figure")
+    lines = [head, ["---" if name in left else "---:" for name in head], *rows]
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
 
 
-def _ours(figure):
+def _value(figure):
     return f"{number(figure['value'])} {figure['unit']}".strip()
 
 
-def _duration(seconds):
-    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} minutes"
+def duration(seconds):
+    """Seconds, or minutes where they are many."""
+    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
 
 
-def write(results, page):
-    """Makes the page of what is in `results`; returns the dictionary it is made of."""
-    results, page = Path(results), Path(page)
-    found = collect(results)
-    if not any(entry["summary"] for entry in found["scenes"].values()):
-        raise FileNotFoundError(f"{results} holds no summary.json of a scene")
-    page.mkdir(parents=True, exist_ok=True)
-    before = scenes_of(page)
-    for name, entry in found["scenes"].items():
-        if entry["summary"]:
-            for picture in before.get(name, {}).get("pictures", []):
-                (page / copied(name, picture)).unlink(missing_ok=True)
-            for picture in entry["pictures"]:
-                shutil.copyfile(results / name / picture["file"], page / copied(name, picture))
-        elif name in before:
-            entry.update(summary=before[name]["summary"], pictures=before[name]["pictures"])
-    (page / "results.json").write_text(json.dumps(found, indent=2) + "\n")
-    (page / "README.md").write_text(render(found, Path(os.path.relpath(paths.EXAMPLES, page)).as_posix()))
-    if page.resolve() == (paths.ROOT / "doc/results").resolve():
-        write_readme(found)
-    print(f"results: {page / 'README.md'}")
-    return found
+def draw(found, path):
+    """Size of the error over the target, a line for each scene."""
+    scenes = {name: entry for name, entry in found["scenes"].items() if entry["summary"] and judged(entry)}
+    least = 1e-3  # what is less stands at the left
+    with plot.picture(path, 7.2, 0.21 * len(scenes) + 0.7) as figure:
+        axes = figure.add_subplot()
+        axes.axvspan(1.0, 1e3, color=plot.RED, alpha=0.08, linewidth=0)
+        for k, entry in enumerate(scenes.values()):
+            size = [abs((f["relative_error"] if f["reference"] else f["value"]) or 0.0) / f["target"] if f["target"] else 0.0 if f["met"] else np.inf
+                    for f in judged(entry)]
+            for missed, colour in ((False, plot.GREEN), (True, plot.RED)):
+                x = [min(max(s, least), 30.0) for s in size if (s > 1.0) == missed]
+                axes.plot(x, [k] * len(x), "o", markersize=5, color=colour, markeredgecolor="white", markeredgewidth=0.5)
+        axes.axvline(1.0, color=plot.GREY, linewidth=1.0)
+        axes.set_yticks(range(len(scenes)), [title(name) for name in scenes], fontsize=7.5)
+        axes.set(xscale="log", xlim=(0.7 * least, 40.0), ylim=(len(scenes) - 0.4, -0.6), xlabel="size of the error over its target")
+        axes.set_xticks([1e-3, 1e-2, 0.1, 1.0, 10.0], ["0.001 or less", "0.01", "0.1", "1", "10"])
+        axes.minorticks_off()
+        figure.tight_layout()
 
 
-def write_readme(found):
-    """Puts the first table into the README of the repository."""
-    path = paths.ROOT / "README.md"
-    before, rest = path.read_text().split(MARKS[0])
-    table = headlines({name: entry for name, entry in found["scenes"].items() if entry["summary"]}, "examples")
-    path.write_text(before + MARKS[0] + "\n" + table + "\n\n" + MARKS[1] + rest.split(MARKS[1])[1])
-
-
-def scenes_of(page):
-    """What the results.json of a page has, by scene."""
-    path = page / "results.json"
-    return json.loads(path.read_text())["scenes"] if path.exists() else {}
-
-
-if __name__ == "__main__":
-    if len(sys.argv) > 3 or any(word.startswith("-") for word in sys.argv[1:]):
-        sys.exit(__doc__)
-    try:
-        write(*sys.argv[1:], *(paths.RESULTS, paths.PAGE)[len(sys.argv) - 1:])
-    except FileNotFoundError as error:
-        sys.exit(f"results: {error}")
+def readme(text, found, examples="examples"):
+    """The repository's README with its table made anew."""
+    before, rest = text.split(MARKS[0])
+    return before + MARKS[0] + "\n" + headlines(found["scenes"], examples) + "\n\n" + MARKS[1] + rest.split(MARKS[1])[1]

@@ -54,7 +54,7 @@ class Summary:
         for name, unit in (("cpu_seconds", "s"), ("particle_steps_per_second", "1/s"), ("bytes_per_particle", "B")):
             self.add(name, cost[name], unit)
         summary = {"scene": self.run.get("scene", self.folder.name), "figures": self.figures, **cost,
-                   "commit": self.run.get("commit")}
+                   "commit": self.run.get("commit"), "date": self.run.get("date")}
         if self.cases:
             kept = ("given", "particles", "steps", "ranks", "cpu_seconds")
             summary["cases"] = {name: {key: case.get(key) for key in kept} for name, case in self.cases.items()}

@@ -23,6 +23,7 @@ import accuracy_cost  # noqa: E402
 import effects  # noqa: E402
 import open_ends  # noqa: E402
 import peers  # noqa: E402
+import renew  # noqa: E402
 import robustness  # noqa: E402
 import scaling  # noqa: E402
 import solid_variants  # noqa: E402
@@ -186,9 +187,7 @@ class Reader:
             return self.execute(f"python3 -m py_compile {words[0]}")
         module, arguments = words[1], words[2:]
         assert words[0] == "-m"
-        if module == "fsi.results" and not arguments:
-            self.execute(f"{command} results page")  # not the tree's
-        elif module.split(".")[0] == "fsi" and not arguments:
+        if module.split(".")[0] == "fsi" and not arguments:
             self.execute(f"{command} 2>&1 | grep -i usage")
         elif module == "fsi" and len(arguments) == 1:  # spoken of, not run
             self.execute(f"{command} --help")
@@ -238,6 +237,11 @@ class Reader:
         program = COST.get(words[0], accuracy_cost)
         with pytest.raises(Reached):
             program.main(words[words[0] in COST:])
+
+    def tools_renew(self, _, words):
+        """What it does is in test_renew.py."""
+        assert set(words) <= set(renew.WORDS)
+        assert "tools/renew --pages-only" in self.execute("tools/renew --help")
 
     def tools_gallery(self, _, words):
         if words:

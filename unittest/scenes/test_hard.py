@@ -2,11 +2,15 @@
 
 import json
 import re
+import sys
 
 import numpy as np
 import pytest
 
 from fsi import paths, scene
+
+sys.path.insert(0, str(paths.ROOT / "bench"))
+import hard_pages  # noqa: E402
 
 ROWS = scene.analysis("hard").ROWS
 GOOD = ("drop", "spin", "spray", "splash", "tear", "empty", "jump_plate")  # rows whose runs take a second or two
@@ -21,7 +25,7 @@ def short(*names):
 def run_cases(monkeypatch, folder, cases):
     monkeypatch.setattr(scene, "cases", lambda name: cases)
     status = scene.run_cases("hard", folder)
-    return status, {entry["row"]: entry for entry in json.loads((folder / "hard.json").read_text())}
+    return status, {entry["row"]: entry for entry in json.loads((folder / "hard.json").read_text())["rows"]}
 
 
 def test_every_case_belongs_to_a_row():
@@ -41,9 +45,16 @@ def test_short_form(monkeypatch, tmp_path):
     assert all(table[name]["best"]["pass"] for name in GOOD)
     assert not table["drop"]["paper"]["pass"] and not table["spin"]["paper"]["pass"]
     assert table["drop"]["best"]["worst"]["distance"] > 0.7 > 0.3 > table["drop"]["paper"]["worst"]["distance"]
-    page = (tmp_path / "README.md").read_text()
-    assert "passes 7 of 7 rows" in page and "fails 2 of the 2" in page and (tmp_path / "hard.png").exists()
-    assert "FAIL" in page and (tmp_path / "hard.csv").read_text().count("\n") > 15
+    found = json.loads((tmp_path / "hard.json").read_text())
+    assert found["runs"] == 12 and found["particle_steps"] > 1e5 and re.fullmatch(r"\d{4}-\d\d-\d\d", found["date"])
+    # of what is pictured the drop alone ran in both recipes, to 0.0076 s
+    assert [(p["group"], round(p["here"], 4), round(p["classic"], 4)) for p in found["pictures"]] == [("drop", 0.0076, 0.0076)]
+    monkeypatch.setattr(hard_pages, "HARD", tmp_path)
+    page = hard_pages.hard_page()
+    assert "**7 of 7 cases pass with the recommended scheme. 0 of 2 pass with classic SPH.**" in page and "✗" in page
+    hard_pages.draw_hard(tmp_path / "hard.png")
+    assert (tmp_path / "hard.png").stat().st_size > 1000
+    assert (tmp_path / "hard.csv").read_text().count("\n") > 15
 
 
 def test_a_run_that_is_stopped_is_a_result(monkeypatch, tmp_path, capsys):

@@ -71,6 +71,7 @@ def made(tmp_path, name, definition):
     # an interrupted sweep is drawn, too, when it has got no further than its first points
     cost_report.write(tmp_path / "part", name, definition, wanted[:2], store.source)
     with (tmp_path / "points.csv").open() as file:
+        assert re.fullmatch(r"# tools/cost \w+; commit ([0-9a-f]+\+?|unknown), \d{4}-\d\d-\d\d\n", next(file))
         rows = {row["label"]: row for row in csv.DictReader(file)}
     return json.loads((tmp_path / "summary.json").read_text()), rows, store, jobs
 
@@ -105,17 +106,20 @@ def test_plate_unstable_run_is_a_point_too(plate):
     folder, summary, rows, _, _ = plate
     failed = rows["Courant number = 2.0"]  # eight times the rule of the time step: explicit schemes are not that stable
     assert failed["status"] == "failed" and failed["why"] and not failed["error"]
-    assert summary["failed"] == 1 and summary["knobs"]["Courant number"]["failed"] == [2.0]
-    assert "2" in (folder / "page.md").read_text().split("## One setting")[1]
+    assert summary["failed"] == 1
+    assert "1 of them stopped or do not count" in (folder / "page.md").read_text()
 
 
-def test_plate_leaves_pictures_and_page(plate):
+def test_plate_leaves_picture_and_page(plate):
     folder, summary, rows, _, _ = plate
-    for name in ("work.png", "knobs.png", "effects.png"):
-        assert (folder / name).read_bytes().startswith(b"\x89PNG")
+    assert (folder / "work.png").read_bytes().startswith(b"\x89PNG")
     text = (folder / "page.md").read_text()
-    assert summary["recommendation"] in text and "0.2553" in text
-    assert summary["reference"]["kind"] == "outside"
+    assert text.count("![") == 1 and text.count("\n|---|") == 1 and "0.2553" in text
+    for method, found in summary["methods"].items():
+        cells = [cost_report.cell(found["bounds"].get(bound)) for bound in ("10", "5", "2", "1")]
+        assert re.search(rf"^\| {method} \| [^|]* \| {' [|] '.join(map(re.escape, cells))} \| (\d+|-) \|$", text, re.M)
+    assert summary["reference"]["kind"] == "outside" and re.fullmatch(r"\d{4}-\d\d-\d\d", summary["date"])
+    assert summary["thinnest"] == {"3": 3.0, "4": 4.0, "5": 5.0}
     assert sum(row["front"] == "True" for row in rows.values()) >= 1
 
 
@@ -178,17 +182,29 @@ def test_runs_that_do_not_count():
         assert cost_report._value({"figure": "period", "failed_if": limits}, run) == value
 
 
-def test_flat_ranges_and_optima():
-    rows = [{"x": x, "error": e, "point": x, "value": x, "steps": 1} for x, e in ((0.1, 0.02), (0.2, 0.0201), (0.4, 0.0205), (0.8, 0.03), (1.6, 0.5))]
-    assert cost_report._flat(rows[1], rows) == [0.1, 0.4]
-    assert cost_report._flat(rows[3], rows) is None  # neighbours are all further off than a tenth
-    assert cost_report._optimum(rows) is None  # the least is at the end
-    other = {**rows[1], "point": "the same by more settings"}
-    assert cost_report._flat(other, rows) == [0.1, 0.4]
-    rows[0]["error"] = 0.04
-    assert cost_report._optimum(rows) == 0.2
-    rows[4]["error"] = -0.5
-    assert cost_report._optimum(rows) is None  # a change of sign is none
+def entry(seconds, error, kind="run"):
+    return {"at": 3, "error": error, "cpu_seconds": seconds, "kind": kind}
+
+
+def test_cheapest_method():
+    """The least time; of those within a quarter of it the most accurate; nothing extrapolated; none where no run keeps the bound."""
+    methods = {"a": {"bounds": {"2": entry(1.0, 0.019)}}, "b": {"bounds": {"2": entry(1.2, -0.01)}}, "c": {"bounds": {"2": entry(1.3, 0.001)}},
+               "d": {"bounds": {"2": entry(0.1, 0.01, "extrapolated"), "1": entry(5.0, 0.01, "extrapolated")}}}
+    assert cost_report.cheapest({"methods": methods}, "2")[0] == "b"
+    assert cost_report.cheapest({"methods": methods}, "1") is None
+    assert [cost_report.cell(entry(0.123, 0.01, kind)) for kind in ("run", "coarsest run", "extrapolated")] == ["0.12 s (3)", "< 0.12 s (3)", "*0.12 s (3)*"]
+    assert cost_report.cell(None) == "-"
+
+
+def test_names_of_curves_do_not_overlap(tmp_path):
+    """Five curves that end together: their names are apart by the height of a line and in the order of their ends."""
+    with cost_report.plot.picture(tmp_path / "a.png") as figure:
+        axes = figure.add_subplot()
+        axes.set(xscale="log", yscale="log", xlim=(1, 10), ylim=(0.1, 10))
+        cost_report.names_at_ends(axes, [(5.0, 1.0 + 0.01 * k, str(k), "black") for k in range(5)])
+        places = [text.xyann[1] for text in axes.texts]
+        height = axes.get_position().height * figure.get_size_inches()[1] * 72.0
+        assert [text.get_text() for text in axes.texts] == list("01234") and np.diff(places).min() * height > 7.5
 
 
 def test_sweep_goes_on_where_it_stopped(tmp_path):
@@ -242,9 +258,11 @@ def test_deck_of_ones_own(tmp_path, monkeypatch, capsys):
     summary = json.loads((out / "summary.json").read_text())
     assert summary["reference"]["kind"] == "finest" and not summary["failed"]
     assert summary["methods"]["kind a"]["bounds"] == {} and "reference" in (out / "points.csv").read_text()
-    table = (out / "page.md").read_text()
-    # whether it is on the front is a matter of seconds
-    assert "| kind a | 0.25 | 1.1875 | reference |" in table and "| kind a | 0.5 | 1.75 | +47 % " in table
+    with (out / "points.csv").open() as file:
+        rows = {row["label"]: row for row in csv.DictReader(line for line in file if not line.startswith("#"))}
+    assert (rows["kind a, h = 0.25"]["status"], rows["kind a, h = 0.25"]["value"], rows["kind a, h = 0.25"]["error"]) == ("reference", "1.1875", "")
+    assert float(rows["kind a, h = 0.5"]["value"]) == 1.75 and float(rows["kind a, h = 0.5"]["error"]) == pytest.approx(1.75 / 1.1875 - 1)
+    assert "Reference: the finest run of 'kind a', 1.1875. It is no truth from outside." in (out / "page.md").read_text()
     # a formula of the deck can be replaced; points are others, so nothing is mixed up
     assert accuracy_cost.main([*words, "offset=1"]) == 0
     assert json.loads((out / "summary.json").read_text())["reference"]["value"] == pytest.approx(2.0, abs=1e-3)
@@ -261,8 +279,7 @@ def test_deck_of_ones_own_that_has_not_swung(tmp_path, monkeypatch, capsys):
     assert "cost: warning: tip has not yet swung in deck, across = 2 (" in capsys.readouterr().out
     page = (tmp_path / "short" / "page.md").read_text()
     assert "**Warning**: tip has not yet swung" in page
-    # 0.2 m and five columns of the clamp, 0.01 m or 0.0067 m each; 2 or 3 rows
-    assert "| body 1 | 50: 2 x 25 | 105: 3 x 35 |" in page
+    assert "The thinnest body has, at across = 2: 2, 3: 3 particles through its thickness." in page
     assert accuracy_cost.main([*words, "tend=0.18", f"out={tmp_path / 'long'}"]) == 0
     assert "warning" not in capsys.readouterr().out and "Warning" not in (tmp_path / "long" / "page.md").read_text()
 

@@ -1,10 +1,15 @@
-"""Reference logs and the gallery: what is committed is complete and of no machine; how logs are made."""
+"""Reference logs, pictures and the gallery: what is committed is complete, small and of no machine; how logs are made."""
 
+import hashlib
+import io
 import re
+import subprocess
+
+import numpy as np
 
 import pytest
 
-from fsi import gallery, log, paths, scene
+from fsi import gallery, log, paths, plot, scene
 
 SCENES = gallery.short()
 
@@ -34,10 +39,49 @@ def test_reference_logs(name):
 def test_page_has_every_scene_and_its_picture():
     text = (paths.ROOT / "doc/src/gallery.rst").read_text()
     for name in SCENES:
-        assert f"tools/run {name}" in text
+        assert f"tools/run {name}" in text and not re.search(r"[\d.]+ s on \d", text)
         assert list((paths.EXAMPLES / name).glob("*.png")) and f"examples/{name}/" in text
     for picture in re.findall(r"image:: \.\./\.\./(\S+)", text):
         assert (paths.ROOT / picture).exists()
+
+
+def files():
+    """What is in the repository."""
+    named = subprocess.run(["git", "-C", paths.ROOT, "ls-files", "-z"], capture_output=True, text=True, check=True).stdout.split("\0")
+    return [paths.ROOT / name for name in named if name and (paths.ROOT / name).is_file()]
+
+
+def test_pictures_are_small_and_each_once():
+    """Whoever clones loads all of it; 150 kB is what plot.picture keeps to, 300 kB what nothing exceeds."""
+    found = files()
+    pictures = [path for path in found if path.suffix in (".png", ".gif", ".webp", ".jpg", ".svg")]
+    assert len(pictures) > 90
+    assert not [path for path in pictures if path.stat().st_size > (2_000_000 if path.suffix in (".gif", ".webp") else 300_000)]
+    by_content = {}
+    for path in pictures:
+        by_content.setdefault(hashlib.sha1(path.read_bytes()).hexdigest(), []).append(path)
+    assert not [twins for twins in by_content.values() if len(twins) > 1]
+    assert sum(path.stat().st_size for path in found) < 12_000_000
+
+
+def test_a_picture_is_packed_without_a_visible_change(tmp_path):
+    """A smooth map of all colours, with a rare one: within 16 of 255 of the original, below the bound, and no larger than half the pixels ask for."""
+    y, x = np.mgrid[0:400, 0:600]
+    whole = np.stack([x * 255 // 599, y * 255 // 399, (x + y) * 255 // 998], -1).astype(np.uint8)
+    whole[10:14, 10:14] = (255, 0, 255)
+    file = io.BytesIO()
+    plot.Image.fromarray(whole).save(file, "PNG")
+    small = np.asarray(plot.Image.open(io.BytesIO(plot.packed(file))).convert("RGB")).astype(int)
+    assert small.shape == whole.shape and np.abs(small[12, 12] - (255, 0, 255)).max() <= 30
+    assert np.abs(small - whole).mean() < 16
+    noise = np.random.default_rng(1).integers(0, 256, (400, 600, 3), dtype=np.uint8)
+    file = io.BytesIO()
+    plot.Image.fromarray(noise).save(file, "PNG")
+    packed = plot.packed(file, 100_000)
+    assert len(packed) <= 100_000 and plot.Image.open(io.BytesIO(packed)).size >= (300, 200)
+    with plot.picture(tmp_path / "a.png") as figure:
+        figure.add_subplot().plot([0, 1])
+    assert plot.Image.open(tmp_path / "a.png").mode == "P"
 
 
 def test_every_deck_shows_the_time_that_remains():

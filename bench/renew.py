@@ -1,0 +1,145 @@
+"""Renews all measured pages of the manual. The command line of tools/renew, which says what it does; nothing else writes these pages."""
+
+import json
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import accuracy_cost
+import cost_report
+import effects
+import evidence
+import hard_pages
+import peers
+import robustness
+import scaling
+import solid_variants
+from tool import PAGE, read_csv, say
+
+from fsi import gallery, paths, results, scene
+from fsi.command import Refusal, start
+
+TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling}  # of tools/cost, with a table in doc/cost
+WORDS = ("--no-runs", "--pages-only")
+
+
+def sweeps():
+    """Scenes that have a sweep of accuracy against time."""
+    return [path.parent.name for path in sorted(paths.EXAMPLES.glob("*/cost.json"))]
+
+
+# ---- runs ----
+
+def run():
+    """All that pages are made of; what is there of these sources is not run again. Returns what failed."""
+    if (now := scene.commit()) is None or now.endswith("+"):
+        raise Refusal(f"pages are of one commit, and the tree has changes ({now or 'no git'}): commit them first")
+    jobs = {"tools/run all": (scene, ["all"])}
+    jobs |= {f"tools/cost {name}": (accuracy_cost, [name]) for name in sweeps()}
+    jobs |= {f"tools/cost {name}": (program, []) for name, program in TOOLS.items()}
+    jobs["tools/cost robustness"] = (robustness, [])
+    failed = []
+    for k, (command, (program, words)) in enumerate(jobs.items(), start=1):
+        say(f"renew: {k} of {len(jobs)}: {command}")
+        if program.main(words):
+            failed.append(command)
+    return failed
+
+
+# ---- data ----
+
+def collect():
+    """Takes to doc what the runs left in results."""
+    found = results.collect(paths.RESULTS)
+    made = paths.RESULTS / "cost"
+    wanted = {made / name / file: PAGE / f"{name}.{end}" for name in sweeps() for file, end in (("points.csv", "csv"), ("summary.json", "json"))}
+    wanted |= {made / name / f"{name}.csv": PAGE / f"{name}.csv" for name in TOOLS}
+    wanted |= {made / "robustness" / "robustness.csv": evidence.HARD / "robustness.csv"}
+    wanted |= {paths.RESULTS / "hard" / name: evidence.HARD / name for name in ("hard.json", "hard.csv", "thumbnails.png")}
+    missing = [str(path.relative_to(paths.ROOT)) for path in wanted if not path.exists()]
+    if missing:
+        raise Refusal(f"{', '.join(missing)}: not there; tools/renew without {WORDS[0]} makes them")
+    stamps = {path: stamp(path) for path in wanted if path.suffix != ".png"}
+    if unclear := [str(path.relative_to(paths.ROOT)) for path, found in stamps.items() if not found]:
+        raise Refusal(f"{', '.join(unclear)}: of no commit without changes")
+    (paths.PAGE / "results.json").write_text(json.dumps(found, indent=1) + "\n")
+    for path, target in wanted.items():
+        shutil.copyfile(path, target)
+    for name in paths.scenes():
+        for _, file in gallery.pictures(name):
+            if found := picture(name, file):
+                shutil.copyfile(found, paths.EXAMPLES / name / file)
+
+
+def stamp(path):
+    """(commit, date) that a table or a summary names; None without a commit or with changes."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".json":
+        found = json.loads(text)
+        commit, date = found.get("commit"), found.get("date")
+    else:
+        commit, date = re.match(r"# .*; commit (\S+), (\S+)\n|", text).groups()
+    good = re.fullmatch(r"[0-9a-f]{7,40}", commit or "") and re.fullmatch(r"\d{4}-\d\d-\d\d", date or "")
+    return (commit, date) if good else None
+
+
+def picture(name, file):
+    """A picture of a scene as the last run left it, of the study or of its largest case; None if it left none."""
+    folder = paths.RESULTS / name
+    if not (folder / "summary.json").exists():
+        return None
+    cases = json.loads((folder / "summary.json").read_text()).get("cases", {})
+    places = [folder, *(folder / case for case in sorted(cases, key=lambda case: -(cases[case]["particles"] or 0)))]
+    return next((place / file for place in places if (place / file).is_file()), None)
+
+
+# ---- pages ----
+
+def texts():
+    """{page: its text}, from the tables in doc, the READMEs and the logs of the scenes."""
+    found = json.loads((paths.PAGE / "results.json").read_text())
+    pages = {paths.PAGE / "README.md": results.render(found), paths.PAGE / "results.csv": results.table(found), PAGE / "README.md": evidence.cost_page()}
+    for name in sweeps():
+        summary = json.loads((PAGE / f"{name}.json").read_text())
+        pages[PAGE / f"{name}.md"] = cost_report.page(summary, f"{name}.png", f"{name}.csv")
+    tables = {name: read_csv(PAGE / f"{name}.csv") for name in TOOLS}
+    pages |= {PAGE / "effects.md": effects.page(tables["effects"], tables["solids"]), PAGE / "peers.md": peers.page(tables["peers"]),
+              PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"]),
+              evidence.HARD / "README.md": hard_pages.hard_page(), evidence.HARD / "robustness.md": hard_pages.robustness_page(),
+              paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page()}
+    readme = paths.ROOT / "README.md"
+    return pages | {readme: results.readme(readme.read_text(), found)}
+
+
+def draw():
+    """Their pictures."""
+    results.draw(json.loads((paths.PAGE / "results.json").read_text()), paths.PAGE / "results.png")
+    for name in sweeps():
+        cost_report.draw(PAGE / f"{name}.png", json.loads((PAGE / f"{name}.json").read_text()), read_csv(PAGE / f"{name}.csv"))
+    evidence.draw_cost(PAGE / "cost.png")
+    evidence.draw_named(PAGE / "named.png")
+    effects.draw(PAGE / "effects.png", read_csv(PAGE / "effects.csv"))
+    peers.draw(PAGE / "peers.png", read_csv(PAGE / "peers.csv"))
+    hard_pages.draw_hard(evidence.HARD / "hard.png")
+    hard_pages.draw_robustness(evidence.HARD / "robustness.png")
+
+
+def main(arguments):
+    """tools/renew"""
+    if len(arguments) > 1 or any(word not in WORDS for word in arguments):
+        raise Refusal(f"'{' '.join(arguments)}' is not one of {', '.join(WORDS)}")
+    failed = [] if arguments else run()
+    if "--pages-only" not in arguments:
+        collect()
+    draw()
+    for path, text in texts().items():
+        Path(path).write_text(text, encoding="utf-8")
+    say(f"renew: {len(texts())} pages written")
+    if failed:
+        print("renew: failed:", ", ".join(failed), file=sys.stderr)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    start("renew", main)
