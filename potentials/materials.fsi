@@ -60,6 +60,9 @@ shell            solid rho 1100.0 young 100.0e6 poisson 0.3
 # Columns that bend and twist: Lee, Gil and Bonet, Computers and Structures 118 (2013) 13
 column           solid rho 1100.0 young 17.0e6 poisson 0.45
 
+# Block of half the density of water (scene floating_blocks)
+float_500        solid rho 500.0 young 1.0e6 poisson 0.3
+
 # Rubber rings that collide: Gray, Monaghan and Swift, Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641; only ratios matter
 ring             solid rho 1200.0 young 10.0e6 poisson 0.3975
 

@@ -1,6 +1,7 @@
 """Runs the scenes in examples/: builds, simulates, analyses. The command line of tools/run.
 
-Each scene is a folder with a deck in.<scene> and an analyze.py whose main(folder) writes summary.json and pictures.
+Each scene is a folder with an analyze.py whose main(folder) writes summary.json and pictures, and a deck, study/in.<scene>. in.<scene> is the same
+in few lines, for users to copy (unittest/scenes/test_plain_decks.py); starters have this one alone.
 One that needs several runs lists them in cases.json, {"CASE": {"variables": {...}, "ranks": N}} with `ranks` optional; after
 them study(folder, {case: its folder}) of analyze.py writes what is said about all of them into the folder above. A case may run
 another scene's deck, with any of its variables and the edits that edits.json names, and it may be one whose failure is a result.
@@ -40,8 +41,9 @@ SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools", "bench")
 
 
 def deck(scene):
-    """The scene's input file."""
-    return paths.EXAMPLES / scene / f"in.{scene}"
+    """The scene's input file with the settings that sweeps and tests need: that in study/ where there is one."""
+    study = paths.EXAMPLES / scene / "study" / f"in.{scene}"
+    return study if study.exists() else paths.EXAMPLES / scene / f"in.{scene}"
 
 
 def cases(scene):
