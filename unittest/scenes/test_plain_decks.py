@@ -36,7 +36,7 @@ GIVEN = {
     "rolling_tank": {"dx": 0.004 / 3},
     "section": {"dim": 2},
     "turek_hron_csm": {"across": 10},
-    "turek_hron_fsi": {"benchmark": "fsi3", "length": 1.5, "finer": 2, "tend": 6},
+    "turek_hron_fsi": {"benchmark": "fsi2", "length": 1.5, "finer": 2},
 }
 # of those with many particles; else 100
 STEPS = {"cylinder_channel": 50, "cylinder_free": 10, "dam_break": 30, "dam_break_3d": 10,
