@@ -1091,7 +1091,7 @@ def test_mass_is_that_of_the_material():
 def test_fsi_set_leaves_the_mass_alone(command):
     with Scene(lattice([6, 4], DX), dx=DX, materials=(MATERIAL,), solid_style="fsi/solid/tl", commands=["fix g all gravity 9.81 vector 0 -1 0"]) as s:
         mass = s.run().get("rmass")
-        s.run_lines(f"fsi_set all {command}")
+        s.run_lines(f"fsi/set all {command}")
         np.testing.assert_array_equal(s.run().get("rmass"), mass)
         assert (s.get("rho") == 1000.0).all()
 
