@@ -570,6 +570,7 @@ template <int D> void FixFSIReference::find_self_pairs()
   const Cells cells(x, atom->nlocal + atom->nghost, D, self_range * widest + neighbor->skin, [this](int i) { return is_solid(i); });
   for (const int i : solids) {
     const double most = self_range * fix_fsi->dx_of(atom->type[i]), support = fix_fsi->resolution[atom->type[i]].cut;
+    const size_t first = near_itself.size();
     cells.around(x[i], [&](int j, double rsq) {
       if (j == i || atom->molecule[j] != atom->molecule[i]) return;
       double Rsq = 0.0;
@@ -583,6 +584,8 @@ template <int D> void FixFSIReference::find_self_pairs()
       const double reach = reach_within_body(most, std::sqrt(Rsq), neighbors), near = reach + neighbor->skin;
       if (rsq < near * near) near_itself.push_back({i, j, reach, neighbors});
     });
+    // sums do not depend on the order of ghosts
+    std::sort(near_itself.begin() + first, near_itself.end(), [this](const auto &a, const auto &b) { return atom->tag[a.j] < atom->tag[b.j]; });
   }
 }
 

@@ -369,30 +369,22 @@ class Adviser : protected Pointers {
                      apart < OVERLAP || apart < 1.0 - 1.0e-6 ? "Move them apart" : fmt::format("Move them apart, or contact {:.3g}", std::floor(10.0 * apart + 1.0e-6) / 10.0)));
   }
 
-  /* an elastic body of which nothing moves */
+  /* elastic bodies, none of which moves */
 
   void held_bodies() const
   {
-    std::map<tagint, std::array<int, 2>> bodies;    // is something moved, has something a velocity; type
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!solid(i)) continue;
-      auto &b = bodies[atom->molecule[i]];
+    const auto all = find_particles(atom, world, [&](int i) { return solid(i); });
+    const auto moving = find_particles(atom, world, [&](int i) {
       const double *const v = atom->v[i];
-      b[0] = b[0] || scene.is_moved(i) || v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0;
-      b[1] = std::max(b[1], atom->type[i]);
-    }
-    for_bodies(bodies, {}, [&](tagint body, const std::array<int, 2> &mine) {
-      std::array<int, 2> any;
-      MPI_Allreduce(const_cast<int *>(mine.data()), any.data(), 2, MPI_INT, MPI_MAX, world);
-      if (!any[0])
-        warn(fmt::format("body {} of type {} is elastic and held as a whole, since none of it is in group {} of fix {}: is this group meant?", body, any[1],
-                         group->names[scene.mover->igroup], scene.mover->id));
-      return any[0] != 0;    // one is enough
+      return solid(i) && (scene.is_moved(i) || v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0);
     });
+    if (all.count && !moving.count)
+      warn(fmt::format("all {} particles of elastic bodies, the first of them atom {}, are held, since none is in group {} of fix {}: is this group meant?", all.count,
+                       all.first, group->names[scene.mover->igroup], scene.mover->id));
   }
 
-  /* A body that ends at a mirror wall is free there: mirror walls act on fluid. Not where weight acts along the wall's normal (that is a floor),
-     nor where the body fills the room between two walls. */
+  /* A body that ends at a mirror wall is free there: mirror walls act on fluid. Not where weight acts along the wall's normal (that is a
+     floor, and without weight it may be one), nor where the body fills the room between two walls. */
 
   void cut_by_walls() const
   {
@@ -409,7 +401,7 @@ class Adviser : protected Pointers {
       }
       const auto g = scene.body_forces.on(i);
       for (size_t k = 0; k < walls.size(); k++)
-        if (!walls[k].noslip && walls[k].spans(atom->x[i], 0.0) && g[walls[k].axis] == 0.0)
+        if (!walls[k].noslip && walls[k].spans(atom->x[i], 0.0) && g[walls[k].axis] == 0.0 && g[0] * g[0] + g[1] * g[1] + g[2] * g[2] > 0.0)
           it->second[k] = std::max(it->second[k], -walls[k].distance(atom->x[i]) / dx(i));
     }
     std::array<double, MOST> none;
@@ -438,7 +430,7 @@ class Adviser : protected Pointers {
       const auto g = scene.body_forces.on(i);
       return g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0;
     };
-    const auto falls = [&](int i) { return (fluid(i) || solid(i)) && scene.is_moved(i); };
+    const auto falls = [&](int i) { return fluid(i) ? scene.is_moved(i) : moves(i); };
     if (!find_particles(atom, world, [&](int i) { return falls(i) && weighs(i); }).count) return;
     for (const bool of_fluid : {true, false}) {
       const auto found = find_particles(atom, world, [&](int i) { return falls(i) && fluid(i) == of_fluid && !weighs(i); });

@@ -106,7 +106,7 @@ void PairFSI::check_pair_coeff(int narg, char **arg) const
 static std::string in_words(const Material &m)
 {
   static const char *const words[] = {"", "fluid ", "solid ", "wall "};
-  return m.species == NONE ? "NULL" : std::string("the ") + words[m.species] + m.name;
+  return m.species == NONE ? "no material" : std::string("the ") + words[m.species] + m.name;
 }
 
 void PairFSI::check_species() const
@@ -172,9 +172,8 @@ void PairFSI::check_same_materials() const
     const auto *const other = dynamic_cast<PairFSI *>(force->pair_match(name, 1));
     for (int t = 1; other && t <= atom->ntypes; t++) {
       const Material &a = material[t], &b = other->material[t];
-      const std::string here = describe(a), there = describe(b);
-      if (a.species == SOLID && b.species == SOLID && here != there)
-        error->all(FLERR, "Pair_coeff of pair style {} gives atom type {} the material {}, that of {} {}: expected the same", style, t, here, name, there);
+      if (a.species == SOLID && b.species == SOLID && strcmp(a.name, b.name) != 0)
+        error->all(FLERR, "Pair_coeff of pair style {} gives atom type {} the material {}, that of {} {}: expected the same", style, t, a.name, name, b.name);
     }
   }
 }
