@@ -23,9 +23,9 @@ def horseshoe(dim, gap=8):
     return x[kept], (row >= 3 + gap)[kept] & (column[kept] >= 3)
 
 
-def law(x, X, mol, reach, dim):
+def law(x, X, mol, reach, dim, support=SUPPORT):
     """Forces and energy of pairs of one body that are no neighbors in the reference, X: s K dx^D/2 (1 - r/R dx)^2 with R dx replaced in
-    the bracket's range by half of their distance there, if that is less. s as in test_contact.py: the sum over facing half spaces."""
+    the bracket's range by half of their distance there, if that is less (of no effect beyond twice the range). s as in test_contact.py: the sum over facing half spaces."""
     def energy(gap):
         m = np.arange(-4, 5)
         side = np.stack(np.meshgrid(*[m] * (dim - 1)), -1).reshape(-1, dim - 1)
@@ -36,10 +36,24 @@ def law(x, X, mol, reach, dim):
     i, j, d, r = pairs(x, reach * DX)
     far = np.linalg.norm(X[i] - X[j], axis=1)
     to = np.minimum(reach * DX, 0.5 * far)
-    part = (mol[i] == mol[j]) & (far >= SUPPORT * DX * (1 - 1e-9)) & (r < to)
+    part = (mol[i] == mol[j]) & (far >= support * DX * (1 - 1e-9)) & (r < to)
     k = s * K * DX**(dim - 2) / reach**2
     f = k * np.maximum(to - r, 0) * part
     return sum_over(i, (f / r)[:, None] * d, len(x)), 0.25 * (k * np.maximum(to - r, 0)**2 * part).sum()
+
+
+@DIMS
+def test_forces_of_the_updated_form(dim):
+    """Against numpy: pairs further apart than two supports at the start only push; everything else is without stress in this state."""
+    X, upper = horseshoe(dim)
+    x = X + upper[:, None] * [0.2 * DX, (0.8 - 9) * DX, 0]
+    with Scene(X, dim=dim, dx=DX, materials=(MATERIAL,), solid_style="fsi/solid", solid="contact 2 self yes") as s:
+        s.run()
+        s.put("x", x)
+        f = s.run().get("f")
+        expected = law(x, X, s.get("molecule"), 2.0, dim, 2 * SUPPORT)[0]
+    assert np.abs(expected).max() > 0
+    close(f, expected, 2e-3)
 
 
 def folded(dim, gap, keywords, more="", **options):
@@ -86,14 +100,12 @@ def test_a_body_at_rest_or_bent_has_none(style, kernel, hdx, reach):
 def clapping(style="fsi/solid/tl", dim=2, self_contact="yes", more=(), **options):
     """A horseshoe whose arms are thrown against each other."""
     x, upper = horseshoe(dim, 4 if style == "fsi/solid/tl" else 7)
+    keep = "hourglass 0.05" if style == "fsi/solid/tl" else "gradient quadratic"
     v = np.zeros_like(x)
     arm, low = np.clip(x[:, 0] - 0.3, 0, None), x[:, 1] < 0.3
-    v[upper, 1], v[low, 1] = -3.0 * arm[upper], 3.0 * arm[low]
-    if style == "fsi/solid":
-        v *= 2
-    grad = " gradient quadratic" if style == "fsi/solid" else ""
+    v[upper, 1], v[low, 1] = -arm[upper], arm[low]
     return Scene(x, v, dim=dim, dx=DX, materials=(MATERIAL,), solid_style=style, dt=1e-3, skin=0.4,
-                 solid=f"artificial/visc 0.05 0 contact 2 self {self_contact}{grad}", commands=("compute e all fsi/energy", *more), **options), x, upper
+                 solid=f"artificial/visc 0.05 0 contact 2 self {self_contact} {keep}", commands=("compute e all fsi/energy", *more), **options), x, upper
 
 
 def nearest(x, upper, X):
@@ -112,17 +124,19 @@ def test_arms_do_not_pass(style, dim):
             s.run()
             start, p0 = s.ledger().sum(), s.momentum()
             gap, worst = [], 0.0
-            for _ in range(12 if word == "yes" else 8):
-                s.run(25)
+            for _ in range(24):
+                s.run(50)
                 gap.append(nearest(s.get("x"), upper, X) / DX)
                 worst = max(worst, abs(s.ledger().sum() - start) / start)
-            gaps[word] = min(gap)
+            gaps[word] = min(gap), gap[-1]
             scale = (s.get("rmass")[:, None] * np.abs(s.get("v"))).sum()
             assert np.abs(s.momentum() - p0).max() < 1e-11 * scale
             if word == "yes":
                 assert worst < (0.005 if style == "fsi/solid/tl" else 0.05), worst  # of second order in dt; those of the updated form are integrated in time
-    print(f"{style}, {dim}D: nearest {gaps['yes']:.2f} dx with self, {gaps['no']:.2f} without")
-    assert gaps["yes"] > 1.2 and gaps["no"] < 0.8
+    print(f"{style}, {dim}D, nearest and at the end: {gaps['yes']} dx with self, {gaps['no']} without")
+    assert gaps["yes"][0] > 1.2
+    if style == "fsi/solid/tl":  # in updated-Lagrangian form what is near is one material, which pushes, too
+        assert gaps["no"][0] < 0.8
 
 
 DECK = """units si
@@ -140,6 +154,7 @@ region c block 0 0.3 0 1 INF INF units box
 region u union 3 a b c
 create_atoms 1 region u
 set group all mol 1
+reset_atoms id sort yes
 variable v atom 3*(x-0.3)*(x>0.3)*((y<0.5)-(y>0.5))
 velocity all set {along} v_v 0 units box
 fsi/material rubber solid rho 1000 young 1e5 poisson 0.3
@@ -182,8 +197,8 @@ def test_ranks_and_newton(tmp_path, sub):
 
 @pytest.mark.parametrize("more", ["", "damage 0.15 gradient linear"])
 def test_restart_goes_on_bit_for_bit(tmp_path, more):
-    run(tmp_path / "whole", deck(more=more) + "restart 100 r.*\nrun 200" + LAST, 2)
-    run(tmp_path / "on", f"read_restart {tmp_path / 'whole/r.100'}\nfsi/material" + deck(more=more).split("fsi/material")[1] + "run 100" + LAST, 2)
+    run(tmp_path / "whole", deck(more=more) + "restart 100 r.*\nrun 150" + LAST, 2)
+    run(tmp_path / "on", f"read_restart {tmp_path / 'whole/r.100'}\nfsi/material" + deck(more=more).split("fsi/material")[1] + "run 50" + LAST, 2)
     np.testing.assert_array_equal(state(tmp_path / "on"), state(tmp_path / "whole"))
 
 
@@ -224,7 +239,8 @@ def test_torn_pieces_meet_again():
             gaps[word] = min(gap)
             assert max(total) < 1.005 * total[0]
     print(f"centers of the halves, 8 dx apart at first, come to {gaps['yes']:.1f} dx with self, {gaps['no']:.1f} without")
-    assert gaps["yes"] > 6.0 and gaps["no"] < 2.0
+    # waves of 11.6 m/s: halves stopped from 2 m/s are 17 % shorter, 6.6 dx apart, and a little more where they are pressed
+    assert gaps["yes"] > 5.5 and gaps["no"] < 2.0
 
 
 def test_parts_that_pass_are_named(tmp_path):
