@@ -48,7 +48,7 @@ pair_coeff * * materials.fsi water_inviscid
 fix sph all fsi ${dx} wendland 1.5
 fix gravity all gravity 9.81 vector 0 -1 0
 fix walls all fsi/wall/mirror xlo 0 xhi 2 ylo 0
-fsi_set all hydrostatic 0.5
+fsi/set all hydrostatic 0.5
 timestep 2.5e-4
 neighbor $(0.3*v_dx) bin
 neigh_modify every 1 delay 0 check yes

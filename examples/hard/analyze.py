@@ -163,6 +163,20 @@ def splash(folder):
             "smallest_density": table["density"].min() / 1000.0, "lost": int(table["atoms"][0] - table["atoms"].min())}
 
 
+def hairpin(folder):
+    """The smallest distance of the arms, by all pictures; change of the energy ledger's sum over the kinetic energy at the start."""
+    frames, dx = frames_of(folder), values_of(folder)["dx"]
+    x, y = frames[0]["x"], frames[0]["y"]
+    low, up = ((x > 4 * dx) & side for side in (y < 4 * dx, y > 16 * dx))
+    nearest = 20.0
+    for frame in frames:
+        place = frame.vector("xy")
+        apart = near(place[low], nearest * dx, place[up])[2]
+        nearest = min(nearest, apart.min() / dx if len(apart) else nearest)
+    energy = series.read(Path(folder) / "energy.csv")
+    return {"gap": nearest, "energy_error": np.abs(energy["energy"] - energy["energy"][0]).max() / energy["kinetic"][0]}
+
+
 def settled(folder):
     """Volume of the water at rest over that of the start, less one: by the height of its middle, mean of the last tenth of the run."""
     table = series.read(Path(folder) / "series.csv")
@@ -285,13 +299,14 @@ ROWS = {
     "wall": Row("a million steps against a wall: a particle, and a drop of nine", "wall.*", wall, {"leaked": ("<=", 0), "steps": (">=", 1000000)}, "guard of 0.4 dx, continuity"),
     "pull": Row("plate pulled out of water", "pull", pull, {"hanging": ("<=", 0), "pull": ("<", 1e-12)}, "couple wall: no suction"),
     "tear": Row("solid torn between two ranks", "tear.*", tear, {"pieces": ("==", 2), "ranks_differ": ("<", 1e-6)}, "damage"),
+    "hairpin": Row("hairpin whose arms clap together: one body", "hairpin", hairpin, {"gap": (">", 1.5), "energy_error": ("<", 0.01)}, "contact 2 self yes"),
     "empty": Row("box that empties on a rank", "empty", momentum, {"momentum_error": ("<", 1e-12)}, ""),
     "jump_water": Row("sudden steps, 10 times longer and shorter: still water", "jump_water", still, STILL, "continuity, density diffusion, Wendland kernel"),
     "jump_plate": Row("sudden steps: spinning plate", "jump_plate", solid, BODY, TL),
     "dt": Row("gate, 1 to 6 times the stable step, Courant check on and off", r"dt_(off_)?\d", honest, {"honest": ("==", 1)}, "fix fsi/watch", stops=True),
 }
 RELATIONS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal, "==": np.equal}
-LABELS = {"distance": "nearest pair [dx]", "neighbours_kept": "first neighbours kept", "ke_over_pe": "kinetic/potential energy",
+LABELS = {"distance": "nearest pair [dx]", "gap": "least gap [dx]", "neighbours_kept": "first neighbours kept", "ke_over_pe": "kinetic/potential energy",
           "in_one_piece": "share in one piece", "pull": "pull [N/m]", "draft_error": "draft or gap off [dx]", "mach": "v/c",
           "honest": "sound, or stopped by the right cause"}
 

@@ -162,12 +162,12 @@ def make_animation(files, options):
 
 
 def make_report(files, options):
-    """fsi report [FOLDER] [out=FILE.html]
+    """fsi report [FOLDER] [log=FILE] [out=FILE.html]
 
     One page, readable without the folder and without a network: figures, pictures, curves, what the run cost, the effects that were on,
-    warnings. FOLDER (default: this one) is what tools/run or LAMMPS left: log.lammps, and what there is of summary.json, *.csv, *.png.
+    warnings. FOLDER (default: this one) is what tools/run or LAMMPS left: log.lammps, or another log.* if it is the only one or log= names it, and what there is of summary.json, *.csv, *.png.
     """
-    print(report.write(*files, **options))
+    print(report.write(*files, out=options.get("out"), log_name=options.get("log")))
 
 
 def make_check(files, options):
@@ -187,7 +187,7 @@ COMMANDS = {
     "dump": (show_dump, 1, 99, {"plot", "frames", *animate.OPTIONS}),
     "vtk": (make_vtk, 1, 2, set()),
     "animate": (make_animation, 1, 2, {"rate", *animate.OPTIONS}),
-    "report": (make_report, 0, 1, {"out"}),
+    "report": (make_report, 0, 1, {"out", "log"}),
     "check": (make_check, 1, 1, None),
 }
 

@@ -17,6 +17,7 @@ import numpy as np
 # rays of lattice points would meet the vertices of surfaces that fit the lattice: they go so much beside them, in spacings
 BESIDE = np.array([3.1e-6, 1.7e-6])
 LARGEST = 2e8  # points of the lattice that covers a surface
+LONG = 20.0  # more than that of a unit of length is seldom meant
 SAME = 1e-6  # corners nearer than this, of the largest extent, are one: programs that write STL round each triangle by itself
 
 
@@ -245,7 +246,10 @@ def main(arguments=None):
     if not len(points):
         raise SystemExit(f"{given.surface} is {size}: no particle fits")
     write(given.out, points, given.dx, given.type, given.mol, given.box)
-    print(f"{given.surface} is {size}; {len(points)} particles in {given.out}")
+    print(f"{given.surface} is {size}; {len(points)} particles in {given.out}; lengths are metres with units si")
+    longest = (simplices.reshape(-1, dim).max(0) - simplices.reshape(-1, dim).min(0)).max()
+    if longest > LONG:
+        print(f"fsi fill: with units si it is {longest:.4g} m long. If it is in millimetres: --scale 0.001, and DX in metres")
     if not given.shell and across.min() < 3.0:
         print(f"fsi fill: only {across.min():.2g} particles across: a body or a jet wants three or more")
 

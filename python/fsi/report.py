@@ -25,16 +25,30 @@ img{max-width:100%}.curves{display:flex;flex-wrap:wrap;gap:10px}.curves img{widt
 .warning{background:#fff4e5;border-left:4px solid #d1611a;padding:6px 12px;margin:6px 0}.error{background:#fdecea;border-left:4px solid #c23b3b;padding:6px 12px}"""
 
 
-def write(folder=".", out=None):
+def _log(folder, name):
+    """The log of a folder: of that name, else log.lammps, else the only log.* that there is; None if there is none."""
+    if name:
+        path = next((p for p in (folder / name, Path(name)) if p.is_file()), None)
+        if path is None:
+            raise ValueError(f"{folder} has no log {name}")
+        return path
+    found = [folder / "log.lammps"] if (folder / "log.lammps").exists() else sorted(p for p in folder.glob("log.*") if p.is_file())
+    if len(found) > 1:
+        raise ValueError(f"{folder} has more than one log: log={' or log='.join(p.name for p in found)}")
+    return found[0] if found else None
+
+
+def write(folder=".", out=None, log_name=None):
     """Makes the page of the run in `folder`; returns its path."""
     folder = Path(folder)
     if not folder.is_dir():
         raise ValueError(f"{folder} is not a folder")
-    found = log.read(folder / "log.lammps") if (folder / "log.lammps").exists() else None
+    path = _log(folder, log_name)
+    found = log.read(path) if path else None
     record = _json(folder / RUN_FILE)
     summary = _json(folder / "summary.json")
     if found is None and not summary:
-        raise ValueError(f"{folder} has neither log.lammps nor summary.json")
+        raise ValueError(f"{folder} has neither log.lammps nor summary.json, nor another log.*: log=FILE names one")
     name = record.get("scene") or summary.get("scene") or folder.resolve().name
     parts = [_head(name, found, record, summary), _messages(found), _figures(summary, found), _pictures(folder, found), _curves(folder, found),
              _price(found), _cases(folder, summary)]

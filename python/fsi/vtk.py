@@ -31,12 +31,17 @@ def convert(path, folder=None, progress=None):
     path = Path(path)
     name = path.name.removesuffix(".gz").rsplit(".", 1)[0]
     folder = Path(folder) if folder else path.parent / name
-    folder.mkdir(parents=True, exist_ok=True)
     listed = []
     for frame in dump.frames(path, progress=progress):
+        if not listed:
+            if folder.exists() and not folder.is_dir():
+                raise ValueError(f"{folder}, where the pictures would go, is a file: name another folder behind the dump")
+            folder.mkdir(parents=True, exist_ok=True)
         file = f"{name}.{frame.step:09d}.vtu"
         write(folder / file, frame)
         listed.append(f'<DataSet timestep="{frame.time!r}" file={quoteattr(file)}/>\n')
+    if not listed:
+        raise ValueError(f"{path} has no frames: is it a dump of LAMMPS (dump custom, dump_modify time yes)?")
     index = folder / f"{name}.pvd"
     index.write_text('<VTKFile type="Collection" version="1.0">\n<Collection>\n' + "".join(listed) + "</Collection>\n</VTKFile>\n")
     return index

@@ -22,6 +22,9 @@ AtomStyle(fsi,AtomVecFSI);
 
 #include "atom_vec.h"
 
+#include <map>
+#include <string>
+
 namespace LAMMPS_NS {
 
 // Particles of fluid or solid: mass, density, and the body they belong to (the molecule ID; 0 for fluid).
@@ -38,6 +41,8 @@ class AtomVecFSI : virtual public AtomVec {
   void data_atom_post(int) override;
   int property_atom(const std::string &) override;
   void pack_property_atom(int, double *, int, int) override;
+
+  std::map<std::string, std::string> materials;    // lines of a material file that command fsi/material has given, by name
 
  private:
   double *rmass, *rho;

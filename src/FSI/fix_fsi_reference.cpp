@@ -18,6 +18,8 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_cells.h"
+#include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
@@ -27,6 +29,7 @@
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,11 +43,13 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
+static constexpr double WITHIN = 1.0 - 1.0e-9;    // sites of a lattice at the cutoff weigh nothing: round-off does not choose among them
+
 /* ---------------------------------------------------------------------- */
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), changes(0), swaps(lmp), fix_fsi(nullptr), list(nullptr), slot(nullptr),
-    maxbond(0), apart(0.0), layer(nullptr)
+    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), self_range(0.0), tears(false), changes(0), swaps(lmp), fix_fsi(nullptr), list(nullptr), slot(nullptr),
+    maxbond(0), keeps_places(false), apart(0.0), layer(nullptr), next_look(0)
 {
   has_record = false;
   restart_peratom = restart_global = 1;
@@ -84,9 +89,14 @@ void FixFSIReference::init()
   fix_fsi = FixFSI::find(lmp, "Fix fsi/reference");
   int mine = std::any_of(slot, slot + atom->nlocal, [](int s) { return s >= 0; }), any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) made.clear();
-  else if (made != as_now())
+  if (!any) {
+    made.clear();
+    keeps_places = self_range > 0.0;
+  } else if (made != as_now())
     error->all(FLERR, "Pair style fsi/solid/tl {}: the bonds of its bodies were made with {}, and stay so", as_now(), made);
+  if (self_range > 0.0 && !keeps_places)
+    error->all(FLERR, "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept only if it is on when the reference is taken: "
+                      "give it before the first run of the bodies");
   neighbor->add_request(this, NeighConst::REQ_FULL | NeighConst::REQ_OCCASIONAL);
 }
 
@@ -108,11 +118,14 @@ void FixFSIReference::setup_post_neighbor()
   resolve();
   for (int i = 0; i < atom->nlocal; i++)
     if (slot[i] == NO_BONDS) slot[i] = FOREIGN;
+  if (next_look != MAXBIGINT) next_look = update->ntimestep;
+  look_for_passing();
 }
 
 void FixFSIReference::post_neighbor()
 {
   resolve();
+  look_for_passing();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -299,7 +312,6 @@ void FixFSIReference::unpack_forward_comm(int n, int first, double *buf)
 
 template <int D> void FixFSIReference::take_reference(const std::vector<int> &bare)
 {
-  constexpr double WITHIN = 1.0 - 1.0e-9;    // sites of a lattice at the cutoff weigh nothing: round-off does not choose among them
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
   const int *const type = atom->type;
@@ -354,6 +366,7 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
 
         slot[i] = new_slot(n);
         owner[slot[i]] = tag[i];
+        if (keeps_places) std::copy_n(x[i], D, &place[(size_t) slot[i] * D]);
         for (int k = 0; k < n; k++) {
           double *const value = bond_in(slot[i], k);
           const double *d = &dX[k * D];
@@ -525,6 +538,93 @@ void FixFSIReference::resolve()
   changes++;
   seen.clear();
   swaps.find([this](int i) { return is_solid(i); });
+  if (domain->dimension == 2) find_self_pairs<2>();
+  else find_self_pairs<3>();
+}
+
+/* ----------------------------------------------------------------------
+   contact of a body with itself
+------------------------------------------------------------------------- */
+
+bool FixFSIReference::bonded(int i, int j) const
+{
+  const tagint *const first = &partner[(size_t) slot[i] * maxbond];
+  return std::find(first, first + count(i), atom->tag[j]) != first + count(i);
+}
+
+template <int D> void FixFSIReference::find_self_pairs()
+{
+  near_itself.clear();
+  if (self_range == 0.0) return;
+  const double *const *const x = atom->x;
+  std::vector<double> places((size_t) atom->nmax * comm_forward);
+  layer = places.data();
+  double widest = 0.0;
+  for (const int i : solids) {
+    std::copy_n(&place[(size_t) slot[i] * D], D, layer + (size_t) i * comm_forward);
+    widest = std::max(widest, fix_fsi->dx_of(atom->type[i]));
+  }
+  comm->forward_comm(this);
+  layer = nullptr;
+
+  const Cells cells(x, atom->nlocal + atom->nghost, D, self_range * widest + neighbor->skin, [this](int i) { return is_solid(i); });
+  for (const int i : solids) {
+    const double most = self_range * fix_fsi->dx_of(atom->type[i]), support = fix_fsi->resolution[atom->type[i]].cut;
+    const size_t first = near_itself.size();
+    cells.around(x[i], [&](int j, double rsq) {
+      if (j == i || atom->molecule[j] != atom->molecule[i]) return;
+      double Rsq = 0.0;
+      for (int a = 0; a < D; a++) {
+        double X = places[(size_t) j * comm_forward + a] - places[(size_t) i * comm_forward + a];
+        if (domain->periodicity[a]) X -= domain->prd[a] * std::round(X / domain->prd[a]);
+        Rsq += X * X;
+      }
+      const bool neighbors = Rsq < WITHIN * support * support;
+      if (neighbors && !tears) return;
+      const double reach = reach_within_body(most, std::sqrt(Rsq), neighbors), near = reach + neighbor->skin;
+      if (rsq < near * near) near_itself.push_back({i, j, reach, neighbors});
+    });
+    // sums do not depend on the order of ghosts
+    std::sort(near_itself.begin() + first, near_itself.end(), [this](const auto &a, const auto &b) { return atom->tag[a.j] < atom->tag[b.j]; });
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Without contact parts of one body pass through each other. Looked for rarely: it takes long, and nothing depends on it but a warning.
+------------------------------------------------------------------------- */
+
+void FixFSIReference::look_for_passing()
+{
+  static constexpr int EVERY = 200;    // steps
+  static constexpr double NEAR = 0.9;    // spacings
+  if (update->ntimestep < next_look || self_range > 0.0) return;
+  next_look = update->ntimestep + EVERY;
+  double widest = 0.0;
+  for (const int i : solids) widest = std::max(widest, fix_fsi->dx_of(atom->type[i]));
+  struct {
+    double r;
+    int rank;
+  } mine = {NEAR, comm->me}, least;
+  tagint pair[3] = {0, 0, 0};
+  if (!solids.empty()) {
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, domain->dimension, NEAR * widest, [this](int i) { return is_solid(i); });
+    for (const int i : solids)
+      cells.around(atom->x[i], [&](int j, double rsq) {
+        const double r = std::sqrt(rsq) / fix_fsi->dx_of(atom->type[i]);
+        if (r >= mine.r || j == i || atom->molecule[j] != atom->molecule[i] || bonded(i, j)) return;
+        mine.r = r;
+        pair[0] = std::min(atom->tag[i], atom->tag[j]);
+        pair[1] = std::max(atom->tag[i], atom->tag[j]);
+        pair[2] = atom->molecule[i];
+      });
+  }
+  MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  if (least.r >= NEAR) return;
+  next_look = MAXBIGINT;
+  MPI_Bcast(pair, 3, MPI_LMP_TAGINT, least.rank, world);
+  if (comm->me == 0)
+    error->warning(FLERR, "Pair style fsi/solid/tl: atoms {} and {} of body {} have no bond and are {:.2g} spacings apart at step {}: parts of one body "
+                          "pass through each other. Contact between them: contact 2 self yes", pair[0], pair[1], pair[2], least.r, update->ntimestep);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -561,7 +661,7 @@ void FixFSIReference::reserve(int n)
   if (n <= maxbond) return;
   const int old = maxbond, slots = nbond.size();
   maxbond = whole_blocks(n);
-  maxexchange = 3 + maxbond * (nvalue + 1);
+  maxexchange = 3 + maxbond * (nvalue + 1) + nplace();
   const auto widen = [&](auto &list, int width) {
     std::decay_t<decltype(list)> wider((size_t) slots * maxbond * width);
     for (int s = 0; s < slots; s++)
@@ -583,6 +683,7 @@ int FixFSIReference::new_slot(int n)
     nbond.push_back(n);
     owner.push_back(0);
     quadrature.push_back(1.0);
+    if (keeps_places) place.resize(nbond.size() * domain->dimension);
     const size_t size = (size_t) nbond.size() * maxbond;
     local.resize(size);
     partner.resize(size);
@@ -631,6 +732,7 @@ int FixFSIReference::pack(int i, double *buf) const
   for (int k = 0; k < n; k++) buf[m++] = ubuf(partner[first + k]).d;
   for (int k = 0; k < n; k++)
     for (int v = 0; v < nvalue; v++) buf[m++] = bond(i, k)[v * BOND_BLOCK];
+  for (int a = 0; a < nplace(); a++) buf[m++] = place[(size_t) slot[i] * nplace() + a];
   return m;
 }
 
@@ -647,6 +749,7 @@ int FixFSIReference::unpack(int i, const double *buf)
   for (int k = 0; k < n; k++) partner[first + k] = (tagint) ubuf(buf[m++]).i;
   for (int k = 0; k < n; k++)
     for (int v = 0; v < nvalue; v++) bond_in(slot[i], k)[v * BOND_BLOCK] = buf[m++];
+  for (int a = 0; a < nplace(); a++) place[(size_t) slot[i] * nplace() + a] = buf[m++];
   complete(slot[i]);
   return m;
 }
@@ -684,6 +787,7 @@ void FixFSIReference::write_restart(FILE *fp)
   Record record(lmp, "fix fsi/reference");
   record.add("bonds", made.empty() ? as_now() : made);
   record.add("numbers of a bond", std::to_string(nvalue));
+  record.add("positions", keeps_places ? "yes" : "no");
   record.write(fp);
 }
 
@@ -694,6 +798,7 @@ void FixFSIReference::restart(char *buf)
   if (record.value("numbers of a bond") != std::to_string(nvalue))
     error->all(FLERR, "The restart file has bonds of {} numbers, this version of pair_style fsi/solid/tl needs {}",
                record.value("numbers of a bond"), nvalue);
+  keeps_places = record.has("positions") && record.value("positions") == "yes";
   has_record = true;
 }
 
@@ -705,12 +810,12 @@ void FixFSIReference::unpack_restart(int i, int nth)
 
 int FixFSIReference::size_restart(int i)
 {
-  return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + 1);
+  return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + 1) + nplace();
 }
 
 int FixFSIReference::maxsize_restart()
 {
-  return 3 + maxbond * (nvalue + 1);
+  return 3 + maxbond * (nvalue + 1) + nplace();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -718,5 +823,6 @@ int FixFSIReference::maxsize_restart()
 double FixFSIReference::memory_usage()
 {
   return (double) atom->nmax * sizeof(int) + (double) local.capacity() * sizeof(int) + (double) (partner.capacity() + owner.capacity()) * sizeof(tagint) +
-      (double) (data.capacity() + moment.capacity() + quadrature.capacity() + seen.capacity() + slack.capacity()) * sizeof(double);
+      (double) (data.capacity() + moment.capacity() + quadrature.capacity() + place.capacity() + seen.capacity() + slack.capacity()) * sizeof(double) +
+      (double) near_itself.capacity() * sizeof(SelfPair);
 }

@@ -80,6 +80,19 @@ class FixFSIReference : public Fix {
   typedef std::function<double(int)> Energy;
   void break_bonds(double stretch, const Energy &energy);
 
+  // Contact of a body with itself (fsi_contact.h), if its range, over the spacing, is above 0: pairs as a local particle i sees them, without
+  // a bond, or whose bond may have broken by now, that can come within reach before lists are new. Each belongs to i by half: what one rank
+  // sees of its own particles, no other needs to know.
+  double self_range;
+  bool tears;    // keyword damage
+  struct SelfPair {
+    int i, j;
+    double reach;
+    bool torn;    // neighbors in the reference
+  };
+  std::vector<SelfPair> near_itself;
+  bool bonded(int i, int j) const;    // local i with j
+
   int changes;    // how often bonds, or where their partners are, have changed
   // local solid atoms, and ghosts of solid atoms
   std::vector<int> solids, ghosts;
@@ -97,17 +110,22 @@ class FixFSIReference : public Fix {
   std::vector<int> nbond, local, unused;
   std::vector<tagint> partner, owner;    // owner: ID of the slot's atom when its bonds were last looked at
   std::vector<double> data, moment, quadrature;
+  bool keeps_places;    // for contact of a body with itself
+  std::vector<double> place;    // D numbers per slot: positions in the reference
   // damage: positions of solids and ghosts at the last look, empty = indices have changed; how far particles have moved apart since
   // indices changed, at most; per slot, how far they may before one of its bonds can be too long
   std::vector<double> seen, slack;
   double apart;
-  double *layer;    // while the reference is taken: layers to the face ahead, by direction
+  double *layer;    // of a message to ghosts: while the reference is taken layers to the face ahead, by direction; places
+  bigint next_look;    // for parts of a body that pass through each other; never again once they were named
 
   void follow_commands();
   void take();
   template <int D> void take_reference(const std::vector<int> &);
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
+  template <int D> void find_self_pairs();
+  void look_for_passing();
   bool is_solid(int i) const;
   template <int D> void break_bonds_of_all(double stretch, const Energy &energy);
   template <int D> bool renew(int i);
@@ -115,6 +133,7 @@ class FixFSIReference : public Fix {
   double *bond_in(int s, int k) { return &data[(size_t) s * maxbond * nvalue] + FSI::number_of_bond(k, nvalue); }
   void move_bond(int s, int from, int to);
   void complete(int s);
+  int nplace() const { return keeps_places ? domain->dimension : 0; }    // numbers of one
   void reserve(int n);
   int new_slot(int n);
   int pack(int, double *) const;

@@ -24,6 +24,7 @@
 #include "pair.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -32,7 +33,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
+    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), start(nullptr), keywords(lmp, "fix fsi/stress"),
     ns(domain->dimension == 2 ? 3 : 6), strain(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
@@ -43,6 +44,7 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
   if (plane_stress && domain->dimension == 3) error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
   if (plastic && plane_stress) error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
   restart_global = 1;
+  comm_forward = domain->dimension;
   choose_fields();
   register_fields();
 }
@@ -63,6 +65,7 @@ void FixFSIStress::choose_fields()
   int dim_of_extract;
   fields.set("stress", Fields::RESTART, true, stress, ns);
   fields.set("plastic strain", Fields::RESTART, plastic, strain);
+  fields.set("place at the start", Fields::RESTART, pair && *static_cast<int *>(pair->extract("self", dim_of_extract)), start, domain->dimension + 1);
   fields.set("hourglass force", Fields::RESTART, pair && *static_cast<double *>(pair->extract("hourglass", dim_of_extract)) > 0.0, hourglass, domain->dimension);
 }
 
@@ -88,6 +91,43 @@ void FixFSIStress::init()
     error->warning(FLERR, "Fix fsi/stress plastic has nothing to act on: no material has a yield stress");
   if (comm->me == 0 && yields && !plastic)
     error->warning(FLERR, "A material has a yield stress, but stays elastic: fix fsi/stress lacks keyword plastic");
+}
+
+/* ----------------------------------------------------------------------
+   Where solids were when they were first seen, for contact of a body with itself; ghosts are told.
+------------------------------------------------------------------------- */
+
+void FixFSIStress::enter_start(const std::vector<State> &state)
+{
+  const int dim = domain->dimension;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (state[atom->type[i]].species != SOLID || start[i][dim] != 0.0) continue;
+    std::copy_n(atom->x[i], dim, start[i]);
+    start[i][dim] = 1.0;
+  }
+  comm->forward_comm(this);
+}
+
+double FixFSIStress::distance_at_start(int i, int j) const
+{
+  double sum = 0.0;
+  for (int a = 0; a < domain->dimension; a++) {
+    double d = start[i][a] - start[j][a];
+    if (domain->periodicity[a]) d -= domain->prd[a] * std::round(d / domain->prd[a]);
+    sum += d * d;
+  }
+  return std::sqrt(sum);
+}
+
+int FixFSIStress::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) buf = std::copy_n(start[list[k]], comm_forward, buf);
+  return n * comm_forward;
+}
+
+void FixFSIStress::unpack_forward_comm(int n, int first, double *buf)
+{
+  for (int i = first; i < first + n; i++, buf += comm_forward) std::copy_n(buf, comm_forward, start[i]);
 }
 
 /* ----------------------------------------------------------------------

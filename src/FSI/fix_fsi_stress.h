@@ -40,6 +40,8 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
   std::vector<Effect> effects() const override;
   void find_idle(const Census &, const Idle &) const override;
 
@@ -49,6 +51,9 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   int plane_stress;
   int plastic;    // materials yield
   double *hourglass_force(int i) { return hourglass[i]; }
+  // keyword self of pair_style fsi/solid: enters the places of those that have none yet, then tells ghosts; how far two of them were apart
+  void enter_start(const std::vector<FSI::State> &);
+  double distance_at_start(int i, int j) const;
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between (fsi_jaumann.h)
   // returns the plastic work per volume
@@ -73,6 +78,7 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   FSI::Keywords keywords;
   static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a run began
   int ns;    // components of the deviator
+  double **start;    // places, and whether there is one; null without keyword self
   double *strain;    // equivalent plastic strain; null without plastic
   void choose_fields();
 };

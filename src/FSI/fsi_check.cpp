@@ -113,6 +113,7 @@ void Check::materials()
   spacings();
   thin_bodies();
   held_parts();
+  integrators();
 }
 
 /* ----------------------------------------------------------------------
@@ -136,6 +137,21 @@ void Check::held_parts() const
       error->one(FLERR, "Atom {} of a solid has the velocity {:g} {:g} {:g}, but neither fix fsi nor another fix moves it: it would strain its body "
                         "{} without end. Set it to 0, or let a fix move it", atom->tag[i], v[0], v[1], v[2], atom->molecule[i]);
     }
+}
+
+/* ----------------------------------------------------------------------
+   Another integrator of what fix fsi moves: it would move twice in a step.
+------------------------------------------------------------------------- */
+
+void Check::integrators() const
+{
+  for (const auto &fix : modify->get_fix_list()) {
+    if (!fix->time_integrate || utils::strmatch(fix->style, "^fsi")) continue;
+    const auto twice = find_particles(atom, world, [&](int i) { return atom->mask[i] & scene.mover->groupbit && atom->mask[i] & fix->groupbit; });
+    if (twice.count)
+      error->all(FLERR, "Fix {} (style {}) and fix {} (style fsi) both move {} particles, the first of them atom {}: leave out one of the two for them", fix->id,
+                 fix->style, scene.mover->id, twice.count, twice.first);
+  }
 }
 
 /* ----------------------------------------------------------------------

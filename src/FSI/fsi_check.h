@@ -50,6 +50,7 @@ namespace FSI {
 
     void spacings() const;
     void held_parts() const;
+    void integrators() const;
     void thin_bodies() const;
     void enter(const Finding &);
     void examine(int i, double kick);

@@ -25,10 +25,16 @@
 
 #include "fsi_pack.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace LAMMPS_NS {
 namespace FSI {
+
+  // Contact of a body with itself, of pairs without a bond, does not reach beyond a part of their distance in the reference, so that a body
+  // that nothing strains has none: 0.9 of it where a bond is torn (short-range forces of Silling and Askari, Computers and Structures 83
+  // (2005) 1526), a half where there never was one, which leaves a body free to be compressed as much.
+  inline double reach_within_body(double reach, double distance, bool torn) { return std::min(reach, (torn ? 0.9 : 0.5) * distance); }
 
   struct Contact {
     double reach, reachsq, scale;    // reach = R dx, scale = s dx^(D-2)/R^2
@@ -36,6 +42,14 @@ namespace FSI {
         reach(R * dx), reachsq(reach * reach), scale(dim == 3 ? dx : 1.0)
     {
       scale /= stiffness(dim, R);
+    }
+    // the same, of pairs that feel each other only where they are nearer than that
+    Contact within(double r) const
+    {
+      Contact c = *this;
+      c.reach = r;
+      c.reachsq = r * r;
+      return c;
     }
     // factor f of the force F_i = f x_ij; Ki, Kj: bulk moduli; T: double or Pack
     template <class T> FSI_INLINE T operator()(const T &rsq, double Ki, double Kj) const

@@ -26,7 +26,7 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  inline std::vector<tagint> gather(const std::vector<tagint> &mine, MPI_Comm world)
+  template <class T> std::vector<T> gather_all(const std::vector<T> &mine, MPI_Datatype type, MPI_Comm world)
   {
     int nprocs;
     MPI_Comm_size(world, &nprocs);
@@ -34,10 +34,13 @@ namespace FSI {
     std::vector<int> count(nprocs), first(nprocs, 0);
     MPI_Allgather(&n, 1, MPI_INT, count.data(), 1, MPI_INT, world);
     for (int k = 1; k < nprocs; k++) first[k] = first[k - 1] + count[k - 1];
-    std::vector<tagint> all(first.back() + count.back());
-    MPI_Allgatherv(const_cast<tagint *>(mine.data()), n, MPI_LMP_TAGINT, all.data(), count.data(), first.data(), MPI_LMP_TAGINT, world);
+    std::vector<T> all(first.back() + count.back());
+    MPI_Allgatherv(const_cast<T *>(mine.data()), n, type, all.data(), count.data(), first.data(), type, world);
     return all;
   }
+
+  inline std::vector<tagint> gather(const std::vector<tagint> &mine, MPI_Comm world) { return gather_all(mine, MPI_LMP_TAGINT, world); }
+  inline std::vector<double> gather(const std::vector<double> &mine, MPI_Comm world) { return gather_all(mine, MPI_DOUBLE, world); }
 
   inline std::set<tagint> gather(const std::set<tagint> &mine, MPI_Comm world)
   {

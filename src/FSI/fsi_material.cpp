@@ -87,30 +87,33 @@ class MaterialReader : protected Pointers {
  public:
   explicit MaterialReader(LAMMPS *lmp) : Pointers(lmp) {}
 
-  std::vector<Material> read(const std::string &file, const std::vector<std::string> &names)
+  std::vector<Material> read(const std::string &file)
   {
     std::vector<Material> all;
+    if (file == SPECIES[NONE]) return all;
     if (utils::get_potential_file_path(file).empty())
       error->one(FLERR, "Cannot open material file {}: it is neither in the working folder nor in those of the environment variable "
                         "LAMMPS_POTENTIALS; type  export LAMMPS_POTENTIALS=<folder of the .fsi files>", file);
     PotentialFileReader reader(lmp, file, "fsi material");
-    while (char *line = reader.next_line()) all.push_back(parse(file, line));
+    while (char *line = reader.next_line()) all.push_back(parse("in file " + file, line));
+    return all;
+  }
 
+  std::vector<Material> find(const std::string &file, const std::vector<std::string> &names, const std::map<std::string, std::string> &given)
+  {
+    const auto all = read(file);
     std::vector<Material> found;
     for (const auto &name : names) {
       Material m = {};
-      if (name != "NULL") {
+      if (const auto it = given.find(name); it != given.end()) m = parse("of command fsi/material", it->second.c_str());
+      else if (name != SPECIES[NONE]) {
         int matches = 0;
         for (const auto &a : all)
           if (name == a.name) {
             m = a;
             matches++;
           }
-        if (matches == 0) {
-          std::string known;
-          for (const auto &a : all) known += std::string(" ") + a.name;
-          error->one(FLERR, "Material {} not found in file {}, which has:{}", name, file, known);
-        }
+        if (matches == 0) not_found(name, file, all, given);
         if (matches > 1) error->one(FLERR, "Material {} stands {} times in file {}", name, matches, file);
       }
       found.push_back(m);
@@ -118,20 +121,30 @@ class MaterialReader : protected Pointers {
     return found;
   }
 
-  Material parse(const std::string &file, const char *line)
+  void not_found(const std::string &name, const std::string &file, const std::vector<Material> &all, const std::map<std::string, std::string> &given)
+  {
+    std::string known, by_command;
+    for (const auto &a : all) known += std::string(" ") + a.name;
+    for (const auto &g : given) by_command += " " + g.first;
+    if (by_command.empty()) by_command = " none";
+    if (file == SPECIES[NONE]) error->one(FLERR, "Material {} was not given by command fsi/material, which has given:{}", name, by_command);
+    error->one(FLERR, "Material {} not found in file {}, which has:{}; command fsi/material has given:{}", name, file, known, by_command);
+  }
+
+  Material parse(const std::string &where, const char *line)
   {
     Material m = {};
     try {
       ValueTokenizer values(line);
       const std::string name = values.next_string();
       if (name.size() >= sizeof(m.name))
-        error->one(FLERR, "Material name {} in file {} is longer than {} characters", name, file, sizeof(m.name) - 1);
+        error->one(FLERR, "Material name {} {} is longer than {} characters", name, where, sizeof(m.name) - 1);
       strcpy(m.name, name.c_str());
 
       const std::string species = values.next_string();
       m.species = std::find(std::begin(SPECIES), std::end(SPECIES), species) - std::begin(SPECIES);
       if (m.species == NONE || m.species > RIGID)
-        error->one(FLERR, "Material {} in file {} is of unknown species {}: expected fluid, solid or wall", name, file, species);
+        error->one(FLERR, "Material {} {} is of unknown species {}: expected fluid, solid or wall", name, where, species);
 
       std::string known, given = " ";
       for (const auto &p : properties)
@@ -141,15 +154,15 @@ class MaterialReader : protected Pointers {
         const auto p = std::find_if(std::begin(properties), std::end(properties),
                                     [&](const Property &q) { return key == q.name && has(m.species, q); });
         if (p == std::end(properties))
-          error->one(FLERR, "Unknown keyword {} of {} {} in file {}: expected {}", key, species, name, file, known);
-        m.*p->value = numeric(lmp, fmt::format("Material {} in file {}: {}", name, file, key), values.next_string(), p->range, true);
+          error->one(FLERR, "Unknown keyword {} of {} {} {}: expected {}", key, species, name, where, known);
+        m.*p->value = numeric(lmp, fmt::format("Material {} {}: {}", name, where, key), values.next_string(), p->range, true);
         given += key + " ";
       }
       for (const auto &p : properties)
         if (p.needed && has(m.species, p) && given.find(std::string(" ") + p.name + " ") == std::string::npos)
-          error->one(FLERR, "Material {} in file {} needs {} {}", name, file, p.name, p.range.text());
+          error->one(FLERR, "Material {} {} needs {} {}", name, where, p.name, p.range.text());
     } catch (TokenizerException &e) {
-      error->one(FLERR, "Cannot read a line of material file {}: {}", file, e.what());
+      error->one(FLERR, "Cannot read a line of materials {}: {}", where, e.what());
     }
     return m;
   }
@@ -159,11 +172,23 @@ class MaterialReader : protected Pointers {
 
 /* ---------------------------------------------------------------------- */
 
-std::vector<Material> FSI::read_materials(LAMMPS *lmp, const std::string &file, const std::vector<std::string> &names)
+std::vector<Material> FSI::read_materials(LAMMPS *lmp, const std::string &file, const std::vector<std::string> &names,
+                                          const std::map<std::string, std::string> &given)
 {
   std::vector<Material> found(names.size());
-  if (lmp->comm->me == 0) found = MaterialReader(lmp).read(file, names);
+  if (lmp->comm->me == 0) found = MaterialReader(lmp).find(file, names, given);
   MPI_Bcast(found.data(), static_cast<int>(found.size() * sizeof(Material)), MPI_BYTE, 0, lmp->world);
+  return found;
+}
+
+std::vector<Material> FSI::read_all_materials(LAMMPS *lmp, const std::string &file)
+{
+  std::vector<Material> found;
+  if (lmp->comm->me == 0) found = MaterialReader(lmp).read(file);
+  int n = found.size();
+  MPI_Bcast(&n, 1, MPI_INT, 0, lmp->world);
+  found.resize(n);
+  MPI_Bcast(found.data(), static_cast<int>(n * sizeof(Material)), MPI_BYTE, 0, lmp->world);
   return found;
 }
 
@@ -178,7 +203,7 @@ std::string FSI::describe(const Material &m)
   return line;
 }
 
-Material FSI::read_material(LAMMPS *lmp, const std::string &file, const std::string &line)
+Material FSI::read_material(LAMMPS *lmp, const std::string &where, const std::string &line)
 {
-  return line == SPECIES[NONE] ? Material{} : MaterialReader(lmp).parse(file, line.c_str());
+  return line == SPECIES[NONE] ? Material{} : MaterialReader(lmp).parse(where, line.c_str());
 }

@@ -13,7 +13,8 @@
 
 #ifdef COMMAND_CLASS
 // clang-format off
-CommandStyle(fsi_set,FSISet);
+CommandStyle(fsi/set,FSISet);
+CommandStyle(fsi_set,FSISetRenamed);
 // clang-format on
 #else
 
@@ -24,11 +25,18 @@ CommandStyle(fsi_set,FSISet);
 
 namespace LAMMPS_NS {
 
-// fsi_set group-ID keyword values ...: initial density of particles, once, before a run.
+// fsi/set group-ID keyword values ...: initial density of particles, once, before a run.
 
 class FSISet : public Command {
  public:
   FSISet(class LAMMPS *lmp) : Command(lmp) {}
+  void command(int, char **) override;
+};
+
+// The name that it had before.
+class FSISetRenamed : public Command {
+ public:
+  FSISetRenamed(class LAMMPS *lmp) : Command(lmp) {}
   void command(int, char **) override;
 };
 

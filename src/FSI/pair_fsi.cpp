@@ -14,6 +14,7 @@
 #include "pair_fsi.h"
 
 #include "atom.h"
+#include "atom_vec_fsi.h"
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
@@ -21,6 +22,7 @@
 #include "fsi_record.h"
 #include "memory.h"
 #include "neighbor.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +34,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
-    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr), alpha(0.0), beta(0.0), contact_range(1.0)
+    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr), alpha(0.0), beta(0.0), contact_range(1.0),
+    self_contact(0)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -76,17 +79,56 @@ void PairFSI::settings(int narg, char **arg)
 
 void PairFSI::coeff(int narg, char **arg)
 {
+  check_pair_coeff(narg, arg);
   if (!allocated) allocate();
+  auto *const avec = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
+  const std::vector<std::string> names(arg + 3, arg + narg);
+  auto found = read_materials(lmp, arg[2], names, avec ? avec->materials : std::map<std::string, std::string>());
+  for (int t = 1; t <= atom->ntypes; t++) material[t] = found[t - 1];
+  set_flags();
+  check_species();
+}
+
+void PairFSI::check_pair_coeff(int narg, char **arg) const
+{
   if (narg < 2 || strcmp(arg[0], "*") != 0 || strcmp(arg[1], "*") != 0)
     error->all(FLERR, "Pair style {} needs pair_coeff * * followed by a material file and one material per atom type", style);
   if (narg != 3 + atom->ntypes)
     error->all(FLERR, "Pair_coeff of pair style {} has {} materials, expected one for each of {} atom types", style,
                narg > 3 ? narg - 3 : 0, atom->ntypes);
+}
 
-  const std::vector<std::string> names(arg + 3, arg + narg);
-  auto found = read_materials(lmp, arg[2], names);
-  for (int t = 1; t <= atom->ntypes; t++) material[t] = found[t - 1];
-  set_flags();
+/* ----------------------------------------------------------------------
+   Of a type that no style has a force for LAMMPS says only "All pair coeffs are not set". Before the first run: later one pair_coeff
+   after another may change materials.
+------------------------------------------------------------------------- */
+
+static std::string in_words(const Material &m)
+{
+  static const char *const words[] = {"", "fluid ", "solid ", "wall "};
+  return m.species == NONE ? "no material" : std::string("the ") + words[m.species] + m.name;
+}
+
+void PairFSI::check_species() const
+{
+  if (update->first_update) return;
+  const bool solid_style = style != "fsi/fluid";
+  for (int t = 1; t <= atom->ntypes && force->pair == this; t++)
+    if (setflag[t][t] == 0)
+      error->all(FLERR, "Pair_coeff of pair style {} gives atom type {} {}: expected a {}", style, t, in_words(material[t]),
+                 solid_style ? "solid" : "fluid, solid or wall");
+  const PairFSI *fluid = solid_style ? nullptr : this, *solid = solid_style ? this : nullptr;
+  for (const char *name : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"}) {
+    auto *const other = dynamic_cast<PairFSI *>(force->pair_match(name, 1));
+    if (!other || !other->allocated) continue;
+    (strcmp(name, "fsi/fluid") == 0 ? fluid : solid) = other;
+  }
+  for (int t = 1; fluid && solid && t <= atom->ntypes; t++) {
+    const Material &f = fluid->material[t], &s = solid->material[t];
+    if ((f.species == SOLID && s.species != SOLID) || (f.species != SOLID && f.species != NONE && s.species == SOLID))
+      error->all(FLERR, "Pair_coeff gives atom type {} {} in pair style fsi/fluid and {} in {}: expected the same solid in both, or {}", t, in_words(f),
+                 in_words(s), solid->style, f.species == SOLID ? "another material in fsi/fluid" : "NULL in " + solid->style);
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -141,6 +183,7 @@ void PairFSI::check_same_materials() const
 void *PairFSI::extract(const char *name, int &dim_of_extract)
 {
   dim_of_extract = 0;
+  if (strcmp(name, "contact") == 0) return &contact_range;
   return strcmp(name, "alpha") == 0 ? &alpha : nullptr;
 }
 
@@ -193,6 +236,7 @@ void PairFSI::artificial_row(const std::string &of)
 void PairFSI::contact_row()
 {
   keywords.key("contact").number(contact_range, 1.0, Range::from(1.0));
+  keywords.key("self").logical(self_contact, false).effect("contact of a body with itself");
 }
 
 void PairFSI::check_contact() const
@@ -257,6 +301,6 @@ void PairFSI::read_restart(FILE *fp)
   read_restart_settings(fp);
   allocate();
   const auto record = Record::read(lmp, "pair_coeff " + style, fp);
-  for (int t = 1; t <= atom->ntypes; t++) material[t] = read_material(lmp, "the restart file", record.value(std::to_string(t)));
+  for (int t = 1; t <= atom->ntypes; t++) material[t] = read_material(lmp, "in the restart file", record.value(std::to_string(t)));
   set_flags();
 }

@@ -51,6 +51,7 @@ class PairFSI : public Pair, public FSI::Part {
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
   double alpha, beta;    // artificial/visc (fsi_viscosity_artificial.h)
   double contact_range;    // of solids, over dx (fsi_contact.h)
+  int self_contact;        // of a body with itself
 
   // does this style handle pairs of these species?
   virtual bool handles(int, int) const = 0;
@@ -63,6 +64,7 @@ class PairFSI : public Pair, public FSI::Part {
   // does this style visit neighbors that move?
   virtual bool needs_neighbors() { return true; }
 
+  void check_pair_coeff(int, char **) const;
   FSI::State solid_state(const FSI::Material &, bool plane_stress) const;
   bool several_bodies() const;
   virtual void check_settings() {}    // what a row of keywords cannot say
@@ -70,6 +72,7 @@ class PairFSI : public Pair, public FSI::Part {
   void contact_row();
   void check_contact() const;
   void check_same_materials() const;
+  void check_species() const;
   bool has_artificial() const { return alpha > 0.0 || beta > 0.0; }
   void set_flags();
   void allocate();

@@ -36,6 +36,9 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
+// Supports of the kernel. What was nearer at the start stays one material: a body may be pressed together to half its length.
+static constexpr double FAR = 2.0;
+
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
@@ -121,6 +124,7 @@ void *PairFSISolid::extract(const char *name, int &dim_of_extract)
   dim_of_extract = 0;
   if (strcmp(name, "gradient") == 0) return &gradient;    // 0: plain
   if (strcmp(name, "hourglass") == 0) return &xi;
+  if (strcmp(name, "self") == 0) return &self_contact;
   return PairFSI::extract(name, dim_of_extract);
 }
 
@@ -168,13 +172,17 @@ void PairFSISolid::begin_state(bool)
   if (neighbor->ago == 0) find_rows();
 }
 
-// pairs of one body and, if there are several, of different ones
+// Pairs that share their stress, and those that only push: of different bodies and, with contact of a body with itself, those of one that
+// were further apart than that at the start.
 void PairFSISolid::find_rows()
 {
   const tagint *const molecule = atom->molecule;
+  const double far = FAR * fix_fsi->cut;
+  if (self_contact) fix_stress->enter_start(fix_fsi->state);
+  const auto one = [=](int i, int j) { return molecule[i] == molecule[j] && !(self_contact && fix_stress->distance_at_start(i, j) >= far); };
   own.clear();
   others.clear();
-  const bool whole = !bodies && !atom->molecular;
+  const bool whole = !bodies && !self_contact && !atom->molecular;
   std::vector<int> unmasked;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], n = list->numneigh[i], *const neighbors = list->firstneigh[i];
@@ -184,8 +192,8 @@ void PairFSISolid::find_rows()
     }
     unmasked.resize(n);
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
-    own.add(i, unmasked.data(), n, false, false, [=](int j) { return molecule[i] == molecule[j]; });
-    if (bodies) others.add(i, unmasked.data(), n, false, false, [=](int j) { return molecule[i] != molecule[j]; });
+    own.add(i, unmasked.data(), n, false, false, [=](int j) { return one(i, j); });
+    if (bodies || self_contact) others.add(i, unmasked.data(), n, false, false, [=](int j) { return !one(i, j); });
   }
   if (whole) return;
   own.end();

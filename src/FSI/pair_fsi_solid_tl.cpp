@@ -138,8 +138,14 @@ void PairFSISolidTL::init_style()
     reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", REFERENCE)));
   reference->quadratic = !linear;
   reference->end_corrected = !plain;
+  reference->self_range = self_contact ? contact_range : 0.0;
+  reference->tears = damage > 0.0;
   comm_forward = has_artificial() || law == HYPO ? 2 * dim : dim;
   comm_reverse = dim;
+
+  contacts.clear();
+  for (const auto &a : fix_fsi->resolution)
+    for (const auto &b : fix_fsi->resolution) contacts.emplace_back(dim, spacing_between(a, b), contact_range);
 
   changes_seen = -1;
   svk.clear();
@@ -159,12 +165,17 @@ void PairFSISolidTL::init_style()
    right; what sets or projects the whole force is not.
 ------------------------------------------------------------------------- */
 
+bool PairFSISolidTL::takes_substeps() const
+{
+  auto dt = modify->get_fix_by_style("^fsi/dt$");
+  return fix_fsi->substeps > 1 || (!dt.empty() && dynamic_cast<FixFSIDt *>(dt[0])->chooses_substeps());
+}
+
 void PairFSISolidTL::refuse_constraints() const
 {
   static const char *const styles[] = {"setforce", "aveforce", "lineforce", "planeforce", "freeze", "manifoldforce", "damping/cundall",
                                        "shake", "rattle"};
-  auto dt = modify->get_fix_by_style("^fsi/dt$");
-  if (fix_fsi->substeps == 1 && (dt.empty() || !dynamic_cast<FixFSIDt *>(dt[0])->chooses_substeps())) return;
+  if (!takes_substeps()) return;
   for (auto &fix : modify->get_fix_list())
     for (const char *style : styles) {
       const std::string name = style;
@@ -238,6 +249,10 @@ void PairFSISolidTL::internal_forces()
     if (fix_fsi->dim == 2) contact_forces<2>();
     else contact_forces<3>();
   }
+  if (!reference->near_itself.empty()) {
+    if (fix_fsi->dim == 2) self_contact_forces<2>();
+    else self_contact_forces<3>();
+  }
   exchange(fix_fsi->profile, comm, this, true, [this]() { reference->swaps.reverse(this); }, reference->swaps.skip_empty());
 }
 
@@ -256,7 +271,7 @@ void PairFSISolidTL::find_rows()
     rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i), reference->moments(i),
                     atom->rmass[i] / s.rho0 * reference->weight(i), zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
   }
-  if (fix_fsi->substeps > 1) refuse_rigid_parts();
+  if (fix_fsi->substeps > 1 || (update->setupflag && takes_substeps())) refuse_rigid_parts();
   const auto moves = [=](const BondRow &row) {
     return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [=](int j) { return mask[j] & groupbit; });
   };
@@ -319,12 +334,7 @@ template <int D> void PairFSISolidTL::contact_forces()
   double **x = atom->x;
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
-  const State *const state = fix_fsi->state.data();
-  const int ntypes = atom->ntypes;
-  std::vector<Contact> contacts;    // by both types
-  for (int a = 0; a <= ntypes; a++)
-    for (int b = 0; b <= ntypes; b++) contacts.emplace_back(D, spacing_between(fix_fsi->resolution[a], fix_fsi->resolution[b]), contact_range);
-  const int nlocal = atom->nlocal;
+  const int ntypes = atom->ntypes, nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
@@ -336,29 +346,42 @@ template <int D> void PairFSISolidTL::contact_forces()
         xij[d] = x[i][d] - x[j][d];
         rsq += xij[d] * xij[d];
       }
-      const State &si = state[type[i]], &sj = state[type[j]];
       const Contact &contact = contacts[type[i] * (ntypes + 1) + type[j]];
-      const double f = contact(rsq, si.csq * si.rho0, sj.csq * sj.rho0);
-      if (f == 0.0) continue;
-      const bool both = newton || j < nlocal;    // without newton the other rank does its own particle
-      for (int d = 0; d < D; d++) {
-        fsolid[i][d] += f * xij[d];
-        if (both) fsolid[j][d] -= f * xij[d];
-      }
-      if (vflag_global) {
-        const double share = both ? 1.0 : 0.5;
-        virial[0] += share * f * xij[0] * xij[0];
-        virial[1] += share * f * xij[1] * xij[1];
-        virial[3] += share * f * xij[0] * xij[1];
-        if (D == 3) {
-          virial[2] += share * f * xij[D - 1] * xij[D - 1];
-          virial[4] += share * f * xij[0] * xij[D - 1];
-          virial[5] += share * f * xij[1] * xij[D - 1];
-        }
-      }
-      strain_energy += (both ? 1.0 : 0.5) * contact.energy(rsq, si.csq * si.rho0, sj.csq * sj.rho0);
+      // without newton the other rank does its own particle
+      if (rsq < contact.reachsq) push<D>(i, j, xij, rsq, contact, newton || j < nlocal ? 1.0 : 0.0);
     }
   }
+}
+
+// A pair of a body without a bond is seen from both sides, each of which counts half.
+template <int D> void PairFSISolidTL::self_contact_forces()
+{
+  double **x = atom->x;
+  const int *const type = atom->type;
+  for (const auto &pair : reference->near_itself) {
+    double xij[D], rsq = 0.0;
+    for (int d = 0; d < D; d++) {
+      xij[d] = x[pair.i][d] - x[pair.j][d];
+      rsq += xij[d] * xij[d];
+    }
+    if (rsq >= pair.reach * pair.reach || (pair.torn && reference->bonded(pair.i, pair.j))) continue;
+    push<D>(pair.i, pair.j, xij, rsq, contacts[type[pair.i] * (atom->ntypes + 1) + type[pair.j]].within(pair.reach), 0.5);
+  }
+}
+
+// share: of the force, which both get; 0: all of it, but for i alone, and half of energy and virial
+template <int D>
+void PairFSISolidTL::push(int i, int j, const double *xij, double rsq, const Contact &contact, double share)
+{
+  const State &si = fix_fsi->state[atom->type[i]], &sj = fix_fsi->state[atom->type[j]];
+  const double Ki = si.csq * si.rho0, Kj = sj.csq * sj.rho0, part = share > 0.0 ? share : 0.5;
+  const double f = contact(rsq, Ki, Kj), of_i = share > 0.0 ? share * f : f;
+  for (int d = 0; d < D; d++) {
+    fsolid[i][d] += of_i * xij[d];
+    if (share > 0.0) fsolid[j][d] -= of_i * xij[d];
+  }
+  if (vflag_global) add_virial<D>([&](int a, int b) { return part * f * xij[a] * xij[b]; }, virial);
+  strain_energy += part * contact.energy(rsq, Ki, Kj);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -22,6 +22,7 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 #define LMP_PAIR_FSI_SOLID_TL_H
 
 #include "fsi_bond_rows.h"
+#include "fsi_contact.h"
 #include "pair_fsi.h"
 
 #include <vector>
@@ -96,6 +97,7 @@ class PairFSISolidTL : public PairFSI {
   int nmax;
 
   void refuse_constraints() const;
+  bool takes_substeps() const;    // or may choose to
   void refuse_rigid_parts() const;
   double stored(int i) const;
   template <class L> const L *laws() const;
@@ -106,7 +108,10 @@ class PairFSISolidTL : public PairFSI {
   void find_rows();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
   template <class L, int D> void bond_forces();
+  std::vector<FSI::Contact> contacts;    // by both types
   template <int D> void contact_forces();
+  template <int D> void self_contact_forces();
+  template <int D> void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
   template <int D> void deformation(int i, double *F) const;
   template <int D> void advance_stress_of_all(double dt);
 };

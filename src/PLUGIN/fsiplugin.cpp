@@ -35,6 +35,7 @@
 #include "fix_fsi_wall_mirror.h"
 #include "fix_fsi_wall_particle.h"
 #include "fix_fsi_watch.h"
+#include "fsi_material_command.h"
 #include "fsi_set.h"
 #include "lammps.h"
 #include "library.h"
@@ -144,5 +145,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi/stress", &create_with_arguments<FixFSIStress>);
   two("fix", "fsi/reference", &create_with_arguments<FixFSIReference>);
   two("fix", "fsi", &create_with_arguments<FixFSI>);
-  one("command", "fsi_set", &create<FSISet>);
+  one("command", "fsi/material", &create<FSIMaterial>);
+  one("command", "fsi/set", &create<FSISet>);
+  one("command", "fsi_set", &create<FSISetRenamed>);
 }

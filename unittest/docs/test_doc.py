@@ -13,7 +13,9 @@ SOURCES = paths.ROOT / "src/FSI"
 STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in sorted(SOURCES.glob("*.h"))
           for kind, name in re.findall(r"^(Pair|Fix|Compute|Command|Atom)Style\(([^,]+),", header.read_text(), re.M)}
 STYLES["atom_style_fsi"] = STYLES.pop("atom_fsi")
-STYLES["fsi_set"] = STYLES.pop("command_fsi_set")
+STYLES.pop("command_fsi_set")  # its name of today and that of before
+STYLES.pop("command_fsi_material")
+STYLES |= {"fsi_set": "fsi/set", "fsi_material": "fsi/material"}
 STYLES.pop("fix_fsi_reference")  # internal
 STYLES.pop("fix_fsi_outlet")  # on the page of fix fsi/inlet
 
@@ -91,7 +93,7 @@ def test_example(tmp_path, page, example):
 def test_page_has_every_keyword(page, name):
     """Words that the source compares arguments with, as a user may write them, stand on the page."""
     text = (PAGES / f"{page}.rst").read_text()
-    title = name if page == "fsi_set" else f"{page.split('_fsi')[0].replace('pair', 'pair_style')} {name}"
+    title = name if page in ("fsi_set", "fsi_material") else f"{page.split('_fsi')[0].replace('pair', 'pair_style')} {name}"
     assert f".. index:: {title}\n" in text and f"\n{title} command\n===" in text
     source = SOURCES / f"{page}.cpp"
     if not source.exists():

@@ -42,6 +42,9 @@ BOTH_SIDES = [("create_atoms 2 region plate", "lattice sq 0.01 origin 0 0.5 0\nr
 ONE_SIDE = [("create_atoms 2 region plate", "lattice sq 0.0025 origin 0.5 0.5 0\ncreate_atoms 2 region plate"), ("0.05 0.08 0 0.08 INF", "0.05 0.0625 0 0.08 INF"),
             ("wendland 1.5", "wendland 1.5 spacing 2 0.0025"), ("4e-5", "1.5e-5")]
 
+TWO_BODIES = [("set group plate mol 1\n", "set group plate mol 1\nregion up block INF INF 0.04 INF INF INF units box\ngroup up region up\ngroup up intersect up plate\n"
+               "set group up mol 2\n"), ("fsi/solid/tl\npair", "fsi/solid/tl contact 2.5\npair")]
+
 CASES = {
     # largest c without a warning is 7 sqrt(2gH) = 8.77
     "sound": ([("sound 12.53", "sound 8.7")], None, r"speed of sound 8.7 .* 6.9 times sqrt\(2gH\) of its height H = 0.08, 1.25: .* sound 12.5$"),
@@ -92,6 +95,18 @@ CASES = {
     "thin, one side": (ONE_SIDE, None, r"what is of type 2, some 0.012 thick, pushes 8 % less on fluid beside it .*, since the kernel reaches 0.03: .* Then fix sph \.\.\. thin 2$"),
     "yield": ([("materials.fsi", "mine.fsi")], MATERIALS.format(rho=1000, young=2e6).replace("poisson 0.4", "poisson 0.4 yield 1e4"),
               r"material of type 2 has a yield stress, but stays elastic: .* fix fsi/stress \.\.\. plastic"),
+    "contact": (TWO_BODIES, None, r"bodies 1 and 2 begin 1 spacings apart at the start, and contact reaches 2.5: contact energy \S+ at once. Move them apart, or contact 1$"),
+    # a second plate on a lattice half a spacing aside
+    "bodies overlap": ([("run 0", "lattice sq 0.01 origin 0 0 0\nregion more block 0.055 0.085 0.015 0.075 INF INF units box\ngroup old type 2\ncreate_atoms 2 region more\n"
+                         "group more subtract all old\ngroup wet type 1\ngroup more subtract more wet\nset group more mol 2\nrun 0")], None,
+                       r"bodies 1 and 2 overlap, with particles 0.71 spacings apart at the start, and contact reaches 1: contact energy \S+ at once. Move them apart$"),
+    "held": ([("fix sph all", "group water type 1\nfix sph water")], None,
+             r"all 24 particles of elastic bodies, the first of them atom 41, are held, since none is in group water of fix sph: is this group meant"),
+    "weightless body": ([("fix g all", "group water type 1\nfix g water")], None,
+                        r"24 moving particles of elastic bodies, the first of them atom 41, are in the group of no fix gravity, while others are"),
+    "weightless fluid": ([("fix g all", "fix g plate")], None, r"40 moving particles of fluids, the first of them atom 1, are in the group of no fix gravity"),
+    "nothing acts": ([("fix g all gravity 9.81 vector 0 -1 0\n", "")], None, r"nothing moves this scene: no gravity, no velocity"),
+    "cut by a mirror": ([("xlo 0 ylo 0", "xlo 0 xhi 0.08 ylo 0")], None, r"body 1 ends at the mirror wall at x = 0.08, and its face there is free"),
     "skin": ([("neighbor 0.003", "neighbor 0.016")], None, r"skin 0.016 is 1.6 spacings wide, .*: neighbor 0.003 bin"),
 }
 ALSO = {  # what follows from the mistake as well
@@ -115,7 +130,8 @@ def test_sound_deck_is_not_criticised(tmp_path):
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
 
 
-ON_TWO_RANKS = ("sound", "spacing", "overlap", "parts", "thin", "rows", "idle", "long fluid", "thin between")  # what is summed over ranks
+ON_TWO_RANKS = ("sound", "spacing", "overlap", "parts", "thin", "rows", "idle", "long fluid", "thin between", "contact", "held", "weightless body", "nothing acts",
+                "cut by a mirror")  # what is summed over ranks
 
 
 @pytest.mark.parametrize("name, ranks", [(name, 1) for name in CASES] + [(name, 2) for name in ON_TWO_RANKS])
@@ -126,6 +142,35 @@ def test_warning(tmp_path, name, ranks):
     assert len(matching) == 1, found
     others = [line for line in found if line not in matching]
     assert all(name in ALSO and re.search(ALSO[name], line) for line in others), others
+
+
+@pytest.mark.parametrize("changes", [
+    [("run 0", "velocity all set 0.1 0 0 units box\nrun 0")], [("run 0", "fix push all addforce 1e-9 0 0\nrun 0")],
+    [("xlo 0 ylo 0", "xlo 0 velocity 0.1 0 0 ylo 0")], [("run 0", "fsi/set all density 1001\nrun 0")]])
+def test_something_acts(tmp_path, changes):
+    """A velocity, a force, a moving wall, pressure at the start: without gravity."""
+    assert [line for line in advice(tmp_path, [("fix g all gravity 9.81 vector 0 -1 0\n", ""), *changes]) if "nothing moves" in line] == []
+
+
+def test_a_body_between_two_walls_or_held_at_one_is_not_cut(tmp_path):
+    both = [("xlo 0 ylo 0", "xlo 0.05 xhi 0.08 ylo 0"), ("create_atoms 1 region water", "create_atoms 1 region water\ngroup water type 1\ndelete_atoms group water")]
+    assert [line for line in advice(tmp_path / "both", both) if "ends at" in line] == []
+    held = [("xlo 0 ylo 0", "xlo 0 xhi 0.08 ylo 0"), ("fix sph all", "region end block 0.07 INF INF INF INF INF units box\ngroup end region end\ngroup moving subtract all end\nfix sph moving")]
+    assert [line for line in advice(tmp_path / "held", held) if "ends at" in line] == []
+
+
+def test_contact_energy_that_is_said(tmp_path):
+    """It is what the ledger has more of than with contact 1, at which the bodies just touch; each rank sees its part."""
+    found = {}
+    for reach in ("2.5", "1"):
+        text = DECK.replace("run 0", "compute e all fsi/energy\nrun 0\nvariable e equal c_e[4]\nprint 'SHEAR ${e}'\n")
+        for old, new in TWO_BODIES:
+            text = text.replace(old, new.replace("2.5", reach))
+        found[reach] = run(tmp_path / reach, text, 2).output
+    strain = {reach: float(re.search(r"^SHEAR (\S+)", output, re.M)[1]) for reach, output in found.items()}
+    said = float(re.search(r"contact energy (\S+) at once", found["2.5"])[1])
+    assert said == pytest.approx(strain["2.5"] - strain["1"], rel=1e-3)  # pairs within 2 % of the edge of the range are not counted
+    assert "at once" not in found["1"]
 
 
 @pytest.mark.parametrize("ranks, more", [(1, ""), (4, "processors 4 1 1\n"), (4, "processors 2 2 1\n")])

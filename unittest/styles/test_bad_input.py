@@ -96,6 +96,23 @@ CASES = [
     ("file of other units", *coeff("lj.fsi water plate"), r"lj\.fsi.*lj|lj.*si"),
     ("material twice", *coeff("twice.fsi water plate"), r"Material water stands 2 times in file twice\.fsi"),
     ("file empty", *coeff("empty.fsi water plate"), r"Material water not found in file empty\.fsi"),
+    ("materials swapped", "fsi/solid materials.fsi NULL plate", "fsi/solid materials.fsi plate NULL",
+     r"atom type 1 the fluid water in pair style fsi/fluid and the solid plate in fsi/solid"),
+    ("fluid for a solid style", "fsi/solid materials.fsi NULL plate", "fsi/solid materials.fsi NULL water",
+     r"Pair_coeff gives pair style fsi/solid no pair to act on: none of its materials is a solid"),
+    ("no material for a solid style", "fsi/solid materials.fsi NULL plate", "fsi/solid materials.fsi NULL NULL", r"none of its materials is a solid"),
+    ("fluid for a solid style alone", HYBRID, "pair_style fsi/solid/tl\npair_coeff * * materials.fsi water plate\n", r"gives atom type 1 the fluid water: expected a solid"),
+    ("another integrator", RUN, "fix n all nve\nrun 0", r"Fix n \(style nve\) and fix sph \(style fsi\) both move \d+ particles, the first of them atom 1"),
+    ("fsi_set", RUN, "fsi_set all density 1000", r"fsi_set is called fsi/set"),
+    # fsi/material
+    ("fsi/material without atom_style", START, "atom_style atomic\nfsi/material a fluid rho 1\n" + START, r"Fsi/material requires atom_style fsi"),
+    ("fsi/material without words", START, "fsi/material rubber\n" + START, r"Fsi/material expects a name"),
+    ("fsi/material species", START, "fsi/material rubber gas rho 1\n" + START, r"Material rubber of command fsi/material is of unknown species gas"),
+    ("fsi/material keyword", START, "fsi/material rubber fluid rho 1 young 2\n" + START, r"Unknown keyword young of fluid rubber of command fsi/material"),
+    ("fsi/material range", START, "fsi/material rubber solid rho 1 young -2 poisson 0\n" + START, r"rubber of command fsi/material: young -2 must be > 0"),
+    ("fsi/material NULL", START, "fsi/material NULL fluid rho 1\n" + START, r"this name stands for no material"),
+    ("fsi/material file", START, "fsi/material file nowhere.fsi\n" + START, r"nowhere\.fsi"),
+    ("fsi/material unknown", *coeff("NULL water plate"), r"Material water was not given by command fsi/material, which has given: none"),
     ("species unknown", *coeff("gas.fsi water plate"), r"unknown species gas"),
     ("value no number", *coeff("word.fsi water plate"), r"word\.fsi.*heavy"),
     ("value missing", *coeff("cut.fsi water plate"), r"cut\.fsi"),
@@ -281,18 +298,18 @@ CASES = [
     ("two reports", RUN, "fix r all fsi/report\nfix s all fsi/report\nrun 0", r"only one fix fsi/report"),
     ("report without fix fsi", RUN, "unfix sph\nunfix stress\nunfix walls\npair_style zero 0.03\npair_coeff * *\nfix r all fsi/report\nrun 0",
      r"Fix fsi/report requires fix fsi"),
-    # fsi_set
-    ("fsi_set without box", START, "fsi_set all density 1000\n" + START, r"Fsi_set command before simulation box"),
-    ("fsi_set group unknown", RUN, "fsi_set foam density 1000", r"group-ID foam"),
-    ("fsi_set keyword unknown", RUN, "fsi_set all mass 1000", r"keyword mass"),
-    ("fsi_set value missing", RUN, "fsi_set all density", r"Fsi_set expects"),
-    ("fsi_set value no number", RUN, "fsi_set all density high", r"high"),
-    ("fsi_set density negative", RUN, "fsi_set all density -1", r"density -1 must be > 0"),
-    ("fsi_set pressure too low", RUN, "fsi_set all pressure -1e9", r"pressure: density -\S+ must be > 0"),
-    ("fsi_set variable unknown", RUN, "fsi_set all density v_r", r"density v_r is not an atom-style variable"),
-    ("fsi_set variable of one value", RUN, "variable r equal 1\nfsi_set all pressure v_r", r"v_r is not an atom-style"),
-    ("fsi_set without gravity", RUN, "unfix gravity\nfsi_set all hydrostatic 0.1", r"hydrostatic requires fix gravity"),
-    ("fsi_set without fix fsi", RUN, "unfix sph\nfsi_set all density 1000", r"requires fix fsi"),
+    # fsi/set
+    ("fsi/set without box", START, "fsi/set all density 1000\n" + START, r"Fsi/set command before simulation box"),
+    ("fsi/set group unknown", RUN, "fsi/set foam density 1000", r"group-ID foam"),
+    ("fsi/set keyword unknown", RUN, "fsi/set all mass 1000", r"keyword mass"),
+    ("fsi/set value missing", RUN, "fsi/set all density", r"Fsi/set expects"),
+    ("fsi/set value no number", RUN, "fsi/set all density high", r"high"),
+    ("fsi/set density negative", RUN, "fsi/set all density -1", r"density -1 must be > 0"),
+    ("fsi/set pressure too low", RUN, "fsi/set all pressure -1e9", r"pressure: density -\S+ must be > 0"),
+    ("fsi/set variable unknown", RUN, "fsi/set all density v_r", r"density v_r is not an atom-style variable"),
+    ("fsi/set variable of one value", RUN, "variable r equal 1\nfsi/set all pressure v_r", r"v_r is not an atom-style"),
+    ("fsi/set without gravity", RUN, "unfix gravity\nfsi/set all hydrostatic 0.1", r"hydrostatic requires fix gravity"),
+    ("fsi/set without fix fsi", RUN, "unfix sph\nfsi/set all density 1000", r"requires fix fsi"),
     # computes
     ("quantity unknown", RUN, "compute c all fsi/atom rho heat", r"quantity heat"),
     ("plastic strain without plasticity", RUN, "compute c all fsi/atom plastic/strain\nrun 0", r"plastic/strain requires fix fsi/stress plastic"),
@@ -385,7 +402,7 @@ NUMBERS = [
     *[(word, *spectrum(keyword)) for word, keyword in (("Nevery", "{} v_x"), ("peaks", "10 v_x peaks {}"), ("every", "10 v_x every {}"))],
     *[(f"probe {keyword.split()[1]}", *probe(keyword)) for keyword in ("p point {} 0 0", "p patch 0 0 0 {} 1 0", "level line 0 0 0 0 {} 0")],
     *[(f"{rule} threshold", RUN, f"compute c all fsi/surface/atom {rule} {{}}\nrun 0") for rule in ("number/density", "divergence")],
-    *[(f"Fsi_set {what}", RUN, f"fsi_set all {what} {{}}\nrun 0") for what in ("density", "pressure", "hydrostatic")],
+    *[(f"Fsi/set {what}", RUN, f"fsi/set all {what} {{}}\nrun 0") for what in ("density", "pressure", "hydrostatic")],
 ]
 VALUES = ("0", "-1", "1e308", "-1e308", "1e-308", "1e999", "nan", "inf", "-inf")
 MATERIAL = {  # a material file per value of a property
@@ -409,7 +426,7 @@ for _word, _lines in MATERIAL.items():
 NUMBER_CASES = list(numbers())
 # errors that one rank finds, or that all find, before and after the box exists
 ON_TWO_RANKS = ["material unknown", "file missing", "value no number", "material twice", "spacing negative",
-                "solid without fix fsi/stress", "communication cutoff small", "fluid behind wall", "fsi_set keyword unknown",
+                "solid without fix fsi/stress", "communication cutoff small", "fluid behind wall", "fsi/set keyword unknown",
                 "data with negative density", "atoms without material", "virial of atoms"]
 SECONDS = 60  # one case takes a few milliseconds
 

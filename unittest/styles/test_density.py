@@ -203,14 +203,14 @@ def test_fsi_set(eos):
                commands=["fix g all gravity 9.81 vector 0 -1 0"]) as s:
         s.run()
         m = s.get("rmass")
-        s.run_lines("fsi_set all hydrostatic 0.8")
+        s.run_lines("fsi/set all hydrostatic 0.8")
         depth = np.maximum(0.8 - x[:, 1], 0)
         close(s.run().p, 1000 * 9.81 * depth, 1e-10)     # p from rho - rho0: 7 of 16 digits are lost where p is small
         rho = s.get("rho")
         ratio = 9.81 * depth / 400
         close(rho, 1000 * ((1 + ratio) if eos == "linear" else (1 + 7 * ratio)**(1 / 7)), 1e-13)
         close(s.get("rmass") / rho, m / 1000, 1e-14)     # the volume stays that of the lattice
-        s.run_lines("group part id 1:5", "fsi_set part density 1234")
+        s.run_lines("group part id 1:5", "fsi/set part density 1234")
         assert np.all(s.get("rho")[:5] == 1234) and np.all(s.get("rho")[5:] == rho[5:])
 
 
@@ -219,10 +219,10 @@ def test_fsi_set_pressure(eos):
     """A pressure that varies, by an atom-style variable; and one number for all."""
     x = lattice((6, 10), 0.1)
     with Scene(x, fluid=f"sound 20 eos {eos} tension yes background 50", dx=0.1) as s:
-        s.run_lines("variable p atom 1000*x-200*y", "fsi_set all pressure v_p")
+        s.run_lines("variable p atom 1000*x-200*y", "fsi/set all pressure v_p")
         want = 1000 * x[:, 0] - 200 * x[:, 1]
         assert np.abs(s.run().p - want).max() < 1e-8     # p from rho - rho0: 7 of 16 digits are lost
-        s.run_lines("variable r atom 1000+x", "fsi_set all density v_r")
+        s.run_lines("variable r atom 1000+x", "fsi/set all density v_r")
         close(s.run().get("rho"), 1000 + x[:, 0], 1e-14)
-        s.run_lines("fsi_set all pressure 70")
+        s.run_lines("fsi/set all pressure 70")
         assert np.abs(s.run().p - 70).max() < 1e-8

@@ -61,7 +61,7 @@ def test_a_tait_fluid_gets_stiffer():
     with Scene(lattice([4, 4], 0.1), dx=0.1, fluid="eos tait", commands=["fix dt all fsi/dt 1"]) as s:
         s.run()
         rest = vector(s)[0]
-    with Scene(lattice([4, 4], 0.1), dx=0.1, fluid="eos tait", commands=["fsi_set all density 1100", "fix dt all fsi/dt 1"]) as s:
+    with Scene(lattice([4, 4], 0.1), dx=0.1, fluid="eos tait", commands=["fsi/set all density 1100", "fix dt all fsi/dt 1"]) as s:
         s.run()
         np.testing.assert_allclose(rest / vector(s)[0], 1.1**3, rtol=1e-12)
 

@@ -45,7 +45,7 @@ pair_coeff * * materials.fsi water_inviscid
 fix sph all fsi 0.02 wendland 1.5
 fix g all gravity 9.81 vector 0 -1 0
 fix w all fsi/wall/mirror xlo 0 ylo 0 xhi 1.61
-fsi_set all hydrostatic 0.3
+fsi/set all hydrostatic 0.3
 compute e all fsi/energy
 neighbor 0.008 bin
 thermo_style custom step c_e c_e[*]
@@ -56,7 +56,7 @@ run 0
 
 # a block falls to the floor: surfaces open and close
 BLOCK = DAM.replace("block 0 0.6 0 0.3", "block 0.4 0.8 0.1 0.4").replace("diffusion 0.1", "diffusion 0.1 density/surface yes").replace(
-    "fsi_set all hydrostatic 0.3", "velocity all set 0 -1 0")
+    "fsi/set all hydrostatic 0.3", "velocity all set 0 -1 0")
 
 
 def ledger(lmp):
@@ -100,7 +100,7 @@ def test_reflections_are_in_the_ledger(height, lift):
     """
     with Scene([[0.0, height, 0.0]], dx=0.1, dt=1e-3, box=((-1, -0.1), (4, 3)), commands=[
             "fix g all gravity 9.81 vector 0.2 -1 0", f"fix w all fsi/wall/mirror ylo 0 velocity 0 {lift} 0 guard 0.3",
-            "fsi_set all density 300", "compute e all fsi/energy"]) as s:
+            "fsi/set all density 300", "compute e all fsi/energy"]) as s:
         s.run()
         before = ledger(s.lmp)
         s.run(1)

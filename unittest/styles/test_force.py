@@ -124,7 +124,7 @@ def test_archimedes(ratio, kernel, hdx):
     x = lattice(n, DX)
     solid = (np.abs(x[:, 0] - 2.0) < ratio * high * DX / 2) & (np.abs(x[:, 1] - 0.9) < high * DX / 2)
     commands = ["group water type 1", "group body type 2", "fix w all fsi/wall/mirror xlo 0 xhi 4 ylo 0",
-                f"fix g water gravity {G} vector 0 -1 0", "compute force body fsi/force", "fsi_set water hydrostatic 2.0"]
+                f"fix g water gravity {G} vector 0 -1 0", "compute force body fsi/force", "fsi/set water hydrostatic 2.0"]
     with Scene(x, dx=DX, kernel=kernel, hdx=hdx, type=1 + solid, mol=1 + solid, materials=(WATER, RUBBER), held=solid, solid_style="fsi/solid/tl",
                fluid="sound 60 extrapolate yes", commands=["run 0", *commands]) as s:
         force = get(s.run())

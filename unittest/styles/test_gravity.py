@@ -34,7 +34,7 @@ def test_it_is_what_acts(gravity):
     """The same field said otherwise, from the hydrostatic start on: sums of two fields differ by round-off."""
     found = []
     for commands in (["fix g all gravity 9.81 vector 0 -1 0"], gravity):
-        with tank(*commands, "fsi_set all hydrostatic 0.8") as s:
+        with tank(*commands, "fsi/set all hydrostatic 0.8") as s:
             s.run(50)
             found.append((state(s), energies(s)))
     assert np.ptp(found[0][0][:, 6]) > 50  # hydrostatic: rho g H/c^2 = 78
@@ -77,13 +77,13 @@ def test_groups():
     for group in ("all", "plate"):
         with Scene(x, dx=DX, type=kind, materials=(WATER, RUBBER), fluid=FLUID + " extrapolate yes", solid_style="fsi/solid/tl", dt=1e-3,
                    commands=["group plate type 2", "group water type 1", f"fix g {group} gravity 9.81 vector 0 -1 0", WALLS.replace(" all ", " water "),
-                             *(["fsi_set water hydrostatic 0.8"] if group == "all" else [])]) as s:
+                             *(["fsi/set water hydrostatic 0.8"] if group == "all" else [])]) as s:
             s.run(1)
             found.append(s.get("f") / s.get("rmass")[:, None])
             if group == "plate":
                 assert np.all(s.get("rho")[kind == 1] == 1000.0)
                 with pytest.raises(Exception, match="no fix gravity acts on atom"):
-                    s.run_lines("fsi_set water hydrostatic 0.8")
+                    s.run_lines("fsi/set water hydrostatic 0.8")
     # water without pressure and gravity: nothing pushes it
     assert np.abs(found[1][kind == 1]).max() < 1e-9
     assert np.abs(found[0][kind == 1]).max() > 1

@@ -129,7 +129,7 @@ def test_still_water(dim):
                 "compute probe all fsi/probe p point 0.3 0 0.3 point 0 0 0 point 0.31 0.52 0.3 point 0.3 0.97 0.3 patch 0 0 0 0 1 0 extrapolate yes"]
     with Scene(lattice(n, DX), dim=dim, dx=DX, fluid="sound 50", commands=commands) as s:
         s.run()
-        s.run_lines(f"fsi_set water hydrostatic {depth}")
+        s.run_lines(f"fsi/set water hydrostatic {depth}")
         s.run()
         exact = 1000 * G * np.array([1.0, 1.0, 0.48, 0.03, 0.5])
         assert np.abs(get(s) - exact).max() < 2e-3 * 1000 * G * depth

@@ -619,10 +619,10 @@ OUTPUTS = {"atom": "compute c all fsi/atom p", "surface": "compute c all fsi/sur
 @pytest.mark.parametrize("when", ("before", "created"))
 @pytest.mark.parametrize("kind", OUTPUTS)
 def test_computes_between_runs(tmp_path, kind, when):
-    """After fsi_set and before a run, or after atoms are created: an error that says what is needed."""
+    """After fsi/set and before a run, or after atoms are created: an error that says what is needed."""
     show = {"atom": "write_dump all custom a.dump id c_c", "surface": "write_dump all custom a.dump id c_c", "energy": 'print "$(c_c)"',
             "probe": 'print "$(c_c)"', "force": 'print "$(c_c[1])"'}[kind]
-    start = "fsi_set all hydrostatic 0.1\n" if when == "before" else "run 1\ncreate_atoms 1 single 0.4 0.4 0 units box\n"
+    start = "fsi/set all hydrostatic 0.1\n" if when == "before" else "run 1\ncreate_atoms 1 single 0.4 0.4 0 units box\n"
     done = lammps(tmp_path, f"{BEFORE_A_RUN}{OUTPUTS[kind]}\n{start}{show}\n", water_fsi=MATERIALS)
     assert done.status != 0 and any("needs a run before it" in e for e in done.errors), done.output[-1500:]
 

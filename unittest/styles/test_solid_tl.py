@@ -1062,6 +1062,14 @@ def test_rigid_part_of_a_substepped_body_is_refused(substeps, tip, refused):
             s.run()
 
 
+def test_rigid_part_is_refused_before_the_first_step():
+    """Where fix fsi/dt may choose sub-steps: a run of no steps, as that of `fsi check`, says so."""
+    x = lattice([12, 4], DX)
+    with solid(x, held=x[:, 0] > 8 * DX, commands=["fix tip held rigid single", "fix d all fsi/dt 1 substeps auto"]) as s:
+        with pytest.raises(Exception, match=r"Fix tip \(style rigid\) moves a part of the elastic body of atom \d+"):
+            s.run()
+
+
 @pytest.mark.parametrize("style, more", [("fsi/solid", ""), ("fsi/solid/tl", ""), ("fsi/solid/tl", "law hypo")])
 def test_velocity_of_what_nothing_moves_is_refused(style, more):
     """It would strain its neighbours for ever; not if another fix moves it."""
@@ -1091,7 +1099,7 @@ def test_mass_is_that_of_the_material():
 def test_fsi_set_leaves_the_mass_alone(command):
     with Scene(lattice([6, 4], DX), dx=DX, materials=(MATERIAL,), solid_style="fsi/solid/tl", commands=["fix g all gravity 9.81 vector 0 -1 0"]) as s:
         mass = s.run().get("rmass")
-        s.run_lines(f"fsi_set all {command}")
+        s.run_lines(f"fsi/set all {command}")
         np.testing.assert_array_equal(s.run().get("rmass"), mass)
         assert (s.get("rho") == 1000.0).all()
 

@@ -139,7 +139,7 @@ def column(ratio, kind, depth=20, layers=None, seconds=0.5):
     with Scene(x, dx=dx, type=1 + solid, mol=1 + solid, held=solid, dt=0.25 * 1.5 * dx / c, fluid=f"sound {c} artificial/visc 0.2 0 density/diffusion 0.1",
                density=f"spacing 2 {dx / ratio!r}", **body,
                commands=["fix g all gravity 9.81 vector 0 -1 0", "fix w all fsi/wall/mirror xlo 0 ylo 0",
-                         *(["fix wp held fsi/wall/particle"] if rigid else []), f"fsi_set moving hydrostatic {H}", "compute force held fsi/force"]) as s:
+                         *(["fix wp held fsi/wall/particle"] if rigid else []), f"fsi/set moving hydrostatic {H}", "compute force held fsi/force"]) as s:
         s.run()
         steps = round(seconds / (0.25 * 1.5 * dx / c))
         load, p = [], []

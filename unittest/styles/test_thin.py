@@ -35,8 +35,8 @@ def two_levels(kind, layers, ratio, dim=2, thin=True):
                **(dict(boundary="f f p", box=((-0.1, -0.1, 0), (end + 0.1, 0.4, 0.07))) if dim == 3 else {}),
                commands=["fix g all gravity 9.81 vector 0 -1 0", f"fix w all fsi/wall/mirror xlo 0 xhi {end} ylo 0",
                          "fix wp held fsi/wall/particle" if kind == "wall" else "", f"group left id 1:{len(left)}",
-                         f"group right id {len(left) + 1}:{len(left) + len(right)}", "group body type 2", f"fsi_set left hydrostatic {levels[0]}",
-                         f"fsi_set right hydrostatic {levels[1]}", "compute force body fsi/force", f"compute p all fsi/probe p extrapolate yes {points}"]) as s:
+                         f"group right id {len(left) + 1}:{len(left) + len(right)}", "group body type 2", f"fsi/set left hydrostatic {levels[0]}",
+                         f"fsi/set right hydrostatic {levels[1]}", "compute force body fsi/force", f"compute p all fsi/probe p extrapolate yes {points}"]) as s:
         steps = round(0.6 / dt)
         s.run(3 * steps // 4)
         load, p = [], []

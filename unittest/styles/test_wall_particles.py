@@ -206,7 +206,7 @@ def test_hydrostatic(tmp_path):
     per cent; the row next to the water must read rho g h of its own depth, below the floor too."""
     x, kind = tank(30, 20)
     x, kind = x[::-1], kind[::-1]
-    text = deck(wall="", dt=1.5e-4, more=f"""fsi_set water hydrostatic {20 * DX}
+    text = deck(wall="", dt=1.5e-4, more=f"""fsi/set water hydrostatic {20 * DX}
 compute e all fsi/energy
 thermo_style custom step c_e f_walls[1] f_walls[2] f_walls
 variable fx equal f_walls[1]
@@ -243,7 +243,7 @@ def test_still_walls_do_no_work_and_slip(tmp_path):
     kind = np.where(x[:, 1] < 0, 2, 1)
     v = np.zeros_like(x)
     v[kind == 1, 0] = 1.0
-    text = deck(boundary="p f p", dt=1.5e-4, more=f"""fsi_set water hydrostatic {10 * DX}
+    text = deck(boundary="p f p", dt=1.5e-4, more=f"""fsi/set water hydrostatic {10 * DX}
 compute e all fsi/energy
 thermo_style custom step c_e
 run 0
@@ -264,7 +264,7 @@ def test_piston(tmp_path):
     x, kind = tank(30, 12, 26)
     kind[(x[:, 0] < 0) & (x[:, 1] > 0)] = 3
     text = deck("artificial/visc 0.1 0 density/diffusion 0.1", "water wall wall", dt=1.5e-4, more=f"""group piston type 3
-fsi_set water hydrostatic {12 * DX}
+fsi/set water hydrostatic {12 * DX}
 compute e all fsi/energy
 thermo_style custom step c_e f_walls
 variable x equal vdisplace(0,0)
@@ -342,7 +342,7 @@ group tank type 2
 unfix walls
 fix walls tank fsi/wall/particle
 fix body body fsi/wall/particle
-fsi_set water hydrostatic {20 * DX}
+fsi/set water hydrostatic {20 * DX}
 variable fx equal f_body[1]
 variable fy equal f_body[2]
 fix mean all ave/time 10 200 2000 v_fx v_fy
@@ -375,7 +375,7 @@ fix body body fsi/wall/particle
 fix g2 body gravity {G} vector 0 -1 0
 run 0
 print "BEFORE $(mass(body))"
-fsi_set all hydrostatic {16 * DX}
+fsi/set all hydrostatic {16 * DX}
 print "AFTER $(mass(body))"
 fix drag water viscous {3000 * DX**2}
 fix rigid body rigid single force * on on off torque * off off on
@@ -385,7 +385,7 @@ fix mean all ave/time 10 200 2000 v_y
 print "Y $(f_mean)"
 """)
     result = go(tmp_path, text, data(x, kind, None, BOX2))
-    assert value(result, "BEFORE") == value(result, "AFTER")  # fsi_set is for fluids
+    assert value(result, "BEFORE") == value(result, "AFTER")  # fsi/set is for fluids
     last = dump.read(result.folder / "atoms.dump")[-1]
     # level of the water from its volume: what is beside and below the body
     depth = 0.4 * width * DX

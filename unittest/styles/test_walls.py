@@ -185,7 +185,7 @@ def test_weight_of_a_column(dim):
                fluid=f"sound {c} artificial/visc 0.1 0 density/diffusion 0.1",
                commands=["fix g all gravity 9.81 vector " + ("0 -1 0" if dim == 2 else "0 0 -1"),
                          f"fix walls all fsi/wall/mirror {'xyz'[axis]}lo 0",
-                         f"fsi_set all hydrostatic {depth}"]) as s:
+                         f"fsi/set all hydrostatic {depth}"]) as s:
         s.run(1000)
         s.run_lines(f"variable w equal f_walls[1][{axis + 1}]", f"fix mean all ave/time 1 {steps} {steps} v_w")
         s.run(steps)

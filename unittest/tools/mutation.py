@@ -25,7 +25,7 @@ SOURCES = ROOT / "src" / "FSI"
 # files with numerics, by pattern (the first that fits): the tests that look at them, test_NAME.py, or ctest
 TESTS = {
     "fsi_kernel.h": "ctest", "fsi_lattice.h": "ctest lattice", "fsi_tensor.h": "ctest", "fsi_jaumann.h": "ctest", "fsi_walls.h": "ctest walls",
-    "fsi_gradient.h": "ctest", "fsi_elastic.h": "ctest", "fsi_contact.h": "ctest contact", "fsi_plasticity.h": "ctest plasticity", "fsi_pack.h": "ctest",
+    "fsi_gradient.h": "ctest", "fsi_elastic.h": "ctest", "fsi_contact.h": "ctest contact self_contact", "fsi_plasticity.h": "ctest plasticity", "fsi_pack.h": "ctest",
     "fsi_stress_artificial.h": "ctest solid", "fsi_hourglass.h": "ctest solid_tl", "fsi_density_diffusion.h": "ctest density",
     "fsi_viscosity_*": "ctest viscosity walls", "fsi_material.*": "ctest density solid", "fsi_shift.h": "shift", "fsi_sight.cpp": "thin", "fsi_surface_room.*": "surface density restart",
     "fsi_fluid_*": "density momentum walls surface interface viscosity wall_particles shift spacing",
@@ -37,7 +37,7 @@ TESTS = {
     "fix_fsi_stress.*": "solid integrator plasticity restart", "fix_fsi_wall_mirror.cpp": "walls report", "fix_fsi_wall_particle.cpp": "wall_particles",
     "fix_fsi_dt.cpp": "dt", "fsi_limits.cpp": "dt watch", "fsi_clock.cpp": "dt restart", "fix_fsi_move.cpp": "move", "fix_fsi_stream.cpp": "stream",
     "fix_fsi_inlet.cpp": "inlet", "fix_fsi_spectrum.cpp": "spectrum", "fix_fsi_watch.cpp": "watch", "fix_fsi_report.cpp": "report", "fsi_profile.cpp": "report",
-    "fsi_check.cpp": "stop", "fsi_set.cpp": "density", "compute_fsi_energy.cpp": "energy solid_tl", "compute_fsi_force.cpp": "force",
+    "fsi_check.cpp": "stop", "fsi_set.cpp": "density", "fsi_material_command.cpp": "materials", "compute_fsi_energy.cpp": "energy solid_tl", "compute_fsi_force.cpp": "force",
     "compute_fsi_probe.cpp": "probe", "compute_fsi_surface_atom.cpp": "surface", "compute_fsi_atom.cpp": "density solid",
 }
 SWAPS = {"+": "-", "-": "+", "*": "/", "/": "*", "+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "<": ">", ">": "<", "<=": ">", ">=": "<", "==": "!=",

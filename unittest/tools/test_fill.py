@@ -190,6 +190,16 @@ def test_size_is_said(tmp_path, capsys):
     assert "0.1 x 0.2 x 0.02, in spacings 10 x 20 x 2; 400 particles" in text and "only 2 particles across" in text
 
 
+def test_millimetres_in_surface_and_spacing(tmp_path, capsys):
+    """Both in millimetres fit each other, and make a body a thousand times too long: the summary says its length and unit."""
+    surface = write_stl(tmp_path / "box.stl", box((0, 0, 0), (100, 50, 50)))
+    cli.main(["fill", surface, "10", str(tmp_path / "out.data")])
+    text = capsys.readouterr().out
+    assert "100 x 50 x 50" in text and "lengths are metres with units si" in text and "it is 100 m long. If it is in millimetres: --scale 0.001" in text
+    cli.main(["fill", surface, "0.01", str(tmp_path / "out.data"), "--scale", "0.001"])
+    assert "m long" not in capsys.readouterr().out
+
+
 def test_turned(tmp_path):
     """A quarter turn about z, then one about x of a box of 2 x 3 x 4 particles, and one in the plane: where the corners go by hand."""
     surface = write_stl(tmp_path / "box.stl", box((0, 0, 0), (0.2, 0.3, 0.4)))

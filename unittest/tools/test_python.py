@@ -95,6 +95,21 @@ def test_vtk(frames):
     np.testing.assert_array_equal(cells["types"], [1, 1, 1])  # VTK_VERTEX
 
 
+def test_vtk_of_what_is_no_dump(tmp_path):
+    """An error, and nothing written; a file where the folder would be is named."""
+    for name in ("wrong.csv", "hostname"):
+        (tmp_path / name).write_text("t,x\n0,1\n")
+        with pytest.raises(SystemExit, match=f"{name} has no frames: is it a dump"):
+            cli.main(["vtk", str(tmp_path / name)])
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["hostname", "wrong.csv"]
+
+
+def test_vtk_where_a_file_is_in_the_way(frames):
+    frames.with_suffix("").write_text("")
+    with pytest.raises(SystemExit, match="is a file: name another folder"):
+        cli.main(["vtk", str(frames)])
+
+
 def test_vtk_of_a_run(tmp_path, capsys):
     """Three dimensions, compressed, by the command line: eight atoms that fly straight on are where velocity times time puts them."""
     run(tmp_path, """units lj
@@ -234,6 +249,8 @@ def test_another_python_goes_on_where_the_first_lacks_numpy(frames, tmp_path):
     assert found.returncode == 0 and "2 frames" in found.stdout, found.stderr
     none = subprocess.run([bare, "-c", main.format(None, str(frames))], env=env, capture_output=True, text=True, check=False)
     assert none.returncode != 0 and "has no numpy and no matplotlib" in none.stderr and "python3-numpy" in none.stderr
+    own = subprocess.run([bare, "-c", "from fsi import dump"], env=env, capture_output=True, text=True, check=False)  # a script of one's own
+    assert own.returncode != 0 and "fsi.dump needs numpy, which" in own.stderr.splitlines()[-1] and (" has it" in own.stderr or "install it" in own.stderr)
     real = subprocess.run([sys.executable, "-c", "from fsi.__main__ import able_python; print(able_python())"], env=env, capture_output=True, text=True, check=True)
     assert real.stdout.strip() != "None"
 
@@ -311,6 +328,20 @@ def test_report(tmp_path, frames):
     assert '+12.5 %' in page and "missed" in page and base64.b64encode(b"\x89PNGmine").decode() in page and "some.dump" not in page and "<td>fine</td>" in page
     with pytest.raises(SystemExit, match="neither log.lammps nor summary.json"):
         cli.main(["report", str(tmp_path)])
+
+
+def test_report_of_a_log_with_another_name(tmp_path):
+    """The only log.* of a folder is found; of two one must be named."""
+    (tmp_path / "log.viv").write_text(LOG)
+    cli.main(["report", str(tmp_path)])
+    assert "400 particles, 100 steps" in (tmp_path / "report.html").read_text()
+    (tmp_path / "log.other").write_text(LOG.replace("400", "300"))
+    with pytest.raises(SystemExit, match="more than one log: log=log.other or log=log.viv"):
+        cli.main(["report", str(tmp_path)])
+    cli.main(["report", str(tmp_path), "log=log.other"])
+    assert "300 particles" in (tmp_path / "report.html").read_text()
+    with pytest.raises(SystemExit, match="has no log log.none"):
+        cli.main(["report", str(tmp_path), "log=log.none"])
 
 
 def test_frequency(tmp_path, capsys):

@@ -1,0 +1,39 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef COMMAND_CLASS
+// clang-format off
+CommandStyle(fsi/material,FSIMaterial);
+// clang-format on
+#else
+
+#ifndef LMP_FSI_MATERIAL_COMMAND_H
+#define LMP_FSI_MATERIAL_COMMAND_H
+
+#include "command.h"
+
+namespace LAMMPS_NS {
+
+// fsi/material name species keyword value ...: a material that pair_coeff finds by its name, beside those of its file.
+// fsi/material file name: likewise all materials of another file.
+
+class FSIMaterial : public Command {
+ public:
+  FSIMaterial(class LAMMPS *lmp) : Command(lmp) {}
+  void command(int, char **) override;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif
