@@ -22,6 +22,7 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 #define LMP_PAIR_FSI_SOLID_TL_H
 
 #include "fsi_bond_rows.h"
+#include "fsi_volumetric.h"
 #include "pair_fsi.h"
 
 #include <vector>
@@ -72,6 +73,7 @@ class PairFSISolidTL : public PairFSI {
     double pressure() const { return -(sigma[0] + sigma[1] + sigma[2]) / 3.0; }
     double von_mises() const;
   };
+  void begin_stress();           // before stress(), on all ranks: what it needs of others, at the positions of now
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
   double volume_ratio(int i) const;    // det F, likewise
 
@@ -84,8 +86,9 @@ class PairFSISolidTL : public PairFSI {
 
  private:
   enum Law { SVK, NEOHOOKEAN, HYPO };
+  enum Volumetric { AUTO, SMOOTHED, LOCAL };
   double zeta, damage;
-  int law, plane_stress, linear, plain;
+  int law, plane_stress, linear, plain, volumetric;
   int is_hypoelastic;    // for extract()
   class FixFSIReference *reference;
   class FixFSIStress *fix_stress;    // null: no law needs it
@@ -105,8 +108,15 @@ class PairFSISolidTL : public PairFSI {
   bool only_moving, one_material;    // forces of those are wanted; all solids have one density and one speed of sound
   void find_rows();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
+  template <int D> void gather_points();
+  FSI::VolumetricStrain smoothed;
+  bool sends_strains;    // what messages carry: these, or positions and forces
+  bool is_smoothed(const FSI::Material &) const;
+  double smooth_strains();    // their energy
+  template <class Call> void with_law(Call call);    // call(law, std::integral_constant of the dimension)
   template <class L, int D> void bond_forces();
   template <int D> void contact_forces();
+  template <int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
   template <int D> void deformation(int i, double *F) const;
   template <int D> void advance_stress_of_all(double dt);
 };
