@@ -99,9 +99,12 @@ void PairFSISolidTL::check_settings()
 {
   if (plane_stress && law == NEOHOOKEAN) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
   if (volumetric != SMOOTHED) return;
-  if (plane_stress) error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed is not for plane stress, which does not lock: expected auto or local");
+  if (plane_stress)
+    error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed is not for plane stress, "
+                      "which does not lock: expected auto or local");
   if (damage > 0.0)
-    error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed does not go with damage, since bonds that break would make energy: expected auto or local");
+    error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed does not go with damage, "
+                      "where it would make energy: expected auto or local");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -151,8 +154,10 @@ void PairFSISolidTL::init_style()
   neohookean.clear();
   hypo.clear();
   smoothed = VolumetricStrain();
-  for (const auto &m : material) smoothed.modulus.push_back(is_smoothed(m) ? VolumetricStrain::excess(m) : 0.0);
-  if (*std::max_element(smoothed.modulus.begin(), smoothed.modulus.end()) == 0.0) smoothed.modulus.clear();
+  for (const auto &m : material)
+    smoothed.modulus.push_back(is_smoothed(m) ? VolumetricStrain::excess(m) : 0.0);
+  const auto none = [](double k) { return k == 0.0; };
+  if (std::all_of(smoothed.modulus.begin(), smoothed.modulus.end(), none)) smoothed.modulus.clear();
   for (const auto &m : material) {
     const bool is = m.species == SOLID;
     const double G = is ? m.shear_modulus() : 1.0;
@@ -250,7 +255,7 @@ void PairFSISolidTL::internal_forces()
   }
   if (fix_fsi->dim == 2) gather_points<2>();
   else gather_points<3>();
-  const double volumetric_energy = smoothed.on() ? smooth_strains() : 0.0;
+  const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
   with_law([&](auto law_of, auto dimension) { bond_forces<decltype(law_of), decltype(dimension)::value>(); });
   strain_energy += volumetric_energy;
   if (list) {
@@ -299,7 +304,9 @@ template <int D> void PairFSISolidTL::gather_points()
   find_rows();
   if (!smoothed.on()) return;
   const int *const type = atom->type;
-  smoothed.find_weights<D>(rows, type,
+  const int *const mask = atom->mask, groupbit = fix_fsi->groupbit;
+  smoothed.find_weights<D>(
+      rows, type, [=](int i) { return mask[i] & groupbit; },
       [&](int i, int j) {
         const Material &a = material[type[i]], &b = material[type[j]];
         return a.young == b.young && a.poisson == b.poisson;
@@ -308,8 +315,8 @@ template <int D> void PairFSISolidTL::gather_points()
 }
 
 /* ----------------------------------------------------------------------
-   nearly incompressible solids (fsi_volumetric.h). All rows, also those whose forces are not wanted now: the strain of a held particle
-   may count for one that moves.
+   nearly incompressible solids (fsi_volumetric.h). Strains of all rows, also of those whose forces are
+   not wanted now: that of a held particle may count for one that moves.
 ------------------------------------------------------------------------- */
 
 bool PairFSISolidTL::is_smoothed(const Material &m) const
@@ -318,32 +325,30 @@ bool PairFSISolidTL::is_smoothed(const Material &m) const
   return volumetric == SMOOTHED || m.poisson > VolumetricStrain::LOCKS_ABOVE + 1.0e-9;
 }
 
-double PairFSISolidTL::smooth_strains()
+double PairFSISolidTL::smooth_strains(bool of_all)
 {
-  const int *const type = atom->type, forward = comm_forward, reverse = comm_reverse;
-  if (smoothed.strain.size() < (size_t) atom->nmax) {
-    smoothed.strain.resize(atom->nmax, 0.0);
-    smoothed.force.resize(atom->nmax);
-  }
+  Profile *const profile = fix_fsi->profile;
   Swaps &swaps = reference->swaps;
+  const int forward = comm_forward, reverse = comm_reverse;
   double energy = 0.0;
+  smoothed.resize(atom->nmax);
   comm_forward = comm_reverse = 1;
   sends_strains = true;
   with_law([&](auto law_of, auto dimension) {
-    constexpr int D = decltype(dimension)::value;
     using L = decltype(law_of);
+    constexpr int D = decltype(dimension)::value;
     const auto find = [&](auto number) __attribute__((always_inline)) {
-      find_volumetric_strains<decltype(number), L, D>(rows, type, points.data(), smoothed);
+      find_volumetric_strains<decltype(number), L, D>(rows, atom->type, points.data(), smoothed);
     };
-    const auto push = [&](auto number) __attribute__((always_inline)) {
-      energy = push_by_smoothed_strains<decltype(number), L>(rows, type, smoothed);
+    const auto smooth = [&](auto number) __attribute__((always_inline)) {
+      energy = smooth_volumetric_strains<decltype(number), L>(rows, of_all, smoothed);
     };
     have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
-    exchange(fix_fsi->profile, comm, this, false, [&]() { swaps.forward(this); }, swaps.skip_empty());
+    exchange(profile, comm, this, false, [&]() { swaps.forward(this); }, swaps.skip_empty());
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
-    have_packs() ? run_loop<Pack>(push) : run_loop<double>(push);
-    exchange(fix_fsi->profile, comm, this, true, [&]() { swaps.reverse(this); }, swaps.skip_empty());
+    have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
+    exchange(profile, comm, this, true, [&]() { swaps.reverse(this); }, swaps.skip_empty());
   });
   comm_forward = forward;
   comm_reverse = reverse;
@@ -544,15 +549,18 @@ void PairFSISolidTL::begin_stress()
   if (!smoothed.on()) return;
   if (fix_fsi->dim == 2) gather_points<2>();
   else gather_points<3>();
-  smooth_strains();
+  smooth_strains(true);
 }
 
-template <int D> void PairFSISolidTL::add_smoothed(int i, const double *F, PiolaStress<D> &piola) const
+// that of the smoothed strain at i itself: right for linear ones, to the face
+template <int D>
+void PairFSISolidTL::add_smoothed(int i, const double *F, PiolaStress<D> &piola) const
 {
-  double dm[D * D];
-  const double volume = atom->rmass[i] / fix_fsi->state[atom->type[i]].rho0 * reference->weight(i), p = smoothed.force[i] / volume;
+  double dm[D * D], p = smoothed.modulus[atom->type[i]];
   if (law == SVK) StVenantKirchhoff::volumetric_strain<D>(F, dm);
   else LogarithmOfVolume::volumetric_strain<D>(F, dm);
+  if (law == HYPO) p *= HypoElastic::volumetric_slope(smoothed.mean[i]);
+  else p *= NeoHookean::volumetric_slope(smoothed.mean[i]);
   for (int k = 0; k < D * D; k++) piola.P[k] += p * dm[k];
   piola.zz += p;
 }
@@ -745,7 +753,8 @@ void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
 {
   if (all.solids == 0) nothing("Pair style fsi/solid/tl" + named_effects(), "no particle is a solid");
   else if (volumetric == SMOOTHED && !smoothed.on())
-    nothing("Pair style fsi/solid/tl volumetric smoothed", fmt::format("no Poisson's ratio is above {}", VolumetricStrain::LOCAL));
+    nothing("Pair style fsi/solid/tl volumetric smoothed",
+            fmt::format("no Poisson's ratio is above {}", VolumetricStrain::LOCAL));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -756,7 +765,8 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   auto list = keywords.effects();
   list.insert(list.begin(), {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"),
                              "law", true});
-  if (smoothed.on()) list.push_back({"volumetric strain of nearly incompressible solids smoothed over bonds", "volumetric", true});
+  if (smoothed.on())
+    list.push_back({"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});
   return list;
 }
 

@@ -73,7 +73,7 @@ class PairFSISolidTL : public PairFSI {
     double pressure() const { return -(sigma[0] + sigma[1] + sigma[2]) / 3.0; }
     double von_mises() const;
   };
-  void begin_stress();           // before stress(), on all ranks: what it needs of others, at the positions of now
+  void begin_stress();    // before stress(), on all ranks: what it needs of other particles
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
   double volume_ratio(int i) const;    // det F, likewise
 
@@ -112,8 +112,8 @@ class PairFSISolidTL : public PairFSI {
   FSI::VolumetricStrain smoothed;
   bool sends_strains;    // what messages carry: these, or positions and forces
   bool is_smoothed(const FSI::Material &) const;
-  double smooth_strains();    // their energy
-  template <class Call> void with_law(Call call);    // call(law, std::integral_constant of the dimension)
+  double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
+  template <class Call> void with_law(Call call);    // call(law, constant with the dimension)
   template <class L, int D> void bond_forces();
   template <int D> void contact_forces();
   template <int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
