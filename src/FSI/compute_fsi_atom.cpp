@@ -92,7 +92,7 @@ void ComputeFSIAtom::compute_peratom()
     fix_fsi->number_density.find(psi.data());
   }
   auto *const solid_tl = PairFSISolidTL::find(lmp);
-  if (solid_tl) solid_tl->forward_positions();    // likewise
+  if (solid_tl) solid_tl->begin_stress();
   fix_stress = FixFSIStress::find(lmp);
   const auto has_stress = [this](int i) { return fix_fsi->state[atom->type[i]].form == UPDATED_LAGRANGIAN; };
 

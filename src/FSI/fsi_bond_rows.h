@@ -65,6 +65,7 @@ namespace FSI {
     const int *type;
     const State *state;
     const double *const *stress;    // per particle, of law hypo; null: none
+    const double *volumetric;       // per particle: derivative of the energy of smoothed strains (fsi_volumetric.h); null: none
     double alpha, beta;             // artificial viscosity
     bool one_material;              // all solids have one density and one speed of sound
     BondSums *sums;
@@ -198,6 +199,11 @@ namespace FSI {
       if (determinant<D>(Fi) <= 0.0) in.sums->inverted = i;
       double t[D * D];    // derivative of the energy of i with respect to F_i
       for (int k = 0; k < D * D; k++) t[k] = row.volume * piola.P[k];
+      if (in.volumetric) {
+        double dm[D * D];
+        laws[in.type[i]].template volumetric_strain<D>(Fi, dm);
+        for (int k = 0; k < D * D; k++) t[k] += in.volumetric[i] * dm[k];
+      }
       if (FLAGS & HOURGLASS) subtract_hourglass<T, D>(row.stiffness, A, row.moments, Fi, t);
       if (FLAGS & SUMS) {
         in.sums->energy += row.volume * piola.energy;

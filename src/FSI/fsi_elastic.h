@@ -15,6 +15,9 @@
 // Laws of the total-Lagrangian solid: from the deformation gradient F (D x D, row-major, F_aB = dx_a/dX_B) the
 // first Piola-Kirchhoff stress P = d(psi)/dF, the energy density psi per reference volume, and P_zz of plane strain.
 // Lame's constants: lambda = K - 2G/3, mu = G.
+//
+// Of a nearly incompressible solid a part of the volumetric energy is not of F alone (fsi_volumetric.h): k u(m), m the law's own measure
+// of volumetric strain. volumetric_strain() is m, and dm/dF where there is room for it; volumetric_energy() is u, volumetric_slope() du/dm.
 
 #ifndef LMP_FSI_ELASTIC_H
 #define LMP_FSI_ELASTIC_H
@@ -32,6 +35,19 @@ namespace FSI {
     double energy = 0.0;    // per reference volume
   };
 
+  // m = ln J, dm/dF = F^-T
+  struct LogarithmOfVolume {
+    template <int D> static double volumetric_strain(const double *F, double *derivative = nullptr)
+    {
+      const double J = determinant<D>(F);
+      if (derivative) {
+        cofactor<D>(F, derivative);
+        for (int n = 0; n < D * D; n++) derivative[n] /= J;
+      }
+      return std::log(J);
+    }
+  };
+
   // St. Venant-Kirchhoff: S = lambda tr(E) I + 2 mu E, E = (F^T F - I)/2, P = F S. Plane stress: lambda* = 2 lambda mu/(lambda + 2 mu)
   struct StVenantKirchhoff {
     double lambda, mu;
@@ -41,6 +57,18 @@ namespace FSI {
     {
       if (plane_stress) lambda = 2.0 * lambda * mu / (lambda + 2.0 * mu);
     }
+    // m = tr E, dm/dF = F
+    template <int D> static double volumetric_strain(const double *F, double *derivative = nullptr)
+    {
+      double m = 0.0;
+      for (int n = 0; n < D * D; n++) {
+        m += F[n] * F[n];
+        if (derivative) derivative[n] = F[n];
+      }
+      return 0.5 * (m - D);
+    }
+    static double volumetric_energy(double m) { return 0.5 * m * m; }
+    static double volumetric_slope(double m) { return m; }
     template <int D> PiolaStress<D> operator()(const double *F, const double * = nullptr) const
     {
       Sym<D> E;
@@ -66,9 +94,11 @@ namespace FSI {
   };
 
   // compressible neo-Hookean: psi = mu/2 (tr(F^T F) - 3) - mu ln J + lambda/2 (ln J)^2
-  struct NeoHookean {
+  struct NeoHookean : LogarithmOfVolume {
     double lambda, mu;
     NeoHookean(double bulk, double shear, bool) : lambda(bulk - 2.0 / 3.0 * shear), mu(shear) {}
+    static double volumetric_energy(double m) { return 0.5 * m * m; }
+    static double volumetric_slope(double m) { return m; }
     template <int D> PiolaStress<D> operator()(const double *F, const double * = nullptr) const
     {
       PiolaStress<D> r;
@@ -86,13 +116,15 @@ namespace FSI {
   };
 
   // hypoelastic, as the updated-Lagrangian solid: sigma = -p I + S with S from fix fsi/stress and p = K (1/J - 1), P = J sigma F^-T
-  struct HypoElastic {
+  struct HypoElastic : LogarithmOfVolume {
     double bulk, shear;
     bool plane_stress;
     HypoElastic(double bulk_in, double shear_in, bool plane_stress_in) :
         bulk(bulk_in), shear(shear_in), plane_stress(plane_stress_in)
     {
     }
+    static double volumetric_energy(double m) { return std::expm1(m) - m; }
+    static double volumetric_slope(double m) { return std::expm1(m); }
     template <int D> PiolaStress<D> operator()(const double *F, const double *deviator) const
     {
       PiolaStress<D> r;

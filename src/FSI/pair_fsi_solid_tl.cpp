@@ -45,7 +45,7 @@ static constexpr char REFERENCE[] = "FSI_REFERENCE";
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fsolid(nullptr), nmax(0), nmoving(0), changes_seen(-1), only_moving(false),
-    one_material(true)
+    one_material(true), sends_strains(false)
 {
   no_virial_fdotr_compute = 1;
   artificial_row("solid");
@@ -54,6 +54,7 @@ PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
   keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"});
   keywords.key("gradient").choice(linear, 0, {"quadratic", "linear"});
   keywords.key("volumes").choice(plain, 0, {"corrected", "plain"});
+  keywords.key("volumetric").choice(volumetric, AUTO, {"auto", "smoothed", "local"});
   contact_row();
   keywords.key("damage").number(damage, 0.0, Range::from(0.0), "strain").effect("damage at strain {}");
 
@@ -97,6 +98,13 @@ template <> const HypoElastic *PairFSISolidTL::laws<HypoElastic>() const
 void PairFSISolidTL::check_settings()
 {
   if (plane_stress && law == NEOHOOKEAN) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
+  if (volumetric != SMOOTHED) return;
+  if (plane_stress)
+    error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed is not for plane stress, "
+                      "which does not lock: expected auto or local");
+  if (damage > 0.0)
+    error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed does not go with damage, "
+                      "where it would make energy: expected auto or local");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -151,9 +159,16 @@ void PairFSISolidTL::init_style()
   svk.clear();
   neohookean.clear();
   hypo.clear();
+  smoothed = VolumetricStrain();
+  for (const auto &m : material)
+    smoothed.modulus.push_back(is_smoothed(m) ? VolumetricStrain::excess(m) : 0.0);
+  const auto none = [](double k) { return k == 0.0; };
+  if (std::all_of(smoothed.modulus.begin(), smoothed.modulus.end(), none)) smoothed.modulus.clear();
   for (const auto &m : material) {
     const bool is = m.species == SOLID;
-    const double K = is ? m.bulk_modulus() : 1.0, G = is ? m.shear_modulus() : 1.0;
+    const double G = is ? m.shear_modulus() : 1.0;
+    double K = is ? m.bulk_modulus() : 1.0;
+    if (smoothed.on()) K -= smoothed.modulus[&m - material.data()];
     svk.emplace_back(K, G, plane_stress);
     neohookean.emplace_back(K, G, false);
     hypo.emplace_back(is && plane_stress ? m.plane_stress_modulus() : K, G, plane_stress);
@@ -231,6 +246,17 @@ void PairFSISolidTL::compute(int eflag, int vflag)
 
 /* ---------------------------------------------------------------------- */
 
+template <class Call> void PairFSISolidTL::with_law(Call call)
+{
+  const auto with = [&](auto dimension) {
+    if (law == SVK) call(svk[0], dimension);
+    else if (law == NEOHOOKEAN) call(neohookean[0], dimension);
+    else call(hypo[0], dimension);
+  };
+  if (fix_fsi->dim == 2) with(std::integral_constant<int, 2>());
+  else with(std::integral_constant<int, 3>());
+}
+
 void PairFSISolidTL::internal_forces()
 {
   if (atom->nmax > nmax) {
@@ -238,13 +264,11 @@ void PairFSISolidTL::internal_forces()
     memory->destroy(fsolid);
     memory->create(fsolid, nmax, row_of_forces(fix_fsi->dim), "pair:fsolid");
   }
-  const auto forces_of = [&](auto law_of) {
-    using L = decltype(law_of);
-    fix_fsi->dim == 2 ? bond_forces<L, 2>() : bond_forces<L, 3>();
-  };
-  if (law == SVK) forces_of(svk[0]);
-  else if (law == NEOHOOKEAN) forces_of(neohookean[0]);
-  else forces_of(hypo[0]);
+  if (fix_fsi->dim == 2) gather_points<2>();
+  else gather_points<3>();
+  const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
+  with_law([&](auto law_of, auto dimension) { bond_forces<decltype(law_of), decltype(dimension)::value>(); });
+  strain_energy += volumetric_energy;
   if (list) {
     if (fix_fsi->dim == 2) contact_forces<2>();
     else contact_forces<3>();
@@ -278,6 +302,75 @@ void PairFSISolidTL::find_rows()
   nmoving = std::stable_partition(rows.begin(), rows.end(), moves) - rows.begin();
 }
 
+/* ---------------------------------------------------------------------- */
+
+template <int D> void PairFSISolidTL::gather_points()
+{
+  constexpr int NP = row_of_points(D);
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  if (points.size() < (size_t) NP * atom->nmax) points.assign((size_t) NP * atom->nmax, 0.0);
+  for (const auto *set : {&reference->solids, &reference->ghosts})
+    for (const int i : *set)
+      for (int d = 0; d < D; d++) {
+        points[NP * i + d] = x[i][d];
+        points[NP * i + D + d] = v[i][d];
+      }
+  if (changes_seen == reference->changes) return;
+  find_rows();
+  if (!smoothed.on()) return;
+  const int *const type = atom->type;
+  const int *const mask = atom->mask, groupbit = fix_fsi->groupbit;
+  smoothed.find_weights<D>(
+      rows, type, [=](int i) { return mask[i] & groupbit; },
+      [&](int i, int j) {
+        const Material &a = material[type[i]], &b = material[type[j]];
+        return a.young == b.young && a.poisson == b.poisson;
+      },
+      [&](int t) { return fix_fsi->resolution[t].cut; });
+}
+
+/* ----------------------------------------------------------------------
+   nearly incompressible solids (fsi_volumetric.h). Strains of all rows, also of those whose forces are
+   not wanted now: that of a held particle may count for one that moves.
+------------------------------------------------------------------------- */
+
+bool PairFSISolidTL::is_smoothed(const Material &m) const
+{
+  if (m.species != SOLID || volumetric == LOCAL || plane_stress || damage > 0.0) return false;
+  return volumetric == SMOOTHED || m.poisson > VolumetricStrain::LOCKS_ABOVE + 1.0e-9;
+}
+
+double PairFSISolidTL::smooth_strains(bool of_all)
+{
+  Profile *const profile = fix_fsi->profile;
+  Swaps &swaps = reference->swaps;
+  const int forward = comm_forward, reverse = comm_reverse;
+  double energy = 0.0;
+  smoothed.resize(atom->nmax);
+  comm_forward = comm_reverse = 1;
+  sends_strains = true;
+  with_law([&](auto law_of, auto dimension) {
+    using L = decltype(law_of);
+    constexpr int D = decltype(dimension)::value;
+    const auto find = [&](auto number) __attribute__((always_inline)) {
+      find_volumetric_strains<decltype(number), L, D>(rows, atom->type, points.data(), smoothed);
+    };
+    const auto smooth = [&](auto number) __attribute__((always_inline)) {
+      energy = smooth_volumetric_strains<decltype(number), L>(rows, of_all, smoothed);
+    };
+    have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
+    exchange(profile, comm, this, false, [&]() { swaps.forward(this); }, swaps.skip_empty());
+    for (const auto *set : {&reference->solids, &reference->ghosts})
+      for (const int i : *set) smoothed.force[i] = 0.0;
+    have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
+    exchange(profile, comm, this, true, [&]() { swaps.reverse(this); }, swaps.skip_empty());
+  });
+  comm_forward = forward;
+  comm_reverse = reverse;
+  sends_strains = false;
+  return energy;
+}
+
 /* ----------------------------------------------------------------------
    fsi_bond_rows.h
 ------------------------------------------------------------------------- */
@@ -285,23 +378,17 @@ void PairFSISolidTL::find_rows()
 template <class L, int D> void PairFSISolidTL::bond_forces()
 {
   using namespace BondFlag;
-  constexpr int NP = row_of_points(D), ALL = HOURGLASS | VISCOSITY | SUMS;
-  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  constexpr int ALL = HOURGLASS | VISCOSITY | SUMS;
   const int *const type = atom->type;
   const State *const state = fix_fsi->state.data();
-  if (points.size() < (size_t) NP * atom->nmax) points.assign((size_t) NP * atom->nmax, 0.0);
   for (const auto *set : {&reference->solids, &reference->ghosts})
     for (const int i : *set)
-      for (int d = 0; d < D; d++) {
-        points[NP * i + d] = x[i][d];
-        points[NP * i + D + d] = v[i][d];
-        fsolid[i][d] = 0.0;
-      }
-  if (changes_seen != reference->changes) find_rows();
+      for (int d = 0; d < D; d++) fsolid[i][d] = 0.0;
 
   const int nrows = only_moving ? nmoving : (int) rows.size();
   BondSums sums;
-  const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr, alpha, beta, one_material, &sums};
+  const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr,
+                            smoothed.on() ? smoothed.force.data() : nullptr, alpha, beta, one_material, &sums};
   const L *const law_of = laws<L>();
   auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid ? fsolid[0] : nullptr);
   // with sums, or one by one, there is one loop for all effects: those that are off have coefficients of zero
@@ -479,6 +566,28 @@ double PairFSISolidTL::volume_ratio(int i) const
    Cauchy stress: P F^T/J
 ------------------------------------------------------------------------- */
 
+void PairFSISolidTL::begin_stress()
+{
+  forward_positions();    // ghosts still stand where they were in the middle of the step
+  if (!smoothed.on()) return;
+  if (fix_fsi->dim == 2) gather_points<2>();
+  else gather_points<3>();
+  smooth_strains(true);
+}
+
+// that of the smoothed strain at i itself: right for linear ones, to the face
+template <int D>
+void PairFSISolidTL::add_smoothed(int i, const double *F, PiolaStress<D> &piola) const
+{
+  double dm[D * D], p = smoothed.modulus[atom->type[i]];
+  if (law == SVK) StVenantKirchhoff::volumetric_strain<D>(F, dm);
+  else LogarithmOfVolume::volumetric_strain<D>(F, dm);
+  if (law == HYPO) p *= HypoElastic::volumetric_slope(smoothed.mean[i]);
+  else p *= NeoHookean::volumetric_slope(smoothed.mean[i]);
+  for (int k = 0; k < D * D; k++) piola.P[k] += p * dm[k];
+  piola.zz += p;
+}
+
 PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
 {
   const auto evaluate = [&](auto dimension) {
@@ -495,6 +604,7 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
     else if (law == NEOHOOKEAN) piola = neohookean[t].template operator()<D>(F, nullptr);
     else piola = hypo[t].template operator()<D>(F, fix_stress->stress[i]);
     s.J = determinant<D>(F);
+    if (smoothed.on()) add_smoothed<D>(i, F, piola);
     for (int a = 0; a < D; a++)
       for (int c = a; c < D; c++) {
         double sum = 0.0;
@@ -530,6 +640,10 @@ int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_f
   const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0, pbc_flag ? pbc[1] * domain->yprd : 0.0,
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
   int m = 0;
+  if (sends_strains) {
+    for_solids(n, listed, 0, [&](int i) { buf[m++] = smoothed.strain[i]; });
+    return m;
+  }
   for_solids(n, listed, 0, [&](int i) {
     for (int d = 0; d < dim; d++) buf[m++] = atom->x[i][d] + shift[d];
     if (velocities)
@@ -542,6 +656,7 @@ void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
   const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
+  if (sends_strains) return for_solids(n, nullptr, first, [&](int i) { smoothed.strain[i] = *buf++; });
   for_solids(n, nullptr, first, [&](int i) {
     for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
     if (velocities)
@@ -552,6 +667,10 @@ void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 {
   int m = 0;
+  if (sends_strains) {
+    for_solids(n, nullptr, first, [&](int i) { buf[m++] = smoothed.force[i]; });
+    return m;
+  }
   for_solids(n, nullptr, first, [&](int i) {
     for (int d = 0; d < fix_fsi->dim; d++) buf[m++] = fsolid[i][d];
   });
@@ -560,6 +679,7 @@ int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 
 void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
+  if (sends_strains) return for_solids(n, listed, 0, [&](int i) { smoothed.force[i] += *buf++; });
   for_solids(n, listed, 0, [&](int i) {
     for (int d = 0; d < fix_fsi->dim; d++) fsolid[i][d] += *buf++;
   });
@@ -646,14 +766,18 @@ void *PairFSISolidTL::extract(const char *name, int &dim_of_extract)
 
 void PairFSISolidTL::add_costs(Costs &costs) const
 {
-  const int n = fix_fsi->substeps;
-  costs.solid_ghost += n * fix_fsi->dim + (n > 1 ? n * comm_forward : 0);
-  costs.solids = n > 1 ? fmt::format("; {} each way for solid sub-steps, where they carry solids", n) : "; 1 back for solid forces";
+  const int n = fix_fsi->substeps, strains = smoothed.on();
+  costs.solid_ghost += n * (fix_fsi->dim + 2 * strains) + (n > 1 ? n * comm_forward : 0);
+  if (n > 1) costs.solids = fmt::format("; {} each way for solid sub-steps, where they carry solids", n * (1 + strains));
+  else costs.solids = strains ? "; 1 forward and 2 back for solids" : "; 1 back for solid forces";
 }
 
 void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
 {
   if (all.solids == 0) nothing("Pair style fsi/solid/tl" + named_effects(), "no particle is a solid");
+  else if (volumetric == SMOOTHED && !smoothed.on())
+    nothing("Pair style fsi/solid/tl volumetric smoothed",
+            fmt::format("no Poisson's ratio is above {}", VolumetricStrain::LOCAL));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -664,6 +788,8 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   auto list = keywords.effects();
   list.insert(list.begin(), {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"),
                              "law", true});
+  if (smoothed.on())
+    list.push_back({"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});
   return list;
 }
 
@@ -672,5 +798,5 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 double PairFSISolidTL::memory_usage()
 {
   return (double) nmax * row_of_forces(domain->dimension) * sizeof(double) + (double) points.capacity() * sizeof(double) +
-      (double) rows.capacity() * sizeof(BondRow);
+      (double) rows.capacity() * sizeof(BondRow) + smoothed.memory_usage();
 }

@@ -23,6 +23,7 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 
 #include "fsi_bond_rows.h"
 #include "fsi_contact.h"
+#include "fsi_volumetric.h"
 #include "pair_fsi.h"
 
 #include <vector>
@@ -73,6 +74,7 @@ class PairFSISolidTL : public PairFSI {
     double pressure() const { return -(sigma[0] + sigma[1] + sigma[2]) / 3.0; }
     double von_mises() const;
   };
+  void begin_stress();    // before stress(), on all ranks: what it needs of other particles
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
   double volume_ratio(int i) const;    // det F, likewise
 
@@ -85,8 +87,9 @@ class PairFSISolidTL : public PairFSI {
 
  private:
   enum Law { SVK, NEOHOOKEAN, HYPO };
+  enum Volumetric { AUTO, SMOOTHED, LOCAL };
   double zeta, damage;
-  int law, plane_stress, linear, plain;
+  int law, plane_stress, linear, plain, volumetric;
   int is_hypoelastic;    // for extract()
   class FixFSIReference *reference;
   class FixFSIStress *fix_stress;    // null: no law needs it
@@ -107,11 +110,18 @@ class PairFSISolidTL : public PairFSI {
   bool only_moving, one_material;    // forces of those are wanted; all solids have one density and one speed of sound
   void find_rows();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
+  template <int D> void gather_points();
+  FSI::VolumetricStrain smoothed;
+  bool sends_strains;    // what messages carry: these, or positions and forces
+  bool is_smoothed(const FSI::Material &) const;
+  double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
+  template <class Call> void with_law(Call call);    // call(law, constant with the dimension)
   template <class L, int D> void bond_forces();
   std::vector<FSI::Contact> contacts;    // by both types
   template <int D> void contact_forces();
   template <int D> void self_contact_forces();
   template <int D> void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
+  template <int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
   template <int D> void deformation(int i, double *F) const;
   template <int D> void advance_stress_of_all(double dt);
 };
