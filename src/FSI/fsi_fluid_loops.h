@@ -103,6 +103,7 @@ namespace FSI {
     const double (*wall_velocity)[3];      // per particle, that no-slip walls of particles and solids have in viscous forces
     const double *const *stress;           // per particle, of solids (couple full); null: they have none
     const std::array<double, 3> *gravity;  // per type
+    double *taken;           // with sums: adds to rows of row_of_points(D) the forces, with the sign of what they take, of coupling and of friction; or null
   };
 
   class FluidLoops {

@@ -335,6 +335,32 @@ namespace FSI {
     return loss;
   }
 
+  // Adds what coupling and friction take, as forces on the neighbors j and on i, to rows
+  template <class T, int D> struct Taken {
+    T of_i[2 * D];
+    double (*const rows)[row_of_points(D)];
+    FSI_INLINE explicit Taken(double *rows_in) : rows(reinterpret_cast<double(*)[row_of_points(D)]>(rows_in))
+    {
+      for (T &s : of_i) s = 0.0;
+    }
+    FSI_INLINE void add(const T (&coupling)[D], const T (&friction)[D], const int *j)
+    {
+      if (!rows) return;
+      T of_j[2 * D];
+      for (int d = 0; d < D; d++) {
+        of_i[d] += coupling[d];
+        of_i[D + d] += friction[d];
+        of_j[d] = -coupling[d];
+        of_j[D + d] = -friction[d];
+      }
+      Lanes<T>::add_rows(of_j, rows, j);
+    }
+    FSI_INLINE void close(int i) const
+    {
+      for (int d = 0; rows && d < 2 * D; d++) rows[i][d] += Lanes<T>::sum(of_i[d]);
+    }
+  };
+
   // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14)
   template <class T, class K, int KIND, int FLAGS>
   FSI_INLINE void force_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
@@ -361,6 +387,7 @@ namespace FSI {
       const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && constant.thin);
       T sum[D];
       for (T &s : sum) s = 0.0;
+      Taken<T, D> taken((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES) ? laws.taken : nullptr);
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
         const Particle<T, D> original = pj;
@@ -384,15 +411,21 @@ namespace FSI {
         T viscous_push = 0.0;
         T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate, constant.floor, back, own);
         // beyond the compression of the fluid and, in density mode summation, of the solid
-        T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
+        T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2, rubbing = 0.0;
         if (FLAGS & Flag::ARTIFICIAL) {
           T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), constant.c, pi.vol * pj.vol);
           if (KIND == WITH_WALL) q = constant.rubs * q;
           if (FLAGS & Flag::UNEQUAL) viscous_push = q * g;
           else p += q;
           if (FLAGS & Flag::SUMS) by.artificial += share * q * g * vdotx;
+          rubbing = q * g;
         }
         p = (FLAGS & Flag::UNEQUAL) ? -(p * pushing + viscous_push) : -p * g;
+        T coupling[D], friction[D];    // what they take, as forces
+        for (int d = 0; d < D; d++) {
+          coupling[d] = KIND == WITH_FLUID ? T(0.0) : coupled * pushing * x[d];
+          friction[d] = rubbing * x[d];
+        }
         coupled = coupled * pushing * vdotx;
 
         T force[D], on_j[D];    // on i, on j
@@ -417,7 +450,11 @@ namespace FSI {
         if (FLAGS & Flag::LAMINAR) {
           // walls and solids have another velocity than i itself in places that are left over
           const T there = KIND == WITH_FLUID || (FLAGS & Flag::IMAGES) ? g : weight * g;
+          if (FLAGS & Flag::SUMS)
+            for (int d = 0; d < D; d++) friction[d] += force[d];
           const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, there, rsq, x, v, force, on_j);
+          if (FLAGS & Flag::SUMS)
+            for (int d = 0; d < D; d++) friction[d] -= force[d];
           if (FLAGS & Flag::SUMS) by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * share * loss : share * loss;
         }
         if (!(FLAGS & Flag::IMAGES))
@@ -430,8 +467,10 @@ namespace FSI {
           sum[d] += force[d];
           if (FLAGS & Flag::IMAGES) on_all[d] += share * (force[d] + on_j[d]);
         }
+        if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) taken.add(coupling, friction, j);
         L::add_rows(on_j, f, j);
       });
+      taken.close(i);
       for (int d = 0; d < D; d++) f[i][d] += L::sum(sum[d]);
     }
     if (FLAGS & Flag::IMAGES)

@@ -400,6 +400,30 @@ void PairFSIFluid::advance_density()
   }
 }
 
+/* ----------------------------------------------------------------------
+   The ledger's powers have velocities of the start of the step. With those of its middle, which are known now, they are second order in time.
+------------------------------------------------------------------------- */
+
+void PairFSIFluid::prescribe()
+{
+  if (!fix_fsi->ledger || taken.empty()) return;
+  const int dim = fix_fsi->dim, nlocal = atom->nlocal, nall = nlocal + atom->nghost, row = row_of_points(dim);
+  const double half = 0.5 * update->dt * force->ftm2v;
+  std::vector<double> one(nall);
+  for (const auto term : {FixFSI::COUPLING, FixFSI::ARTIFICIAL}) {
+    const int first = term == FixFSI::COUPLING ? 0 : dim;
+    double power = 0.0;
+    for (int d = 0; d < dim; d++) {
+      for (int i = 0; i < nall; i++) one[i] = taken[row * i + first + d];
+      fix_fsi->add_ghosts(one.data());
+      for (int i = 0; i < nlocal; i++)
+        if ((atom->mask[i] & fix_fsi->groupbit) && (fix_fsi->substeps == 1 || fix_fsi->state[atom->type[i]].species == FLUID))
+          power += half * one[i] * atom->f[i][d] / atom->rmass[i];
+    }
+    fix_fsi->tally(term, power);
+  }
+}
+
 void PairFSIFluid::go_back()
 {
   if (!rate) return;
@@ -827,10 +851,11 @@ template <int D> void PairFSIFluid::compute_forces()
     p.pv2 = p.p * p.vol * p.vol;
   });
 
+  if (fix_fsi->ledger) taken.assign((size_t) row_of_points(D) * nall, 0.0);
   const ForceLaws laws = {alpha, beta, laminar, extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
                     fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
                     FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr,
-                    fix_fsi->body_forces.of_type.data()};
+                    fix_fsi->body_forces.of_type.data(), fix_fsi->ledger ? taken.data() : nullptr};
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   double guarding[NROWS] = {};
@@ -889,6 +914,7 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   const std::vector<Contact> no_guards(guards.size(), Contact(D, 0.0));
   laws.guard = no_guards.data();
   laws.extrapolate = laws.gravity = nullptr;
+  laws.taken = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
   for (const int kind : {WALLS, SOLIDS}) force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);

@@ -58,6 +58,7 @@ class PairFSIFluid : public PairFSI {
   bool add_rates(bool) override;
   void advance(bool) override;
   void add_number_density(double *, bool of_all_bodies) override;
+  void prescribe() override;
   void go_back() override;
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
   void add_position_divergence(double *div);
@@ -117,7 +118,7 @@ class PairFSIFluid : public PairFSI {
   void find_cut_solids();
 
   // local and ghost, gathered at the start of each loop
-  std::vector<double> points, forces, viscous_forces, pressure_over_density;
+  std::vector<double> points, forces, viscous_forces, pressure_over_density, taken;    // taken: by coupling and friction, if there is a ledger
   std::vector<FSI::Share> shares;    // per type: how its particles count at fluid particles
   bool unequal;                      // is any type of another spacing than the fluid, or thin?
   double *fill, *fill_weight;        // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
