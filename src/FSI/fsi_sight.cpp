@@ -25,9 +25,9 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr int NTABLE = 400;    // distances for which forces are tabulated
-// A line meets a body if the particles within their spacing of it add up to these, and it is inside of it as long as those around are
-// on no side by more than this: 1 is at an edge (theory.rst)
-static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4;
+// A line meets a body if the particles within their spacing of it add up to these, and is inside of it as long as the mean place of those
+// around leans to no side by more than this: 1 is at an edge, where it is so much of the radius, 5/16 in 2D and 64/(70 pi) in 3D
+static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4, AT_EDGE = 0.3;
 
 /* ----------------------------------------------------------------------
    A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice is finer than the fluid's.
@@ -201,9 +201,9 @@ bool Sight::may_hide(const double *y, double slack) const
 }
 
 /* ----------------------------------------------------------------------
-   Of bodies only particles within the support of both x and y count, which each rank has that has one of the pair. Those between both have
-   weights that end at the supports, and at both ends of the line: sum = those of a thin body that are on the line itself; lean = the mean
-   place of all across the line, over their mean distance, is 0 inside a body and 1 at a straight edge.
+   sum = how many particles of thin bodies the line meets, which end with their spacing and at both ends of the line; lean = the mean place
+   across the line of what is around where it meets them, over that beside a straight edge. The ball in which that is reaches as far as both
+   supports do, so that each rank that has one of the pair has what is in it.
 ------------------------------------------------------------------------- */
 
 static double smooth(double x)
@@ -214,28 +214,36 @@ static double smooth(double x)
 
 double Sight::visible(const double *y) const
 {
-  const double cutsq = scene.cut * scene.cut, per_cutsq = 1.0 / cutsq;
+  const double cutsq = scene.cut * scene.cut;
   double d[3] = {}, dsq = 0.0;
   for (int k = 0; k < scene.dim; k++) {
     d[k] = y[k] - from[k];
     dsq += d[k] * d[k];
   }
-  const double per_dsq = 1.0 / dsq;
-  double sum = 0.0, weight = 0.0, place[3] = {};
+  const auto along = [&](const Seen &s) { return (s.x[0] * d[0] + s.x[1] * d[1] + s.x[2] * d[2]) / dsq; };
+  double sum = 0.0, middle = 0.0, spacing = 0.0;
   for (const auto &s : seen) {
-    const double t = (s.x[0] * d[0] + s.x[1] * d[1] + s.x[2] * d[2]) * per_dsq;
-    const double beyond = s.rsq + (1.0 - 2.0 * t) * dsq;    // squared distance from y
-    if (t <= 0.0 || t >= 1.0 || s.rsq >= cutsq || beyond >= cutsq) continue;
-    const double ends = 4.0 * t * (1.0 - t), offsq = std::max(s.rsq - t * t * dsq, 0.0), near = 1.0 - offsq / (s.dx * s.dx);
-    if (s.thin && near > 0.0) sum += ends * near * near;
-    const double both = (1.0 - s.rsq * per_cutsq) * (1.0 - beyond * per_cutsq), w = s.volume * ends * both * both;
-    weight += w * std::sqrt(offsq);
-    for (int k = 0; k < scene.dim; k++) place[k] += w * (s.x[k] - t * d[k]);
+    const double t = along(s), near = 1.0 - (s.rsq - t * t * dsq) / (s.dx * s.dx);
+    if (!s.thin || t <= 0.0 || t >= 1.0 || near <= 0.0) continue;
+    const double met = 4.0 * t * (1.0 - t) * near * near;
+    sum += met;
+    middle += met * t;
+    spacing += met * s.dx;
   }
   if (sum <= MISSES) return 1.0;
-  const double half_disc = scene.dim == 3 ? 0.5 * PI : 1.0;    // |cos| has the mean 2/pi
-  const double off = std::sqrt(place[0] * place[0] + place[1] * place[1] + place[2] * place[2]);
-  const double lean = weight > 0.0 ? half_disc * off / weight : 0.0;
+  middle /= sum;
+  const double radius = std::max(scene.cut - std::sqrt(dsq) * std::max(middle, 1.0 - middle), spacing / sum);
+  double weight = 0.0, place[3] = {};
+  for (const auto &s : seen) {
+    const double t = along(s), off = t - middle;
+    const double rest = 1.0 - (s.rsq - t * t * dsq + off * off * dsq) / (radius * radius);
+    if (rest <= 0.0 || s.rsq >= cutsq || s.rsq + (1.0 - 2.0 * t) * dsq >= cutsq) continue;
+    const double w = s.volume * rest * rest;
+    weight += w;
+    for (int k = 0; k < scene.dim; k++) place[k] += w * (s.x[k] - t * d[k]);
+  }
+  const double beside = std::sqrt(place[0] * place[0] + place[1] * place[1] + place[2] * place[2]);
+  const double lean = weight > 0.0 ? beside / (AT_EDGE * radius * weight) : 0.0;
   return 1.0 - smooth((sum - MISSES) / (MEETS - MISSES)) * smooth((OUTSIDE - lean) / (OUTSIDE - INSIDE));
 }
 
