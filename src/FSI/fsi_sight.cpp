@@ -224,7 +224,7 @@ double Sight::visible(const double *y) const
   double sum = 0.0, middle = 0.0, spacing = 0.0;
   for (const auto &s : seen) {
     const double t = along(s), near = 1.0 - (s.rsq - t * t * dsq) / (s.dx * s.dx);
-    if (!s.thin || t <= 0.0 || t >= 1.0 || near <= 0.0) continue;
+    if (!s.thin || t <= 0.0 || t >= 1.0 || near <= 0.0 || s.rsq >= cutsq) continue;
     const double met = 4.0 * t * (1.0 - t) * near * near;
     sum += met;
     middle += met * t;
@@ -248,7 +248,8 @@ double Sight::visible(const double *y) const
 }
 
 /* ----------------------------------------------------------------------
-   The body is as thick as it is along its normal through x, which is the mean of what is on the side of the nearest particle.
+   The body is as thick as it is along its normal through x, which is the mean of what is on the side of the nearest particle. What is seen beyond
+   the support tells that it is thicker.
 ------------------------------------------------------------------------- */
 
 static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

@@ -34,7 +34,7 @@ namespace FSI {
     void follow_bodies();    // to where they are; what follows is said of then
 
     bool near(const double *x) const;    // may a thin one come within the support before lists are built again?
-    void look_from(const double *x, double slack = 0.0);    // x: for the next four; slack: look so much farther than the support
+    void look_from(const double *x, double slack = 0.0);    // x: for the next four; slack: look so much farther than the support; lists have the skin
     bool may_hide(const double *y, double slack) const;     // anything of y, if each distance may change by that?
     double visible(const double *y) const;    // part of what is at y. The same from y to x, and on each rank that has one of both
     // of the body beside x: distance of the first layer along its normal, which points to it, and how thick it is

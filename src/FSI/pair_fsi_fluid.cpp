@@ -370,7 +370,7 @@ void PairFSIFluid::look_past_thin_bodies()
   const auto &hidden = rows[HIDDEN].rows;
   double *part = visible.data();
   for (const auto &there : beside) {
-    sight.look_from(x[there.i]);
+    sight.look_from(x[there.i], neighbor->skin);
     for (int n = there.first; n < there.last; n++)
       for (int k = 0; k < hidden[n].n; k++) *part++ = sight.visible(x[hidden[n].j[k]]);
     Sight::Face face;
