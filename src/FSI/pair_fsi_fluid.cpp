@@ -433,9 +433,8 @@ void PairFSIFluid::go_back()
 }
 
 /* ----------------------------------------------------------------------
-   What keeps fluid out of walls and solids: the energy K d^D (1-r/d)^2/2 of a pair nearer than d. All particles of a face count, so that those of a
-   finer solid have the less the more of them there are in front of a fluid particle: with K dx (dx_s/dx)^(D-1) d^(D-2) in the place of K d^(D-2) a
-   face is as stiff, and the pair swings slower than sound crosses dx, which the time step knows.
+   What keeps fluid out of walls and solids: the energy K d^(D-2) (d-r)^2/2 of a pair nearer than d. Of a finer solid the more particles push
+   the finer it is: with K dx^(D-2) (dx_s/dx)^(D-1) for K d^(D-2) its face is as stiff, and a pair swings slower than the step of sound allows.
 ------------------------------------------------------------------------- */
 
 Contact PairFSIFluid::guard_of(int t) const
