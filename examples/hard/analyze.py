@@ -207,6 +207,13 @@ def wall(folder):
             "steps": frames[-1].step}
 
 
+def valve(folder):
+    """Largest number of water particles in a picture that are inside a leaflet: nearer than its spacing to one of its particles, less a fifth."""
+    frames, dx = frames_of(folder), values_of(folder)["dx"]
+    inside = [len(np.unique(near(f.of_types(1).vector("xy"), 0.2 * dx, f.vector("xy")[f["type"] > 1])[0])) for f in frames]
+    return {"inside": max(inside)}
+
+
 def pull(folder):
     """Water within a support of the plate at the end; the largest pull on it once its underside is above the water's level (0.04 s)."""
     frame, values = frames_of(folder)[-1], values_of(folder)
@@ -287,6 +294,7 @@ ROWS = {
                  "couple wall, density diffusion"),
     "obstacle": Row("dam break on an elastic obstacle", "obstacle", impact, {"mach": ("<", 0.3), "density_error": ("<", 0.05)},
                     "couple wall, continuity, shifting"),
+    "valve": Row("valve of two thin leaflets, tips in the water", "valve", valve, {"inside": ("<=", 0)}, "thin, solid/guard"),
     "jet": Row("jet on a plate", "jet", jet, {"mach": ("<", 0.3), "density_error": ("<", 0.05), "impulse_error": ("<", 0.01)},
                "continuity, shifting"),
     "still": Row("still water, 10 s, three resolutions, four walls", r"still_(\d+|lid)", still, STILL, "continuity, density diffusion, Wendland kernel"),

@@ -107,5 +107,7 @@ void ComputeFSIEnergy::compute_vector()
   }
   if (const auto *solid_tl = PairFSISolidTL::find(lmp)) mine[3] += solid_tl->strain_energy;
   for (int k = 0; k < FixFSI::NTERM; k++) mine[NHAVE + k] = fix_fsi->energy_out[k];
+  mine[NHAVE + FixFSI::WALLS] += fix_fsi->guarding[0];
+  mine[NHAVE + FixFSI::COUPLING] += fix_fsi->guarding[1];
   MPI_Allreduce(mine, vector, size_vector, MPI_DOUBLE, MPI_SUM, world);
 }

@@ -259,13 +259,14 @@ void ComputeFSIProbe::sum_up()
                 head += rho * g[d] * (xk[d] - x[d]);
               }
               if (rsq >= kernel.cutsq) continue;
+              double part = vol;
               if (may_hide) {
                 double seen[3];
                 for (int d = 0; d < 3; d++) seen[d] = xk[d] - p.shift[d];
-                if (sight->blocked(seen)) continue;
+                part *= sight->visible(seen);
               }
               const auto add = [&](double w, const double *velocity) {
-                w *= vol;
+                w *= part;
                 if (place.line) {
                   sum[fluid ? 0 : 1] += w;
                   return;

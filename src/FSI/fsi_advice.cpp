@@ -625,7 +625,7 @@ class Adviser : protected Pointers {
     if (std::count(bodies.begin(), bodies.end(), 1.0) == 0) return;
     Sight sight(lmp, scene, bodies);
     sight.find_bodies();
-    std::vector<int> near, hidden;
+    std::vector<int> near;
     for (int i = 0; i < atom->nlocal; i++)
       if (fluid(i) && sight.near(atom->x[i])) near.push_back(i);
     const double reach = PART * scene.cut;
@@ -635,22 +635,16 @@ class Adviser : protected Pointers {
     for (size_t k = 0; k < near.size(); k += near.size() / ENOUGH_OF_THEM + 1) {
       const int i = near[k];
       sight.look_from(atom->x[i]);
-      Sight::Beside here, there;
-      if (!sight.beside(i, here)) continue;
-      const int t = here.type;
-      const double thickness = here.layers * scene.dx_of(t);
-      if (sight.distance(here) < 1.01 * scene.dx) {    // the next row of the same lattice, too
-        mine[n + t] = std::min(mine[n + t], thickness);
-        mine[2 * n + t] = std::min(mine[2 * n + t], -sight.fill(here).force);
+      Sight::Face face;
+      if (!sight.find_face(face)) continue;
+      const int t = face.type;
+      if (face.distance < 1.01 * scene.dx) {    // the next row of the same lattice, too
+        mine[n + t] = std::min(mine[n + t], face.thickness);
+        mine[2 * n + t] = std::min(mine[2 * n + t], -sight.fill(face).force);
       }
-      hidden.clear();
       cells.around(atom->x[i], [&](int j, double rsq) {
-        if (rsq < reach * reach && fluid(j) && sight.blocked(atom->x[j])) hidden.push_back(j);
+        if (rsq < reach * reach && fluid(j) && sight.visible(atom->x[j]) < 0.5) mine[t] = std::min(mine[t], face.thickness);
       });
-      for (const int j : hidden) {
-        sight.look_from(atom->x[j]);
-        if (sight.beside(j, there) && Sight::opposite(here.normal, there.normal)) mine[t] = std::min(mine[t], thickness);
-      }
     }
     MPI_Allreduce(mine.data(), least.data(), 3 * n, MPI_DOUBLE, MPI_MIN, world);
     for (int t = 1; t < n; t++)

@@ -58,6 +58,11 @@ namespace FSI {
       const double k = 2.0 * Ki * Kj / (Ki + Kj) * scale;
       return where(rsq < T(reachsq), k * (reach / root(rsq + T(1.0e-18 * reachsq)) - T(1.0)), T(0.0));
     }
+    template <class T> FSI_INLINE T stored(const T &rsq, double K) const
+    {
+      const T gap = reach - root(rsq);
+      return where(rsq < T(reachsq), 0.5 * K * scale * gap * gap, T(0.0));
+    }
     double energy(double rsq, double Ki, double Kj) const
     {
       if (rsq >= reachsq) return 0.0;

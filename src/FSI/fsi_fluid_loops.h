@@ -45,6 +45,7 @@ namespace FSI {
   // Powers that terms take from the particles of all pairs visited, and their virial xx yy zz xy xz yz.
   struct PairSums {
     double artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, diffusion = 0.0, virial[6] = {};
+    double guard = 0.0;    // energy that it holds
   };
 
   // How particles of a type count at a fluid particle, if their spacing is another (theory.rst)
@@ -64,6 +65,12 @@ namespace FSI {
     const double *part, *rate;
   };
 
+  // By pair: how much of it thin bodies leave, of the rows' neighbors from first on (fsi_sight.h)
+  struct Visible {
+    const double *part;
+    const int *first;
+  };
+
   // Of all loops: by local and ghost particle.
   struct FluidParticles {
     const double *points;    // Point<D>
@@ -75,6 +82,7 @@ namespace FSI {
     const Thin *thin;    // null: none is
     const Cut *cut;      // null: none is
     bool newton;    // else a pair across ranks is visited on both: each counts half of powers and forces on walls
+    const Visible *visible = nullptr;    // of pairs of fluids, in loops pair by pair; null: all of each
   };
 
   struct RateLaws {
@@ -90,11 +98,12 @@ namespace FSI {
     int laminar;             // 0: none, 1: plain, 2: central
     const std::array<double, 3> *extrapolate;    // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
     double stored;           // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0
-    const struct Contact *guard;           // per type: of walls
+    const struct Contact *guard;           // per type: of walls and solids
     bool solids_slip;
     const double (*wall_velocity)[3];      // per particle, that no-slip walls of particles and solids have in viscous forces
     const double *const *stress;           // per particle, of solids (couple full); null: they have none
     const std::array<double, 3> *gravity;  // per type
+    double *taken;           // with sums: adds to rows of row_of_points(D) the forces, with the sign of what they take, of coupling and of friction; or null
   };
 
   class FluidLoops {

@@ -38,9 +38,9 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of another spacing; shifting,
-  // and what it changes of velocities
+  // and what it changes of velocities; pairs that thin bodies hide in part
   namespace Flag {
-    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, UNEQUAL = 128, SHIFT = 256, CENTRAL = 512, SLOPES = 1024 };
+    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, UNEQUAL = 128, SHIFT = 256, CENTRAL = 512, SLOPES = 1024, PARTLY = 2048 };
   }
 
   template <class T, int D> struct Particle {
@@ -101,6 +101,9 @@ namespace FSI {
 
   // Kernel or gradient of neighbours that mirror walls cut
   template <class T> FSI_INLINE T cut_off(const FluidParticles &in, const int *j, const T &w) { return in.cut ? Lanes<T>::read(in.cut->part, j) * w : w; }
+
+  // Kernel or gradient of a pair that a thin body hides in part
+  FSI_INLINE double as_visible(const FluidParticles &in, const int *j, double w) { return in.visible->part[j - in.visible->first] * w; }
 
   // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j. Solids and walls count, but are not shifted.
   // v: difference of velocities, if ALL of the sums are wanted
@@ -176,6 +179,7 @@ namespace FSI {
         T g = kernel.gradient(r);
         if (IMAGE) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
+        if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         if (FLAGS & Flag::SHIFT) {
           const T vol_j = (FLAGS & Flag::UNEQUAL) ? fill * pj.vol : pj.vol;
           add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j, x, v, j, displacement, shift);
@@ -269,7 +273,7 @@ namespace FSI {
 
   // Sums of a loop over rows: powers, virial.
   template <class T> struct Powers {
-    T artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, virial[6];
+    T artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, guard = 0.0, virial[6];
     FSI_INLINE Powers()
     {
       for (T &w : virial) w = 0.0;
@@ -281,6 +285,7 @@ namespace FSI {
       sums->laminar += L::sum(laminar);
       sums->coupling += L::sum(coupling);
       sums->walls += L::sum(walls);
+      sums->guard += L::sum(guard);
       for (int k = 0; k < 6; k++) sums->virial[k] += L::sum(virial[k]);
     }
   };
@@ -330,6 +335,32 @@ namespace FSI {
     return loss;
   }
 
+  // Adds what coupling and friction take, as forces on the neighbors j and on i, to rows
+  template <class T, int D> struct Taken {
+    T of_i[2 * D];
+    double (*const rows)[row_of_points(D)];
+    FSI_INLINE explicit Taken(double *rows_in) : rows(reinterpret_cast<double(*)[row_of_points(D)]>(rows_in))
+    {
+      for (T &s : of_i) s = 0.0;
+    }
+    FSI_INLINE void add(const T (&coupling)[D], const T (&friction)[D], const int *j)
+    {
+      if (!rows) return;
+      T of_j[2 * D];
+      for (int d = 0; d < D; d++) {
+        of_i[d] += coupling[d];
+        of_i[D + d] += friction[d];
+        of_j[d] = -coupling[d];
+        of_j[D + d] = -friction[d];
+      }
+      Lanes<T>::add_rows(of_j, rows, j);
+    }
+    FSI_INLINE void close(int i) const
+    {
+      for (int d = 0; rows && d < 2 * D; d++) rows[i][d] += Lanes<T>::sum(of_i[d]);
+    }
+  };
+
   // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14)
   template <class T, class K, int KIND, int FLAGS>
   FSI_INLINE void force_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
@@ -356,6 +387,7 @@ namespace FSI {
       const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && constant.thin);
       T sum[D];
       for (T &s : sum) s = 0.0;
+      Taken<T, D> taken((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES) ? laws.taken : nullptr);
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
         Particle<T, D> pj(point, j);
         const Particle<T, D> original = pj;
@@ -367,6 +399,7 @@ namespace FSI {
         T g = kernel.gradient(root(rsq));
         if (FLAGS & Flag::IMAGES) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
+        if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         T pushing = g;    // of pressures
         if (FLAGS & Flag::UNEQUAL) {
           pushing = kernel.sharper_gradient(root(rsq), constant.sharper);
@@ -378,24 +411,36 @@ namespace FSI {
         T viscous_push = 0.0;
         T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate, constant.floor, back, own);
         // beyond the compression of the fluid and, in density mode summation, of the solid
-        T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
+        T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2, rubbing = 0.0;
         if (FLAGS & Flag::ARTIFICIAL) {
           T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), constant.c, pi.vol * pj.vol);
           if (KIND == WITH_WALL) q = constant.rubs * q;
           if (FLAGS & Flag::UNEQUAL) viscous_push = q * g;
           else p += q;
           if (FLAGS & Flag::SUMS) by.artificial += share * q * g * vdotx;
+          rubbing = q * g;
         }
         p = (FLAGS & Flag::UNEQUAL) ? -(p * pushing + viscous_push) : -p * g;
+        T coupling[D], friction[D];    // what they take, as forces
+        for (int d = 0; d < D; d++) {
+          coupling[d] = KIND == WITH_FLUID ? T(0.0) : coupled * pushing * x[d];
+          friction[d] = rubbing * x[d];
+        }
         coupled = coupled * pushing * vdotx;
 
         T force[D], on_j[D];    // on i, on j
         for (int d = 0; d < D; d++) force[d] = p * x[d];
-        if (KIND == WITH_WALL) {
+        if (KIND == WITH_WALL || KIND == WITH_SOLID) {
           // the guard keeps out what has no pressure of its own
-          const T k = laws.guard[type_j](rsq, constant.bulk, constant.bulk);
+          T k = laws.guard[type_j](rsq, constant.bulk, constant.bulk);
+          if (FLAGS & Flag::IMAGES) k = weight * k;
+          if (CUT) k = cut_off(in, j, k);
           for (int d = 0; d < D; d++) force[d] += k * x[d];
-          coupled -= k * vdotx;
+          if (FLAGS & Flag::SUMS) {
+            T stored = weight * laws.guard[type_j].stored(rsq, constant.bulk);
+            if (CUT) stored = cut_off(in, j, stored);
+            by.guard += share * stored;
+          }
         }
         if constexpr (KIND == WITH_SOLID_FULL)
           if (laws.stress) coupled -= CouplePaper::add_stress<(FLAGS & Flag::IMAGES) != 0>(laws.stress[*j], mirror, pj.vol * pj.vol * g, x, v, force);
@@ -405,7 +450,11 @@ namespace FSI {
         if (FLAGS & Flag::LAMINAR) {
           // walls and solids have another velocity than i itself in places that are left over
           const T there = KIND == WITH_FLUID || (FLAGS & Flag::IMAGES) ? g : weight * g;
+          if (FLAGS & Flag::SUMS)
+            for (int d = 0; d < D; d++) friction[d] += force[d];
           const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, there, rsq, x, v, force, on_j);
+          if (FLAGS & Flag::SUMS)
+            for (int d = 0; d < D; d++) friction[d] -= force[d];
           if (FLAGS & Flag::SUMS) by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * share * loss : share * loss;
         }
         if (!(FLAGS & Flag::IMAGES))
@@ -418,8 +467,10 @@ namespace FSI {
           sum[d] += force[d];
           if (FLAGS & Flag::IMAGES) on_all[d] += share * (force[d] + on_j[d]);
         }
+        if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) taken.add(coupling, friction, j);
         L::add_rows(on_j, f, j);
       });
+      taken.close(i);
       for (int d = 0; d < D; d++) f[i][d] += L::sum(sum[d]);
     }
     if (FLAGS & Flag::IMAGES)
@@ -454,6 +505,7 @@ namespace FSI {
         T g = kernel.gradient(r);
         if (!(FLAGS & Flag::BOTH)) g = cut_off(in, j, g);
         if (IMAGE) g = weight * g;
+        if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, fill * pj.vol, x, nullptr, j, sum, shift);
       });
       for (int m = 0; m < N; m++) shift[i][m] += L::sum(sum[m]);
@@ -485,12 +537,14 @@ namespace FSI {
         }
         const T r = root(rsq);
         if (FLAGS & Flag::DIVERGENCE) {
-          const T w = cut_off<T>(in, j, -weight * rsq * kernel.gradient(r));
+          T w = cut_off<T>(in, j, -weight * rsq * kernel.gradient(r));
+          if constexpr (FLAGS & Flag::PARTLY) w = as_visible(in, j, w);
           of_i += w * L::read(vol, j);
           if (FLAGS & Flag::BOTH) L::add(w * vol[i], sum, j);
         } else {
           T w = weight * ((FLAGS & Flag::UNEQUAL) ? kernel.sharper(r, sharper) : kernel.W(r));
           if (FLAGS & Flag::UNEQUAL) w = cut_off(in, j, w);
+          if constexpr (FLAGS & Flag::PARTLY) w = as_visible(in, j, w);
           of_i += w;
           if (FLAGS & Flag::BOTH) L::add(w, sum, j);
         }
@@ -521,13 +575,14 @@ namespace FSI {
       };
       // density diffusion, with a coefficient of zero where it is off, comes with what is rarely without: images and slopes
       const bool fluid = kind == WITH_FLUID, diffuses = fluid && (laws.delta > 0.0 || laws.slopes || image);
-      const int named = (shift ? SHIFT : 0) | (fluid && !image && laws.slopes ? SLOPES : 0) | (diffuses ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
-      with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES>((image ? IMAGES : 0) | unequal_or_cut(kind, in) | named, [&](auto flags) {
+      const int named = (shift ? SHIFT : 0) | (fluid && !image && laws.slopes ? SLOPES : 0) | (diffuses || partly(in) ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
+      with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY>((image ? IMAGES : 0) | unequal_or_cut(kind, in) | partly(in) | named, [&](auto flags) {
         constexpr int effects = flags() & (DIFFUSION | SUMS | SHIFT | SLOPES);
-        if constexpr (effects == 0 || effects == SHIFT)
+        constexpr bool parts = flags() & PARTLY, compiled = !parts || (ONE_BY_ONE && (flags() & DIFFUSION));
+        if constexpr (!parts && (effects == 0 || effects == SHIFT))
           if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
         constexpr bool has_slopes = effects & SLOPES, diffusing = effects & DIFFUSION, plain = !(flags() & IMAGES);
-        if constexpr (!(flags() & UNEQUAL) && (diffusing || (plain && (effects == 0 || effects == SHIFT))) && (!has_slopes || (plain && (effects & SHIFT))))
+        if constexpr (compiled && !(flags() & UNEQUAL) && (diffusing || (plain && (effects == 0 || effects == SHIFT))) && (!has_slopes || (plain && (effects & SHIFT))))
           loop(std::integral_constant<int, WITH_FLUID>(), flags);
       });
     }
@@ -550,13 +605,18 @@ namespace FSI {
         });
       };
       const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
-      const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | unequal_rows;
+      if (!sums && partly(in)) sums = &unused;
+      const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | unequal_rows | partly(in);
       const bool all = special || ONE_BY_ONE || laws.laminar == 2 || (artificial && laws.laminar);
-      with_flags<EFFECTS | SUMS | IMAGES | UNEQUAL>(special | (all ? EFFECTS : artificial ? ARTIFICIAL : laws.laminar ? LAMINAR : 0), [&](auto flags) {
+      with_flags<EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY>(special | (all ? EFFECTS : artificial ? ARTIFICIAL : laws.laminar ? LAMINAR : 0), [&](auto flags) {
         constexpr int effects = flags() & EFFECTS;
         constexpr bool alone = flags() == 0 || flags() == ARTIFICIAL || flags() == LAMINAR;
         constexpr bool counted = (flags() & SUMS) || !((flags() & IMAGES) && (flags() & UNEQUAL));    // few: their sums may be for nothing
-        if constexpr ((effects == EFFECTS && counted) || (alone && !ONE_BY_ONE)) {
+        constexpr bool with_parts = flags() & PARTLY;
+        if constexpr (with_parts) {
+          if constexpr (ONE_BY_ONE && effects == EFFECTS && (flags() & SUMS) && !(flags() & UNEQUAL))
+            loop(std::integral_constant<int, WITH_FLUID>(), flags);
+        } else if constexpr ((effects == EFFECTS && counted) || (alone && !ONE_BY_ONE)) {
           if constexpr (!(flags() & UNEQUAL))
             if (kind == WITH_FLUID) loop(std::integral_constant<int, WITH_FLUID>(), flags);
           if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
@@ -574,8 +634,8 @@ namespace FSI {
                 double *shift) const override
     {
       const Mirror mirror = image ? *image : Mirror();
-      with_flags<Flag::IMAGES | Flag::BOTH>((image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0), [&](auto flags) {
-        run_loop<T>([&](auto number) __attribute__((always_inline)) {
+      with_flags<Flag::IMAGES | Flag::BOTH | Flag::PARTLY>((image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0) | partly(in), [&](auto flags) {
+        if constexpr (!(flags() & Flag::PARTLY) || (ONE_BY_ONE && (flags() & Flag::BOTH))) run_loop<T>([&](auto number) __attribute__((always_inline)) {
           shift_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, wdx,
                                                    reinterpret_cast<double(*)[Shift<D>::ROW]>(shift));
         });
@@ -597,6 +657,7 @@ namespace FSI {
    private:
     // Rows of solids and walls of another spacing than the fluid's; those that have it, among them, have shares that change nothing.
     static int unequal(PairKind kind, const FluidParticles &in) { return in.unequal && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::UNEQUAL : 0; }
+    static int partly(const FluidParticles &in) { return in.visible ? Flag::PARTLY : 0; }
     // Those that mirror walls cut are in the same loops.
     static int unequal_or_cut(PairKind kind, const FluidParticles &in) { return in.cut && kind != WITH_FLUID ? Flag::UNEQUAL : unequal(kind, in); }
 
@@ -604,9 +665,10 @@ namespace FSI {
                    const double *vol, double *sum) const
     {
       const Mirror mirror = image ? *image : Mirror();
-      with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::UNEQUAL>(
-          what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0), [&](auto flags) {
-            if constexpr (!(flags() & Flag::UNEQUAL) || !(flags() & Flag::DIVERGENCE)) run_loop<T>([&](auto number) __attribute__((always_inline)) {
+      with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::UNEQUAL | Flag::PARTLY>(
+          what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0) | partly(in), [&](auto flags) {
+            constexpr bool of_fluids = ONE_BY_ONE && (flags() & Flag::BOTH) && !(flags() & Flag::UNEQUAL);
+            if constexpr ((flags() & Flag::PARTLY) ? of_fluids : !(flags() & Flag::UNEQUAL) || !(flags() & Flag::DIVERGENCE)) run_loop<T>([&](auto number) __attribute__((always_inline)) {
               distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, x, vol, sum);
             });
           });

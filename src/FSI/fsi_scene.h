@@ -110,6 +110,7 @@ namespace FSI {
     enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, FIELDS, NTERM };
     bool ledger;
     double energy_out[NTERM];
+    double guarding[2];    // energy that pairs held off by walls of particles and by solids have, if there is a ledger
     // adds a power of the pair loops, which counts only in steps, not in setup
     void tally(Term term, double power) { energy_out[term] += tally_dt * power; }
     void set_tally(double dt) { tally_dt = ledger ? dt : 0.0; }    // time that powers act for

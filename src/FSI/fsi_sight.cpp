@@ -25,13 +25,16 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr int NTABLE = 400;    // distances for which forces are tabulated
+// A line meets a body if the particles within their spacing of it add up to these, and is inside of it as long as the mean place of those
+// around leans to no side by more than this: 1 is at an edge, where it is so much of the radius, 5/16 in 2D and 64/(70 pi) in 3D
+static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4, AT_EDGE = 0.3;
 
 /* ----------------------------------------------------------------------
    A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice is finer than the fluid's.
 ------------------------------------------------------------------------- */
 
 Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
-    Pointers(lmp), scene(scene), types(types), reach(0.0), from{}, low{}, per_cell(0.0), n{}, half_space(types.size())
+    Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{}, half_space(types.size())
 {
   for (size_t t = 1; t < types.size(); t++) {
     if (types[t] == 0.0) continue;
@@ -64,19 +67,25 @@ Sight::Fill Sight::beyond(int type, double distance) const
 }
 
 /* ----------------------------------------------------------------------
-   local particles and ghosts into cells as wide as the reach
+   local particles and ghosts into cells as wide as the reach of neighbor lists. Those of other bodies count, too, where a thin one goes on
+   as one of them.
 ------------------------------------------------------------------------- */
+
+bool Sight::counts(int type) const
+{
+  const int species = scene.state[type].species;
+  return types[type] != 0.0 || species == SOLID || species == RIGID;
+}
 
 void Sight::find_bodies()
 {
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
   const Scene::Row *const x = Scene::rows(atom->x);
-  reach = scene.cut + neighbor->skin;
-  per_cell = 1.0 / reach;
+  per_cell = 1.0 / (scene.cut + neighbor->skin);
   double high[3] = {};
   int count = 0;
   for (int i = 0; i < nall; i++) {
-    if (types[type[i]] == 0.0) continue;
+    if (!counts(type[i])) continue;
     for (int d = 0; d < 3; d++) {
       low[d] = count ? std::min(low[d], x[i][d]) : x[i][d];
       high[d] = count ? std::max(high[d], x[i][d]) : x[i][d];
@@ -92,10 +101,16 @@ void Sight::find_bodies()
     return c;
   };
   for (int i = 0; i < nall; i++)
-    if (types[type[i]] != 0.0) first[cell(x[i]) + 2]++;
+    if (counts(type[i])) first[cell(x[i]) + 2]++;
   for (size_t c = 2; c < first.size(); c++) first[c] += first[c - 1];
   for (int i = 0; i < nall; i++)
-    if (types[type[i]] != 0.0) places[first[cell(x[i]) + 1]++] = {{x[i][0], x[i][1], x[i][2]}, i};
+    if (counts(type[i])) places[first[cell(x[i]) + 1]++] = {{x[i][0], x[i][1], x[i][2]}, i, types[type[i]] != 0.0};
+}
+
+void Sight::follow_bodies()
+{
+  const Scene::Row *const x = Scene::rows(atom->x);
+  for (auto &place : places) std::copy_n(x[place.i], 3, place.x);
 }
 
 template <class Visit> void Sight::for_near(const double *x, Visit visit) const
@@ -118,12 +133,20 @@ template <class Visit> void Sight::for_near(const double *x, Visit visit) const
 bool Sight::near(const double *x) const
 {
   bool any = false;
-  for_near(x, [&](const Place &) { return any = true; });
+  for_near(x, [&](const Place &p) { return any = any || p.thin; });
   return any;
 }
 
-void Sight::look_from(const double *x)
+/* ----------------------------------------------------------------------
+   A solid that passes through a mirror wall goes on in its images, which fluids meet in place of what is behind. Walls of particles
+   have none: they go on behind a mirror themselves.
+------------------------------------------------------------------------- */
+
+void Sight::look_from(const double *x, double slack)
 {
+  const double within = (scene.cut + slack) * (scene.cut + slack);
+  const auto &walls = scene.walls;
+  const bool by_walls = walls.near(x, scene.cut + slack);
   seen.clear();
   std::copy_n(x, 3, from);
   for_near(x, [&](const Place &p) {
@@ -132,153 +155,145 @@ void Sight::look_from(const double *x)
       s.x[d] = p.x[d] - x[d];
       s.rsq += s.x[d] * s.x[d];
     }
-    s.i = p.i;
-    s.dx = scene.dx_of(atom->type[p.i]);
-    if (s.rsq < reach * reach) seen.push_back(s);
+    if (s.rsq >= within) return false;
+    s.type = atom->type[p.i];
+    s.dx = scene.dx_of(s.type);
+    s.volume = scene.dim == 3 ? s.dx * s.dx * s.dx : s.dx * s.dx;
+    s.thin = p.thin;
+    const bool behind = by_walls && scene.state[s.type].species == SOLID &&
+        std::any_of(walls.wall.begin(), walls.wall.end(), [&](const Wall &w) { return !w.finite && w.distance(p.x) < 0.0; });
+    if (!behind) seen.push_back(s);
     return false;
   });
-}
-
-/* ----------------------------------------------------------------------
-   Seen along the line from x to y, the body's particles between both surround it: so what passes beside a face, an edge or a corner is
-   free. Only those within reach of both count, which each rank that has one of the pair has. Ties of lattices are not left to round-off.
-------------------------------------------------------------------------- */
-
-bool Sight::blocked(const double *y) const
-{
-  constexpr double NEAR = 0.75, AROUND = 1.25, HIT = 1.0e-4, PI_AND_MORE = PI + 1.0e-6;
-  double d[3] = {}, dsq = 0.0, nearest = AROUND * AROUND;
-  for (int k = 0; k < scene.dim; k++) {
-    d[k] = y[k] - from[k];
-    dsq += d[k] * d[k];
-  }
-  around.clear();
-  for (const auto &s : seen) {
-    const double along = s.x[0] * d[0] + s.x[1] * d[1] + s.x[2] * d[2];
-    if (along <= 0.0 || along >= dsq) continue;
-    const double t = along / dsq, offsq = (s.rsq - t * along) / (s.dx * s.dx);
-    if (offsq > AROUND * AROUND || s.rsq - 2.0 * along + dsq > reach * reach) continue;
-    nearest = std::min(nearest, offsq);
-    around.push_back({{s.x[0] - t * d[0], s.x[1] - t * d[1], s.x[2] - t * d[2]}, offsq, s.dx, s.i});
-  }
-  if (nearest > NEAR * NEAR) return false;
-  if (nearest < HIT * HIT) return true;
-
-  // the largest gap between the directions in which they are
-  const double *const a = around[0].x, b[3] = {d[1] * a[2] - d[2] * a[1], d[2] * a[0] - d[0] * a[2], d[0] * a[1] - d[1] * a[0]};
-  const double per_length = 1.0 / std::sqrt(dsq);
-  angles.clear();
-  for (const auto &o : around)
-    angles.push_back(std::atan2((o.x[0] * b[0] + o.x[1] * b[1] + o.x[2] * b[2]) * per_length, o.x[0] * a[0] + o.x[1] * a[1] + o.x[2] * a[2]));
-  std::sort(angles.begin(), angles.end());
-  double gap = angles.front() - angles.back() + 2.0 * PI;
-  for (size_t k = 1; k < angles.size(); k++) gap = std::max(gap, angles[k] - angles[k - 1]);
-  return gap < PI_AND_MORE;
-}
-
-/* ----------------------------------------------------------------------
-   images in mirror walls of the solids seen, which fluids meet in place of what is behind
-------------------------------------------------------------------------- */
-
-void Sight::forget_behind_walls()
-{
-  if (!scene.walls.near(from, scene.cut)) return;
-  const auto behind = [&](const Seen &s) {
-    const double y[3] = {from[0] + s.x[0], from[1] + s.x[1], from[2] + s.x[2]};
-    return scene.state[atom->type[s.i]].species == SOLID &&
-        std::any_of(scene.walls.wall.begin(), scene.walls.wall.end(), [&](const Wall &w) { return !w.finite && w.distance(y) < 0.0; });
-  };
-  seen.erase(std::remove_if(seen.begin(), seen.end(), behind), seen.end());
+  if (by_walls) see_images();
 }
 
 void Sight::see_images()
 {
-  const int mask = scene.walls.near(from, scene.cut);
-  if (!mask) return;
+  const auto &walls = scene.walls;
+  const int mask = walls.near(from, scene.cut);
   for (size_t k = 0, n = seen.size(); k < n; k++) {
     const Seen s = seen[k];
-    if (scene.state[atom->type[s.i]].species != SOLID) continue;
+    if (scene.state[s.type].species != SOLID) continue;
     const double y[3] = {from[0] + s.x[0], from[1] + s.x[1], from[2] + s.x[2]};
-    scene.walls.images(mask & scene.walls.near(y, scene.cut), s.rsq, from, y, scene.cut * scene.cut,
-                       [&](const Walls::Reflection &, double rsq, const double *d) { seen.push_back({{-d[0], -d[1], -d[2]}, rsq, s.dx, s.i}); });
+    walls.images(mask & walls.near(y, scene.cut), s.rsq, from, y, scene.cut * scene.cut,
+                 [&](const Walls::Reflection &, double rsq, const double *d) { seen.push_back({{-d[0], -d[1], -d[2]}, rsq, s.dx, s.volume, s.type, s.thin}); });
   }
 }
 
+/* ---------------------------------------------------------------------- */
+
+bool Sight::may_hide(const double *y, double slack) const
+{
+  double d[3], dsq = 0.0;
+  for (int k = 0; k < scene.dim; k++) {
+    d[k] = y[k] - from[k];
+    dsq += d[k] * d[k];
+  }
+  const double length = std::sqrt(dsq);
+  return std::any_of(seen.begin(), seen.end(), [&](const Seen &s) {
+    if (!s.thin) return false;
+    double along = 0.0;
+    for (int k = 0; k < scene.dim; k++) along += s.x[k] * d[k] / length;
+    const double off = s.dx + slack;
+    return along > -slack && along < length + slack && s.rsq - along * along < off * off;
+  });
+}
+
 /* ----------------------------------------------------------------------
-   the body is as thick as it is along its normal through x
+   sum = how many particles of thin bodies the line meets, which end with their spacing and at both ends of the line; lean = the mean place
+   across the line of what is around where it meets them, over that beside a straight edge. The ball in which that is reaches as far as both
+   supports do, so that each rank that has one of the pair has what is in it.
+------------------------------------------------------------------------- */
+
+static double smooth(double x)
+{
+  const double t = std::min(std::max(x, 0.0), 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+double Sight::visible(const double *y) const
+{
+  const double cutsq = scene.cut * scene.cut;
+  double d[3] = {}, dsq = 0.0;
+  for (int k = 0; k < scene.dim; k++) {
+    d[k] = y[k] - from[k];
+    dsq += d[k] * d[k];
+  }
+  const auto along = [&](const Seen &s) { return (s.x[0] * d[0] + s.x[1] * d[1] + s.x[2] * d[2]) / dsq; };
+  double sum = 0.0, middle = 0.0, spacing = 0.0;
+  for (const auto &s : seen) {
+    const double t = along(s), near = 1.0 - (s.rsq - t * t * dsq) / (s.dx * s.dx);
+    if (!s.thin || t <= 0.0 || t >= 1.0 || near <= 0.0 || s.rsq >= cutsq) continue;
+    const double met = 4.0 * t * (1.0 - t) * near * near;
+    sum += met;
+    middle += met * t;
+    spacing += met * s.dx;
+  }
+  if (sum <= MISSES) return 1.0;
+  middle /= sum;
+  const double radius = std::max(scene.cut - std::sqrt(dsq) * std::max(middle, 1.0 - middle), spacing / sum);
+  double weight = 0.0, place[3] = {};
+  for (const auto &s : seen) {
+    const double t = along(s), off = t - middle;
+    const double rest = 1.0 - (s.rsq - t * t * dsq + off * off * dsq) / (radius * radius);
+    if (rest <= 0.0 || s.rsq >= cutsq || s.rsq + (1.0 - 2.0 * t) * dsq >= cutsq) continue;
+    const double w = s.volume * rest * rest;
+    weight += w;
+    for (int k = 0; k < scene.dim; k++) place[k] += w * (s.x[k] - t * d[k]);
+  }
+  const double beside = std::sqrt(place[0] * place[0] + place[1] * place[1] + place[2] * place[2]);
+  const double lean = weight > 0.0 ? beside / (AT_EDGE * radius * weight) : 0.0;
+  return 1.0 - smooth((sum - MISSES) / (MEETS - MISSES)) * smooth((OUTSIDE - lean) / (OUTSIDE - INSIDE));
+}
+
+/* ----------------------------------------------------------------------
+   The body is as thick as it is along its normal through x, which is the mean of what is on the side of the nearest particle. What is seen beyond
+   the support tells that it is thicker.
 ------------------------------------------------------------------------- */
 
 static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-bool Sight::opposite(const double *a, const double *b)
+bool Sight::find_face(Face &face) const
 {
-  return dot(a, b) < -0.5;
-}
-
-bool Sight::beside(int i, Beside &b)
-{
-  b = Beside();
-  forget_behind_walls();
-  const auto first = std::min_element(seen.begin(), seen.end(), [](const Seen &a, const Seen &b) { return a.rsq < b.rsq; });
-  if (first == seen.end()) return false;
-  const Seen nearest = *first;
-  const double within = nearest.rsq < scene.cut * scene.cut ? scene.cut : reach, withinsq = within * within;
-  see_images();
-  // normal, from what is on the side of the nearest
+  const double cutsq = scene.cut * scene.cut;
+  const Seen *nearest = nullptr;
+  for (const auto &s : seen)
+    if (s.thin && s.rsq < cutsq && (!nearest || s.rsq < nearest->rsq)) nearest = &s;
+  if (!nearest) return false;
   double normal[3] = {};
   for (const auto &s : seen)
-    if (s.rsq < withinsq && dot(s.x, nearest.x) > 0.0) {
-      const double rest = 1.0 - s.rsq / withinsq;
+    if (s.thin && s.rsq < cutsq && dot(s.x, nearest->x) > 0.0) {
+      const double rest = 1.0 - s.rsq / cutsq;
       for (int d = 0; d < 3; d++) normal[d] += rest * rest * rest * s.x[d];
     }
-  const double length = std::sqrt(dot(normal, normal)), dx = nearest.dx, tube = 0.75 * dx;
+  const double length = std::sqrt(dot(normal, normal)), dx = nearest->dx, tube = 0.75 * dx;
+  if (length == 0.0) return false;
   for (double &e : normal) e /= length;
-  double face = reach, back = 0.0;
+  double front = scene.cut, back = 0.0;
   for (const auto &s : seen) {
     const double depth = dot(s.x, normal);
-    if (depth <= 0.0 || s.rsq - depth * depth > tube * tube) continue;
-    face = std::min(face, depth);
+    if (!s.thin || depth <= 0.0 || s.rsq - depth * depth > tube * tube) continue;
+    front = std::min(front, depth);
     back = std::max(back, depth);
   }
-  b = {i, nearest.i, atom->type[nearest.i], {normal[0], normal[1], normal[2]}, face - dot(nearest.x, normal), (back - face) / dx + 1.0, 1.0};
-  if (back == 0.0 || within == reach) return false;
-  b.behind = hidden_behind(normal, back + 0.5 * dx);
-  return true;
+  face = {nearest->type, {normal[0], normal[1], normal[2]}, front, back - front + dx};
+  return back > 0.0;
 }
 
 /* ----------------------------------------------------------------------
-   Of what a lattice of the fluid deeper than that would push, the part that the body hides: less than all beside an edge
+   as far as the body hides what is as far behind it as x is before it
 ------------------------------------------------------------------------- */
 
-double Sight::hidden_behind(const double *normal, double depth) const
+Sight::Fill Sight::fill(const Face &face) const
 {
-  const int n = static_cast<int>(scene.cut / scene.dx), nz = scene.dim == 3 ? n : 0;
-  double hidden = 0.0, all = 0.0;
-  for (int a = -n; a <= n; a++)
-    for (int b = -n; b <= n; b++)
-      for (int c = -nz; c <= nz; c++) {
-        const double d[3] = {a * scene.dx, b * scene.dx, c * scene.dx}, at = dot(d, normal), rest = 1.0 - dot(d, d) / (scene.cut * scene.cut);
-        if (at < depth || rest <= 0.0) continue;
-        const double y[3] = {from[0] + d[0], from[1] + d[1], from[2] + d[2]}, weight = rest * rest * rest * at;
-        all += weight;
-        if (blocked(y)) hidden += weight;
-      }
-  return all > 0.0 ? hidden / all : 1.0;
-}
-
-double Sight::distance(const Beside &b) const
-{
-  const double *const xi = atom->x[b.i], *const xj = atom->x[b.j];
-  double face = b.face;
-  for (int d = 0; d < 3; d++) face += (xj[d] - xi[d]) * b.normal[d];
-  return face;
-}
-
-Sight::Fill Sight::fill(const Beside &b) const
-{
-  const double face = distance(b);
-  const Fill all = beyond(b.type, face), missing = beyond(b.type, face + b.layers * scene.dx_of(b.type));
-  const auto over = [&](double whole, double rest) { return whole > rest ? 1.0 + b.behind * rest / (whole - rest) : 1.0; };
+  const Fill all = beyond(face.type, face.distance), missing = beyond(face.type, face.distance + face.thickness);
+  if (missing.weight == 0.0) return {1.0, 1.0};
+  double y[3];
+  const double across = 2.0 * face.distance + face.thickness - scene.dx_of(face.type);
+  for (int d = 0; d < 3; d++) y[d] = from[d] + across * face.normal[d];
+  const double there = 1.0 - visible(y);
+  const auto over = [&](double whole, double rest) { return whole > rest ? 1.0 + there * rest / (whole - rest) : 1.0; };
   return {over(all.force, missing.force), over(all.weight, missing.weight)};
 }
 

@@ -11,8 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// What fluids see past bodies and walls that are thinner than the kernel's support (fix fsi thin): a pair of fluid particles that such a
-// body is between is no pair; and to each side the body counts as if it went on behind.
+// What fluids see past bodies and walls that are thinner than the kernel's support (fix fsi thin): of a pair of fluid particles that such a
+// body is between only a part is left, none of it where the body goes on to all sides, all of it at a free edge; and to each side the
+// body counts as if it went on behind. A function of where particles are in a step (theory.rst).
 
 #ifndef LMP_FSI_SIGHT_H
 #define LMP_FSI_SIGHT_H
@@ -29,52 +30,51 @@ namespace FSI {
   class Sight : protected Pointers {
    public:
     Sight(LAMMPS *, const Scene &, const std::vector<double> &types);    // whose kernel and spacings are known; past types that are not 0
-    void find_bodies();    // where they are when neighbor lists are new: what follows is said of then
+    void find_bodies();      // when neighbor lists are new
+    void follow_bodies();    // to where they are; what follows is said of then
 
-    bool near(const double *x) const;      // may one be within the reach of the lists?
-    void look_from(const double *x);       // x: for the next two
-    bool blocked(const double *y) const;   // is one between x and y? The same from y to x, and on each rank that has one of both
-    // The body that a fluid particle has beside it: how deep, counted from one of its particles, and thick it is along its normal
-    struct Beside {
-      int i, j, type;            // fluid particle, particle of the body
-      double normal[3], face, layers;    // from x inwards, known beyond the support, too; distance of the first layer less that of j along it; number of layers
-      double behind;                     // part of what is deeper that it hides
+    bool near(const double *x) const;    // may a thin one come within the support before lists are built again?
+    void look_from(const double *x, double slack = 0.0);    // x: for the next four; slack: look so much farther than the support; lists have the skin
+    bool may_hide(const double *y, double slack) const;     // anything of y, if each distance may change by that?
+    double visible(const double *y) const;    // part of what is at y. The same from y to x, and on each rank that has one of both
+    // of the body beside x: distance of the first layer along its normal, which points to it, and how thick it is
+    struct Face {
+      int type;
+      double normal[3], distance, thickness;
     };
-    bool beside(int i, Beside &);    // of i, that x is of; false: none within the support. What is seen goes on behind mirror walls afterwards
-    static bool opposite(const double *normal, const double *other);    // are they of two sides of a body? A corner has right angles
-    // of a half-space of its layers over those that there are, now: force on i, and weight in sums of W, as forces along the face are
+    bool find_face(Face &) const;    // false: there is none within the support
+    // of a half-space of layers over those that there are: forces, and weights in sums of W, as forces along the face are
     struct Fill {
       double force, weight;
     };
-    Fill fill(const Beside &) const;
-    double distance(const Beside &) const;    // of i from the first layer, now
+    Fill fill(const Face &) const;
 
     double memory_usage() const;
 
    private:
     const Scene &scene;
     const std::vector<double> types;
-    double reach, from[3];
     double low[3], per_cell;
     int n[3];
-    std::vector<int> first;       // of each cell, and behind the last
+    std::vector<int> first;    // of each cell, and behind the last
     struct Place {
       double x[3];
       int i;
+      bool thin;
     };
     std::vector<Place> places;    // by cell
+    double from[3];
     struct Seen {
-      double x[3], rsq, dx;       // from x; spacing
-      int i;
+      double x[3], rsq;       // from x
+      double dx, volume;      // spacing, of its cell
+      int type;
+      bool thin;
     };
     std::vector<Seen> seen;
-    mutable std::vector<double> angles;
-    mutable std::vector<Seen> around;
     std::vector<std::vector<Fill>> half_space;    // per type: of its layers by the distance of the first
     Fill beyond(int type, double distance) const;
-    void forget_behind_walls();
+    bool counts(int type) const;
     void see_images();
-    double hidden_behind(const double *normal, double depth) const;
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true
   };
 

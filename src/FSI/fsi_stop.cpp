@@ -90,7 +90,61 @@ std::string Stop::describe(const Scene &scene, const std::string &what, const Fi
   text += fmt::format(" on step {}", update->ntimestep);
   if (all.tag) text += fmt::format(", atom {} (type {}) at {:.6g} {:.6g} {:.6g}", all.tag, all.type, all.x[0], all.x[1], all.x[2]);
   if (all.other) text += fmt::format(", and atom {}", all.other);
-  return text + ". Try " + advice(scene, all, when);
+  const Neighbor body = nearest_body(scene, all);
+  if (too_near(scene, body)) {
+    const bool solid = body.species == SOLID;
+    text += fmt::format(", {:.2g} from atom {} of {}, whose spacing is {:g}: fluid ", body.distance, body.tag,
+                        solid ? fmt::format("body {}", body.molecule) : "a wall", body.dx);
+    text += std::string(body.around ? "inside" : "pressed into") + (solid ? " a solid" : " a wall");
+  }
+  return text + ". Try " + advice(scene, all, when, body);
+}
+
+/* ----------------------------------------------------------------------
+   On all ranks. A body is around a place if the directions to its particles near it all but cancel.
+------------------------------------------------------------------------- */
+
+Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
+{
+  Neighbor body = {1.0e300, scene.dx, 0, 0, NONE, false};
+  if (!all.tag || scene.state[all.type].species != FLUID || !std::isfinite(all.x[0] + all.x[1] + all.x[2])) return body;
+  const int *const type = atom->type;
+  const auto for_near = [&](auto f) {
+    for (int i = 0; i < atom->nlocal; i++) {
+      const int species = scene.state[type[i]].species;
+      if (species != SOLID && species != RIGID) continue;
+      double d[3];
+      for (int k = 0; k < 3; k++) d[k] = k < scene.dim ? atom->x[i][k] - all.x[k] : 0.0;
+      if (!std::isfinite(d[0] + d[1] + d[2])) continue;
+      domain->minimum_image(d);
+      const double r = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+      if (r < scene.largest_cut) f(i, r, d);
+    }
+  };
+  for_near([&](int i, double r, const double *) {
+    if (r < body.distance) body = {r, scene.dx_of(type[i]), atom->tag[i], atom->molecule[i], scene.state[type[i]].species, false};
+  });
+  struct {
+    double distance;
+    int rank;
+  } own = {body.distance, comm->me}, first;
+  MPI_Allreduce(&own, &first, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  MPI_Bcast(&body, sizeof(Neighbor), MPI_BYTE, first.rank, world);
+  double mine[4] = {}, sum[4];
+  for_near([&](int i, double r, const double *d) {
+    if (atom->molecule[i] != body.molecule || r == 0.0 || r > 1.5 * std::max(body.dx, 0.5 * scene.dx)) return;
+    for (int k = 0; k < 3; k++) mine[k] += d[k] / r;
+    mine[3] += 1.0;
+  });
+  MPI_Allreduce(mine, sum, 4, MPI_DOUBLE, MPI_SUM, world);
+  body.around = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) < 0.5 * sum[3];
+  return body;
+}
+
+// nearer than half the distance of fluid at rest from its face, or within it
+bool Stop::too_near(const Scene &scene, const Neighbor &body)
+{
+  return body.species != NONE && (body.distance < 0.25 * (scene.dx + body.dx) || (body.around && body.distance < body.dx));
 }
 
 /* ----------------------------------------------------------------------
@@ -108,7 +162,7 @@ double Stop::courant(const Scene &scene, int type) const
    what to try that is not on already
 ------------------------------------------------------------------------- */
 
-std::string Stop::advice(const Scene &scene, const Finding &all, When when) const
+std::string Stop::advice(const Scene &scene, const Finding &all, When when, const Neighbor &body) const
 {
   const bool fluid = !all.tag || scene.state[all.type].species == FLUID;
   const auto *const pair = dynamic_cast<Part *>(force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0));
@@ -138,6 +192,10 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when) cons
     tips.insert(number > SUSPECT * usual ? tips.begin() : tips.end(), tip);
   };
 
+  if (too_near(scene, body))
+    tips.emplace_back(when == START ? "delete_atoms overlap, where the fluid is put around bodies" :
+                          body.species == SOLID ? "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, which keeps fluid out" :
+                                                  "a thicker wall, or guard 0.9 of fix fsi/wall/particle, which keeps fluid out");
   switch (all.trouble) {
     case FINITE:
       tips.emplace_back("a look at what pushes this particle");

@@ -57,8 +57,17 @@ namespace FSI {
 
    private:
     std::string who;
+    // the particle of a solid or wall that a fluid particle is nearest to
+    struct Neighbor {
+      double distance, dx;
+      tagint tag, molecule;
+      int species;
+      bool around;    // is its body on all sides?
+    };
+    Neighbor nearest_body(const Scene &, const Finding &) const;
+    static bool too_near(const Scene &scene, const Neighbor &body);
     double courant(const Scene &, int type) const;
-    std::string advice(const Scene &, const Finding &, When) const;
+    std::string advice(const Scene &, const Finding &, When, const Neighbor &) const;
     void go_back(const Scene &);
     std::string write_state(const Scene &);
     void write_neighbours(const Scene &, const Finding &) const;

@@ -40,7 +40,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), reach(INFINITY), near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, cut_solids{}, rate(nullptr), beyond(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_FLUID}, images_step(-1), reach(INFINITY), near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, rate(nullptr), beyond(nullptr)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -48,6 +48,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("laminar/visc").set(laminar, PLAIN).effect("laminar viscosity");
   keywords.key("laminar/visc/central").set(laminar, CENTRAL);
   keywords.key("solid/slip").logical(solids_slip, false);
+  keywords.key("solid/guard").number(solids_guard, 0.5, Range::between(0.0, 1.0));
   keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
   keywords.key("density/surface").logical(surfaces, false);
   keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
@@ -138,6 +139,8 @@ void PairFSIFluid::init_style()
   const auto make_loops = [this](bool packs) { return make_fluid_loops(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, packs); };
   loops = make_loops(have_packs());
   solid_loops = couple == WALL ? loops : make_loops(false);
+  single_loops = fix_fsi->sight ? make_loops(false) : loops;
+  beside.clear();
   shares.assign(atom->ntypes + 1, Share());
   unequal = false;
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -224,8 +227,6 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 {
   if (sticks_to_solids()) to_ghosts.add(fix_fsi->wall_velocity, 0, fix_fsi->dim, {SOLID});
   if (sticks_to_solids()) back.add(beyond, 0, fix_fsi->dim + 1, {SOLID});
-  if (fix_fsi->sight) to_ghosts.add(fill, {FLUID});
-  if (fix_fsi->sight) to_ghosts.add(fill_weight, {FLUID});
   if (fix_fsi->density_fluid == FixFSI::CONTINUITY) back.add(rate, {FLUID, RIGID});
   if (shifting > 0.0) back.add(fix_fsi->shift, 0, shift_sums(), {FLUID, RIGID}, &fix_fsi->shifts);
 }
@@ -243,6 +244,7 @@ void PairFSIFluid::add_costs(Costs &costs) const
   if (fix_fsi->sight) {
     costs.bytes += 16;
     costs.fluid_ghost += 2;
+    costs.forward += 2;
   }
   if (sticks_to_solids()) costs.solid_ghost += fix_fsi->dim + newton * (fix_fsi->dim + 1);
 }
@@ -262,14 +264,11 @@ void PairFSIFluid::begin_state(bool advance)
   fix_fsi->shifts = advance && shifting > 0.0 && update->ntimestep % shift_every == 0;
   if (neighbor->ago) return;
   fields.grow();
-  if (fix_fsi->sight) find_thin_bodies();
+  if (fix_fsi->sight) fix_fsi->sight->find_bodies();
   find_rows();
   if (!fill) return;
   std::fill_n(fill, atom->nlocal + atom->nghost, 1.0);
   std::fill_n(fill_weight, atom->nlocal + atom->nghost, 1.0);
-  follow_thin_bodies();
-  fix_fsi->send_to_ghosts(fill);
-  fix_fsi->send_to_ghosts(fill_weight);
 }
 
 void PairFSIFluid::find_reach()
@@ -285,6 +284,7 @@ void PairFSIFluid::find_reach()
 bool PairFSIFluid::add_rates(bool advance)
 {
   fields.grow();
+  if (fill) look_past_thin_bodies();
   find_cut_solids();
   if (rate || fix_fsi->walls.any()) find_reach();
   const size_t nall = atom->nlocal + atom->nghost;
@@ -306,7 +306,6 @@ void PairFSIFluid::advance(bool advance)
 {
   const Phase phase(fix_fsi->profile, Profile::DENSITY);
   if (beyond) extrapolate_velocities();
-  follow_thin_bodies();
   if (!rate || !advance) return;
   advance_density();
   if (fix_fsi->shifts) displacements(update->dt * shift_every);
@@ -362,31 +361,25 @@ void PairFSIFluid::find_cut_solids()
   }
 }
 
-// what is beside each fluid particle; normals cross ranks, since both of a pair have to agree
-void PairFSIFluid::find_thin_bodies()
+// what thin bodies hide and how much more they count, where particles are in this step
+void PairFSIFluid::look_past_thin_bodies()
 {
-  Sight *const sight = fix_fsi->sight.get();
-  sight->find_bodies();
-  beside.clear();
-  for (auto &n : normals) n.assign(atom->nlocal + atom->nghost, 0.0);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (fix_fsi->state[atom->type[i]].species != FLUID || !sight->near(atom->x[i])) continue;
-    sight->look_from(atom->x[i]);
-    Sight::Beside there;
-    if (sight->beside(i, there)) beside.push_back(there);
-    for (int d = 0; d < 3; d++) normals[d][i] = there.normal[d];
-  }
-  for (int d = 0; d < fix_fsi->dim; d++) fix_fsi->send_to_ghosts(normals[d].data());
-}
-
-// rates have what was found in the last step: the distance changes little from one to the next
-void PairFSIFluid::follow_thin_bodies()
-{
+  Sight &sight = *fix_fsi->sight;
+  sight.follow_bodies();
+  const auto *const x = FixFSI::rows(atom->x);
+  const auto &hidden = rows[HIDDEN].rows;
+  double *part = visible.data();
   for (const auto &there : beside) {
-    const auto more = fix_fsi->sight->fill(there);
+    sight.look_from(x[there.i], neighbor->skin);
+    for (int n = there.first; n < there.last; n++)
+      for (int k = 0; k < hidden[n].n; k++) *part++ = sight.visible(x[hidden[n].j[k]]);
+    Sight::Face face;
+    const auto more = sight.find_face(face) ? sight.fill(face) : Sight::Fill{1.0, 1.0};
     fill[there.i] = more.force;
     fill_weight[there.i] = more.weight;
   }
+  fix_fsi->send_to_ghosts(fill);
+  fix_fsi->send_to_ghosts(fill_weight);
 }
 
 /* ----------------------------------------------------------------------
@@ -407,12 +400,51 @@ void PairFSIFluid::advance_density()
   }
 }
 
+/* ----------------------------------------------------------------------
+   The ledger's powers have velocities of the start of the step. With those of its middle, which are known now, they are second order in time.
+------------------------------------------------------------------------- */
+
+void PairFSIFluid::prescribe()
+{
+  if (!fix_fsi->ledger || taken.empty()) return;
+  const int dim = fix_fsi->dim, nlocal = atom->nlocal, nall = nlocal + atom->nghost, row = row_of_points(dim);
+  const double half = 0.5 * update->dt * force->ftm2v;
+  std::vector<double> one(nall);
+  for (const auto term : {FixFSI::COUPLING, FixFSI::ARTIFICIAL}) {
+    const int first = term == FixFSI::COUPLING ? 0 : dim;
+    double power = 0.0;
+    for (int d = 0; d < dim; d++) {
+      for (int i = 0; i < nall; i++) one[i] = taken[row * i + first + d];
+      fix_fsi->add_ghosts(one.data());
+      for (int i = 0; i < nlocal; i++)
+        if ((atom->mask[i] & fix_fsi->groupbit) && (fix_fsi->substeps == 1 || fix_fsi->state[atom->type[i]].species == FLUID))
+          power += half * one[i] * atom->f[i][d] / atom->rmass[i];
+    }
+    fix_fsi->tally(term, power);
+  }
+}
+
 void PairFSIFluid::go_back()
 {
   if (!rate) return;
   const double dt = update->dt + fix_fsi->dt_offset;
   for (int i = 0; i < atom->nlocal; i++)
     if (fix_fsi->state[atom->type[i]].species == FLUID) atom->rho[i] -= dt * rate[i];
+}
+
+/* ----------------------------------------------------------------------
+   What keeps fluid out of walls and solids: the energy K d^(D-2) (d-r)^2/2 of a pair nearer than d. Of a finer solid the more particles push
+   the finer it is: with K dx^(D-2) (dx_s/dx)^(D-1) for K d^(D-2) its face is as stiff, and a pair swings slower than the step of sound allows.
+------------------------------------------------------------------------- */
+
+Contact PairFSIFluid::guard_of(int t) const
+{
+  const State &s = fix_fsi->state[t];
+  if (s.species != SOLID) return Contact(fix_fsi->dim, s.guard);
+  const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx;
+  Contact guard(fix_fsi->dim, couple == WALL ? solids_guard * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t)) : 0.0);
+  guard.scale = fix_fsi->dim == 3 ? fix_fsi->dx * ratio * ratio : ratio;
+  return guard;
 }
 
 /* ----------------------------------------------------------------------
@@ -429,7 +461,7 @@ void PairFSIFluid::find_rows()
     if (state[t].species == FLUID) fluid_types.push_back(t);
     else if (state[t].species != NONE) other_types.push_back(t);
   guards.clear();
-  for (const auto &s : fix_fsi->state) guards.emplace_back(fix_fsi->dim, s.guard);
+  for (size_t t = 0; t < fix_fsi->state.size(); t++) guards.push_back(guard_of(t));
   for (auto &list_of : rows) list_of.clear();
 
   struct Pair {
@@ -440,41 +472,53 @@ void PairFSIFluid::find_rows()
   for (const int t : fluid_types) is_fluid[t] = 1;
 
   std::vector<int> unmasked;
+  std::vector<char> hides;
   Sight *const sight = fix_fsi->sight.get();
-  const auto normal = [this](int i) { return std::array<double, 3>{normals[0][i], normals[1][i], normals[2][i]}; };
+  beside.clear();
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], *neighbors = list->firstneigh[i];
-    int n = list->numneigh[i];
+    const int n = list->numneigh[i];
     if (own && is_fluid[type[i]]) {
       rows[FLUIDS].rows.push_back({i, n, neighbors});
       continue;
     }
-    const bool looks = is_fluid[type[i]] && sight && sight->near(x[i]);
-    if (atom->molecular || looks) {
+    if (atom->molecular) {
       unmasked.resize(n);
       for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
-      if (looks) {
-        sight->look_from(x[i]);
-        const auto hidden = [&](int j) { return is_fluid[type[j]] && Sight::opposite(normal(i).data(), normal(j).data()) && sight->blocked(x[j]); };
-        unmasked.erase(std::remove_if(unmasked.begin(), unmasked.end(), hidden), unmasked.end());
-      }
       neighbors = unmasked.data();
-      n = unmasked.size();
     }
     if (!is_fluid[type[i]]) {
       for (int jj = 0; jj < n; jj++)
         if (is_fluid[type[neighbors[jj]]]) with_others.push_back({neighbors[jj], i});
       continue;
     }
+    const bool looks = sight && sight->near(x[i]);
+    if (looks) {
+      sight->look_from(x[i], neighbor->skin);
+      hides.resize(n);
+      for (int jj = 0; jj < n; jj++) hides[jj] = is_fluid[type[neighbors[jj]]] && sight->may_hide(x[neighbors[jj]], neighbor->skin);
+      const int first = rows[HIDDEN].rows.size();
+      for (const int t : fluid_types) {
+        const char *hidden = hides.data();
+        rows[HIDDEN].add(i, neighbors, n, false, false, [&](int j) { return *hidden++ && type[j] == t; });
+      }
+      beside.push_back({i, first, static_cast<int>(rows[HIDDEN].rows.size())});
+    }
     // that of its own type stays if it is empty, for its own images
-    for (const int t : fluid_types)
+    for (const int t : fluid_types) {
+      const char *hidden = hides.data();
       rows[FLUIDS].add(i, neighbors, n, false, t == type[i], [&](int j) {
+        if (looks && *hidden++) return false;
         if (type[j] == t) return true;
         if (t == fluid_types[0] && !is_fluid[type[j]]) with_others.push_back({i, j});
         return false;
       });
+    }
   }
+  rows[HIDDEN].end();
+  visible.clear();
+  for (const Row &row : rows[HIDDEN].rows) visible.resize(visible.size() + row.n);
   if (!own) rows[FLUIDS].end();
   if (other_types.empty()) return;
   std::vector<int> first(nall + 2, 0), other(with_others.size());
@@ -513,12 +557,17 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
                  [&](const Walls::Reflection &s, double, const double *) { found = found || &s == &walls.reflections[k]; });
     return found;
   };
-  for (const int kind : {FLUIDS, SOLIDS}) {
+  visible_images.resize(n);
+  for (auto &parts_of : visible_images) parts_of.clear();
+  for (const int kind : {FLUIDS, SOLIDS, HIDDEN}) {
     auto &lists = images[kind];
+    const double *part = visible.data();    // of a pair and its images it is the same
     lists.resize(n);
     for (auto &list_of : lists) list_of.clear();
     for (const Row &row : rows[kind].rows) {
       const int i = row.i;
+      const double *const parts_of_row = part;
+      if (kind == HIDDEN) part += row.n;
       if (!wmask[i]) continue;
       const bool of_own_type = kind == FLUIDS && i < nlocal && (row.n == 0 || type[row.j[0]] == type[i]);
       for (int k = 0; k < n; k++) {
@@ -526,7 +575,15 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
         if ((wmask[i] & mask) != mask) continue;
         const Wall &wall = fix_fsi->walls.wall[walls.reflections[k].w[0]];
         const double farthest = within - wall.distance(x[i]);
-        if (finite)
+        if (kind == HIDDEN) {
+          const double *of_pair = parts_of_row;
+          lists[k].add(i, row.j, row.n, false, false, [&](int j) {
+            const double seen = *of_pair++;
+            if ((wmask[j] & mask) != mask || (finite && !sees(i, j, k))) return false;
+            visible_images[k].push_back(seen);
+            return true;
+          });
+        } else if (finite)
           lists[k].add(i, row.j, row.n, of_own_type && sees(i, i, k), false, [&](int j) { return (wmask[j] & mask) == mask && sees(i, j, k); });
         else
           lists[k].add(i, row.j, row.n, of_own_type, false, [&](int j) { return (wmask[j] & mask) == mask && wall.distance(x[j]) < farthest; });
@@ -549,7 +606,7 @@ template <class Position, class Loop> void PairFSIFluid::for_images(const Walls 
   images_step = update->ntimestep;
   for (size_t k = 0; k < walls.reflections.size(); k++) {
     const Mirror mirror(walls, walls.reflections[k]);
-    for (const int kind : {FLUIDS, SOLIDS})
+    for (const int kind : {FLUIDS, SOLIDS, HIDDEN})
       if (!images[kind][k].rows.empty()) loop(kind, k, &mirror);
   }
 }
@@ -562,6 +619,15 @@ FluidParticles PairFSIFluid::particles_at(const double *points)
   cut_solids = {parts.data(), part_rates.data()};
   return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), unequal, fill ? &thin_bodies : nullptr,
           cut ? &cut_solids : nullptr, force->newton_pair != 0};
+}
+
+FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, int kind, const RowList &list_of, const std::vector<double> &parts_of)
+{
+  FluidParticles in = particles;
+  if (kind != HIDDEN) return in;
+  seen_pairs = {parts_of.data(), list_of.rows.empty() ? nullptr : list_of.rows[0].j};
+  in.visible = &seen_pairs;
+  return in;
 }
 
 template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, Complete complete)
@@ -624,13 +690,14 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fix_fsi->shifts && fills(), reach};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
-  const auto loop = [&](int kind, const std::vector<Row> &which, const Mirror *mirror, RowList &found) {
-    loops->rates(kinds[kind], which, mirror, particles, laws, rate, shift, fix_fsi->ledger ? &sums : nullptr, found);
+  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of, const Mirror *mirror, RowList &found) {
+    loops_of(kind).rates(kinds[kind], which.rows, mirror, of_rows(particles, kind, which, parts_of), laws, rate, shift, fix_fsi->ledger ? &sums : nullptr,
+                         found);
   };
-  for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind].rows, nullptr, near[kind]);
+  for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind], visible, nullptr, near[kind]);
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(walls, [&](int i) { return point[i].position(x[i]); },
-             [&](int kind, int k, const Mirror *mirror) { loop(kind, images[kind][k].rows, mirror, near_images[kind][k]); });
+             [&](int kind, int k, const Mirror *mirror) { loop(kind, images[kind][k], visible_images[k], mirror, near_images[kind][k]); });
   near_known = true;
   fix_fsi->tally(FixFSI::DIFFUSION, sums.diffusion);
   fix_fsi->tally(FixFSI::WALLS, sums.walls);
@@ -656,30 +723,35 @@ void PairFSIFluid::displacements(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-// sums of what depends on the distance of a pair, walls' images included: sum(kind, rows, both, mirror), of neighbors only if both
-template <class Sum> void PairFSIFluid::distance_sums(bool others_too, Sum sum)
+// sums of what depends on the distance of a pair, walls' images included: sum(loops, kind, rows, both, mirror, particles), of neighbors only if both
+template <class Sum> void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particles, Sum sum)
 {
-  const auto both = [&](int kind) { return kind == FLUIDS || others_too; };
-  for (int kind = 0; kind < NROWS; kind++) sum(kinds[kind], rows[kind].rows, both(kind), nullptr);
+  const auto one = [&](int kind, const RowList &which, const std::vector<double> &parts_of, const Mirror *mirror) {
+    const bool both = kinds[kind] == WITH_FLUID || others_too;
+    sum(loops_of(kind), kinds[kind], which.rows, both, mirror, of_rows(particles, kind, which, parts_of));
+  };
+  for (int kind = 0; kind < NROWS; kind++) one(kind, rows[kind], visible, nullptr);
   double **x = atom->x;
   for_images(fix_fsi->walls, [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
-             [&](int kind, int k, const Mirror *mirror) { sum(kinds[kind], images[kind][k].rows, both(kind), mirror); });
+             [&](int kind, int k, const Mirror *mirror) { one(kind, images[kind][k], visible_images[k], mirror); });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
-  distance_sums(solids_too, [&](PairKind kind, const std::vector<Row> &which, bool both, const Mirror *mirror) {
-    loops->number_density(kind, which, both, mirror, particles_at(nullptr), FixFSI::rows(atom->x), psi);
-  });
+  distance_sums(solids_too, particles_at(nullptr),
+                [&](const FluidLoops &of, PairKind kind, const std::vector<Row> &which, bool both, const Mirror *mirror, const FluidParticles &particles) {
+                  of.number_density(kind, which, both, mirror, particles, FixFSI::rows(atom->x), psi);
+                });
 }
 
 void PairFSIFluid::add_position_divergence(double *div)
 {
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
-  distance_sums(false, [&](PairKind, const std::vector<Row> &which, bool both, const Mirror *mirror) {
-    loops->position_divergence(which, both, mirror, particles_at(nullptr), FixFSI::rows(atom->x), volume.data(), div);
-  });
+  distance_sums(false, particles_at(nullptr),
+                [&](const FluidLoops &of, PairKind, const std::vector<Row> &which, bool both, const Mirror *mirror, const FluidParticles &particles) {
+                  of.position_divergence(which, both, mirror, particles, FixFSI::rows(atom->x), volume.data(), div);
+                });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -698,9 +770,10 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
   const int *const type = atom->type;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) { p.vol = 1.0 / fix_fsi->resolution[type[i]].psi_bulk; });
   std::vector<double> sums(ROW * nall, 0.0);
-  distance_sums(false, [&](PairKind kind, const std::vector<Row> &which, bool, const Mirror *mirror) {
-    loops->shifts(kind, which, mirror, particles, fix_fsi->wdx, sums.data());
-  });
+  distance_sums(false, particles,
+                [&](const FluidLoops &of, PairKind kind, const std::vector<Row> &which, bool, const Mirror *mirror, const FluidParticles &in) {
+                  of.shifts(kind, which, mirror, in, fix_fsi->wdx, sums.data());
+                });
   for (size_t i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d];
 }
@@ -777,14 +850,21 @@ template <int D> void PairFSIFluid::compute_forces()
     p.pv2 = p.p * p.vol * p.vol;
   });
 
+  if (fix_fsi->ledger) taken.assign((size_t) row_of_points(D) * nall, 0.0);
   const ForceLaws laws = {alpha, beta, laminar, extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
                     fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
                     FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr,
-                    fix_fsi->body_forces.of_type.data()};
+                    fix_fsi->body_forces.of_type.data(), fix_fsi->ledger ? taken.data() : nullptr};
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
-  for (int kind = 0; kind < NROWS; kind++)
-    force_loops(kind).forces(kinds[kind], (near_known ? near : rows)[kind].rows, nullptr, particles, laws, forces.data(), nullptr, of_pairs);
+  double guarding[NROWS] = {};
+  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of, const Mirror *mirror, double *total) {
+    const double before = sums.guard;
+    force_loops(kind).forces(kinds[kind], which.rows, mirror, of_rows(particles, kind, which, parts_of), laws, forces.data(), total, of_pairs);
+    guarding[kind] += sums.guard - before;
+  };
+  const auto nearest = [&](int kind, const RowList &all, const RowList &known) -> const RowList & { return kind == HIDDEN ? all : known; };
+  for (int kind = 0; kind < NROWS; kind++) loop(kind, nearest(kind, rows[kind], (near_known ? near : rows)[kind]), visible, nullptr, nullptr);
 
   const Walls &walls = fix_fsi->walls;
   const auto &which = near_known && !walls.finite() ? near_images : images;
@@ -793,7 +873,7 @@ template <int D> void PairFSIFluid::compute_forces()
              [&](int kind, int reflection, const Mirror *mirror) {
                const auto &s = walls.reflections[reflection];
                double total[D] = {};
-               force_loops(kind).forces(kinds[kind], which[kind][reflection].rows, mirror, particles, laws, forces.data(), total, of_pairs);
+               loop(kind, nearest(kind, images[kind][reflection], which[kind][reflection]), visible_images[reflection], mirror, total);
                for (int d = 0; d < D; d++) {
                  int w = s.w[0];
                  for (int k = 1; k < s.n; k++)
@@ -813,6 +893,8 @@ template <int D> void PairFSIFluid::compute_forces()
   fix_fsi->tally(FixFSI::LAMINAR, sums.laminar);
   fix_fsi->tally(FixFSI::COUPLING, sums.coupling);
   fix_fsi->tally(FixFSI::WALLS, sums.walls);
+  fix_fsi->guarding[0] = guarding[WALLS];
+  fix_fsi->guarding[1] = guarding[SOLIDS];
   if (tally_pairs && (vflag_global || vflag_fdotr))
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
@@ -831,6 +913,7 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   const std::vector<Contact> no_guards(guards.size(), Contact(D, 0.0));
   laws.guard = no_guards.data();
   laws.extrapolate = laws.gravity = nullptr;
+  laws.taken = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
   for (const int kind : {WALLS, SOLIDS}) force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
@@ -869,7 +952,7 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity() + parts.capacity() + part_rates.capacity();
+  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity() + parts.capacity() + part_rates.capacity() + visible.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double) + (double) beside.capacity() * sizeof(beside[0]);
   for (const auto *lists : {rows, near})
     for (int kind = 0; kind < NROWS; kind++) bytes += lists[kind].memory_usage();

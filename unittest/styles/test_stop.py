@@ -139,6 +139,25 @@ def test_nan_between_runs(quantity, row, word):
             s.run(10)
 
 
+@pytest.mark.parametrize("ranks", (1, 2))
+def test_fluid_inside_a_body(tmp_path, ranks):
+    """Named before a higher speed of sound, which would not help; not where it is outside"""
+    for inside in (True, False):
+        scene = dam_gate(2)
+        plate = np.flatnonzero(scene.type == 2)
+        scene.v[0] = [0.0, 15.0, 0.0]
+        if inside:
+            middle = scene.x[plate].mean(0)
+            nearest = plate[np.linalg.norm(scene.x[plate] - middle, axis=1).argmin()]
+            scene.x[0] = scene.x[nearest] + [0.003, 0.002, 0.0]
+        message = error(lammps(tmp_path / f"{inside}", total_lagrangian(scene.text()) + "run 5\n", ranks, scene_data=scene.data()))
+        found = re.search(rf"step 0, atom {scene.ids[0]} .*, (\S+) from atom (\d+) of body \d+, whose spacing is {DX}: fluid inside a solid\. Try .*; a higher", message)
+        assert bool(found) == inside and ("fluid inside" in message) == inside
+        if inside:
+            away = np.linalg.norm(scene.x[plate] - scene.x[0], axis=1)
+            assert scene.ids[plate[away.argmin()]] == int(found[2]) and abs(away.min() - float(found[1])) < 0.05 * away.min()
+
+
 def test_nan_force_in_the_run(tmp_path):
     """Forces of another style: caught before they get into velocities. The particle next to it is not blamed."""
     with Scene(lattice([6, 6], 0.1), dx=0.1, dt=1e-4, commands=["fix ext all external pf/callback 1 1"]) as s:

@@ -87,31 +87,32 @@ def plate_between(dim, seed=3):
     return x, np.arange(len(x)) >= len(fluid)
 
 
-def crosses(x, i, j, dim, top=0.03):
-    """Does the line between i and j go through the rectangle between the outermost of the plate's particles?"""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t = x[i, 0] / (x[i, 0] - x[j, 0])
-        at = x[i] + t[:, None] * (x[j] - x[i])
-    inside = (t > 0) & (t < 1) & (at[:, 1] < top) & (at[:, 1] > top - 9 * 0.05)
-    return inside & (at[:, 2] > 0.025) & (at[:, 2] < 0.675) if dim == 3 else inside
+def smooth(t):
+    t = np.clip(t, 0, 1)
+    return t * t * (3 - 2 * t)
 
 
-def on_two_sides(x, plate, i, j, cut):
-    """Do the normals at i and j differ by more than 120 degrees? Means of what is on the nearest one's side, by (1 - r^2/cut^2)^3"""
-    normal = np.zeros((len(x), 3))
-    for k in np.unique(np.concatenate([i, j])):
-        d = x[plate] - x[k]
-        nearest = d[(d**2).sum(1).argmin()]
-        side = d[d @ nearest > 0]
-        normal[k] = (np.maximum(1 - (side**2).sum(1) / cut**2, 0)[:, None]**3 * side).sum(0)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
-    return (normal[i] * normal[j]).sum(1) < -0.5
+def visible(x, y, plate, ds, cut):
+    """Part of what is at y that is seen from x past particles of a plate, all points (theory.rst)"""
+    line = y - x
+    length = np.linalg.norm(line)
+    t = (plate - x) @ line / length**2
+    off = plate - x - t[:, None] * line
+    near = 1 - (off**2).sum(1) / ds**2
+    met = np.where((t > 0) & (t < 1) & (near > 0), 4 * t * (1 - t) * near**2, 0)
+    if met.sum() <= 0.15:
+        return 1.0
+    middle = met @ t / met.sum()
+    radius = max(cut - length * max(middle, 1 - middle), ds)
+    rest = 1 - ((off**2).sum(1) + ((t - middle) * length)**2) / radius**2
+    weight = np.where((rest > 0) & (((plate - x)**2).sum(1) < cut**2) & (((plate - y)**2).sum(1) < cut**2), rest, 0)**2
+    lean = np.linalg.norm(weight @ off) / (0.3 * radius * weight.sum())
+    return 1 - smooth((met.sum() - 0.15) / 0.35) * smooth((0.4 - lean) / 0.3)
 
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_which_pairs(dim):
-    """Pressure put up on the plate's right is felt on its left by those pairs alone whose line does not cross it, or that are not on two opposite sides: round
-    its edges, not through it."""
+    """Pressure put up on the plate's right is felt on its left by what each pair has left: nothing through its middle, all round its edges"""
     x, plate = plate_between(dim)
     with Scene(x, dim=dim, dx=0.1, type=1 + plate, mol=1 + plate, held=plate, materials=(WATER, WALL), density="spacing 2 0.05 thin 2",
                fluid="tension yes", commands=["fix w held fsi/wall/particle"]) as s:
@@ -122,29 +123,71 @@ def test_which_pairs(dim):
         s.run()
         change, V, p = s.get("f") - f, s.get("rmass") / s.get("rho"), s.p
         i, j, d, r = pairs(x, s.kernel.cut)
-        across = left[i] & right[j]
-        free = across.copy()
-        free[across] = ~(crosses(x, i[across], j[across], dim) & on_two_sides(x, plate, i[across], j[across], s.kernel.cut))
-        i, j, d, r = (a[free] for a in (i, j, d, r))
-        expected = sum_over(i, -((p * V**2 - p0 * V0**2)[j] * s.kernel.g(r))[:, None] * d, s.n)
-        assert free.sum() > 10 and (across & ~free).sum() > 40
+        i, j, d, r = (a[left[i] & right[j]] for a in (i, j, d, r))
+        seen = np.array([visible(x[a], x[b], x[plate], 0.05, s.kernel.cut) for a, b in zip(i, j)])
+        expected = sum_over(i, -(seen * (p * V**2 - p0 * V0**2)[j] * s.kernel.g(r))[:, None] * d, s.n)
+        assert (seen == 1).sum() > 10 and (seen < 0.05).sum() > 40 and ((seen > 0.1) & (seen < 0.9)).sum() > 5
         close(change[left], expected[left], 1e-9)
 
 
 @pytest.mark.parametrize("first", [0, 1, 2])
-@pytest.mark.parametrize("beyond, seen", [(0.4, True), (-0.6, False)])
-def test_past_an_edge(first, beyond, seen):
-    """What a gauge sees in 3D, on each axis: a particle behind the plate along a line 0.4 of the plate's spacing beyond its edge, not 0.6 inside. Seen along the
-    line the nearest of the plate is at 45 degrees, where a wrong sign in the plane of sight makes a line of it, without a gap of more than half a turn."""
-    ds = 0.05
-    plate = np.array([[0, (k - 0.4) * ds, -(m + beyond) * ds] for k in range(-5, 7) for m in range(8)])
+@pytest.mark.parametrize("inside, seen", [(-0.2, True), (0.5, True), (2.5, False)])
+def test_past_an_edge(first, inside, seen):
+    """What a gauge sees in 3D, on each axis: a particle behind the plate along a line that misses its edge, or that meets it half a spacing of the
+    water from its edge, but not one deeper inside"""
+    ds, dx = 0.05, 0.1
+    plate = np.array([[0, (k - 0.4) * ds, inside * dx - (m + 0.5) * ds] for k in range(-8, 9) for m in range(12 + round(inside / 0.5))])
     x = np.roll(np.concatenate([[[0.05, 0, 0]], plate]), first, axis=1)
     rigid = np.arange(len(x)) > 0
     gauge = " ".join(map(str, np.roll([-0.05, 0, 0], first)))
-    with Scene(x, dim=3, dx=0.1, type=1 + rigid, mol=1 + rigid, held=rigid, materials=(WATER, WALL), density="spacing 2 0.05 thin 2",
+    with Scene(x, dim=3, dx=dx, type=1 + rigid, mol=1 + rigid, held=rigid, materials=(WATER, WALL), density="spacing 2 0.05 thin 2",
                commands=["fix w held fsi/wall/particle", f"compute seen all fsi/probe rho point {gauge} point {gauge}"]) as s:
         s.run()
         assert (s.compute_vector("seen")[0] > 0) == seen
+
+
+@pytest.mark.parametrize("ratio", [1, 2, 4])
+def test_a_free_edge_in_water_under_pressure(ratio):
+    """Water on its lattice all around the end of a plate one spacing thick, under one pressure, is in balance: what is hidden is what the plate counts
+    more. Forces of the lattices alone, which are smeared cell by cell, are below 1 % of p dx; with all of a side they would be 30 %. Bound: 3 %."""
+    dx, ds, n = 0.1, 0.1 / ratio, 12
+    water = lattice([17, 20], dx, centre=True)
+    water = water[(np.abs(water[:, 0]) > 0.1 * dx) | (water[:, 1] > 0)]
+    plate = lattice([ratio, n * ratio], ds, origin=np.array([-dx / 2, -n * dx]))
+    x = np.concatenate([water, plate])
+    solid = np.arange(len(x)) >= len(water)
+    with Scene(x, dx=dx, type=1 + solid, mol=1 + solid, held=solid, materials=(WATER, WALL), density=f"spacing 2 {ds!r} thin 2",
+               commands=["fix w held fsi/wall/particle"]) as s:
+        s.put("rho", np.full(len(x), 1010.0))
+        s.run()
+        p = s.p[0]
+        inner = ~solid & (np.abs(x[:, 0]) < 5 * dx) & (np.abs(x[:, 1]) < 6 * dx)
+        push = np.abs(s.get("f")[inner]).max() / (p * dx)
+        print(f"largest force {push:.4f} p dx")
+        assert push < 0.03
+
+
+def blade(skin, thin="thin 2"):
+    """A still blade in water that streams past it, as a tank's beginning: positions after 200 steps"""
+    dx = 0.01
+    water, v = cloud([24, 16], dx, jitter=0.1, vmax=0.5)
+    water = water[(np.abs(water[:, 0] - 0.12) > dx) | (water[:, 1] > 0.1)]
+    plate = lattice([1, 10], dx, origin=np.array([0.115, 0]))
+    x = np.concatenate([water, plate])
+    wall = np.arange(len(x)) >= len(water)
+    v = np.where(wall[:, None], 0, 0.5 * np.random.default_rng(2).standard_normal(x.shape) * [1, 1, 0])
+    with Scene(x, v, dx=dx, type=1 + wall, mol=1 + wall, held=wall, materials=(WATER, WALL), density=thin, fluid="sound 20 artificial/visc 0.05 0 density/diffusion 0.1",
+               dt=2e-4, skin=skin, commands=["neigh_modify every 1 delay 0 check yes", "fix w held fsi/wall/particle", "fix g all gravity 9.81 vector 0.6 -0.8 0",
+                                             "fix m all fsi/wall/mirror xlo 0 xhi 0.24 ylo 0"]) as s:
+        s.run(200)
+        return s.get("x")
+
+
+def test_lists_do_not_matter():
+    """Who is hidden is asked in every step: lists that are built more or less often change nothing but round-off, which grows by some 1e3 in this time"""
+    often, rarely = blade(0.002), blade(0.006)
+    assert np.abs(often - rarely).max() < 1e-10 * 0.01 * 1e3
+    assert np.abs(often - blade(0.002, "")).max() > 1e-4 * 0.01
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -180,6 +223,57 @@ def test_thick_bodies_do_not_change(dim):
             found.append((s.get("f"), s.get("rho"), s.get("x")))
     for plain, thin in zip(*found):
         close(thin, plain, 1e-11)
+
+
+# ---- water that comes near the particles of a solid (solid/guard of pair_style fsi/fluid) ----
+
+def beside_plate(dim, ratio, near, **options):
+    """A fluid particle at `near` of the mean spacing from one of a held plate, and two more behind"""
+    dx, ds = 0.1, 0.1 / ratio
+    plate = lattice([4] + [4 * ratio] * (dim - 1), ds, centre=True)
+    x = np.concatenate([[[plate[0, 0] - near * (dx + ds) / 2, ds / 2, 0]], plate])
+    if dim == 3:
+        x[0, 2] = ds / 2
+    s = np.arange(len(x)) > 0
+    return x, s, dict(dim=dim, dx=dx, type=1 + s, mol=1 + s, held=s, materials=(WATER, RUBBER), solid_style="fsi/solid/tl", density=f"spacing 2 {ds!r}",
+                      commands=["compute e all fsi/energy"], **options)
+
+
+@pytest.mark.parametrize("dim, ratio", [(2, 1), (2, 4), (3, 1), (3, 2)])
+@pytest.mark.parametrize("guard", [0.5, 0.9])
+def test_solid_guard(dim, ratio, guard):
+    """Force and energy of the pairs nearer than it, against numpy: K dx (dx_s/dx)^(D-1) d^(D-2) (1-r/d)^2/2 times d^2, K = rho c^2; none beyond"""
+    x, solid, scene = beside_plate(dim, ratio, 0.4)
+    f, e = [], []
+    for d in (0, guard):
+        with Scene(x, fluid=f"tension yes solid/guard {d}", **scene) as s:
+            s.run()
+            f.append(s.get("f"))
+            e.append(s.ledger()[9])
+    K, ds, d = 1000 * 10.0**2, 0.1 / ratio, guard * 0.05 * (1 + 1 / ratio)
+    k = K * (0.1 if dim == 3 else 1) / ratio**(dim - 1)
+    r = np.linalg.norm(x[1:] - x[0], axis=1)
+    gap = np.maximum(d - r, 0)
+    push = -(k * gap / r)[:, None] * (x[1:] - x[0])
+    assert ds > 0 and (gap > 0).any()
+    close(f[1] - f[0], np.concatenate([[push.sum(0)], -push]), 1e-10)
+    assert abs(e[1] - e[0] - 0.5 * k * (gap**2).sum()) < 1e-10 * k * (gap**2).sum()
+
+
+@pytest.mark.parametrize("guard, through", [("", 0), ("solid/guard 0", 12)])
+def test_spray_and_a_fine_body(guard, through):
+    """A dozen particles of spray without pressure, 0.3 c fast, one after the other on a body 4 times finer: by default none gets in"""
+    dx, ds, speed = 0.1, 0.025, 3.0
+    plate = lattice([4, 64], ds, origin=np.array([0, -0.3]))
+    spray = np.zeros((12, 3))
+    spray[:, 0], spray[:, 1] = -0.2 - 0.35 * np.arange(12), np.random.default_rng(1).uniform(0.2, 0.8, 12)
+    x = np.concatenate([spray, plate])
+    solid = np.arange(len(x)) >= 12
+    with Scene(x, np.where(solid[:, None], 0, [speed, 0, 0]), dx=dx, type=1 + solid, mol=1 + solid, held=solid, materials=(WATER, "solid rho 1000 young 1e6 poisson 0.3"),
+               solid_style="fsi/solid/tl", density=f"spacing 2 {ds!r}", fluid=f"artificial/visc 0.05 0 {guard}", dt=0.005, skin=0.03, box=((-12, -3, 0), (12, 4, 0))) as s:
+        s.put("rho", np.where(solid, 1000.0, 700.0))
+        s.run(400)
+        assert (s.get("x")[:12, 0] > -ds / 2).sum() == through
 
 
 # ---- conservation, ranks, restart ----
