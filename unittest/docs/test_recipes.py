@@ -27,7 +27,7 @@ def go(folder, name, ranks=1, more="", **variables):
 
 def shown(text):
     """Names of the recipes that a page shows or names."""
-    return set(re.findall(r"recipes/([\w.]+\w)", text))
+    return set(re.findall(r"recipes/(\w+\.\w+)", text))
 
 
 def test_every_recipe_is_on_a_page_that_the_index_names():
