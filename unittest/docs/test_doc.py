@@ -146,8 +146,8 @@ def test_every_bundled_material_is_on_its_page():
 def test_howto_deck(tmp_path):
     """The deck of the Howto, shortened to the first contact."""
     text = (PAGES / "in.howto").read_text()
-    assert "run           1250" in text
-    log = run(tmp_path, text.replace("run           1250", "run 600")).output
+    assert "stop 0.2\n" in text
+    log = run(tmp_path, text.replace("stop 0.2\n", "stop 0.11\n")).output
     energy = [float(line.split()[-1]) for line in log.splitlines() if re.match(r"\s+\d+ +[\d.e-]+ +[\d.e-]+ +\d", line)]
     assert len(energy) >= 2 and abs(energy[-1] / energy[0] - 1.0) < 1e-3
 

@@ -10,26 +10,49 @@ from scenes import run
 
 from fsi import dump, fill, launch, log, paths
 
-RECIPES = paths.ROOT / "doc/src/recipes"
+PAGES = paths.ROOT / "doc/src"
+RECIPES = PAGES / "recipes"
 
 
-def go(folder, name, ranks=1, **variables):
-    """Runs a recipe as it is, beside copies of all; its log."""
+def go(folder, name, ranks=1, more="", **variables):
+    """Runs a recipe as it is, next to copies of all; its log. more: commands after its own."""
     folder.mkdir(exist_ok=True)
     for path in RECIPES.iterdir():
         if not (folder / path.name).exists():
             (folder / path.name).write_text(path.read_text())
     arguments = [word for key, value in variables.items() for word in ("-var", key, str(value))]
-    run(folder, (RECIPES / name).read_text(), ranks, arguments=arguments)
+    run(folder, (RECIPES / name).read_text() + more, ranks, arguments=arguments)
     return log.read(folder / "log.lammps")
 
 
-def test_every_recipe_is_on_the_page():
-    text = (paths.ROOT / "doc/src/Howto_recipes.rst").read_text()
-    assert not [path.name for path in RECIPES.iterdir() if f"recipes/{path.name}" not in text]
+def shown(text):
+    """Names of the recipes that a page shows or names."""
+    return set(re.findall(r"recipes/(\w+\.\w+)", text))
 
 
-@pytest.mark.parametrize("name", ["in.bodies", "in.turned", "in.tear", "in.channel", "in.inflow", "in.fine"])
+def test_every_recipe_is_on_a_page_that_the_index_names():
+    index = (PAGES / "Howto_recipes.rst").read_text()
+    named = re.findall(r"^   \* - :doc:`[^<`]+<(\w+)>`", index, re.M)
+    listed = re.findall(r"^   (\w+)$", index.partition(".. toctree::")[2], re.M)
+    assert sorted(named) == sorted([*listed, "tutorial_own_body"])
+    found = set().union(*(shown((PAGES / f"{name}.rst").read_text()) for name in named))
+    assert sorted(path.name for path in RECIPES.iterdir()) == sorted(found)
+
+
+@pytest.mark.parametrize("page", sorted(path.stem for path in PAGES.glob("Howto_*.rst") if path.stem[6:] not in ("fsi", "recipes", "peers")))
+def test_page_of_a_recipe(page):
+    """A picture, the deck, how to run it, and three bullets: one screen."""
+    text = (PAGES / f"{page}.rst").read_text()
+    assert len(text.splitlines()) <= 50 and text.count(".. figure::") == 1 and ".. literalinclude:: recipes/" in text
+    assert ".. code-block:: bash" in text and len(re.findall(r"^\* ", text, re.M)) == 3
+
+
+@pytest.mark.parametrize("deck", sorted(path.name for path in RECIPES.glob("in.*")))
+def test_deck_is_short(deck):
+    assert len([line for line in (RECIPES / deck).read_text().splitlines() if line.strip()]) <= 36
+
+
+@pytest.mark.parametrize("name", ["in.float", "in.loose", "in.flap", "in.turned", "in.tear", "in.channel", "in.inflow", "in.fine"])
 def test_deck(tmp_path, name):
     found = go(tmp_path, name, n=20)
     assert found.finished[-1].steps == 20 and not found.warnings
@@ -44,6 +67,27 @@ def test_stl(tmp_path):
     np.testing.assert_allclose(low, 0.055 - 0.5 * 9.81 * time**2, atol=1e-6)  # printed with eight digits
 
 
+def test_float_is_at_rest_where_archimedes_says(tmp_path):
+    """The middle of its first swings: it sinks from a draft of 0.03 to 0.05 m while the level rises by 0.2 x 0.02/0.6 m; to a fifth of a spacing."""
+    found = go(tmp_path, "in.float", n=3000)
+    heave = found.column("v_heave")
+    assert not found.warnings and 0.5 * (heave.min() + heave[len(heave) // 2:].max()) == pytest.approx(-0.02 + 0.2 * 0.02 / 0.6, abs=0.002)
+
+
+def test_piston_moves_as_given(tmp_path):
+    found = go(tmp_path, "in.piston", n=500, more='print "FSI moved $(xcm(piston,x)+0.02)"\nprint "FSI time $(time)"\n')
+    assert not found.warnings and found.values["moved"] == pytest.approx(0.03 * np.sin(2 * np.pi * found.values["time"]), rel=1e-6)
+
+
+def test_cylinder_on_a_spring(tmp_path):
+    """50 particles of twice the density of water in rings, which is 1.99 times the mass of the disc; the spring is of 2 Hz in vacuo."""
+    fill.main([str(RECIPES / "circle.csv"), "0.0125", str(tmp_path / "cylinder.data"), "--rings", "--type", "2"])
+    found = go(tmp_path, "in.spring", n=20, more='print "FSI mass $(mass(cylinder))"\nprint "FSI force $(f_5[2])"\nprint "FSI y $(v_y)"\n')
+    mass = found.values["mass"]
+    assert not found.warnings and mass / (1000 * np.pi * 0.05**2) == pytest.approx(1.99, abs=0.005)
+    assert found.values["force"] == pytest.approx(-mass * (2 * np.pi * 2)**2 * (found.values["y"] + 0.02), rel=0.01)  # f: of half a step before
+
+
 def test_runs_to_times(tmp_path):
     """Both runs end where they are told to, pictures are at equal times, and the water is held until the gate goes."""
     found = go(tmp_path, "in.time", tend=0.2)
@@ -56,19 +100,19 @@ def test_runs_to_times(tmp_path):
 
 def test_half_is_half_of_the_whole(tmp_path):
     """Images in the plane of symmetry are what the other half is: front and forces agree to the digits that are printed, before the first splash."""
-    half, whole = (go(tmp_path / which, "in.half", half=which, tend=0.1) for which in ("yes", "no"))
+    half, whole = (go(tmp_path / which, "in.half", left=left, tend=0.1) for which, left in (("half", "0.0"), ("whole", "-0.4")))
     assert whole.finished[0].atoms == 2 * half.finished[0].atoms == 1600 and not half.warnings + whole.warnings
     np.testing.assert_allclose(half.column("v_front"), whole.column("v_front"), rtol=1e-7)
     np.testing.assert_allclose(2.0 * half.column("v_floor"), whole.column("v_floor"), rtol=1e-6)
 
 
-@pytest.mark.parametrize("friction, value", [("laminar", 5.0e-5), ("artificial", 4.4e-5)])
+@pytest.mark.parametrize("friction, value", [("laminar/visc", 5.0e-5), ("artificial/visc 0.1 0", 4.4e-5)])
 def test_viscosity_is_what_the_page_says(tmp_path, friction, value):
     """And within 2 and 6 % of 0.0459/917 and of alpha's formula, as it says."""
     found = go(tmp_path, "in.slow", friction=friction)
     assert not found.warnings and found.values["viscosity"] == pytest.approx(value, abs=0.05e-5)  # its digits
     assert found.values["of_alpha"] == pytest.approx(0.1 * 1.5 * 0.01 * 0.5 / 16)
-    assert found.values["viscosity"] == pytest.approx({"laminar": 0.0459 / 917, "artificial": found.values["of_alpha"]}[friction], rel=0.065)
+    assert found.values["viscosity"] == pytest.approx(0.0459 / 917 if friction == "laminar/visc" else found.values["of_alpha"], rel=0.065)
 
 
 def test_water_that_is_added(tmp_path):
