@@ -9,7 +9,7 @@ import pytest
 from fsi import paths, scene
 
 ROWS = scene.analysis("hard").ROWS
-GOOD = ("drop", "spin", "spray", "splash", "tear", "empty", "jump_plate")  # rows whose runs take a second or two
+GOOD = ("drop", "spin", "spray", "splash", "tear", "locking", "empty", "jump_plate")  # rows whose runs take a second or two
 
 
 def short(*names):
@@ -36,13 +36,13 @@ def test_short_form(monkeypatch, tmp_path):
     """Best passes what it must; the paper's recipe clumps the drop and breaks the spinning plate; both are told."""
     status, table = run_cases(monkeypatch, tmp_path, short(
         "drop.best", "drop.paper", "spin.best", "spin.paper", "spray_1.best", "spray_2.best", "spray_3.best", "splash_2.best",
-        "tear_serial.best", "tear.best", "empty.best", "jump_plate.best"))
+        "tear_serial.best", "tear.best", "lock_4_0.49.best", "empty.best", "jump_plate.best"))
     assert status == 0 and set(table) == set(GOOD)
     assert all(table[name]["best"]["pass"] for name in GOOD)
     assert not table["drop"]["paper"]["pass"] and not table["spin"]["paper"]["pass"]
     assert table["drop"]["best"]["worst"]["distance"] > 0.7 > 0.3 > table["drop"]["paper"]["worst"]["distance"]
     page = (tmp_path / "README.md").read_text()
-    assert "passes 7 of 7 rows" in page and "fails 2 of the 2" in page and (tmp_path / "hard.png").exists()
+    assert "passes 8 of 8 rows" in page and "fails 2 of the 2" in page and (tmp_path / "hard.png").exists()
     assert "FAIL" in page and (tmp_path / "hard.csv").read_text().count("\n") > 15
 
 
