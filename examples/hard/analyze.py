@@ -103,6 +103,17 @@ def gate(folder):
     return {"deflection_error": abs(found["tip_x"]["value"] / 34.81 - 1.0)}
 
 
+def locking(folder):
+    """Tip of a cantilever under its weight over that of finite elements (Q2/P1, plane strain, length 6 H: unittest/elements.py)."""
+    given = json.loads((Path(folder) / RUN_FILE).read_text())["variables"]
+    exact = {"0.49": 1.1505, "0.499": 1.1353}[given["nu"]] * 1000 * 2 * 0.24**4 / (2e6 * 0.04**2)
+    first, last = frames_of(folder)[0], frames_of(folder)[-1]
+    x, sunk = first["x"], first["y"] - last["y"]
+    column = np.round((x - x.max()) / values_of(folder)["dx"])
+    tip = 1.5 * sunk[column == 0].mean() - 0.5 * sunk[column == -1].mean()
+    return {"deflection_error": abs(tip / exact - 1.0)}
+
+
 def breaking(folder):
     return {"leaked": scene_figures(folder, "elastic_gate")["particles_leaked"]["value"]}
 
@@ -286,6 +297,8 @@ ROWS = {
                  f"{TL}, quadratic gradients"),
     **{f"gate_{n}": Row(f"gate, {n} particles thick, static load", f"gate_{n}", gate, {"deflection_error": ("<=", bound)}, "quadratic gradients")
        for n, bound in ((3, 0.4), (4, 0.25), (5, 0.15), (8, 0.08))},
+    "locking": Row("cantilever 4 particles thick, Poisson's ratio 0.49 and 0.499, static load", r"lock_.*", locking,
+                   {"deflection_error": ("<=", 0.03)}, "smoothed volumetric strain"),
     "break": Row("gates, 3, 4, 5, 8 particles thick, dam break", r"break_\d", breaking, {"leaked": ("<=", 0)}, f"{TL}, couple wall"),
     "density_gate": Row("gates of 0.1 and 10 times the density of water", "break_density_.*", breaking, {"leaked": ("<=", 0)},
                         f"{TL}, couple wall"),

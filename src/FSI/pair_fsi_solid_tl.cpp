@@ -259,11 +259,6 @@ template <class Call> void PairFSISolidTL::with_law(Call call)
 
 void PairFSISolidTL::internal_forces()
 {
-  if (atom->nmax > nmax) {
-    nmax = atom->nmax;
-    memory->destroy(fsolid);
-    memory->create(fsolid, nmax, row_of_forces(fix_fsi->dim), "pair:fsolid");
-  }
   if (fix_fsi->dim == 2) gather_points<2>();
   else gather_points<3>();
   const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
@@ -304,9 +299,15 @@ void PairFSISolidTL::find_rows()
 
 /* ---------------------------------------------------------------------- */
 
+// points, and forces of zero
 template <int D> void PairFSISolidTL::gather_points()
 {
   constexpr int NP = row_of_points(D);
+  if (atom->nmax > nmax) {
+    nmax = atom->nmax;
+    memory->destroy(fsolid);
+    memory->create(fsolid, nmax, row_of_forces(fix_fsi->dim), "pair:fsolid");
+  }
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   if (points.size() < (size_t) NP * atom->nmax) points.assign((size_t) NP * atom->nmax, 0.0);
   for (const auto *set : {&reference->solids, &reference->ghosts})
@@ -314,6 +315,7 @@ template <int D> void PairFSISolidTL::gather_points()
       for (int d = 0; d < D; d++) {
         points[NP * i + d] = x[i][d];
         points[NP * i + D + d] = v[i][d];
+        fsolid[i][d] = 0.0;
       }
   if (changes_seen == reference->changes) return;
   find_rows();
@@ -381,10 +383,6 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
   constexpr int ALL = HOURGLASS | VISCOSITY | SUMS;
   const int *const type = atom->type;
   const State *const state = fix_fsi->state.data();
-  for (const auto *set : {&reference->solids, &reference->ghosts})
-    for (const int i : *set)
-      for (int d = 0; d < D; d++) fsolid[i][d] = 0.0;
-
   const int nrows = only_moving ? nmoving : (int) rows.size();
   BondSums sums;
   const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr,

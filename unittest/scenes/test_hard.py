@@ -13,7 +13,7 @@ sys.path.insert(0, str(paths.ROOT / "bench"))
 import hard_pages  # noqa: E402
 
 ROWS = scene.analysis("hard").ROWS
-GOOD = ("drop", "spin", "spray", "splash", "tear", "hairpin", "empty", "jump_plate")  # rows whose runs take a second or two
+GOOD = ("drop", "spin", "spray", "splash", "tear", "locking", "hairpin", "empty", "jump_plate")  # rows whose runs take a second or two
 
 
 def short(*names):
@@ -40,18 +40,18 @@ def test_short_form(monkeypatch, tmp_path):
     """Best passes what it must; the paper's recipe clumps the drop and breaks the spinning plate; both are told."""
     status, table = run_cases(monkeypatch, tmp_path, short(
         "drop.best", "drop.paper", "spin.best", "spin.paper", "spray_1.best", "spray_2.best", "spray_3.best", "splash_2.best",
-        "tear_serial.best", "tear.best", "hairpin.best", "empty.best", "jump_plate.best"))
+        "tear_serial.best", "tear.best", "lock_4_0.49.best", "hairpin.best", "empty.best", "jump_plate.best"))
     assert status == 0 and set(table) == set(GOOD)
     assert all(table[name]["best"]["pass"] for name in GOOD)
     assert not table["drop"]["paper"]["pass"] and not table["spin"]["paper"]["pass"]
     assert table["drop"]["best"]["worst"]["distance"] > 0.7 > 0.3 > table["drop"]["paper"]["worst"]["distance"]
     found = json.loads((tmp_path / "hard.json").read_text())
-    assert found["runs"] == 13 and found["particle_steps"] > 1e5 and re.fullmatch(r"\d{4}-\d\d-\d\d", found["date"])
+    assert found["runs"] == 14 and found["particle_steps"] > 1e5 and re.fullmatch(r"\d{4}-\d\d-\d\d", found["date"])
     # of what is pictured the drop alone ran in both recipes, to 0.0076 s
     assert [(p["group"], round(p["here"], 4), round(p["classic"], 4)) for p in found["pictures"]] == [("drop", 0.0076, 0.0076)]
     monkeypatch.setattr(hard_pages, "HARD", tmp_path)
     page = hard_pages.hard_page()
-    assert "**8 of 8 cases pass with the recommended scheme. 0 of 2 pass with classic SPH.**" in page and "✗" in page
+    assert "**9 of 9 cases pass with the recommended scheme. 0 of 2 pass with classic SPH.**" in page and "✗" in page
     hard_pages.draw_hard(tmp_path / "hard.png")
     assert (tmp_path / "hard.png").stat().st_size > 1000
     assert (tmp_path / "hard.csv").read_text().count("\n") > 15
