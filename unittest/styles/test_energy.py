@@ -78,18 +78,18 @@ def imbalance(text, dt, time):
         lmp.close()
 
 
-@pytest.mark.parametrize("text, dt, time, bound", [(PLATE, 1.0e-5, 0.05, 5.0e-3), (DAM, 3.0e-4, 0.4, 2.0e-4), (BLOCK, 3.0e-4, 0.4, 5.0e-3)],
+@pytest.mark.parametrize("text, dt, time, bound", [(PLATE, 1.0e-5, 0.05, 5.0e-3), (DAM, 3.0e-4, 0.4, 1.0e-5), (BLOCK, 3.0e-4, 0.4, 5.0e-3)],
                          ids=["plate", "dam break", "block"])
 def test_ledger_closes_and_its_error_falls_with_the_time_step(text, dt, time, bound):
-    # works of dissipative terms are taken with the velocity at the start of the kick: first order in dt, so a quarter of
-    # the step leaves well under half of the error; 1e-3 is the bound that the package sets itself. Measured: 1.5e-3 and
-    # 2.7e-4 on the plate, 5.6e-5 and 1.4e-5 on the dam break, where kinetic and gravitational energy of different instants
-    # would show as 1e-3.
+    # works of fluids' terms are taken with the velocity in the middle of the step, those of solids and of diffusion at its start: first order
+    # in dt, so a quarter of the step leaves well under half of the error; 1e-3 is the bound that the package sets itself. Measured: 1.5e-3 and
+    # 2.7e-4 on the plate. On the dam break the error is 2e-6 with either step, a thirtieth of that with velocities at the start (5.6e-5 and
+    # 1.4e-5): no first order is left to fall, and a bound below both takes its place. Energies of different instants would show as 1e-3.
     coarse, fine = imbalance(text, dt, time), imbalance(text, dt / 4, time)
     print(f"ledger: {coarse:.1e} and {fine:.1e} of the energy exchanged, with a quarter of the time step")
     assert fine < 1.0e-3
     assert coarse < bound
-    assert fine < 0.5 * coarse
+    assert fine < (0.5 * coarse if text is not DAM else 5.0e-6)
 
 
 @pytest.mark.parametrize("height, lift", [(0.03, 0.0), (0.07, 0.0), (0.07, 0.2)], ids=["rests", "bounces", "is lifted"])
