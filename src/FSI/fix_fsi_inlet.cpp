@@ -22,6 +22,7 @@
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_record.h"
+#include "fsi_shift.h"
 #include "group.h"
 #include "input.h"
 #include "memory.h"
@@ -729,9 +730,9 @@ void FixFSIInlet::advance(bool advance)
     error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. The fluid does not follow the velocity that is given: "
                "it tears under suction, without keyword tension yes or background of pair_style fsi/fluid", who, id, served, "xyz"[axis], position, mean[BUFFER]);
 
-  double **const shift = fix_fsi->shift;
   for (auto &place : places) {
     const int i = place.i;
+    hold_shift(place);
     if (place.inside > 0.0 && of_buffer[i] == MEMBER) copy_place(i);
     if (place.inside > 0.0 && of_buffer[i] != PASSED) continue;
     const State &state = fix_fsi->state[atom->type[i]];
@@ -747,9 +748,26 @@ void FixFSIInlet::advance(bool advance)
     const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
     atom->rho[i] = state.density(std::max(p, state.floor));
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
-    if (fix_fsi->shifts) std::fill_n(shift[i], 2 * fix_fsi->dim, 0.0);
-    for (double *const v : fix_fsi->shift_velocity)
-      if (v) v[i] = 0.0;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Shifting carries nobody through the plane: the buffer, which moves as it is told to, could not give back what comes. Along the axis it
+   fades over the kernel's support before the plane; what is left there is less than the distance from it.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::hold_shift(const Place &place)
+{
+  double *const *const velocity = fix_fsi->shift_velocity;
+  const bool fills = velocity[0];
+  if (place.inside <= 0.0) {
+    if (fix_fsi->shifts) std::fill_n(fix_fsi->shift[place.i], 2 * fix_fsi->dim, 0.0);
+    for (int d = 0; fills && d < fix_fsi->dim; d++) velocity[d][place.i] = 0.0;
+  } else if (fix_fsi->shifts && place.inside < fix_fsi->cut) {
+    double *const shift = fix_fsi->shift[place.i];
+    const double part = place.inside / fix_fsi->cut;
+    fix_fsi->dim == 2 ? Shift<2>::reduce(shift, fills, axis, part) : Shift<3>::reduce(shift, fills, axis, part);
+    if (fills) velocity[axis][place.i] *= part;
   }
 }
 

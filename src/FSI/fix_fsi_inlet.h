@@ -131,6 +131,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   template <class Visit> void at_nodes(const double *x, double reach, Visit) const;
   int place_nodes();    // how many there are
   void measure();
+  void hold_shift(const Place &);
   bool at_plane(const double *x, double *values) const;
 };
 
