@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_record.h"
@@ -28,7 +29,9 @@
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
+#include "output.h"
 #include "region.h"
+#include "thermo.h"
 #include "update.h"
 #include "variable.h"
 
@@ -45,13 +48,19 @@ static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with
 static constexpr double TOLD = 0.05;    // part of a term of the fit that the fluid must tell from lower ones
 static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: no fluid to speak of
 static constexpr double OCCUPIED = 0.5;    // of the spacing: a place is taken by who is as near
+static constexpr double FAR = 0.1;    // of rho c^2: a pressure that is not one of a fluid that is hardly compressed
+static constexpr double SPARSE = 0.75;    // of the particles at the plane: a slice with fewer is not full
+static constexpr double NOT_FULL = 0.9;    // of the density: the number density of a particle at a free surface
+static constexpr double EXCESS = 0.02;    // of the mass near the plane that is worth a word
+static constexpr int WEIGH_EVERY = 100;    // steps
+static constexpr double SETTLE = 200.0;    // h/c: time in which number and volume come together
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
     length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0), gradient(0.0),
-    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), given{}
+    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fullness(0.0), last_buffer(-1.0), told{}, given{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
@@ -89,7 +98,7 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   force_reneighbor = 1;
   next_reneighbor = -1;    // whenever lists are built
   scalar_flag = vector_flag = 1;
-  size_vector = 10;
+  size_vector = 11;
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
@@ -220,6 +229,56 @@ void FixFSIInlet::init()
   zone_group = igroup;
   if (pressure.source == ATOM || std::any_of(velocity, velocity + 3, [](const Value &v) { return v.source == ATOM; }))
     zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
+  told = {};
+  if (pressure.source == NUMBER && is_far(pressure.number)) {
+    const State &soft = softest();
+    const double away = std::fabs(pressure.number - soft.p0);
+    error->all(FLERR, "{} {}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
+                      "most. Is it in units {}? Else take sound {:.3g} or more in pair_style fsi/fluid",
+               who, id, pressure.number, away / (soft.rho0 * soft.csq), soft.p0, FAR,
+               update->unit_style, std::sqrt(away / (FAR * soft.rho0)));
+  }
+  leave_an_id_free();
+}
+
+/* ----------------------------------------------------------------------
+   the fluid that a pressure compresses most; is a pressure out of its range?
+------------------------------------------------------------------------- */
+
+const State &FixFSIInlet::softest() const
+{
+  const State *soft = nullptr;
+  for (const auto &s : fix_fsi->state)
+    if (s.species == FLUID && (!soft || s.rho0 * s.csq < soft->rho0 * soft->csq)) soft = &s;
+  return soft ? *soft : fix_fsi->state[0];
+}
+
+bool FixFSIInlet::is_far(double p) const
+{
+  const State &soft = softest();
+  return soft.species == FLUID && std::fabs(p - soft.p0) > FAR * soft.rho0 * soft.csq;
+}
+
+/* ----------------------------------------------------------------------
+   Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps that
+   sort), before the buffers are filled, and as many may come as leave: so one is left free, below the
+   largest of a fluid.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::leave_an_id_free()
+{
+  if (!atom->tag_consecutive()) return;
+  tagint mine = 0, largest;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (fix_fsi->state[atom->type[i]].species == FLUID) mine = std::max(mine, atom->tag[i]);
+  MPI_Allreduce(&mine, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (largest == 0 || atom->natoms >= MAXTAGINT) return;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->tag[i] == largest) atom->tag[i] = static_cast<tagint>(atom->natoms) + 1;
+  if (atom->map_style == Atom::MAP_NONE) return;
+  forget_ghosts();
+  atom->map_init();
+  atom->map_set();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -260,7 +319,7 @@ void FixFSIInlet::forget_ghosts()
 }
 
 /* ----------------------------------------------------------------------
-   Before the first run: an empty buffer is filled with copies of the fluid before it
+   Before the first run: in an empty buffer the fluid before it goes on
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::setup_pre_exchange()
@@ -280,13 +339,7 @@ void FixFSIInlet::fill()
 {
   enum { BEHIND, AHEAD, BEYOND, WALLS_BEHIND, WALLS_AHEAD, NCOUNT };
   bigint own[NCOUNT] = {}, all[NCOUNT];
-  std::vector<Copy> copies;
-  const auto copy = [&](int i) {
-    const double *const x = atom->x[i], *const v = atom->v[i];
-    Copy c = {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i], atom->molecule[i], atom->type[i], atom->mask[i]};
-    c.x[axis] -= side * length;
-    copies.push_back(c);
-  };
+  std::vector<int> slices(number_of_slices(), 0);
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (s <= -2.0 * length || s >= length) continue;
@@ -294,10 +347,11 @@ void FixFSIInlet::fill()
     if (!is_fluid(i) || !in_patch(atom->x[i])) continue;
     if (s > 0.0) {
       own[AHEAD]++;
-      copy(i);
     } else {
       own[s > -length - 0.5 * fix_fsi->dx ? BEHIND : BEYOND]++;
       of_buffer[i] = MEMBER;
+      const size_t k = slice(-s);
+      if (k < slices.size()) slices[k]++;
     }
   }
   MPI_Allreduce(own, all, NCOUNT, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -311,15 +365,128 @@ void FixFSIInlet::fill()
   if (all[WALLS_AHEAD] > 0 && 2 * all[WALLS_BEHIND] < all[WALLS_AHEAD] && comm->me == 0)
     error->warning(FLERR, "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls should go on along the buffer, to {} = {:g}", who,
                    id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
+  if (all[BEHIND] > 0) check_slices(slices);
   if (all[BEHIND] == 0 && all[AHEAD] > 0) {
+    auto copies = go_on_behind();
     forget_ghosts();
     make(copies, true);
   }
+  find_places();    // of which variables are asked
   evaluate(velocity, 3, 0);
   for (int i = 0; i < atom->nlocal; i++)
     if (of_buffer[i])
       for (int d = 0; d < fix_fsi->dim; d++)
         if (velocity[d].source != EXTRAPOLATED) atom->v[i][d] = value(velocity[d], i, d);
+}
+
+/* ----------------------------------------------------------------------
+   Slices of a spacing, counted from the plane
+------------------------------------------------------------------------- */
+
+int FixFSIInlet::number_of_slices() const
+{
+  return static_cast<int>(std::round(length / fix_fsi->dx));
+}
+
+int FixFSIInlet::slice(double distance) const
+{
+  return std::max(0, static_cast<int>(std::ceil(distance / fix_fsi->dx - 1.0e-6)) - 1);
+}
+
+// of a buffer that the script has filled: a hole would come in again and again
+void FixFSIInlet::check_slices(const std::vector<int> &mine) const
+{
+  std::vector<int> all(mine.size());
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_INT, MPI_SUM, world);
+  const int most = *std::max_element(all.begin(), all.end());
+  const auto few = std::find_if(all.begin(), all.end(), [&](int n) { return n < 0.5 * most; });
+  if (few == all.end() || comm->me) return;
+  const double from = position - side * (few - all.begin()) * fix_fsi->dx;
+  error->warning(FLERR, "{} {}: its buffer has {} particles from {} = {:g} to {:g} and {} elsewhere: what is not "
+                        "there will not come in. Fill it to {} = {:g}, or leave it empty",
+                 who, id, *few, "xyz"[axis], from, from - side * fix_fsi->dx, most, "xyz"[axis],
+                 position - side * length);
+}
+
+/* ----------------------------------------------------------------------
+   Copies of the fluid at the plane that fill the buffer: of as many slices as are full, again and again,
+   so that its lattice goes on. A slice is not where the fluid ends, or where a body stands in the way of
+   the fluid at the plane.
+------------------------------------------------------------------------- */
+
+std::vector<FixFSIInlet::Copy> FixFSIInlet::go_on_behind() const
+{
+  const int most = number_of_slices(), full = full_slices();
+  if (full == 0 && !outlet)
+    error->all(FLERR, "{} {}: there is fluid of group {} before its plane {} = {}, but none within a spacing of it: "
+                      "fill what is between, or the buffer, to {} = {:g}", who, id, group->names[igroup],
+               "xyz"[axis], position, "xyz"[axis], position - side * length);
+  std::vector<Copy> copies;
+  if (full == 0) return copies;
+  const double period = fix_fsi->dx * full;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const x = atom->x[i], *const v = atom->v[i], s = inside(x);
+    if (s <= 0.0 || s >= length || !is_fluid(i) || !in_patch(x) || slice(s) >= full) continue;
+    Copy c = {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i],
+              atom->molecule[i], atom->type[i], atom->mask[i]};
+    for (int k = 1; slice(k * period - s) < most; k++) {
+      c.x[axis] = x[axis] - side * k * period;
+      copies.push_back(c);
+    }
+  }
+  return copies;
+}
+
+// places along the plane of the fluid within a spacing of it, by the first coordinate
+std::vector<FixFSIInlet::Column> FixFSIInlet::columns_at_plane() const
+{
+  std::vector<Column> own;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const x = atom->x[i], s = inside(x);
+    if (s > 0.0 && slice(s) == 0 && is_fluid(i) && in_patch(x)) own.push_back(along(x));
+  }
+  auto columns = gather_all(own, world);
+  std::sort(columns.begin(), columns.end(), [](const Column &a, const Column &b) { return a.at[0] < b.at[0]; });
+  return columns;
+}
+
+int FixFSIInlet::full_slices() const
+{
+  const int most = number_of_slices();
+  const double dx = fix_fsi->dx;
+  std::vector<int> mine(most, 0), count(most);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double s = inside(atom->x[i]);
+    if (s > 0.0 && slice(s) < most && is_fluid(i) && in_patch(atom->x[i])) mine[slice(s)]++;
+  }
+  MPI_Allreduce(mine.data(), count.data(), most, MPI_INT, MPI_SUM, world);
+  int full = 0, limit = most, all;
+  while (full < most && count[full] > 0 && count[full] >= SPARSE * count[0]) full++;
+
+  const auto columns = columns_at_plane();
+  int hole = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const State &state = fix_fsi->state[atom->type[i]];
+    const double s = inside(atom->x[i]);
+    if (s <= 0.0 || s >= length || state.species == FLUID || state.species == NONE) continue;
+    const Column here = along(atom->x[i]);
+    bool below = false, above = false;    // is there fluid on the same line?
+    for (const Column &c : columns) {
+      if (std::fabs(c.at[1] - here.at[1]) >= 0.5 * dx) continue;
+      below = below || c.at[0] < here.at[0];
+      above = above || c.at[0] > here.at[0];
+      if (std::fabs(c.at[0] - here.at[0]) < 0.5 * dx)
+        limit = std::min(limit, static_cast<int>((s - 0.5 * fix_fsi->dx_of(atom->type[i])) / dx + 1.0e-6));
+    }
+    if (state.species == SOLID && slice(s) == 0 && below && above && !hole++)
+      error->warning(FLERR, "{} {}: atom {} of a solid is within a spacing of its plane {} = {}: behind it the buffer "
+                            "has a hole, and what is not there will not come in. Move the solid or the plane, or "
+                            "fill the buffer, to {} = {:g}", who, id, atom->tag[i], "xyz"[axis], position,
+                     "xyz"[axis], position - side * length);
+  }
+  limit = std::max(limit, 1);
+  MPI_Allreduce(&limit, &all, 1, MPI_INT, MPI_MIN, world);
+  return std::min(full, all);
 }
 
 /* ----------------------------------------------------------------------
@@ -329,15 +496,7 @@ void FixFSIInlet::fill()
 
 void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
 {
-  int n = own.size() * sizeof(Copy), total = 0;
-  std::vector<int> counts(comm->nprocs), starts(comm->nprocs);
-  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  for (int k = 0; k < comm->nprocs; k++) {
-    starts[k] = total;
-    total += counts[k];
-  }
-  std::vector<Copy> copies(total / sizeof(Copy));
-  MPI_Allgatherv(own.data(), n, MPI_BYTE, copies.data(), counts.data(), starts.data(), MPI_BYTE, world);
+  std::vector<Copy> copies = gather_all(own, world);
   if (copies.empty()) return;
   double low = inside(copies[0].x), high = low;
   for (auto &c : copies) {
@@ -378,7 +537,9 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
   MPI_Allreduce(&largest, &id_now, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   for (size_t k = 0; k < copies.size(); k++)
     if (occupied[k]) copies[k].parent = 0;
-  std::sort(copies.begin(), copies.end(), [](const Copy &b, const Copy &c) { return b.parent < c.parent; });
+  std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) {
+    return b.parent < c.parent || (b.parent == c.parent && inside(b.x) > inside(c.x));
+  });
 
   const int first = atom->nlocal;
   bigint wanted = 0, made, mine;
@@ -430,8 +591,7 @@ void FixFSIInlet::pre_exchange()
     const double *const x = atom->x[i], s = inside(x);
     if (s > 0.0 && !of_buffer[i]) continue;
     if (!is_fluid(i)) {
-      if (fix_fsi->state[type[i]].species == SOLID && s > -length && in_patch(x))
-        error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone", atom->tag[i], keywords_name(), id);
+      stranger(i);
       continue;
     }
     if (of_buffer[i] && s > 0.0) {
@@ -484,6 +644,28 @@ void FixFSIInlet::pre_exchange()
 }
 
 /* ----------------------------------------------------------------------
+   behind the plane, and no fluid that this end lets pass: LAMMPS would say of it that it is lost, and no more
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::stranger(int i)
+{
+  const double *const x = atom->x[i];
+  const int species = fix_fsi->state[atom->type[i]].species;
+  if (!in_patch(x)) return;
+  if (species == SOLID && inside(x) > -length)
+    error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone", atom->tag[i], keywords_name(), id);
+  const std::string what = fmt::format("{} {}: atom {} of type {}, {},", who, id, atom->tag[i], atom->type[i],
+                                       species == FLUID ? fmt::format("a fluid that is not of group {}", group->names[igroup])
+                                           : species == SOLID ? "of a solid" : "of a wall or rigid body");
+  const bool out = side > 0.0 ? x[axis] < domain->boxlo[axis] : x[axis] >= domain->boxhi[axis];
+  if (out && domain->boundary[axis][side < 0.0] == 1 && output->thermo->lostflag == Thermo::ERROR)
+    error->one(FLERR, "{} leaves the box through this end, which lets only fluid of its group pass", what);
+  if (told.stranger || !fix_fsi->is_moved(i) || side * atom->v[i][axis] >= 0.0) return;
+  told.stranger = true;
+  error->warning(FLERR, "{} moves into the buffer, which only fluid of its group can pass: it will be lost at the end of the box", what);
+}
+
+/* ----------------------------------------------------------------------
    The copy is made when the next list is built, where it would be had it been made when its parent passed the plane: when lists are built
    does not matter to what flows in.
 ------------------------------------------------------------------------- */
@@ -503,13 +685,13 @@ void FixFSIInlet::find_places()
 {
   places.clear();
   if (region) region->prematch();
-  const double from = -2.0 * length, to = fix_fsi->cut + neighbor->skin;
+  const double from = -2.0 * length, near = fix_fsi->cut + neighbor->skin, to = 2.0 * length + neighbor->skin;
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (zone_group != igroup) atom->mask[i] &= ~group->bitmask[zone_group];
     if (!(s > from && s < to && is_fluid(i) && in_patch(atom->x[i]))) continue;
     places.push_back({i, 0.0, 0.0, false});
-    atom->mask[i] |= group->bitmask[zone_group];
+    if (s < near) atom->mask[i] |= group->bitmask[zone_group];
   }
 }
 
@@ -591,6 +773,7 @@ void FixFSIInlet::measure()
   mine.assign(nodes * ncolumns + NMEAN, 0.0);
   sums.resize(mine.size());
   double *const total = mine.data() + nodes * ncolumns;
+  const bool pressure_varies = !told.far && (pressure.source == EQUAL || pressure.source == ATOM);
 
   with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
     for (auto &place : places) {
@@ -604,6 +787,7 @@ void FixFSIInlet::measure()
       total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
       if (s <= 0.0) {
         if (s > -fix_fsi->cut) total[BUFFER]++;
+        if (pressure_varies && is_far(raw(pressure, i, PRESSURE_COLUMN))) total[TOO_FAR]++;
         continue;
       }
       if (s >= fix_fsi->cut) continue;
@@ -702,6 +886,7 @@ void FixFSIInlet::advance(bool advance)
 {
   if (neighbor->ago == 0) find_places();
   if (!advance) return;
+  keep_full();
   const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
   if (pressure.source == EQUAL || pressure.source == ATOM) evaluate(&pressure, 1, PRESSURE_COLUMN);
@@ -724,11 +909,12 @@ void FixFSIInlet::advance(bool advance)
     has_before = false;
   wave *= std::exp(-rate * dt);
 
-  // what has a given velocity goes without the fluid where that does not follow, and has nothing to come back with
-  if (served == 0.0) served = mean[BUFFER];
-  if (!wants_velocity && mean[BUFFER] < STARVED * served)
-    error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. The fluid does not follow the velocity that is given: "
-               "it tears under suction, without keyword tension yes or background of pair_style fsi/fluid", who, id, served, "xyz"[axis], position, mean[BUFFER]);
+  if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
+    error->warning(FLERR, "{} {}: pressure of variable {} is more than {} rho c^2 from the background: the fluid is no "
+                          "longer hardly compressed. Is it in units {}? Else a higher sound in pair_style fsi/fluid",
+                   who, id, pressure.name, FAR, update->unit_style);
+  told.far = told.far || mean[TOO_FAR] > 0.0;
+  check_supply();
 
   for (auto &place : places) {
     const int i = place.i;
@@ -752,6 +938,31 @@ void FixFSIInlet::advance(bool advance)
 }
 
 /* ----------------------------------------------------------------------
+   What has a given velocity goes without the fluid where that does not follow, and has nothing to come back with
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::check_supply()
+{
+  if (served == 0.0) served = mean[BUFFER];
+  const bool begins = update->ntimestep == update->firststep + 1;
+  if (begins && last_buffer > 0.0) taken = std::max(0.0, last_buffer - mean[BUFFER]);
+  last_buffer = mean[BUFFER];
+  if (velocity[0].source == EXTRAPOLATED || mean[BUFFER] >= STARVED * served) return;
+  std::string why;
+  const double speed = mean[WEIGHT] > 0.0 ? mean[SPEED] / mean[WEIGHT] : 0.0;
+  if (taken > 0.1 * served)
+    why = fmt::format("{} were deleted, or have left group {}, between the runs", taken, group->names[igroup]);
+  else if (softest().floor == 0.0 && softest().p0 <= 0.0)
+    why = "The fluid does not follow the velocity that is given: it tears under suction, without keyword tension yes or "
+          "background of pair_style fsi/fluid";
+  else
+    why = fmt::format("The fluid does not follow the velocity that is given: within the kernel's support it comes in "
+                      "with {:g} in the mean, so there is too little of it, or what is given goes out where none is", speed);
+  error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. {}", who, id, served, "xyz"[axis],
+             position, mean[BUFFER], why);
+}
+
+/* ----------------------------------------------------------------------
    Shifting carries nobody through the plane: the buffer, which moves as it is told to, could not give back what comes. Along the axis it
    fades over the kernel's support before the plane; what is left there is less than the distance from it.
 ------------------------------------------------------------------------- */
@@ -768,6 +979,62 @@ void FixFSIInlet::hold_shift(const Place &place)
     const double part = place.inside / fix_fsi->cut;
     fix_fsi->dim == 2 ? Shift<2>::reduce(shift, fills, axis, part) : Shift<3>::reduce(shift, fills, axis, part);
     if (fills) velocity[axis][place.i] *= part;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Is there as much fluid as there is room? In continuity rho - m psi, of density and number density, is a
+   constant of each particle, but what comes in has the density that is given and the places that it had
+   when it went out, and diffusion passes between fluid and buffer what has no volume. So it is looked at
+   before the plane now and then, within two lengths of the buffer: mass over density times the room of
+   the particles, 1/psi. Those at a free surface do not count, and where there is one little says nothing.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::end_state(bool advance)
+{
+  if (advance ? update->ntimestep % WEIGH_EVERY : fullness > 0.0) return;
+  enum { MASS, ROOM, MEMBERS, SURFACE, NSUM };
+  double own[NSUM] = {}, all[NSUM];
+  std::vector<double> psi(atom->nmax);
+  fix_fsi->number_density.find(psi.data());
+  for (const auto &place : places) {
+    const int i = place.i;
+    const double s = inside(atom->x[i]), m = atom->rmass[i], rho = atom->rho[i];
+    if (s <= 0.0 || s >= 2.0 * length) continue;
+    own[MEMBERS]++;
+    if (m * psi[i] < NOT_FULL * rho) {
+      own[SURFACE]++;
+      continue;
+    }
+    own[MASS] += m;
+    own[ROOM] += rho / psi[i];
+  }
+  MPI_Allreduce(own, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
+  fullness = all[ROOM] > 0.0 ? all[MASS] / all[ROOM] : 1.0;
+  const bool few = fullness < 1.0 - EXCESS && all[SURFACE] < EXCESS * all[MEMBERS];
+  if (told.full || comm->me || !(fullness > 1.0 + EXCESS || few)) return;
+  told.full = true;
+  const bool background = softest().p0 > 0.0;
+  error->warning(FLERR, "{} {}: within {:g} before its plane there is {:.2g} % {} mass than the fluid's density has "
+                        "room for, at step {}: particles {}. {}", who, id, 2.0 * length, 100.0 * std::fabs(fullness - 1.0),
+                 few ? "less" : "more", update->ntimestep, few ? "are missing" : "pile up",
+                 background ? "Flow that reverses often or is wild there does so: move the plane away from it, or take a "
+                              "lower shift in pair_style fsi/fluid"
+                            : "Without keyword background of pair_style fsi/fluid nothing holds their number");
+}
+
+// Where fluid fills the box its density goes to that of its number, so that what is too much is pressed out
+void FixFSIInlet::keep_full()
+{
+  if (fullness == 0.0 || softest().p0 <= 0.0) return;
+  const double rate = (fullness - 1.0) * (update->dt + fix_fsi->dt_offset) * softest().c / (SETTLE * fix_fsi->h);
+  for (const auto &place : places) {
+    const int i = place.i;
+    const double part = 1.0 - 0.5 * inside(atom->x[i]) / length;
+    if (part <= 0.0 || part >= 1.0) continue;
+    const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
+    atom->rho[i] *= 1.0 + part * rate;
+    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
   }
 }
 
@@ -819,6 +1086,7 @@ double FixFSIInlet::compute_vector(int n)
     case 3: return mean[MASS_FLOW];
     case 4: return mean[VOLUME_FLOW];
     case 5: return mean[WEIGHT] > 0.0 ? mean[PRESSURE] / mean[WEIGHT] : 0.0;
+    case 10: return fullness;
     case 0: own = atom->nlocal - std::count(of_buffer, of_buffer + atom->nlocal, double(NOT)); break;
     default: own = given[n - 6];
   }
@@ -835,6 +1103,7 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("buffer", std::vector<double>{position, length});
   record.add("absorption", std::vector<double>{wave, before, double(has_before)});
   record.add("gradient", std::vector<double>{gradient});
+  record.add("fullness", std::vector<double>{fullness});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
   record.add("last ID", std::to_string(last_id));
   fields.write(record);
@@ -853,6 +1122,7 @@ void FixFSIInlet::restart(char *buf)
   before = numbers[1];
   has_before = numbers[2] != 0.0;
   if (record.has("gradient")) gradient = record.numbers("gradient")[0];
+  if (record.has("fullness")) fullness = record.numbers("fullness")[0];
   numbers = record.numbers("passed");
   passed_in = numbers[0];
   passed_out = numbers[1];

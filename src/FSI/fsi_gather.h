@@ -39,6 +39,22 @@ namespace FSI {
     return all;
   }
 
+  // of anything without pointers
+  template <class T> inline std::vector<T> gather_all(const std::vector<T> &mine, MPI_Comm world)
+  {
+    int nprocs, n = mine.size() * sizeof(T), total = 0;
+    MPI_Comm_size(world, &nprocs);
+    std::vector<int> count(nprocs), first(nprocs);
+    MPI_Allgather(&n, 1, MPI_INT, count.data(), 1, MPI_INT, world);
+    for (int k = 0; k < nprocs; k++) {
+      first[k] = total;
+      total += count[k];
+    }
+    std::vector<T> all(total / sizeof(T));
+    MPI_Allgatherv(const_cast<T *>(mine.data()), n, MPI_BYTE, all.data(), count.data(), first.data(), MPI_BYTE, world);
+    return all;
+  }
+
   inline std::set<tagint> gather(const std::set<tagint> &mine, MPI_Comm world)
   {
     const auto all = gather(std::vector<tagint>(mine.begin(), mine.end()), world);
