@@ -50,17 +50,19 @@ static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: 
 static constexpr double OCCUPIED = 0.5;    // of the spacing: a place is taken by who is as near
 static constexpr double FAR = 0.1;    // of rho c^2: a pressure that is not one of a fluid that is hardly compressed
 static constexpr double SPARSE = 0.75;    // of the particles at the plane: a slice with fewer is not full
-static constexpr double NOT_FULL = 0.9;    // of the density: the number density of a particle at a free surface
+static constexpr double AT_SURFACE = 0.9;    // of the density: m psi of a particle at a free surface is less
 static constexpr double EXCESS = 0.02;    // of the mass near the plane that is worth a word
-static constexpr int WEIGH_EVERY = 100;    // steps
-static constexpr double SETTLE = 200.0;    // h/c: time in which number and volume come together
+// Times in h/c in which particles and room come together, in the fluid and in the buffer; steps between two looks, a few to a time of the
+// buffer; and of how many looks the mean is that is told
+static constexpr double SETTLE = 100.0, STRETCH = 25.0;
+static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
     length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0), gradient(0.0),
-    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fullness(0.0), last_buffer(-1.0), told{}, given{}
+    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fluid_fill(0.0), buffer_fill(0.0), mean_fill(1.0), last_buffer(-1.0), told{}, given{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
@@ -273,10 +275,10 @@ void FixFSIInlet::leave_an_id_free()
     if (fix_fsi->state[atom->type[i]].species == FLUID) mine = std::max(mine, atom->tag[i]);
   MPI_Allreduce(&mine, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (largest == 0 || atom->natoms >= MAXTAGINT) return;
+  forget_ghosts();    // and the map of the old IDs
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->tag[i] == largest) atom->tag[i] = static_cast<tagint>(atom->natoms) + 1;
   if (atom->map_style == Atom::MAP_NONE) return;
-  forget_ghosts();
   atom->map_init();
   atom->map_set();
 }
@@ -685,13 +687,13 @@ void FixFSIInlet::find_places()
 {
   places.clear();
   if (region) region->prematch();
-  const double from = -2.0 * length, near = fix_fsi->cut + neighbor->skin, to = 2.0 * length + neighbor->skin;
+  const double from = -2.0 * length, to = zone() + neighbor->skin;
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (zone_group != igroup) atom->mask[i] &= ~group->bitmask[zone_group];
     if (!(s > from && s < to && is_fluid(i) && in_patch(atom->x[i]))) continue;
     places.push_back({i, 0.0, 0.0, false});
-    if (s < near) atom->mask[i] |= group->bitmask[zone_group];
+    atom->mask[i] |= group->bitmask[zone_group];
   }
 }
 
@@ -790,17 +792,18 @@ void FixFSIInlet::measure()
         if (pressure_varies && is_far(raw(pressure, i, PRESSURE_COLUMN))) total[TOO_FAR]++;
         continue;
       }
-      if (s >= fix_fsi->cut) continue;
       double p = state.pressure(atom->rho[i]);
-      const double w = m * (1.0 - s / fix_fsi->cut);
       // a variable need not know a value before the plane
       const double q = wants_pressure ? NAN : p - (pressure.source == BACKGROUND ? state.p0 : raw(pressure, i, PRESSURE_COLUMN));
-      if (std::isfinite(q)) {
-        total[BEYOND] += w * q;
-        total[FIRST] += w * s;
-        total[SECOND] += w * s * s;
-        total[SLOPE] += w * q * s;
+      if (std::isfinite(q) && s < zone()) {
+        total[MASS] += m;
+        total[BEYOND] += m * q;
+        total[FIRST] += m * s;
+        total[SECOND] += m * s * s;
+        total[SLOPE] += m * q * s;
       }
+      if (s >= fix_fsi->cut) continue;
+      const double w = m * (1.0 - s / fix_fsi->cut);
       p -= atom->rho[i] * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * s;
       total[WEIGHT] += w;
       total[SPEED] += w * side * u;
@@ -897,9 +900,9 @@ void FixFSIInlet::advance(bool advance)
     if (s.species == FLUID) c = std::max(c, s.c);
   const double slow = 0.5 * c / domain->prd[axis];
   const double rate = wants_velocity && wants_pressure ? 0.0 : absorb == AUTO ? slow : absorb;
-  const double spread = mean[WEIGHT] * mean[SECOND] - mean[FIRST] * mean[FIRST];
-  if (spread > LITTLE * std::pow(mean[WEIGHT] * fix_fsi->dx, 2))
-    gradient += (1.0 - std::exp(-slow * dt)) * ((mean[WEIGHT] * mean[SLOPE] - mean[FIRST] * mean[BEYOND]) / spread - gradient);
+  const double spread = mean[MASS] * mean[SECOND] - mean[FIRST] * mean[FIRST];
+  if (spread > LITTLE * std::pow(mean[MASS] * fix_fsi->dx, 2))
+    gradient += (1.0 - std::exp(-slow * dt)) * ((mean[MASS] * mean[SLOPE] - mean[FIRST] * mean[BEYOND]) / spread - gradient);
   if (rate > 0.0 && mean[WEIGHT] > 0.0) {
     const double now = (wants_velocity ? mean[SPEED] : mean[OVER_IMPEDANCE]) / mean[WEIGHT];
     if (has_before) wave -= now - before;
@@ -983,57 +986,75 @@ void FixFSIInlet::hold_shift(const Place &place)
 }
 
 /* ----------------------------------------------------------------------
-   Is there as much fluid as there is room? In continuity rho - m psi, of density and number density, is a
-   constant of each particle, but what comes in has the density that is given and the places that it had
-   when it went out, and diffusion passes between fluid and buffer what has no volume. So it is looked at
-   before the plane now and then, within two lengths of the buffer: mass over density times the room of
-   the particles, 1/psi. Those at a free surface do not count, and where there is one little says nothing.
+   Is there as much fluid as there is room? Continuity keeps rho - m psi of a particle, density less that
+   of its number. But what comes in through the plane has the density that is given, and the neighbors with
+   which it went out when pressure was another: where flow reverses each time adds to their number, since
+   it goes out when pressure is higher. And diffusion passes between fluid and buffer what has no volume.
+   So mass is compared with density times room, 1/psi, of the fluid before the plane and in the buffer.
+   Particles at a free surface do not count; where there is one, a lack says nothing.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::end_state(bool advance)
 {
-  if (advance ? update->ntimestep % WEIGH_EVERY : fullness > 0.0) return;
-  enum { MASS, ROOM, MEMBERS, SURFACE, NSUM };
+  if (advance ? update->ntimestep % LOOK_EVERY : fluid_fill > 0.0) return;
+  enum { MASS, ROOM, BUFFER_MASS, BUFFER_ROOM, MEMBERS, SURFACE, NSUM };
   double own[NSUM] = {}, all[NSUM];
   std::vector<double> psi(atom->nmax);
   fix_fsi->number_density.find(psi.data());
   for (const auto &place : places) {
     const int i = place.i;
     const double s = inside(atom->x[i]), m = atom->rmass[i], rho = atom->rho[i];
-    if (s <= 0.0 || s >= 2.0 * length) continue;
-    own[MEMBERS]++;
-    if (m * psi[i] < NOT_FULL * rho) {
-      own[SURFACE]++;
-      continue;
-    }
-    own[MASS] += m;
-    own[ROOM] += rho / psi[i];
+    // of the buffer those whose support ends before it does
+    if (s <= fix_fsi->cut - length || s >= zone()) continue;
+    const bool at_surface = m * psi[i] < AT_SURFACE * rho;
+    if (s > 0.0) own[at_surface ? SURFACE : MEMBERS]++;
+    if (at_surface) continue;
+    own[s > 0.0 ? MASS : BUFFER_MASS] += m;
+    own[s > 0.0 ? ROOM : BUFFER_ROOM] += rho / psi[i];
   }
   MPI_Allreduce(own, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
-  fullness = all[ROOM] > 0.0 ? all[MASS] / all[ROOM] : 1.0;
-  const bool few = fullness < 1.0 - EXCESS && all[SURFACE] < EXCESS * all[MEMBERS];
-  if (told.full || comm->me || !(fullness > 1.0 + EXCESS || few)) return;
-  told.full = true;
-  const bool background = softest().p0 > 0.0;
-  error->warning(FLERR, "{} {}: within {:g} before its plane there is {:.2g} % {} mass than the fluid's density has "
-                        "room for, at step {}: particles {}. {}", who, id, 2.0 * length, 100.0 * std::fabs(fullness - 1.0),
-                 few ? "less" : "more", update->ntimestep, few ? "are missing" : "pile up",
-                 background ? "Flow that reverses often or is wild there does so: move the plane away from it, or take a "
-                              "lower shift in pair_style fsi/fluid"
-                            : "Without keyword background of pair_style fsi/fluid nothing holds their number");
+  const bool first = fluid_fill == 0.0;
+  fluid_fill = all[ROOM] > 0.0 ? all[MASS] / all[ROOM] : 1.0;
+  buffer_fill = all[BUFFER_ROOM] > 0.0 ? all[BUFFER_MASS] / all[BUFFER_ROOM] : 1.0;
+  mean_fill += (fluid_fill - mean_fill) / (first ? 1 : LOOKS);
+  warn_of_fill(all[SURFACE] < EXCESS * all[MEMBERS]);
 }
 
-// Where fluid fills the box its density goes to that of its number, so that what is too much is pressed out
+void FixFSIInlet::warn_of_fill(bool full)
+{
+  const bool few = full && mean_fill < 1.0 - EXCESS;
+  if (told.fill || comm->me || !(mean_fill > 1.0 + EXCESS || few)) return;
+  told.fill = true;
+  error->warning(FLERR, "{} {}: within {:g} before its plane there is {:.2g} % {} mass than the fluid's density has "
+                        "room for, at step {}: particles {}. {}",
+                 who, id, zone(), 100.0 * std::fabs(mean_fill - 1.0), few ? "less" : "more", update->ntimestep,
+                 few ? "are missing" : "pile up",
+                 softest().p0 > 0.0 ? "Vortices, bodies or a valve near the plane do so: move it away from them, or "
+                                      "take a lower shift in pair_style fsi/fluid"
+                                    : "Nothing holds their number without keyword background of pair_style fsi/fluid");
+}
+
+/* ----------------------------------------------------------------------
+   Where fluid fills the box: too many particles before the plane get a density that presses them out, and
+   in the buffer they are drawn apart. Rates.
+------------------------------------------------------------------------- */
+
+double FixFSIInlet::rate_of_fill(double fill, double time) const
+{
+  const State &soft = softest();
+  return fill > 0.0 && soft.p0 > 0.0 ? (fill - 1.0) * soft.c / (time * fix_fsi->h) : 0.0;
+}
+
 void FixFSIInlet::keep_full()
 {
-  if (fullness == 0.0 || softest().p0 <= 0.0) return;
-  const double rate = (fullness - 1.0) * (update->dt + fix_fsi->dt_offset) * softest().c / (SETTLE * fix_fsi->h);
+  const double dt = update->dt + fix_fsi->dt_offset, rise = dt * rate_of_fill(fluid_fill, SETTLE);
+  if (rise == 0.0) return;
   for (const auto &place : places) {
     const int i = place.i;
-    const double part = 1.0 - 0.5 * inside(atom->x[i]) / length;
+    const double part = 1.0 - inside(atom->x[i]) / zone();
     if (part <= 0.0 || part >= 1.0) continue;
     const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
-    atom->rho[i] *= 1.0 + part * rate;
+    atom->rho[i] *= 1.0 + part * rise;
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
   }
 }
@@ -1049,16 +1070,18 @@ void FixFSIInlet::prescribe()
   if (dt == 0.0) return;
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED;
   if (!wants_velocity) evaluate(velocity, 3, 0);
+  const double stretch = rate_of_fill(buffer_fill, STRETCH);
   for (const auto &place : places) {
     const int i = place.i;
     const bool passed = of_buffer[i] == PASSED;
     if (place.inside > 0.0 && !passed) continue;
     const double m = atom->rmass[i];
-    double *const f = atom->f[i], *const v = atom->v[i];
+    double *const f = atom->f[i], *const v = atom->v[i], *const x = passed ? behind[i] : atom->x[i];
     for (int d = 0; d < fix_fsi->dim; d++) {
       double u;
       if (wants_velocity) u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
       else u = value(velocity[d], i, d) + (d == axis ? side * wave : 0.0);
+      if (d == axis) u += stretch * (x[axis] - position);
       if (passed) behind[i][d] += dt * u;
       if (place.inside > 0.0) continue;
       const double to = m * (u - v[d]) / (dt * force->ftm2v), push = to - f[d];
@@ -1086,7 +1109,7 @@ double FixFSIInlet::compute_vector(int n)
     case 3: return mean[MASS_FLOW];
     case 4: return mean[VOLUME_FLOW];
     case 5: return mean[WEIGHT] > 0.0 ? mean[PRESSURE] / mean[WEIGHT] : 0.0;
-    case 10: return fullness;
+    case 10: return mean_fill;
     case 0: own = atom->nlocal - std::count(of_buffer, of_buffer + atom->nlocal, double(NOT)); break;
     default: own = given[n - 6];
   }
@@ -1103,7 +1126,7 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("buffer", std::vector<double>{position, length});
   record.add("absorption", std::vector<double>{wave, before, double(has_before)});
   record.add("gradient", std::vector<double>{gradient});
-  record.add("fullness", std::vector<double>{fullness});
+  record.add("fill", std::vector<double>{fluid_fill, buffer_fill, mean_fill});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
   record.add("last ID", std::to_string(last_id));
   fields.write(record);
@@ -1122,7 +1145,12 @@ void FixFSIInlet::restart(char *buf)
   before = numbers[1];
   has_before = numbers[2] != 0.0;
   if (record.has("gradient")) gradient = record.numbers("gradient")[0];
-  if (record.has("fullness")) fullness = record.numbers("fullness")[0];
+  if (record.has("fill")) {
+    numbers = record.numbers("fill");
+    fluid_fill = numbers[0];
+    buffer_fill = numbers[1];
+    mean_fill = numbers[2];
+  }
   numbers = record.numbers("passed");
   passed_in = numbers[0];
   passed_out = numbers[1];

@@ -76,7 +76,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     tagint parent, molecule;
     int type, mask;
   };
-  enum { WEIGHT, SPEED, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, TOO_FAR, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
+  enum { WEIGHT, SPEED, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, TOO_FAR, MASS, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
 
   const std::string who;    // Fix fsi/inlet
   const bool outlet;
@@ -112,14 +112,16 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double served;             // particles near the plane at first
   bool has_before;
   double passed_in, passed_out, mass_in;
-  double fullness;           // mass near the plane over what its density has room for; 0: not known yet
+  // mass over what its density has room for: of the fluid near the plane, in the buffer; 0: not known yet; the former's mean of late
+  double fluid_fill, buffer_fill, mean_fill;
   double last_buffer, taken = 0.0;    // particles behind the plane in the last step; that went between two runs
   struct {
-    bool far, stranger, full;
+    bool far, stranger, fill;
   } told;                    // warnings of this run
   double given[4];           // force on the buffer and its power, this rank's part
 
   double inside(const double *x) const { return side * (x[axis] - position); }
+  double zone() const { return 2.0 * length; }    // before the plane: where slope and room are looked at
   bool in_patch(const double *x) const;
   bool is_fluid(int i) const;
   std::string keywords_name() const { return std::string("fix ") + style; }
@@ -143,6 +145,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void leave_an_id_free();
   void stranger(int i);
   void check_supply();
+  void warn_of_fill(bool full);
+  double rate_of_fill(double fill, double time) const;
   void keep_full();
   void make(std::vector<Copy> &, bool at_start);
   void forget_ghosts();
