@@ -48,6 +48,7 @@ static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with
 static constexpr double TOLD = 0.05;    // part of a term of the fit that the fluid must tell from lower ones
 static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: no fluid to speak of
 static constexpr double OCCUPIED = 0.5;    // of the spacing: a place is taken by who is as near
+static constexpr double STIFF = 40.0;    // absorb auto over c/2L between given pressures: a channel c/K longer, L/20
 static constexpr double FAR = 0.1;    // of rho c^2: a pressure that is not one of a fluid that is hardly compressed
 static constexpr double SPARSE = 0.75;    // of the particles at the plane: a slice with fewer is not full
 static constexpr double AT_SURFACE = 0.9;    // of the density: m psi of a particle at a free surface is less
@@ -231,6 +232,9 @@ void FixFSIInlet::init()
   zone_group = igroup;
   if (pressure.source == ATOM || std::any_of(velocity, velocity + 3, [](const Value &v) { return v.source == ATOM; }))
     zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
+  driven = false;
+  for (const auto &fix : modify->get_fix_by_style("^fsi/[inout]+let$"))
+    driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->words[0].empty();
   told = {};
   if (pressure.source == NUMBER && is_far(pressure.number)) {
     const State &soft = softest();
@@ -899,7 +903,7 @@ void FixFSIInlet::advance(bool advance)
   for (const auto &s : fix_fsi->state)
     if (s.species == FLUID) c = std::max(c, s.c);
   const double slow = 0.5 * c / domain->prd[axis];
-  const double rate = wants_velocity && wants_pressure ? 0.0 : absorb == AUTO ? slow : absorb;
+  const double rate = wants_velocity && wants_pressure ? 0.0 : absorb == AUTO ? (driven ? slow : STIFF * slow) : absorb;
   const double spread = mean[MASS] * mean[SECOND] - mean[FIRST] * mean[FIRST];
   if (spread > LITTLE * std::pow(mean[MASS] * fix_fsi->dx, 2))
     gradient += (1.0 - std::exp(-slow * dt)) * ((mean[MASS] * mean[SLOPE] - mean[FIRST] * mean[BEYOND]) / spread - gradient);

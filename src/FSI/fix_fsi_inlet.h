@@ -86,6 +86,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   std::string words[4], region_id;
   Value velocity[3], pressure;
   double absorb;    // 1/time; < 0: of the domain's length
+  bool driven;      // has an open end of the scene a given velocity?
   double given_length, length;
   std::vector<double> made;    // of a restart file: plane and length of its buffer
   class Region *region;
