@@ -256,6 +256,13 @@ def momentum(folder):
     return {"momentum_error": float(np.abs(np.subtract(sums, sums[0])).max() / np.hypot(*sums[0]))}
 
 
+def between_ends(folder):
+    """Mass between open ends over what its density has room for, against the start; the worst mean of a tenth of the run."""
+    table = series.read(Path(folder) / "series.csv")
+    fill = table["number"] / table["number"][0] * table["density"][0] / table["density"]
+    return {"mass_error": float(max(abs(part.mean() - 1) for part in np.array_split(fill, 10)))}
+
+
 def honest(folder):
     """1 for a run that is sound, judged by the free end of that with the shortest step, or that stopped and told why, without a NaN."""
     folder = Path(folder)
@@ -322,6 +329,8 @@ ROWS = {
     "tear": Row("solid torn between two ranks", "tear.*", tear, {"pieces": ("==", 2), "ranks_differ": ("<", 1e-6)}, "damage"),
     "hairpin": Row("hairpin whose arms clap together: one body", "hairpin", hairpin, {"gap": (">", 1.5), "energy_error": ("<", 0.01)}, "contact 2 self yes"),
     "empty": Row("box that empties on a rank", "empty", momentum, {"momentum_error": ("<", 1e-12)}, ""),
+    "ends": Row("open ends with shifting: pressure that swings, flow that reverses", "ends_.*", between_ends, {"mass_error": ("<", 0.01)},
+                "shifting that fades at open ends, buffers that stretch"),
     "jump_water": Row("sudden steps, 10 times longer and shorter: still water", "jump_water", still, STILL, "continuity, density diffusion, Wendland kernel"),
     "jump_plate": Row("sudden steps: spinning plate", "jump_plate", solid, BODY, TL),
     "dt": Row("gate, 1 to 6 times the stable step, Courant check on and off", r"dt_(off_)?\d", honest, {"honest": ("==", 1)}, "fix fsi/watch", stops=True),

@@ -19,15 +19,19 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_record.h"
+#include "fsi_shift.h"
 #include "group.h"
 #include "input.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
+#include "output.h"
 #include "region.h"
+#include "thermo.h"
 #include "update.h"
 #include "variable.h"
 
@@ -44,13 +48,22 @@ static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with
 static constexpr double TOLD = 0.05;    // part of a term of the fit that the fluid must tell from lower ones
 static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: no fluid to speak of
 static constexpr double OCCUPIED = 0.5;    // of the spacing: a place is taken by who is as near
+static constexpr double STIFF = 40.0;    // absorb auto over c/2L between given pressures: a channel c/K longer, L/20
+static constexpr double FAR = 0.1;    // of rho c^2: a pressure that is not one of a fluid that is hardly compressed
+static constexpr double SPARSE = 0.75;    // of the particles at the plane: a slice with fewer is not full
+static constexpr double AT_SURFACE = 0.9;    // of the density: m psi of a particle at a free surface is less
+static constexpr double EXCESS = 0.02;    // of the mass near the plane that is worth a word
+// Times in h/c in which particles and room come together, in the fluid and in the buffer; steps between two looks, a few to a time of the
+// buffer; and of how many looks the mean is that is told
+static constexpr double SETTLE = 100.0, STRETCH = 25.0;
+static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
     length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0), gradient(0.0),
-    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), given{}
+    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fluid_fill(0.0), buffer_fill(0.0), mean_fill(1.0), last_buffer(-1.0), told{}, given{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
@@ -88,7 +101,7 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   force_reneighbor = 1;
   next_reneighbor = -1;    // whenever lists are built
   scalar_flag = vector_flag = 1;
-  size_vector = 10;
+  size_vector = 11;
   extscalar = 1;
   extvector = 0;
   global_freq = 1;
@@ -219,6 +232,59 @@ void FixFSIInlet::init()
   zone_group = igroup;
   if (pressure.source == ATOM || std::any_of(velocity, velocity + 3, [](const Value &v) { return v.source == ATOM; }))
     zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
+  driven = false;
+  for (const auto &fix : modify->get_fix_by_style("^fsi/[inout]+let$"))
+    driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->words[0].empty();
+  told = {};
+  if (pressure.source == NUMBER && is_far(pressure.number)) {
+    const State &soft = softest();
+    const double away = std::fabs(pressure.number - soft.p0);
+    error->all(FLERR, "{} {}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
+                      "most. Is it in units {}? Else take sound {:.3g} or more in pair_style fsi/fluid",
+               who, id, pressure.number, away / (soft.rho0 * soft.csq), soft.p0, FAR,
+               update->unit_style, std::sqrt(away / (FAR * soft.rho0)));
+  }
+  leave_an_id_free();
+}
+
+/* ----------------------------------------------------------------------
+   the fluid that a pressure compresses most; is a pressure out of its range?
+------------------------------------------------------------------------- */
+
+const State &FixFSIInlet::softest() const
+{
+  const State *soft = nullptr;
+  for (const auto &s : fix_fsi->state)
+    if (s.species == FLUID && (!soft || s.rho0 * s.csq < soft->rho0 * soft->csq)) soft = &s;
+  return soft ? *soft : fix_fsi->state[0];
+}
+
+bool FixFSIInlet::is_far(double p) const
+{
+  const State &soft = softest();
+  return soft.species == FLUID && std::fabs(p - soft.p0) > FAR * soft.rho0 * soft.csq;
+}
+
+/* ----------------------------------------------------------------------
+   Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps that
+   sort), before the buffers are filled, and as many may come as leave: so one is left free, below the
+   largest of a fluid.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::leave_an_id_free()
+{
+  if (!atom->tag_consecutive()) return;
+  tagint mine = 0, largest;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (fix_fsi->state[atom->type[i]].species == FLUID) mine = std::max(mine, atom->tag[i]);
+  MPI_Allreduce(&mine, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (largest == 0 || atom->natoms >= MAXTAGINT) return;
+  forget_ghosts();    // and the map of the old IDs
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->tag[i] == largest) atom->tag[i] = static_cast<tagint>(atom->natoms) + 1;
+  if (atom->map_style == Atom::MAP_NONE) return;
+  atom->map_init();
+  atom->map_set();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -259,7 +325,7 @@ void FixFSIInlet::forget_ghosts()
 }
 
 /* ----------------------------------------------------------------------
-   Before the first run: an empty buffer is filled with copies of the fluid before it
+   Before the first run: in an empty buffer the fluid before it goes on
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::setup_pre_exchange()
@@ -279,13 +345,7 @@ void FixFSIInlet::fill()
 {
   enum { BEHIND, AHEAD, BEYOND, WALLS_BEHIND, WALLS_AHEAD, NCOUNT };
   bigint own[NCOUNT] = {}, all[NCOUNT];
-  std::vector<Copy> copies;
-  const auto copy = [&](int i) {
-    const double *const x = atom->x[i], *const v = atom->v[i];
-    Copy c = {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i], atom->molecule[i], atom->type[i], atom->mask[i]};
-    c.x[axis] -= side * length;
-    copies.push_back(c);
-  };
+  std::vector<int> slices(number_of_slices(), 0);
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (s <= -2.0 * length || s >= length) continue;
@@ -293,10 +353,11 @@ void FixFSIInlet::fill()
     if (!is_fluid(i) || !in_patch(atom->x[i])) continue;
     if (s > 0.0) {
       own[AHEAD]++;
-      copy(i);
     } else {
       own[s > -length - 0.5 * fix_fsi->dx ? BEHIND : BEYOND]++;
       of_buffer[i] = MEMBER;
+      const size_t k = slice(-s);
+      if (k < slices.size()) slices[k]++;
     }
   }
   MPI_Allreduce(own, all, NCOUNT, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -310,15 +371,128 @@ void FixFSIInlet::fill()
   if (all[WALLS_AHEAD] > 0 && 2 * all[WALLS_BEHIND] < all[WALLS_AHEAD] && comm->me == 0)
     error->warning(FLERR, "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls should go on along the buffer, to {} = {:g}", who,
                    id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
+  if (all[BEHIND] > 0) check_slices(slices);
   if (all[BEHIND] == 0 && all[AHEAD] > 0) {
+    auto copies = go_on_behind();
     forget_ghosts();
     make(copies, true);
   }
+  find_places();    // of which variables are asked
   evaluate(velocity, 3, 0);
   for (int i = 0; i < atom->nlocal; i++)
     if (of_buffer[i])
       for (int d = 0; d < fix_fsi->dim; d++)
         if (velocity[d].source != EXTRAPOLATED) atom->v[i][d] = value(velocity[d], i, d);
+}
+
+/* ----------------------------------------------------------------------
+   Slices of a spacing, counted from the plane
+------------------------------------------------------------------------- */
+
+int FixFSIInlet::number_of_slices() const
+{
+  return static_cast<int>(std::round(length / fix_fsi->dx));
+}
+
+int FixFSIInlet::slice(double distance) const
+{
+  return std::max(0, static_cast<int>(std::ceil(distance / fix_fsi->dx - 1.0e-6)) - 1);
+}
+
+// of a buffer that the script has filled: a hole would come in again and again
+void FixFSIInlet::check_slices(const std::vector<int> &mine) const
+{
+  std::vector<int> all(mine.size());
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_INT, MPI_SUM, world);
+  const int most = *std::max_element(all.begin(), all.end());
+  const auto few = std::find_if(all.begin(), all.end(), [&](int n) { return n < 0.5 * most; });
+  if (few == all.end() || comm->me) return;
+  const double from = position - side * (few - all.begin()) * fix_fsi->dx;
+  error->warning(FLERR, "{} {}: its buffer has {} particles from {} = {:g} to {:g} and {} elsewhere: what is not "
+                        "there will not come in. Fill it to {} = {:g}, or leave it empty",
+                 who, id, *few, "xyz"[axis], from, from - side * fix_fsi->dx, most, "xyz"[axis],
+                 position - side * length);
+}
+
+/* ----------------------------------------------------------------------
+   Copies of the fluid at the plane that fill the buffer: of as many slices as are full, again and again,
+   so that its lattice goes on. A slice is not where the fluid ends, or where a body stands in the way of
+   the fluid at the plane.
+------------------------------------------------------------------------- */
+
+std::vector<FixFSIInlet::Copy> FixFSIInlet::go_on_behind() const
+{
+  const int most = number_of_slices(), full = full_slices();
+  if (full == 0 && !outlet)
+    error->all(FLERR, "{} {}: there is fluid of group {} before its plane {} = {}, but none within a spacing of it: "
+                      "fill what is between, or the buffer, to {} = {:g}", who, id, group->names[igroup],
+               "xyz"[axis], position, "xyz"[axis], position - side * length);
+  std::vector<Copy> copies;
+  if (full == 0) return copies;
+  const double period = fix_fsi->dx * full;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const x = atom->x[i], *const v = atom->v[i], s = inside(x);
+    if (s <= 0.0 || s >= length || !is_fluid(i) || !in_patch(x) || slice(s) >= full) continue;
+    Copy c = {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i],
+              atom->molecule[i], atom->type[i], atom->mask[i]};
+    for (int k = 1; slice(k * period - s) < most; k++) {
+      c.x[axis] = x[axis] - side * k * period;
+      copies.push_back(c);
+    }
+  }
+  return copies;
+}
+
+// places along the plane of the fluid within a spacing of it, by the first coordinate
+std::vector<FixFSIInlet::Column> FixFSIInlet::columns_at_plane() const
+{
+  std::vector<Column> own;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const x = atom->x[i], s = inside(x);
+    if (s > 0.0 && slice(s) == 0 && is_fluid(i) && in_patch(x)) own.push_back(along(x));
+  }
+  auto columns = gather(own, world);
+  std::sort(columns.begin(), columns.end(), [](const Column &a, const Column &b) { return a.at[0] < b.at[0]; });
+  return columns;
+}
+
+int FixFSIInlet::full_slices() const
+{
+  const int most = number_of_slices();
+  const double dx = fix_fsi->dx;
+  std::vector<int> mine(most, 0), count(most);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double s = inside(atom->x[i]);
+    if (s > 0.0 && slice(s) < most && is_fluid(i) && in_patch(atom->x[i])) mine[slice(s)]++;
+  }
+  MPI_Allreduce(mine.data(), count.data(), most, MPI_INT, MPI_SUM, world);
+  int full = 0, limit = most, all;
+  while (full < most && count[full] > 0 && count[full] >= SPARSE * count[0]) full++;
+
+  const auto columns = columns_at_plane();
+  int hole = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const State &state = fix_fsi->state[atom->type[i]];
+    const double s = inside(atom->x[i]);
+    if (s <= 0.0 || s >= length || state.species == FLUID || state.species == NONE) continue;
+    const Column here = along(atom->x[i]);
+    bool below = false, above = false;    // is there fluid on the same line?
+    for (const Column &c : columns) {
+      if (std::fabs(c.at[1] - here.at[1]) >= 0.5 * dx) continue;
+      below = below || c.at[0] < here.at[0];
+      above = above || c.at[0] > here.at[0];
+      if (std::fabs(c.at[0] - here.at[0]) < 0.5 * dx)
+        limit = std::min(limit, static_cast<int>((s - 0.5 * fix_fsi->dx_of(atom->type[i])) / dx + 1.0e-6));
+    }
+    if (state.species == SOLID && slice(s) == 0 && below && above && !hole++)
+      error->warning(FLERR, "{} {}: atom {} of a solid is within a spacing of its plane {} = {}: behind it the buffer "
+                            "has a hole, and what is not there will not come in. Move the solid or the plane, or "
+                            "fill the buffer, to {} = {:g}", who, id, atom->tag[i], "xyz"[axis], position,
+                     "xyz"[axis], position - side * length);
+  }
+  limit = std::max(limit, 1);
+  MPI_Allreduce(&limit, &all, 1, MPI_INT, MPI_MIN, world);
+  return std::min(full, all);
 }
 
 /* ----------------------------------------------------------------------
@@ -328,15 +502,7 @@ void FixFSIInlet::fill()
 
 void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
 {
-  int n = own.size() * sizeof(Copy), total = 0;
-  std::vector<int> counts(comm->nprocs), starts(comm->nprocs);
-  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  for (int k = 0; k < comm->nprocs; k++) {
-    starts[k] = total;
-    total += counts[k];
-  }
-  std::vector<Copy> copies(total / sizeof(Copy));
-  MPI_Allgatherv(own.data(), n, MPI_BYTE, copies.data(), counts.data(), starts.data(), MPI_BYTE, world);
+  std::vector<Copy> copies = gather(own, world);
   if (copies.empty()) return;
   double low = inside(copies[0].x), high = low;
   for (auto &c : copies) {
@@ -377,7 +543,9 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
   MPI_Allreduce(&largest, &id_now, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   for (size_t k = 0; k < copies.size(); k++)
     if (occupied[k]) copies[k].parent = 0;
-  std::sort(copies.begin(), copies.end(), [](const Copy &b, const Copy &c) { return b.parent < c.parent; });
+  std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) {
+    return b.parent < c.parent || (b.parent == c.parent && inside(b.x) > inside(c.x));
+  });
 
   const int first = atom->nlocal;
   bigint wanted = 0, made, mine;
@@ -429,8 +597,7 @@ void FixFSIInlet::pre_exchange()
     const double *const x = atom->x[i], s = inside(x);
     if (s > 0.0 && !of_buffer[i]) continue;
     if (!is_fluid(i)) {
-      if (fix_fsi->state[type[i]].species == SOLID && s > -length && in_patch(x))
-        error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone", atom->tag[i], keywords_name(), id);
+      stranger(i);
       continue;
     }
     if (of_buffer[i] && s > 0.0) {
@@ -483,6 +650,28 @@ void FixFSIInlet::pre_exchange()
 }
 
 /* ----------------------------------------------------------------------
+   behind the plane, and no fluid that this end lets pass: LAMMPS would say of it that it is lost, and no more
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::stranger(int i)
+{
+  const double *const x = atom->x[i];
+  const int species = fix_fsi->state[atom->type[i]].species;
+  if (!in_patch(x)) return;
+  if (species == SOLID && inside(x) > -length)
+    error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone", atom->tag[i], keywords_name(), id);
+  const std::string what = fmt::format("{} {}: atom {} of type {}, {},", who, id, atom->tag[i], atom->type[i],
+                                       species == FLUID ? fmt::format("a fluid that is not of group {}", group->names[igroup])
+                                           : species == SOLID ? "of a solid" : "of a wall or rigid body");
+  const bool out = side > 0.0 ? x[axis] < domain->boxlo[axis] : x[axis] >= domain->boxhi[axis];
+  if (out && domain->boundary[axis][side < 0.0] == 1 && output->thermo->lostflag == Thermo::ERROR)
+    error->one(FLERR, "{} leaves the box through this end, which lets only fluid of its group pass", what);
+  if (told.stranger || !fix_fsi->is_moved(i) || side * atom->v[i][axis] >= 0.0) return;
+  told.stranger = true;
+  error->warning(FLERR, "{} moves into the buffer, which only fluid of its group can pass: it will be lost at the end of the box", what);
+}
+
+/* ----------------------------------------------------------------------
    The copy is made when the next list is built, where it would be had it been made when its parent passed the plane: when lists are built
    does not matter to what flows in.
 ------------------------------------------------------------------------- */
@@ -502,7 +691,7 @@ void FixFSIInlet::find_places()
 {
   places.clear();
   if (region) region->prematch();
-  const double from = -2.0 * length, to = fix_fsi->cut + neighbor->skin;
+  const double from = -2.0 * length, to = zone() + neighbor->skin;
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (zone_group != igroup) atom->mask[i] &= ~group->bitmask[zone_group];
@@ -590,6 +779,7 @@ void FixFSIInlet::measure()
   mine.assign(nodes * ncolumns + NMEAN, 0.0);
   sums.resize(mine.size());
   double *const total = mine.data() + nodes * ncolumns;
+  const bool pressure_varies = !told.far && (pressure.source == EQUAL || pressure.source == ATOM);
 
   with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
     for (auto &place : places) {
@@ -603,19 +793,21 @@ void FixFSIInlet::measure()
       total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
       if (s <= 0.0) {
         if (s > -fix_fsi->cut) total[BUFFER]++;
+        if (pressure_varies && is_far(raw(pressure, i, PRESSURE_COLUMN))) total[TOO_FAR]++;
         continue;
       }
-      if (s >= fix_fsi->cut) continue;
       double p = state.pressure(atom->rho[i]);
-      const double w = m * (1.0 - s / fix_fsi->cut);
       // a variable need not know a value before the plane
       const double q = wants_pressure ? NAN : p - (pressure.source == BACKGROUND ? state.p0 : raw(pressure, i, PRESSURE_COLUMN));
-      if (std::isfinite(q)) {
-        total[BEYOND] += w * q;
-        total[FIRST] += w * s;
-        total[SECOND] += w * s * s;
-        total[SLOPE] += w * q * s;
+      if (std::isfinite(q) && s < zone()) {
+        total[MASS] += m;
+        total[BEYOND] += m * q;
+        total[FIRST] += m * s;
+        total[SECOND] += m * s * s;
+        total[SLOPE] += m * q * s;
       }
+      if (s >= fix_fsi->cut) continue;
+      const double w = m * (1.0 - s / fix_fsi->cut);
       p -= atom->rho[i] * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * s;
       total[WEIGHT] += w;
       total[SPEED] += w * side * u;
@@ -701,6 +893,7 @@ void FixFSIInlet::advance(bool advance)
 {
   if (neighbor->ago == 0) find_places();
   if (!advance) return;
+  keep_full();
   const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
   if (pressure.source == EQUAL || pressure.source == ATOM) evaluate(&pressure, 1, PRESSURE_COLUMN);
@@ -710,10 +903,10 @@ void FixFSIInlet::advance(bool advance)
   for (const auto &s : fix_fsi->state)
     if (s.species == FLUID) c = std::max(c, s.c);
   const double slow = 0.5 * c / domain->prd[axis];
-  const double rate = wants_velocity && wants_pressure ? 0.0 : absorb == AUTO ? slow : absorb;
-  const double spread = mean[WEIGHT] * mean[SECOND] - mean[FIRST] * mean[FIRST];
-  if (spread > LITTLE * std::pow(mean[WEIGHT] * fix_fsi->dx, 2))
-    gradient += (1.0 - std::exp(-slow * dt)) * ((mean[WEIGHT] * mean[SLOPE] - mean[FIRST] * mean[BEYOND]) / spread - gradient);
+  const double rate = wants_velocity && wants_pressure ? 0.0 : absorb == AUTO ? (driven ? slow : STIFF * slow) : absorb;
+  const double spread = mean[MASS] * mean[SECOND] - mean[FIRST] * mean[FIRST];
+  if (spread > LITTLE * std::pow(mean[MASS] * fix_fsi->dx, 2))
+    gradient += (1.0 - std::exp(-slow * dt)) * ((mean[MASS] * mean[SLOPE] - mean[FIRST] * mean[BEYOND]) / spread - gradient);
   if (rate > 0.0 && mean[WEIGHT] > 0.0) {
     const double now = (wants_velocity ? mean[SPEED] : mean[OVER_IMPEDANCE]) / mean[WEIGHT];
     if (has_before) wave -= now - before;
@@ -723,15 +916,16 @@ void FixFSIInlet::advance(bool advance)
     has_before = false;
   wave *= std::exp(-rate * dt);
 
-  // what has a given velocity goes without the fluid where that does not follow, and has nothing to come back with
-  if (served == 0.0) served = mean[BUFFER];
-  if (!wants_velocity && mean[BUFFER] < STARVED * served)
-    error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. The fluid does not follow the velocity that is given: "
-               "it tears under suction, without keyword tension yes or background of pair_style fsi/fluid", who, id, served, "xyz"[axis], position, mean[BUFFER]);
+  if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
+    error->warning(FLERR, "{} {}: pressure of variable {} is more than {} rho c^2 from the background: the fluid is no "
+                          "longer hardly compressed. Is it in units {}? Else a higher sound in pair_style fsi/fluid",
+                   who, id, pressure.name, FAR, update->unit_style);
+  told.far = told.far || mean[TOO_FAR] > 0.0;
+  check_supply();
 
-  double **const shift = fix_fsi->shift;
   for (auto &place : places) {
     const int i = place.i;
+    hold_shift(place);
     if (place.inside > 0.0 && of_buffer[i] == MEMBER) copy_place(i);
     if (place.inside > 0.0 && of_buffer[i] != PASSED) continue;
     const State &state = fix_fsi->state[atom->type[i]];
@@ -747,9 +941,125 @@ void FixFSIInlet::advance(bool advance)
     const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
     atom->rho[i] = state.density(std::max(p, state.floor));
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
-    if (fix_fsi->shifts) std::fill_n(shift[i], 2 * fix_fsi->dim, 0.0);
-    for (double *const v : fix_fsi->shift_velocity)
-      if (v) v[i] = 0.0;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   What has a given velocity goes without the fluid where that does not follow, and has nothing to come back with
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::check_supply()
+{
+  if (served == 0.0) served = mean[BUFFER];
+  const bool begins = update->ntimestep == update->firststep + 1;
+  if (begins && last_buffer > 0.0) taken = std::max(0.0, last_buffer - mean[BUFFER]);
+  last_buffer = mean[BUFFER];
+  if (velocity[0].source == EXTRAPOLATED || mean[BUFFER] >= STARVED * served) return;
+  std::string why;
+  const double speed = mean[WEIGHT] > 0.0 ? mean[SPEED] / mean[WEIGHT] : 0.0;
+  if (taken > 0.1 * served)
+    why = fmt::format("{} were deleted, or have left group {}, between the runs", taken, group->names[igroup]);
+  else if (softest().floor == 0.0 && softest().p0 <= 0.0)
+    why = "The fluid does not follow the velocity that is given: it tears under suction, without keyword tension yes or "
+          "background of pair_style fsi/fluid";
+  else
+    why = fmt::format("The fluid does not follow the velocity that is given: within the kernel's support it comes in "
+                      "with {:g} in the mean, so there is too little of it, or what is given goes out where none is", speed);
+  error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. {}", who, id, served, "xyz"[axis],
+             position, mean[BUFFER], why);
+}
+
+/* ----------------------------------------------------------------------
+   Shifting carries nobody through the plane: the buffer, which moves as it is told to, could not give back what comes. Along the axis it
+   fades over the kernel's support before the plane; what is left there is less than the distance from it.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::hold_shift(const Place &place)
+{
+  double *const *const velocity = fix_fsi->shift_velocity;
+  const bool fills = velocity[0];
+  if (place.inside <= 0.0) {
+    if (fix_fsi->shifts) std::fill_n(fix_fsi->shift[place.i], 2 * fix_fsi->dim, 0.0);
+    for (int d = 0; fills && d < fix_fsi->dim; d++) velocity[d][place.i] = 0.0;
+  } else if (fix_fsi->shifts && place.inside < fix_fsi->cut) {
+    double *const shift = fix_fsi->shift[place.i];
+    const double part = place.inside / fix_fsi->cut;
+    fix_fsi->dim == 2 ? Shift<2>::reduce(shift, fills, axis, part) : Shift<3>::reduce(shift, fills, axis, part);
+    if (fills) velocity[axis][place.i] *= part;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Is there as much fluid as there is room? Continuity keeps rho - m psi of a particle, density less that
+   of its number. But what comes in through the plane has the density that is given, and the neighbors with
+   which it went out when pressure was another: where flow reverses each time adds to their number, since
+   it goes out when pressure is higher. And diffusion passes between fluid and buffer what has no volume.
+   So mass is compared with density times room, 1/psi, of the fluid before the plane and in the buffer.
+   Particles at a free surface do not count; where there is one, a lack says nothing.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::end_state(bool advance)
+{
+  if (advance ? update->ntimestep % LOOK_EVERY : fluid_fill > 0.0) return;
+  enum { MASS, ROOM, BUFFER_MASS, BUFFER_ROOM, MEMBERS, SURFACE, NSUM };
+  double own[NSUM] = {}, all[NSUM];
+  std::vector<double> psi(atom->nmax);
+  fix_fsi->number_density.find(psi.data());
+  for (const auto &place : places) {
+    const int i = place.i;
+    const double s = inside(atom->x[i]), m = atom->rmass[i], rho = atom->rho[i];
+    // of the buffer those whose support ends before it does
+    if (s <= fix_fsi->cut - length || s >= zone()) continue;
+    const bool at_surface = m * psi[i] < AT_SURFACE * rho;
+    if (s > 0.0) own[at_surface ? SURFACE : MEMBERS]++;
+    if (at_surface) continue;
+    own[s > 0.0 ? MASS : BUFFER_MASS] += m;
+    own[s > 0.0 ? ROOM : BUFFER_ROOM] += rho / psi[i];
+  }
+  MPI_Allreduce(own, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
+  const bool first = fluid_fill == 0.0;
+  fluid_fill = all[ROOM] > 0.0 ? all[MASS] / all[ROOM] : 1.0;
+  buffer_fill = all[BUFFER_ROOM] > 0.0 ? all[BUFFER_MASS] / all[BUFFER_ROOM] : 1.0;
+  mean_fill += (fluid_fill - mean_fill) / (first ? 1 : LOOKS);
+  warn_of_fill(all[SURFACE] < EXCESS * all[MEMBERS]);
+}
+
+void FixFSIInlet::warn_of_fill(bool full)
+{
+  const bool few = full && mean_fill < 1.0 - EXCESS;
+  if (told.fill || comm->me || !(mean_fill > 1.0 + EXCESS || few)) return;
+  told.fill = true;
+  error->warning(FLERR, "{} {}: within {:g} before its plane there is {:.2g} % {} mass than the fluid's density has "
+                        "room for, at step {}: particles {}. {}",
+                 who, id, zone(), 100.0 * std::fabs(mean_fill - 1.0), few ? "less" : "more", update->ntimestep,
+                 few ? "are missing" : "pile up",
+                 softest().p0 > 0.0 ? "Vortices, bodies or a valve near the plane do so: move it away from them, or "
+                                      "take a lower shift in pair_style fsi/fluid"
+                                    : "Nothing holds their number without keyword background of pair_style fsi/fluid");
+}
+
+/* ----------------------------------------------------------------------
+   Where fluid fills the box: too many particles before the plane get a density that presses them out, and
+   in the buffer they are drawn apart. Rates.
+------------------------------------------------------------------------- */
+
+double FixFSIInlet::rate_of_fill(double fill, double time) const
+{
+  const State &soft = softest();
+  return fill > 0.0 && soft.p0 > 0.0 ? (fill - 1.0) * soft.c / (time * fix_fsi->h) : 0.0;
+}
+
+void FixFSIInlet::keep_full()
+{
+  const double dt = update->dt + fix_fsi->dt_offset, rise = dt * rate_of_fill(fluid_fill, SETTLE);
+  if (rise == 0.0) return;
+  for (const auto &place : places) {
+    const int i = place.i;
+    const double part = 1.0 - inside(atom->x[i]) / zone();
+    if (part <= 0.0 || part >= 1.0) continue;
+    const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
+    atom->rho[i] *= 1.0 + part * rise;
+    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
   }
 }
 
@@ -764,16 +1074,18 @@ void FixFSIInlet::prescribe()
   if (dt == 0.0) return;
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED;
   if (!wants_velocity) evaluate(velocity, 3, 0);
+  const double stretch = rate_of_fill(buffer_fill, STRETCH);
   for (const auto &place : places) {
     const int i = place.i;
     const bool passed = of_buffer[i] == PASSED;
     if (place.inside > 0.0 && !passed) continue;
     const double m = atom->rmass[i];
-    double *const f = atom->f[i], *const v = atom->v[i];
+    double *const f = atom->f[i], *const v = atom->v[i], *const x = passed ? behind[i] : atom->x[i];
     for (int d = 0; d < fix_fsi->dim; d++) {
       double u;
       if (wants_velocity) u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
       else u = value(velocity[d], i, d) + (d == axis ? side * wave : 0.0);
+      if (d == axis) u += stretch * (x[axis] - position);
       if (passed) behind[i][d] += dt * u;
       if (place.inside > 0.0) continue;
       const double to = m * (u - v[d]) / (dt * force->ftm2v), push = to - f[d];
@@ -801,6 +1113,7 @@ double FixFSIInlet::compute_vector(int n)
     case 3: return mean[MASS_FLOW];
     case 4: return mean[VOLUME_FLOW];
     case 5: return mean[WEIGHT] > 0.0 ? mean[PRESSURE] / mean[WEIGHT] : 0.0;
+    case 10: return mean_fill;
     case 0: own = atom->nlocal - std::count(of_buffer, of_buffer + atom->nlocal, double(NOT)); break;
     default: own = given[n - 6];
   }
@@ -817,6 +1130,7 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("buffer", std::vector<double>{position, length});
   record.add("absorption", std::vector<double>{wave, before, double(has_before)});
   record.add("gradient", std::vector<double>{gradient});
+  record.add("fill", std::vector<double>{fluid_fill, buffer_fill, mean_fill});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
   record.add("last ID", std::to_string(last_id));
   fields.write(record);
@@ -835,6 +1149,12 @@ void FixFSIInlet::restart(char *buf)
   before = numbers[1];
   has_before = numbers[2] != 0.0;
   if (record.has("gradient")) gradient = record.numbers("gradient")[0];
+  if (record.has("fill")) {
+    numbers = record.numbers("fill");
+    fluid_fill = numbers[0];
+    buffer_fill = numbers[1];
+    mean_fill = numbers[2];
+  }
   numbers = record.numbers("passed");
   passed_in = numbers[0];
   passed_out = numbers[1];

@@ -51,6 +51,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double memory_usage() override;
 
   void advance(bool) override;    // density of the buffer, when the fluid has its own
+  void end_state(bool) override;  // is there as much fluid as there is room?
   void prescribe() override;      // velocity of the buffer
 
   bool holds(const double *x) const;    // is a place in the buffer?
@@ -75,7 +76,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     tagint parent, molecule;
     int type, mask;
   };
-  enum { WEIGHT, SPEED, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
+  enum { WEIGHT, SPEED, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, TOO_FAR, MASS, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
 
   const std::string who;    // Fix fsi/inlet
   const bool outlet;
@@ -85,6 +86,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   std::string words[4], region_id;
   Value velocity[3], pressure;
   double absorb;    // 1/time; < 0: of the domain's length
+  bool driven;      // has an open end of the scene a given velocity?
   double given_length, length;
   std::vector<double> made;    // of a restart file: plane and length of its buffer
   class Region *region;
@@ -111,9 +113,16 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double served;             // particles near the plane at first
   bool has_before;
   double passed_in, passed_out, mass_in;
+  // mass over what its density has room for: of the fluid near the plane, in the buffer; 0: not known yet; the former's mean of late
+  double fluid_fill, buffer_fill, mean_fill;
+  double last_buffer, taken = 0.0;    // particles behind the plane in the last step; that went between two runs
+  struct {
+    bool far, stranger, fill;
+  } told;                    // warnings of this run
   double given[4];           // force on the buffer and its power, this rank's part
 
   double inside(const double *x) const { return side * (x[axis] - position); }
+  double zone() const { return 2.0 * length; }    // before the plane: where slope and room are looked at
   bool in_patch(const double *x) const;
   bool is_fluid(int i) const;
   std::string keywords_name() const { return std::string("fix ") + style; }
@@ -123,7 +132,23 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double raw(const Value &v, int i, int column) const { return v.source == ATOM ? target[i][column] : v.number; }
   double value(const Value &, int i, int column) const;    // which is a number
   double energy(int i) const;
+  struct Column {
+    double at[2];    // along the plane
+  };
+  Column along(const double *x) const { return {{x[axis == 0 ? 1 : 0], x[axis == 2 ? 1 : 2]}}; }
   void fill();
+  int number_of_slices() const, slice(double distance) const, full_slices() const;
+  void check_slices(const std::vector<int> &mine) const;
+  std::vector<Copy> go_on_behind() const;
+  std::vector<Column> columns_at_plane() const;
+  const FSI::State &softest() const;
+  bool is_far(double p) const;
+  void leave_an_id_free();
+  void stranger(int i);
+  void check_supply();
+  void warn_of_fill(bool full);
+  double rate_of_fill(double fill, double time) const;
+  void keep_full();
   void make(std::vector<Copy> &, bool at_start);
   void forget_ghosts();
   void copy_place(int i);
@@ -131,6 +156,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   template <class Visit> void at_nodes(const double *x, double reach, Visit) const;
   int place_nodes();    // how many there are
   void measure();
+  void hold_shift(const Place &);
   bool at_plane(const double *x, double *values) const;
 };
 

