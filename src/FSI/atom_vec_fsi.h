@@ -22,7 +22,12 @@ AtomStyle(fsi,AtomVecFSI);
 
 #include "atom_vec.h"
 
+#include <memory>
+
 namespace LAMMPS_NS {
+namespace FSI {
+  class Record;
+}
 
 // Particles of fluid or solid: mass, density, and the body they belong to (the molecule ID; 0 for fluid).
 // These are what a restart must carry for every particle. Stress and the like live with the fix that
@@ -38,6 +43,9 @@ class AtomVecFSI : virtual public AtomVec {
   void data_atom_post(int) override;
   int property_atom(const std::string &) override;
   void pack_property_atom(int, double *, int, int) override;
+
+  // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds of solids are still of its spacing and kernel
+  std::unique_ptr<FSI::Record> of_fix_fsi;
 
  private:
   double *rmass, *rho;

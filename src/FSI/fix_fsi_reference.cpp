@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "force.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
@@ -68,6 +69,7 @@ FixFSIReference::~FixFSIReference()
     atom->delete_callback(id, Atom::RESTART);
   }
   memory->destroy(slot);
+  if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -81,13 +83,20 @@ int FixFSIReference::setmask()
 
 void FixFSIReference::init()
 {
+  list = nullptr;
+  if (!force->pair_match("fsi/solid/tl", 1)) return;    // the bodies rest: a script has put another style in its place
   fix_fsi = FixFSI::find(lmp, "Fix fsi/reference");
-  int mine = std::any_of(slot, slot + atom->nlocal, [](int s) { return s >= 0; }), any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) made.clear();
+  if (!any()) made.clear();
   else if (made != as_now())
     error->all(FLERR, "Pair style fsi/solid/tl {}: the bonds of its bodies were made with {}, and stay so", as_now(), made);
   neighbor->add_request(this, NeighConst::REQ_FULL | NeighConst::REQ_OCCASIONAL);
+}
+
+bool FixFSIReference::any() const
+{
+  int mine = std::any_of(slot, slot + atom->nlocal, [](int s) { return s >= 0; }), all;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
+  return all;
 }
 
 void FixFSIReference::init_list(int, NeighList *ptr)
@@ -99,6 +108,7 @@ void FixFSIReference::init_list(int, NeighList *ptr)
 
 void FixFSIReference::setup_post_neighbor()
 {
+  if (!list) return;
   follow_commands();
   take();
   // a restart file, which rank 0 describes, needs the same largest size everywhere
@@ -112,7 +122,7 @@ void FixFSIReference::setup_post_neighbor()
 
 void FixFSIReference::post_neighbor()
 {
-  resolve();
+  if (list) resolve();
 }
 
 /* ---------------------------------------------------------------------- */

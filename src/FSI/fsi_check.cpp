@@ -67,8 +67,8 @@ static bool all_below(int n, const double *a, double most)
 Check::Check(LAMMPS *lmp, const Scene &scene) :
     Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), substepped(nullptr), found{}
 {
-  stop.restart_file = "fsi_stop.restart";
-  stop.dump_file = "fsi_stop.dump";
+  stop.restart_file = Stop::of_partition(lmp, "fsi_stop.restart");
+  stop.dump_file = Stop::of_partition(lmp, "fsi_stop.dump");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -39,8 +39,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static constexpr char REFERENCE[] = "FSI_REFERENCE";
-
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
@@ -70,8 +68,7 @@ PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
 
 PairFSISolidTL::~PairFSISolidTL()
 {
-  memory->destroy(fsolid);
-  if (modify->nfix && modify->get_fix_by_id(REFERENCE)) modify->delete_fix(REFERENCE);
+  memory->destroy(fsolid);    // the reference stays with its atoms, for the next pair_style
 }
 
 PairFSISolidTL *PairFSISolidTL::find(LAMMPS *lmp)
@@ -133,15 +130,18 @@ void PairFSISolidTL::init_style()
                planes[fix_stress->plane_stress]);
   }
 
-  reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(REFERENCE));
+  reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
   if (!reference)
-    reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", REFERENCE)));
+    reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", FixFSIReference::ID)));
   reference->quadratic = !linear;
   reference->end_corrected = !plain;
   comm_forward = has_artificial() || law == HYPO ? 2 * dim : dim;
   comm_reverse = dim;
 
   changes_seen = -1;
+  contacts.clear();
+  for (const auto &a : fix_fsi->resolution)
+    for (const auto &b : fix_fsi->resolution) contacts.emplace_back(dim, spacing_between(a, b), contact_range);
   svk.clear();
   neohookean.clear();
   hypo.clear();
@@ -321,9 +321,6 @@ template <int D> void PairFSISolidTL::contact_forces()
   const tagint *const molecule = atom->molecule;
   const State *const state = fix_fsi->state.data();
   const int ntypes = atom->ntypes;
-  std::vector<Contact> contacts;    // by both types
-  for (int a = 0; a <= ntypes; a++)
-    for (int b = 0; b <= ntypes; b++) contacts.emplace_back(D, spacing_between(fix_fsi->resolution[a], fix_fsi->resolution[b]), contact_range);
   const int nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
   for (int ii = 0; ii < list->inum; ii++) {
@@ -614,7 +611,7 @@ void PairFSISolidTL::advance(bool advance)
 void *PairFSISolidTL::extract(const char *name, int &dim_of_extract)
 {
   if (strcmp(name, "hypoelastic") == 0) {
-    dim_of_extract = 0;
+    dim_of_extract = NOT_ADAPTABLE;
     is_hypoelastic = hypoelastic();
     return &is_hypoelastic;
   }

@@ -22,6 +22,7 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 #define LMP_PAIR_FSI_SOLID_TL_H
 
 #include "fsi_bond_rows.h"
+#include "fsi_contact.h"
 #include "pair_fsi.h"
 
 #include <vector>
@@ -105,6 +106,7 @@ class PairFSISolidTL : public PairFSI {
   bool only_moving, one_material;    // forces of those are wanted; all solids have one density and one speed of sound
   void find_rows();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
+  std::vector<FSI::Contact> contacts;    // by both types
   template <class L, int D> void bond_forces();
   template <int D> void contact_forces();
   template <int D> void deformation(int i, double *F) const;
