@@ -47,7 +47,7 @@ FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), changes(0), swaps(lmp), fix_fsi(nullptr), list(nullptr), slot(nullptr),
     maxbond(0), apart(0.0), layer(nullptr)
 {
-  has_record = false;
+  has_record = resting = false;
   restart_peratom = restart_global = 1;
   create_attribute = 1;
   stores_ids = 1;
@@ -83,8 +83,8 @@ int FixFSIReference::setmask()
 
 void FixFSIReference::init()
 {
-  list = nullptr;
-  if (!force->pair_match("fsi/solid/tl", 1)) return;    // the bodies rest: a script has put another style in its place
+  resting = !force->pair_match("fsi/solid/tl", 1);    // a script has put in its place what is not of this package
+  if (resting) return;
   fix_fsi = FixFSI::find(lmp, "Fix fsi/reference");
   if (!any()) made.clear();
   else if (made != as_now())
@@ -108,7 +108,7 @@ void FixFSIReference::init_list(int, NeighList *ptr)
 
 void FixFSIReference::setup_post_neighbor()
 {
-  if (!list) return;
+  if (resting) return;
   follow_commands();
   take();
   // a restart file, which rank 0 describes, needs the same largest size everywhere
@@ -122,7 +122,7 @@ void FixFSIReference::setup_post_neighbor()
 
 void FixFSIReference::post_neighbor()
 {
-  if (list) resolve();
+  if (!resting) resolve();
 }
 
 /* ---------------------------------------------------------------------- */

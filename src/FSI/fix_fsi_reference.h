@@ -93,6 +93,7 @@ class FixFSIReference : public Fix {
   std::string made;    // how the bonds were: keywords of pair_style fsi/solid/tl; empty: none yet
   std::string as_now() const;
   bool has_record;
+  bool resting;    // no pair_style fsi/solid/tl
   class NeighList *list;
   int *slot;    // per local atom: where its bonds are, or NO_BONDS or FOREIGN
   enum { NO_BONDS = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began

@@ -30,7 +30,7 @@ dimension 2
 boundary {boundary} {boundary} p
 atom_style fsi
 atom_modify map yes
-region box block {lo} {hi} -0.05 0.35 -0.005 0.005 units box
+region box block {lo} {hi} {low} {high} -0.005 0.005 units box
 create_box {types} box
 lattice sq 0.01 origin 0.5 0.5 0
 """
@@ -66,12 +66,12 @@ variable u2 equal 0.6*sin(30*time)""",
     "dt": "fix dt all fsi/dt 5 max 1e-4",
     "watch": "fix watch all fsi/watch 10",
     "report": "fix report all fsi/report",
-    "spectrum": "fix spectrum all fsi/spectrum 5 c_energy[1]",
     "energy": "compute energy all fsi/energy",
     "force": "compute force beam fsi/force",
     "probe": "compute probe water fsi/probe point 0.05 0.05 0 p",
     "surface": "compute surface water fsi/surface/atom divergence 0.75",
     "state": "compute state all fsi/atom rho p vonmises",
+    "spectrum": "fix spectrum all fsi/spectrum 5 c_energy[1]",
     "settings": "variable zero equal 0\nneighbor 0.003 bin\nneigh_modify every 1 delay 0 check yes\nthermo_modify norm no lost error",
 }
 UPDATED = {**TANK,
@@ -100,8 +100,8 @@ STREAM = {
 create_atoms 1 region all
 group water type 1
 displace_atoms water random 0.0005 0.0005 0 7 units box
-region zone block 0 0.1 INF INF INF INF units box
-region zone2 block 0.05 0.15 INF INF INF INF units box
+region zone block 0 0.1 0 0.1 INF INF units box
+region zone2 block 0.05 0.15 0 0.1 INF INF units box
 variable u atom 0.5+y
 variable u2 atom 1.0+y""",
     "pair": "pair_style fsi/fluid sound 10 background 500 tension yes",
@@ -111,9 +111,9 @@ variable u2 atom 1.0+y""",
     "state": "compute state all fsi/atom rho p vonmises",
     "settings": "timestep 1e-4\nneighbor 0.003 bin\nthermo_modify norm no lost error",
 }
-SCENES = {"tank": (TANK, dict(boundary="f", lo=-0.05, hi=0.35, types=3)), "updated": (UPDATED, dict(boundary="f", lo=-0.05, hi=0.35, types=3)),
-          "open": (OPEN, dict(boundary="f", lo=-0.08, hi=0.28, types=1)),
-          "stream": (STREAM, dict(boundary="p", lo=0, hi=0.2, types=1))}
+BOX = {"boundary": "f", "lo": -0.05, "hi": 0.35, "low": -0.05, "high": 0.35, "types": 3}
+SCENES = {"tank": (TANK, BOX), "updated": (UPDATED, BOX), "open": (OPEN, {**BOX, "lo": -0.08, "hi": 0.28, "types": 1}),
+          "stream": (STREAM, {**BOX, "boundary": "p", "lo": 0, "hi": 0.2, "low": 0, "high": 0.1, "types": 1})}
 
 
 def part(scene, *names, **other):
@@ -130,7 +130,7 @@ def deck(scene, **other):
 
 
 def dump(name):
-    return f"write_dump all custom {name} id type x y vx vy fx fy c_state[*] modify sort id format float %.17g\n"
+    return f"write_dump all custom {name} id type x y vx vy fx fy c_state[*] modify sort id time yes format float %.17g\n"
 
 
 def frame(result, name="end"):
@@ -253,7 +253,8 @@ OTHER = {  # scene, name: other commands, each with what an error may say if it 
     ("stream", "stream"): {f"fix stream water fsi/stream {words}": "" for words in
                            ("v_u2 NULL NULL region zone rate 20", "0.5 0 NULL region zone2 rate 10 density 20", "v_u 0 NULL region zone2 rate 20 along y")},
 }
-CASES = [(scene, name, text, refused, way) for (scene, name), others in OTHER.items() for text, refused in others.items() for way in again(scene, name, text)]
+CASES = [(scene, name, text, refused, way) for (scene, name), others in OTHER.items() for text, refused in others.items()
+         for way in list(again(scene, name, text))[-1:]]    # taken away first, where that is possible: of the same, both are tried
 IDS = [f"{scene} {way}{text}".replace("\n", " ") for scene, name, text, refused, way in CASES]
 
 
