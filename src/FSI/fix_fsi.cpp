@@ -85,6 +85,7 @@ FixFSI::~FixFSI()
   auto &kept = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
   kept = std::make_unique<Record>(lmp, "fix fsi");
   keywords.write(*kept);
+  check.write(*kept);
 }
 
 /* ----------------------------------------------------------------------
@@ -186,11 +187,6 @@ void FixFSI::setup(int)
   announce(lmp, *this);
   check.setup();
   changes.set_up();
-}
-
-void FixFSI::post_run()
-{
-  changes.end_run();
 }
 
 /* ----------------------------------------------------------------------
@@ -419,15 +415,17 @@ void FixFSI::write_restart(FILE *fp)
   keywords.write(record);
   clock.write(record);
   if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
+  check.write(record);
   surface_room.write(record);
   fields.write(record);
   record.write(fp);
 }
 
 // with the kernel of the particles' masses
-bool FixFSI::goes_on(const Record &record, const std::string &when) const
+bool FixFSI::goes_on(const Record &record, const std::string &when)
 {
   keywords.compare(record, when);
+  check.read(record);
   const bool other_kernel = keywords.differs(record, "kernel") || keywords.differs(record, "smoothing length over spacing");
   if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))
     error->all(FLERR, "Fix fsi: density mode summation must keep kernel and smoothing length, for which the masses of its particles were made");

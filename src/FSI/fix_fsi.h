@@ -62,7 +62,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void pre_exchange() override;
   void pre_force(int) override;
   void final_integrate() override;
-  void post_run() override;
+  void post_run() override { changes.end_run(); }
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;
@@ -90,7 +90,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   bool ids_checked;
 
   void find_parts();
-  bool goes_on(const FSI::Record &, const std::string &when) const;
+  bool goes_on(const FSI::Record &, const std::string &when);
 
   FSI::Message forward, back, scalar;    // to ghosts, and sums from them; of one array of numbers per atom, both ways
   double *carried;                       // that array; null: the others
