@@ -27,7 +27,8 @@ class Maker:
         self.rng = random.Random(seed)
         self.scene = self.rng.choice(("tank", "tank", "updated", "open", "stream"))
         self.now = dict(SCENES[self.scene][0])
-        self.others = {name: texts for (scene, name), texts in OTHER.items() if scene == self.scene}
+        # bodies whose density is summed are in tension at their faces, and tear
+        self.others = {name: {t: r for t, r in texts.items() if "solid summation" not in t} for (scene, name), texts in OTHER.items() if scene == self.scene}
         self.gone, self.spots, self.files = [], 0, 0
         for name in self.rng.sample(sorted(self.others), self.rng.choice((0, 0, 1, 2))):
             self.choose(name)
