@@ -14,6 +14,7 @@
 #include "atom_vec_fsi.h"
 
 #include "atom.h"
+#include "fsi_record.h"
 #include "error.h"
 
 using namespace LAMMPS_NS;

@@ -23,9 +23,13 @@ AtomStyle(fsi,AtomVecFSI);
 #include "atom_vec.h"
 
 #include <map>
+#include <memory>
 #include <string>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Record;
+}
 
 // Particles of fluid or solid: mass, density, and the body they belong to (the molecule ID; 0 for fluid).
 // These are what a restart must carry for every particle. Stress and the like live with the fix that
@@ -43,6 +47,8 @@ class AtomVecFSI : virtual public AtomVec {
   void pack_property_atom(int, double *, int, int) override;
 
   std::map<std::string, std::string> materials;    // lines of a material file that command fsi/material has given, by name
+  // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds of solids are still of its spacing and kernel
+  std::unique_ptr<FSI::Record> of_fix_fsi;
 
  private:
   double *rmass, *rho;

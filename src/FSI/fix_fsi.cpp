@@ -14,6 +14,7 @@
 #include "fix_fsi.h"
 
 #include "atom.h"
+#include "atom_vec_fsi.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -43,9 +44,9 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this),
+    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this), changes(lmp),
     number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
-    states_entered(false), nlocal_ready(-1), ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
+    ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -67,12 +68,24 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
 
   dim = domain->dimension;
   resolve(hdx, given_spacing);
+  const auto &before = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
+  if (before && changes.any_mass()) goes_on(*before, "in the last run");
   if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this, thin);
 
   time_integrate = force_reneighbor = create_attribute = restart_global = 1;
   set_fields();
   register_fields();
   comm_reverse = 1;    // more with solids, see init()
+}
+
+// what the next one has to keep, if particles have masses since
+FixFSI::~FixFSI()
+{
+  if (parts.empty()) return;
+  auto &kept = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
+  kept = std::make_unique<Record>(lmp, "fix fsi");
+  keywords.write(*kept);
+  check.write(*kept);
 }
 
 /* ----------------------------------------------------------------------
@@ -102,20 +115,27 @@ void FixFSI::set_fields()
 
 /* ---------------------------------------------------------------------- */
 
-FixFSI *FixFSI::find(LAMMPS *lmp, const std::string &who)
+FixFSI *FixFSI::there(LAMMPS *lmp)
 {
   auto fixes = lmp->modify->get_fix_by_style("^fsi$");
-  if (fixes.empty()) lmp->error->all(FLERR, "{} requires fix fsi, which holds particle spacing and kernel", who);
-  return dynamic_cast<FixFSI *>(fixes[0]);
+  return fixes.empty() ? nullptr : dynamic_cast<FixFSI *>(fixes[0]);
+}
+
+FixFSI *FixFSI::find(LAMMPS *lmp, const std::string &who)
+{
+  FixFSI *const fix = there(lmp);
+  if (!fix) lmp->error->all(FLERR, "{} requires fix fsi, which holds particle spacing and kernel", who);
+  return fix;
 }
 
 FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
 {
   FixFSI *const fix_fsi = find(lmp, who);
-  int mine = fix_fsi->nlocal_ready != lmp->atom->nlocal, any = 0;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
-  if (any) lmp->error->all(FLERR, "{} needs a run before it, if only run 0, and after atoms are made or deleted", who);
   fix_fsi->find_parts();    // commands since the last run may have changed them
+  int mine = fix_fsi->changes.of_atoms(), any = 0;
+  for (const auto *p : fix_fsi->parts) mine |= !p->is_set_up();
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
+  if (any) lmp->error->all(FLERR, "{} needs a run before it, if only run 0, and after atoms are made, deleted or changed, or a pair style is given", who);
   return fix_fsi;
 }
 
@@ -123,7 +143,7 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
 
 int FixFSI::setmask()
 {
-  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE;
+  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -132,7 +152,7 @@ void FixFSI::init()
 {
   check.before_init();
   dt_offset = 0.0;
-  nlocal_ready = -1;
+  changes.begin_run();
   states_entered = false;
   clock.restore();
   find_parts();
@@ -166,6 +186,7 @@ void FixFSI::setup(int)
   clock.forget();
   announce(lmp, *this);
   check.setup();
+  changes.set_up();
 }
 
 /* ----------------------------------------------------------------------
@@ -182,17 +203,6 @@ void FixFSI::give_defaults(int i)
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSI::enter_state(int type, const State &s)
-{
-  if (!states_entered) state.assign(state.size(), State());
-  states_entered = true;
-  // that of a solid is of the style that moves it, in whatever order a hybrid style has them
-  if (state[type].form && !s.form) return;
-  state[type] = s;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSI::find_parts()
 {
   parts.clear();
@@ -201,20 +211,6 @@ void FixFSI::find_parts()
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
   parts.push_back(&surface_room);
-}
-
-/* ----------------------------------------------------------------------
-   one list of walls from all fixes fsi/wall/mirror
-------------------------------------------------------------------------- */
-
-void FixFSI::gather_walls()
-{
-  walls.wall.clear();
-  wall_forces.clear();
-  for (auto *p : parts) p->add_walls(walls, wall_forces);
-  if (walls.wall.size() > Walls::MAXWALL)
-    error->all(FLERR, "There are {} mirror walls, more than the {} supported", walls.wall.size(), Walls::MAXWALL);
-  walls.find_reflections();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -258,6 +254,7 @@ void FixFSI::pre_exchange()
 
 void FixFSI::initial_integrate(int)
 {
+  if (update->ntimestep - 1 == update->firststep) changes.check_pre_no();
   for (auto *p : parts) p->start_step();
   if (fresh_start()) {
     next_reneighbor = update->ntimestep;
@@ -325,8 +322,7 @@ void FixFSI::update_state(bool advance)
 {
   const int nall = atom->nlocal + atom->nghost;
   fields.grow();
-  nlocal_ready = atom->nlocal;
-
+  changes.in_step();
   inverted = -1;
   tally_dt = (ledger && advance) ? update->dt : 0.0;
   body_forces.evaluate();
@@ -399,6 +395,7 @@ void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
 void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
+  changes.forget();
   give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
     error->one(FLERR, "Fluid atom {} was made during a run and is not in group {} of fix {}: it would hang in the air. Give the fix that "
@@ -418,31 +415,32 @@ void FixFSI::write_restart(FILE *fp)
   keywords.write(record);
   clock.write(record);
   if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
+  check.write(record);
+  surface_room.write(record);
   fields.write(record);
   record.write(fp);
+}
+
+// with the kernel of the particles' masses
+bool FixFSI::goes_on(const Record &record, const std::string &when)
+{
+  keywords.compare(record, when);
+  check.read(record);
+  const bool other_kernel = keywords.differs(record, "kernel") || keywords.differs(record, "smoothing length over spacing");
+  if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))
+    error->all(FLERR, "Fix fsi: density mode summation must keep kernel and smoothing length, for which the masses of its particles were made");
+  return !other_kernel;
 }
 
 void FixFSI::restart(char *buf)
 {
   const Record record(lmp, "fix fsi", buf);
-  keywords.compare(record);
-  const bool other_kernel = keywords.differs(record, "kernel") || keywords.differs(record, "smoothing length over spacing");
-  if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))
-    error->all(FLERR, "Fix fsi: density mode summation must keep kernel and smoothing length of the restart file, for which its masses were made");
-  if (other_kernel) fields.read(record, {"reference of ratio", "number density"});
-  else fields.read(record);
-
+  if (goes_on(record, Keywords::OF_RESTART)) fields.read(record);
+  else fields.read(record, {"reference of ratio", "number density"});
+  surface_room.read(record);
   clock.read(record);
   if (record.has("ledger") && comm->me == 0) {
     const auto terms = record.numbers("ledger");
     std::copy_n(terms.begin(), std::min(terms.size(), (size_t) NTERM), energy_out);
   }
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSI::check_restart_ids()
-{
-  if (!ids_checked) check_ids(lmp);
-  ids_checked = true;
 }

@@ -21,11 +21,13 @@ FixStyle(fsi,FixFSI);
 #define LMP_FIX_FSI_H
 
 #include "atom.h"
+#include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clock.h"
 #include "fsi_fields.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
+#include "fsi_record.h"
 #include "fsi_scene.h"
 #include "fsi_surface_room.h"
 
@@ -40,12 +42,18 @@ namespace LAMMPS_NS {
 class FixFSI : public FSI::FixFields, public FSI::Scene {
  public:
   FixFSI(class LAMMPS *, int, char **);
+  ~FixFSI() override;
   // the fix fsi of this LAMMPS; an error that names who needs it if there is none
   static FixFSI *find(class LAMMPS *, const std::string &who);
-  // the same, for who needs what the setup of a run finds: an error if there was none since atoms were made or deleted
+  static FixFSI *there(class LAMMPS *);    // null: there is none. Who is asked between runs may know one that is gone
+  // the same, for who needs what the setup of a run finds: an error if there was none since atoms were made, deleted or changed
   static FixFSI *ready(class LAMMPS *, const std::string &who);
   // once, before the first run after a restart file was read: what the file keeps for fixes that go by another ID now
-  void check_restart_ids();
+  void check_restart_ids()
+  {
+    if (!ids_checked) FSI::check_ids(lmp);
+    ids_checked = true;
+  }
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -54,6 +62,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void pre_exchange() override;
   void pre_force(int) override;
   void final_integrate() override;
+  void post_run() override { changes.end_run(); }
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;
@@ -64,8 +73,8 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
 
   FSI::Keywords keywords;
   FSI::Clock clock;
-  void enter_state(int type, const FSI::State &);    // what a pair style knows of an atom type, in its init_style()
   FSI::Check check;    // stops a run that has lost its meaning
+  FSI::Changes changes;    // since the last run
 
   FSI::NumberDensity number_density;
   FSI::SurfaceRoom surface_room;
@@ -78,12 +87,10 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   int given_substeps;
   double hdx;    // h over dx
   std::vector<double> given_spacing;    // per type; 0: dx
-  bool states_entered;       // since the last init()
-  int nlocal_ready;          // atoms when the state was last brought up to date; -1: not since init()
   bool ids_checked;
 
   void find_parts();
-  void gather_walls();
+  bool goes_on(const FSI::Record &, const std::string &when);
 
   FSI::Message forward, back, scalar;    // to ghosts, and sums from them; of one array of numbers per atom, both ways
   double *carried;                       // that array; null: the others

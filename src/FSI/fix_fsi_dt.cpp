@@ -344,7 +344,8 @@ double FixFSIDt::compute_vector(int k)
 {
   if (k < NLIMIT) return limit[k];
   if (k == NLIMIT) return cause + 1;
-  return next_substeps ? next_substeps : fix_fsi ? fix_fsi->substeps : 0;
+  const auto *const scene = FixFSI::there(lmp);
+  return next_substeps ? next_substeps : fix_fsi && scene ? scene->substeps : 0;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -20,13 +20,10 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_record.h"
-#include "input.h"
 #include "lattice.h"
 #include "math_const.h"
-#include "memory.h"
 #include "modify.h"
 #include "update.h"
-#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,18 +83,17 @@ class FixFSIMove::Words : protected Pointers {
 /* ---------------------------------------------------------------------- */
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), source{FREE, FREE, FREE}, of_velocity{FREE, FREE, FREE}, origin(now()),
-    original(nullptr), values(nullptr), nmax(0)
+    FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), driven{}, given(lmp, "fix fsi/move", 6), evaluated(-1), origin(now()), original(nullptr),
+    begun(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
   Words words(lmp, narg - 3, arg + 3);
   read_motion(words);
   read_units(words);
-  if (domain->dimension == 2 && (rate[2] != 0.0 || !position[2].empty() || !velocity[2].empty()))
+  if (domain->dimension == 2 && (rate[2] != 0.0 || (motion == VARIABLE && sets_velocity(2))))
     error->all(FLERR, "Fix fsi/move {} cannot move along z in 2D", words.motion);
 
-  time_integrate = 1;
-  restart_global = 1;
+  time_integrate = time_depend = restart_global = 1;
   fields.set("place before the motion", Fields::RESTART, true, original, 3);
   register_fields();
   for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], original[i]);
@@ -111,7 +107,7 @@ void FixFSIMove::read_motion(Words &words)
     for (int k = 0; k < 3; k++) {
       if (words.skip_null()) continue;
       rate[k] = words.number();
-      source[k] = GIVEN;
+      driven[k] = true;
     }
   };
   const auto turn = [&]() {
@@ -121,31 +117,33 @@ void FixFSIMove::read_motion(Words &words)
     if (length == 0.0) error->all(FLERR, "Fix fsi/move {} axis must not be of length 0", words.motion);
     for (double &a : axis) a /= length;
     if (domain->dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0)) error->all(FLERR, "Fix fsi/move {} axis must be z in 2D", words.motion);
-    for (auto &s : source) s = GIVEN;
+    std::fill_n(driven, 3, true);
     omega = MathConst::MY_2PI / words.period();
   };
 
   if (words.motion == "linear") {
-    style = LINEAR;
+    motion = LINEAR;
     components();
   } else if (words.motion == "wiggle") {
-    style = WIGGLE;
+    motion = WIGGLE;
     components();
     omega = MathConst::MY_2PI / words.period();
   } else if (words.motion == "rotate") {
-    style = ROTATE;
+    motion = ROTATE;
     turn();
   } else if (words.motion == "transrot") {
-    style = TRANSROT;
+    motion = TRANSROT;
     for (double &r : rate) r = words.number();
     turn();
   } else if (words.motion == "variable") {
-    style = VARIABLE;
-    for (auto &v : position) v = words.variable();
-    for (auto &v : velocity) v = words.variable();
-    for (int k = 0; k < 3; k++)
-      if (!position[k].empty() && velocity[k].empty())
-        error->all(FLERR, "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels how fast a wall moves", position[k]);
+    motion = VARIABLE;
+    for (int k = 0; k < 2 * VELOCITY; k++) {
+      const auto name = words.variable();
+      if (!name.empty()) given.set_variable(k, name);
+      if (k < VELOCITY) driven[k] = !name.empty();
+      else if (name.empty() && driven[k - VELOCITY])
+        error->all(FLERR, "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels how fast a wall moves", given.name(k - VELOCITY));
+    }
   } else
     error->all(FLERR, "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable", words.motion);
 }
@@ -154,13 +152,13 @@ void FixFSIMove::read_motion(Words &words)
 
 void FixFSIMove::read_units(Words &words)
 {
-  bool lattice = style != VARIABLE;
+  bool lattice = motion != VARIABLE;
   while (words.any()) {
     const auto key = words.next();
     if (key != "units") error->all(FLERR, "Unknown fix fsi/move keyword {}: expected units", key);
     const auto value = words.next();
     if (value != "box" && value != "lattice") error->all(FLERR, "Unknown fix fsi/move units {}: expected box or lattice", value);
-    lattice = style != VARIABLE && value == "lattice";
+    lattice = motion != VARIABLE && value == "lattice";
   }
   if (!lattice) return;
   const double scale[] = {domain->lattice->xlattice, domain->lattice->ylattice, domain->lattice->zlattice};
@@ -168,13 +166,6 @@ void FixFSIMove::read_units(Words &words)
     rate[k] *= scale[k];
     point[k] *= scale[k];
   }
-}
-
-/* ---------------------------------------------------------------------- */
-
-FixFSIMove::~FixFSIMove()
-{
-  memory->destroy(values);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -201,18 +192,22 @@ void FixFSIMove::init()
     if ((atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit)) mine = 1;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) error->all(FLERR, "Particles of fix fsi/move {} are also in the group of fix fsi, which moves them, too: leave them out", id);
-  if (style != VARIABLE) return;
-  const auto find = [&](const std::string &name, int &n) {
-    if (name.empty()) return FREE;
-    n = input->variable->find(name.c_str());
-    if (n < 0) error->all(FLERR, "Variable {} of fix fsi/move does not exist", name);
-    if (input->variable->equalstyle(n)) return EQUAL;
-    if (!input->variable->atomstyle(n)) error->all(FLERR, "Variable {} of fix fsi/move must be equal-style or atom-style", name);
-    return ATOM;
-  };
-  for (int k = 0; k < 3; k++) {
-    source[k] = find(position[k], index[k]);
-    of_velocity[k] = find(velocity[k], velocity_index[k]);
+  refuse_free_walls(fix_fsi);
+  given.find();
+}
+
+/* ----------------------------------------------------------------------
+   Nothing holds the particles of a wall together: forces would take each its own way
+------------------------------------------------------------------------- */
+
+void FixFSIMove::refuse_free_walls(const FixFSI *fix_fsi) const
+{
+  for (int k = 0; k < domain->dimension; k++) {
+    if (sets_velocity(k)) continue;
+    for (int i = 0; i < atom->nlocal; i++)
+      if ((atom->mask[i] & groupbit) && fix_fsi->state[atom->type[i]].species == RIGID)
+        error->one(FLERR, "Fix fsi/move {} leaves {} of atom {} free, which is of a wall: forces would take each wall particle its own way. Write 0 "
+                          "instead of NULL to hold that component{}", id, "xyz"[k], atom->tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
   }
 }
 
@@ -222,14 +217,20 @@ void FixFSIMove::init()
 
 void FixFSIMove::setup_pre_exchange()
 {
+  if (!begun) origin = now();    // the clock of a restart file is right from init() on
+  begun = true;
   move(START);
 }
 
 void FixFSIMove::initial_integrate(int)
 {
+  double before[2 * VELOCITY];
+  for (int k = 0; k < 2 * VELOCITY; k++) before[k] = given.number(k);
   move(MIDDLE);
-  double shift[3];
-  if (style == VARIABLE) evaluate(shift, end_speed, false);
+  if (motion != VARIABLE) return;
+  given.evaluate(igroup, 0, 2 * VELOCITY, false);
+  evaluated = update->ntimestep;
+  compare_velocities(before);
 }
 
 void FixFSIMove::final_integrate()
@@ -238,24 +239,32 @@ void FixFSIMove::final_integrate()
 }
 
 /* ----------------------------------------------------------------------
-   variables at the time that LAMMPS has
+   Fluid feels a wall's velocity, and would not know of another one by which its place changes
 ------------------------------------------------------------------------- */
 
-void FixFSIMove::evaluate(double *shift, double *speed, bool everywhere)
+// of equal-style variables; before: at the start of the step
+void FixFSIMove::compare_velocities(const double *before) const
 {
-  if (everywhere && atom->nmax > nmax) {
-    nmax = atom->nmax;
-    memory->destroy(values);
-    memory->create(values, nmax, 6, "fsi/move:values");
+  for (int k = 0; k < domain->dimension; k++) {
+    const double d = given.number(k);
+    if (given.source(k) == Values::EQUAL && given.source(VELOCITY + k) == Values::EQUAL)
+      compare_velocity(k, d - before[k], update->dt, before[VELOCITY + k], given.number(VELOCITY + k), std::max(std::fabs(d), std::fabs(before[k])));
   }
-  modify->clearstep_compute();
-  for (int k = 0; k < 3; k++) {
-    if (source[k] == EQUAL) shift[k] = input->variable->compute_equal(index[k]);
-    if (of_velocity[k] == EQUAL) speed[k] = input->variable->compute_equal(velocity_index[k]);
-    if (everywhere && source[k] == ATOM) input->variable->compute_atom(index[k], igroup, &values[0][k], 6, 0);
-    if (everywhere && of_velocity[k] == ATOM) input->variable->compute_atom(velocity_index[k], igroup, &values[0][3 + k], 6, 0);
-  }
-  modify->addstep_compute(update->ntimestep + 1);
+}
+
+// moved in the time dt, with velocities v and v_end; round: the size of what it is a difference of
+void FixFSIMove::compare_velocity(int k, double moved, double dt, double v, double v_end, double round, int i) const
+{
+  constexpr double TOLERANCE = 0.05, ROUND = 1.0e-14;
+  if (dt == 0.0) return;
+  const double mean = moved / dt, low = std::min(v, v_end), high = std::max(v, v_end), most = std::max({std::fabs(v), std::fabs(v_end), std::fabs(mean)});
+  const double slack = high - low + TOLERANCE * most + ROUND * round / dt;    // what a velocity may do in a step
+  if (mean >= low - slack && mean <= high + slack) return;
+  const auto text = fmt::format("Fix fsi/move {}: on step {} the displacement v_{} changes by {:g} per time, but the velocity v_{} is {:g}: expected its "
+                                "derivative{}", id, update->ntimestep, given.name(k), mean, given.name(VELOCITY + k), v_end,
+                                i < 0 ? "" : fmt::format(" (atom {})", atom->tag[i]));
+  if (i < 0) error->all(FLERR, text);
+  error->one(FLERR, text);
 }
 
 /* ----------------------------------------------------------------------
@@ -265,10 +274,10 @@ void FixFSIMove::evaluate(double *shift, double *speed, bool everywhere)
 void FixFSIMove::follow(const double *from, double t, double *x, double *v) const
 {
   const double c = std::cos(omega * t), s = std::sin(omega * t);
-  if (style == LINEAR || style == WIGGLE) {
+  if (motion == LINEAR || motion == WIGGLE) {
     for (int k = 0; k < 3; k++) {
-      x[k] = from[k] + rate[k] * (style == LINEAR ? t : s);
-      v[k] = rate[k] * (style == LINEAR ? 1.0 : omega * c);
+      x[k] = from[k] + rate[k] * (motion == LINEAR ? t : s);
+      v[k] = rate[k] * (motion == LINEAR ? 1.0 : omega * c);
     }
     return;
   }
@@ -292,10 +301,10 @@ void FixFSIMove::follow(const double *from, double t, double *x, double *v) cons
 bool FixFSIMove::velocity_at_end(int i, double *v) const
 {
   double x[3];
-  if (style != VARIABLE) follow(original[i], now() - origin, x, v);
+  if (motion != VARIABLE) follow(original[i], now() - origin, x, v);
   for (int k = 0; k < domain->dimension; k++) {
-    if (!sets_velocity(k) || of_velocity[k] == ATOM) return false;
-    if (of_velocity[k] == EQUAL) v[k] = end_speed[k];
+    if (!sets_velocity(k) || given.source(VELOCITY + k) == Values::ATOM) return false;
+    if (motion == VARIABLE) v[k] = given.number(VELOCITY + k);
   }
   return true;
 }
@@ -308,11 +317,12 @@ bool FixFSIMove::velocity_at_end(int i, double *v) const
 void FixFSIMove::move(When when)
 {
   const double dt = update->dt, back = when == MIDDLE ? 0.5 * dt : 0.0, t = now() - origin - back;
-  double shift[3], speed[3];
-  if (style == VARIABLE) {
+  if (motion == VARIABLE) {
+    const double clock = update->atime;
     update->atime -= back;
-    evaluate(shift, speed, std::count(source, source + 3, ATOM) + std::count(of_velocity, of_velocity + 3, ATOM));
-    update->atime += back;
+    given.evaluate(igroup, 0, 2 * VELOCITY);
+    update->atime = clock;
+    if (when != MIDDLE) evaluated = update->ntimestep;
   }
   double **f = atom->f;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -320,16 +330,22 @@ void FixFSIMove::move(When when)
     double *const x = atom->x[i], *const v = atom->v[i];
     double old[3] = {x[0], x[1], x[2]};
     double to[3], fast[3];
-    if (style != VARIABLE) follow(original[i], t, to, fast);
+    if (motion != VARIABLE) follow(original[i], t, to, fast);
     for (int k = 0; k < domain->dimension; k++) {
-      if (style == VARIABLE) {
-        to[k] = original[i][k] + (source[k] == ATOM ? values[i][k] : shift[k]);
-        fast[k] = of_velocity[k] == ATOM ? values[i][3 + k] : speed[k];
+      if (motion == VARIABLE) {
+        to[k] = original[i][k] + given(k, i);
+        fast[k] = given(VELOCITY + k, i);
+        if (when == END && driven[k] && (given.source(k) == Values::ATOM || given.source(VELOCITY + k) == Values::ATOM)) {
+          double moved[3] = {};
+          moved[k] = to[k] - x[k];
+          domain->minimum_image(moved);
+          compare_velocity(k, moved[k], 0.5 * dt, v[k], fast[k], std::max(std::fabs(x[k]), std::fabs(to[k])), i);
+        }
       }
       if (when != MIDDLE && sets_velocity(k)) v[k] = fast[k];
       if (when == START) continue;
       if (when == END && !sets_velocity(k)) v[k] += dt * force->ftm2v / atom->rmass[i] * f[i][k];
-      if (source[k] != FREE) x[k] = to[k];
+      if (driven[k]) x[k] = to[k];
       else x[k] += 0.5 * dt * v[k];
     }
     if (when != START) domain->remap_near(x, old);
@@ -340,24 +356,45 @@ void FixFSIMove::move(When when)
 
 double FixFSIMove::memory_usage()
 {
-  return FixFields::memory_usage() + 6.0 * nmax * sizeof(double);
+  return FixFields::memory_usage() + given.memory_usage();
 }
 
 /* ---------------------------------------------------------------------- */
 
+std::string FixFSIMove::text() const
+{
+  static const char *const names[] = {"linear", "wiggle", "rotate", "transrot", "variable"};
+  std::string words = names[motion];
+  if (motion == VARIABLE) return words + " " + given.text();
+  for (int k = 0; k < 3; k++) words += driven[k] ? fmt::format(" {}", rate[k]) : " NULL";
+  if (motion == ROTATE || motion == TRANSROT)
+    words += fmt::format(" about {} {} {} along {} {} {}", point[0], point[1], point[2], axis[0], axis[1], axis[2]);
+  return words + (motion == LINEAR ? "" : fmt::format(" with {} radians per time", omega));
+}
+
 void FixFSIMove::write_restart(FILE *fp)
 {
   Record record(lmp, "fix fsi/move");
+  record.add("motion", text());
   record.add("origin", std::vector<double>{origin});
   fields.write(record);
   record.write(fp);
 }
 
+// another motion begins here
 void FixFSIMove::restart(char *buf)
 {
   const Record record(lmp, "fix fsi/move", buf);
-  origin = record.numbers("origin")[0];
-  fields.read(record);
+  begun = !record.has("motion") || record.value("motion") == text();
+  if (begun) {
+    origin = record.numbers("origin")[0];
+    fields.read(record);
+    return;
+  }
+  if (comm->me == 0)
+    error->warning(FLERR, "Fix fsi/move {}: the motion was {} {}, and is {} now: it begins anew, with the time and the places of the file", id,
+                   record.value("motion"), Keywords::OF_RESTART, text());
+  fields.read(record, {"place before the motion"});
 }
 
 /* ----------------------------------------------------------------------
@@ -368,13 +405,15 @@ void FixFSIMove::set_arrays(int i)
 {
   domain->unmap(atom->x[i], atom->image[i], original[i]);
   const double t = now() - origin;
-  if (!(atom->mask[i] & groupbit) || t == 0.0) return;
-  double shift[3] = {0.0, 0.0, 0.0}, speed[3];
-  if (style == VARIABLE) {
-    for (const Source s : source)
-      if (s == ATOM) error->one(FLERR, "Cannot add atoms to fix fsi/move {} with an atom-style variable", id);
-    evaluate(shift, speed, false);
-  } else if (style == ROTATE || style == TRANSROT) {
+  if (!(atom->mask[i] & groupbit) || !begun || t == 0.0) return;
+  double shift[3] = {0.0, 0.0, 0.0};
+  if (motion == VARIABLE) {
+    // not evaluated here: a variable may sum over ranks, and only this one makes the atom
+    if (given.of_atoms()) error->one(FLERR, "Cannot add atoms to fix fsi/move {} with an atom-style variable", id);
+    if (evaluated != update->ntimestep)
+      error->one(FLERR, "Cannot add atoms to fix fsi/move {} now: its variables are known from the setup of a run on. Give run 0 before", id);
+    for (int k = 0; k < 3; k++) shift[k] = given.number(k);
+  } else if (motion == ROTATE || motion == TRANSROT) {
     // the turn alone, backwards, of what has not been shifted; follow() shifts it back once more
     double from[3], v[3];
     for (int k = 0; k < 3; k++) from[k] = original[i][k] - rate[k] * t;
@@ -382,7 +421,7 @@ void FixFSIMove::set_arrays(int i)
     for (int k = 0; k < 3; k++) original[i][k] += rate[k] * t;
     return;
   } else
-    for (int k = 0; k < 3; k++) shift[k] = rate[k] * (style == LINEAR ? t : std::sin(omega * t));
+    for (int k = 0; k < 3; k++) shift[k] = rate[k] * (motion == LINEAR ? t : std::sin(omega * t));
   for (int k = 0; k < 3; k++)
-    if (source[k] != FREE) original[i][k] -= shift[k];
+    if (driven[k]) original[i][k] -= shift[k];
 }

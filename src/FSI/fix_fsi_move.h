@@ -21,6 +21,7 @@ FixStyle(fsi/move,FixFSIMove);
 #define LMP_FIX_FSI_MOVE_H
 
 #include "fsi_fields.h"
+#include "fsi_value.h"
 
 #include <string>
 
@@ -32,7 +33,6 @@ namespace LAMMPS_NS {
 class FixFSIMove : public FSI::FixFields {
  public:
   FixFSIMove(class LAMMPS *, int, char **);
-  ~FixFSIMove() override;
   int setmask() override;
   void init() override;
   void setup_pre_exchange() override;
@@ -51,25 +51,27 @@ class FixFSIMove : public FSI::FixFields {
   class Words;
   void read_motion(Words &);
   void read_units(Words &);
-  enum Style { LINEAR, WIGGLE, ROTATE, TRANSROT, VARIABLE };
-  enum Source { FREE, GIVEN, EQUAL, ATOM };
-  int style;
+  enum Motion { LINEAR, WIGGLE, ROTATE, TRANSROT, VARIABLE };
+  int motion;
   double rate[3];    // velocity, or amplitude of wiggle
   double point[3], axis[3], omega;
-  Source source[3], of_velocity[3];    // of a component: FREE goes where forces take it, or as fast as it has to
-  std::string position[3], velocity[3];    // variables
-  int index[3], velocity_index[3];
+  bool driven[3];       // components: others go where forces take them
+  // variables of displacements and, from VELOCITY on, of velocities; at the end of the step that is going on, but for move(MIDDLE)
+  static constexpr int VELOCITY = 3;
+  FSI::Values given;
+  bigint evaluated;     // the last step at whose end they are known
   double origin;        // time at which particles were at
   double **original;    // these positions, not wrapped
-  double end_speed[3];  // of equal-style variables, at the end of the step
-  double **values;      // of atom-style variables: displacements and velocities
-  int nmax;
+  bool begun;           // the motion, in the setup of a run
 
   enum When { START, MIDDLE, END };    // of a run, of a step
 
   double now() const;
-  bool sets_velocity(int k) const { return source[k] != FREE || of_velocity[k] != FREE; }
-  void evaluate(double *shift, double *speed, bool everywhere);
+  std::string text() const;    // as in the command
+  bool sets_velocity(int k) const { return driven[k] || given.given(VELOCITY + k); }
+  void refuse_free_walls(const class FixFSI *) const;
+  void compare_velocities(const double *before) const;
+  void compare_velocity(int k, double moved, double dt, double v, double v_end, double round, int i = -1) const;
   void follow(const double *from, double t, double *x, double *v) const;
   void move(When);
 };

@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "fsi_cells.h"
 #include "fsi_contact.h"
+#include "force.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
@@ -51,7 +52,7 @@ FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), self_range(0.0), tears(false), changes(0), swaps(lmp), fix_fsi(nullptr), list(nullptr), slot(nullptr),
     maxbond(0), keeps_places(false), apart(0.0), layer(nullptr), next_look(0)
 {
-  has_record = false;
+  has_record = resting = false;
   restart_peratom = restart_global = 1;
   create_attribute = 1;
   stores_ids = 1;
@@ -73,6 +74,7 @@ FixFSIReference::~FixFSIReference()
     atom->delete_callback(id, Atom::RESTART);
   }
   memory->destroy(slot);
+  if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -86,10 +88,10 @@ int FixFSIReference::setmask()
 
 void FixFSIReference::init()
 {
+  resting = !force->pair_match("fsi/solid/tl", 1);    // a script has put in its place what is not of this package
+  if (resting) return;
   fix_fsi = FixFSI::find(lmp, "Fix fsi/reference");
-  int mine = std::any_of(slot, slot + atom->nlocal, [](int s) { return s >= 0; }), any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) {
+  if (!any()) {
     made.clear();
     keeps_places = self_range > 0.0;
   } else if (made != as_now())
@@ -98,6 +100,13 @@ void FixFSIReference::init()
     error->all(FLERR, "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept only if it is on when the reference is taken: "
                       "give it before the first run of the bodies");
   neighbor->add_request(this, NeighConst::REQ_FULL | NeighConst::REQ_OCCASIONAL);
+}
+
+bool FixFSIReference::any() const
+{
+  int mine = std::any_of(slot, slot + atom->nlocal, [](int s) { return s >= 0; }), all;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
+  return all;
 }
 
 void FixFSIReference::init_list(int, NeighList *ptr)
@@ -109,6 +118,7 @@ void FixFSIReference::init_list(int, NeighList *ptr)
 
 void FixFSIReference::setup_post_neighbor()
 {
+  if (resting) return;
   follow_commands();
   take();
   // a restart file, which rank 0 describes, needs the same largest size everywhere
@@ -124,6 +134,7 @@ void FixFSIReference::setup_post_neighbor()
 
 void FixFSIReference::post_neighbor()
 {
+  if (resting) return;
   resolve();
   look_for_passing();
 }

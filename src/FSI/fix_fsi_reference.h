@@ -34,10 +34,11 @@ namespace LAMMPS_NS {
 
 // The reference configuration of total-Lagrangian solids: for every particle its bonds to the neighbours of its own body, with
 // the gradient's weights. Made by pair_style fsi/solid/tl; taken at the start of the first run; travels with its atom between
-// ranks and through restart files. Memory and messages exist for solid particles only.
+// ranks, through restart files and from one pair_style command to the next. Memory and messages exist for solid particles only.
 
 class FixFSIReference : public Fix {
  public:
+  static constexpr char ID[] = "FSI_REFERENCE";
   FixFSIReference(class LAMMPS *, int, char **);
   ~FixFSIReference() override;
   int setmask() override;
@@ -60,13 +61,15 @@ class FixFSIReference : public Fix {
   int maxsize_restart() override;
   double memory_usage() override;
 
+  bool any() const;    // bonds, on any rank: all ask together
+
   bool quadratic;    // gradients exact for quadratic fields, where neighbours suffice
   bool end_corrected;    // volumes of the energy's integral with corrections at faces
 
   // per bond, 2 D + 2 numbers: G_ij, X_j - X_i, w = V_i V_j W/|X|^2, V_i V_j (grad W)/x_ij
   int nvalue;
   // bonds of local atom i; what fills up its last block has zeros for numbers
-  int count(int i) const { return nbond[slot[i]]; }
+  int count(int i) const { return slot[i] < 0 ? 0 : nbond[slot[i]]; }    // 0: it has become a solid since
   const int *partners(int i) const { return &local[(size_t) slot[i] * maxbond]; }    // indices of local and ghost atoms
   const double *numbers(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }    // where they are: number_of_bond()
   const double *bond(int i, int k) const { return numbers(i) + FSI::number_of_bond(k, nvalue); }
@@ -103,6 +106,7 @@ class FixFSIReference : public Fix {
   std::string made;    // how the bonds were: keywords of pair_style fsi/solid/tl; empty: none yet
   std::string as_now() const;
   bool has_record;
+  bool resting;    // no pair_style fsi/solid/tl
   class NeighList *list;
   int *slot;    // per local atom: where its bonds are, or NO_BONDS or FOREIGN
   enum { NO_BONDS = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began

@@ -315,7 +315,7 @@ FixFSIReport::Balance FixFSIReport::balance() const
 
 double FixFSIReport::compute_vector(int k)
 {
-  if (!fix_fsi) return 0.0;    // before the first run
+  if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;    // before the first run, or with a new fix fsi
   if (collected != update->ntimestep) {
     Worst all[NWORST];
     gather(all);

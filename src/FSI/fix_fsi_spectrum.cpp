@@ -287,6 +287,7 @@ void FixFSISpectrum::write_restart(FILE *fp)
 {
   Record record(lmp, "fix fsi/spectrum");
   record.add("input", argument);
+  record.add("Nevery", std::to_string(nevery));
   record.add("last", std::to_string(last));
   record.add("times", time);
   record.add("values", value);
@@ -301,6 +302,9 @@ void FixFSISpectrum::restart(char *buf)
   if (record.value("input") != argument)
     error->all(FLERR, "Fix fsi/spectrum {} is of {}, the restart file has samples of {}: give it another ID to begin anew", id, argument,
                record.value("input"));
+  if (record.has("Nevery") && record.value("Nevery") != std::to_string(nevery) && comm->me == 0)
+    error->warning(FLERR, "Fix fsi/spectrum: Nevery was {} {}, and is {} now: between samples of the file it is interpolated", record.value("Nevery"),
+                   Keywords::OF_RESTART, nevery);
   last = std::stoll(record.value("last"));
   time = record.numbers("times");
   value = record.numbers("values");

@@ -20,14 +20,11 @@
 #include "force.h"
 #include "fsi_record.h"
 #include "group.h"
-#include "input.h"
 #include "math_const.h"
-#include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "region.h"
 #include "update.h"
-#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,8 +36,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"), source{FREE, FREE, FREE}, value{}, variable{-1, -1, -1}, low(0.0), high(0.0),
-    region(nullptr), fix_fsi(nullptr), step(-1), target(nullptr), nmax(0), given{}, work(0.0)
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"), velocity(lmp, "fix fsi/stream", 3), low(0.0), high(0.0), region(nullptr), fix_fsi(nullptr),
+    step(-1), given{}, work(0.0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stream requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi/stream", error);
@@ -48,13 +45,7 @@ FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
     const std::string word = arg[3 + d];
     if (word == "NULL") continue;
     if (d >= domain->dimension) error->all(FLERR, "Fix fsi/stream velocity along z must be NULL in 2D, not {}", word);
-    if (utils::strmatch(word, "^v_")) {
-      name[d] = word.substr(2);
-      source[d] = EQUAL;
-    } else {
-      value[d] = numeric(lmp, "Fix fsi/stream velocity", word, {}, false, "NULL or v_name");
-      source[d] = NUMBER;
-    }
+    velocity.read(d, word, "velocity", "NULL or v_name");
   }
   keywords.key("region").word(region_id, "");
   keywords.key("rate").number(rate, 0.0, Range::above(0.0));
@@ -71,13 +62,6 @@ FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
   extscalar = extvector = 1;
   global_freq = 1;
   restart_global = 1;
-}
-
-/* ---------------------------------------------------------------------- */
-
-FixFSIStream::~FixFSIStream()
-{
-  memory->destroy(target);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -109,16 +93,9 @@ void FixFSIStream::init()
     error->all(FLERR, "Region {} of fix fsi/stream, from {} to {} along {}, must be inside the box, from {} to {}", region_id, low, high, "xyz"[along],
                domain->boxlo[along], domain->boxhi[along]);
 
-  for (int d = 0; d < 3; d++) {
-    if (name[d].empty()) continue;
-    variable[d] = input->variable->find(name[d].c_str());
-    if (variable[d] < 0) error->all(FLERR, "Variable {} of fix fsi/stream does not exist", name[d]);
-    if (input->variable->equalstyle(variable[d])) source[d] = EQUAL;
-    else if (input->variable->atomstyle(variable[d])) source[d] = ATOM;
-    else error->all(FLERR, "Variable {} of fix fsi/stream must be equal-style or atom-style", name[d]);
-  }
+  velocity.find();
   zone_group = igroup;
-  if (std::count(source, source + 3, ATOM)) zone_group = group->find_or_create(("fsi_stream_" + std::string(id)).c_str());
+  if (velocity.of_atoms()) zone_group = group->find_or_create(("fsi_stream_" + std::string(id)).c_str());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -219,18 +196,7 @@ void FixFSIStream::advance(bool advance)
 void FixFSIStream::post_force(int)
 {
   find_weights();    // in setup
-  if (atom->nmax > nmax) {
-    nmax = atom->nmax;
-    memory->destroy(target);
-    memory->create(target, nmax, 3, "fsi/stream:target");
-  }
-  modify->clearstep_compute();
-  for (int d = 0; d < 3; d++) {
-    if (source[d] == EQUAL) value[d] = input->variable->compute_equal(variable[d]);
-    if (source[d] == ATOM) input->variable->compute_atom(variable[d], zone_group, &target[0][d], 3, 0);
-  }
-  modify->addstep_compute(update->ntimestep + 1);
-
+  velocity.evaluate(zone_group, 0, 3);
   std::fill_n(given, 4, 0.0);
   const double dt = update->dt;
   if (dt == 0.0) return;
@@ -239,10 +205,10 @@ void FixFSIStream::post_force(int)
     const double m = atom->rmass[i], part = -std::expm1(-rate * weight * dt);
     double *const f = atom->f[i], *const v = atom->v[i];
     for (int d = 0; d < 3; d++) {
-      if (source[d] == FREE) continue;
-      const double u = source[d] == ATOM ? target[i][d] : value[d];
+      if (!velocity.given(d)) continue;
+      const double u = velocity(d, i);
       if (!std::isfinite(u)) error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u, "xyz"[d], atom->tag[i],
-                                        name[d].empty() ? "" : ", see variable " + name[d]);
+                                        velocity.see(d));
       const double push = m * part * (u - v[d]) / (dt * force->ftm2v);
       f[d] += push;
       given[d] += push;
@@ -275,6 +241,8 @@ void FixFSIStream::write_restart(FILE *fp)
 {
   const double all = compute_scalar();
   Record record(lmp, "fix fsi/stream");
+  record.add("velocity", velocity.text());
+  keywords.write(record);
   record.add("work", std::vector<double>{all});
   record.write(fp);
 }
@@ -283,11 +251,14 @@ void FixFSIStream::restart(char *buf)
 {
   const Record record(lmp, "fix fsi/stream", buf);
   work = comm->me == 0 ? record.numbers("work")[0] : 0.0;
+  keywords.compare(record);
+  if (record.has("velocity") && record.value("velocity") != velocity.text() && comm->me == 0)
+    error->warning(FLERR, "Fix fsi/stream: velocity was {} {}, and is {} now", record.value("velocity"), Keywords::OF_RESTART, velocity.text());
 }
 
 /* ---------------------------------------------------------------------- */
 
 double FixFSIStream::memory_usage()
 {
-  return (double) zone.capacity() * sizeof(Member) + 3.0 * nmax * sizeof(double);
+  return (double) zone.capacity() * sizeof(Member) + velocity.memory_usage();
 }

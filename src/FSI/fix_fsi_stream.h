@@ -23,6 +23,7 @@ FixStyle(fsi/stream,FixFSIStream);
 #include "fix.h"
 #include "fsi_keywords.h"
 #include "fsi_part.h"
+#include "fsi_value.h"
 
 #include <string>
 #include <vector>
@@ -35,7 +36,6 @@ namespace LAMMPS_NS {
 class FixFSIStream : public Fix, public FSI::Part {
  public:
   FixFSIStream(class LAMMPS *, int, char **);
-  ~FixFSIStream() override;
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -49,12 +49,9 @@ class FixFSIStream : public Fix, public FSI::Part {
   void advance(bool) override;    // density, after that of the fluid
 
  private:
-  enum Source { FREE, NUMBER, EQUAL, ATOM };
   FSI::Keywords keywords;
-  std::string name[3], region_id;
-  Source source[3];
-  double value[3];
-  int variable[3];
+  std::string region_id;
+  FSI::Values velocity;
   int along;                     // axis
   double rate, density_rate;     // 1/time, in the middle of the zone
   double low, high;              // ends of the zone along the axis
@@ -67,8 +64,6 @@ class FixFSIStream : public Fix, public FSI::Part {
   };
   std::vector<Member> zone;    // local fluid in and near it, as of the last list
   int zone_group;
-  double **target;
-  int nmax;
   double given[4];               // force on the fluid and its power, this rank's part
   double work;                   // since the fix was defined, likewise
 

@@ -51,6 +51,11 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
 
 /* ---------------------------------------------------------------------- */
 
+FixFSIStress::~FixFSIStress()
+{
+  if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
+}
+
 FixFSIStress *FixFSIStress::find(LAMMPS *lmp)
 {
   auto fixes = lmp->modify->get_fix_by_style("^fsi/stress$");

@@ -35,6 +35,7 @@ namespace LAMMPS_NS {
 class FixFSIStress : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIStress(class LAMMPS *, int, char **);
+  ~FixFSIStress() override;
   static FixFSIStress *find(class LAMMPS *);    // null: there is none
   int setmask() override { return 0; }
   void init() override;

@@ -22,6 +22,7 @@
 #include "force.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
+#include "fsi_record.h"
 #include "fsi_tensor.h"
 #include "group.h"
 #include "memory.h"
@@ -53,6 +54,7 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
   size_vector = 3;
   extscalar = extvector = 1;
   global_freq = 1;
+  restart_global = 1;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -306,7 +308,7 @@ double FixFSIWallParticle::compute_vector(int n)
 
 double FixFSIWallParticle::compute_scalar()
 {
-  if (!fix_fsi) return 0.0;    // before the first run
+  if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;    // before the first run, or with a new fix fsi
   double counted = 0.0, all;
   for_pairs([&](int w, int j) {
     double rsq = 0.0;
@@ -368,6 +370,22 @@ void FixFSIWallParticle::unpack_reverse_comm(int n, int *list, double *buf)
   for (int ii = 0; ii < n; ii++)
     if (atom->mask[list[ii]] & groupbit)
       for (int k = 0; k < nsum; k++) sum[list[ii]][k] += buf[m++];
+}
+
+/* ----------------------------------------------------------------------
+   restart: velocities are those of fix STORE/ATOM; the command, to compare
+------------------------------------------------------------------------- */
+
+void FixFSIWallParticle::write_restart(FILE *fp)
+{
+  Record record(lmp, "fix fsi/wall/particle");
+  keywords.write(record);
+  record.write(fp);
+}
+
+void FixFSIWallParticle::restart(char *buf)
+{
+  keywords.compare(Record(lmp, "fix fsi/wall/particle", buf));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -50,6 +50,8 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
 
   int slip, linear;    // linear: pressure is extrapolated with its gradient, not as a mean
   void set_fields(FSI::Scene &) override;

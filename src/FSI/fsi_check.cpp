@@ -21,6 +21,7 @@
 #include "force.h"
 #include "fsi_gather.h"
 #include "fsi_pack.h"
+#include "fsi_record.h"
 #include "fsi_scene.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -68,8 +69,8 @@ static bool all_below(int n, const double *a, double most)
 Check::Check(LAMMPS *lmp, const Scene &scene) :
     Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), substepped(nullptr), densest{}, told_dense(false), found{}
 {
-  stop.restart_file = "fsi_stop.restart";
-  stop.dump_file = "fsi_stop.dump";
+  stop.restart_file = Stop::of_partition(lmp, "fsi_stop.restart");
+  stop.dump_file = Stop::of_partition(lmp, "fsi_stop.dump");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -111,10 +112,40 @@ void Check::materials()
     if (species == RIGID && std::none_of(walls.begin(), walls.end(), [&](const Fix *fix) { return atom->mask[i] & fix->groupbit; }))
       error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
   }
+  compare_densities();
   spacings();
   thin_bodies();
   held_parts();
   integrators();
+}
+
+/* ----------------------------------------------------------------------
+   Another material for particles that have a mass: it stays that of their lattice with the density of before. (Fix fsi/reference looks at
+   total-Lagrangian solids itself.)
+------------------------------------------------------------------------- */
+
+void Check::compare_densities()
+{
+  densities.resize(atom->ntypes + 1, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int t = atom->type[i];
+    const State &s = scene.state[t];
+    if (densities[t] == 0.0 || densities[t] == s.rho0 || atom->rmass[i] == 0.0 || s.form == TOTAL_LAGRANGIAN) continue;
+    error->one(FLERR, "Atom {} of type {} has the mass of a material of density {:g}, but that of its type has {:g} now: make the particles anew",
+               atom->tag[i], t, densities[t], s.rho0);
+  }
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (scene.state[t].species != NONE) densities[t] = scene.state[t].rho0;
+}
+
+void Check::write(Record &record) const
+{
+  record.add("densities", densities);
+}
+
+void Check::read(const Record &record)
+{
+  if (record.has("densities")) densities = record.numbers("densities");
 }
 
 /* ----------------------------------------------------------------------

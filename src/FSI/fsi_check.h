@@ -23,6 +23,7 @@
 
 namespace LAMMPS_NS {
 namespace FSI {
+  class Record;
 
   class Check : protected Pointers {
    public:
@@ -30,7 +31,9 @@ namespace FSI {
 
     Check(class LAMMPS *, const Scene &);
     void before_init();       // what no run may have
-    void materials();         // every atom has one
+    void materials();         // every atom has one, of the density that its mass was made for
+    void write(Record &) const;    // these densities
+    void read(const Record &);
     void init();              // of a run: what a restart file or a script has put there
     void setup();             // after the first forces
     void positions();         // before lists are built
@@ -41,6 +44,7 @@ namespace FSI {
    private:
     const Scene &scene;
     Stop stop;
+    std::vector<double> densities;    // per type, in the last run; 0: not known
     std::vector<double> limit_sq;    // per type: of the speed
     double calm_speed, calm_kick;    // components of velocities and of their change in a step from which no limit is in reach
     double lightest;                 // mass of this rank's particles
@@ -52,6 +56,7 @@ namespace FSI {
     Finding found;                   // the first thing that is not finite, or the worst of this rank
 
     void spacings() const;
+    void compare_densities();
     void held_parts() const;
     void integrators() const;
     void thin_bodies() const;

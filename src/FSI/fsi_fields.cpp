@@ -272,14 +272,25 @@ void FixFields::register_fields()
 {
   create_attribute = 1;
   if (!grows && fields.any(Fields::ATOM)) {
-    atom->add_callback(Atom::GROW);
+    add_callback(Atom::GROW, atom->extra_grow, atom->nextra_grow);
     grows = true;
   }
   if (!restarts && fields.any(Fields::RESTART)) {
-    atom->add_callback(Atom::RESTART);
+    add_callback(Atom::RESTART, atom->extra_restart, atom->nextra_restart);
     restarts = true;
     restart_peratom = 1;
   }
+}
+
+// LAMMPS books the fix that is being constructed, which stands behind all others. A field that is first wanted later, in init(), is
+// that of a fix in the list.
+void FixFields::add_callback(int kind, int *&booked, int &n)
+{
+  const int mine = modify->find_fix(id), constructed = modify->nfix;
+  atom->add_callback(kind);
+  if (mine < 0) return;
+  std::replace(booked, booked + n, constructed, mine);
+  std::sort(booked, booked + n);
 }
 
 void FixFields::grow_arrays(int nmax)

@@ -103,10 +103,11 @@ namespace FSI {
 
    protected:
     Fields fields;
-    void register_fields();    // when those that last are set
+    void register_fields();    // when those that last are set: in the constructor, and again whenever they may have changed
 
    private:
     bool grows, restarts;    // with LAMMPS' own arrays
+    void add_callback(int kind, int *&booked, int &n);
   };
 
   // The numbers of atom i that the nth fix of a restart file left there; all begin with their length.

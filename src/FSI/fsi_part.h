@@ -34,6 +34,9 @@ namespace FSI {
 
   class Part {
    public:
+    // Between runs: is it as it was when the last one was set up, or has a command given it anew?
+    virtual bool is_set_up() const { return true; }
+
     // Before a run, when the states of all types are known: arrays per atom for the effects that are on; then what of them goes to
     // ghosts, and what pairs leave on ghosts and comes back.
     virtual void set_fields(Scene &) {}

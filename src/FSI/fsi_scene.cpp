@@ -14,9 +14,11 @@
 #include "fsi_scene.h"
 
 #include "atom.h"
+#include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "fsi_kernel.h"
+#include "fsi_part.h"
 #include "lammps.h"
 #include "modify.h"
 #include "pair.h"
@@ -32,7 +34,7 @@ using namespace FSI;
 Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) :
     mover(fix_fsi), state(lmp->atom->ntypes + 1), substeps(1), body_forces(lmp), profile(nullptr), dt_offset(0.0), psi(nullptr),
     shift(nullptr), shifts(false), shift_velocity{}, wmask(nullptr), wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
-    surface_max(false), need_psi(false), keep_psi(false), ledger(false), energy_out{}, tally_dt(0.0), instance(lmp)
+    surface_max(false), need_psi(false), keep_psi(false), ledger(false), energy_out{}, tally_dt(0.0), states_entered(false), instance(lmp)
 {
 }
 
@@ -63,6 +65,29 @@ void Scene::resolve(double hdx, const std::vector<double> &spacing)
     resolution.push_back(own > 0.0 ? resolution_of(own) : fluid);
     largest_cut = std::max(largest_cut, resolution.back().cut);
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Scene::enter_state(int type, const State &s)
+{
+  if (!states_entered) state.assign(state.size(), State());
+  states_entered = true;
+  // that of a solid is of the style that moves it, in whatever order a hybrid style has them
+  if (state[type].form && !s.form) return;
+  state[type] = s;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Scene::gather_walls()
+{
+  walls.wall.clear();
+  wall_forces.clear();
+  for (auto *p : parts) p->add_walls(walls, wall_forces);
+  if (walls.wall.size() > Walls::MAXWALL)
+    instance->error->all(FLERR, "There are {} mirror walls, more than the {} supported", walls.wall.size(), Walls::MAXWALL);
+  walls.find_reflections();
 }
 
 /* ---------------------------------------------------------------------- */

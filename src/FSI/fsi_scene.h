@@ -66,6 +66,7 @@ namespace FSI {
 
     // per atom type; pair styles enter theirs in init_style()
     std::vector<State> state;
+    void enter_state(int type, const State &);
     bool several_stiffnesses() const;    // do fluids differ in rho0 c^2?
 
     // what takes part in a step, in the order of its calls: pair styles, then fixes as they are defined; from init() on
@@ -133,6 +134,8 @@ namespace FSI {
    protected:
     void resolve(double hdx, const std::vector<double> &spacing);    // h over dx; spacings that differ from dx, by type, or 0
     double tally_dt;
+    bool states_entered;    // in this init()
+    void gather_walls();    // one list from all fixes fsi/wall/mirror
 
    private:
     LAMMPS *const instance;

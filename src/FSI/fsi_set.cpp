@@ -21,6 +21,7 @@
 #include "fsi_keywords.h"
 #include "group.h"
 #include "input.h"
+#include "update.h"
 #include "variable.h"
 
 #include <algorithm>
@@ -64,6 +65,8 @@ void FSISet::command(int narg, char **arg)
   const double number = variable < 0 ? numeric(lmp, std::string("Fsi/set ") + arg[1], arg[2]) : 0.0;
 
   FixFSI *fix_fsi = FixFSI::find(lmp, "Fsi/set");
+  if (update->ntimestep > 0 && comm->me == 0)
+    error->warning(FLERR, "Fsi/set {} {} after {} steps: masses change with densities, which is meant before the first run", arg[0], arg[1], update->ntimestep);
 
   // materials, masses and gravity are entered in init()
   lmp->init();

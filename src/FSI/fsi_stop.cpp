@@ -26,6 +26,7 @@
 #include "lmptype.h"
 #include "modify.h"
 #include "pair.h"
+#include "universe.h"
 #include "update.h"
 #include "write_restart.h"
 
@@ -41,6 +42,13 @@ static constexpr double SUSPECT = 1.6;    // over the usual Courant number: may 
 /* ---------------------------------------------------------------------- */
 
 Stop::Stop(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(who) {}
+
+// as LAMMPS names the log files of partitions
+std::string Stop::of_partition(LAMMPS *lmp, const std::string &name)
+{
+  const Universe *const all = lmp->universe;
+  return all->nworlds > 1 ? fmt::format("{}.{}", name, all->iworld) : name;
+}
 
 /* ---------------------------------------------------------------------- */
 

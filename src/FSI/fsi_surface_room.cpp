@@ -20,6 +20,7 @@
 #include "fsi_number_density.h"
 #include "fsi_part.h"
 #include "fsi_profile.h"
+#include "fsi_record.h"
 #include "fsi_scene.h"
 #include "pair.h"
 #include "update.h"
@@ -30,8 +31,10 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-// steps from one look to the next: at the usual time step and a Mach number of 0.1 neighbours move by 0.4 dx
-static constexpr int EVERY = 10;
+// time from one look to the next over h/c: ten usual time steps, in which particles move by h/2 at a Mach number of 0.1
+static constexpr double PERIOD = 5.0;
+static constexpr double ROUND = 1.0e-6;    // missing parts of a lattice's sum that may be round-off
+static constexpr double EDGE = 100.0;      // more room over that of a plane than on any edge: on opposite sides of a film s cancels
 
 /* ----------------------------------------------------------------------
    sums over the planes of a lattice that are missing
@@ -73,7 +76,7 @@ double RoomOfPlane::operator()(double s) const
 /* ---------------------------------------------------------------------- */
 
 SurfaceRoom::SurfaceRoom(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density, SumOverGhosts add_ghosts) :
-    Pointers(lmp), scene(scene), number_density(number_density), add_ghosts(std::move(add_ghosts)), room(nullptr)
+    Pointers(lmp), scene(scene), number_density(number_density), add_ghosts(std::move(add_ghosts)), room(nullptr), since(0.0), since_before(0.0), due(false)
 {
 }
 
@@ -90,21 +93,39 @@ void SurfaceRoom::set_array(Fields &fields)
   if (room) of_plane = RoomOfPlane(scene.kernel, scene.dim, scene.h / scene.dx);
 }
 
-bool SurfaceRoom::is_due(bool advance) const
+void SurfaceRoom::write(Record &record) const
 {
-  return room && (!advance || update->ntimestep % EVERY == 0);
+  if (room) record.add("time since the last look at surfaces", std::vector<double>{since});
+}
+
+void SurfaceRoom::read(const Record &record)
+{
+  if (record.has("time since the last look at surfaces")) since = record.numbers("time since the last look at surfaces")[0];
+}
+
+// by time, not by steps, which reset_timestep may count anew
+void SurfaceRoom::pass(double dt)
+{
+  double fastest = 0.0;
+  for (const auto &s : scene.state)
+    if (s.species == FLUID) fastest = std::max(fastest, s.c);
+  since_before = since;
+  since += dt;
+  due = since * fastest >= PERIOD * (1.0 - 1.0e-9) * scene.h;
+  if (due) since = 0.0;
 }
 
 bool SurfaceRoom::add_rates(bool advance)
 {
-  if (scene.ledger && advance && is_due(advance)) earlier.assign(atom->rho, atom->rho + atom->nlocal);
+  if (room && advance) pass(update->dt);
+  if (room && scene.ledger && advance && due) earlier.assign(atom->rho, atom->rho + atom->nlocal);
   return false;
 }
 
 void SurfaceRoom::advance(bool advance)
 {
   changes.clear();
-  if (!is_due(advance)) return;
+  if (!room || (advance && !due)) return;
   const Phase phase(scene.profile, Profile::DENSITY);
   begin();
   if (advance) follow();
@@ -112,6 +133,7 @@ void SurfaceRoom::advance(bool advance)
 
 void SurfaceRoom::go_back()
 {
+  since = since_before;
   for (size_t i = 0; i < changes.size() / 2; i++) {
     room[i][0] -= changes[2 * i];
     atom->rho[i] -= changes[2 * i + 1];
@@ -150,7 +172,7 @@ void SurfaceRoom::begin()
     if (is_new(i)) {
       const double missing = std::max(0.0, 1.0 - psi[i] / scene.psi_bulk), plane = of_plane(asymmetry[i]);
       room[i][0] = 1.0 + missing;
-      room[i][1] = missing > plane && plane > 0.0 ? missing / plane : 1.0;
+      room[i][1] = missing <= std::max(plane, ROUND) ? 1.0 : missing < EDGE * plane ? missing / plane : EDGE;
     }
 }
 
@@ -172,8 +194,6 @@ std::vector<double> SurfaceRoom::gradients() const
   }
   return s;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void SurfaceRoom::follow()
 {

@@ -37,6 +37,7 @@ namespace FSI {
 
   class Fields;
   class NumberDensity;
+  class Record;
   class Scene;
 
   // The room of the layers of a lattice below a plane surface, linear in s between them
@@ -56,6 +57,8 @@ namespace FSI {
     using SumOverGhosts = std::function<void(double *)>;
     SurfaceRoom(LAMMPS *, Scene &, const NumberDensity &, SumOverGhosts);
     void set_array(Fields &);
+    void write(Record &) const;
+    void read(const Record &);
     bool add_rates(bool) override;
     void advance(bool) override;    // after the density
     void go_back() override;
@@ -67,10 +70,12 @@ namespace FSI {
     const NumberDensity &number_density;
     const SumOverGhosts add_ghosts;
     double **room;    // 1 + room (0: not known yet), and how often that of a plane it was at the start, on an edge
+    double since, since_before;    // simulated time since the last look, and at the start of this step
+    bool due;
     RoomOfPlane of_plane;
     std::vector<double> changes;    // of room and density in this step
     std::vector<double> earlier;    // densities before it, for the ledger
-    bool is_due(bool advance) const;
+    void pass(double dt);
     void begin();
     std::vector<double> gradients() const;
     void follow();

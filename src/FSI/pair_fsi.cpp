@@ -18,9 +18,11 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_reference.h"
 #include "force.h"
 #include "fsi_record.h"
 #include "memory.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -71,6 +73,7 @@ void PairFSI::settings(int narg, char **arg)
 {
   keywords.parse(narg, arg);
   check_settings();
+  fix_fsi = nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -85,6 +88,7 @@ void PairFSI::coeff(int narg, char **arg)
   const std::vector<std::string> names(arg + 3, arg + narg);
   auto found = read_materials(lmp, arg[2], names, avec ? avec->materials : std::map<std::string, std::string>());
   for (int t = 1; t <= atom->ntypes; t++) material[t] = found[t - 1];
+  fix_fsi = nullptr;
   set_flags();
   check_species();
 }
@@ -159,10 +163,21 @@ void PairFSI::init_style()
     error->all(FLERR, "Pair style hybrid has {} more than once: one is for the materials of all atom types{}", style,
                style == "fsi/fluid" ? ", and a speed of sound of its own is keyword sound of a fluid in the material file" : "");
   check_same_materials();
+  drop_reference();
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) fix_fsi->enter_state(t, make_state(material[t]));
   if (needs_neighbors()) neighbor->add_request(this);
   else list = nullptr;    // that of an earlier run is gone
+}
+
+// Bodies keep their reference from one pair_style fsi/solid/tl to the next. Nobody could say what it means after a run in another style
+void PairFSI::drop_reference() const
+{
+  const auto *const reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
+  if (!reference || force->pair_match("fsi/solid/tl", 1)) return;
+  if (reference->any() && comm->me == 0)
+    error->warning(FLERR, "There is no pair_style fsi/solid/tl any more: its bodies lose their reference, and with it their strain");
+  modify->delete_fix(FixFSIReference::ID);
 }
 
 // a solid that has several styles has one material

@@ -41,13 +41,16 @@ class PairFSI : public Pair, public FSI::Part {
   void read_restart_settings(FILE *) override;
 
   void *extract(const char *, int &) override;
+  // the dimension that goes with what is no number that fix adapt could change
+  static constexpr int NOT_ADAPTABLE = -1;
   std::vector<Effect> effects() const override = 0;
+  bool is_set_up() const override { return fix_fsi != nullptr; }
   double artificial_alpha() const { return alpha; }
 
  protected:
   const std::string style;    // for messages
   FSI::Keywords keywords;     // of settings()
-  class FixFSI *fix_fsi;
+  class FixFSI *fix_fsi;      // null: not since settings() or coeff()
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
   double alpha, beta;    // artificial/visc (fsi_viscosity_artificial.h)
   double contact_range;    // of solids, over dx (fsi_contact.h)
@@ -73,6 +76,7 @@ class PairFSI : public Pair, public FSI::Part {
   void check_contact() const;
   void check_same_materials() const;
   void check_species() const;
+  void drop_reference() const;
   bool has_artificial() const { return alpha > 0.0 || beta > 0.0; }
   void set_flags();
   void allocate();

@@ -40,7 +40,10 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_FLUID}, images_step(-1), reach(INFINITY), near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, rate(nullptr), beyond(nullptr)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_FLUID}, images_step(-1),
+    reach(INFINITY), near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr),
+    fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, rate(nullptr), beyond(nullptr),
+    hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -61,6 +64,17 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("background").number(background, 0.0).effect("background pressure {}");
   keywords.key("couple").choice(couple, WALL, {"wall", "pressure", "full"});
   keywords.key("extrapolate").logical(extrapolate, false);
+}
+
+PairFSIFluid::~PairFSIFluid()
+{
+  give_back_virial();
+}
+
+void PairFSIFluid::give_back_virial()
+{
+  if (hybrid) hybrid->no_virial_fdotr_compute = no_fdotr_before;
+  hybrid = nullptr;
 }
 
 bool PairFSIFluid::handles(int a, int b) const
@@ -128,6 +142,7 @@ void PairFSIFluid::init_style()
     if (!any && comm->me == 0)
       error->warning(FLERR, "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
   }
+  if (!fix_fsi->sight) beside.clear();
   force_computes.clear();
   for (auto *compute : modify->get_compute_by_style("^fsi/force$")) force_computes.push_back(dynamic_cast<ComputeFSIForce *>(compute));
   if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
@@ -151,7 +166,12 @@ void PairFSIFluid::init_style()
     shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, fix_fsi->sharper_of(t), thin};
   }
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
-  if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) force->pair->no_virial_fdotr_compute = 1;
+  give_back_virial();
+  if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) {
+    hybrid = force->pair;
+    no_fdotr_before = hybrid->no_virial_fdotr_compute;
+    hybrid->no_virial_fdotr_compute = 1;
+  }
   if (couple != WALL && force->pair_match("fsi/solid/tl", 1))
     error->all(FLERR, "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress is not one that crosses to the fluid");
   // the plain forces of a solid end at its face with half a kernel of neighbours missing, which the fluid's pairs supply; forces with
@@ -171,19 +191,19 @@ void PairFSIFluid::init_style()
 void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
 {
   if (strcmp(name, "laminar/visc") == 0) {
-    dim_of_extract = 0;
+    dim_of_extract = NOT_ADAPTABLE;
     return &laminar;
   }
   if (strcmp(name, "density/surface") == 0) {
-    dim_of_extract = 0;
+    dim_of_extract = NOT_ADAPTABLE;
     return &surfaces;
   }
   if (strcmp(name, "couple") == 0) {
-    dim_of_extract = 0;
+    dim_of_extract = NOT_ADAPTABLE;
     return &couple;
   }
   if (strcmp(name, "density follows shift") == 0) {
-    dim_of_extract = 0;
+    dim_of_extract = NOT_ADAPTABLE;
     density_follows = shifting > 0.0 && fills();
     return &density_follows;
   }

@@ -40,6 +40,7 @@ class PairFSIFluid : public PairFSI {
   enum Laminar { INVISCID, PLAIN, CENTRAL };
 
   PairFSIFluid(class LAMMPS *);
+  ~PairFSIFluid() override;
   void init_style() override;
   void compute(int, int) override;
   void *extract(const char *, int &) override;
@@ -155,6 +156,9 @@ class PairFSIFluid : public PairFSI {
   template <int D> void add_gradients(double *);
   template <int D> void compute_forces();
   template <int D> void split_forces(const FSI::FluidParticles &, FSI::ForceLaws);
+  Pair *hybrid;    // the hybrid style that this one makes sum its virial pair by pair; null: none
+  int no_fdotr_before;
+  void give_back_virial();
   std::vector<FSI::Contact> guards;    // per type
   FSI::Contact guard_of(int type) const;
   template <class Sum> void distance_sums(bool others_too, const FSI::FluidParticles &, Sum);

@@ -121,7 +121,7 @@ int PairFSISolid::terms() const
 
 void *PairFSISolid::extract(const char *name, int &dim_of_extract)
 {
-  dim_of_extract = 0;
+  dim_of_extract = strcmp(name, "gradient") == 0 ? NOT_ADAPTABLE : 0;
   if (strcmp(name, "gradient") == 0) return &gradient;    // 0: plain
   if (strcmp(name, "hourglass") == 0) return &xi;
   if (strcmp(name, "self") == 0) return &self_contact;

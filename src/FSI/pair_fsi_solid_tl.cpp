@@ -39,8 +39,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static constexpr char REFERENCE[] = "FSI_REFERENCE";
-
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
@@ -71,8 +69,7 @@ PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
 
 PairFSISolidTL::~PairFSISolidTL()
 {
-  memory->destroy(fsolid);
-  if (modify->nfix && modify->get_fix_by_id(REFERENCE)) modify->delete_fix(REFERENCE);
+  memory->destroy(fsolid);    // the reference stays with its atoms, for the next pair_style
 }
 
 PairFSISolidTL *PairFSISolidTL::find(LAMMPS *lmp)
@@ -141,9 +138,9 @@ void PairFSISolidTL::init_style()
                planes[fix_stress->plane_stress]);
   }
 
-  reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(REFERENCE));
+  reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
   if (!reference)
-    reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", REFERENCE)));
+    reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", FixFSIReference::ID)));
   reference->quadratic = !linear;
   reference->end_corrected = !plain;
   reference->self_range = self_contact ? contact_range : 0.0;
@@ -755,7 +752,7 @@ void PairFSISolidTL::advance(bool advance)
 void *PairFSISolidTL::extract(const char *name, int &dim_of_extract)
 {
   if (strcmp(name, "hypoelastic") == 0) {
-    dim_of_extract = 0;
+    dim_of_extract = NOT_ADAPTABLE;
     is_hypoelastic = hypoelastic();
     return &is_hypoelastic;
   }

@@ -1,0 +1,88 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_changes.h"
+
+#include "atom.h"
+#include "compute.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "fsi_part.h"
+#include "modify.h"
+#include "pair.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ----------------------------------------------------------------------
+   Who is where in the arrays of this rank, and of what type: FNV-1a of it
+------------------------------------------------------------------------- */
+
+uint64_t Changes::fingerprint() const
+{
+  uint64_t hash = 14695981039346656037ULL;
+  for (int i = 0; i < atom->nlocal; i++)
+    for (const auto number : {(uint64_t) atom->tag[i], (uint64_t) atom->type[i]}) hash = (hash ^ number) * 1099511628211ULL;
+  return hash;
+}
+
+void Changes::in_step()
+{
+  nlocal = atom->nlocal;
+  stale = false;
+}
+
+bool Changes::of_atoms() const
+{
+  return stale || nlocal != atom->nlocal || (update->whichflag == 0 && known != fingerprint());
+}
+
+bool Changes::any_mass() const
+{
+  int mine = std::any_of(atom->rmass, atom->rmass + atom->nlocal, [](double m) { return m != 0.0; }), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  return any;
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::vector<std::uintptr_t> Changes::present() const
+{
+  std::vector<std::uintptr_t> list;
+  const auto add = [&](const void *p) { list.push_back(reinterpret_cast<std::uintptr_t>(p)); };
+  add(force->pair);
+  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"}) {
+    Pair *const pair = force->pair_match(style, 1);
+    const auto *const part = dynamic_cast<const Part *>(pair);
+    add(pair);
+    list.push_back(part && part->is_set_up());
+  }
+  for (auto &region : domain->get_region_list()) add(region);
+  for (auto &fix : modify->get_fix_list()) add(fix);
+  for (auto &compute : modify->get_compute_list()) {
+    add(compute);
+    list.push_back(compute->is_initialized());    // another one may be at the same address
+  }
+  return list;
+}
+
+void Changes::check_pre_no() const
+{
+  if (there != present())
+    error->all(FLERR, "Run with pre no: fixes, computes, regions or pair styles are others than when the last run was set up. Leave out pre no");
+}

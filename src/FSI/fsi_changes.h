@@ -1,0 +1,56 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// What commands between two runs have changed: particles, which are not those of the last setup any more; and fixes, computes,
+// regions and pair styles, to which others point since then.
+
+#ifndef LMP_FSI_CHANGES_H
+#define LMP_FSI_CHANGES_H
+
+#include "pointers.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  class Changes : protected Pointers {
+   public:
+    explicit Changes(LAMMPS *lmp) : Pointers(lmp), nlocal(0), known(0), stale(true) {}
+
+    // particles of this rank
+    void begin_run() { stale = true; }      // in init(): nothing is known of them
+    void forget() { stale = true; }         // one was made, or what others know of it is gone
+    void in_step();                         // the state is brought up to date
+    void end_run() { known = fingerprint(); }
+    bool of_atoms() const;                  // since then
+    bool any_mass() const;                  // has any on any rank been in a run? all ask together
+
+    // what a run points to
+    void set_up() { there = present(); }
+    void check_pre_no() const;              // at its first step: an error if it is another than when it was set up
+
+   private:
+    int nlocal;
+    uint64_t known;
+    bool stale;
+    std::vector<std::uintptr_t> there;
+    uint64_t fingerprint() const;
+    std::vector<std::uintptr_t> present() const;
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
