@@ -65,7 +65,7 @@ namespace FSI {
     const int *type;
     const State *state;
     const double *const *stress;    // per particle, of law hypo; null: none
-    const double *volumetric;       // per particle: derivative of the energy of smoothed strains (fsi_volumetric.h); null: none
+    const double *volumetric;       // per particle, q of fsi_volumetric.h; null: none
     double alpha, beta;             // artificial viscosity
     bool one_material;              // all solids have one density and one speed of sound
     BondSums *sums;

@@ -16,8 +16,9 @@
 // first Piola-Kirchhoff stress P = d(psi)/dF, the energy density psi per reference volume, and P_zz of plane strain.
 // Lame's constants: lambda = K - 2G/3, mu = G.
 //
-// Of a nearly incompressible solid a part of the volumetric energy is not of F alone (fsi_volumetric.h): k u(m), m the law's own measure
-// of volumetric strain. volumetric_strain() is m, and dm/dF where there is room for it; volumetric_energy() is u, volumetric_slope() du/dm.
+// Of a nearly incompressible solid a part of the volumetric energy, k u(m), may be smoothed
+// (fsi_volumetric.h). m is the law's measure of volumetric strain: volumetric_strain(), and dm/dF
+// where there is room for it; volumetric_energy() is u, volumetric_slope() du/dm.
 
 #ifndef LMP_FSI_ELASTIC_H
 #define LMP_FSI_ELASTIC_H

@@ -12,19 +12,20 @@
 ------------------------------------------------------------------------- */
 
 // Nearly incompressible solids. Bent bodies lock, most with an even number of particles across:
-// the pressure is asked to vanish at more places than the displacements can satisfy. So what lambda
-// exceeds that of a Poisson's ratio of LOCAL acts on a smoothed volumetric strain,
+// the pressure is asked to vanish at more places than the displacements can satisfy. So what
+// lambda exceeds that of a Poisson's ratio of LOCAL acts on a smoothed volumetric strain,
 //   U = sum_i V_i k u(theta_i),  theta_i = sum_j w_ij m_j,
-// i: particles that move; j: i and its partners of the same material; m_j: the law's volumetric strain
-// of F_j (fsi_elastic.h). w_ij are the weights of a least-squares fit of a linear function to the m_j,
-// at i, with weights 1 - |X|^2/R^2, R the support: sum_j w_ij = 1, sum_j w_ij X_ij = 0. A linear strain,
-// as in bending, stays as it is, so that nothing gets soft; what changes from particle to particle is
-// taken out: the spaces of the finite element Q2/P1. Projected strains: Hughes, Int. J. Numer. Meth.
-// Eng. 15, 1413 (1980); as patches of F-bar: de Souza Neto, Pires and Owen, ibid. 62, 353 (2005).
+// i: particles that move; j: i and its partners of the same material; m_j: the law's volumetric
+// strain of F_j (fsi_elastic.h). w_ij are the weights of a least-squares fit of a linear function
+// to the m_j, at i, with weights 1 - |X|^2/R^2, R the support: sum_j w_ij = 1,
+// sum_j w_ij X_ij = 0. A linear strain, as in bending, stays as it is, so that nothing gets soft;
+// what changes from particle to particle is taken out, as in the finite element Q2/P1. Projected
+// strains: Hughes, Int. J. Numer. Meth. Eng. 15, 1413 (1980); patches of F-bar: de Souza Neto,
+// Pires and Owen, ibid. 62, 353 (2005).
 // The force is minus the derivative of U: j has the stress (q_j/V_j) dm/dF with
 //   q_j = sum_i V_i k u'(theta_i) w_ij.
-// Held particles count in no U: they have no freedom with which to meet a constraint, and clamps would
-// be too stiff by up to 3 per cent.
+// Held particles count in no U: they have no freedom with which to meet a constraint, and clamps
+// would be too stiff by up to 3 per cent.
 
 #ifndef LMP_FSI_VOLUMETRIC_H
 #define LMP_FSI_VOLUMETRIC_H
@@ -39,10 +40,10 @@ namespace FSI {
 
   struct VolumetricStrain {
     static constexpr double LOCAL = 0.3;          // Poisson's ratio whose lambda is not smoothed
-    static constexpr double LOCKS_ABOVE = 0.4;    // up to this one bodies bend as they should without
+    static constexpr double LOCKS_ABOVE = 0.4;    // up to this one bodies bend as they should
 
     std::vector<double> modulus;                // k, per type, 0: not smoothed. Empty: nothing is
-    std::vector<double> weight, own;            // w_ij of each row's partners, in whole blocks; w_ii
+    std::vector<double> weight, own;            // w_ij of rows' partners, in whole blocks; w_ii
     std::vector<double> stiffness;              // k V_i of each row, 0: held, or not smoothed
     std::vector<double> strain, mean, force;    // m, theta and q, per particle
 
@@ -55,7 +56,8 @@ namespace FSI {
     double memory_usage() const
     {
       size_t n = 0;
-      for (auto *x : {&modulus, &weight, &own, &stiffness, &strain, &mean, &force}) n += x->capacity();
+      for (auto *x : {&modulus, &weight, &own, &stiffness, &strain, &mean, &force})
+        n += x->capacity();
       return (double) n * sizeof(double);
     }
 
@@ -67,7 +69,8 @@ namespace FSI {
 
     // moves(i); same(i, j): of one material; cut: support by type
     template <int D, class Moves, class Same, class Cut>
-    void find_weights(const std::vector<BondRow> &rows, const int *type, Moves moves, Same same, Cut cut)
+    void find_weights(const std::vector<BondRow> &rows, const int *type, Moves moves, Same same,
+                      Cut cut)
     {
       own.clear();
       weight.clear();
@@ -83,7 +86,8 @@ namespace FSI {
 
    private:
     // returns the weight of i itself
-    template <int D, class Same> static double fit(const BondRow &row, double inv, Same same, double *w)
+    template <int D, class Same>
+    static double fit(const BondRow &row, double inv, Same same, double *w)
     {
       constexpr int N = D + 1;
       double A[packed_size(N)] = {1.0}, c[N], phi[N] = {1.0};
@@ -142,8 +146,8 @@ namespace FSI {
     }
   }
 
-  // theta of the rows' particles, where it counts or of all; adds to q of them and of their partners;
-  // the energy
+  // theta of the rows' particles, where it counts or of all; adds to q of them and of their
+  // partners; the energy
   template <class T, class Law>
   FSI_INLINE double smooth_volumetric_strains(const std::vector<BondRow> &rows, bool of_all,
                                               VolumetricStrain &s)
@@ -165,7 +169,8 @@ namespace FSI {
       if (k == 0.0) continue;
       const double q = k * Law::volumetric_slope(theta);
       energy += k * Law::volumetric_energy(theta);
-      for (int n = 0; n < row.n; n += W) L::add(q * L::load(w + n), s.force.data(), row.partner + n);
+      for (int n = 0; n < row.n; n += W)
+        L::add(q * L::load(w + n), s.force.data(), row.partner + n);
       s.force[row.i] += q * s.own[r];
     }
     return energy;

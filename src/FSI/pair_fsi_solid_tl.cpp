@@ -259,7 +259,9 @@ void PairFSISolidTL::internal_forces()
   if (fix_fsi->dim == 2) gather_points<2>();
   else gather_points<3>();
   const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
-  with_law([&](auto law_of, auto dimension) { bond_forces<decltype(law_of), decltype(dimension)::value>(); });
+  with_law([&](auto law_of, auto dimension) {
+    bond_forces<decltype(law_of), decltype(dimension)::value>();
+  });
   strain_energy += volumetric_energy;
   if (list) {
     if (fix_fsi->dim == 2) contact_forces<2>();
@@ -329,8 +331,8 @@ template <int D> void PairFSISolidTL::gather_points()
 }
 
 /* ----------------------------------------------------------------------
-   nearly incompressible solids (fsi_volumetric.h). Strains of all rows, also of those whose forces are
-   not wanted now: that of a held particle may count for one that moves.
+   nearly incompressible solids (fsi_volumetric.h). Strains of all rows, also of those whose forces
+   are not wanted now: that of a held particle may count for one that moves.
 ------------------------------------------------------------------------- */
 
 bool PairFSISolidTL::is_smoothed(const Material &m) const
@@ -382,8 +384,10 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
   const State *const state = fix_fsi->state.data();
   const int nrows = only_moving ? nmoving : (int) rows.size();
   BondSums sums;
-  const BondArguments in = {points.data(), type, state, hypoelastic() ? fix_stress->stress : nullptr,
-                            smoothed.on() ? smoothed.force.data() : nullptr, alpha, beta, one_material, &sums};
+  const double *const *const stresses = hypoelastic() ? fix_stress->stress : nullptr;
+  const double *const volumetric_forces = smoothed.on() ? smoothed.force.data() : nullptr;
+  const BondArguments in = {points.data(), type, state, stresses, volumetric_forces,
+                            alpha, beta, one_material, &sums};
   const L *const law_of = laws<L>();
   auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid ? fsolid[0] : nullptr);
   // with sums, or one by one, there is one loop for all effects: those that are off have coefficients of zero
@@ -651,7 +655,8 @@ void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
   const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
-  if (sends_strains) return for_solids(n, nullptr, first, [&](int i) { smoothed.strain[i] = *buf++; });
+  if (sends_strains)
+    return for_solids(n, nullptr, first, [&](int i) { smoothed.strain[i] = *buf++; });
   for_solids(n, nullptr, first, [&](int i) {
     for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
     if (velocities)
@@ -674,7 +679,8 @@ int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 
 void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
-  if (sends_strains) return for_solids(n, listed, 0, [&](int i) { smoothed.force[i] += *buf++; });
+  if (sends_strains)
+    return for_solids(n, listed, 0, [&](int i) { smoothed.force[i] += *buf++; });
   for_solids(n, listed, 0, [&](int i) {
     for (int d = 0; d < fix_fsi->dim; d++) fsolid[i][d] += *buf++;
   });
@@ -763,7 +769,9 @@ void PairFSISolidTL::add_costs(Costs &costs) const
 {
   const int n = fix_fsi->substeps, strains = smoothed.on();
   costs.solid_ghost += n * (fix_fsi->dim + 2 * strains) + (n > 1 ? n * comm_forward : 0);
-  if (n > 1) costs.solids = fmt::format("; {} each way for solid sub-steps, where they carry solids", n * (1 + strains));
+  if (n > 1)
+    costs.solids = fmt::format("; {} each way for solid sub-steps, where they carry solids",
+                               n * (1 + strains));
   else costs.solids = strains ? "; 1 forward and 2 back for solids" : "; 1 back for solid forces";
 }
 
@@ -784,7 +792,8 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   list.insert(list.begin(), {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"),
                              "law", true});
   if (smoothed.on())
-    list.push_back({"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});
+    list.push_back({"smoothed volumetric strain of nearly incompressible solids",
+                    "volumetric", true});
   return list;
 }
 

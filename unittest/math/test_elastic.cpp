@@ -11,6 +11,7 @@
 
 #include "fsi_contact.h"
 #include "fsi_elastic.h"
+#include "fsi_volumetric.h"
 #include "reference.h"
 
 using namespace LAMMPS_NS::FSI;
@@ -67,6 +68,55 @@ TYPED_TEST(Elastic, StressIsTheDerivativeOfTheEnergy)
       }
     }
   });
+}
+
+TYPED_TEST(Elastic, LawIsItsLocalPartAndTheSmoothedOne)
+{
+  constexpr int D = TypeParam::value;
+  constexpr double k = 0.7 * LAMBDA, none[6] = {};
+  Random random(3);
+  const auto check = [&](const auto &whole, const auto &local) {
+    using Law = std::decay_t<decltype(whole)>;
+    for (int n = 0; n < 20; n++) {
+      const auto F = deformation<D>(random, 0.3);
+      const auto r = whole.template operator()<D>(F.a, none), part = local.template operator()<D>(F.a, none);
+      double dm[D * D];
+      const double m = Law::template volumetric_strain<D>(F.a, dm), q = k * Law::volumetric_slope(m);
+      // round-off of numbers up to 10
+      EXPECT_NEAR(r.energy, part.energy + k * Law::volumetric_energy(m), 1e-13);
+      EXPECT_NEAR(r.zz, part.zz + (D == 2 ? q : 0.0), 1e-13);
+      for (int c = 0; c < D * D; c++) EXPECT_NEAR(r.P[c], part.P[c] + q * dm[c], 1e-13);
+    }
+  };
+  check(StVenantKirchhoff(K, G, false), StVenantKirchhoff(K - k, G, false));
+  check(NeoHookean(K, G, false), NeoHookean(K - k, G, false));
+  check(HypoElastic(K, G, false), HypoElastic(K - k, G, false));
+}
+
+TYPED_TEST(Elastic, WeightsOfTheSmoothedStrainKeepLinearFields)
+{
+  constexpr int D = TypeParam::value, N = 9, NV = 2 * D + 2;
+  Random random(4);
+  std::vector<double> numbers((size_t) whole_blocks(N) * NV, 0.0);
+  int type[N + 1] = {}, partner[whole_blocks(N)] = {};
+  for (int j = 0; j < N; j++) {
+    partner[j] = j + 1;
+    // to one side, as at a face
+    for (int a = 0; a < D; a++) numbers[number_of_bond(j, NV) + (D + a) * BOND_BLOCK] = a ? random(-1.0, 1.0) : random(0.0, 1.0);
+  }
+  const std::vector<BondRow> rows = {{0, N, partner, numbers.data(), nullptr, 2.0, 0.0, 1.0}};
+  VolumetricStrain s;
+  s.modulus = {3.0};
+  s.find_weights<D>(rows, type, [](int) { return true; }, [](int, int j) { return j != 3; }, [](int) { return 2.0; });
+  double sum = s.own[0], first[D] = {};
+  for (int j = 0; j < N; j++) {
+    sum += s.weight[j];
+    for (int a = 0; a < D; a++) first[a] += s.weight[j] * numbers[number_of_bond(j, NV) + (D + a) * BOND_BLOCK];
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-13);
+  for (const double x : first) EXPECT_NEAR(x, 0.0, 1e-13);
+  EXPECT_EQ(s.weight[2], 0.0);    // of another material
+  EXPECT_EQ(s.stiffness[0], 6.0);
 }
 
 TYPED_TEST(Elastic, ReferenceIsFreeOfStressAndEnergy)
