@@ -46,8 +46,10 @@ class AtomVecFSI : virtual public AtomVec {
   int property_atom(const std::string &) override;
   void pack_property_atom(int, double *, int, int) override;
 
-  std::map<std::string, std::string> materials;    // lines of a material file that command fsi/material has given, by name
-  // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds of solids are still of its spacing and kernel
+  // lines of a material file that command fsi/material has given, by name
+  std::map<std::string, std::string> materials;
+  // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds of
+  // solids are still of its spacing and kernel
   std::unique_ptr<FSI::Record> of_fix_fsi;
 
  private:

@@ -44,13 +44,15 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-static constexpr double WITHIN = 1.0 - 1.0e-9;    // sites of a lattice at the cutoff weigh nothing: round-off does not choose among them
+// sites of a lattice at the cutoff weigh nothing: round-off does not choose among them
+static constexpr double WITHIN = 1.0 - 1.0e-9;
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2), self_range(0.0), tears(false), changes(0), swaps(lmp), fix_fsi(nullptr), list(nullptr), slot(nullptr),
-    maxbond(0), keeps_places(false), apart(0.0), layer(nullptr), next_look(0)
+    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2),
+    self_range(0.0), tears(false), changes(0), swaps(lmp), fix_fsi(nullptr), list(nullptr),
+    slot(nullptr), maxbond(0), keeps_places(false), apart(0.0), layer(nullptr), next_look(0)
 {
   has_record = resting = false;
   restart_peratom = restart_global = 1;
@@ -97,8 +99,10 @@ void FixFSIReference::init()
   } else if (made != as_now())
     error->all(FLERR, "Pair style fsi/solid/tl {}: the bonds of its bodies were made with {}, and stay so", as_now(), made);
   if (self_range > 0.0 && !keeps_places)
-    error->all(FLERR, "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept only if it is on when the reference is taken: "
-                      "give it before the first run of the bodies");
+    error->all(FLERR,
+               "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept "
+               "only if it is on when the reference is taken: "
+               "give it before the first run of the bodies");
   neighbor->add_request(this, NeighConst::REQ_FULL | NeighConst::REQ_OCCASIONAL);
 }
 
@@ -549,8 +553,10 @@ void FixFSIReference::resolve()
   changes++;
   seen.clear();
   swaps.find([this](int i) { return is_solid(i); });
-  if (domain->dimension == 2) find_self_pairs<2>();
-  else find_self_pairs<3>();
+  if (domain->dimension == 2)
+    find_self_pairs<2>();
+  else
+    find_self_pairs<3>();
 }
 
 /* ----------------------------------------------------------------------
@@ -578,9 +584,11 @@ template <int D> void FixFSIReference::find_self_pairs()
   comm->forward_comm(this);
   layer = nullptr;
 
-  const Cells cells(x, atom->nlocal + atom->nghost, D, self_range * widest + neighbor->skin, [this](int i) { return is_solid(i); });
+  const Cells cells(x, atom->nlocal + atom->nghost, D, self_range * widest + neighbor->skin,
+                    [this](int i) { return is_solid(i); });
   for (const int i : solids) {
-    const double most = self_range * fix_fsi->dx_of(atom->type[i]), support = fix_fsi->resolution[atom->type[i]].cut;
+    const double most = self_range * fix_fsi->dx_of(atom->type[i]),
+                 support = fix_fsi->resolution[atom->type[i]].cut;
     const size_t first = near_itself.size();
     cells.around(x[i], [&](int j, double rsq) {
       if (j == i || atom->molecule[j] != atom->molecule[i]) return;
@@ -592,21 +600,24 @@ template <int D> void FixFSIReference::find_self_pairs()
       }
       const bool neighbors = Rsq < WITHIN * support * support;
       if (neighbors && !tears) return;
-      const double reach = reach_within_body(most, std::sqrt(Rsq), neighbors), near = reach + neighbor->skin;
+      const double reach = reach_within_body(most, std::sqrt(Rsq), neighbors),
+                   near = reach + neighbor->skin;
       if (rsq < near * near) near_itself.push_back({i, j, reach, neighbors});
     });
     // sums do not depend on the order of ghosts
-    std::sort(near_itself.begin() + first, near_itself.end(), [this](const auto &a, const auto &b) { return atom->tag[a.j] < atom->tag[b.j]; });
+    std::sort(near_itself.begin() + first, near_itself.end(),
+              [this](const auto &a, const auto &b) { return atom->tag[a.j] < atom->tag[b.j]; });
   }
 }
 
 /* ----------------------------------------------------------------------
-   Without contact parts of one body pass through each other. Looked for rarely: it takes long, and nothing depends on it but a warning.
+   Without contact parts of one body pass through each other. Looked for rarely: it takes long, and
+   nothing depends on it but a warning.
 ------------------------------------------------------------------------- */
 
 void FixFSIReference::look_for_passing()
 {
-  static constexpr int EVERY = 200;    // steps
+  static constexpr int EVERY = 200;      // steps
   static constexpr double NEAR = 0.9;    // spacings
   if (update->ntimestep < next_look || self_range > 0.0) return;
   next_look = update->ntimestep + EVERY;
@@ -618,7 +629,8 @@ void FixFSIReference::look_for_passing()
   } mine = {NEAR, comm->me}, least;
   tagint pair[3] = {0, 0, 0};
   if (!solids.empty()) {
-    const Cells cells(atom->x, atom->nlocal + atom->nghost, domain->dimension, NEAR * widest, [this](int i) { return is_solid(i); });
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, domain->dimension, NEAR * widest,
+                      [this](int i) { return is_solid(i); });
     for (const int i : solids)
       cells.around(atom->x[i], [&](int j, double rsq) {
         const double r = std::sqrt(rsq) / fix_fsi->dx_of(atom->type[i]);
@@ -634,8 +646,11 @@ void FixFSIReference::look_for_passing()
   next_look = MAXBIGINT;
   MPI_Bcast(pair, 3, MPI_LMP_TAGINT, least.rank, world);
   if (comm->me == 0)
-    error->warning(FLERR, "Pair style fsi/solid/tl: atoms {} and {} of body {} have no bond and are {:.2g} spacings apart at step {}: parts of one body "
-                          "pass through each other. Contact between them: contact 2 self yes", pair[0], pair[1], pair[2], least.r, update->ntimestep);
+    error->warning(FLERR,
+                   "Pair style fsi/solid/tl: atoms {} and {} of body {} have no bond and are "
+                   "{:.2g} spacings apart at step {}: parts of one body "
+                   "pass through each other. Contact between them: contact 2 self yes",
+                   pair[0], pair[1], pair[2], least.r, update->ntimestep);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -833,7 +848,10 @@ int FixFSIReference::maxsize_restart()
 
 double FixFSIReference::memory_usage()
 {
-  return (double) atom->nmax * sizeof(int) + (double) local.capacity() * sizeof(int) + (double) (partner.capacity() + owner.capacity()) * sizeof(tagint) +
-      (double) (data.capacity() + moment.capacity() + quadrature.capacity() + place.capacity() + seen.capacity() + slack.capacity()) * sizeof(double) +
+  return (double) atom->nmax * sizeof(int) + (double) local.capacity() * sizeof(int) +
+      (double) (partner.capacity() + owner.capacity()) * sizeof(tagint) +
+      (double) (data.capacity() + moment.capacity() + quadrature.capacity() + place.capacity() +
+                seen.capacity() + slack.capacity()) *
+      sizeof(double) +
       (double) near_itself.capacity() * sizeof(SelfPair);
 }

@@ -83,9 +83,10 @@ class FixFSIReference : public Fix {
   typedef std::function<double(int)> Energy;
   void break_bonds(double stretch, const Energy &energy);
 
-  // Contact of a body with itself (fsi_contact.h), if its range, over the spacing, is above 0: pairs as a local particle i sees them, without
-  // a bond, or whose bond may have broken by now, that can come within reach before lists are new. Each belongs to i by half: what one rank
-  // sees of its own particles, no other needs to know.
+  // Contact of a body with itself (fsi_contact.h), if its range, over the spacing, is above 0:
+  // pairs as a local particle i sees them, without a bond, or whose bond may have broken by now,
+  // that can come within reach before lists are new. Each belongs to i by half: what one rank sees
+  // of its own particles, no other needs to know.
   double self_range;
   bool tears;    // keyword damage
   struct SelfPair {
@@ -114,14 +115,16 @@ class FixFSIReference : public Fix {
   std::vector<int> nbond, local, unused;
   std::vector<tagint> partner, owner;    // owner: ID of the slot's atom when its bonds were last looked at
   std::vector<double> data, moment, quadrature;
-  bool keeps_places;    // for contact of a body with itself
+  bool keeps_places;            // for contact of a body with itself
   std::vector<double> place;    // D numbers per slot: positions in the reference
   // damage: positions of solids and ghosts at the last look, empty = indices have changed; how far particles have moved apart since
   // indices changed, at most; per slot, how far they may before one of its bonds can be too long
   std::vector<double> seen, slack;
   double apart;
-  double *layer;    // of a message to ghosts: while the reference is taken layers to the face ahead, by direction; places
-  bigint next_look;    // for parts of a body that pass through each other; never again once they were named
+  double *layer;       // of a message to ghosts: while the reference is taken layers to the face
+                       // ahead, by direction; places
+  bigint next_look;    // for parts of a body that pass through each other; never again once they
+                       // were named
 
   void follow_commands();
   void take();

@@ -33,8 +33,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), start(nullptr), keywords(lmp, "fix fsi/stress"),
-    ns(domain->dimension == 2 ? 3 : 6), strain(nullptr)
+    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), start(nullptr),
+    keywords(lmp, "fix fsi/stress"), ns(domain->dimension == 2 ? 3 : 6), strain(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
@@ -70,7 +70,9 @@ void FixFSIStress::choose_fields()
   int dim_of_extract;
   fields.set("stress", Fields::RESTART, true, stress, ns);
   fields.set("plastic strain", Fields::RESTART, plastic, strain);
-  fields.set("place at the start", Fields::RESTART, pair && *static_cast<int *>(pair->extract("self", dim_of_extract)), start, domain->dimension + 1);
+  fields.set("place at the start", Fields::RESTART,
+             pair && *static_cast<int *>(pair->extract("self", dim_of_extract)), start,
+             domain->dimension + 1);
   fields.set("hourglass force", Fields::RESTART, pair && *static_cast<double *>(pair->extract("hourglass", dim_of_extract)) > 0.0, hourglass, domain->dimension);
 }
 
@@ -132,7 +134,8 @@ int FixFSIStress::pack_forward_comm(int n, int *list, double *buf, int, int *)
 
 void FixFSIStress::unpack_forward_comm(int n, int first, double *buf)
 {
-  for (int i = first; i < first + n; i++, buf += comm_forward) std::copy_n(buf, comm_forward, start[i]);
+  for (int i = first; i < first + n; i++, buf += comm_forward)
+    std::copy_n(buf, comm_forward, start[i]);
 }
 
 /* ----------------------------------------------------------------------

@@ -52,7 +52,8 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   int plane_stress;
   int plastic;    // materials yield
   double *hourglass_force(int i) { return hourglass[i]; }
-  // keyword self of pair_style fsi/solid: enters the places of those that have none yet, then tells ghosts; how far two of them were apart
+  // keyword self of pair_style fsi/solid: enters the places of those that have none yet, then tells
+  // ghosts; how far two of them were apart
   void enter_start(const std::vector<FSI::State> &);
   double distance_at_start(int i, int j) const;
 

@@ -70,7 +70,8 @@ class Adviser : protected Pointers {
     const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest());
     if (spacing(cells) && pair("^fsi/solid")) {
       const double reach = number<double>("^fsi/solid", "contact");
-      const Cells wide(atom->x, atom->nlocal + atom->nghost, scene.dim, std::max(2.5, reach) * coarsest());
+      const Cells wide(atom->x, atom->nlocal + atom->nghost, scene.dim,
+                       std::max(2.5, reach) * coarsest());
       thickness(wide);
       parts(wide);
       if (update->ntimestep == 0) contact(wide, reach);
@@ -322,7 +323,8 @@ class Adviser : protected Pointers {
     });
   }
 
-  /* Bodies that begin within each other's range of contact are pushed apart with its energy at once: the pair that has most of it. */
+  /* Bodies that begin within each other's range of contact are pushed apart with its energy at once: the
+     pair that has most of it. */
 
   void contact(const Cells &cells, double range) const
   {
@@ -335,10 +337,15 @@ class Adviser : protected Pointers {
       if (!solid(i)) continue;
       cells.around(atom->x[i], [&](int j, double rsq) {
         const double spacing = 0.5 * (dx(i) + dx(j)), reach = (1.0 - LITTLE) * range * spacing;
-        if (rsq >= reach * reach || !solid(j) || atom->molecule[j] == atom->molecule[i] || !(moves(i) || moves(j))) return;
+        if (rsq >= reach * reach || !solid(j) || atom->molecule[j] == atom->molecule[i] ||
+            !(moves(i) || moves(j)))
+          return;
         const State &a = scene.state[atom->type[i]], &b = scene.state[atom->type[j]];
-        auto &m = mine[{std::min(atom->molecule[i], atom->molecule[j]), std::max(atom->molecule[i], atom->molecule[j])}];
-        m.energy += 0.5 * Contact(scene.dim, spacing, range).energy(rsq, a.csq * a.rho0, b.csq * b.rho0);    // each sees the other
+        auto &m = mine[{std::min(atom->molecule[i], atom->molecule[j]),
+                        std::max(atom->molecule[i], atom->molecule[j])}];
+        m.energy += 0.5 *
+            Contact(scene.dim, spacing, range)
+                .energy(rsq, a.csq * a.rho0, b.csq * b.rho0);    // each sees the other
         if (rsq >= m.distance * m.distance) return;
         m.distance = std::sqrt(rsq);
         m.range = range * spacing;
@@ -347,7 +354,9 @@ class Adviser : protected Pointers {
     }
     std::vector<double> numbers;
     for (const auto &m : mine)
-      numbers.insert(numbers.end(), {static_cast<double>(m.first[0]), static_cast<double>(m.first[1]), m.second.energy, m.second.distance, m.second.range, m.second.spacing});
+      numbers.insert(numbers.end(),
+                     {static_cast<double>(m.first[0]), static_cast<double>(m.first[1]),
+                      m.second.energy, m.second.distance, m.second.range, m.second.spacing});
     std::map<std::array<tagint, 2>, Meeting> all;
     numbers = gather(numbers, world);
     for (auto n = numbers.begin(); n != numbers.end(); n += 6) {
@@ -359,14 +368,23 @@ class Adviser : protected Pointers {
         m.spacing = n[5];
       }
     }
-    const auto worst = std::max_element(all.begin(), all.end(), [](const auto &a, const auto &b) { return a.second.energy < b.second.energy; });
+    const auto worst = std::max_element(all.begin(), all.end(), [](const auto &a, const auto &b) {
+      return a.second.energy < b.second.energy;
+    });
     if (worst == all.end()) return;
     const Meeting &m = worst->second;
-    const std::string others = all.size() > 1 ? fmt::format(", and so do {} more pairs", all.size() - 1) : "";
+    const std::string others =
+        all.size() > 1 ? fmt::format(", and so do {} more pairs", all.size() - 1) : "";
     const double apart = m.distance / m.spacing;
-    warn(fmt::format("bodies {} and {} {} {:.2g} spacings apart at the start, and contact reaches {:.3g}{}: contact energy {:.4g} at once. {}", worst->first[0],
-                     worst->first[1], apart < OVERLAP ? "overlap, with particles" : "begin", apart, m.range / m.spacing, others, m.energy,
-                     apart < OVERLAP || apart < 1.0 - 1.0e-6 ? "Move them apart" : fmt::format("Move them apart, or contact {:.3g}", std::floor(10.0 * apart + 1.0e-6) / 10.0)));
+    warn(fmt::format("bodies {} and {} {} {:.2g} spacings apart at the start, and contact reaches "
+                     "{:.3g}{}: contact energy {:.4g} at once. {}",
+                     worst->first[0], worst->first[1],
+                     apart < OVERLAP ? "overlap, with particles" : "begin", apart,
+                     m.range / m.spacing, others, m.energy,
+                     apart < OVERLAP || apart < 1.0 - 1.0e-6
+                         ? "Move them apart"
+                         : fmt::format("Move them apart, or contact {:.3g}",
+                                       std::floor(10.0 * apart + 1.0e-6) / 10.0)));
   }
 
   /* elastic bodies, none of which moves */
@@ -379,20 +397,22 @@ class Adviser : protected Pointers {
       return solid(i) && (scene.is_moved(i) || v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0);
     });
     if (all.count && !moving.count)
-      warn(fmt::format("all {} particles of elastic bodies, the first of them atom {}, are held, since none is in group {} of fix {}: is this group meant?", all.count,
-                       all.first, group->names[scene.mover->igroup], scene.mover->id));
+      warn(fmt::format("all {} particles of elastic bodies, the first of them atom {}, are held, "
+                       "since none is in group {} of fix {}: is this group meant?",
+                       all.count, all.first, group->names[scene.mover->igroup], scene.mover->id));
   }
 
-  /* A body that ends at a mirror wall is free there: mirror walls act on fluid. Not where weight acts along the wall's normal (that is a
-     floor, and without weight it may be one), nor where the body fills the room between two walls. */
+  /* A body that ends at a mirror wall is free there: mirror walls act on fluid. Not where weight
+     acts along the wall's normal (that is a floor, and without weight it may be one), nor where the
+     body fills the room between two walls. */
 
   void cut_by_walls() const
   {
     static constexpr int MOST = Walls::MAXWALL;
     const auto &walls = scene.walls.wall;
-    const double *const x0 = atom->nlocal ? atom->x[0] : nullptr;
-    std::map<tagint, std::array<double, MOST>> bodies;    // least distances from walls over the spacing, with the sign changed
-    for (int i = 0; i < atom->nlocal && x0; i++) {
+    // least distances from walls over the spacing, with the sign changed
+    std::map<tagint, std::array<double, MOST>> bodies;
+    for (int i = 0; i < atom->nlocal; i++) {
       if (!moves(i)) continue;
       auto it = bodies.find(atom->molecule[i]);
       if (it == bodies.end()) {
@@ -401,21 +421,26 @@ class Adviser : protected Pointers {
       }
       const auto g = scene.body_forces.on(i);
       for (size_t k = 0; k < walls.size(); k++)
-        if (!walls[k].noslip && walls[k].spans(atom->x[i], 0.0) && g[walls[k].axis] == 0.0 && g[0] * g[0] + g[1] * g[1] + g[2] * g[2] > 0.0)
+        if (!walls[k].noslip && walls[k].spans(atom->x[i], 0.0) && g[walls[k].axis] == 0.0 &&
+            g[0] * g[0] + g[1] * g[1] + g[2] * g[2] > 0.0)
           it->second[k] = std::max(it->second[k], -walls[k].distance(atom->x[i]) / dx(i));
     }
     std::array<double, MOST> none;
     none.fill(-BIG);
     for_bodies(bodies, none, [&](tagint body, const std::array<double, MOST> &mine) {
       std::array<double, MOST> all;
-      MPI_Allreduce(const_cast<double *>(mine.data()), all.data(), MOST, MPI_DOUBLE, MPI_MAX, world);
+      MPI_Allreduce(const_cast<double *>(mine.data()), all.data(), MOST, MPI_DOUBLE, MPI_MAX,
+                    world);
       const auto ends_at = [&](size_t k) { return all[k] > -0.75 && all[k] < 0.0; };
       for (size_t k = 0; k < walls.size(); k++) {
         bool both = false;
-        for (size_t m = 0; m < walls.size(); m++) both |= walls[m].axis == walls[k].axis && walls[m].side != walls[k].side && ends_at(m);
+        for (size_t m = 0; m < walls.size(); m++)
+          both |= walls[m].axis == walls[k].axis && walls[m].side != walls[k].side && ends_at(m);
         if (!ends_at(k) || both) continue;
-        warn(fmt::format("body {} ends at the mirror wall at {} = {:g}, and its face there is free, since these walls act on fluid alone: a body cut by a "
-                         "plane of symmetry must be whole, or held there", body, "xyz"[walls[k].axis], walls[k].position));
+        warn(fmt::format("body {} ends at the mirror wall at {} = {:g}, and its face there is "
+                         "free, since these walls act on fluid alone: a body cut by a "
+                         "plane of symmetry must be whole, or held there",
+                         body, "xyz"[walls[k].axis], walls[k].position));
         return false;
       }
       return true;
@@ -433,35 +458,46 @@ class Adviser : protected Pointers {
     const auto falls = [&](int i) { return fluid(i) ? scene.is_moved(i) : moves(i); };
     if (!find_particles(atom, world, [&](int i) { return falls(i) && weighs(i); }).count) return;
     for (const bool of_fluid : {true, false}) {
-      const auto found = find_particles(atom, world, [&](int i) { return falls(i) && fluid(i) == of_fluid && !weighs(i); });
+      const auto found = find_particles(
+          atom, world, [&](int i) { return falls(i) && fluid(i) == of_fluid && !weighs(i); });
       if (found.count)
-        warn(fmt::format("{} moving particles of {}, the first of them atom {}, are in the group of no fix gravity, while others are: they weigh nothing", found.count,
-                         of_fluid ? "fluids" : "elastic bodies", found.first));
+        warn(fmt::format("{} moving particles of {}, the first of them atom {}, are in the group "
+                         "of no fix gravity, while others are: they weigh nothing",
+                         found.count, of_fluid ? "fluids" : "elastic bodies", found.first));
     }
   }
 
-  /* A scene in which everything is at rest and stays so: no velocity, no force, and no fix but those that only watch. */
+  /* A scene in which everything is at rest and stays so: no velocity, no force, and no fix but
+   * those that only watch. */
 
   void nothing_acts() const
   {
     static constexpr double LITTLE = 1.0e-9;    // of what sound would do in a spacing
-    static const char *const watching[] = {"fsi/dt", "fsi/watch", "fsi/report", "fsi/stress", "fsi/reference", "fsi/spectrum", "fsi/wall/", "gravity", "ave/",
-                                           "print", "halt", "vector", "balance", "store/", "STORE/", "FSI_"};
+    static const char *const watching[] = {
+        "fsi/dt",    "fsi/watch", "fsi/report", "fsi/stress", "fsi/reference", "fsi/spectrum",
+        "fsi/wall/", "gravity",   "ave/",       "print",      "halt",          "vector",
+        "balance",   "store/",    "STORE/",     "FSI_"};
     for (const auto &fix : modify->get_fix_list())
-      if (fix != scene.mover && std::none_of(std::begin(watching), std::end(watching), [&](const char *s) { return strncmp(fix->style, s, strlen(s)) == 0; }))
+      if (fix != scene.mover &&
+          std::none_of(std::begin(watching), std::end(watching),
+                       [&](const char *s) { return strncmp(fix->style, s, strlen(s)) == 0; }))
         return;
     const auto found = find_particles(atom, world, [&](int i) {
       const double *const v = atom->v[i], *const f = atom->f[i];
       if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0) return true;
       if (!scene.is_moved(i)) return false;
-      const double most = LITTLE * atom->rmass[i] * scene.state[atom->type[i]].wave_speed_sq() / dx(i);
+      const double most =
+          LITTLE * atom->rmass[i] * scene.state[atom->type[i]].wave_speed_sq() / dx(i);
       const auto g = scene.body_forces.on(i);
-      return g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0 || std::fabs(f[0]) + std::fabs(f[1]) + std::fabs(f[2]) > most;
+      return g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0 ||
+          std::fabs(f[0]) + std::fabs(f[1]) + std::fabs(f[2]) > most;
     });
     bool moving = false;
-    for (const auto &w : scene.walls.wall) moving = moving || w.velocity[0] != 0.0 || w.velocity[1] != 0.0 || w.velocity[2] != 0.0;
+    for (const auto &w : scene.walls.wall)
+      moving = moving || w.velocity[0] != 0.0 || w.velocity[1] != 0.0 || w.velocity[2] != 0.0;
     if (!found.count && !moving)
-      warn("nothing moves this scene: no gravity, no velocity, no moving wall, no force at the start. Is fix gravity missing?");
+      warn("nothing moves this scene: no gravity, no velocity, no moving wall, no force at the "
+           "start. Is fix gravity missing?");
   }
 
   /* A moving body that was cut out by a block, as its bounding box within that of the region says, has as many rows as lattice points

@@ -21,13 +21,19 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // Local and ghost particles, or those chosen of them, in cells, for questions about the nearest one.
+  // Local and ghost particles, or those chosen of them, in cells, for questions about the nearest
+  // one.
   class Cells {
    public:
     static constexpr double LARGE = 1.0e300;
 
-    Cells(const double *const *x, int n, int dim, double size) : Cells(x, n, dim, size, [](int) { return true; }) {}
-    template <class Choose> Cells(const double *const *x, int n, int dim, double size, Choose choose) : x(x), dim(dim), size(size), next(n)
+    Cells(const double *const *x, int n, int dim, double size) :
+        Cells(x, n, dim, size, [](int) { return true; })
+    {
+    }
+    template <class Choose>
+    Cells(const double *const *x, int n, int dim, double size, Choose choose) :
+        x(x), dim(dim), size(size), next(n)
     {
       for (int d = 0; d < dim; d++) {
         low[d] = LARGE;
@@ -48,7 +54,8 @@ namespace FSI {
       } else if (cells > 8.0 * n + 1000.0)
         this->size *= std::pow(cells / (8.0 * n + 1000.0), 1.0 / dim);
       int total = 1;
-      for (int d = 0; d < dim; d++) total *= count[d] = static_cast<int>(extent[d] / this->size) + 1;
+      for (int d = 0; d < dim; d++)
+        total *= count[d] = static_cast<int>(extent[d] / this->size) + 1;
       head.assign(total, -1);
       for (int i = 0; i < n; i++) {
         if (!choose(i)) continue;

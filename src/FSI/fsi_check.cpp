@@ -179,10 +179,14 @@ void Check::integrators() const
 {
   for (const auto &fix : modify->get_fix_list()) {
     if (!fix->time_integrate || utils::strmatch(fix->style, "^fsi")) continue;
-    const auto twice = find_particles(atom, world, [&](int i) { return atom->mask[i] & scene.mover->groupbit && atom->mask[i] & fix->groupbit; });
+    const auto twice = find_particles(atom, world, [&](int i) {
+      return atom->mask[i] & scene.mover->groupbit && atom->mask[i] & fix->groupbit;
+    });
     if (twice.count)
-      error->all(FLERR, "Fix {} (style {}) and fix {} (style fsi) both move {} particles, the first of them atom {}: leave out one of the two for them", fix->id,
-                 fix->style, scene.mover->id, twice.count, twice.first);
+      error->all(FLERR,
+                 "Fix {} (style {}) and fix {} (style fsi) both move {} particles, the first of "
+                 "them atom {}: leave out one of the two for them",
+                 fix->id, fix->style, scene.mover->id, twice.count, twice.first);
   }
 }
 

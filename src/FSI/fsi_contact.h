@@ -31,10 +31,14 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // Contact of a body with itself, of pairs without a bond, does not reach beyond a part of their distance in the reference, so that a body
-  // that nothing strains has none: 0.9 of it where a bond is torn (short-range forces of Silling and Askari, Computers and Structures 83
-  // (2005) 1526), a half where there never was one, which leaves a body free to be compressed as much.
-  inline double reach_within_body(double reach, double distance, bool torn) { return std::min(reach, (torn ? 0.9 : 0.5) * distance); }
+  // Contact of a body with itself, of pairs without a bond, does not reach beyond a part of their
+  // distance in the reference, so that a body that nothing strains has none: 0.9 of it where a bond
+  // is torn (short-range forces of Silling and Askari, Computers and Structures 83 (2005) 1526), a
+  // half where there never was one, which leaves a body free to be compressed as much.
+  inline double reach_within_body(double reach, double distance, bool torn)
+  {
+    return std::min(reach, (torn ? 0.9 : 0.5) * distance);
+  }
 
   struct Contact {
     double reach, reachsq, scale;    // reach = R dx, scale = s dx^(D-2)/R^2

@@ -99,13 +99,15 @@ class MaterialReader : protected Pointers {
     return all;
   }
 
-  std::vector<Material> find(const std::string &file, const std::vector<std::string> &names, const std::map<std::string, std::string> &given)
+  std::vector<Material> find(const std::string &file, const std::vector<std::string> &names,
+                             const std::map<std::string, std::string> &given)
   {
     const auto all = read(file);
     std::vector<Material> found;
     for (const auto &name : names) {
       Material m = {};
-      if (const auto it = given.find(name); it != given.end()) m = parse("of command fsi/material", it->second.c_str());
+      if (const auto it = given.find(name); it != given.end())
+        m = parse("of command fsi/material", it->second.c_str());
       else if (name != SPECIES[NONE]) {
         int matches = 0;
         for (const auto &a : all)
@@ -121,14 +123,19 @@ class MaterialReader : protected Pointers {
     return found;
   }
 
-  void not_found(const std::string &name, const std::string &file, const std::vector<Material> &all, const std::map<std::string, std::string> &given)
+  void not_found(const std::string &name, const std::string &file, const std::vector<Material> &all,
+                 const std::map<std::string, std::string> &given)
   {
     std::string known, by_command;
     for (const auto &a : all) known += std::string(" ") + a.name;
     for (const auto &g : given) by_command += " " + g.first;
     if (by_command.empty()) by_command = " none";
-    if (file == SPECIES[NONE]) error->one(FLERR, "Material {} was not given by command fsi/material, which has given:{}", name, by_command);
-    error->one(FLERR, "Material {} not found in file {}, which has:{}; command fsi/material has given:{}", name, file, known, by_command);
+    if (file == SPECIES[NONE])
+      error->one(FLERR, "Material {} was not given by command fsi/material, which has given:{}",
+                 name, by_command);
+    error->one(FLERR,
+               "Material {} not found in file {}, which has:{}; command fsi/material has given:{}",
+               name, file, known, by_command);
   }
 
   Material parse(const std::string &where, const char *line)
@@ -138,13 +145,15 @@ class MaterialReader : protected Pointers {
       ValueTokenizer values(line);
       const std::string name = values.next_string();
       if (name.size() >= sizeof(m.name))
-        error->one(FLERR, "Material name {} {} is longer than {} characters", name, where, sizeof(m.name) - 1);
+        error->one(FLERR, "Material name {} {} is longer than {} characters", name, where,
+                   sizeof(m.name) - 1);
       strcpy(m.name, name.c_str());
 
       const std::string species = values.next_string();
       m.species = std::find(std::begin(SPECIES), std::end(SPECIES), species) - std::begin(SPECIES);
       if (m.species == NONE || m.species > RIGID)
-        error->one(FLERR, "Material {} {} is of unknown species {}: expected fluid, solid or wall", name, where, species);
+        error->one(FLERR, "Material {} {} is of unknown species {}: expected fluid, solid or wall",
+                   name, where, species);
 
       std::string known, given = " ";
       for (const auto &p : properties)
@@ -154,8 +163,10 @@ class MaterialReader : protected Pointers {
         const auto p = std::find_if(std::begin(properties), std::end(properties),
                                     [&](const Property &q) { return key == q.name && has(m.species, q); });
         if (p == std::end(properties))
-          error->one(FLERR, "Unknown keyword {} of {} {} {}: expected {}", key, species, name, where, known);
-        m.*p->value = numeric(lmp, fmt::format("Material {} {}: {}", name, where, key), values.next_string(), p->range, true);
+          error->one(FLERR, "Unknown keyword {} of {} {} {}: expected {}", key, species, name,
+                     where, known);
+        m.*p->value = numeric(lmp, fmt::format("Material {} {}: {}", name, where, key),
+                              values.next_string(), p->range, true);
         given += key + " ";
       }
       for (const auto &p : properties)
@@ -172,7 +183,8 @@ class MaterialReader : protected Pointers {
 
 /* ---------------------------------------------------------------------- */
 
-std::vector<Material> FSI::read_materials(LAMMPS *lmp, const std::string &file, const std::vector<std::string> &names,
+std::vector<Material> FSI::read_materials(LAMMPS *lmp, const std::string &file,
+                                          const std::vector<std::string> &names,
                                           const std::map<std::string, std::string> &given)
 {
   std::vector<Material> found(names.size());

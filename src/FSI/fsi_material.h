@@ -81,15 +81,18 @@ namespace FSI {
     double density(double p) const;    // the inverse of pressure(), for initial states
   };
 
-  // Reads the materials called names from a *.fsi file (LAMMPS potential file: header with DATE and UNITS, then one
-  // material per line: name, fluid, solid or wall, keyword-value pairs). Every rank gets the result. "NULL" gives species NONE.
-  // Errors name the file, the material and the keyword. `given`: lines of such a file by the name of their material, from the script;
-  // they come before those of the file, which "NULL" says that there is none of.
-  std::vector<Material> read_materials(LAMMPS *lmp, const std::string &file, const std::vector<std::string> &names,
+  // Reads the materials called names from a *.fsi file (LAMMPS potential file: header with DATE and
+  // UNITS, then one material per line: name, fluid, solid or wall, keyword-value pairs). Every rank
+  // gets the result. "NULL" gives species NONE. Errors name the file, the material and the keyword.
+  // `given`: lines of such a file by the name of their material, from the script; they come before
+  // those of the file, which "NULL" says that there is none of.
+  std::vector<Material> read_materials(LAMMPS *lmp, const std::string &file,
+                                       const std::vector<std::string> &names,
                                        const std::map<std::string, std::string> &given);
   std::vector<Material> read_all_materials(LAMMPS *lmp, const std::string &file);
 
-  // a line of such a file; what it says. "NULL" is a material, too: of species NONE. where: "in file F", for messages
+  // a line of such a file; what it says. "NULL" is a material, too: of species NONE. where: "in
+  // file F", for messages
   std::string describe(const Material &);
   Material read_material(LAMMPS *lmp, const std::string &where, const std::string &line);
 

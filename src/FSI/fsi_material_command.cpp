@@ -33,16 +33,20 @@ void FSIMaterial::command(int narg, char **arg)
   auto *const avec = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
   if (!avec) error->all(FLERR, "Fsi/material requires atom_style fsi before it");
   if (narg < 2)
-    error->all(FLERR, "Fsi/material expects a name, fluid, solid or wall, and keywords with values, or file and the name of a material file");
+    error->all(FLERR,
+               "Fsi/material expects a name, fluid, solid or wall, and keywords with values, or "
+               "file and the name of a material file");
   if (narg == 2 && strcmp(arg[0], "file") == 0) {
     for (const Material &m : read_all_materials(lmp, arg[1])) avec->materials[m.name] = describe(m);
     return;
   }
   const std::string name = arg[0];
-  if (name == describe({})) error->all(FLERR, "Fsi/material {}: this name stands for no material in pair_coeff", name);
+  if (name == describe({}))
+    error->all(FLERR, "Fsi/material {}: this name stands for no material in pair_coeff", name);
   std::string line = name;
   for (int k = 1; k < narg; k++) line += std::string(" ") + arg[k];
-  if (comm->me == 0) read_material(lmp, "of command fsi/material", line);    // what is wrong with it is an error
+  if (comm->me == 0)
+    read_material(lmp, "of command fsi/material", line);    // what is wrong with it is an error
   MPI_Barrier(world);
   avec->materials[name] = line;
 }

@@ -24,8 +24,8 @@ CommandStyle(fsi/material,FSIMaterial);
 
 namespace LAMMPS_NS {
 
-// fsi/material name species keyword value ...: a material that pair_coeff finds by its name, beside those of its file.
-// fsi/material file name: likewise all materials of another file.
+// fsi/material name species keyword value ...: a material that pair_coeff finds by its name, beside
+// those of its file. fsi/material file name: likewise all materials of another file.
 
 class FSIMaterial : public Command {
  public:

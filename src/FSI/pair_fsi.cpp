@@ -36,8 +36,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
-    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr), alpha(0.0), beta(0.0), contact_range(1.0),
-    self_contact(0)
+    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr), alpha(0.0),
+    beta(0.0), contact_range(1.0), self_contact(0)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -86,7 +86,8 @@ void PairFSI::coeff(int narg, char **arg)
   if (!allocated) allocate();
   auto *const avec = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
   const std::vector<std::string> names(arg + 3, arg + narg);
-  auto found = read_materials(lmp, arg[2], names, avec ? avec->materials : std::map<std::string, std::string>());
+  auto found = read_materials(lmp, arg[2], names,
+                              avec ? avec->materials : std::map<std::string, std::string>());
   for (int t = 1; t <= atom->ntypes; t++) material[t] = found[t - 1];
   fix_fsi = nullptr;
   set_flags();
@@ -103,8 +104,8 @@ void PairFSI::check_pair_coeff(int narg, char **arg) const
 }
 
 /* ----------------------------------------------------------------------
-   Of a type that no style has a force for LAMMPS says only "All pair coeffs are not set". Before the first run: later one pair_coeff
-   after another may change materials.
+   Of a type that no style has a force for LAMMPS says only "All pair coeffs are not set". Before
+   the first run: later one pair_coeff after another may change materials.
 ------------------------------------------------------------------------- */
 
 static std::string in_words(const Material &m)
@@ -119,8 +120,8 @@ void PairFSI::check_species() const
   const bool solid_style = style != "fsi/fluid";
   for (int t = 1; t <= atom->ntypes && force->pair == this; t++)
     if (setflag[t][t] == 0)
-      error->all(FLERR, "Pair_coeff of pair style {} gives atom type {} {}: expected a {}", style, t, in_words(material[t]),
-                 solid_style ? "solid" : "fluid, solid or wall");
+      error->all(FLERR, "Pair_coeff of pair style {} gives atom type {} {}: expected a {}", style,
+                 t, in_words(material[t]), solid_style ? "solid" : "fluid, solid or wall");
   const PairFSI *fluid = solid_style ? nullptr : this, *solid = solid_style ? this : nullptr;
   for (const char *name : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"}) {
     auto *const other = dynamic_cast<PairFSI *>(force->pair_match(name, 1));
@@ -129,9 +130,13 @@ void PairFSI::check_species() const
   }
   for (int t = 1; fluid && solid && t <= atom->ntypes; t++) {
     const Material &f = fluid->material[t], &s = solid->material[t];
-    if ((f.species == SOLID && s.species != SOLID) || (f.species != SOLID && f.species != NONE && s.species == SOLID))
-      error->all(FLERR, "Pair_coeff gives atom type {} {} in pair style fsi/fluid and {} in {}: expected the same solid in both, or {}", t, in_words(f),
-                 in_words(s), solid->style, f.species == SOLID ? "another material in fsi/fluid" : "NULL in " + solid->style);
+    if ((f.species == SOLID && s.species != SOLID) ||
+        (f.species != SOLID && f.species != NONE && s.species == SOLID))
+      error->all(FLERR,
+                 "Pair_coeff gives atom type {} {} in pair style fsi/fluid and {} in {}: expected "
+                 "the same solid in both, or {}",
+                 t, in_words(f), in_words(s), solid->style,
+                 f.species == SOLID ? "another material in fsi/fluid" : "NULL in " + solid->style);
   }
 }
 
@@ -316,6 +321,7 @@ void PairFSI::read_restart(FILE *fp)
   read_restart_settings(fp);
   allocate();
   const auto record = Record::read(lmp, "pair_coeff " + style, fp);
-  for (int t = 1; t <= atom->ntypes; t++) material[t] = read_material(lmp, "in the restart file", record.value(std::to_string(t)));
+  for (int t = 1; t <= atom->ntypes; t++)
+    material[t] = read_material(lmp, "in the restart file", record.value(std::to_string(t)));
   set_flags();
 }

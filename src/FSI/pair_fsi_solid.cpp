@@ -36,7 +36,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-// Supports of the kernel. What was nearer at the start stays one material: a body may be pressed together to half its length.
+// Supports of the kernel. What was nearer at the start stays one material: a body may be pressed
+// together to half its length.
 static constexpr double FAR = 2.0;
 
 /* ---------------------------------------------------------------------- */
@@ -172,14 +173,17 @@ void PairFSISolid::begin_state(bool)
   if (neighbor->ago == 0) find_rows();
 }
 
-// Pairs that share their stress, and those that only push: of different bodies and, with contact of a body with itself, those of one that
-// were further apart than that at the start.
+// Pairs that share their stress, and those that only push: of different bodies and, with contact of
+// a body with itself, those of one that were further apart than that at the start.
 void PairFSISolid::find_rows()
 {
   const tagint *const molecule = atom->molecule;
   const double far = FAR * fix_fsi->cut;
   if (self_contact) fix_stress->enter_start(fix_fsi->state);
-  const auto one = [=](int i, int j) { return molecule[i] == molecule[j] && !(self_contact && fix_stress->distance_at_start(i, j) >= far); };
+  const auto one = [=](int i, int j) {
+    return molecule[i] == molecule[j] &&
+        !(self_contact && fix_stress->distance_at_start(i, j) >= far);
+  };
   own.clear();
   others.clear();
   const bool whole = !bodies && !self_contact && !atom->molecular;
@@ -193,7 +197,8 @@ void PairFSISolid::find_rows()
     unmasked.resize(n);
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
     own.add(i, unmasked.data(), n, false, false, [=](int j) { return one(i, j); });
-    if (bodies || self_contact) others.add(i, unmasked.data(), n, false, false, [=](int j) { return !one(i, j); });
+    if (bodies || self_contact)
+      others.add(i, unmasked.data(), n, false, false, [=](int j) { return !one(i, j); });
   }
   if (whole) return;
   own.end();

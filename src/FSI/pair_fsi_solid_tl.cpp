@@ -150,7 +150,8 @@ void PairFSISolidTL::init_style()
 
   contacts.clear();
   for (const auto &a : fix_fsi->resolution)
-    for (const auto &b : fix_fsi->resolution) contacts.emplace_back(dim, spacing_between(a, b), contact_range);
+    for (const auto &b : fix_fsi->resolution)
+      contacts.emplace_back(dim, spacing_between(a, b), contact_range);
 
   changes_seen = -1;
   svk.clear();
@@ -180,7 +181,8 @@ void PairFSISolidTL::init_style()
 bool PairFSISolidTL::takes_substeps() const
 {
   auto dt = modify->get_fix_by_style("^fsi/dt$");
-  return fix_fsi->substeps > 1 || (!dt.empty() && dynamic_cast<FixFSIDt *>(dt[0])->chooses_substeps());
+  return fix_fsi->substeps > 1 ||
+      (!dt.empty() && dynamic_cast<FixFSIDt *>(dt[0])->chooses_substeps());
 }
 
 void PairFSISolidTL::refuse_constraints() const
@@ -268,8 +270,10 @@ void PairFSISolidTL::internal_forces()
     else contact_forces<3>();
   }
   if (!reference->near_itself.empty()) {
-    if (fix_fsi->dim == 2) self_contact_forces<2>();
-    else self_contact_forces<3>();
+    if (fix_fsi->dim == 2)
+      self_contact_forces<2>();
+    else
+      self_contact_forces<3>();
   }
   exchange(fix_fsi->profile, comm, this, true, [this]() { reference->swaps.reverse(this); }, reference->swaps.skip_empty());
 }
@@ -450,14 +454,17 @@ template <int D> void PairFSISolidTL::self_contact_forces()
       xij[d] = x[pair.i][d] - x[pair.j][d];
       rsq += xij[d] * xij[d];
     }
-    if (rsq >= pair.reach * pair.reach || (pair.torn && reference->bonded(pair.i, pair.j))) continue;
-    push<D>(pair.i, pair.j, xij, rsq, contacts[type[pair.i] * (atom->ntypes + 1) + type[pair.j]].within(pair.reach), 0.5);
+    if (rsq >= pair.reach * pair.reach || (pair.torn && reference->bonded(pair.i, pair.j)))
+      continue;
+    push<D>(pair.i, pair.j, xij, rsq,
+            contacts[type[pair.i] * (atom->ntypes + 1) + type[pair.j]].within(pair.reach), 0.5);
   }
 }
 
 // share: of the force, which both get; 0: all of it, but for i alone, and half of energy and virial
 template <int D>
-void PairFSISolidTL::push(int i, int j, const double *xij, double rsq, const Contact &contact, double share)
+void PairFSISolidTL::push(int i, int j, const double *xij, double rsq, const Contact &contact,
+                          double share)
 {
   const State &si = fix_fsi->state[atom->type[i]], &sj = fix_fsi->state[atom->type[j]];
   const double Ki = si.csq * si.rho0, Kj = sj.csq * sj.rho0, part = share > 0.0 ? share : 0.5;

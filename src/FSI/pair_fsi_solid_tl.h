@@ -120,7 +120,8 @@ class PairFSISolidTL : public PairFSI {
   std::vector<FSI::Contact> contacts;    // by both types
   template <int D> void contact_forces();
   template <int D> void self_contact_forces();
-  template <int D> void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
+  template <int D>
+  void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
   template <int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
   template <int D> void deformation(int i, double *F) const;
   template <int D> void advance_stress_of_all(double dt);
