@@ -169,6 +169,7 @@ void FixFSI::init()
   register_fields();
 
   ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
+  guarding[0] = guarding[1] = 0.0;
 
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;

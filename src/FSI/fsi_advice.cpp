@@ -679,7 +679,8 @@ class Adviser : protected Pointers {
         mine[2 * n + t] = std::min(mine[2 * n + t], -sight.fill(face).force);
       }
       cells.around(atom->x[i], [&](int j, double rsq) {
-        if (rsq < reach * reach && fluid(j) && sight.visible(atom->x[j]) < 0.5) mine[t] = std::min(mine[t], face.thickness);
+        if (rsq < reach * reach && fluid(j) && sight.visible(atom->x[j]) < 0.5)
+          mine[t] = std::min(mine[t], face.thickness);
       });
     }
     MPI_Allreduce(mine.data(), least.data(), 3 * n, MPI_DOUBLE, MPI_MIN, world);

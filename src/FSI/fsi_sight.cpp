@@ -25,8 +25,9 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr int NTABLE = 400;    // distances for which forces are tabulated
-// A line meets a body if the particles within their spacing of it add up to these, and is inside of it as long as the mean place of those
-// around leans to no side by more than this: 1 is at an edge, where it is so much of the radius, 5/16 in 2D and 64/(70 pi) in 3D
+// A line meets a body if the particles within their spacing of it add up to these, and is inside of
+// it as long as the mean place of those around leans to no side by more than this: 1 is at an edge,
+// where it is so much of the radius, 5/16 in 2D and 64/(70 pi) in 3D
 static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4, AT_EDGE = 0.3;
 
 /* ----------------------------------------------------------------------
@@ -34,7 +35,8 @@ static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4,
 ------------------------------------------------------------------------- */
 
 Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
-    Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{}, half_space(types.size())
+    Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{},
+    half_space(types.size())
 {
   for (size_t t = 1; t < types.size(); t++) {
     if (types[t] == 0.0) continue;
@@ -67,8 +69,8 @@ Sight::Fill Sight::beyond(int type, double distance) const
 }
 
 /* ----------------------------------------------------------------------
-   local particles and ghosts into cells as wide as the reach of neighbor lists. Those of other bodies count, too, where a thin one goes on
-   as one of them.
+   local particles and ghosts into cells as wide as the reach of neighbor lists. Those of other
+   bodies count, too, where a thin one goes on as one of them.
 ------------------------------------------------------------------------- */
 
 bool Sight::counts(int type) const
@@ -104,7 +106,8 @@ void Sight::find_bodies()
     if (counts(type[i])) first[cell(x[i]) + 2]++;
   for (size_t c = 2; c < first.size(); c++) first[c] += first[c - 1];
   for (int i = 0; i < nall; i++)
-    if (counts(type[i])) places[first[cell(x[i]) + 1]++] = {{x[i][0], x[i][1], x[i][2]}, i, types[type[i]] != 0.0};
+    if (counts(type[i]))
+      places[first[cell(x[i]) + 1]++] = {{x[i][0], x[i][1], x[i][2]}, i, types[type[i]] != 0.0};
 }
 
 void Sight::follow_bodies()
@@ -138,8 +141,8 @@ bool Sight::near(const double *x) const
 }
 
 /* ----------------------------------------------------------------------
-   A solid that passes through a mirror wall goes on in its images, which fluids meet in place of what is behind. Walls of particles
-   have none: they go on behind a mirror themselves.
+   A solid that passes through a mirror wall goes on in its images, which fluids meet in place of
+   what is behind. Walls of particles have none: they go on behind a mirror themselves.
 ------------------------------------------------------------------------- */
 
 void Sight::look_from(const double *x, double slack)
@@ -161,7 +164,8 @@ void Sight::look_from(const double *x, double slack)
     s.volume = scene.dim == 3 ? s.dx * s.dx * s.dx : s.dx * s.dx;
     s.thin = p.thin;
     const bool behind = by_walls && scene.state[s.type].species == SOLID &&
-        std::any_of(walls.wall.begin(), walls.wall.end(), [&](const Wall &w) { return !w.finite && w.distance(p.x) < 0.0; });
+        std::any_of(walls.wall.begin(), walls.wall.end(),
+                    [&](const Wall &w) { return !w.finite && w.distance(p.x) < 0.0; });
     if (!behind) seen.push_back(s);
     return false;
   });
@@ -177,7 +181,9 @@ void Sight::see_images()
     if (scene.state[s.type].species != SOLID) continue;
     const double y[3] = {from[0] + s.x[0], from[1] + s.x[1], from[2] + s.x[2]};
     walls.images(mask & walls.near(y, scene.cut), s.rsq, from, y, scene.cut * scene.cut,
-                 [&](const Walls::Reflection &, double rsq, const double *d) { seen.push_back({{-d[0], -d[1], -d[2]}, rsq, s.dx, s.volume, s.type, s.thin}); });
+                 [&](const Walls::Reflection &, double rsq, const double *d) {
+                   seen.push_back({{-d[0], -d[1], -d[2]}, rsq, s.dx, s.volume, s.type, s.thin});
+                 });
   }
 }
 
@@ -201,9 +207,10 @@ bool Sight::may_hide(const double *y, double slack) const
 }
 
 /* ----------------------------------------------------------------------
-   sum = how many particles of thin bodies the line meets, which end with their spacing and at both ends of the line; lean = the mean place
-   across the line of what is around where it meets them, over that beside a straight edge. The ball in which that is reaches as far as both
-   supports do, so that each rank that has one of the pair has what is in it.
+   sum = how many particles of thin bodies the line meets, which end with their spacing and at both
+   ends of the line; lean = the mean place across the line of what is around where it meets them, over
+   that beside a straight edge. The ball in which that is reaches as far as both supports do, so that
+   each rank that has one of the pair has what is in it.
 ------------------------------------------------------------------------- */
 
 static double smooth(double x)
@@ -220,7 +227,9 @@ double Sight::visible(const double *y) const
     d[k] = y[k] - from[k];
     dsq += d[k] * d[k];
   }
-  const auto along = [&](const Seen &s) { return (s.x[0] * d[0] + s.x[1] * d[1] + s.x[2] * d[2]) / dsq; };
+  const auto along = [&](const Seen &s) {
+    return (s.x[0] * d[0] + s.x[1] * d[1] + s.x[2] * d[2]) / dsq;
+  };
   double sum = 0.0, middle = 0.0, spacing = 0.0;
   for (const auto &s : seen) {
     const double t = along(s), near = 1.0 - (s.rsq - t * t * dsq) / (s.dx * s.dx);
@@ -232,7 +241,8 @@ double Sight::visible(const double *y) const
   }
   if (sum <= MISSES) return 1.0;
   middle /= sum;
-  const double radius = std::max(scene.cut - std::sqrt(dsq) * std::max(middle, 1.0 - middle), spacing / sum);
+  const double radius =
+      std::max(scene.cut - std::sqrt(dsq) * std::max(middle, 1.0 - middle), spacing / sum);
   double weight = 0.0, place[3] = {};
   for (const auto &s : seen) {
     const double t = along(s), off = t - middle;
@@ -244,12 +254,13 @@ double Sight::visible(const double *y) const
   }
   const double beside = std::sqrt(place[0] * place[0] + place[1] * place[1] + place[2] * place[2]);
   const double lean = weight > 0.0 ? beside / (AT_EDGE * radius * weight) : 0.0;
-  return 1.0 - smooth((sum - MISSES) / (MEETS - MISSES)) * smooth((OUTSIDE - lean) / (OUTSIDE - INSIDE));
+  return 1.0 -
+      smooth((sum - MISSES) / (MEETS - MISSES)) * smooth((OUTSIDE - lean) / (OUTSIDE - INSIDE));
 }
 
 /* ----------------------------------------------------------------------
-   The body is as thick as it is along its normal through x, which is the mean of what is on the side of the nearest particle. What is seen beyond
-   the support tells that it is thicker.
+   The body is as thick as it is along its normal through x, which is the mean of what is on the
+   side of the nearest particle. What is seen beyond the support tells that it is thicker.
 ------------------------------------------------------------------------- */
 
 static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -287,13 +298,16 @@ bool Sight::find_face(Face &face) const
 
 Sight::Fill Sight::fill(const Face &face) const
 {
-  const Fill all = beyond(face.type, face.distance), missing = beyond(face.type, face.distance + face.thickness);
+  const Fill all = beyond(face.type, face.distance),
+             missing = beyond(face.type, face.distance + face.thickness);
   if (missing.weight == 0.0) return {1.0, 1.0};
   double y[3];
   const double across = 2.0 * face.distance + face.thickness - scene.dx_of(face.type);
   for (int d = 0; d < 3; d++) y[d] = from[d] + across * face.normal[d];
   const double there = 1.0 - visible(y);
-  const auto over = [&](double whole, double rest) { return whole > rest ? 1.0 + there * rest / (whole - rest) : 1.0; };
+  const auto over = [&](double whole, double rest) {
+    return whole > rest ? 1.0 + there * rest / (whole - rest) : 1.0;
+  };
   return {over(all.force, missing.force), over(all.weight, missing.weight)};
 }
 

@@ -11,9 +11,10 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// What fluids see past bodies and walls that are thinner than the kernel's support (fix fsi thin): of a pair of fluid particles that such a
-// body is between only a part is left, none of it where the body goes on to all sides, all of it at a free edge; and to each side the
-// body counts as if it went on behind. A function of where particles are in a step (theory.rst).
+// What fluids see past bodies and walls that are thinner than the kernel's support (fix fsi thin):
+// of a pair of fluid particles that such a body is between only a part is left, none of it where
+// the body goes on to all sides, all of it at a free edge; and to each side the body counts as if
+// it went on behind. A function of where particles are in a step (theory.rst).
 
 #ifndef LMP_FSI_SIGHT_H
 #define LMP_FSI_SIGHT_H
@@ -33,17 +34,23 @@ namespace FSI {
     void find_bodies();      // when neighbor lists are new
     void follow_bodies();    // to where they are; what follows is said of then
 
-    bool near(const double *x) const;    // may a thin one come within the support before lists are built again?
-    void look_from(const double *x, double slack = 0.0);    // x: for the next four; slack: look so much farther than the support; lists have the skin
-    bool may_hide(const double *y, double slack) const;     // anything of y, if each distance may change by that?
-    double visible(const double *y) const;    // part of what is at y. The same from y to x, and on each rank that has one of both
-    // of the body beside x: distance of the first layer along its normal, which points to it, and how thick it is
+    // may a thin one come within the support before lists are built again?
+    bool near(const double *x) const;
+    // x: for the next four; slack: look so much farther than the support, by the skin at most
+    void look_from(const double *x, double slack = 0.0);
+    // anything of y, if each distance may change by slack?
+    bool may_hide(const double *y, double slack) const;
+    // part of what is at y. The same from y to x, and on each rank that has one of both
+    double visible(const double *y) const;
+    // of the body beside x: distance of the first layer along its normal, which points to it, and
+    // how thick it is
     struct Face {
       int type;
       double normal[3], distance, thickness;
     };
     bool find_face(Face &) const;    // false: there is none within the support
-    // of a half-space of layers over those that there are: forces, and weights in sums of W, as forces along the face are
+    // of a half-space of layers over those that there are: forces, and weights in sums of W, as
+    // forces along the face are
     struct Fill {
       double force, weight;
     };

@@ -101,8 +101,9 @@ std::string Stop::describe(const Scene &scene, const std::string &what, const Fi
   const Neighbor body = nearest_body(scene, all);
   if (too_near(scene, body)) {
     const bool solid = body.species == SOLID;
-    text += fmt::format(", {:.2g} from atom {} of {}, whose spacing is {:g}: fluid ", body.distance, body.tag,
-                        solid ? fmt::format("body {}", body.molecule) : "a wall", body.dx);
+    text +=
+        fmt::format(", {:.2g} from atom {} of {}, whose spacing is {:g}: fluid ", body.distance,
+                    body.tag, solid ? fmt::format("body {}", body.molecule) : "a wall", body.dx);
     text += std::string(body.around ? "inside" : "pressed into") + (solid ? " a solid" : " a wall");
   }
   return text + ". Try " + advice(scene, all, when, body);
@@ -115,7 +116,9 @@ std::string Stop::describe(const Scene &scene, const std::string &what, const Fi
 Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
 {
   Neighbor body = {1.0e300, scene.dx, 0, 0, NONE, false};
-  if (!all.tag || scene.state[all.type].species != FLUID || !std::isfinite(all.x[0] + all.x[1] + all.x[2])) return body;
+  if (!all.tag || scene.state[all.type].species != FLUID ||
+      !std::isfinite(all.x[0] + all.x[1] + all.x[2]))
+    return body;
   const int *const type = atom->type;
   const auto for_near = [&](auto f) {
     for (int i = 0; i < atom->nlocal; i++) {
@@ -130,7 +133,10 @@ Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
     }
   };
   for_near([&](int i, double r, const double *) {
-    if (r < body.distance) body = {r, scene.dx_of(type[i]), atom->tag[i], atom->molecule[i], scene.state[type[i]].species, false};
+    if (r < body.distance)
+      body = {
+          r,    scene.dx_of(type[i]), atom->tag[i], atom->molecule[i], scene.state[type[i]].species,
+          false};
   });
   struct {
     double distance;
@@ -140,7 +146,9 @@ Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
   MPI_Bcast(&body, sizeof(Neighbor), MPI_BYTE, first.rank, world);
   double mine[4] = {}, sum[4];
   for_near([&](int i, double r, const double *d) {
-    if (atom->molecule[i] != body.molecule || r == 0.0 || r > 1.5 * std::max(body.dx, 0.5 * scene.dx)) return;
+    if (atom->molecule[i] != body.molecule || r == 0.0 ||
+        r > 1.5 * std::max(body.dx, 0.5 * scene.dx))
+      return;
     for (int k = 0; k < 3; k++) mine[k] += d[k] / r;
     mine[3] += 1.0;
   });
@@ -152,7 +160,8 @@ Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
 // nearer than half the distance of fluid at rest from its face, or within it
 bool Stop::too_near(const Scene &scene, const Neighbor &body)
 {
-  return body.species != NONE && (body.distance < 0.25 * (scene.dx + body.dx) || (body.around && body.distance < body.dx));
+  return body.species != NONE &&
+      (body.distance < 0.25 * (scene.dx + body.dx) || (body.around && body.distance < body.dx));
 }
 
 /* ----------------------------------------------------------------------
@@ -166,11 +175,21 @@ double Stop::courant(const Scene &scene, int type) const
   return waves ? update->dt * std::sqrt(s.wave_speed_sq()) / (s.species == SOLID ? scene.substeps : 1) / scene.h_of(type) : 0.0;
 }
 
+// where fluid is in a body
+std::string Stop::advice(const Neighbor &body, When when)
+{
+  if (when == START) return "delete_atoms overlap, where the fluid is put around bodies";
+  if (body.species == SOLID)
+    return "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, which keeps fluid out";
+  return "a thicker wall, or guard 0.9 of fix fsi/wall/particle, which keeps fluid out";
+}
+
 /* ----------------------------------------------------------------------
    what to try that is not on already
 ------------------------------------------------------------------------- */
 
-std::string Stop::advice(const Scene &scene, const Finding &all, When when, const Neighbor &body) const
+std::string Stop::advice(const Scene &scene, const Finding &all, When when,
+                         const Neighbor &body) const
 {
   const bool fluid = !all.tag || scene.state[all.type].species == FLUID;
   const auto *const pair = dynamic_cast<Part *>(force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0));
@@ -200,10 +219,7 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when, cons
     tips.insert(number > SUSPECT * usual ? tips.begin() : tips.end(), tip);
   };
 
-  if (too_near(scene, body))
-    tips.emplace_back(when == START ? "delete_atoms overlap, where the fluid is put around bodies" :
-                          body.species == SOLID ? "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, which keeps fluid out" :
-                                                  "a thicker wall, or guard 0.9 of fix fsi/wall/particle, which keeps fluid out");
+  if (too_near(scene, body)) tips.emplace_back(advice(body, when));
   switch (all.trouble) {
     case FINITE:
       tips.emplace_back("a look at what pushes this particle");

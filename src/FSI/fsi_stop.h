@@ -66,7 +66,8 @@ namespace FSI {
       bool around;    // is its body on all sides?
     };
     Neighbor nearest_body(const Scene &, const Finding &) const;
-    static bool too_near(const Scene &scene, const Neighbor &body);
+    static bool too_near(const Scene &, const Neighbor &);
+    static std::string advice(const Neighbor &, When);
     double courant(const Scene &, int type) const;
     std::string advice(const Scene &, const Finding &, When, const Neighbor &) const;
     void go_back(const Scene &);

@@ -421,13 +421,15 @@ void PairFSIFluid::advance_density()
 }
 
 /* ----------------------------------------------------------------------
-   The ledger's powers have velocities of the start of the step. With those of its middle, which are known now, they are second order in time.
+   The ledger's powers have velocities of the start of the step. With those of its middle, which are
+   known now, they are second order in time.
 ------------------------------------------------------------------------- */
 
 void PairFSIFluid::prescribe()
 {
   if (!fix_fsi->ledger || taken.empty()) return;
-  const int dim = fix_fsi->dim, nlocal = atom->nlocal, nall = nlocal + atom->nghost, row = row_of_points(dim);
+  const int dim = fix_fsi->dim, nlocal = atom->nlocal, nall = nlocal + atom->nghost,
+            row = row_of_points(dim);
   const double half = 0.5 * update->dt * force->ftm2v;
   std::vector<double> one(nall);
   for (const auto term : {FixFSI::COUPLING, FixFSI::ARTIFICIAL}) {
@@ -437,7 +439,8 @@ void PairFSIFluid::prescribe()
       for (int i = 0; i < nall; i++) one[i] = taken[row * i + first + d];
       fix_fsi->add_ghosts(one.data());
       for (int i = 0; i < nlocal; i++)
-        if ((atom->mask[i] & fix_fsi->groupbit) && (fix_fsi->substeps == 1 || fix_fsi->state[atom->type[i]].species == FLUID))
+        if ((atom->mask[i] & fix_fsi->groupbit) &&
+            (fix_fsi->substeps == 1 || fix_fsi->state[atom->type[i]].species == FLUID))
           power += half * one[i] * atom->f[i][d] / atom->rmass[i];
     }
     fix_fsi->tally(term, power);
@@ -453,8 +456,9 @@ void PairFSIFluid::go_back()
 }
 
 /* ----------------------------------------------------------------------
-   What keeps fluid out of walls and solids: the energy K d^(D-2) (d-r)^2/2 of a pair nearer than d. Of a finer solid the more particles push
-   the finer it is: with K dx^(D-2) (dx_s/dx)^(D-1) for K d^(D-2) its face is as stiff, and a pair swings slower than the step of sound allows.
+   What keeps fluid out of walls and solids: the energy K d^(D-2) (d-r)^2/2 of a pair nearer than d.
+   Of a finer solid the more particles push the finer it is: with K dx^(D-2) (dx_s/dx)^(D-1) for K
+   d^(D-2) its face is as stiff, and a pair swings slower than the step of sound allows.
 ------------------------------------------------------------------------- */
 
 Contact PairFSIFluid::guard_of(int t) const
@@ -462,9 +466,32 @@ Contact PairFSIFluid::guard_of(int t) const
   const State &s = fix_fsi->state[t];
   if (s.species != SOLID) return Contact(fix_fsi->dim, s.guard);
   const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx;
-  Contact guard(fix_fsi->dim, couple == WALL ? solids_guard * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t)) : 0.0);
+  Contact guard(fix_fsi->dim,
+                couple == WALL ? solids_guard * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t)) : 0.0);
   guard.scale = fix_fsi->dim == 3 ? fix_fsi->dx * ratio * ratio : ratio;
   return guard;
+}
+
+// rows of those fluid neighbors of i that thin bodies may hide before lists are built again: marks
+// them
+void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
+                               const std::vector<int> &fluid_types, std::vector<char> &hides)
+{
+  Sight &sight = *fix_fsi->sight;
+  const double skin = neighbor->skin;
+  const int *const type = atom->type, first = rows[HIDDEN].rows.size();
+  sight.look_from(atom->x[i], skin);
+  hides.resize(n);
+  for (int jj = 0; jj < n; jj++) {
+    const int j = neighbors[jj];
+    hides[jj] = fix_fsi->state[type[j]].species == FLUID && sight.may_hide(atom->x[j], skin);
+  }
+  for (const int t : fluid_types) {
+    const char *hidden = hides.data();
+    rows[HIDDEN].add(i, neighbors, n, false, false,
+                     [&](int j) { return *hidden++ && type[j] == t; });
+  }
+  beside.push_back({i, first, static_cast<int>(rows[HIDDEN].rows.size())});
 }
 
 /* ----------------------------------------------------------------------
@@ -514,17 +541,7 @@ void PairFSIFluid::find_rows()
       continue;
     }
     const bool looks = sight && sight->near(x[i]);
-    if (looks) {
-      sight->look_from(x[i], neighbor->skin);
-      hides.resize(n);
-      for (int jj = 0; jj < n; jj++) hides[jj] = is_fluid[type[neighbors[jj]]] && sight->may_hide(x[neighbors[jj]], neighbor->skin);
-      const int first = rows[HIDDEN].rows.size();
-      for (const int t : fluid_types) {
-        const char *hidden = hides.data();
-        rows[HIDDEN].add(i, neighbors, n, false, false, [&](int j) { return *hidden++ && type[j] == t; });
-      }
-      beside.push_back({i, first, static_cast<int>(rows[HIDDEN].rows.size())});
-    }
+    if (looks) find_hidden(i, neighbors, n, fluid_types, hides);
     // that of its own type stays if it is empty, for its own images
     for (const int t : fluid_types) {
       const char *hidden = hides.data();
@@ -641,7 +658,8 @@ FluidParticles PairFSIFluid::particles_at(const double *points)
           cut ? &cut_solids : nullptr, force->newton_pair != 0};
 }
 
-FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, int kind, const RowList &list_of, const std::vector<double> &parts_of)
+FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, int kind,
+                                     const RowList &list_of, const std::vector<double> &parts_of)
 {
   FluidParticles in = particles;
   if (kind != HIDDEN) return in;
@@ -710,14 +728,18 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fix_fsi->shifts && fills(), reach};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
-  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of, const Mirror *mirror, RowList &found) {
-    loops_of(kind).rates(kinds[kind], which.rows, mirror, of_rows(particles, kind, which, parts_of), laws, rate, shift, fix_fsi->ledger ? &sums : nullptr,
-                         found);
+  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
+                        const Mirror *mirror, RowList &found) {
+    loops_of(kind).rates(kinds[kind], which.rows, mirror, of_rows(particles, kind, which, parts_of),
+                         laws, rate, shift, fix_fsi->ledger ? &sums : nullptr, found);
   };
   for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind], visible, nullptr, near[kind]);
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
-  for_images(walls, [&](int i) { return point[i].position(x[i]); },
-             [&](int kind, int k, const Mirror *mirror) { loop(kind, images[kind][k], visible_images[k], mirror, near_images[kind][k]); });
+  for_images(
+      walls, [&](int i) { return point[i].position(x[i]); },
+      [&](int kind, int k, const Mirror *mirror) {
+        loop(kind, images[kind][k], visible_images[k], mirror, near_images[kind][k]);
+      });
   near_known = true;
   fix_fsi->tally(FixFSI::DIFFUSION, sums.diffusion);
   fix_fsi->tally(FixFSI::WALLS, sums.walls);
@@ -743,24 +765,36 @@ void PairFSIFluid::displacements(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-// sums of what depends on the distance of a pair, walls' images included: sum(loops, kind, rows, both, mirror, particles), of neighbors only if both
-template <class Sum> void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particles, Sum sum)
+// sums of what depends on the distance of a pair, walls' images included: sum(loops, kind, rows,
+// both, mirror, particles), of neighbors only if both
+template <class Sum>
+void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particles, Sum sum)
 {
-  const auto one = [&](int kind, const RowList &which, const std::vector<double> &parts_of, const Mirror *mirror) {
+  const auto one = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
+                       const Mirror *mirror) {
     const bool both = kinds[kind] == WITH_FLUID || others_too;
-    sum(loops_of(kind), kinds[kind], which.rows, both, mirror, of_rows(particles, kind, which, parts_of));
+    sum(loops_of(kind), kinds[kind], which.rows, both, mirror,
+        of_rows(particles, kind, which, parts_of));
   };
   for (int kind = 0; kind < NROWS; kind++) one(kind, rows[kind], visible, nullptr);
   double **x = atom->x;
-  for_images(fix_fsi->walls, [x](int i) { return std::array<double, 3>{x[i][0], x[i][1], x[i][2]}; },
-             [&](int kind, int k, const Mirror *mirror) { one(kind, images[kind][k], visible_images[k], mirror); });
+  for_images(
+      fix_fsi->walls,
+      [x](int i) {
+        return std::array<double, 3>{x[i][0], x[i][1], x[i][2]};
+      },
+      [&](int kind, int k, const Mirror *mirror) {
+        one(kind, images[kind][k], visible_images[k], mirror);
+      });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
   distance_sums(solids_too, particles_at(nullptr),
-                [&](const FluidLoops &of, PairKind kind, const std::vector<Row> &which, bool both, const Mirror *mirror, const FluidParticles &particles) {
-                  of.number_density(kind, which, both, mirror, particles, FixFSI::rows(atom->x), psi);
+                [&](const FluidLoops &of, PairKind kind, const std::vector<Row> &which, bool both,
+                    const Mirror *mirror, const FluidParticles &particles) {
+                  of.number_density(kind, which, both, mirror, particles, FixFSI::rows(atom->x),
+                                    psi);
                 });
 }
 
@@ -769,8 +803,10 @@ void PairFSIFluid::add_position_divergence(double *div)
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
   distance_sums(false, particles_at(nullptr),
-                [&](const FluidLoops &of, PairKind, const std::vector<Row> &which, bool both, const Mirror *mirror, const FluidParticles &particles) {
-                  of.position_divergence(which, both, mirror, particles, FixFSI::rows(atom->x), volume.data(), div);
+                [&](const FluidLoops &of, PairKind, const std::vector<Row> &which, bool both,
+                    const Mirror *mirror, const FluidParticles &particles) {
+                  of.position_divergence(which, both, mirror, particles, FixFSI::rows(atom->x),
+                                         volume.data(), div);
                 });
 }
 
@@ -791,7 +827,8 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) { p.vol = 1.0 / fix_fsi->resolution[type[i]].psi_bulk; });
   std::vector<double> sums(ROW * nall, 0.0);
   distance_sums(false, particles,
-                [&](const FluidLoops &of, PairKind kind, const std::vector<Row> &which, bool, const Mirror *mirror, const FluidParticles &in) {
+                [&](const FluidLoops &of, PairKind kind, const std::vector<Row> &which, bool,
+                    const Mirror *mirror, const FluidParticles &in) {
                   of.shifts(kind, which, mirror, in, fix_fsi->wdx, sums.data());
                 });
   for (size_t i = 0; i < nall; i++)
@@ -878,13 +915,20 @@ template <int D> void PairFSIFluid::compute_forces()
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   double guarding[NROWS] = {};
-  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of, const Mirror *mirror, double *total) {
+  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
+                        const Mirror *mirror, double *total) {
     const double before = sums.guard;
-    force_loops(kind).forces(kinds[kind], which.rows, mirror, of_rows(particles, kind, which, parts_of), laws, forces.data(), total, of_pairs);
+    force_loops(kind).forces(kinds[kind], which.rows, mirror,
+                             of_rows(particles, kind, which, parts_of), laws, forces.data(), total,
+                             of_pairs);
     guarding[kind] += sums.guard - before;
   };
-  const auto nearest = [&](int kind, const RowList &all, const RowList &known) -> const RowList & { return kind == HIDDEN ? all : known; };
-  for (int kind = 0; kind < NROWS; kind++) loop(kind, nearest(kind, rows[kind], (near_known ? near : rows)[kind]), visible, nullptr, nullptr);
+  const auto nearest = [&](int kind, const RowList &all, const RowList &known) -> const RowList & {
+    return kind == HIDDEN ? all : known;
+  };
+  for (int kind = 0; kind < NROWS; kind++)
+    loop(kind, nearest(kind, rows[kind], (near_known ? near : rows)[kind]), visible, nullptr,
+         nullptr);
 
   const Walls &walls = fix_fsi->walls;
   const auto &which = near_known && !walls.finite() ? near_images : images;
@@ -893,7 +937,8 @@ template <int D> void PairFSIFluid::compute_forces()
              [&](int kind, int reflection, const Mirror *mirror) {
                const auto &s = walls.reflections[reflection];
                double total[D] = {};
-               loop(kind, nearest(kind, images[kind][reflection], which[kind][reflection]), visible_images[reflection], mirror, total);
+               loop(kind, nearest(kind, images[kind][reflection], which[kind][reflection]),
+                    visible_images[reflection], mirror, total);
                for (int d = 0; d < D; d++) {
                  int w = s.w[0];
                  for (int k = 1; k < s.n; k++)
@@ -972,7 +1017,9 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 
 double PairFSIFluid::memory_usage()
 {
-  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() + pressure_over_density.capacity() + parts.capacity() + part_rates.capacity() + visible.capacity();
+  const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
+      pressure_over_density.capacity() + parts.capacity() + part_rates.capacity() +
+      visible.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double) + (double) beside.capacity() * sizeof(beside[0]);
   for (const auto *lists : {rows, near})
     for (int kind = 0; kind < NROWS; kind++) bytes += lists[kind].memory_usage();

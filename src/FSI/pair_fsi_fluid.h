@@ -87,15 +87,21 @@ class PairFSIFluid : public PairFSI {
   // particles); 0 = off
   double surface_ratio;
   int surface_max;
-  double solids_guard;    // distance over the mean spacing from which on solids push fluid off; 0: they do not
+  // distance over the mean spacing from which on solids push fluid off; 0: they do not
+  double solids_guard;
   int tait, laminar, couple, extrapolate, tension, solids_slip;
   int surfaces;    // does the density follow surfaces (fsi_surface_room.h)?
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
-  std::shared_ptr<FSI::FluidLoops> loops, solid_loops, single_loops;    // those of forces with solids; pair by pair, where thin bodies are
-  const FSI::FluidLoops &force_loops(int kind) const { return kind == SOLIDS ? *solid_loops : loops_of(kind); }
-  // rows of the neighbor list by what fluids meet: fluids, walls, solids, fluids that thin bodies may hide
+  // all; those of forces with solids; pair by pair, where thin bodies are
+  std::shared_ptr<FSI::FluidLoops> loops, solid_loops, single_loops;
+  const FSI::FluidLoops &force_loops(int kind) const
+  {
+    return kind == SOLIDS ? *solid_loops : loops_of(kind);
+  }
+  // rows of the neighbor list by what fluids meet: fluids, walls, solids, fluids that thin bodies
+  // may hide
   enum { FLUIDS, WALLS, SOLIDS, HIDDEN, NROWS };
   FSI::RowList rows[NROWS];
   FSI::PairKind kinds[NROWS];
@@ -119,11 +125,13 @@ class PairFSIFluid : public PairFSI {
   void find_cut_solids();
 
   // local and ghost, gathered at the start of each loop
-  std::vector<double> points, forces, viscous_forces, pressure_over_density, taken;    // taken: by coupling and friction, if there is a ledger
+  std::vector<double> points, forces, viscous_forces, pressure_over_density;
+  std::vector<double> taken;    // by coupling and friction, if there is a ledger
   std::vector<FSI::Share> shares;    // per type: how its particles count at fluid particles
   bool unequal;                      // is any type of another spacing than the fluid, or thin?
   double *fill, *fill_weight;        // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
-  // fluid particles that may have a thin body beside them before lists are built again, and their rows of pairs that it may hide
+  // fluid particles that may have a thin body beside them before lists are built again, and their
+  // rows of pairs that it may hide
   struct Beside {
     int i, first, last;
   };
@@ -131,11 +139,17 @@ class PairFSIFluid : public PairFSI {
   std::vector<double> visible;    // of those pairs
   std::vector<std::vector<double>> visible_images;
   void look_past_thin_bodies();
+  void find_hidden(int i, const int *neighbors, int n, const std::vector<int> &fluid_types,
+                   std::vector<char> &hides);
   FSI::Thin thin_bodies;
   FSI::Visible seen_pairs;
   // particles as the loop over these rows sees them, and that loop
-  FSI::FluidParticles of_rows(const FSI::FluidParticles &, int kind, const FSI::RowList &, const std::vector<double> &visible);
-  const FSI::FluidLoops &loops_of(int kind) const { return kind == HIDDEN ? *single_loops : *loops; }
+  FSI::FluidParticles of_rows(const FSI::FluidParticles &, int kind, const FSI::RowList &,
+                              const std::vector<double> &visible);
+  const FSI::FluidLoops &loops_of(int kind) const
+  {
+    return kind == HIDDEN ? *single_loops : *loops;
+  }
   FSI::Cut cut_solids;
   FSI::FluidParticles particles_at(const double *points);
   template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);    // positions a time t later; what else a loop needs is up to complete(i, point)
