@@ -44,7 +44,8 @@ class AtomVecFSI : virtual public AtomVec {
   int property_atom(const std::string &) override;
   void pack_property_atom(int, double *, int, int) override;
 
-  // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds of solids are still of its spacing and kernel
+  // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds
+  // of solids are still of its spacing and kernel
   std::unique_ptr<FSI::Record> of_fix_fsi;
 
  private:

@@ -40,7 +40,9 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), reach(INFINITY), near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, cut_solids{}, rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID}, images_step(-1), reach(INFINITY),
+    near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr), fill_weight(nullptr),
+    thin_bodies{}, cut_solids{}, rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});

@@ -130,9 +130,9 @@ void PairFSISolidTL::init_style()
                planes[fix_stress->plane_stress]);
   }
 
-  reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
-  if (!reference)
-    reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", FixFSIReference::ID)));
+  Fix *fix = modify->get_fix_by_id(FixFSIReference::ID);
+  if (!fix) fix = modify->add_fix(fmt::format("{} all fsi/reference", FixFSIReference::ID));
+  reference = dynamic_cast<FixFSIReference *>(fix);
   reference->quadratic = !linear;
   reference->end_corrected = !plain;
   comm_forward = has_artificial() || law == HYPO ? 2 * dim : dim;
@@ -141,7 +141,8 @@ void PairFSISolidTL::init_style()
   changes_seen = -1;
   contacts.clear();
   for (const auto &a : fix_fsi->resolution)
-    for (const auto &b : fix_fsi->resolution) contacts.emplace_back(dim, spacing_between(a, b), contact_range);
+    for (const auto &b : fix_fsi->resolution)
+      contacts.emplace_back(dim, spacing_between(a, b), contact_range);
   svk.clear();
   neohookean.clear();
   hypo.clear();
