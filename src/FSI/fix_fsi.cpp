@@ -44,7 +44,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp), check(lmp, *this), changes(lmp),
+    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp),
+    check(lmp, *this), changes(lmp),
     number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
     ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
@@ -113,8 +114,6 @@ void FixFSI::set_fields()
   comm_reverse = std::max(1, back.size());
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixFSI *FixFSI::there(LAMMPS *lmp)
 {
   auto fixes = lmp->modify->get_fix_by_style("^fsi$");
@@ -124,7 +123,8 @@ FixFSI *FixFSI::there(LAMMPS *lmp)
 FixFSI *FixFSI::find(LAMMPS *lmp, const std::string &who)
 {
   FixFSI *const fix = there(lmp);
-  if (!fix) lmp->error->all(FLERR, "{} requires fix fsi, which holds particle spacing and kernel", who);
+  if (!fix)
+    lmp->error->all(FLERR, "{} requires fix fsi, which holds particle spacing and kernel", who);
   return fix;
 }
 
@@ -135,7 +135,9 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
   int mine = fix_fsi->changes.of_atoms(), any = 0;
   for (const auto *p : fix_fsi->parts) mine |= !p->is_set_up();
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
-  if (any) lmp->error->all(FLERR, "{} needs a run before it, if only run 0, and after atoms are made, deleted or changed, or a pair style is given", who);
+  if (any)
+    lmp->error->all(FLERR, "{} needs a run before it, if only run 0, and after atoms are made, deleted "
+                           "or changed, or a pair style is given", who);
   return fix_fsi;
 }
 
@@ -429,15 +431,16 @@ bool FixFSI::goes_on(const Record &record, const std::string &when)
   check.read(record);
   const bool other_kernel = keywords.differs(record, "kernel") || keywords.differs(record, "smoothing length over spacing");
   if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))
-    error->all(FLERR, "Fix fsi: density mode summation must keep kernel and smoothing length, for which the masses of its particles were made");
+    error->all(FLERR, "Fix fsi: density mode summation must keep kernel and smoothing length, for "
+                      "which the masses of its particles were made");
   return !other_kernel;
 }
 
 void FixFSI::restart(char *buf)
 {
   const Record record(lmp, "fix fsi", buf);
-  if (goes_on(record, Keywords::OF_RESTART)) fields.read(record);
-  else fields.read(record, {"reference of ratio", "number density"});
+  const std::vector<std::string> of_kernel = {"reference of ratio", "number density"};
+  fields.read(record, goes_on(record, Keywords::OF_RESTART) ? decltype(of_kernel)() : of_kernel);
   surface_room.read(record);
   clock.read(record);
   if (record.has("ledger") && comm->me == 0) {

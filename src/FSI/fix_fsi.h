@@ -45,8 +45,10 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   ~FixFSI() override;
   // the fix fsi of this LAMMPS; an error that names who needs it if there is none
   static FixFSI *find(class LAMMPS *, const std::string &who);
-  static FixFSI *there(class LAMMPS *);    // null: there is none. Who is asked between runs may know one that is gone
-  // the same, for who needs what the setup of a run finds: an error if there was none since atoms were made, deleted or changed
+  // null: there is none. Who is asked between runs may know one that is gone
+  static FixFSI *there(class LAMMPS *);
+  // the same, for who needs what the setup of a run finds: an error if there was none since atoms
+  // were made, deleted or changed, or pair styles given
   static FixFSI *ready(class LAMMPS *, const std::string &who);
   // once, before the first run after a restart file was read: what the file keeps for fixes that go by another ID now
   void check_restart_ids()

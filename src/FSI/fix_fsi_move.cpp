@@ -83,8 +83,8 @@ class FixFSIMove::Words : protected Pointers {
 /* ---------------------------------------------------------------------- */
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), driven{}, given(lmp, "fix fsi/move", 6), evaluated(-1), origin(now()), original(nullptr),
-    begun(false)
+    FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), driven{},
+    given(lmp, "fix fsi/move", 2 * VELOCITY), evaluated(-1), origin(now()), original(nullptr), begun(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
   Words words(lmp, narg - 3, arg + 3);
@@ -142,7 +142,8 @@ void FixFSIMove::read_motion(Words &words)
       if (!name.empty()) given.set_variable(k, name);
       if (k < VELOCITY) driven[k] = !name.empty();
       else if (name.empty() && driven[k - VELOCITY])
-        error->all(FLERR, "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels how fast a wall moves", given.name(k - VELOCITY));
+        error->all(FLERR, "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels "
+                          "how fast a wall moves", given.name(k - VELOCITY));
     }
   } else
     error->all(FLERR, "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable", words.motion);
@@ -206,8 +207,9 @@ void FixFSIMove::refuse_free_walls(const FixFSI *fix_fsi) const
     if (sets_velocity(k)) continue;
     for (int i = 0; i < atom->nlocal; i++)
       if ((atom->mask[i] & groupbit) && fix_fsi->state[atom->type[i]].species == RIGID)
-        error->one(FLERR, "Fix fsi/move {} leaves {} of atom {} free, which is of a wall: forces would take each wall particle its own way. Write 0 "
-                          "instead of NULL to hold that component{}", id, "xyz"[k], atom->tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
+        error->one(FLERR, "Fix fsi/move {} leaves {} of atom {} free, which is of a wall: forces would "
+                          "take each wall particle its own way. Write 0 instead of NULL to hold that component{}",
+                   id, "xyz"[k], atom->tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
   }
 }
 
@@ -246,22 +248,27 @@ void FixFSIMove::final_integrate()
 void FixFSIMove::compare_velocities(const double *before) const
 {
   for (int k = 0; k < domain->dimension; k++) {
-    const double d = given.number(k);
-    if (given.source(k) == Values::EQUAL && given.source(VELOCITY + k) == Values::EQUAL)
-      compare_velocity(k, d - before[k], update->dt, before[VELOCITY + k], given.number(VELOCITY + k), std::max(std::fabs(d), std::fabs(before[k])));
+    const int v = VELOCITY + k;
+    const double d = given.number(k), size = std::max(std::fabs(d), std::fabs(before[k]));
+    if (given.source(k) == Values::EQUAL && given.source(v) == Values::EQUAL)
+      compare_velocity(k, d - before[k], update->dt, before[v], given.number(v), size);
   }
 }
 
 // moved in the time dt, with velocities v and v_end; round: the size of what it is a difference of
-void FixFSIMove::compare_velocity(int k, double moved, double dt, double v, double v_end, double round, int i) const
+void FixFSIMove::compare_velocity(int k, double moved, double dt, double v, double v_end,
+                                  double round, int i) const
 {
   constexpr double TOLERANCE = 0.05, ROUND = 1.0e-14;
   if (dt == 0.0) return;
-  const double mean = moved / dt, low = std::min(v, v_end), high = std::max(v, v_end), most = std::max({std::fabs(v), std::fabs(v_end), std::fabs(mean)});
-  const double slack = high - low + TOLERANCE * most + ROUND * round / dt;    // what a velocity may do in a step
+  const double mean = moved / dt, low = std::min(v, v_end), high = std::max(v, v_end);
+  const double most = std::max({std::fabs(v), std::fabs(v_end), std::fabs(mean)});
+  // what a velocity may do in a step
+  const double slack = high - low + TOLERANCE * most + ROUND * round / dt;
   if (mean >= low - slack && mean <= high + slack) return;
-  const auto text = fmt::format("Fix fsi/move {}: on step {} the displacement v_{} changes by {:g} per time, but the velocity v_{} is {:g}: expected its "
-                                "derivative{}", id, update->ntimestep, given.name(k), mean, given.name(VELOCITY + k), v_end,
+  const auto text = fmt::format("Fix fsi/move {}: on step {} the displacement v_{} changes by {:g} per "
+                                "time, but the velocity v_{} is {:g}: expected its derivative{}",
+                                id, update->ntimestep, given.name(k), mean, given.name(VELOCITY + k), v_end,
                                 i < 0 ? "" : fmt::format(" (atom {})", atom->tag[i]));
   if (i < 0) error->all(FLERR, text);
   error->one(FLERR, text);
@@ -335,11 +342,11 @@ void FixFSIMove::move(When when)
       if (motion == VARIABLE) {
         to[k] = original[i][k] + given(k, i);
         fast[k] = given(VELOCITY + k, i);
-        if (when == END && driven[k] && (given.source(k) == Values::ATOM || given.source(VELOCITY + k) == Values::ATOM)) {
+        if (when == END && driven[k] && of_atom(k)) {
           double moved[3] = {};
           moved[k] = to[k] - x[k];
           domain->minimum_image(moved);
-          compare_velocity(k, moved[k], 0.5 * dt, v[k], fast[k], std::max(std::fabs(x[k]), std::fabs(to[k])), i);
+          compare_velocity(k, moved[k], 0.5 * dt, v[k], fast[k], std::fabs(x[k]) + std::fabs(to[k]), i);
         }
       }
       if (when != MIDDLE && sets_velocity(k)) v[k] = fast[k];
@@ -368,7 +375,8 @@ std::string FixFSIMove::text() const
   if (motion == VARIABLE) return words + " " + given.text();
   for (int k = 0; k < 3; k++) words += driven[k] ? fmt::format(" {}", rate[k]) : " NULL";
   if (motion == ROTATE || motion == TRANSROT)
-    words += fmt::format(" about {} {} {} along {} {} {}", point[0], point[1], point[2], axis[0], axis[1], axis[2]);
+    words += fmt::format(" about {} {} {} along {} {} {}", point[0], point[1], point[2], axis[0],
+                         axis[1], axis[2]);
   return words + (motion == LINEAR ? "" : fmt::format(" with {} radians per time", omega));
 }
 
@@ -392,8 +400,9 @@ void FixFSIMove::restart(char *buf)
     return;
   }
   if (comm->me == 0)
-    error->warning(FLERR, "Fix fsi/move {}: the motion was {} {}, and is {} now: it begins anew, with the time and the places of the file", id,
-                   record.value("motion"), Keywords::OF_RESTART, text());
+    error->warning(FLERR, "Fix fsi/move {}: the motion was {} {}, and is {} now: it begins anew, with the "
+                          "time and the places of the file",
+                   id, record.value("motion"), Keywords::OF_RESTART, text());
   fields.read(record, {"place before the motion"});
 }
 
@@ -409,9 +418,11 @@ void FixFSIMove::set_arrays(int i)
   double shift[3] = {0.0, 0.0, 0.0};
   if (motion == VARIABLE) {
     // not evaluated here: a variable may sum over ranks, and only this one makes the atom
-    if (given.of_atoms()) error->one(FLERR, "Cannot add atoms to fix fsi/move {} with an atom-style variable", id);
+    if (given.of_atoms())
+      error->one(FLERR, "Cannot add atoms to fix fsi/move {} with an atom-style variable", id);
     if (evaluated != update->ntimestep)
-      error->one(FLERR, "Cannot add atoms to fix fsi/move {} now: its variables are known from the setup of a run on. Give run 0 before", id);
+      error->one(FLERR, "Cannot add atoms to fix fsi/move {} now: its variables are known from the setup "
+                        "of a run on. Give run 0 before", id);
     for (int k = 0; k < 3; k++) shift[k] = given.number(k);
   } else if (motion == ROTATE || motion == TRANSROT) {
     // the turn alone, backwards, of what has not been shifted; follow() shifts it back once more

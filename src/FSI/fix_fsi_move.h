@@ -56,7 +56,8 @@ class FixFSIMove : public FSI::FixFields {
   double rate[3];    // velocity, or amplitude of wiggle
   double point[3], axis[3], omega;
   bool driven[3];       // components: others go where forces take them
-  // variables of displacements and, from VELOCITY on, of velocities; at the end of the step that is going on, but for move(MIDDLE)
+  // variables of displacements and, from VELOCITY on, of velocities; at the end of the step that is
+  // going on, but for move(MIDDLE)
   static constexpr int VELOCITY = 3;
   FSI::Values given;
   bigint evaluated;     // the last step at whose end they are known
@@ -71,7 +72,12 @@ class FixFSIMove : public FSI::FixFields {
   bool sets_velocity(int k) const { return driven[k] || given.given(VELOCITY + k); }
   void refuse_free_walls(const class FixFSI *) const;
   void compare_velocities(const double *before) const;
-  void compare_velocity(int k, double moved, double dt, double v, double v_end, double round, int i = -1) const;
+  void compare_velocity(int k, double moved, double dt, double v, double v_end, double round,
+                        int i = -1) const;
+  bool of_atom(int k) const
+  {
+    return given.source(k) == FSI::Values::ATOM || given.source(VELOCITY + k) == FSI::Values::ATOM;
+  }
   void follow(const double *from, double t, double *x, double *v) const;
   void move(When);
 };

@@ -90,7 +90,8 @@ int FixFSIReference::setmask()
 
 void FixFSIReference::init()
 {
-  resting = !force->pair_match("fsi/solid/tl", 1);    // a script has put in its place what is not of this package
+  // has a script put in its place what is not of this package?
+  resting = !force->pair_match("fsi/solid/tl", 1);
   if (resting) return;
   fix_fsi = FixFSI::find(lmp, "Fix fsi/reference");
   if (!any()) {

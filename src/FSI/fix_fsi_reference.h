@@ -33,8 +33,9 @@ FixStyle(fsi/reference,FixFSIReference);
 namespace LAMMPS_NS {
 
 // The reference configuration of total-Lagrangian solids: for every particle its bonds to the neighbours of its own body, with
-// the gradient's weights. Made by pair_style fsi/solid/tl; taken at the start of the first run; travels with its atom between
-// ranks, through restart files and from one pair_style command to the next. Memory and messages exist for solid particles only.
+// the gradient's weights. Made by pair_style fsi/solid/tl; taken at the start of the first run; travels
+// with its atom between ranks, through restart files and from one pair_style command to the next.
+// Memory and messages exist for solid particles only.
 
 class FixFSIReference : public Fix {
  public:
@@ -69,7 +70,7 @@ class FixFSIReference : public Fix {
   // per bond, 2 D + 2 numbers: G_ij, X_j - X_i, w = V_i V_j W/|X|^2, V_i V_j (grad W)/x_ij
   int nvalue;
   // bonds of local atom i; what fills up its last block has zeros for numbers
-  int count(int i) const { return slot[i] < 0 ? 0 : nbond[slot[i]]; }    // 0: it has become a solid since
+  int count(int i) const { return slot[i] < 0 ? 0 : nbond[slot[i]]; }    // 0: a solid only since
   const int *partners(int i) const { return &local[(size_t) slot[i] * maxbond]; }    // indices of local and ghost atoms
   const double *numbers(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }    // where they are: number_of_bond()
   const double *bond(int i, int k) const { return numbers(i) + FSI::number_of_bond(k, nvalue); }

@@ -315,7 +315,8 @@ FixFSIReport::Balance FixFSIReport::balance() const
 
 double FixFSIReport::compute_vector(int k)
 {
-  if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;    // before the first run, or with a new fix fsi
+  // before the first run, or with a new fix fsi
+  if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
   if (collected != update->ntimestep) {
     Worst all[NWORST];
     gather(all);

@@ -303,8 +303,8 @@ void FixFSISpectrum::restart(char *buf)
     error->all(FLERR, "Fix fsi/spectrum {} is of {}, the restart file has samples of {}: give it another ID to begin anew", id, argument,
                record.value("input"));
   if (record.has("Nevery") && record.value("Nevery") != std::to_string(nevery) && comm->me == 0)
-    error->warning(FLERR, "Fix fsi/spectrum: Nevery was {} {}, and is {} now: between samples of the file it is interpolated", record.value("Nevery"),
-                   Keywords::OF_RESTART, nevery);
+    error->warning(FLERR, "Fix fsi/spectrum: Nevery was {} {}, and is {} now: between samples of the file "
+                          "it is interpolated", record.value("Nevery"), Keywords::OF_RESTART, nevery);
   last = std::stoll(record.value("last"));
   time = record.numbers("times");
   value = record.numbers("values");

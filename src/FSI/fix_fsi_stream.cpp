@@ -36,8 +36,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"), velocity(lmp, "fix fsi/stream", 3), low(0.0), high(0.0), region(nullptr), fix_fsi(nullptr),
-    step(-1), given{}, work(0.0)
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"), velocity(lmp, "fix fsi/stream", 3), low(0.0),
+    high(0.0), region(nullptr), fix_fsi(nullptr), step(-1), given{}, work(0.0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stream requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi/stream", error);
@@ -95,7 +95,8 @@ void FixFSIStream::init()
 
   velocity.find();
   zone_group = igroup;
-  if (velocity.of_atoms()) zone_group = group->find_or_create(("fsi_stream_" + std::string(id)).c_str());
+  if (velocity.of_atoms())
+    zone_group = group->find_or_create(("fsi_stream_" + std::string(id)).c_str());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -252,8 +253,10 @@ void FixFSIStream::restart(char *buf)
   const Record record(lmp, "fix fsi/stream", buf);
   work = comm->me == 0 ? record.numbers("work")[0] : 0.0;
   keywords.compare(record);
-  if (record.has("velocity") && record.value("velocity") != velocity.text() && comm->me == 0)
-    error->warning(FLERR, "Fix fsi/stream: velocity was {} {}, and is {} now", record.value("velocity"), Keywords::OF_RESTART, velocity.text());
+  const std::string before = record.has("velocity") ? record.value("velocity") : velocity.text();
+  if (before != velocity.text() && comm->me == 0)
+    error->warning(FLERR, "Fix fsi/stream: velocity was {} {}, and is {} now", before,
+                   Keywords::OF_RESTART, velocity.text());
 }
 
 /* ---------------------------------------------------------------------- */

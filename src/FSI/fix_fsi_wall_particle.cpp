@@ -308,7 +308,8 @@ double FixFSIWallParticle::compute_vector(int n)
 
 double FixFSIWallParticle::compute_scalar()
 {
-  if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;    // before the first run, or with a new fix fsi
+  // before the first run, or with a new fix fsi
+  if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
   double counted = 0.0, all;
   for_pairs([&](int w, int j) {
     double rsq = 0.0;

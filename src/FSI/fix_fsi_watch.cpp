@@ -73,8 +73,9 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
   row(LOST, FOLLOWS, Range::from(0.0));
   row(REFLECTED, BIG, Range::from(0.0));
   keywords.key("action").choice(warn, 0, {"stop", "warn"});
-  keywords.key("restart").word(halt.restart_file, Stop::of_partition(lmp, "fsi_watch.restart")).or_word("off");
-  keywords.key("dump").word(halt.dump_file, Stop::of_partition(lmp, "fsi_watch.dump")).or_word("off");
+  const auto file = [lmp](const char *name) { return Stop::of_partition(lmp, name); };
+  keywords.key("restart").word(halt.restart_file, file("fsi_watch.restart")).or_word("off");
+  keywords.key("dump").word(halt.dump_file, file("fsi_watch.dump")).or_word("off");
   keywords.parse(narg - 3, arg + 3);
   distances = limit[DISTANCE] != FOLLOWS;
   if (!distances) limit[DISTANCE] = 0.0;

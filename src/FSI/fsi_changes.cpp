@@ -37,7 +37,8 @@ uint64_t Changes::fingerprint() const
 {
   uint64_t hash = 14695981039346656037ULL;
   for (int i = 0; i < atom->nlocal; i++)
-    for (const auto number : {(uint64_t) atom->tag[i], (uint64_t) atom->type[i]}) hash = (hash ^ number) * 1099511628211ULL;
+    for (const auto number : {(uint64_t) atom->tag[i], (uint64_t) atom->type[i]})
+      hash = (hash ^ number) * 1099511628211ULL;
   return hash;
 }
 
@@ -54,7 +55,8 @@ bool Changes::of_atoms() const
 
 bool Changes::any_mass() const
 {
-  int mine = std::any_of(atom->rmass, atom->rmass + atom->nlocal, [](double m) { return m != 0.0; }), any;
+  const auto has_mass = [](double m) { return m != 0.0; };
+  int mine = std::any_of(atom->rmass, atom->rmass + atom->nlocal, has_mass), any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
 }
@@ -84,5 +86,6 @@ std::vector<std::uintptr_t> Changes::present() const
 void Changes::check_pre_no() const
 {
   if (there != present())
-    error->all(FLERR, "Run with pre no: fixes, computes, regions or pair styles are others than when the last run was set up. Leave out pre no");
+    error->all(FLERR, "Run with pre no: fixes, computes, regions or pair styles are others than when the "
+                      "last run was set up. Leave out pre no");
 }

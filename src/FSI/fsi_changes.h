@@ -11,8 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// What commands between two runs have changed: particles, which are not those of the last setup any more; and fixes, computes,
-// regions and pair styles, to which others point since then.
+// What commands between two runs have changed: particles, which are not those of the last setup any
+// more; and fixes, computes, regions and pair styles, to which others point since then.
 
 #ifndef LMP_FSI_CHANGES_H
 #define LMP_FSI_CHANGES_H
@@ -39,7 +39,7 @@ namespace FSI {
 
     // what a run points to
     void set_up() { there = present(); }
-    void check_pre_no() const;              // at its first step: an error if it is another than when it was set up
+    void check_pre_no() const;              // at its first step: an error if it is another one
 
    private:
     int nlocal;

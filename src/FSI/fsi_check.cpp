@@ -120,8 +120,8 @@ void Check::materials()
 }
 
 /* ----------------------------------------------------------------------
-   Another material for particles that have a mass: it stays that of their lattice with the density of before. (Fix fsi/reference looks at
-   total-Lagrangian solids itself.)
+   Another material for particles that have a mass: it stays that of their lattice with the density of
+   before. (Fix fsi/reference looks at total-Lagrangian solids itself.)
 ------------------------------------------------------------------------- */
 
 void Check::compare_densities()
@@ -130,9 +130,10 @@ void Check::compare_densities()
   for (int i = 0; i < atom->nlocal; i++) {
     const int t = atom->type[i];
     const State &s = scene.state[t];
-    if (densities[t] == 0.0 || densities[t] == s.rho0 || atom->rmass[i] == 0.0 || s.form == TOTAL_LAGRANGIAN) continue;
-    error->one(FLERR, "Atom {} of type {} has the mass of a material of density {:g}, but that of its type has {:g} now: make the particles anew",
-               atom->tag[i], t, densities[t], s.rho0);
+    const bool same = densities[t] == 0.0 || densities[t] == s.rho0;
+    if (same || atom->rmass[i] == 0.0 || s.form == TOTAL_LAGRANGIAN) continue;
+    error->one(FLERR, "Atom {} of type {} has the mass of a material of density {:g}, but that of its type "
+                      "has {:g} now: make the particles anew", atom->tag[i], t, densities[t], s.rho0);
   }
   for (int t = 1; t <= atom->ntypes; t++)
     if (scene.state[t].species != NONE) densities[t] = scene.state[t].rho0;

@@ -282,8 +282,8 @@ void FixFields::register_fields()
   }
 }
 
-// LAMMPS books the fix that is being constructed, which stands behind all others. A field that is first wanted later, in init(), is
-// that of a fix in the list.
+// LAMMPS books the fix that is being constructed, which stands behind all others. A field that is first
+// wanted later, in init(), is that of a fix in the list.
 void FixFields::add_callback(int kind, int *&booked, int &n)
 {
   const int mine = modify->find_fix(id), constructed = modify->nfix;

@@ -103,7 +103,8 @@ namespace FSI {
 
    protected:
     Fields fields;
-    void register_fields();    // when those that last are set: in the constructor, and again whenever they may have changed
+    // when those that last are set: in the constructor, and again whenever they may have changed
+    void register_fields();
 
    private:
     bool grows, restarts;    // with LAMMPS' own arrays

@@ -366,8 +366,10 @@ bool Keywords::differs(const Record &record, const std::string &name) const
 void Keywords::compare(const Record &record, const std::string &when) const
 {
   for (const auto &row : rows) {
-    if (row.may_change || (row.restart.empty() && when != OF_RESTART) || !differs(record, row.name)) continue;
-    const auto text = fmt::format("{}: {} was {} {}, and is {} now{}", who, row.name, record.value(row.name), when, row.text(),
+    const bool meant = row.may_change || (row.restart.empty() && when != OF_RESTART);
+    if (meant || !differs(record, row.name)) continue;
+    const auto text = fmt::format("{}: {} was {} {}, and is {} now{}", who, row.name,
+                                  record.value(row.name), when, row.text(),
                                   row.restart.empty() ? "" : ": " + row.restart);
     if (row.must_not_change) error->all(FLERR, text);
     if (comm->me == 0) error->warning(FLERR, text);

@@ -79,8 +79,8 @@ namespace FSI {
 
     void write(Record &) const;
     void read(const Record &);
-    // rows that differ from a restart file, or from the last run: an error, or a warning that names both sides and says what happens.
-    // Between runs a change of what has no consequence is meant
+    // rows that differ from a restart file, or from the last run: an error, or a warning that names both
+    // sides and says what happens. Between runs a change of what has no consequence is meant
     static constexpr char OF_RESTART[] = "when the restart file was written";
     void compare(const Record &, const std::string &when = OF_RESTART) const;
     bool differs(const Record &, const std::string &name) const;

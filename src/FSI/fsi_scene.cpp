@@ -34,7 +34,8 @@ using namespace FSI;
 Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) :
     mover(fix_fsi), state(lmp->atom->ntypes + 1), substeps(1), body_forces(lmp), profile(nullptr), dt_offset(0.0), psi(nullptr),
     shift(nullptr), shifts(false), shift_velocity{}, wmask(nullptr), wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
-    surface_max(false), need_psi(false), keep_psi(false), ledger(false), energy_out{}, tally_dt(0.0), states_entered(false), instance(lmp)
+    surface_max(false), need_psi(false), keep_psi(false), ledger(false), energy_out{}, tally_dt(0.0),
+    states_entered(false), instance(lmp)
 {
 }
 
@@ -86,7 +87,8 @@ void Scene::gather_walls()
   wall_forces.clear();
   for (auto *p : parts) p->add_walls(walls, wall_forces);
   if (walls.wall.size() > Walls::MAXWALL)
-    instance->error->all(FLERR, "There are {} mirror walls, more than the {} supported", walls.wall.size(), Walls::MAXWALL);
+    instance->error->all(FLERR, "There are {} mirror walls, more than the {} supported",
+                         walls.wall.size(), Walls::MAXWALL);
   walls.find_reflections();
 }
 

@@ -66,7 +66,8 @@ void FSISet::command(int narg, char **arg)
 
   FixFSI *fix_fsi = FixFSI::find(lmp, "Fsi/set");
   if (update->ntimestep > 0 && comm->me == 0)
-    error->warning(FLERR, "Fsi/set {} {} after {} steps: masses change with densities, which is meant before the first run", arg[0], arg[1], update->ntimestep);
+    error->warning(FLERR, "Fsi/set {} {} after {} steps: masses change with densities, which is meant "
+                          "before the first run", arg[0], arg[1], update->ntimestep);
 
   // materials, masses and gravity are entered in init()
   lmp->init();

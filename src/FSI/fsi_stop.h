@@ -43,7 +43,8 @@ namespace FSI {
     enum When { BEFORE, START, MIDDLE };    // of all forces; of a step: where positions are
 
     Stop(class LAMMPS *, const std::string &who);
-    static std::string of_partition(class LAMMPS *, const std::string &name);    // a file of its own for each
+    // a file of its own for each
+    static std::string of_partition(class LAMMPS *, const std::string &name);
     std::string restart_file, dump_file;    // empty: none
 
     Finding finding(Trouble, int i, double value, int j = -1) const;

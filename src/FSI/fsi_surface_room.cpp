@@ -31,10 +31,13 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-// time from one look to the next over h/c: ten usual time steps, in which particles move by h/2 at a Mach number of 0.1
+// time from one look to the next over h/c: ten usual time steps, in which particles move by h/2 at a
+// Mach number of 0.1
 static constexpr double PERIOD = 5.0;
+static const std::string SINCE = "time since the last look at surfaces";
 static constexpr double ROUND = 1.0e-6;    // missing parts of a lattice's sum that may be round-off
-static constexpr double EDGE = 100.0;      // more room over that of a plane than on any edge: on opposite sides of a film s cancels
+// more room over that of a plane than on any edge: of the two sides of a film s cancels
+static constexpr double EDGE = 100.0;
 
 /* ----------------------------------------------------------------------
    sums over the planes of a lattice that are missing
@@ -76,7 +79,8 @@ double RoomOfPlane::operator()(double s) const
 /* ---------------------------------------------------------------------- */
 
 SurfaceRoom::SurfaceRoom(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density, SumOverGhosts add_ghosts) :
-    Pointers(lmp), scene(scene), number_density(number_density), add_ghosts(std::move(add_ghosts)), room(nullptr), since(0.0), since_before(0.0), due(false)
+    Pointers(lmp), scene(scene), number_density(number_density), add_ghosts(std::move(add_ghosts)), room(nullptr),
+    since(0.0), since_before(0.0), due(false)
 {
 }
 
@@ -95,12 +99,12 @@ void SurfaceRoom::set_array(Fields &fields)
 
 void SurfaceRoom::write(Record &record) const
 {
-  if (room) record.add("time since the last look at surfaces", std::vector<double>{since});
+  if (room) record.add(SINCE, std::vector<double>{since});
 }
 
 void SurfaceRoom::read(const Record &record)
 {
-  if (record.has("time since the last look at surfaces")) since = record.numbers("time since the last look at surfaces")[0];
+  if (record.has(SINCE)) since = record.numbers(SINCE)[0];
 }
 
 // by time, not by steps, which reset_timestep may count anew
@@ -172,7 +176,8 @@ void SurfaceRoom::begin()
     if (is_new(i)) {
       const double missing = std::max(0.0, 1.0 - psi[i] / scene.psi_bulk), plane = of_plane(asymmetry[i]);
       room[i][0] = 1.0 + missing;
-      room[i][1] = missing <= std::max(plane, ROUND) ? 1.0 : missing < EDGE * plane ? missing / plane : EDGE;
+      const bool inside = missing <= std::max(plane, ROUND);
+      room[i][1] = inside ? 1.0 : missing < EDGE * plane ? missing / plane : EDGE;
     }
 }
 

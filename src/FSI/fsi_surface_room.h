@@ -70,7 +70,7 @@ namespace FSI {
     const NumberDensity &number_density;
     const SumOverGhosts add_ghosts;
     double **room;    // 1 + room (0: not known yet), and how often that of a plane it was at the start, on an edge
-    double since, since_before;    // simulated time since the last look, and at the start of this step
+    double since, since_before;    // time since the last look, now and at the start of this step
     bool due;
     RoomOfPlane of_plane;
     std::vector<double> changes;    // of room and density in this step

@@ -30,7 +30,10 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-Values::Values(LAMMPS *lmp, const std::string &command, int n) : Pointers(lmp), command(command), list(n), each(nullptr), nmax(0) {}
+Values::Values(LAMMPS *lmp, const std::string &command, int n) :
+    Pointers(lmp), command(command), list(n), each(nullptr), nmax(0)
+{
+}
 
 Values::~Values()
 {
@@ -82,8 +85,10 @@ bool Values::of_atoms() const
 std::string Values::text() const
 {
   std::string text;
-  for (const auto &v : list)
-    text += (text.empty() ? "" : " ") + (!v.name.empty() ? "v_" + v.name : v.source == FREE ? "NULL" : fmt::format("{}", v.number));
+  for (const auto &v : list) {
+    const auto number = v.source == FREE ? "NULL" : fmt::format("{}", v.number);
+    text += (text.empty() ? "" : " ") + (v.name.empty() ? number : "v_" + v.name);
+  }
   return text;
 }
 
@@ -107,7 +112,9 @@ void Values::evaluate(int igroup, int first, int n, bool atoms)
       continue;
     }
     v.number = input->variable->compute_equal(index);
-    if (!std::isfinite(v.number)) error->all(FLERR, "Variable {} of {} is {} on step {}: expected a number", v.name, command, v.number, update->ntimestep);
+    if (!std::isfinite(v.number))
+      error->all(FLERR, "Variable {} of {} is {} on step {}: expected a number", v.name, command,
+                 v.number, update->ntimestep);
   }
   modify->addstep_compute(update->ntimestep + 1);
 }

@@ -11,8 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// What may stand in a command as a number, as an equal-style variable, or as an atom-style one. A variable may sum over ranks: all of
-// them evaluate it together. Who is asked alone, as for an atom that is made, has the values of the last time.
+// What may stand in a command as a number, as an equal-style variable, or as an atom-style one. A
+// variable may sum over ranks: all of them evaluate it together. Who is asked alone, as for an atom
+// that is made, has the values of the last time.
 
 #ifndef LMP_FSI_VALUE_H
 #define LMP_FSI_VALUE_H
@@ -34,7 +35,8 @@ namespace FSI {
     Values(const Values &) = delete;
 
     // from the command: a number, v_name or other; what: its name in messages
-    void read(int k, const std::string &word, const std::string &what, const std::string &other = "v_name");
+    void read(int k, const std::string &word, const std::string &what,
+              const std::string &other = "v_name");
     void set_variable(int k, const std::string &name);
     // in init(): an error if there is no such variable, or none of these styles
     void find();
@@ -43,12 +45,19 @@ namespace FSI {
     bool of_atoms() const;    // is any an atom-style variable?
     std::string text() const;    // as in the command
 
-    // all ranks together, at the time that LAMMPS has; atom-style ones of the particles of a group; n of them from the first one on
+    // all ranks together, at the time that LAMMPS has; atom-style ones of the particles of a group;
+    // n of them from the first one on
     void evaluate(int igroup, int first, int n, bool atoms = true);
-    double number(int k) const { return list[k].number; }    // that of none or of an atom-style variable is 0
-    double operator()(int k, int i) const { return list[k].source == ATOM ? each[i][k] : list[k].number; }
+    double number(int k) const { return list[k].number; }    // of none or of an atom-style variable: 0
+    double operator()(int k, int i) const
+    {
+      return list[k].source == ATOM ? each[i][k] : list[k].number;
+    }
     const std::string &name(int k) const { return list[k].name; }
-    std::string see(int k) const { return list[k].name.empty() ? "" : ", see variable " + list[k].name; }
+    std::string see(int k) const
+    {
+      return list[k].name.empty() ? "" : ", see variable " + list[k].name;
+    }
     double memory_usage() const;
 
    private:

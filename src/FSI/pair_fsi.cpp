@@ -175,13 +175,16 @@ void PairFSI::init_style()
   else list = nullptr;    // that of an earlier run is gone
 }
 
-// Bodies keep their reference from one pair_style fsi/solid/tl to the next. Nobody could say what it means after a run in another style
+// Bodies keep their reference from one pair_style fsi/solid/tl to the next. Nobody could say what it
+// means after a run in another style
 void PairFSI::drop_reference() const
 {
-  const auto *const reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
+  Fix *const fix = modify->get_fix_by_id(FixFSIReference::ID);
+  const auto *const reference = dynamic_cast<FixFSIReference *>(fix);
   if (!reference || force->pair_match("fsi/solid/tl", 1)) return;
   if (reference->any() && comm->me == 0)
-    error->warning(FLERR, "There is no pair_style fsi/solid/tl any more: its bodies lose their reference, and with it their strain");
+    error->warning(FLERR, "There is no pair_style fsi/solid/tl any more: its bodies lose their reference, "
+                          "and with it their strain");
   modify->delete_fix(FixFSIReference::ID);
 }
 

@@ -138,9 +138,9 @@ void PairFSISolidTL::init_style()
                planes[fix_stress->plane_stress]);
   }
 
-  reference = dynamic_cast<FixFSIReference *>(modify->get_fix_by_id(FixFSIReference::ID));
-  if (!reference)
-    reference = dynamic_cast<FixFSIReference *>(modify->add_fix(fmt::format("{} all fsi/reference", FixFSIReference::ID)));
+  Fix *fix = modify->get_fix_by_id(FixFSIReference::ID);
+  if (!fix) fix = modify->add_fix(fmt::format("{} all fsi/reference", FixFSIReference::ID));
+  reference = dynamic_cast<FixFSIReference *>(fix);
   reference->quadratic = !linear;
   reference->end_corrected = !plain;
   reference->self_range = self_contact ? contact_range : 0.0;

@@ -1,10 +1,13 @@
-"""Mutated input for the parsers: every answer is an error or acceptance, never a crash. Deterministic."""
+"""Mutated input for the parsers, and decks made by chance: every answer is an error or acceptance, never a crash. Deterministic."""
 
+import os
 import random
 import re
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
 
 from fsi import launch
 
@@ -89,6 +92,15 @@ def test_parsers_survive(tmp_path):
     errors, accepted = map(int, done.stdout.split()[-2:])
     # neither is everything refused nor everything taken, or the mutations are of no use
     assert errors + accepted == INPUTS and errors > INPUTS / 4 and accepted > INPUTS / 20
+
+
+@pytest.mark.parametrize("seed", range(int(os.environ.get("FSI_FUZZ", "20"))))
+def test_runs_survive(tmp_path, seed):
+    """Decks made by chance with something given again, deleted, made or restarted between their runs (fuzz_runs.py)."""
+    import fuzz_runs  # pylint: disable=import-outside-toplevel
+
+    maker, (kind, why), output = fuzz_runs.one(tmp_path, seed)
+    assert kind in fuzz_runs.GOOD, f"{kind}: {why}\n{maker.text()}\n{output[-1500:]}"
 
 
 def _run(inputs):

@@ -38,6 +38,16 @@ def resume(scene, name="fluid"):
     return scene.setup() + "read_restart fsi_stop.restart\n" + (text if name in ("fluid", "gate") else total_lagrangian(text))
 
 
+def test_partitions_have_files_of_their_own(tmp_path):
+    """Of two partitions in one folder the second stops: the names have its number, as those of log files."""
+    make, limit = SCENES["fluid"]
+    scene, text = make()
+    text = re.sub("timestep .*", f"variable dt world {0.1 * limit!r} {8 * limit!r}\ntimestep ${{dt}}", text)
+    done = lammps(tmp_path, text + "run 1000\n", 2, arguments=("-partition", "1", "1"), scene_data=scene.data())
+    assert done.status != 0
+    assert sorted(p.name for p in tmp_path.glob("fsi_stop*")) == ["fsi_stop.dump.1", "fsi_stop.restart.1"]
+
+
 @pytest.mark.parametrize("ranks", (1, 2))
 @pytest.mark.parametrize("name", SCENES)
 def test_too_long_steps(tmp_path, name, ranks):
