@@ -132,7 +132,7 @@ class Maker:
         self.lines.append(self.rng.choice((
             f"write_dump all custom look{self.files} id type x y vx c_state[*]", "run 0", f"write_data look{self.files}.data", f"write_restart look{self.files}",
             "run 3 pre no", "variable look equal c_energy\nprint ${look}", "variable look equal f_particle[1]\nprint ${look}", "info computes fixes",
-            "variable look equal f_dt[7]\nprint ${look}", "variable look equal c_probe[1]\nprint ${look}", "fsi_set water density 1000")))
+            "variable look equal f_dt[7]\nprint ${look}", "variable look equal c_probe[1]\nprint ${look}", "fsi/set water density 1000")))
 
     def small(self):
         self.lines.append(self.rng.choice((
