@@ -211,7 +211,7 @@ def unstable():
     return ["Two particles through the thickness: a plate bends some 25 % too little, and water may leak through it. Take three or more.",
             "A plate lighter than the water that it moves in a step: with sub-steps it shakes. Halve the Courant number of the water.",
             "Thin free edges: single water particles may pass an edge that is thinner than the kernel's support.",
-            "Poisson's ratio near 1/2 with an even number of particles through the thickness: the body is too stiff (locking).",
+            "Updated-Lagrangian solids of Poisson's ratio near 1/2 are too stiff (locking). Total-Lagrangian solids are not.",
             "Updated-Lagrangian solids: at coarse spacings they stop; total-Lagrangian solids are the default."]
 
 
