@@ -55,7 +55,7 @@ static constexpr double AT_SURFACE = 0.9;    // of the density: m psi of a parti
 static constexpr double EXCESS = 0.02;    // of the mass near the plane that is worth a word
 // Times in h/c in which particles and room come together, in the fluid and in the buffer; steps between two looks, a few to a time of the
 // buffer; and of how many looks the mean is that is told
-static constexpr double SETTLE = 100.0, STRETCH = 25.0;
+static constexpr double SETTLE = 50.0, STRETCH = 15.0;
 static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 
 /* ---------------------------------------------------------------------- */
