@@ -45,9 +45,8 @@ using namespace FSI;
 
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp),
-    check(lmp, *this), changes(lmp),
-    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }), surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
-    ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
+    check(lmp, *this), changes(lmp), number_density(lmp, *this, [this](double *n) { add_ghosts(n); }),
+    surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }), ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 

@@ -377,7 +377,7 @@ NUMBERS = [
     *[(word, *fluid("", f"sound {keyword} ".replace("sound sound", "sound"))) for word, keyword in (
         ("sound", "sound {}"), ("background", "10 background {}"), ("artificial/visc alpha", "10 artificial/visc {} 0"),
         ("artificial/visc beta", "10 artificial/visc 0 {}"), ("density/diffusion", "10 density/diffusion {}"), ("shift", "10 shift {}"),
-        ("shift/every", "10 shift 0.1 shift/every {}"), ("surface ratio", "10 surface {} bulk"))],
+        ("shift/every", "10 shift 0.1 shift/every {}"), ("solid/guard", "10 solid/guard {}"), ("surface ratio", "10 surface {} bulk"))],
     *[(word, "artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected", keyword) for word, keyword in (
         ("artificial/visc alpha", "artificial/visc {} 0"), ("artificial/visc beta", "artificial/visc 0 {}"),
         ("artificial/stress", "artificial/stress {}"), ("hourglass", "hourglass {}"), ("contact", "contact {}"))],

@@ -427,7 +427,7 @@ BAD = [
     ("fix dt all fsi/dt 10\nfix dt2 all fsi/dt 10", r"only one fix fsi/dt"),
     ("fix dt all fsi/dt 10\nfix reset all dt/reset 1 NULL NULL 0.1", r"fix dt/reset cannot both"),
     ("fix dt all fsi/dt 10 min 1e-3", r"on step 0 the limit .* of (elastic waves|sound|acceleration).* is below the smallest time step 0.001"),
-    ("unfix sph\nfix nve all nve\nfix sph all fsi 0.01 wendland 1.5\nfix dt all fsi/dt 10", r"fix nve \(style nve\) must be defined after fix sph"),
+    ("unfix sph\ngroup one id 1\ngroup rest subtract all one\nfix nve one nve\nfix sph rest fsi 0.01 wendland 1.5\nfix dt all fsi/dt 10", r"fix nve \(style nve\) must be defined after fix sph"),
     ("unfix sph\nfix dt all fsi/dt 10", r"requires fix fsi"),
 ]
 
