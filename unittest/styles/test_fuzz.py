@@ -94,7 +94,10 @@ def test_parsers_survive(tmp_path):
     assert errors + accepted == INPUTS and errors > INPUTS / 4 and accepted > INPUTS / 20
 
 
-@pytest.mark.parametrize("seed", range(int(os.environ.get("FSI_FUZZ", "20"))))
+FIRST = 35  # and 44, 48, 53 and 61 found crashes
+
+
+@pytest.mark.parametrize("seed", range(FIRST, FIRST + int(os.environ.get("FSI_FUZZ", "30"))))
 def test_runs_survive(tmp_path, seed):
     """Decks made by chance with something given again, deleted, made or restarted between their runs (fuzz_runs.py)."""
     import fuzz_runs  # pylint: disable=import-outside-toplevel
