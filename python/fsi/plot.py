@@ -34,13 +34,16 @@ STYLE = {
 
 @contextmanager
 def picture(path, width=6.4, height=4.0):
-    """A figure [inch] in the house style, saved to `path` at the end of the block."""
+    """A figure [inch] in the house style, saved to `path`, or to a file that is open, at the end of the block."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(width, height))
         yield figure
         drawn = io.BytesIO()
         figure.savefig(drawn, format="png")
-    Path(path).write_bytes(packed(drawn))
+    if hasattr(path, "write"):
+        path.write(packed(drawn))
+    else:
+        Path(path).write_bytes(packed(drawn))
 
 
 def packed(file, largest=LARGEST):
