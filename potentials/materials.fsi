@@ -19,9 +19,9 @@ glycerol         fluid rho 1261.0 viscosity 1.41
 # Mechanical Design: natural rubber 1.5-2.5 MPa, 0.92-0.93 kg/l; silicone 5-20 MPa, 1.3-1.8 kg/l); poisson 0.49 stands for 0.4999
 rubber_natural   solid rho 930.0 young 2.0e6 poisson 0.49
 rubber_silicone  solid rho 1300.0 young 5.0e6 poisson 0.49
-# aluminium alloy 6061-T6, typical values of data sheets (Aluminum Association); linear hardening of 0.5 GPa joins
+# aluminum alloy 6061-T6, typical values of data sheets (Aluminum Association); linear hardening of 0.5 GPa joins
 # yield (276 MPa) to strength (310 MPa) at some 7 % strain
-aluminium        solid rho 2700.0 young 68.9e9 poisson 0.33 yield 276.0e6 hardening 0.5e9
+aluminum         solid rho 2700.0 young 68.9e9 poisson 0.33 yield 276.0e6 hardening 0.5e9
 # structural steel, EN 1993-1-1: S235
 steel            solid rho 7850.0 young 210.0e9 poisson 0.3 yield 235.0e6
 
