@@ -54,6 +54,11 @@ def faults(text, markup="md"):
     return found
 
 
+def length(text, markup="md"):
+    """Words and numbers of a page, those in tables, too; code in the text counts as one, blocks of code and formulas do not."""
+    return len(words(_plain(text, markup)))
+
+
 def words(sentence):
     return [word for word in sentence.split() if re.search(r"\w", word)]
 
