@@ -8,10 +8,13 @@ from english import faults, length, sentences, words
 from fsi import paths
 
 ROOT = paths.ROOT
-PAGES = [*(ROOT / f"{name}.md" for name in ("README", "CONTRIBUTING", "CHANGELOG")), *sorted(paths.EXAMPLES.glob("*/README.md")), *sorted((ROOT / "doc").glob("*.md")), *sorted((ROOT / "doc/src").glob("*.rst")),
-         *(page for folder in ("cost", "hard", "results") for page in sorted((ROOT / "doc" / folder).glob("*.md")))]
+PAGES = [*(ROOT / f"{name}.md" for name in ("README", "CONTRIBUTING", "CHANGELOG")),
+         *sorted(paths.EXAMPLES.glob("*/README.md")), *sorted((ROOT / "doc/src").glob("*.rst")),
+         *(page for folder in (".", "cost", "hard", "results")
+           for page in sorted((ROOT / "doc" / folder).glob("*.md")))]
 NAMES = {page.relative_to(ROOT).as_posix(): page for page in PAGES}
-COMMANDS = [page for page in PAGES if page.parent.name == "src" and page.stem.split("_")[0] in ("fix", "pair", "compute", "atom", "fsi")]
+COMMANDS = [page for page in PAGES if page.parent.name == "src"
+            and page.stem.split("_")[0] in ("fix", "pair", "compute", "atom", "fsi")]
 NOTES = sorted((ROOT / "doc/notes").glob("*.md"))
 
 
@@ -27,7 +30,8 @@ def lengths(pages):
 
 
 def test_page_of_a_command_is_short():
-    assert len(COMMANDS) > 20 and {name: words for name, words in lengths(COMMANDS).items() if words > 900} == {}
+    long = {name: count for name, count in lengths(COMMANDS).items() if count > 900}
+    assert len(COMMANDS) > 20 and long == {}
 
 
 def test_user_pages_can_be_read():
@@ -45,8 +49,10 @@ def test_notes_are_short():
 
 def test_length():
     """Words and numbers, tables included; no code, formulas, or targets of links"""
-    assert length("# A head\n\nOne `code here` two.\n\n```\nlmp -in a\n```\n\n| a | 3 % |\n|---|---|\n| [b](c/d.md) | - |\n") == 8
-    assert length("Head\n====\n\nOne :math:`x + y` and :doc:`two <three>`.\n\n.. math::\n\n   x = y\n\n.. code-block:: LAMMPS\n\n   run 1\n", "rst") == 5
+    assert length("# A head\n\nOne `code here` two.\n\n```\nlmp -in a\n```\n\n"
+                  "| a | 3 % |\n|---|---|\n| [b](c/d.md) | - |\n") == 8
+    assert length("Head\n====\n\nOne :math:`x + y` and :doc:`two <three>`.\n\n.. math::\n\n"
+                  "   x = y\n\n.. code-block:: LAMMPS\n\n   run 1\n", "rst") == 5
 
 
 @pytest.mark.parametrize("name", paths.scenes())
