@@ -46,6 +46,7 @@ static constexpr double AUTO = -1.0;
 static constexpr int PRESSURE_COLUMN = 3, NCOLUMNS = 4;    // of the values of variables
 static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with; a column more or less is there at any time
 static constexpr double TOLD = 0.05;    // part of a term of the fit that the fluid must tell from lower ones
+static constexpr double NEXT = 1.01;    // in spacings along the plane: rows on both sides of a node
 static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: no fluid to speak of
 static constexpr double OCCUPIED = 0.5;    // of the spacing: a place is taken by who is as near
 static constexpr double STIFF = 40.0;    // absorb auto over c/2L between given pressures: a channel c/K longer, L/20
@@ -53,17 +54,22 @@ static constexpr double FAR = 0.1;    // of rho c^2: a pressure that is not one 
 static constexpr double SPARSE = 0.75;    // of the particles at the plane: a slice with fewer is not full
 static constexpr double AT_SURFACE = 0.9;    // of the density: m psi of a particle at a free surface is less
 static constexpr double EXCESS = 0.02;    // of the mass near the plane that is worth a word
-// Times in h/c in which particles and room come together, in the fluid and in the buffer; steps between two looks, a few to a time of the
-// buffer; and of how many looks the mean is that is told
-static constexpr double SETTLE = 50.0, STRETCH = 15.0;
+// Time in h/c in which particles and room come together before the plane; steps between two looks, and of
+// how many looks the mean is that is told
+static constexpr double SETTLE = 50.0;
+// Part of the dynamic pressure of inflow that a given pressure answers, as usual (Esmaily Moghadam et al. 2011, Comput. Mech. 48, 277)
+static constexpr double STEADY = 0.2;
 static constexpr int LOOK_EVERY = 20, LOOKS = 20;
+// Spacing of what comes in: part of an error that a buffer's length of inflow mends; what a lattice that is
+// sheared or bent shows of one; and the range, where particles stay a fluid
+static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15;
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
     length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0), gradient(0.0),
-    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fluid_fill(0.0), buffer_fill(0.0), mean_fill(1.0), last_buffer(-1.0), told{}, given{}
+    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, given{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
@@ -338,10 +344,10 @@ void FixFSIInlet::setup_pre_exchange()
   if (region) region->prematch();
   if (filled) return;
   filled = true;
-  fill();
+  fill_buffer();
 }
 
-void FixFSIInlet::fill()
+void FixFSIInlet::fill_buffer()
 {
   enum { BEHIND, AHEAD, BEYOND, WALLS_BEHIND, WALLS_AHEAD, NCOUNT };
   bigint own[NCOUNT] = {}, all[NCOUNT];
@@ -600,17 +606,18 @@ void FixFSIInlet::pre_exchange()
       stranger(i);
       continue;
     }
+    if (of_buffer[i] == FOLLOWED) {
+      const double *const v = atom->v[i], *const y = behind[i];
+      copies.push_back({{y[0], y[1], y[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i],
+                        atom->molecule[i], type[i], atom->mask[i]});
+      of_buffer[i] = MEMBER;
+    }
     if (of_buffer[i] && s > 0.0) {
-      if (of_buffer[i] == MEMBER) copy_place(i);
       of_buffer[i] = NOT;
       own[0]++;
       own[2] += atom->rmass[i];
-      const double *const v = atom->v[i];
-      const double *const y = behind[i];
-      copies.push_back({{y[0], y[1], y[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i], atom->molecule[i], type[i], atom->mask[i]});
       continue;
     }
-    if (of_buffer[i]) of_buffer[i] = MEMBER;    // it may have been out and come back
     if (!of_buffer[i] && holds(x)) {
       of_buffer[i] = MEMBER;
       own[1]++;
@@ -672,15 +679,20 @@ void FixFSIInlet::stranger(int i)
 }
 
 /* ----------------------------------------------------------------------
-   The copy is made when the next list is built, where it would be had it been made when its parent passed the plane: when lists are built
-   does not matter to what flows in.
+   The last of a row has come a spacing from the end: another follows it, from the next list on, but where
+   it would be had it been made now, so that it does not matter when lists are built. The spacing is that
+   at which particles have the room of their density (Copies made a buffer's length behind those that pass
+   the plane would bring each gap again and again.)
 ------------------------------------------------------------------------- */
 
-void FixFSIInlet::copy_place(int i)
+void FixFSIInlet::follow(int i, double s)
 {
-  of_buffer[i] = PASSED;
+  const double spacing = column * fix_fsi->dx;
+  if (of_buffer[i] == MEMBER && s <= spacing - length) of_buffer[i] = LAST;
+  if (of_buffer[i] != LAST || s <= spacing - length) return;
+  of_buffer[i] = FOLLOWED;
   std::copy_n(atom->x[i], 3, behind[i]);
-  behind[i][axis] -= side * length;
+  behind[i][axis] -= side * spacing;
 }
 
 /* ----------------------------------------------------------------------
@@ -778,6 +790,7 @@ void FixFSIInlet::measure()
   ncolumns = nmoment + nfit * (wants_velocity + wants_pressure);
   mine.assign(nodes * ncolumns + NMEAN, 0.0);
   sums.resize(mine.size());
+  bounds.assign(wants_velocity ? 2 * nodes : 0, -HUGE_VAL);
   double *const total = mine.data() + nodes * ncolumns;
   const bool pressure_varies = !told.far && (pressure.source == EQUAL || pressure.source == ATOM);
 
@@ -811,6 +824,7 @@ void FixFSIInlet::measure()
       p -= atom->rho[i] * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * s;
       total[WEIGHT] += w;
       total[SPEED] += w * side * u;
+      total[DYNAMIC] += w * dynamic_pressure(state, u);
       total[PRESSURE] += w * p;
       total[OVER_IMPEDANCE] += w * p / (state.rho0 * state.c);
       at_nodes(x, std::sqrt(kernel.cutsq - s * s), [&](int node, const double *d) {
@@ -826,6 +840,10 @@ void FixFSIInlet::measure()
           }
           before = from;
         }
+        if (wants_velocity && std::fabs(y[0]) <= NEXT && std::fabs(y[1]) <= NEXT) {
+          bounds[2 * node] = std::max(bounds[2 * node], u);
+          bounds[2 * node + 1] = std::max(bounds[2 * node + 1], -u);
+        }
         double *c = &mine[node * ncolumns];
         for (int a = 0; a < nmoment; a++) *c++ += f[a];
         if (wants_velocity)
@@ -837,6 +855,8 @@ void FixFSIInlet::measure()
   });
   MPI_Allreduce(mine.data(), sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, world);
   std::copy_n(sums.data() + nodes * ncolumns, NMEAN, mean);
+  if (wants_velocity)
+    MPI_Allreduce(MPI_IN_PLACE, bounds.data(), bounds.size(), MPI_DOUBLE, MPI_MAX, world);
 
   for (int node = 0; node < nodes; node++) {
     double *const c = &sums[node * ncolumns], *const moment = c, row[6];
@@ -862,11 +882,12 @@ static double cubic_convolution(double t)
   return t < 2.0 ? 2.0 - t * (4.0 - t * (2.5 - 0.5 * t)) : 0.0;
 }
 
-// fit of a place from the nodes around it: normal velocity, pressure
+// Fit of a place from the nodes around it: normal velocity, pressure. The velocity is one that the fluid has there: the first row at a
+// wall would else go back for as much as a parabola falls below it, and bring in more and more.
 bool FixFSIInlet::at_plane(const double *x, double *values) const
 {
   const int n = (velocity[0].source == EXTRAPOLATED) + (pressure.source == EXTRAPOLATED);
-  double weight = 0.0;
+  double weight = 0.0, most = -HUGE_VAL, least = HUGE_VAL;
   std::fill_n(values, n, 0.0);
   at_nodes(x, 2.0 * *std::max_element(node_distance, node_distance + nlateral), [&](int node, const double *d) {
     const double *const c = &sums[node * ncolumns];
@@ -875,9 +896,13 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
     for (int k = 0; k < nlateral; k++) w *= cubic_convolution(std::fabs(d[k]) / node_distance[k]);
     weight += w;
     for (int k = 0; k < n; k++) values[k] += w * c[1 + k];
+    if (bounds.empty()) return;
+    most = std::max(most, bounds[2 * node]);
+    least = std::min(least, -bounds[2 * node + 1]);
   });
   if (weight < 0.5) return false;    // no fluid near
   for (int k = 0; k < n; k++) values[k] /= weight;
+  if (least <= most) values[0] = std::clamp(values[0], least, most);
   return true;
 }
 
@@ -887,6 +912,8 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
    the velocity to one of its pressure, and goes back to what is given at the rate of absorption. Of the mean over the plane: vortices
    that pass do not change it. A pressure that is given is that of the plane; along the buffer it goes on as the mean of the fluid does, or
    the fluid would be pushed by less than its gradient for as long as it sees the buffer. What is slower than sound through the box counts.
+   What is drawn in by a pressure has one total pressure all over the plane (no vorticity, by Crocco's theorem), and the given one in the
+   mean: with one static pressure each jet would keep its shape, and bring more momentum than what it mixes to takes out.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::advance(bool advance)
@@ -915,6 +942,8 @@ void FixFSIInlet::advance(bool advance)
   } else
     has_before = false;
   wave *= std::exp(-rate * dt);
+  const bool backflow = mean[SPEED] <= 0.0;    // what comes in does so against the mean
+  const double drawn = mean[WEIGHT] > 0.0 && !backflow ? mean[DYNAMIC] / mean[WEIGHT] : 0.0, steady = backflow ? 1.0 : STEADY;
 
   if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
     error->warning(FLERR, "{} {}: pressure of variable {} is more than {} rho c^2 from the background: the fluid is no "
@@ -926,18 +955,19 @@ void FixFSIInlet::advance(bool advance)
   for (auto &place : places) {
     const int i = place.i;
     hold_shift(place);
-    if (place.inside > 0.0 && of_buffer[i] == MEMBER) copy_place(i);
-    if (place.inside > 0.0 && of_buffer[i] != PASSED) continue;
+    if (place.inside > 0.0) continue;
+    follow(i, place.inside);
     const State &state = fix_fsi->state[atom->type[i]];
     double values[2] = {0.0, 0.0};
     place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
     place.normal = values[0];
-    if (place.inside > 0.0) continue;
     double p;
     if (wants_pressure)
       p = place.known ? values[wants_velocity] + state.rho0 * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * place.inside : state.p0;
     else
-      p = (pressure.source == BACKGROUND ? state.p0 : value(pressure, i, PRESSURE_COLUMN)) + gradient * place.inside + state.rho0 * state.c * wave;
+      p = (pressure.source == BACKGROUND ? state.p0 : value(pressure, i, PRESSURE_COLUMN)) + gradient * place.inside +
+          state.rho0 * state.c * wave;
+    if (place.known && wants_velocity && !wants_pressure) p += steady * (drawn - dynamic_pressure(state, place.normal));
     const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
     atom->rho[i] = state.density(std::max(p, state.floor));
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
@@ -1000,27 +1030,26 @@ void FixFSIInlet::hold_shift(const Place &place)
 
 void FixFSIInlet::end_state(bool advance)
 {
-  if (advance ? update->ntimestep % LOOK_EVERY : fluid_fill > 0.0) return;
-  enum { MASS, ROOM, BUFFER_MASS, BUFFER_ROOM, MEMBERS, SURFACE, NSUM };
+  if (advance ? update->ntimestep % LOOK_EVERY : fill > 0.0) return;
+  enum { MASS, ROOM, MEMBERS, SURFACE, NSUM };
   double own[NSUM] = {}, all[NSUM];
   std::vector<double> psi(atom->nmax);
   fix_fsi->number_density.find(psi.data());
   for (const auto &place : places) {
     const int i = place.i;
     const double s = inside(atom->x[i]), m = atom->rmass[i], rho = atom->rho[i];
-    // of the buffer those whose support ends before it does
-    if (s <= fix_fsi->cut - length || s >= zone()) continue;
+    // those that do not see the buffer, whose particles may be as near to each other as they like
+    if (s <= fix_fsi->cut || s >= zone()) continue;
     const bool at_surface = m * psi[i] < AT_SURFACE * rho;
-    if (s > 0.0) own[at_surface ? SURFACE : MEMBERS]++;
+    own[at_surface ? SURFACE : MEMBERS]++;
     if (at_surface) continue;
-    own[s > 0.0 ? MASS : BUFFER_MASS] += m;
-    own[s > 0.0 ? ROOM : BUFFER_ROOM] += rho / psi[i];
+    own[MASS] += m;
+    own[ROOM] += rho / psi[i];
   }
   MPI_Allreduce(own, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
-  const bool first = fluid_fill == 0.0;
-  fluid_fill = all[ROOM] > 0.0 ? all[MASS] / all[ROOM] : 1.0;
-  buffer_fill = all[BUFFER_ROOM] > 0.0 ? all[BUFFER_MASS] / all[BUFFER_ROOM] : 1.0;
-  mean_fill += (fluid_fill - mean_fill) / (first ? 1 : LOOKS);
+  const bool first = fill == 0.0;
+  fill = all[ROOM] > 0.0 ? all[MASS] / all[ROOM] : 1.0;
+  mean_fill += (fill - mean_fill) / (first ? 1 : LOOKS);
   warn_of_fill(all[SURFACE] < EXCESS * all[MEMBERS]);
 }
 
@@ -1040,18 +1069,19 @@ void FixFSIInlet::warn_of_fill(bool full)
 
 /* ----------------------------------------------------------------------
    Where fluid fills the box: too many particles before the plane get a density that presses them out, and
-   in the buffer they are drawn apart. Rates.
+   those that come in follow each other at another spacing
 ------------------------------------------------------------------------- */
-
-double FixFSIInlet::rate_of_fill(double fill, double time) const
-{
-  const State &soft = softest();
-  return fill > 0.0 && soft.p0 > 0.0 ? (fill - 1.0) * soft.c / (time * fix_fsi->h) : 0.0;
-}
 
 void FixFSIInlet::keep_full()
 {
-  const double dt = update->dt + fix_fsi->dt_offset, rise = dt * rate_of_fill(fluid_fill, SETTLE);
+  const State &soft = softest();
+  if (soft.p0 <= 0.0) return;
+  const double dt = update->dt + fix_fsi->dt_offset;
+  const double inflow = mean[WEIGHT] > 0.0 ? std::max(0.0, mean[SPEED] / mean[WEIGHT]) : 0.0;
+  if (fill == 0.0) return;
+  const double excess = std::max(0.0, std::fabs(fill - 1.0) - DISORDER);
+  column = std::clamp(column + std::copysign(MEND * excess * inflow * dt / length, fill - 1.0), NARROW, WIDE);
+  const double rise = (fill - 1.0) * soft.c * dt / (SETTLE * fix_fsi->h);
   if (rise == 0.0) return;
   for (const auto &place : places) {
     const int i = place.i;
@@ -1074,20 +1104,16 @@ void FixFSIInlet::prescribe()
   if (dt == 0.0) return;
   const bool wants_velocity = velocity[0].source == EXTRAPOLATED;
   if (!wants_velocity) evaluate(velocity, 3, 0);
-  const double stretch = rate_of_fill(buffer_fill, STRETCH);
   for (const auto &place : places) {
     const int i = place.i;
-    const bool passed = of_buffer[i] == PASSED;
-    if (place.inside > 0.0 && !passed) continue;
+    if (place.inside > 0.0) continue;
     const double m = atom->rmass[i];
-    double *const f = atom->f[i], *const v = atom->v[i], *const x = passed ? behind[i] : atom->x[i];
+    double *const f = atom->f[i], *const v = atom->v[i];
     for (int d = 0; d < fix_fsi->dim; d++) {
       double u;
       if (wants_velocity) u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
       else u = value(velocity[d], i, d) + (d == axis ? side * wave : 0.0);
-      if (d == axis) u += stretch * (x[axis] - position);
-      if (passed) behind[i][d] += dt * u;
-      if (place.inside > 0.0) continue;
+      if (of_buffer[i] == FOLLOWED) behind[i][d] += dt * u;
       const double to = m * (u - v[d]) / (dt * force->ftm2v), push = to - f[d];
       f[d] = to;
       given[d] += push;
@@ -1130,7 +1156,7 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("buffer", std::vector<double>{position, length});
   record.add("absorption", std::vector<double>{wave, before, double(has_before)});
   record.add("gradient", std::vector<double>{gradient});
-  record.add("fill", std::vector<double>{fluid_fill, buffer_fill, mean_fill});
+  record.add("fill", std::vector<double>{fill, mean_fill, column});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
   record.add("last ID", std::to_string(last_id));
   fields.write(record);
@@ -1151,9 +1177,9 @@ void FixFSIInlet::restart(char *buf)
   if (record.has("gradient")) gradient = record.numbers("gradient")[0];
   if (record.has("fill")) {
     numbers = record.numbers("fill");
-    fluid_fill = numbers[0];
-    buffer_fill = numbers[1];
-    mean_fill = numbers[2];
+    fill = numbers[0];
+    mean_fill = numbers[1];
+    column = numbers[2];
   }
   numbers = record.numbers("passed");
   passed_in = numbers[0];

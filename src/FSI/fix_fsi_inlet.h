@@ -25,14 +25,15 @@ FixStyle(fsi/outlet,FixFSIInlet);
 #include "fsi_keywords.h"
 #include "fsi_part.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 
 // An open end of the fluid: a plane, and behind it a buffer of particles whose velocity or pressure is prescribed, and the other one that of
-// the fluid at the plane. One that passes the plane inwards is fluid from then on, and a copy of it takes its place a buffer's length
-// behind; fluid that passes it outwards is of the buffer, and deleted at its end. Inlets and outlets are the same but for defaults.
+// the fluid at the plane. One that passes the plane inwards is fluid from then on; the last of a row that has come a spacing from
+// the buffer's end is followed by another; fluid that passes it outwards is of the buffer, and deleted at its end. Inlets and outlets are the same but for defaults.
 
 class FixFSIInlet : public FSI::FixFields, public FSI::Part {
  public:
@@ -76,7 +77,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     tagint parent, molecule;
     int type, mask;
   };
-  enum { WEIGHT, SPEED, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, TOO_FAR, MASS, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
+  enum { WEIGHT, SPEED, DYNAMIC, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, TOO_FAR, MASS, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
 
   const std::string who;    // Fix fsi/inlet
   const bool outlet;
@@ -92,9 +93,9 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   class Region *region;
   class FixFSI *fix_fsi;
 
-  enum Membership { NOT, MEMBER, PASSED };    // passed the plane since the last list
+  enum Membership { NOT, MEMBER, LAST, FOLLOWED };    // of a row; followed by one that the next list has
   double *of_buffer;     // per atom
-  double **behind;       // of one that has passed: where its copy would be now, had it been made then
+  double **behind;       // of one that is followed: where who follows would be now
   std::vector<Place> places;
   int zone_group;       // that of the places
   double **target;      // values of atom-style variables: velocity and pressure
@@ -104,6 +105,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   int nlateral, lateral[2], first[2], count[2], ncolumns;
   double node_distance[2];
   std::vector<double> mine, sums;
+  std::vector<double> bounds;    // largest and negative least velocity at a node
   double mean[NMEAN];
 
   // what is kept
@@ -113,8 +115,9 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double served;             // particles near the plane at first
   bool has_before;
   double passed_in, passed_out, mass_in;
-  // mass over what its density has room for: of the fluid near the plane, in the buffer; 0: not known yet; the former's mean of late
-  double fluid_fill, buffer_fill, mean_fill;
+  // mass of the fluid near the plane over what its density has room for (0: not known yet); its mean of late
+  double fill, mean_fill;
+  double column;    // spacing along the axis of what comes in, in dx
   double last_buffer, taken = 0.0;    // particles behind the plane in the last step; that went between two runs
   struct {
     bool far, stranger, fill;
@@ -132,11 +135,16 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double raw(const Value &v, int i, int column) const { return v.source == ATOM ? target[i][column] : v.number; }
   double value(const Value &, int i, int column) const;    // which is a number
   double energy(int i) const;
+  double dynamic_pressure(const FSI::State &state, double u) const    // of what comes in
+  {
+    const double in = std::max(0.0, side * u);
+    return 0.5 * state.rho0 * in * in;
+  }
   struct Column {
     double at[2];    // along the plane
   };
   Column along(const double *x) const { return {{x[axis == 0 ? 1 : 0], x[axis == 2 ? 1 : 2]}}; }
-  void fill();
+  void fill_buffer();
   int number_of_slices() const, slice(double distance) const, full_slices() const;
   void check_slices(const std::vector<int> &mine) const;
   std::vector<Copy> go_on_behind() const;
@@ -147,11 +155,10 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void stranger(int i);
   void check_supply();
   void warn_of_fill(bool full);
-  double rate_of_fill(double fill, double time) const;
   void keep_full();
   void make(std::vector<Copy> &, bool at_start);
   void forget_ghosts();
-  void copy_place(int i);
+  void follow(int i, double s);
   void find_places();
   template <class Visit> void at_nodes(const double *x, double reach, Visit) const;
   int place_nodes();    // how many there are
