@@ -176,6 +176,9 @@ class Reader:
         assert words[0] == "-in" and len(words) == 2
         deck = paths.EXAMPLES / words[1].removeprefix("in.") / words[1]
         assert deck.exists(), f"there is no {deck}"
+        for beside in deck.parent.iterdir():  # what it includes
+            if beside.suffix == ".in" and not (self.home / beside.name).exists():
+                (self.home / beside.name).symlink_to(beside)
         self.execute(shlex.join([str(paths.BUILD / "lmp"), "-in", str(deck), "-skiprun", "-log", "none"]))
 
     def fsi(self, command, words):
