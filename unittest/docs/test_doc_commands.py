@@ -99,6 +99,7 @@ def home(tmp_path_factory):
     for name, tend in (("droplet", 0.05), ("beam", 0.3)):
         shell(f"tools/run {name} tend={tend} ranks=1 out=results/{name}", folder)
     beam = folder / "results/beam"
+    shutil.copy(beam / "log.lammps", beam / "log.fine")
     (beam / "outline.csv").write_text("0,0\n0.2,0\n0.2,0.1\n0,0.1\n")
     (beam / "probe.ave").write_text("# Time-averaged data for fix 1\n# TimeStep c_probe\n0 1.5\n100 2.5\n")
     tree = folder / "LAMMPS"
@@ -148,7 +149,7 @@ class Reader:
     def prepare(self, command, _):
         """What later commands rely on."""
         self.before.append(command)
-        self.set += re.findall(r"export (\w+)=", command)
+        self.set += re.findall(r"(\w+)=", command) if command.startswith("export") else []
         self.execute("true")
 
     def git(self, command, words):
@@ -159,8 +160,9 @@ class Reader:
     def cd(self, _, words):
         assert (self.home / words[0]).is_dir()
 
-    def execute(self, command, _=None, **options):
-        return shell("\n".join([*self.before, command]), self.home, without=self.set, **options)
+    def execute(self, command, _=None, cwd=None, **options):
+        there = [f"cd {shlex.quote(str(cwd))}"] if cwd else []
+        return shell("\n".join([*self.before, *there, command]), self.home, without=self.set, **options)
 
     def mpirun(self, command, words):
         """LAMMPS reads the whole deck, but computes no step; without a deck the program is there."""
