@@ -67,10 +67,11 @@ def packed(file, largest=LARGEST):
     return found.getvalue()
 
 
-def lines(path, time_label, value_label, curves, points=(), log_scale=False):
+def lines(path, time_label, value_label, curves, points=(), log_scale=False, levels=()):
     """Curves against reference points.
 
-    curves: list of (x, y, label, colour); points: list of the same, drawn as markers; log_scale: of values, "xy": of both axes.
+    curves: list of (x, y, label, colour); points: list of the same, drawn as markers; log_scale: of values, "xy": of both axes;
+    levels: list of (y, label or ""), dashed lines of what a value should be.
     """
     with picture(path) as figure:
         axes = figure.add_subplot()
@@ -78,6 +79,8 @@ def lines(path, time_label, value_label, curves, points=(), log_scale=False):
             axes.plot(x, y, color=colour, label=label)
         for x, y, label, colour in points:
             axes.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgewidth=1.3, color=colour, label=label)
+        for y, label in levels:
+            axes.axhline(y, color=GREY, linestyle="--", linewidth=1.0, label=label or None)
         if log_scale:
             axes.set_yscale("log")
         if log_scale == "xy":
@@ -87,7 +90,7 @@ def lines(path, time_label, value_label, curves, points=(), log_scale=False):
             axes.minorticks_off()
         axes.set_xlabel(time_label)
         axes.set_ylabel(value_label)
-        if len(curves) + len(points) > 1:
+        if len(curves) + len(points) + len(levels) > 1:
             axes.legend()
         figure.tight_layout()
 
