@@ -78,8 +78,8 @@ def study(folder, cases):
         finest = name in ("couette_40", "poiseuille_40")
         summary.add(f"error_start_{name}", starts[name], target=0.01 if finest else None)
         summary.add(f"error_end_{name}", ends[name], target=0.01 if finest else None)
-        if name in ("couette_20", "poiseuille_20"):
-            picture(folder / f"{flow}.png", flow, frames(path))
+        if name == "poiseuille_20":
+            picture(folder / "poiseuille.png", flow, frames(path))
     curves = []
     for kind, colour in zip(("couette", "poiseuille", "particle_poiseuille", "solid_poiseuille"), COLOURS):
         n = sorted(int(m[1]) for name in cases if (m := re.fullmatch(kind + r"_(\d+)", name)))

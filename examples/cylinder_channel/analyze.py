@@ -78,11 +78,11 @@ def add(summary, folder, suffix="", finest=False):
 
 
 def draw(folder, cases):
-    """drag.png of steady flows, lift.png of those with vortices."""
-    for steady, name in ((True, "drag"), (False, "lift")):
-        curves = [(*curve(path), label.replace("_", " ")) for label, path in cases.items() if is_steady(path) == steady]
-        if curves:
-            plot.lines(folder / f"{name}.png", "t U/D", f"{name} coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves, COLOURS)])
+    """lift.png of flows with vortices."""
+    curves = [(*curve(path), label.replace("_", " ")) for label, path in cases.items() if not is_steady(path)]
+    if curves:
+        plot.lines(folder / "lift.png", "t U/D", "lift coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves, COLOURS)],
+                   levels=[(LIFT_MAX, "largest of the benchmark"), (-LIFT_MAX, "")])
 
 
 def main(folder):
@@ -99,7 +99,7 @@ def main(folder):
 
 
 def study(folder, cases):
-    """Drag of all steady cases in one picture, lift of the others in another."""
+    """Figures of all cases; the lift of those with vortices in one picture."""
     folder = Path(folder)
     summary = Summary(folder)
     finest = {is_steady(path): name for name, path in cases.items()}  # they are in the order of resolution

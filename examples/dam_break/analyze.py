@@ -168,19 +168,12 @@ def main(folder):
 
 def study(folder, cases):
     """What several runs show together: convergence, ranks, the paper's scheme."""
-    folder = Path(folder)
-    summary = Summary(folder)
+    summary = Summary(Path(folder))
     runs = {name: Run(Path(path)) for name, path in cases.items()}
 
     best = sorted((run for name, run in runs.items() if name.startswith("best")), key=lambda run: run.resolution)
-    code = series.read(HERE / "front_code.csv")
-    colours = ("#9dbfd9", "#5990bd", plot.BLUE, "#0c3050")
-    curves = []
-    for run, colour in zip({run.resolution: run for run in best}.values(), colours):
+    for run in {run.resolution: run for run in best}.values():
         add_classical(summary, run, f"_{run.resolution}")
-        curves.append((code.time, 100.0 * (run.front_at(code.time) / code["wcsph"] - 1.0), f"H/dx = {run.resolution}", colour))
-    curves.append((code.time, 100.0 * (code["edac"] / code["wcsph"] - 1.0), "the other code's EDAC form", plot.ORANGE))
-    plot.lines(folder / "front_convergence.png", TIME_LABEL, "front, deviation from the converged code [%]", curves)
 
     if "experiment" in runs:
         add_tall(summary, runs["experiment"])
@@ -193,15 +186,10 @@ def study(folder, cases):
         add_classical(summary, runs["paper_classical"], "_paper")
     if "wide" in runs:
         ours = runs["wide"]
-        curves = [(ours.t_front, ours.front, "this package's scheme", plot.BLUE)]
-        for name, label, colour in (("paper", "paper's scheme, p0 = 17.4 rho g h", plot.ORANGE),
-                                    ("paper_H", "paper's scheme, p0 = 17.4 rho g H", plot.GREY)):
+        for name in ("paper", "paper_H"):  # p0 = 17.4 rho g h and 17.4 rho g H
             if name in runs:
                 summary.add(f"front_difference_{name}", largest(runs[name].deviation(ours.t_front, ours.front)), "", 0.0,
                             "the recommended scheme in the same geometry")
-                curves.append((runs[name].t_front, runs[name].front, label, colour))
-        plot.lines(folder / "front_paper.png", TIME_LABEL, FRONT_LABEL, [
-            (t[t <= 2.0], x[t <= 2.0], label, colour) for t, x, label, colour in curves])
     return summary.write()
 
 

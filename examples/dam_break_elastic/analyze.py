@@ -24,7 +24,7 @@ YOUNG, DENSITY, GRAVITY = 1.0e6, 2500.0, 9.81  # of the plate; Poisson's ratio i
 THEORY = "beam theory: Reissner's, bent by hydrostatic pressure and its own weight"
 SECTION = "our own 2D run of the section"
 SNAPSHOTS = (0.0, 0.12, 0.15, 0.18, 0.24, 0.30)  # [s]
-SLANT = (0.45, 0.30)  # of the picture: what a metre across the tank is along and up
+VIEW = "14,14,y"  # azimuth and elevation [degrees] of the picture, and what points up
 TARGETS = {3: 0.05, 5: 0.02}  # of the displacement at rest, by particles across the plate
 AT_REST = 0.01  # largest share of the displacement that the last tenth of a run to rest may add
 
@@ -91,42 +91,32 @@ def picture(path, frames, values):
     columns, rows = 2, -(-len(frames) // 2)
     length, width = values["tank"], 0.0 if flat else values["width"]
     middle = 0.5 * (values["from"] + values["to"])
-
-    def project(points):
-        return points[:, 0] + SLANT[0] * (points[:, 2]), points[:, 1] + SLANT[1] * (points[:, 2])
-
-    water = [f.of_types(WATER) for f in frames]
-    speeds = Normalize(0.0, float(np.percentile(np.concatenate([np.linalg.norm(w.vector(("vx", "vy", "vz")), axis=1) for w in water]), 99.5)))
+    shown = [f.select((f["y"] > 0.0) & ((f["type"] == PLATE) | flat | (f["z"] < middle))) for f in frames]
+    speeds = [np.linalg.norm(f.vector(("vx", "vy", "vz")), axis=1) for f in shown]
+    water = Normalize(0.0, float(np.percentile(np.concatenate([v[f["type"] == WATER] for f, v in zip(shown, speeds)]), 99.0)))
     stress = Normalize(0.0, max(1e-3, 1e-3 * float(np.percentile(np.concatenate([f.of_types(PLATE)["vonmises"] for f in frames]), 99.0))))
-    top = max(float(np.percentile(w["y"], 99.9)) for w in water) + 0.01
-    xlim, ylim = (-0.01, length + SLANT[0] * width + 0.01), (-0.015, top + SLANT[1] * width)
-    panel = 3.9
-    height = panel * (ylim[1] - ylim[0]) / (xlim[1] - xlim[0])
-    side = 1.25 * values["dx"] * panel * 72.0 / (xlim[1] - xlim[0])
-    floor = np.array([(0, 0, 0), (length, 0, 0), (length, 0, width), (0, 0, width), (0, 0, 0)], float)
-    with plot.picture(path, columns * panel + 1.9, rows * (height + 0.25)) as figure:
-        axes = np.atleast_1d(figure.subplots(rows, columns)).ravel()
-        for k, axis in enumerate(axes):
+    floor = dump.Frame(0, 0.0, None, dict(zip("xyz", np.array([(0, 0, 0), (length, 0, 0), (length, 0, width), (0, 0, width)], float).T)))
+    (floor, *turned), _ = (([floor, *shown], None) if flat else plot.seen([floor, *shown], VIEW))
+    edge = 2.0 * values["dx"]
+    top = max(float(np.percentile(f["y"], 99.8)) for f in turned) + edge
+    limits = (floor["x"].min() - edge, floor["x"].max() + edge), (floor["y"].min() - edge, top)
+    panel, bar = 3.9, 0.62
+    height = panel * (top - limits[1][0]) / (limits[0][1] - limits[0][0])
+    with plot.picture(path, columns * panel, rows * (height + 0.25) + bar, night=True) as figure:
+        whole = figure.get_size_inches()
+        for k, (frame, speed) in enumerate(zip(turned, speeds)):
+            place = np.array((k % columns * panel, (rows - 1 - k // columns) * (height + 0.25) + bar, panel, height))
+            axis = figure.add_axes(place / np.tile(whole, 2))
+            plate = frame["type"] == PLATE
+            colours = plot.WATER(water(speed))
+            colours[plate] = plot.STRESS(stress(1e-3 * frame["vonmises"][plate]))
+            axis.fill(floor["x"], floor["y"], facecolor="#16223b", edgecolor="#7d8ba3", linewidth=0.7, zorder=-1)
+            plot.field(axis, frame["x"], frame["y"], values["dx"], colours, limits, None if flat else frame["depth"])
             axis.axis("off")
-            axis.set(xlim=xlim, ylim=ylim, aspect="equal")
-            if k >= len(frames):
-                continue
-            frame = frames[k]
-            shown = frame.select((frame["y"] > 0.0) & ((frame["type"] == PLATE) | flat | (frame["z"] > middle)))
-            points = np.column_stack([shown["x"], shown["y"], shown["z"] if not flat else np.zeros(len(shown))])
-            plate = shown["type"] == PLATE
-            colours = np.empty((len(shown), 4))
-            colours[plate] = ScalarMappable(stress, plot.SOLID_COLOURS).to_rgba(1e-3 * shown["vonmises"][plate])
-            colours[~plate] = ScalarMappable(speeds, plot.FLUID_COLOURS).to_rgba(np.linalg.norm(shown.vector(("vx", "vy", "vz")), axis=1)[~plate])
-            order = np.lexsort((points[:, 1], np.round(-points[:, 2] / values["dx"])))  # from the far side to the near one, upwards
-            axis.plot(*project(floor), color="#999999", linewidth=0.7, zorder=0)
-            axis.scatter(*(p[order] for p in project(points)), s=side**2, c=colours[order], marker="s", linewidths=0, zorder=2, rasterized=True)
-            axis.set_title(f"t = {frame.time:.2f} s", loc="left", pad=-2)
-        figure.subplots_adjust(left=0.005, right=1.0 - 1.85 / (columns * panel + 1.9), bottom=0.01, top=0.96, wspace=0.02, hspace=0.08)
-        for n, (norm, colours, label) in enumerate(((speeds, plot.FLUID_COLOURS, "speed of the water [m/s]"),
-                                                    (stress, plot.SOLID_COLOURS, "von Mises stress of the plate [kPa]"))):
-            bar = figure.add_axes((1.0 - (1.75 - 0.95 * n) / (columns * panel + 1.9), 0.15, 0.012, 0.7))
-            figure.colorbar(ScalarMappable(norm, colours), cax=bar, label=label, extend="max")
+            axis.text(0.02, 1.0, f"t = {frame.time:.2f} s", transform=axis.transAxes, va="bottom")
+        for n, (norm, colours, label) in enumerate(((water, plot.WATER, "speed of the water [m/s]"), (stress, plot.STRESS, "von Mises stress of the plate [kPa]"))):
+            axis = figure.add_axes((0.04 + 0.5 * n, 0.45 / whole[1], 0.42, 0.1 / whole[1]))
+            figure.colorbar(ScalarMappable(norm, colours), cax=axis, label=label, orientation="horizontal")
 
 
 def picture_tip(path, runs):

@@ -13,6 +13,7 @@ from fsi.animate import spacing  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
 G, CONTACT = 9.81, 0.14  # [m/s^2], [s] the drop's lowest point falls for sqrt(2*0.1/g) = 0.143 s
+SHOWN = (0.12, 0.15, 0.16, 0.17, 0.19, 0.22)  # [s]
 
 
 def main(folder):
@@ -23,7 +24,11 @@ def main(folder):
     energy = summary.log.column("c_energy")
     summary.add("energy_error", float(np.abs(energy / energy[0] - 1.0).max()), target=2e-3)
     frames = dump.read(Path(folder) / "particles.dump")
-    plot.snapshots(Path(folder) / "snapshots.png", frames[7:17:4], spacing(frames[0]), limits=((-0.3, 0.3), (0.0, 0.2)))
+    for frame in frames:
+        frame.columns["speed"] = np.hypot(frame["vx"], frame["vy"])
+    shown = dump.nearest(frames, SHOWN, 0.003) or frames[-1:]  # of a run that ends before
+    plot.snapshots(Path(folder) / "snapshots.png", shown, spacing(frames[0]), limits=((-0.25, 0.25), (0.0, 0.13)), colour="speed", columns=2,
+                   panel_width=3.4, labels=None, night=True)
     summary.write()
 
 

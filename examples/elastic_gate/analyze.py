@@ -3,7 +3,7 @@
 
 main reads tip.csv, particles.dump and log.lammps in FOLDER, which tools/run makes; writes summary.json, tip.png and
 snapshots.png there. study compares runs of several resolutions, moduli and forms of the solid with experiment and other codes:
-summary.json, tip.png, convergence.png, and of the case `long` long_snapshots.png.
+summary.json, tip.png and convergence.png.
 """
 
 import shutil
@@ -271,7 +271,6 @@ def _add_long(summary, folder):
     summary.add(f"{LONG}_water_speed_end", float(np.sqrt(np.mean(water["vx"]**2 + water["vy"]**2))), "m/s", None, "root mean square")
     for name in ("outflow_particles", "particles_leaked", "mass_error"):
         summary.add(f"{LONG}_{name}", _figure(summary.cases[LONG], name))
-    shutil.copyfile(folder / "snapshots.png", summary.folder / f"{LONG}_snapshots.png")
 
 
 def _modulus(values):

@@ -90,25 +90,18 @@ def main(folder):
 def study(folder, cases):
     """Drafts of floaters and gaps of sinkers; the way of all blocks."""
     summary = Summary(folder)
-    curves, places = [], []
+    curves = []
     for (name, path), colour in zip(cases.items(), COLOURS):
         values = log.read(Path(path) / "log.lammps").values
         for figure in summary.cases[name]["figures"]:
             if figure["name"] in ("draft", "draft_error", "gap_to_floor", "fastest_fall", "particles_leaked"):
                 summary.add(f"{figure['name']}_{name}", figure["value"], figure["unit"], figure["reference"], figure["source"],
                             figure["target"])
-            if figure["name"] == "draft":
-                places.append((values["ratio"], figure["value"]))
         block = series.read(Path(path) / "block.csv")
         coarser = values["block_dx"] / values["dx"]
         of = "" if coarser == 1.0 else f", spacing {coarser:g} times the water's"
         curves.append((block.time, 1e3 * block["y"], f"density ratio {values['ratio']:g}{of}", colour))
     plot.lines(Path(folder) / "height.png", "time [s]", "height of the block's centre [mm]", curves)
-    if places:
-        ratio, draft = np.array(places).T
-        plot.lines(Path(folder) / "draft.png", "density of block over water", "draft [mm]",
-                   [(np.array([0.0, 1.0]), np.array([0.0, 1e3 * values["height"]]), SOURCE, plot.GREY)],
-                   [(ratio, draft, "this run", plot.BLUE)])
     return summary.write()
 
 

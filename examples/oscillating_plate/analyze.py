@@ -252,9 +252,6 @@ def study(folder, cases):
             summary.add(f"stopped_{name}", values["stopped_at"], "s")
 
     picture_convergence(folder / "convergence.png", {k: r for k, r in table.items() if len(r) > 1})
-    shown = [(f"{kind}_10", SERIES[kind], COLOURS[kind]) for kind in ("paper", "ul", "tl") if f"{kind}_10" in cases]
-    if shown:
-        picture_tip(folder / "tip.png", [(series.read(cases[name] / "tip.csv"), label, colour) for name, label, colour in shown])
     return summary.write()
 
 

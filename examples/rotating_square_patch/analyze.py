@@ -82,7 +82,7 @@ def study(folder, cases):
                    for f in dump.nearest(frames, times, frames[-1].time)]
         widest = max(spacing, widest) if k else spacing
         curves.append((table.time, 1e-3 * table["centre"], label, (plot.BLUE, plot.ORANGE, plot.GREY)[k % 3]))
-    plot.clouds(folder / "patch.png", panels, 0.8 * widest, LIMITS, "pressure / rho omega$^2$ L$^2$", PRESSURES, ("x / L", "y / L"))
+    plot.clouds(folder / "patch.png", panels, widest, LIMITS, "pressure / rho omega$^2$ L$^2$", PRESSURES, ("x / L", "y / L"))
     plot.lines(folder / "centre.png", "t omega", "pressure at the centre / rho omega$^2$ L$^2$", curves,
                [([0.0], [CENTRE], "Fourier series, t = 0", "black")])
     return summary.write()

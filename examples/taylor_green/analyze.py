@@ -76,7 +76,7 @@ def main(folder):
 
 
 def study(folder, cases):
-    """Error and energy of all cases in one picture each; the figures are those of the best one."""
+    """The error of all cases in one picture; the figures are those of the best one."""
     folder = Path(folder)
     summary = Summary(folder)
     errors = {name: history(path) for name, path in cases.items()}
@@ -88,11 +88,6 @@ def study(folder, cases):
     label = lambda name: LABELS.get(name, name)
     plot.lines(folder / "error.png", "t U/L", "L1 error of the speed",
                [(*errors[name], label(name), colour) for name, colour in zip(errors, COLOURS)], log_scale=True)
-    curves = []
-    for name, colour in zip(cases, COLOURS):
-        energy = series.read(cases[name] / "series.csv")
-        curves.append((energy.time, energy["ke"] / energy["ke"][0] * np.exp(2.0 * RATE * energy.time), label(name), colour))
-    plot.lines(folder / "energy.png", "t U/L", "kinetic energy over the exact one", curves)
     panels = []
     for name in ("best", "lattice", "plain_lattice"):
         if name in cases:

@@ -77,18 +77,44 @@ def add(summary, folder, suffix="", finest=True):
     summary.add(f"flow{suffix}", s["flow"][late].mean())
 
 
-def picture(path, runs, names=("uy", "drag", "lift")):
-    """Columns over time, one below the other. runs: [(series, label)]."""
+def picture(path, runs, case, names=("uy", "drag", "lift")):
+    """Columns over time, one below the other, between the benchmark's mean less and plus its amplitude. runs: [(series, label)]."""
     with plot.picture(path, 7.4, 1.9 * len(names)) as figure:
         for k, (axes, name) in enumerate(zip(np.ravel(figure.subplots(len(names), 1, sharex=True)), names)):
             for (s, label), colour in zip(runs, COLOURS):
                 axes.plot(s.time, s[name], color=colour, label=label, linewidth=0.8)
             axes.set(ylabel=f"{name} [{UNITS[name]}]")
+            reference = REFERENCE[case].get(name)
+            mean, amplitude = (*reference, 0.0)[:2] if isinstance(reference, tuple) else (reference, 0.0)
+            for level in sorted({mean - amplitude, mean + amplitude}) if reference else ():
+                axes.axhline(level, color=plot.GREY, linestyle="--", linewidth=1.0)
+            if reference and k == 0:
+                axes.plot([], [], color=plot.GREY, linestyle="--", linewidth=1.0, label="Turek and Hron")
             if k == 0:
                 axes.legend(loc="upper left", fontsize="small")
         axes.set(xlabel="t [s]")
         figure.align_ylabels()
         figure.tight_layout()
+
+
+def picture_speed(path, frame, case, spacing):
+    """Speed of the water; the cylinder and the flag above it."""
+    limits, width = ((0.0, 1.2), (0.0, 0.41)), 6.6
+    height = width * 0.41 / 1.2
+    water, cylinder, flag = frame.of_types(1), frame.of_types(2), frame.of_types(3, 4)
+    speeds = plot.Normalize(0.0, float(np.percentile(np.hypot(water["vx"], water["vy"]), 99.5)))
+    with plot.picture(path, width + 1.6, height + 0.75) as figure:
+        whole = figure.get_size_inches()
+        axes = figure.add_axes((0.62 / whole[0], 0.45 / whole[1], width / whole[0], height / whole[1]))
+        parts = [(water, spacing, plot.matplotlib.colormaps[plot.FLUID_COLOURS](speeds(np.hypot(water["vx"], water["vy"]))))]
+        parts += [(part, size, np.tile(plot.to_rgba(colour), (len(part), 1)))
+                  for part, size, colour in ((cylinder, spacing, plot.WALL_COLOUR), (flag, dump.spacing(flag), plot.ORANGE))]
+        for part, size, colours in parts:
+            plot.field(axes, part["x"], part["y"], size, colours, limits)
+        axes.set(xlabel="x [m]", ylabel="y [m]")
+        axes.set_title(f"{case.upper()}, t = {frame.time:.2f} s", loc="left", pad=3)
+        bar = figure.add_axes(((width + 0.75) / whole[0], 0.45 / whole[1], 0.12 / whole[0], height / whole[1]))
+        figure.colorbar(plot.ScalarMappable(speeds, plot.FLUID_COLOURS), cax=bar, label="speed [m/s]", extend="max")
 
 
 def main(folder):
@@ -98,29 +124,25 @@ def main(folder):
     add(summary, folder)
     case, values, s = read(folder)
     moves = case.startswith("fsi")
-    picture(folder / "forces.png", [(s, f"{case.upper()}, {values['across']:.0f} particles across the flag")],
+    picture(folder / "forces.png", [(s, f"{case.upper()}, {values['across']:.0f} particles across the flag")], case,
             ("uy", "drag", "lift") if moves else ("drag", "lift"))
-    last = dump.read(folder / "particles.dump")[-1]
-    speed = np.hypot(last["vx"], last["vy"])
-    plot.clouds(folder / "speed.png", [(f"t = {last.time:.2f} s", last["x"], last["y"], speed)], values["dx"], ((0, 1.2), (0, 0.41)), "speed [m/s]",
-                panel_width=8.0)
+    picture_speed(folder / "speed.png", dump.read(folder / "particles.dump")[-1], case, values["dx"])
     return summary.write()
 
 
 def study(folder, cases):
-    """All cases; the motion of the flag in FSI2 (forces.png) and in FSI3 (forces_fsi3.png) at every resolution."""
+    """All cases; the motion of the flag in FSI3 (forces_fsi3.png) at every resolution."""
     folder = Path(folder)
     summary = Summary(folder)
     finest = {read(path)[0]: name for name, path in cases.items()}  # they are in the order of resolution
-    runs = {"fsi2": [], "fsi3": []}
+    runs = []
     for name, path in cases.items():
         add(summary, path, f"_{name}", name in finest.values())
         case, values, s = read(path)
-        if case in runs:
-            runs[case].append((s, f"{case.upper()}, {values['across']:.0f} particles across the flag"))
-    for case, file in (("fsi2", "forces.png"), ("fsi3", "forces_fsi3.png")):
-        if runs[case]:
-            picture(folder / file, runs[case])
+        if case == "fsi3":
+            runs.append((s, f"{case.upper()}, {values['across']:.0f} particles across the flag"))
+    if runs:
+        picture(folder / "forces_fsi3.png", runs, "fsi3")
     return summary.write()
 
 

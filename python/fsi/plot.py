@@ -8,15 +8,22 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize, to_rgba
+from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
+
+from . import paint
 
 BLUE, ORANGE, GREY, GREEN, RED = "#1b5e96", "#d1611a", "#555555", "#3a923a", "#c23b3b"
 FLUID_COLOURS, SOLID_COLOURS, WALL_COLOUR = "viridis", "inferno", "#a8a8a8"
 LABELS = ("x [m]", "y [m]")
 LARGEST = 150_000  # bytes of a picture
+FLAT, ROUND = 0.8, 0.62  # radius over spacing: discs leave no gaps where particles are a little apart; spheres have others behind them
+# on a dark ground: dark at rest, light where it is fast or strained
+NIGHT, INK = "#0c1424", "#f2f5fa"
+WATER = LinearSegmentedColormap.from_list("water", ("#123a7c", "#1a6fb8", "#2fb0dc", "#9be7f2", "#ffffff"))
+STRESS = LinearSegmentedColormap.from_list("stress", ("#5b2b45", "#b93b3d", "#ee8231", "#ffd65c", "#fff6cf"))
 STYLE = {
     "font.size": 9,
     "axes.titlesize": 9,
@@ -30,12 +37,13 @@ STYLE = {
     "legend.frameon": False,
     "savefig.dpi": 160,
 }
+DARK = {"figure.facecolor": NIGHT, "axes.facecolor": NIGHT, **dict.fromkeys(("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color"), INK)}
 
 
 @contextmanager
-def picture(path, width=6.4, height=4.0):
-    """A figure [inch] in the house style, saved to `path`, or to a file that is open, at the end of the block."""
-    with matplotlib.rc_context(STYLE):
+def picture(path, width=6.4, height=4.0, night=False):
+    """A figure [inch] in the house style, on a dark ground at `night`, saved to `path`, or to a file that is open, at the end of the block."""
+    with matplotlib.rc_context(STYLE | (DARK if night else {})):
         figure = Figure(figsize=(width, height))
         yield figure
         drawn = io.BytesIO()
@@ -59,10 +67,11 @@ def packed(file, largest=LARGEST):
     return found.getvalue()
 
 
-def lines(path, time_label, value_label, curves, points=(), log_scale=False):
+def lines(path, time_label, value_label, curves, points=(), log_scale=False, levels=()):
     """Curves against reference points.
 
-    curves: list of (x, y, label, colour); points: list of the same, drawn as markers; log_scale: of values, "xy": of both axes.
+    curves: list of (x, y, label, colour); points: list of the same, drawn as markers; log_scale: of values, "xy": of both axes;
+    levels: list of (y, label or ""), dashed lines of what a value should be.
     """
     with picture(path) as figure:
         axes = figure.add_subplot()
@@ -70,6 +79,8 @@ def lines(path, time_label, value_label, curves, points=(), log_scale=False):
             axes.plot(x, y, color=colour, label=label)
         for x, y, label, colour in points:
             axes.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgewidth=1.3, color=colour, label=label)
+        for y, label in levels:
+            axes.axhline(y, color=GREY, linestyle="--", linewidth=1.0, label=label or None)
         if log_scale:
             axes.set_yscale("log")
         if log_scale == "xy":
@@ -79,7 +90,7 @@ def lines(path, time_label, value_label, curves, points=(), log_scale=False):
             axes.minorticks_off()
         axes.set_xlabel(time_label)
         axes.set_ylabel(value_label)
-        if len(curves) + len(points) > 1:
+        if len(curves) + len(points) + len(levels) > 1:
             axes.legend()
         figure.tight_layout()
 
@@ -96,12 +107,12 @@ def scatter_against_line(path, x, y, line_x, line_y, labels, axis_labels):
         figure.tight_layout()
 
 
-def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=3, panel_width=2.6, colour=None, labels=LABELS, wall=()):
+def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=3, panel_width=2.6, colour=None, labels=LABELS, wall=(),
+              night=False):
     """A strip of snapshots: fluid coloured by pressure (column p), solids by von Mises stress (column vonmises), or both by column `colour`; walls are grey.
 
     fluid, solid, wall: atom types; limits ((xlo, xhi), (ylo, yhi)): the part of the plane that is shown, by default all
-    particles; panel_width [inch]. Each particle is a square a little wider than `spacing` [m], so that a body has no
-    gaps. Colours mean the same in all panels.
+    particles; panel_width [inch]. Particles are discs that touch, `spacing` [m] apart. Colours mean the same in all panels.
     """
     if not frames:
         return
@@ -109,20 +120,19 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
     columns = min(columns, len(frames))
     rows = -(-len(frames) // columns)
     panel_height = panel_width * (yhi - ylo) / (xhi - xlo)
-    left, bottom, gap, title = 0.74, 0.42, 0.14, 0.24
-    scales = _scales(frames, fluid, solid, colour)
+    left, bottom, gap, title = *((0.74, 0.42) if labels else (0.14, 0.14)), 0.14, 0.24
+    scales = _scales(frames, fluid, solid, colour, night)
     bar_distance = 0.92
     width = left + columns * (panel_width + gap) + bar_distance * len(scales)
     decimals = _decimals(frames)
     height = bottom + rows * (panel_height + title + gap)
 
-    with picture(path, width, height) as figure:
+    with picture(path, width, height, night) as figure:
         for k, frame in enumerate(frames):
             row, column = divmod(k, columns)
             axes = _axes(figure, left + column * (panel_width + gap), bottom + (rows - 1 - row) * (panel_height + title + gap),
                          panel_width, panel_height)
-            _particles(axes, frame, scales, 1.3 * spacing * panel_width / (xhi - xlo), wall)
-            axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal")
+            _particles(axes, frame, scales, spacing, ((xlo, xhi), (ylo, yhi)), wall)
             axes.set_title(f"t = {frame.time:.{decimals}f} s", loc="left", pad=3)
             if labels is None:
                 axes.axis("off")
@@ -150,8 +160,7 @@ def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0, colour=None,
     for k, frame in enumerate(frames):
         with picture(folder / f"{k:05d}.png", width, height + 0.75) as figure:
             axes = _axes(figure, 0.7, 0.45, panel, height)
-            _particles(axes, frame, scales, 1.3 * spacing * panel / (xhi - xlo), wall)
-            axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal")
+            _particles(axes, frame, scales, spacing, ((xlo, xhi), (ylo, yhi)), wall)
             axes.set_title(f"t = {frame.time:.{decimals}f} s", loc="left", pad=3)
             if labels is None:
                 axes.axis("off")
@@ -207,22 +216,30 @@ def _axes(figure, left, bottom, width, height):
     return figure.add_axes((left / across, bottom / up, width / across, height / up))
 
 
-def _particles(axes, frame, scales, side, wall=()):
-    """A square of `side` [inch] for each particle of a frame; the nearer of those with a depth hides the farther, which are darker."""
+def _particles(axes, frame, scales, spacing, limits, wall=()):
+    """A disc for each particle of a frame, coloured by _scales(); a sphere in those that have a depth."""
     which = [np.flatnonzero(np.isin(frame["type"], wall))]
     colours = [np.tile(to_rgba(WALL_COLOUR), (len(which[0]), 1))]
     for types, name, cmap, norm, scale, _ in scales:
         part = np.flatnonzero(np.isin(frame["type"], types))
         which.append(part)
-        colours.append(matplotlib.colormaps[cmap](norm(frame[name][part] / scale)))
+        colours.append(matplotlib.colormaps.get_cmap(cmap)(norm(frame[name][part] / scale)))
     which, colours = np.concatenate(which), np.concatenate(colours)
-    if "depth" in frame and len(which):
-        depth = frame["depth"][which]
-        order = np.argsort(depth, kind="stable")
-        shade = 0.55 + 0.45 * (depth[order] - depth.min()) / max(np.ptp(depth), 1e-300)
-        which, colours = which[order], colours[order]
-        colours[:, :3] *= shade[:, None]
-    axes.scatter(frame["x"][which], frame["y"][which], s=(72.0 * side)**2, c=colours if len(which) else None, marker="s", linewidths=0)
+    field(axes, frame["x"][which], frame["y"][which], spacing, colours, limits, frame["depth"][which] if "depth" in frame else None)
+
+
+def field(axes, x, y, spacing, colours, limits, depth=None):
+    """Particles as discs that touch, or as spheres where they have a depth, in axes that show `limits` of the plane.
+
+    spacing: of all or of each, in the unit of x and y; colours (particles, 3 or 4).
+    """
+    (xlo, xhi), (ylo, yhi) = limits
+    across, up = axes.figure.get_size_inches()
+    place = axes.get_position()
+    pixels = [max(1, round(STYLE["savefig.dpi"] * n)) for n in (across * place.width, up * place.height)]
+    share = FLAT if depth is None else ROUND
+    axes.imshow(paint.discs(pixels, limits, x, y, share * np.asarray(spacing), colours, depth), extent=(xlo, xhi, ylo, yhi), aspect="auto", interpolation="nearest")
+    axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal")
     axes.grid(False)
 
 
@@ -238,15 +255,16 @@ def _extent(frames, spacing):
             for name in ("x", "y")]
 
 
-def _scales(frames, fluid, solid, colour=None):
+def _scales(frames, fluid, solid, colour=None, night=False):
     """(types, column, colour map, range, unit's size, label) for each kind of particle, over all frames."""
+    water, strained = (WATER, STRESS) if night else (FLUID_COLOURS, SOLID_COLOURS)
     if colour:
         values = np.concatenate([frame.of_types(*fluid, *solid)[colour] for frame in frames])
         low, high = np.nanpercentile(values, (0.5, 99.5))
-        return [((*fluid, *solid), colour, FLUID_COLOURS, Normalize(low, max(high, low + 1e-30)), 1.0, colour)]
+        label = "speed [m/s]" if colour == "speed" else colour
+        return [((*fluid, *solid), colour, water, Normalize(low, max(high, low + 1e-30)), 1.0, label)]
     scales = []
-    for types, name, colours, title in ((fluid, "p", FLUID_COLOURS, "pressure"),
-                                        (solid, "vonmises", SOLID_COLOURS, "von Mises stress")):
+    for types, name, colours, title in ((fluid, "p", water, "pressure"), (solid, "vonmises", strained, "von Mises stress")):
         parts = [frame.of_types(*types) for frame in frames if name in frame]
         if not types or not any(len(part) for part in parts):
             continue
@@ -263,8 +281,7 @@ def _scales(frames, fluid, solid, colour=None):
 def clouds(path, panels, spacing, limits, label, extent=None, axis_labels=("x [m]", "y [m]"), panel_width=2.6, colours=FLUID_COLOURS):
     """Particles side by side, coloured by any value: panels lists (title, x, y, value), limits as for snapshots.
 
-    extent (lowest, highest): the range of colours, by default that of the values. Particles are discs as wide as `spacing`, so
-    that gaps and clumps show.
+    extent (lowest, highest): the range of colours, by default that of the values. Particles are discs that touch, `spacing` apart.
     """
     (xlo, xhi), (ylo, yhi) = limits
     low, high = extent or (min(p[3].min() for p in panels), max(p[3].max() for p in panels))
@@ -275,11 +292,9 @@ def clouds(path, panels, spacing, limits, label, extent=None, axis_labels=("x [m
     with picture(path, width, height) as figure:
         for k, (name, x, y, value) in enumerate(panels):
             axes = _axes(figure, left + k * (panel_width + gap), bottom, panel_width, panel_height)
-            axes.scatter(x, y, s=(0.9 * spacing * panel_width * 72.0 / (xhi - xlo))**2, c=value, linewidths=0, cmap=colours,
-                         norm=norm, rasterized=True)
-            axes.set(xlim=(xlo, xhi), ylim=(ylo, yhi), aspect="equal", xlabel=axis_labels[0])
+            field(axes, x, y, spacing, matplotlib.colormaps.get_cmap(colours)(norm(value)), limits)
+            axes.set_xlabel(axis_labels[0])
             axes.set_title(name, loc="left", pad=3)
-            axes.grid(False)
             axes.xaxis.set_major_locator(MaxNLocator(4, prune="upper"))
             axes.yaxis.set_major_locator(MaxNLocator(4))
             axes.tick_params(labelleft=k == 0)
