@@ -25,15 +25,12 @@
 #include "fsi_record.h"
 #include "fsi_shift.h"
 #include "group.h"
-#include "input.h"
-#include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
 #include "region.h"
 #include "thermo.h"
 #include "update.h"
-#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +40,7 @@ using namespace FixConst;
 using namespace FSI;
 
 static constexpr double AUTO = -1.0;
-static constexpr int PRESSURE_COLUMN = 3, NCOLUMNS = 4;    // of the values of variables
+static constexpr int PRESSURE = 3, NVALUES = 4;    // after the components of the velocity
 static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with; a column more or less is there at any time
 static constexpr double TOLD = 0.05;    // part of a term of the fit that the fluid must tell from lower ones
 static constexpr double NEXT = 1.01;    // in spacings along the plane: rows on both sides of a node
@@ -68,8 +65,9 @@ static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
-    length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), target(nullptr), nmax(0), mean{}, filled(false), wave(0.0), gradient(0.0),
-    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, given{}
+    given(lmp, std::string("fix ") + style, NVALUES), background(false),
+    length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{}, filled(false), wave(0.0), gradient(0.0),
+    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
@@ -82,22 +80,22 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   position = numeric(lmp, who + " " + face, arg[4]);
 
   keywords.key("velocity").word(words[0], "").word(words[1], "").word(words[2], "");
-  keywords.key("pressure").word(words[PRESSURE_COLUMN], "");
+  keywords.key("pressure").word(words[PRESSURE], "");
   keywords.key("absorb").number(absorb, outlet ? AUTO : 0.0, Range::from(0.0)).or_word("auto", AUTO);
   keywords.key("buffer").number(given_length, AUTO, Range::above(0.0)).or_word("auto", AUTO);
   keywords.key("region").word(region_id, "");
   keywords.parse(narg - 5, arg + 5);
 
-  const std::string p = words[PRESSURE_COLUMN];
+  const std::string p = words[PRESSURE];
   if (!words[0].empty() && !p.empty()) error->all(FLERR, "{} {} takes velocity or pressure, not both: the other one is that of the fluid", who, face);
   if (words[0].empty() && p.empty() && !outlet) error->all(FLERR, "{} {} requires keyword velocity or pressure", who, face);
   if (words[0].empty()) {
-    if (p.empty()) pressure.source = BACKGROUND;
-    else if (p != "free") read(pressure, p, "pressure", "v_name or free");
+    background = p.empty();
+    if (!background && p != "free") given.read(PRESSURE, p, "pressure", "v_name or free");
   } else {
     for (int d = 0; d < 3; d++) {
-      read(velocity[d], words[d], "velocity", "v_name");
-      if (d >= domain->dimension && (velocity[d].source != NUMBER || velocity[d].number != 0.0))
+      given.read(d, words[d], "velocity");
+      if (d >= domain->dimension && (given.source(d) != Values::NUMBER || given.number(d) != 0.0))
         error->all(FLERR, "{} velocity along z must be 0 in 2D, not {}", who, words[d]);
     }
   }
@@ -119,66 +117,20 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
 
 /* ---------------------------------------------------------------------- */
 
-FixFSIInlet::~FixFSIInlet()
-{
-  memory->destroy(target);
-}
-
-/* ---------------------------------------------------------------------- */
-
 int FixFSIInlet::setmask()
 {
   return PRE_EXCHANGE;
 }
 
-/* ----------------------------------------------------------------------
-   values: numbers and variables
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void FixFSIInlet::read(Value &v, const std::string &word, const std::string &what, const std::string &other)
+double FixFSIInlet::value(int k, int i) const
 {
-  if (utils::strmatch(word, "^v_")) {
-    v.name = word.substr(2);
-    v.source = EQUAL;
-  } else {
-    v.number = numeric(lmp, who + " " + what, word, {}, false, other);
-    v.source = NUMBER;
-  }
-}
-
-void FixFSIInlet::find_variable(Value &v)
-{
-  if (v.name.empty()) return;
-  v.variable = input->variable->find(v.name.c_str());
-  if (v.variable < 0) error->all(FLERR, "Variable {} of {} does not exist", v.name, keywords_name());
-  if (input->variable->equalstyle(v.variable)) v.source = EQUAL;
-  else if (input->variable->atomstyle(v.variable)) v.source = ATOM;
-  else error->all(FLERR, "Variable {} of {} must be equal-style or atom-style", v.name, keywords_name());
-}
-
-// at the time that LAMMPS has
-void FixFSIInlet::evaluate(Value *values, int n, int column)
-{
-  if (atom->nmax > nmax) {
-    nmax = atom->nmax;
-    memory->destroy(target);
-    memory->create(target, nmax, NCOLUMNS, "fsi/inlet:target");
-  }
-  modify->clearstep_compute();
-  for (int k = 0; k < n; k++) {
-    if (values[k].source == EQUAL) values[k].number = input->variable->compute_equal(values[k].variable);
-    if (values[k].source == ATOM) input->variable->compute_atom(values[k].variable, zone_group, &target[0][column + k], NCOLUMNS, 0);
-  }
-  modify->addstep_compute(update->ntimestep + 1);
-}
-
-double FixFSIInlet::value(const Value &v, int i, int column) const
-{
-  const double x = raw(v, i, column);
+  const double x = given(k, i);
   if (!std::isfinite(x))
     error->one(FLERR, "{} {}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", who, id,
-               column == PRESSURE_COLUMN ? "pressure" : fmt::format("velocity along {}", "xyz"[column]), x, atom->tag[i], atom->x[i][0],
-               atom->x[i][1], atom->x[i][2], v.name.empty() ? "" : ", see variable " + v.name);
+               k == PRESSURE ? "pressure" : fmt::format("velocity along {}", "xyz"[k]), x, atom->tag[i],
+               atom->x[i][0], atom->x[i][1], atom->x[i][2], given.see(k));
   return x;
 }
 
@@ -233,21 +185,20 @@ void FixFSIInlet::init()
                    "xyz"[axis], position);
     }
   }
-  for (auto &v : velocity) find_variable(v);
-  find_variable(pressure);
+  given.find();
   zone_group = igroup;
-  if (pressure.source == ATOM || std::any_of(velocity, velocity + 3, [](const Value &v) { return v.source == ATOM; }))
+  if (given.of_atoms())
     zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
   driven = false;
   for (const auto &fix : modify->get_fix_by_style("^fsi/[inout]+let$"))
     driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->words[0].empty();
   told = {};
-  if (pressure.source == NUMBER && is_far(pressure.number)) {
+  if (given.source(PRESSURE) == Values::NUMBER && is_far(given.number(PRESSURE))) {
     const State &soft = softest();
-    const double away = std::fabs(pressure.number - soft.p0);
+    const double away = std::fabs(given.number(PRESSURE) - soft.p0);
     error->all(FLERR, "{} {}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
                       "most. Is it in units {}? Else take sound {:.3g} or more in pair_style fsi/fluid",
-               who, id, pressure.number, away / (soft.rho0 * soft.csq), soft.p0, FAR,
+               who, id, given.number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
                update->unit_style, std::sqrt(away / (FAR * soft.rho0)));
   }
   leave_an_id_free();
@@ -384,11 +335,11 @@ void FixFSIInlet::fill_buffer()
     make(copies, true);
   }
   find_places();    // of which variables are asked
-  evaluate(velocity, 3, 0);
+  given.evaluate(zone_group, 0, 3);
   for (int i = 0; i < atom->nlocal; i++)
     if (of_buffer[i])
       for (int d = 0; d < fix_fsi->dim; d++)
-        if (velocity[d].source != EXTRAPOLATED) atom->v[i][d] = value(velocity[d], i, d);
+        if (given.given(d)) atom->v[i][d] = value(d, i);
 }
 
 /* ----------------------------------------------------------------------
@@ -783,7 +734,7 @@ template <int TERMS> static void value_weights(const double *moment, double *row
 void FixFSIInlet::measure()
 {
   const int dim = fix_fsi->dim, nodes = place_nodes();
-  const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
+  const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
   // monomials of the offset over dx, by their degree: those of the fit, and all that its matrix has
   const bool plane = nlateral == 2;
   const int nfit = plane ? 6 : 3, nmoment = plane ? 15 : 5;
@@ -792,7 +743,7 @@ void FixFSIInlet::measure()
   sums.resize(mine.size());
   bounds.assign(wants_velocity ? 2 * nodes : 0, -HUGE_VAL);
   double *const total = mine.data() + nodes * ncolumns;
-  const bool pressure_varies = !told.far && (pressure.source == EQUAL || pressure.source == ATOM);
+  const bool pressure_varies = !told.far && !given.name(PRESSURE).empty();
 
   with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
     for (auto &place : places) {
@@ -806,12 +757,12 @@ void FixFSIInlet::measure()
       total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
       if (s <= 0.0) {
         if (s > -fix_fsi->cut) total[BUFFER]++;
-        if (pressure_varies && is_far(raw(pressure, i, PRESSURE_COLUMN))) total[TOO_FAR]++;
+        if (pressure_varies && is_far(given(PRESSURE, i))) total[TOO_FAR]++;
         continue;
       }
       double p = state.pressure(atom->rho[i]);
       // a variable need not know a value before the plane
-      const double q = wants_pressure ? NAN : p - (pressure.source == BACKGROUND ? state.p0 : raw(pressure, i, PRESSURE_COLUMN));
+      const double q = wants_pressure ? NAN : p - (background ? state.p0 : given(PRESSURE, i));
       if (std::isfinite(q) && s < zone()) {
         total[MASS] += m;
         total[BEYOND] += m * q;
@@ -825,7 +776,7 @@ void FixFSIInlet::measure()
       total[WEIGHT] += w;
       total[SPEED] += w * side * u;
       total[DYNAMIC] += w * dynamic_pressure(state, u);
-      total[PRESSURE] += w * p;
+      total[MEAN_PRESSURE] += w * p;
       total[OVER_IMPEDANCE] += w * p / (state.rho0 * state.c);
       at_nodes(x, std::sqrt(kernel.cutsq - s * s), [&](int node, const double *d) {
         const double W = kernel.W(std::sqrt(std::min(s * s + d[0] * d[0] + d[1] * d[1], kernel.cutsq)));
@@ -886,7 +837,7 @@ static double cubic_convolution(double t)
 // wall would else go back for as much as a parabola falls below it, and bring in more and more.
 bool FixFSIInlet::at_plane(const double *x, double *values) const
 {
-  const int n = (velocity[0].source == EXTRAPOLATED) + (pressure.source == EXTRAPOLATED);
+  const int n = has_own_velocity() + has_own_pressure();
   double weight = 0.0, most = -HUGE_VAL, least = HUGE_VAL;
   std::fill_n(values, n, 0.0);
   at_nodes(x, 2.0 * *std::max_element(node_distance, node_distance + nlateral), [&](int node, const double *d) {
@@ -922,8 +873,8 @@ void FixFSIInlet::advance(bool advance)
   if (!advance) return;
   keep_full();
   const double dt = update->dt + fix_fsi->dt_offset;
-  const bool wants_velocity = velocity[0].source == EXTRAPOLATED, wants_pressure = pressure.source == EXTRAPOLATED;
-  if (pressure.source == EQUAL || pressure.source == ATOM) evaluate(&pressure, 1, PRESSURE_COLUMN);
+  const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
+  if (!given.name(PRESSURE).empty()) given.evaluate(zone_group, PRESSURE, 1);
   measure();
 
   double c = 0.0;
@@ -948,7 +899,7 @@ void FixFSIInlet::advance(bool advance)
   if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
     error->warning(FLERR, "{} {}: pressure of variable {} is more than {} rho c^2 from the background: the fluid is no "
                           "longer hardly compressed. Is it in units {}? Else a higher sound in pair_style fsi/fluid",
-                   who, id, pressure.name, FAR, update->unit_style);
+                   who, id, given.name(PRESSURE), FAR, update->unit_style);
   told.far = told.far || mean[TOO_FAR] > 0.0;
   check_supply();
 
@@ -965,7 +916,7 @@ void FixFSIInlet::advance(bool advance)
     if (wants_pressure)
       p = place.known ? values[wants_velocity] + state.rho0 * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * place.inside : state.p0;
     else
-      p = (pressure.source == BACKGROUND ? state.p0 : value(pressure, i, PRESSURE_COLUMN)) + gradient * place.inside +
+      p = (background ? state.p0 : value(PRESSURE, i)) + gradient * place.inside +
           state.rho0 * state.c * wave;
     if (place.known && wants_velocity && !wants_pressure) p += steady * (drawn - dynamic_pressure(state, place.normal));
     const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
@@ -984,7 +935,7 @@ void FixFSIInlet::check_supply()
   const bool begins = update->ntimestep == update->firststep + 1;
   if (begins && last_buffer > 0.0) taken = std::max(0.0, last_buffer - mean[BUFFER]);
   last_buffer = mean[BUFFER];
-  if (velocity[0].source == EXTRAPOLATED || mean[BUFFER] >= STARVED * served) return;
+  if (has_own_velocity() || mean[BUFFER] >= STARVED * served) return;
   std::string why;
   const double speed = mean[WEIGHT] > 0.0 ? mean[SPEED] / mean[WEIGHT] : 0.0;
   if (taken > 0.1 * served)
@@ -1099,11 +1050,11 @@ void FixFSIInlet::keep_full()
 
 void FixFSIInlet::prescribe()
 {
-  std::fill_n(given, 4, 0.0);
+  std::fill_n(push_sum, 4, 0.0);
   const double dt = update->dt;
   if (dt == 0.0) return;
-  const bool wants_velocity = velocity[0].source == EXTRAPOLATED;
-  if (!wants_velocity) evaluate(velocity, 3, 0);
+  const bool wants_velocity = has_own_velocity();
+  if (!wants_velocity) given.evaluate(zone_group, 0, 3);
   for (const auto &place : places) {
     const int i = place.i;
     if (place.inside > 0.0) continue;
@@ -1112,15 +1063,15 @@ void FixFSIInlet::prescribe()
     for (int d = 0; d < fix_fsi->dim; d++) {
       double u;
       if (wants_velocity) u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
-      else u = value(velocity[d], i, d) + (d == axis ? side * wave : 0.0);
+      else u = value(d, i) + (d == axis ? side * wave : 0.0);
       if (of_buffer[i] == FOLLOWED) behind[i][d] += dt * u;
       const double to = m * (u - v[d]) / (dt * force->ftm2v), push = to - f[d];
       f[d] = to;
-      given[d] += push;
-      given[3] += push * 0.5 * (u + v[d]);
+      push_sum[d] += push;
+      push_sum[3] += push * 0.5 * (u + v[d]);
     }
   }
-  fix_fsi->tally(FixFSI::FIELDS, -given[3]);
+  fix_fsi->tally(FixFSI::FIELDS, -push_sum[3]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -1138,10 +1089,10 @@ double FixFSIInlet::compute_vector(int n)
     case 2: return passed_out;
     case 3: return mean[MASS_FLOW];
     case 4: return mean[VOLUME_FLOW];
-    case 5: return mean[WEIGHT] > 0.0 ? mean[PRESSURE] / mean[WEIGHT] : 0.0;
+    case 5: return mean[WEIGHT] > 0.0 ? mean[MEAN_PRESSURE] / mean[WEIGHT] : 0.0;
     case 10: return mean_fill;
     case 0: own = atom->nlocal - std::count(of_buffer, of_buffer + atom->nlocal, double(NOT)); break;
-    default: own = given[n - 6];
+    default: own = push_sum[n - 6];
   }
   MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
@@ -1193,6 +1144,6 @@ void FixFSIInlet::restart(char *buf)
 
 double FixFSIInlet::memory_usage()
 {
-  return FixFields::memory_usage() + (double) NCOLUMNS * nmax * sizeof(double) + (double) (mine.capacity() + sums.capacity()) * sizeof(double) +
+  return FixFields::memory_usage() + given.memory_usage() + (double) (mine.capacity() + sums.capacity()) * sizeof(double) +
       (double) places.capacity() * sizeof(Place);
 }

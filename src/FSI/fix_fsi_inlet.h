@@ -24,6 +24,7 @@ FixStyle(fsi/outlet,FixFSIInlet);
 #include "fsi_fields.h"
 #include "fsi_keywords.h"
 #include "fsi_part.h"
+#include "fsi_value.h"
 
 #include <algorithm>
 #include <string>
@@ -40,7 +41,6 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   bigint net = 0;    // particles made less those deleted, since this fix is there
 
   FixFSIInlet(class LAMMPS *, int, char **);
-  ~FixFSIInlet() override;
   int setmask() override;
   void init() override;
   void setup_pre_exchange() override;
@@ -59,13 +59,6 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   tagint last_id;                       // largest that it has given
 
  private:
-  enum Source { EXTRAPOLATED, NUMBER, EQUAL, ATOM, BACKGROUND };
-  struct Value {
-    Source source = EXTRAPOLATED;
-    double number = 0.0;
-    std::string name;
-    int variable = -1;
-  };
   struct Place {    // of a particle near the plane
     int i;
     double inside;    // distance from the plane into the fluid
@@ -77,7 +70,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     tagint parent, molecule;
     int type, mask;
   };
-  enum { WEIGHT, SPEED, DYNAMIC, PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, TOO_FAR, MASS, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
+  enum { WEIGHT, SPEED, DYNAMIC, MEAN_PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, TOO_FAR, MASS, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
 
   const std::string who;    // Fix fsi/inlet
   const bool outlet;
@@ -85,7 +78,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   int axis;
   double side, position;    // +1: the fluid is above the plane
   std::string words[4], region_id;
-  Value velocity[3], pressure;
+  FSI::Values given;    // velocity and pressure; the other one is that of the fluid
+  bool background;      // is the pressure that of the background?
   double absorb;    // 1/time; < 0: of the domain's length
   bool driven;      // has an open end of the scene a given velocity?
   double given_length, length;
@@ -98,8 +92,6 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double **behind;       // of one that is followed: where who follows would be now
   std::vector<Place> places;
   int zone_group;       // that of the places
-  double **target;      // values of atom-style variables: velocity and pressure
-  int nmax;
 
   // sums over the fluid at the nodes of a lattice in the plane, then values there
   int nlateral, lateral[2], first[2], count[2], ncolumns;
@@ -122,18 +114,16 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   struct {
     bool far, stranger, fill;
   } told;                    // warnings of this run
-  double given[4];           // force on the buffer and its power, this rank's part
+  double push_sum[4];           // force on the buffer and its power, this rank's part
 
   double inside(const double *x) const { return side * (x[axis] - position); }
   double zone() const { return 2.0 * length; }    // before the plane: where slope and room are looked at
   bool in_patch(const double *x) const;
   bool is_fluid(int i) const;
   std::string keywords_name() const { return std::string("fix ") + style; }
-  void read(Value &, const std::string &word, const std::string &what, const std::string &other);
-  void find_variable(Value &);
-  void evaluate(Value *, int n, int column);
-  double raw(const Value &v, int i, int column) const { return v.source == ATOM ? target[i][column] : v.number; }
-  double value(const Value &, int i, int column) const;    // which is a number
+  bool has_own_velocity() const { return !given.given(0); }    // which is extrapolated
+  bool has_own_pressure() const { return !given.given(3) && !background; }
+  double value(int k, int i) const;    // which is a number
   double energy(int i) const;
   double dynamic_pressure(const FSI::State &state, double u) const    // of what comes in
   {
