@@ -11,15 +11,17 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Forces of total-Lagrangian solids over the bonds of a particle (pair_style fsi/solid/tl), as many bonds at a time as the number type T
-// holds (fsi_pack.h).
+// Forces of total-Lagrangian solids over the bonds of a particle (pair_style fsi/solid/tl), as many
+// bonds at a time as the number type T holds (fsi_pack.h).
 //
 //   F_i = sum_j (x_j - x_i) (x) G_ij,  f_j = -V_i P(F_i) G_ij, and the opposite on i
-// Hourglass control (after Ganzenmueller 2015, in energy form): psi_i gains sum_j zeta E w |r_ij|^2/2, w = V_i V_j W/|X|^2,
-//   r_ij = (x_j - x_i) - F_i X_ij: what the linear field F_i does not explain of its neighbours' positions. Its derivative with respect to
-//   F_i is -zeta E (A - F_i M), A = sum_j w (x_j - x_i) (x) X_ij, M = sum_j w X_ij (x) X_ij, so that one pass over the bonds has it; M is
-//   of the reference.
-// Artificial viscosity (fsi_viscosity_artificial.h) with the reference kernel; each particle of a pair does half.
+// Hourglass control (after Ganzenmueller 2015, in energy form): psi_i gains
+//   sum_j zeta E w |r_ij|^2/2,  w = V_i V_j W/|X|^2,  r_ij = (x_j - x_i) - F_i X_ij
+// r_ij is what the linear field F_i does not explain of its neighbours' positions. The derivative
+// with respect to F_i is -zeta E (A - F_i M), A = sum_j w (x_j - x_i) (x) X_ij,
+// M = sum_j w X_ij (x) X_ij, so that one pass over the bonds has it; M is of the reference.
+// Artificial viscosity (fsi_viscosity_artificial.h) with the reference kernel; each particle of a
+// pair does half.
 
 #ifndef LMP_FSI_BOND_ROWS_H
 #define LMP_FSI_BOND_ROWS_H
@@ -38,13 +40,18 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // Numbers of bonds are kept side by side, as loops take them: the first ones of BOND_BLOCK bonds, their second ones, and so on.
+  // Numbers of bonds are kept side by side, as loops take them: the first ones of BOND_BLOCK bonds,
+  // their second ones, and so on.
   constexpr int BOND_BLOCK = 4;
   constexpr int whole_blocks(int n) { return (n + BOND_BLOCK - 1) / BOND_BLOCK * BOND_BLOCK; }
   // place of the first number of bond k, of which each has n; the next ones are BOND_BLOCK further
-  constexpr size_t number_of_bond(int k, int n) { return (size_t) (k / BOND_BLOCK) * BOND_BLOCK * n + k % BOND_BLOCK; }
+  constexpr size_t number_of_bond(int k, int n)
+  {
+    return (size_t) (k / BOND_BLOCK) * BOND_BLOCK * n + k % BOND_BLOCK;
+  }
 
-  // The bonds of local particle i: n of them, each with 2 D + 2 numbers (fix_fsi_reference.h). What fills up the last block has partners, too.
+  // The bonds of local particle i: n of them, each with 2 D + 2 numbers (fix_fsi_reference.h). What
+  // fills up the last block has partners, too.
   struct BondRow {
     int i, n;
     const int *partner;
@@ -80,7 +87,8 @@ namespace FSI {
     T x[D], v[D];
 
     // from: x, v of i
-    FSI_INLINE void read(const int *partner, const double *points, const T (&from)[2 * D], bool with_velocities)
+    FSI_INLINE void read(const int *partner, const double *points, const T (&from)[2 * D],
+                         bool with_velocities)
     {
       constexpr int N = row_of_points(D);
       const double *const p = points + N * partner[0];
@@ -89,11 +97,13 @@ namespace FSI {
         if (with_velocities)
           for (int a = 0; a < D; a++) v[a] = p[D + a] - from[D + a];
       } else {
-        const double *const q = points + N * partner[1], *const r = points + N * partner[2], *const s = points + N * partner[3];
+        const double *const q = points + N * partner[1], *const r = points + N * partner[2],
+                            *const s = points + N * partner[3];
         T at[2 * D];
         if (D == 2 && !with_velocities) T::columns(p, q, r, s, at[0], at[1]);
         else T::columns(p, q, r, s, at);
-        if (D == 3 && with_velocities) T::columns(p + 4, q + 4, r + 4, s + 4, at[2 * D - 2], at[2 * D - 1]);
+        if (D == 3 && with_velocities)
+          T::columns(p + 4, q + 4, r + 4, s + 4, at[2 * D - 2], at[2 * D - 1]);
         for (int a = 0; a < D; a++) x[a] = at[a] - from[a];
         if (with_velocities)
           for (int a = 0; a < D; a++) v[a] = at[D + a] - from[D + a];
@@ -102,7 +112,8 @@ namespace FSI {
   };
 
   // takes t F^T from a virial
-  template <int D> FSI_INLINE void subtract_product(const double *t, const double *F, double *virial)
+  template <int D>
+  FSI_INLINE void subtract_product(const double *t, const double *F, double *virial)
   {
     double component[D * D];
     for (int a = 0; a < D; a++)
@@ -113,8 +124,11 @@ namespace FSI {
     add_virial<D>([&](int a, int c) { return component[a * D + c]; }, virial);
   }
 
-  // takes what hourglass control adds to the derivative of the energy from t: F_i changes the straight lines that bonds are measured by
-  template <class T, int D> FSI_INLINE void subtract_hourglass(double stiffness, const T *A, const double *M, const double *F, double *t)
+  // takes what hourglass control adds to the derivative of the energy from t: F_i changes the
+  // straight lines that bonds are measured by
+  template <class T, int D>
+  FSI_INLINE void subtract_hourglass(double stiffness, const T *A, const double *M, const double *F,
+                                     double *t)
   {
     const auto at = [](int a, int c) { return a < c ? packed_size(c) + a : packed_size(a) + c; };
     for (int a = 0; a < D; a++)
@@ -126,7 +140,9 @@ namespace FSI {
   }
 
   // adds hourglass control of a bond, k = zeta E w, to the force on j; its energy
-  template <class T, int D> FSI_INLINE T straighten(const T &k, const double *F, const T (&x)[D], const T (&X)[D], T (&force)[D])
+  template <class T, int D>
+  FSI_INLINE T straighten(const T &k, const double *F, const T (&x)[D], const T (&X)[D],
+                          T (&force)[D])
   {
     T rsq = 0.0;
     for (int a = 0; a < D; a++) {
@@ -138,31 +154,35 @@ namespace FSI {
     return 0.5 * k * rsq;
   }
 
-  // adds artificial viscosity of a bond, g = V_i V_j (grad W)/x_ij, to the force on j; what it takes from their energy
+  // adds artificial viscosity of a bond, g = V_i V_j (grad W)/x_ij, to the force on j; what it
+  // takes from their energy
   template <class T, int D>
-  FSI_INLINE T rub(const ArtificialViscosity &viscosity, const State &si, const State &sj, const T &g, const Separation<T, D> &b, T (&force)[D])
+  FSI_INLINE T rub(const ArtificialViscosity &viscosity, const State &si, const State &sj,
+                   const T &g, const Separation<T, D> &b, T (&force)[D])
   {
     T vdotx = 0.0, rsq = 0.0;
     for (int a = 0; a < D; a++) {
       vdotx += b.v[a] * b.x[a];
       rsq += b.x[a] * b.x[a];
     }
-    const T q = 0.5 * g * viscosity(vdotx, rsq, T(0.5 * (si.rho0 + sj.rho0)), 0.5 * (si.c + sj.c), T(1.0));
+    const T q =
+        0.5 * g * viscosity(vdotx, rsq, T(0.5 * (si.rho0 + sj.rho0)), 0.5 * (si.c + sj.c), T(1.0));
     for (int a = 0; a < D; a++) force[a] -= q * b.x[a];
     return q * vdotx;
   }
 
   // f: rows of row_of_forces(D), of local and ghost particles; laws: per type
   template <class T, class Law, int D, int FLAGS>
-  FSI_INLINE void bond_rows(const BondRow *const rows, const int nrows, const Law *const laws, const BondArguments in,
-                            double (*const f)[row_of_forces(D)])
+  FSI_INLINE void bond_rows(const BondRow *const rows, const int nrows, const Law *const laws,
+                            const BondArguments in, double (*const f)[row_of_forces(D)])
   {
     using namespace BondFlag;
     using L = Lanes<T>;
     using Partners = Separation<T, D>;
     constexpr int NV = 2 * D + 2, W = L::WIDTH;
     constexpr bool VELOCITIES = FLAGS & (VISCOSITY | SUMS);
-    // partners of a row as read once, kept for the second pass over them; copied, since doubles need not be where packs may be
+    // partners of a row as read once, kept for the second pass over them; copied, since doubles
+    // need not be where packs may be
     constexpr int SIZE = (VELOCITIES ? sizeof(Partners) : sizeof(Partners::x)) / sizeof(double);
     std::vector<double> kept;
     T energy = 0.0, artificial = 0.0, virial[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
@@ -173,9 +193,11 @@ namespace FSI {
       T from[2 * D];
       for (int a = 0; a < 2 * D; a++) from[a] = in.points[row_of_points(D) * i + a];
       const auto number = [&](int k, int v) __attribute__((always_inline)) {
-        return L::load(row.numbers + (W == BOND_BLOCK ? (size_t) k * NV : number_of_bond(k, NV)) + v * BOND_BLOCK);
+        return L::load(row.numbers + (W == BOND_BLOCK ? (size_t) k * NV : number_of_bond(k, NV)) +
+                       v * BOND_BLOCK);
       };
-      if (kept.size() < (size_t) (row.n / W + 1) * SIZE) kept.resize((size_t) 2 * (row.n / W + 1) * SIZE);
+      if (kept.size() < (size_t) (row.n / W + 1) * SIZE)
+        kept.resize((size_t) 2 * (row.n / W + 1) * SIZE);
       double *end = kept.data();
       T F[D * D], A[D * D];
       for (int k = 0; k < D * D; k++) F[k] = A[k] = 0.0;
@@ -194,8 +216,10 @@ namespace FSI {
 
       double Fi[D * D];
       for (int k = 0; k < D * D; k++) Fi[k] = L::sum(F[k]);
-      // inline: a call would write F number by number and read it in pairs, which waits until all stores before it are done
-      const auto piola = laws[in.type[i]].template operator()<D>(Fi, in.stress ? in.stress[i] : nullptr);
+      // inline: a call would write F number by number and read it in pairs, which waits until all
+      // stores before it are done
+      const auto piola =
+          laws[in.type[i]].template operator()<D>(Fi, in.stress ? in.stress[i] : nullptr);
       if (determinant<D>(Fi) <= 0.0) in.sums->inverted = i;
       double t[D * D];    // derivative of the energy of i with respect to F_i
       for (int k = 0; k < D * D; k++) t[k] = row.volume * piola.P[k];
@@ -219,7 +243,8 @@ namespace FSI {
         __builtin_memcpy(b.x, next, sizeof(b.x));
         if (VELOCITIES) __builtin_memcpy(b.v, next + SIZE / 2, sizeof(b.v));
         T force[D], X[D], other[D];    // on j
-        T (&beyond)[D] = (FLAGS & SUMS) ? other : force;    // what does not act through F_i: the virial's
+        // what does not act through F_i: the virial's
+        T (&beyond)[D] = (FLAGS & SUMS) ? other : force;
         for (int a = 0; a < D; a++) {
           force[a] = -t[a * D] * number(k, 0);
           for (int c = 1; c < D; c++) force[a] -= t[a * D + c] * number(k, c);
@@ -236,7 +261,10 @@ namespace FSI {
           const T loss = rub(viscosity, si, sj, number(k, 2 * D + 1), b, beyond);
           if (FLAGS & SUMS) artificial += loss;
         }
-        if (FLAGS & SUMS) add_virial<D>([&](int a, int c) __attribute__((always_inline)) { return b.x[a] * beyond[c]; }, virial);
+        if (FLAGS & SUMS)
+          add_virial<D>(
+              [&](int a, int c) __attribute__((always_inline)) { return b.x[a] * beyond[c]; },
+              virial);
         for (int a = 0; a < D; a++) {
           if (FLAGS & SUMS) force[a] += other[a];
           sum[a] += force[a];

@@ -12,9 +12,9 @@
 ------------------------------------------------------------------------- */
 
 
-// Laws of the total-Lagrangian solid: from the deformation gradient F (D x D, row-major, F_aB = dx_a/dX_B) the
-// first Piola-Kirchhoff stress P = d(psi)/dF, the energy density psi per reference volume, and P_zz of plane strain.
-// Lame's constants: lambda = K - 2G/3, mu = G.
+// Laws of the total-Lagrangian solid: from the deformation gradient F (D x D, row-major, F_aB =
+// dx_a/dX_B) the first Piola-Kirchhoff stress P = d(psi)/dF, the energy density psi per reference
+// volume, and P_zz of plane strain. Lame's constants: lambda = K - 2G/3, mu = G.
 //
 // Of a nearly incompressible solid a part of the volumetric energy, k u(m), may be smoothed
 // (fsi_volumetric.h). m is the law's measure of volumetric strain: volumetric_strain(), and dm/dF
@@ -49,7 +49,8 @@ namespace FSI {
     }
   };
 
-  // St. Venant-Kirchhoff: S = lambda tr(E) I + 2 mu E, E = (F^T F - I)/2, P = F S. Plane stress: lambda* = 2 lambda mu/(lambda + 2 mu)
+  // St. Venant-Kirchhoff: S = lambda tr(E) I + 2 mu E, E = (F^T F - I)/2, P = F S. Plane stress:
+  // lambda* = 2 lambda mu/(lambda + 2 mu)
   struct StVenantKirchhoff {
     double lambda, mu;
     bool plane_stress;
@@ -116,7 +117,8 @@ namespace FSI {
     }
   };
 
-  // hypoelastic, as the updated-Lagrangian solid: sigma = -p I + S with S from fix fsi/stress and p = K (1/J - 1), P = J sigma F^-T
+  // hypoelastic, as the updated-Lagrangian solid: sigma = -p I + S with S from fix fsi/stress and p
+  // = K (1/J - 1), P = J sigma F^-T
   struct HypoElastic : LogarithmOfVolume {
     double bulk, shear;
     bool plane_stress;

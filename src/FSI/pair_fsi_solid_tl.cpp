@@ -42,24 +42,31 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fsolid(nullptr), nmax(0), nmoving(0), changes_seen(-1), only_moving(false),
-    one_material(true), sends_strains(false)
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fsolid(nullptr), nmax(0),
+    nmoving(0), changes_seen(-1), only_moving(false), one_material(true), sends_strains(false)
 {
   no_virial_fdotr_compute = 1;
   artificial_row("solid");
-  keywords.key("hourglass").number(zeta, 0.05, Range::from(0.0)).effect("hourglass control of the solid {}");
+  keywords.key("hourglass")
+      .number(zeta, 0.05, Range::from(0.0))
+      .effect("hourglass control of the solid {}");
   keywords.key("law").choice(law, SVK, {"svk", "neohookean", "hypo"});
   keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"});
   keywords.key("gradient").choice(linear, 0, {"quadratic", "linear"});
   keywords.key("volumes").choice(plain, 0, {"corrected", "plain"});
   keywords.key("volumetric").choice(volumetric, AUTO, {"auto", "smoothed", "local"});
   contact_row();
-  keywords.key("damage").number(damage, 0.0, Range::from(0.0), "strain").effect("damage at strain {}");
+  keywords.key("damage")
+      .number(damage, 0.0, Range::from(0.0), "strain")
+      .effect("damage at strain {}");
 
-  // bonds find their partners by atom ID. Not later than here: fix balance keeps, from when it is defined, whether there is a map to clear
+  // bonds find their partners by atom ID. Not later than here: fix balance keeps, from when it is
+  // defined, whether there is a map to clear
   if (atom->map_style != Atom::MAP_NONE) return;
   if (!modify->get_fix_by_style("^balance").empty())
-    error->all(FLERR, "Pair style fsi/solid/tl must come before fix balance, or give atom_modify map yes first");
+    error->all(
+        FLERR,
+        "Pair style fsi/solid/tl must come before fix balance, or give atom_modify map yes first");
   if (domain->box_exist) {
     atom->map_init();
     atom->map_set();
@@ -94,7 +101,8 @@ template <> const HypoElastic *PairFSISolidTL::laws<HypoElastic>() const
 
 void PairFSISolidTL::check_settings()
 {
-  if (plane_stress && law == NEOHOOKEAN) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
+  if (plane_stress && law == NEOHOOKEAN)
+    error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
   if (volumetric != SMOOTHED) return;
   if (plane_stress)
     error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed is not for plane stress, "
@@ -127,15 +135,20 @@ void PairFSISolidTL::init_style()
   PairFSI::init_style();
   check_contact();
   const int dim = fix_fsi->dim;
-  if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
-  if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
+  if (plane_stress && dim == 3)
+    error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
+  if (force->pair_match("^fsi/solid$", 0))
+    error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
   refuse_constraints();
   fix_stress = FixFSIStress::find(lmp);
-  if (hypoelastic() && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
+  if (hypoelastic() && !fix_stress)
+    error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
   if (hypoelastic() && fix_stress->plane_stress != plane_stress) {
     static const char *const planes[] = {"strain", "stress"};
-    error->all(FLERR, "Pair style fsi/solid/tl law hypo has plane {} and fix fsi/stress plane {}: expected the same in both", planes[plane_stress],
-               planes[fix_stress->plane_stress]);
+    error->all(FLERR,
+               "Pair style fsi/solid/tl law hypo has plane {} and fix fsi/stress plane {}: "
+               "expected the same in both",
+               planes[plane_stress], planes[fix_stress->plane_stress]);
   }
 
   Fix *fix = modify->get_fix_by_id(FixFSIReference::ID);
@@ -174,8 +187,8 @@ void PairFSISolidTL::init_style()
 }
 
 /* ----------------------------------------------------------------------
-   With sub-steps forces inside the solid come after all fixes have seen those from outside. What adds to these, as fix addforce, is
-   right; what sets or projects the whole force is not.
+   With sub-steps forces inside the solid come after all fixes have seen those from outside. What
+   adds to these, as fix addforce, is right; what sets or projects the whole force is not.
 ------------------------------------------------------------------------- */
 
 bool PairFSISolidTL::takes_substeps() const
@@ -187,24 +200,30 @@ bool PairFSISolidTL::takes_substeps() const
 
 void PairFSISolidTL::refuse_constraints() const
 {
-  static const char *const styles[] = {"setforce", "aveforce", "lineforce", "planeforce", "freeze", "manifoldforce", "damping/cundall",
-                                       "shake", "rattle"};
+  static const char *const styles[] = {"setforce",        "aveforce", "lineforce",
+                                       "planeforce",      "freeze",   "manifoldforce",
+                                       "damping/cundall", "shake",    "rattle"};
   if (!takes_substeps()) return;
   for (auto &fix : modify->get_fix_list())
     for (const char *style : styles) {
       const std::string name = style;
       if (fix->style != name && !utils::strmatch(fix->style, "^" + name + "/")) continue;
       const auto held = find_particles(atom, world, [&](int i) {
-        return material[atom->type[i]].species == SOLID && atom->mask[i] & fix_fsi->groupbit && atom->mask[i] & fix->groupbit;
+        return material[atom->type[i]].species == SOLID && atom->mask[i] & fix_fsi->groupbit &&
+            atom->mask[i] & fix->groupbit;
       });
       if (held.count)
-        error->all(FLERR, "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see forces inside the solid: to hold "
-                          "particles leave them out of the group of fix {}", fix->id, fix->style, held.first, fix_fsi->id);
+        error->all(
+            FLERR,
+            "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see "
+            "forces inside the solid: to hold particles leave them out of the group of fix {}",
+            fix->id, fix->style, held.first, fix_fsi->id);
     }
 }
 
 /* ----------------------------------------------------------------------
-   A rigid part of an elastic body is kicked once in a step, by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
+   A rigid part of an elastic body is kicked once in a step, by forces that the sub-steps do not
+   see: a beam with a rigid tip gains energy.
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::refuse_rigid_parts() const
@@ -213,9 +232,14 @@ void PairFSISolidTL::refuse_rigid_parts() const
     if (!utils::strmatch(fix->style, "^rigid") && !utils::strmatch(fix->style, "^poems")) continue;
     for (const BondRow &row : rows) {
       const auto elastic = [&](int i) { return atom->mask[i] & fix_fsi->groupbit; };
-      if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int j) { return !elastic(j) && atom->mask[j] & fix->groupbit; }))
-        error->one(FLERR, "Fix {} (style {}) moves a part of the elastic body of atom {}, which takes sub-steps: the part would gain energy. Use "
-                          "substeps 1 in fix fsi, or fix fsi/move if its motion is known", fix->id, fix->style, atom->tag[row.i]);
+      if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int j) {
+            return !elastic(j) && atom->mask[j] & fix->groupbit;
+          }))
+        error->one(FLERR,
+                   "Fix {} (style {}) moves a part of the elastic body of atom {}, which takes "
+                   "sub-steps: the part would gain energy. Use substeps 1 in fix fsi, or fix "
+                   "fsi/move if its motion is known",
+                   fix->id, fix->style, atom->tag[row.i]);
     }
   }
 }
@@ -228,7 +252,8 @@ const std::vector<int> &PairFSISolidTL::solids() const
 }
 
 /* ----------------------------------------------------------------------
-   with sub-steps the forces act inside fix fsi's last half of the step, not here; but in setup forces, energy and virial are seen
+   with sub-steps the forces act inside fix fsi's last half of the step, not here; but in setup
+   forces, energy and virial are seen
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::compute(int eflag, int vflag)
@@ -275,7 +300,12 @@ void PairFSISolidTL::internal_forces()
     else
       self_contact_forces<3>();
   }
-  exchange(fix_fsi->profile, comm, this, true, [this]() { reference->swaps.reverse(this); }, reference->swaps.skip_empty());
+  exchange(
+      fix_fsi->profile, comm, this, true,
+      [this]() {
+        reference->swaps.reverse(this);
+      },
+      reference->swaps.skip_empty());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -290,12 +320,15 @@ void PairFSISolidTL::find_rows()
     const State &s = fix_fsi->state[type[i]], &first = fix_fsi->state[type[reference->solids[0]]];
     one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
     if (reference->count(i) == 0) continue;    // torn off by damage
-    rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i), reference->moments(i),
-                    atom->rmass[i] / s.rho0 * reference->weight(i), zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
+    rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i),
+                    reference->moments(i), atom->rmass[i] / s.rho0 * reference->weight(i),
+                    zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
   }
   if (fix_fsi->substeps > 1 || (update->setupflag && takes_substeps())) refuse_rigid_parts();
   const auto moves = [=](const BondRow &row) {
-    return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [=](int j) { return mask[j] & groupbit; });
+    return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [=](int j) {
+             return mask[j] & groupbit;
+           });
   };
   nmoving = std::stable_partition(rows.begin(), rows.end(), moves) - rows.begin();
 }
@@ -394,12 +427,16 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
                             alpha, beta, one_material, &sums};
   const L *const law_of = laws<L>();
   auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid ? fsolid[0] : nullptr);
-  // with sums, or one by one, there is one loop for all effects: those that are off have coefficients of zero
+  // with sums, or one by one, there is one loop for all effects: those that are off have
+  // coefficients of zero
   const bool packs = have_packs() && (one_material || !has_artificial());
   const int named = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
   with_flags<ALL>(fix_fsi->ledger || vflag_global || !packs ? ALL : named, [&](auto which) {
     if constexpr (!(which() & SUMS) || which() == ALL) {
-      const auto loop = [&](auto number) __attribute__((always_inline)) { bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f); };
+      const auto loop = [&](auto number) __attribute__((always_inline))
+      {
+        bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f);
+      };
       if (packs) return run_loop<Pack>(loop);
       if constexpr (which() == ALL) run_loop<double>(loop);
     }
@@ -551,9 +588,11 @@ double PairFSISolidTL::stored(int i) const
     double F[D * D];
     deformation<D>(i, F);
     const int t = atom->type[i];
-    return law == SVK ? svk[t].template operator()<D>(F, nullptr).energy : neohookean[t].template operator()<D>(F, nullptr).energy;
+    return law == SVK ? svk[t].template operator()<D>(F, nullptr).energy
+                      : neohookean[t].template operator()<D>(F, nullptr).energy;
   };
-  return fix_fsi->dim == 2 ? evaluate(std::integral_constant<int, 2>()) : evaluate(std::integral_constant<int, 3>());
+  return fix_fsi->dim == 2 ? evaluate(std::integral_constant<int, 2>())
+                           : evaluate(std::integral_constant<int, 3>());
 }
 
 double PairFSISolidTL::volume_ratio(int i) const
@@ -620,7 +659,8 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
     if (D == 2) s.sigma[2] = piola.zz / s.J;
     return s;
   };
-  return fix_fsi->dim == 2 ? evaluate(std::integral_constant<int, 2>()) : evaluate(std::integral_constant<int, 3>());
+  return fix_fsi->dim == 2 ? evaluate(std::integral_constant<int, 2>())
+                           : evaluate(std::integral_constant<int, 3>());
 }
 
 double PairFSISolidTL::Stress::von_mises() const
@@ -636,14 +676,20 @@ double PairFSISolidTL::Stress::von_mises() const
 
 void PairFSISolidTL::forward_positions()
 {
-  exchange(fix_fsi->profile, comm, this, false, [this]() { reference->swaps.forward(this); }, reference->swaps.skip_empty());
+  exchange(
+      fix_fsi->profile, comm, this, false,
+      [this]() {
+        reference->swaps.forward(this);
+      },
+      reference->swaps.skip_empty());
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
 {
   const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
-  const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0, pbc_flag ? pbc[1] * domain->yprd : 0.0,
+  const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0,
+                           pbc_flag ? pbc[1] * domain->yprd : 0.0,
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
   int m = 0;
   if (sends_strains) {
@@ -694,9 +740,10 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   Stiff solids: from the state at the start of the step on, position Verlet with a step that many times shorter. What acts on
-   them from outside (f: fluid, gravity, ...), taken at the middle of the step, is held: what the fluid has lost in momentum, the
-   solid gains, to round-off.
+   Stiff solids: from the state at the start of the step on, position Verlet with a step that
+   many times shorter. What acts on them from outside (f: fluid, gravity, ...), taken at the
+   middle of the step, is held: what the fluid has lost in momentum, the solid gains, to
+   round-off.
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::integrate_substeps()
@@ -744,7 +791,8 @@ void PairFSISolidTL::integrate_substeps()
   }
   fix_fsi->check.after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
-  // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
+  // what is seen from outside: the whole force and its virial, which a hybrid style has summed up
+  // already
   if (force->pair != this)
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   for (const int i : solids())
@@ -784,7 +832,8 @@ void PairFSISolidTL::add_costs(Costs &costs) const
 
 void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
 {
-  if (all.solids == 0) nothing("Pair style fsi/solid/tl" + named_effects(), "no particle is a solid");
+  if (all.solids == 0)
+    nothing("Pair style fsi/solid/tl" + named_effects(), "no particle is a solid");
   else if (volumetric == SMOOTHED && !smoothed.on())
     nothing("Pair style fsi/solid/tl volumetric smoothed",
             fmt::format("no Poisson's ratio is above {}", VolumetricStrain::LOCAL));
@@ -796,8 +845,10 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 {
   static const char *const names[] = {"St. Venant-Kirchhoff", "neo-Hookean", "hypoelastic"};
   auto list = keywords.effects();
-  list.insert(list.begin(), {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"),
-                             "law", true});
+  list.insert(list.begin(),
+              {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law],
+                           linear ? "linear" : "quadratic"),
+               "law", true});
   if (smoothed.on())
     list.push_back({"smoothed volumetric strain of nearly incompressible solids",
                     "volumetric", true});
@@ -808,6 +859,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 
 double PairFSISolidTL::memory_usage()
 {
-  return (double) nmax * row_of_forces(domain->dimension) * sizeof(double) + (double) points.capacity() * sizeof(double) +
-      (double) rows.capacity() * sizeof(BondRow) + smoothed.memory_usage();
+  return (double) nmax * row_of_forces(domain->dimension) * sizeof(double) +
+      (double) points.capacity() * sizeof(double) + (double) rows.capacity() * sizeof(BondRow) +
+      smoothed.memory_usage();
 }

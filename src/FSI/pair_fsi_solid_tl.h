@@ -32,10 +32,11 @@ namespace LAMMPS_NS {
 
 // Elastic solids in total-Lagrangian form. The deformation gradient of particle i is
 //   F_i = sum_j (x_j - x_i) (x) G_ij
-// over its bonds, the neighbours in the reference configuration, and the force is minus the derivative of the energy
-// sum_i V_i psi(F_i): momentum, angular momentum and energy are kept to round-off and time step. Particle i alone gives
-// the forces -V_i P_i G_ij to its partners and the opposite to itself, so neither F nor P crosses ranks.
-// Particles of different bodies meet by contact only.
+// over its bonds, the neighbours in the reference configuration, and the force is minus the
+// derivative of the energy sum_i V_i psi(F_i): momentum, angular momentum and energy are kept to
+// round-off and time step. Particle i alone gives the forces -V_i P_i G_ij to its partners and the
+// opposite to itself, so neither F nor P crosses ranks. Particles of different bodies meet by
+// contact only.
 
 class PairFSISolidTL : public PairFSI {
  public:
@@ -51,7 +52,8 @@ class PairFSISolidTL : public PairFSI {
   void *extract(const char *, int &) override;
   std::vector<Effect> effects() const override;
   void advance(bool) override;
-  // Stiff solids: after the kick of what acts from outside is known, with a step that many times shorter
+  // Stiff solids: after the kick of what acts from outside is known, with a step that many times
+  // shorter
   void integrate_substeps() override;
   void add_costs(Costs &) const override;
   void find_idle(const Census &, const Idle &) const override;
@@ -61,12 +63,14 @@ class PairFSISolidTL : public PairFSI {
   void internal_forces();
   // positions, and velocities where a force needs them, of ghost solids from their owners
   void forward_positions();
-  // law hypo: deviatoric stress from half a step back to half a step ahead, at positions dt/2 ahead of the velocities' time
+  // law hypo: deviatoric stress from half a step back to half a step ahead, at positions dt/2 ahead
+  // of the velocities' time
   bool hypoelastic() const { return law == HYPO; }
   void advance_stress(double dt);
   void break_bonds();    // keyword damage
   const std::vector<int> &solids() const;
-  double strain_energy;    // of this rank's particles at the last forces; kept for compute fsi/energy
+  // of this rank's particles at the last forces; kept for compute fsi/energy
+  double strain_energy;
 
   struct Stress {
     double sigma[6];    // Cauchy: xx yy zz xy xz yz
@@ -104,10 +108,12 @@ class PairFSISolidTL : public PairFSI {
   void refuse_rigid_parts() const;
   double stored(int i) const;
   template <class L> const L *laws() const;
-  // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces are seen from outside
+  // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces
+  // are seen from outside
   std::vector<FSI::BondRow> rows;
   int nmoving, changes_seen;    // how many do not; when they were found
-  bool only_moving, one_material;    // forces of those are wanted; all solids have one density and one speed of sound
+  // forces of those are wanted; all solids have one density and one speed of sound
+  bool only_moving, one_material;
   void find_rows();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
   template <int D> void gather_points();
