@@ -23,6 +23,7 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 
 #include "fsi_bond_rows.h"
 #include "fsi_contact.h"
+#include "fsi_solid_laws.h"
 #include "fsi_volumetric.h"
 #include "pair_fsi.h"
 
@@ -63,9 +64,8 @@ class PairFSISolidTL : public PairFSI {
   void internal_forces();
   // positions, and velocities where a force needs them, of ghost solids from their owners
   void forward_positions();
-  // law hypo: deviatoric stress from half a step back to half a step ahead, at positions dt/2 ahead
-  // of the velocities' time
-  bool hypoelastic() const { return law == HYPO; }
+  // stress or history of a law that has one, from the middle of one step to that of the next, where
+  // positions are; velocities are those of the time between
   void advance_stress(double dt);
   void break_bonds();    // keyword damage
   const std::vector<int> &solids() const;
@@ -90,16 +90,14 @@ class PairFSISolidTL : public PairFSI {
   FSI::State make_state(const FSI::Material &) const override;
 
  private:
-  enum Law { SVK, NEOHOOKEAN, HYPO };
   enum Volumetric { AUTO, SMOOTHED, LOCAL };
   double zeta, damage;
   int law, plane_stress, linear, plain, volumetric;
   int is_hypoelastic;    // for extract()
   class FixFSIReference *reference;
-  class FixFSIStress *fix_stress;    // null: no law needs it
-  std::vector<FSI::StVenantKirchhoff> svk;    // per type
-  std::vector<FSI::NeoHookean> neohookean;
-  std::vector<FSI::HypoElastic> hypo;
+  class FixFSIStress *fix_stress;      // null: the law has no rates
+  class FixFSIHistory *fix_history;    // null: the law has no history of its own
+  FSI::SolidLaws laws;
   double **fsolid;
   int nmax;
 
@@ -107,7 +105,8 @@ class PairFSISolidTL : public PairFSI {
   bool takes_substeps() const;    // or may choose to
   void refuse_rigid_parts() const;
   double stored(int i) const;
-  template <class L> const L *laws() const;
+  void make_laws();
+  const double *const *history() const;    // per particle, stress of rates or the law's own; or null
   // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces
   // are seen from outside
   std::vector<FSI::BondRow> rows;
@@ -121,16 +120,19 @@ class PairFSISolidTL : public PairFSI {
   bool sends_strains;    // what messages carry: these, or positions and forces
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
-  template <class Call> void with_law(Call call);    // call(law, constant with the dimension)
-  template <class L, int D> void bond_forces();
+  // what call(laws per type, constant with the dimension) returns
+  template <class Call> auto with_law(Call call) const;
+  template <class L, int D> void bond_forces(const L *law_of);
   std::vector<FSI::Contact> contacts;    // by both types
   template <int D> void contact_forces();
   template <int D> void self_contact_forces();
   template <int D>
   void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
-  template <int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
+  template <class L, int D>
+  void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
   template <int D> void deformation(int i, double *F) const;
-  template <int D> void advance_stress_of_all(double dt);
+  template <int D> void advance_rates(double dt);
+  template <class L, int D> void advance_history(const L *law_of, double dt);
 };
 
 }    // namespace LAMMPS_NS
