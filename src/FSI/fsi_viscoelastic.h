@@ -72,10 +72,10 @@ namespace FSI {
       if (D == 2) out[3] = 1.0;
     }
 
-    // History of a particle: q; energy of all q_k; s of the last step; each q_k.
+    // History of a particle: q; energy of all q_k; s and (Cb - I)/2 of the last step; each q_k.
     template <int D> static constexpr int ENERGY = NS<D>;
     template <int D> static constexpr int LAST = NS<D> + 1;
-    template <int D> static constexpr int FIRST = 2 * NS<D> + 1;
+    template <int D> static constexpr int FIRST = 3 * NS<D> + 1;
     int columns(int dim) const
     {
       const int n = terms.size();
@@ -97,13 +97,17 @@ namespace FSI {
     }
 
     // The history after a step, at whose end the deformation gradient is F. Returns the energy per
-    // reference volume that is dissipated. A particle that is turned inside out keeps its history.
+    // reference volume that is dissipated, to second order: forces take the new q at the end of a
+    // step, so that q changes at the mean strain. A particle that is turned inside out keeps its
+    // history.
     template <int D>
     double advance(const double *F, const std::vector<Factors> &factors, double *history) const
     {
       const double J = determinant<D>(F);
       if (!(J > 0.0)) return 0.0;
-      double cof[D * D], C[NS<D>], inverse[NS<D>], strain[NS<D>], s[NS<D>];
+      double cof[D * D], C[NS<D>], inverse[NS<D>], mean[NS<D>], s[NS<D>];
+      double *const q = history, *const last = history + LAST<D>, *const strain = last + NS<D>;
+      double *qk = history + FIRST<D>;
       cofactor<D>(F, cof);
       square<D>(F, C);
       square<D>(cof, inverse);
@@ -113,11 +117,13 @@ namespace FSI {
         if (diagonal<D>(c)) third += C[c] / 3.0;
       for (int c = 0; c < NS<D>; c++) {
         const double one = diagonal<D>(c) ? 1.0 : 0.0, inv = D == 2 && c == 3 ? 1.0 : 1.0 / (J * J);
-        strain[c] = 0.5 * (scale * C[c] - one);
+        const double now = 0.5 * (scale * C[c] - one);
+        mean[c] = 0.5 * (strain[c] + now);
+        strain[c] = now;
         s[c] = mu * (one - third * inverse[c] * inv);
       }
-      double *const q = history, *const last = history + LAST<D>, *qk = history + FIRST<D>;
-      double lost = history[ENERGY<D>] - contract<D>(q, strain), energy = 0.0;
+      const double before = history[ENERGY<D>] - contract<D>(q, mean);
+      double energy = 0.0;
       for (int c = 0; c < NS<D>; c++) q[c] = 0.0;
       for (size_t k = 0; k < terms.size(); k++, qk += NS<D>) {
         const Factors &f = factors[k];
@@ -129,7 +135,7 @@ namespace FSI {
       }
       for (int c = 0; c < NS<D>; c++) last[c] = s[c];
       history[ENERGY<D>] = energy;
-      return lost - energy + contract<D>(q, strain);
+      return before - energy + contract<D>(q, mean);
     }
 
     static double volumetric_energy(double m) { return 0.5 * m * m; }

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import Scene, close, differing, lammps, lattice, run, watch
+from scenes import Kernel, Scene, close, differing, lammps, lattice, run, watch
 
 RHO, E, NU = 1000.0, 1.0e5, 0.3
 G, K = E / (2 * (1 + NU)), E / (3 * (1 - 2 * NU))
@@ -12,7 +12,7 @@ DIMS = pytest.mark.parametrize("dim", [2, 3])
 
 
 def material(terms, nu=NU):
-    return f"solid rho {RHO} young {E} poisson {nu} prony " + " ".join(f"{g} {tau}" for g, tau in terms)
+    return f"solid rho {RHO} young {E} poisson {nu}" + (" prony " if terms else "") + " ".join(f"{g} {tau}" for g, tau in terms)
 
 
 def solid(x, v=None, terms=TERMS, keywords="", **more):
@@ -124,21 +124,25 @@ def test_rotation_changes_no_stress():
 @DIMS
 @pytest.mark.parametrize("wave", ["shear", "axial"])
 def test_wave_is_damped_as_the_complex_modulus_says(dim, wave):
-    """A standing wave in a periodic body: rho s^2 + k^2 M(s) = 0 with M = G* or K + 4/3 G*."""
+    """A standing wave in a periodic body: rho s^2 + k^2 M(s) = 0 with M = G* or K + 4/3 G*; k as the gradient of a lattice sees it."""
     n = [24] + [8] * (dim - 1)
     x = lattice(n, DX)
     box = [m * DX for m in n] + [0.0] * (3 - dim)
     k, axis, terms = 2 * np.pi / box[0], 1 if wave == "shear" else 0, ((0.1, 0.05), (0.05, 0.3))
+    X = lattice([7] * dim, DX, centre=True)
+    w = Kernel("wendland", dim, 1.5 * DX).W(np.linalg.norm(X, axis=1)) * X[:, 0]
+    seen = w @ np.sin(k * X[:, 0]) / (w @ X[:, 0])
+    assert 0.95 < seen / k < 1
     v = np.zeros_like(x)
     mode = np.sin(k * x[:, 0])
     v[:, axis] = 1e-3 * mode
 
     def stiffness(g):
-        return k**2 / RHO * (g if wave == "shear" else K + 4 / 3 * g)
+        return seen**2 / RHO * (g if wave == "shear" else K + 4 / 3 * g)
 
     s0 = poles(G, stiffness, terms)
     dt = 4e-3
-    with solid(x, v, terms, dt=dt, box=((0, 0, 0 if dim == 3 else -DX), box), boundary="p p p", keywords="hourglass 0.05") as s:
+    with solid(x, v, terms, dt=dt, box=((0, 0, 0 if dim == 3 else -DX), box), boundary="p p p", keywords="hourglass 0") as s:
         every, a = 5, []
         for _ in range(60):
             s.run(every)
@@ -146,40 +150,41 @@ def test_wave_is_damped_as_the_complex_modulus_says(dim, wave):
     measured = damped_swing(np.array(a), every * dt)
     decrement = -2 * np.pi * measured.real / measured.imag, -2 * np.pi * s0.real / s0.imag
     print(f"{wave} wave, {dim}D: frequency {measured.imag / s0.imag - 1:+.4f}, decrement {decrement[0]:.4f}, {decrement[1]:.4f}")
-    # 24 particles a wave: the gradient of the lattice lacks (k dx)^2/6 of k at most, 1 %; the time step's (w dt)^2/24 is less
-    assert measured.imag == pytest.approx(s0.imag, rel=0.015)
-    assert decrement[0] == pytest.approx(decrement[1], rel=0.02)
+    # error of the time step, (w dt)^2/24 = 0.0006 of the axial wave
+    assert measured.imag == pytest.approx(s0.imag, rel=0.001)
+    assert decrement[0] == pytest.approx(decrement[1], rel=0.01)
 
 
 def test_cantilever_swings_and_is_damped():
-    """Plate of plane strain, L/H = 12, held at one end: rho H s^2 + D(s) b^4 = 0, b L = 1.8751, D = H^3/12 4 G (3 K + G)/(3 K + 4 G)."""
-    terms, across, dx = ((0.1, 0.1), (0.05, 1.0)), 6, 1.0 / 6
-    L, H = 12.0, 1.0
+    """Plate of plane strain held at one end, as the elastic one but with the complex modulus in D = H^3/12 4 G (3 K + G)/(3 K + 4 G)."""
+    across, dx, L, H, dt, every = 4, 0.25, 6.0, 1.0, 0.02, 40
     x = lattice([int(L / dx) + 6, across], dx)
     x[:, 0] -= 6 * dx
-    x[:, 1] -= H / 2
     held = x[:, 0] < 0
-    b = 1.875104 / L
-    X = np.where(held, 0, x[:, 0])
-    shape = np.cosh(b * X) - np.cos(b * X) - 0.734096 * (np.sinh(b * X) - np.sin(b * X))
     v = np.zeros_like(x)
-    v[:, 1] = 1e-2 * shape
+    mode = np.where(held, 0, x[:, 0] / L)**2 * (3 - x[:, 0] / L)
+    v[:, 1] = 2e-3 * mode
 
-    def stiffness(g):
-        return H**2 / 12 * 4 * g * (3 * K + g) / (3 * K + 4 * g) * b**4 / RHO
+    def swing(terms):
+        a = []
+        with solid(x, v, terms, dx=dx, held=held, dt=dt) as s:
+            for _ in range(45):
+                a.append((s.run(every).get("v")[:, 1] * mode)[~held].sum())
+        return damped_swing(np.array(a), every * dt)
 
-    s0 = poles(G, stiffness, terms)
-    dt = 0.008
-    with solid(x, v, terms, dx=dx, held=held, dt=dt) as s:
-        a, every = [], 40
-        for _ in range(40):
-            s.run(every)
-            a.append((s.get("v")[:, 1] * shape)[~held].sum())
-    measured = damped_swing(np.array(a), every * dt)
+    def bending(g):
+        return 4 * g * (3 * K + g) / (3 * K + 4 * g)
+
+    free = swing(())
+    thin = 1.875104**2 / L**2 * np.sqrt(bending(G) * H**2 / 12 / RHO)
+    terms = ((0.1, 0.5), (0.1, 3.0))
+    s0, measured = poles(G, lambda g: free.imag**2 * bending(g) / bending(G), terms), swing(terms)
     decrement = -2 * np.pi * measured.real / measured.imag, -2 * np.pi * s0.real / s0.imag
-    print(f"plate: frequency {measured.imag / s0.imag - 1:+.4f}, decrement {decrement[0]:.4f}, {decrement[1]:.4f}")
-    # of a plate of this length shear and rotary inertia make the frequency lower by 1 %
-    assert measured.imag == pytest.approx(s0.imag, rel=0.03)
+    print(f"plate: elastic {free.imag / thin - 1:+.4f} of a thin one, frequency {measured.imag / s0.imag - 1:+.4f} (elastic "
+          f"{measured.imag / free.imag - 1:+.4f}), decrement {decrement[0]:.4f}, {decrement[1]:.4f}")
+    assert free.imag == pytest.approx(thin, rel=0.1)  # rotary inertia, shear, clamp
+    # what shear has of the bending (3 %) goes with G, not with the modulus of bending
+    assert measured.imag == pytest.approx(s0.imag, rel=0.01)
     assert decrement[0] == pytest.approx(decrement[1], rel=0.05)
 
 
@@ -205,8 +210,8 @@ def test_energy_that_is_lost_is_dissipated(dim, substeps):
     total = start.sum()
     print(f"{dim}D: dissipated {lost[-1] / total:.3f}, sum of all {np.abs(np.array(all_of) / total - 1).max():.2e}")
     assert np.diff([0, *lost]).min() > -1e-6 * total and lost[-1] > 0.4 * total
-    # error of the time step, a fortieth of what a wave needs for the body's shorter side
-    assert np.abs(np.array(all_of) / total - 1).max() < 5e-3
+    # error of the time step, of second order; without entry 12 it is all that is dissipated
+    assert np.abs(np.array(all_of) / total - 1).max() < 1e-3
 
 
 # ---- restart, ranks ------------------------------------------------------------------------------
@@ -248,10 +253,11 @@ def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
 
 
 def test_ranks_agree(tmp_path):
-    deck = DECK + STYLE + FIXES + START + watch(every=120) + "run 120\n"
+    run(tmp_path, DECK + STYLE + FIXES + START + "run 30\nwrite_restart mid\n", rubber_fsi=FILE)
+    deck = "read_restart ../mid\n" + FIXES + watch(every=120) + "run 90\n"
     one, two = (run(tmp_path / str(n), deck, n, rubber_fsi=FILE).frames()[-1] for n in (1, 2))
     for name in ("x", "y", "vx", "vy", "sxy"):
-        close(two[name], one[name], 1e-9)  # round-off of 120 steps
+        close(two[name], one[name], 1e-9)  # round-off of 90 steps
 
 
 def test_another_number_of_terms_begins_anew(tmp_path):
@@ -261,7 +267,7 @@ def test_another_number_of_terms_begins_anew(tmp_path):
     deck = DECK + STYLE + FIXES + START + "run 20\nwrite_restart mid\npair_coeff * * other.fsi rubber\nrun 20\n"
     assert "the viscoelastic stress of its bodies is forgotten" in run(tmp_path, deck, rubber_fsi=FILE, other_fsi=other).output
     deck = "read_restart mid\n" + STYLE.replace("rubber.fsi", "other.fsi") + FIXES + "run 20\n"
-    assert "has 17 numbers of viscoelastic stress for each atom" in lammps(tmp_path, deck).output
+    assert "has 21 numbers of viscoelastic stress for each atom" in lammps(tmp_path, deck).output
 
 
 def test_two_laws_after_each_other(tmp_path):
