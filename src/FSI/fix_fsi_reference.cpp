@@ -343,17 +343,88 @@ void FixFSIReference::unpack_forward_comm(int n, int first, double *buf)
   memcpy(layer + (size_t) first * comm_forward, buf, (size_t) n * comm_forward * sizeof(double));
 }
 
-template <int D> void FixFSIReference::take_reference(const std::vector<int> &bare)
+// the neighbors of i of its own body, their separations, and weights V_j W
+template <int D, class Kernel>
+void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<int> &near,
+                                     std::vector<double> &dX, std::vector<double> &w) const
 {
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
+  const int *const type = atom->type;
+  near.clear();
+  dX.clear();
+  w.clear();
+  for (int jj = 0; jj < list->numneigh[i]; jj++) {
+    const int j = list->firstneigh[i][jj] & NEIGHMASK;
+    if (molecule[j] != molecule[i] || !is_solid(j)) continue;
+    double rsq = 0.0, d[D];
+    bool halfway = false;    // round the box: the image on the other side is as near
+    for (int a = 0; a < D; a++) {
+      d[a] = x[j][a] - x[i][a];
+      rsq += d[a] * d[a];
+      halfway = halfway ||
+          (domain->periodicity[a] && 2.0 * std::fabs(d[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
+    }
+    if (rsq >= WITHIN * kernel.cutsq) continue;
+    if (fix_fsi->h_of(type[j]) != fix_fsi->h_of(type[i]))
+      error->one(FLERR,
+                 "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types "
+                 "{} and {}: a body has one",
+                 tag[i], tag[j], molecule[i], fix_fsi->dx_of(type[i]), fix_fsi->dx_of(type[j]),
+                 type[i], type[j]);
+    if (rsq == 0.0)
+      error->one(FLERR, "Solid atoms {} and {} of body {} are at the same place", tag[i], tag[j],
+                 molecule[i]);
+    if (halfway || domain->closest_image(i, j) != j)
+      error->one(FLERR,
+                 "Solid atoms {} and {} are neighbors through more than one image: a "
+                 "periodic box must be wider than two supports, {}, of the kernel",
+                 tag[i], tag[j], 2.0 * kernel.cut);
+    near.push_back(j);
+    dX.insert(dX.end(), d, d + D);
+    w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
+  }
+}
+
+// a slot with the bonds of i to them
+template <int D, class Kernel>
+void FixFSIReference::enter_bonds(int i, const Kernel &kernel, const std::vector<int> &near,
+                                  const std::vector<double> &dX, const std::vector<double> &G)
+{
+  const int n = near.size();
+  slot[i] = new_slot(n);
+  owner[slot[i]] = atom->tag[i];
+  if (keeps_places) std::copy_n(atom->x[i], D, &place[(size_t) slot[i] * D]);
+  for (int k = 0; k < n; k++) {
+    double *const value = bond_in(slot[i], k);
+    const double *d = &dX[k * D];
+    double rsq = 0.0;
+    for (int a = 0; a < D; a++) {
+      value[a * BOND_BLOCK] = G[k * D + a];
+      value[(D + a) * BOND_BLOCK] = d[a];
+      rsq += d[a] * d[a];
+    }
+    const double r = std::sqrt(rsq), vv = volume(i) * volume(near[k]);
+    value[2 * D * BOND_BLOCK] = vv * kernel.W(r) / rsq;
+    value[(2 * D + 1) * BOND_BLOCK] = vv * kernel.gradient(r);
+    partner[(size_t) slot[i] * maxbond + k] = atom->tag[near[k]];
+  }
+  complete(slot[i]);
+}
+
+double FixFSIReference::volume(int i) const
+{
+  return atom->rmass[i] / fix_fsi->state[atom->type[i]].rho0;
+}
+
+template <int D> void FixFSIReference::take_reference(const std::vector<int> &bare)
+{
   const int *const type = atom->type;
   // bodies by their smoothing length, in the order of the first of each
   std::vector<double> all_h;
   for (const int i : bare)
     if (std::find(all_h.begin(), all_h.end(), fix_fsi->h_of(type[i])) == all_h.end())
       all_h.push_back(fix_fsi->h_of(type[i]));
-  const auto volume = [&](int i) { return atom->rmass[i] / fix_fsi->state[type[i]].rho0; };
   GradientWeights<D> weights;
   std::vector<int> near;
   std::vector<double> dX, w, G;
@@ -363,39 +434,7 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
     if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
       for (const int i : bare) {
         if (fix_fsi->h_of(type[i]) != h) continue;
-        near.clear();
-        dX.clear();
-        w.clear();
-        for (int jj = 0; jj < list->numneigh[i]; jj++) {
-          const int j = list->firstneigh[i][jj] & NEIGHMASK;
-          if (molecule[j] != molecule[i] || !is_solid(j)) continue;
-          double rsq = 0.0, d[D];
-          bool halfway = false;    // round the box: the image on the other side is as near
-          for (int a = 0; a < D; a++) {
-            d[a] = x[j][a] - x[i][a];
-            rsq += d[a] * d[a];
-            halfway = halfway ||
-                (domain->periodicity[a] && 2.0 * std::fabs(d[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
-          }
-          if (rsq >= WITHIN * kernel.cutsq) continue;
-          if (fix_fsi->h_of(type[j]) != h)
-            error->one(FLERR,
-                       "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types "
-                       "{} and {}: a body has one",
-                       tag[i], tag[j], molecule[i], fix_fsi->dx_of(type[i]),
-                       fix_fsi->dx_of(type[j]), type[i], type[j]);
-          if (rsq == 0.0)
-            error->one(FLERR, "Solid atoms {} and {} of body {} are at the same place", tag[i],
-                       tag[j], molecule[i]);
-          if (halfway || domain->closest_image(i, j) != j)
-            error->one(FLERR,
-                       "Solid atoms {} and {} are neighbors through more than one image: a "
-                       "periodic box must be wider than two supports, {}, of the kernel",
-                       tag[i], tag[j], 2.0 * kernel.cut);
-          near.push_back(j);
-          dX.insert(dX.end(), d, d + D);
-          w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
-        }
+        find_neighbors<D>(i, kernel, near, dX, w);
         const int n = near.size();
         G.resize((size_t) n * D);
         const auto order = weights(n, dX.data(), w.data(), h, quadratic, G.data());
@@ -404,29 +443,11 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
                      "Solid atom {} of body {} has {} neighbors of its own body within {}: too "
                      "few, or all in one {}, for a deformation gradient. A body must be at least "
                      "two particles thick, and one body one molecule ID",
-                     tag[i], molecule[i], n, kernel.cut, D == 2 ? "line" : "plane");
+                     atom->tag[i], atom->molecule[i], n, kernel.cut, D == 2 ? "line" : "plane");
         mine[0]++;
         mine[1] += n;
         mine[2 + order]++;
-
-        slot[i] = new_slot(n);
-        owner[slot[i]] = tag[i];
-        if (keeps_places) std::copy_n(x[i], D, &place[(size_t) slot[i] * D]);
-        for (int k = 0; k < n; k++) {
-          double *const value = bond_in(slot[i], k);
-          const double *d = &dX[k * D];
-          double rsq = 0.0;
-          for (int a = 0; a < D; a++) {
-            value[a * BOND_BLOCK] = G[k * D + a];
-            value[(D + a) * BOND_BLOCK] = d[a];
-            rsq += d[a] * d[a];
-          }
-          const double r = std::sqrt(rsq), vv = volume(i) * volume(near[k]);
-          value[2 * D * BOND_BLOCK] = vv * kernel.W(r) / rsq;
-          value[(2 * D + 1) * BOND_BLOCK] = vv * kernel.gradient(r);
-          partner[(size_t) slot[i] * maxbond + k] = tag[near[k]];
-        }
-        complete(slot[i]);
+        enter_bonds<D>(i, kernel, near, dX, G);
       }
   });
 

@@ -140,6 +140,13 @@ class FixFSIReference : public Fix {
   void follow_commands();
   void take();
   template <int D> void take_reference(const std::vector<int> &);
+  template <int D, class Kernel>
+  void find_neighbors(int i, const Kernel &, std::vector<int> &, std::vector<double> &,
+                      std::vector<double> &) const;
+  template <int D, class Kernel>
+  void enter_bonds(int i, const Kernel &, const std::vector<int> &, const std::vector<double> &,
+                   const std::vector<double> &);
+  double volume(int i) const;
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
   template <int D> void find_self_pairs();

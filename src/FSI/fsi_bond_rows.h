@@ -71,10 +71,10 @@ namespace FSI {
     const double *points;    // per particle x, v
     const int *type;
     const State *state;
-    const double *const *stress;    // per particle, of law hypo; null: none
-    const double *volumetric;       // per particle, q of fsi_volumetric.h; null: none
-    double alpha, beta;             // artificial viscosity
-    bool one_material;              // all solids have one density and one speed of sound
+    const double *const *history;    // per particle, of the law (fsi_solid_laws.h); null: none
+    const double *volumetric;        // per particle, q of fsi_volumetric.h; null: none
+    double alpha, beta;              // artificial viscosity
+    bool one_material;               // all solids have one density and one speed of sound
     BondSums *sums;
   };
 
@@ -171,6 +171,72 @@ namespace FSI {
     return q * vdotx;
   }
 
+  // number v of bond k of a row, and of those that go side by side with it
+  template <class T, int D> FSI_INLINE T number_of(const BondRow &row, int k, int v)
+  {
+    constexpr int NV = 2 * D + 2;
+    return Lanes<T>::load(
+        row.numbers +
+        (Lanes<T>::WIDTH == BOND_BLOCK ? (size_t) k * NV : number_of_bond(k, NV)) + v * BOND_BLOCK);
+  }
+
+  // What loops over the bonds of a row need to know before they begin. Partners are read once and
+  // kept for the second pass over them; copied, since doubles need not be where packs may be
+  template <class T, int D, int FLAGS> struct BondPass {
+    using Partners = Separation<T, D>;
+    static constexpr bool VELOCITIES = FLAGS & (BondFlag::VISCOSITY | BondFlag::SUMS);
+    static constexpr int SIZE =
+        (VELOCITIES ? sizeof(Partners) : sizeof(Partners::x)) / sizeof(double);
+    static constexpr int W = Lanes<T>::WIDTH;
+  };
+
+  // The first pass: F and A of a row
+  template <class T, int D, int FLAGS>
+  FSI_INLINE void gather_row(const BondRow &row, const double *points, double *end, T (&F)[D * D],
+                             T (&A)[D * D])
+  {
+    using Pass = BondPass<T, D, FLAGS>;
+    T from[2 * D];
+    for (int a = 0; a < 2 * D; a++) from[a] = points[row_of_points(D) * row.i + a];
+    for (int k = 0; k < D * D; k++) F[k] = A[k] = 0.0;
+    for (int k = 0; k < row.n; k += Pass::W, end += Pass::SIZE) {
+      Separation<T, D> b;
+      b.read(row.partner + k, points, from, Pass::VELOCITIES);
+      for (int a = 0; a < D; a++) {
+        for (int c = 0; c < D; c++) F[a * D + c] += b.x[a] * number_of<T, D>(row, k, c);
+        if (!(FLAGS & BondFlag::HOURGLASS)) continue;
+        const T wx = number_of<T, D>(row, k, 2 * D) * b.x[a];
+        for (int c = 0; c < D; c++) A[a * D + c] += wx * number_of<T, D>(row, k, D + c);
+      }
+      __builtin_memcpy(end, b.x, sizeof(b.x));
+      if (Pass::VELOCITIES) __builtin_memcpy(end + Pass::SIZE / 2, b.v, sizeof(b.v));
+    }
+  }
+
+  // The derivative t of the energy of i with respect to F_i
+  template <class T, class Law, int D, int FLAGS>
+  FSI_INLINE void differentiate(const BondRow &row, const Law &law, const BondArguments &in,
+                                const double *F, const T *A, double *t)
+  {
+    const int i = row.i;
+    // inline: a call would write F number by number and read it in pairs, which waits until all
+    // stores before it are done
+    const auto piola = law.template operator()<D>(F, in.history ? in.history[i] : nullptr);
+    if (determinant<D>(F) <= 0.0) in.sums->inverted = i;
+    for (int k = 0; k < D * D; k++) t[k] = row.volume * piola.P[k];
+    if (in.volumetric) {
+      double dm[D * D];
+      law.template volumetric_strain<D>(F, dm);
+      for (int k = 0; k < D * D; k++) t[k] += in.volumetric[i] * dm[k];
+    }
+    if (FLAGS & BondFlag::HOURGLASS)
+      subtract_hourglass<T, D>(row.stiffness, A, row.moments, F, t);
+    if (FLAGS & BondFlag::SUMS) {
+      in.sums->energy += row.volume * piola.energy;
+      subtract_product<D>(t, F, in.sums->virial);
+    }
+  }
+
   // f: rows of row_of_forces(D), of local and ghost particles; laws: per type
   template <class T, class Law, int D, int FLAGS>
   FSI_INLINE void bond_rows(const BondRow *const rows, const int nrows, const Law *const laws,
@@ -178,87 +244,48 @@ namespace FSI {
   {
     using namespace BondFlag;
     using L = Lanes<T>;
-    using Partners = Separation<T, D>;
-    constexpr int NV = 2 * D + 2, W = L::WIDTH;
-    constexpr bool VELOCITIES = FLAGS & (VISCOSITY | SUMS);
-    // partners of a row as read once, kept for the second pass over them; copied, since doubles
-    // need not be where packs may be
-    constexpr int SIZE = (VELOCITIES ? sizeof(Partners) : sizeof(Partners::x)) / sizeof(double);
+    using Pass = BondPass<T, D, FLAGS>;
     std::vector<double> kept;
     T energy = 0.0, artificial = 0.0, virial[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     for (int n = 0; n < nrows; n++) {
       const BondRow row = rows[n];
       const int i = row.i;
       const ArtificialViscosity viscosity(in.alpha, in.beta, row.h);
-      T from[2 * D];
-      for (int a = 0; a < 2 * D; a++) from[a] = in.points[row_of_points(D) * i + a];
-      const auto number = [&](int k, int v) __attribute__((always_inline)) {
-        return L::load(row.numbers + (W == BOND_BLOCK ? (size_t) k * NV : number_of_bond(k, NV)) +
-                       v * BOND_BLOCK);
-      };
-      if (kept.size() < (size_t) (row.n / W + 1) * SIZE)
-        kept.resize((size_t) 2 * (row.n / W + 1) * SIZE);
-      double *end = kept.data();
+      if (kept.size() < (size_t) (row.n / Pass::W + 1) * Pass::SIZE)
+        kept.resize((size_t) 2 * (row.n / Pass::W + 1) * Pass::SIZE);
       T F[D * D], A[D * D];
-      for (int k = 0; k < D * D; k++) F[k] = A[k] = 0.0;
-      for (int k = 0; k < row.n; k += W, end += SIZE) {
-        Partners b;
-        b.read(row.partner + k, in.points, from, VELOCITIES);
-        for (int a = 0; a < D; a++) {
-          for (int c = 0; c < D; c++) F[a * D + c] += b.x[a] * number(k, c);
-          if (!(FLAGS & HOURGLASS)) continue;
-          const T wx = number(k, 2 * D) * b.x[a];
-          for (int c = 0; c < D; c++) A[a * D + c] += wx * number(k, D + c);
-        }
-        __builtin_memcpy(end, b.x, sizeof(b.x));
-        if (VELOCITIES) __builtin_memcpy(end + SIZE / 2, b.v, sizeof(b.v));
-      }
-
-      double Fi[D * D];
+      gather_row<T, D, FLAGS>(row, in.points, kept.data(), F, A);
+      double Fi[D * D], t[D * D];
       for (int k = 0; k < D * D; k++) Fi[k] = L::sum(F[k]);
-      // inline: a call would write F number by number and read it in pairs, which waits until all
-      // stores before it are done
-      const auto piola =
-          laws[in.type[i]].template operator()<D>(Fi, in.stress ? in.stress[i] : nullptr);
-      if (determinant<D>(Fi) <= 0.0) in.sums->inverted = i;
-      double t[D * D];    // derivative of the energy of i with respect to F_i
-      for (int k = 0; k < D * D; k++) t[k] = row.volume * piola.P[k];
-      if (in.volumetric) {
-        double dm[D * D];
-        laws[in.type[i]].template volumetric_strain<D>(Fi, dm);
-        for (int k = 0; k < D * D; k++) t[k] += in.volumetric[i] * dm[k];
-      }
-      if (FLAGS & HOURGLASS) subtract_hourglass<T, D>(row.stiffness, A, row.moments, Fi, t);
-      if (FLAGS & SUMS) {
-        in.sums->energy += row.volume * piola.energy;
-        subtract_product<D>(t, Fi, in.sums->virial);
-      }
+      differentiate<T, Law, D, FLAGS>(row, laws[in.type[i]], in, Fi, A, t);
 
       const State &si = in.state[in.type[i]];
       T sum[D];
       for (T &s : sum) s = 0.0;
       const double *next = kept.data();
-      for (int k = 0; k < row.n; k += W, next += SIZE) {
-        Partners b;
+      for (int k = 0; k < row.n; k += Pass::W, next += Pass::SIZE) {
+        Separation<T, D> b;
         __builtin_memcpy(b.x, next, sizeof(b.x));
-        if (VELOCITIES) __builtin_memcpy(b.v, next + SIZE / 2, sizeof(b.v));
+        if (Pass::VELOCITIES) __builtin_memcpy(b.v, next + Pass::SIZE / 2, sizeof(b.v));
         T force[D], X[D], other[D];    // on j
         // what does not act through F_i: the virial's
         T (&beyond)[D] = (FLAGS & SUMS) ? other : force;
         for (int a = 0; a < D; a++) {
-          force[a] = -t[a * D] * number(k, 0);
-          for (int c = 1; c < D; c++) force[a] -= t[a * D + c] * number(k, c);
-          X[a] = number(k, D + a);
+          force[a] = -t[a * D] * number_of<T, D>(row, k, 0);
+          for (int c = 1; c < D; c++) force[a] -= t[a * D + c] * number_of<T, D>(row, k, c);
+          X[a] = number_of<T, D>(row, k, D + a);
           if (FLAGS & SUMS) other[a] = 0.0;
         }
         if (FLAGS & HOURGLASS) {
-          const T stored = straighten(row.stiffness * number(k, 2 * D), Fi, b.x, X, beyond);
+          const T w = number_of<T, D>(row, k, 2 * D);
+          const T stored = straighten(row.stiffness * w, Fi, b.x, X, beyond);
           if (FLAGS & SUMS) energy += stored;
         }
         if (FLAGS & VISCOSITY) {
           // with several materials one by one, since the speed of sound is a number
           const State &sj = in.one_material ? si : in.state[in.type[row.partner[k]]];
-          const T loss = rub(viscosity, si, sj, number(k, 2 * D + 1), b, beyond);
+          const T g = number_of<T, D>(row, k, 2 * D + 1);
+          const T loss = rub(viscosity, si, sj, g, b, beyond);
           if (FLAGS & SUMS) artificial += loss;
         }
         if (FLAGS & SUMS)

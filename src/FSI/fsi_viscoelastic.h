@@ -23,7 +23,8 @@
 //   G(t) = mu (1 - sum_k g_k (1 - exp(-t/tau_k))).
 // A step dt is exact where s changes at a constant rate (Taylor, Pister and Goudreau, Int. J.
 // Numer. Meth. Eng. 2, 45 (1970)). What psi loses in it, at constant F, is dissipated: at small
-// strain sum_k tau_k |dq_k/dt|^2/(2 g_k mu) > 0.
+// strain sum_k tau_k |dq_k/dt|^2/(2 g_k mu) > 0; at large strain, since the energy of q_k is that of
+// small strain, the end of a relaxation may give back some 1e-5 of it.
 
 #ifndef LMP_FSI_VISCOELASTIC_H
 #define LMP_FSI_VISCOELASTIC_H

@@ -43,8 +43,9 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fix_stress(nullptr), fix_history(nullptr), fsolid(nullptr), nmax(0),
-    nmoving(0), changes_seen(-1), only_moving(false), one_material(true), sends_strains(false)
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fix_stress(nullptr),
+    fix_history(nullptr), fsolid(nullptr), nmax(0), nmoving(0), changes_seen(-1),
+    only_moving(false), one_material(true), sends_strains(false)
 {
   no_virial_fdotr_compute = 1;
   artificial_row("solid");
@@ -855,8 +856,8 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 {
   auto list = keywords.effects();
   list.insert(list.begin(),
-              {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", laws.title(),
-                           linear ? "linear" : "quadratic"),
+              {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields",
+                           laws.title(), linear ? "linear" : "quadratic"),
                "law", true});
   if (smoothed.on())
     list.push_back({"smoothed volumetric strain of nearly incompressible solids",

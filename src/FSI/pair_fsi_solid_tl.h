@@ -106,7 +106,8 @@ class PairFSISolidTL : public PairFSI {
   void refuse_rigid_parts() const;
   double stored(int i) const;
   void make_laws();
-  const double *const *history() const;    // per particle, stress of rates or the law's own; or null
+  // per particle, stress of rates or the law's own; or null
+  const double *const *history() const;
   // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces
   // are seen from outside
   std::vector<FSI::BondRow> rows;
