@@ -536,16 +536,27 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
 {
   std::vector<decltype(law_of->factors(dt))> factors;    // per type
   for (int t = 0; t <= atom->ntypes; t++) factors.push_back(law_of[t].factors(dt));
-  for (const int i : reference->solids) {
-    if (reference->count(i) == 0) continue;    // torn off
-    const int t = atom->type[i];
-    double F[D * D];
-    deformation<D>(i, F);
-    const double lost = law_of[t].template advance<D>(F, factors[t], fix_history->of[i]);
-    if (fix_fsi->ledger)
-      fix_fsi->energy_out[FixFSI::INELASTIC] +=
-          lost * atom->rmass[i] / fix_fsi->state[t].rho0 * reference->weight(i);
-  }
+  gather_points<D>();
+  double dissipated = 0.0;
+  const auto loop = [&](auto number) __attribute__((always_inline))
+  {
+    using T = decltype(number);
+    using Pass = BondPass<T, D, 0>;
+    std::vector<double> kept;
+    for (const BondRow &row : rows) {
+      if (kept.size() < (size_t) (row.n / Pass::W + 1) * Pass::SIZE)
+        kept.resize((size_t) 2 * (row.n / Pass::W + 1) * Pass::SIZE);
+      const int t = atom->type[row.i];
+      T F[D * D], unused[D * D];
+      double Fi[D * D];
+      gather_row<T, D, 0>(row, points.data(), kept.data(), F, unused);
+      for (int k = 0; k < D * D; k++) Fi[k] = Lanes<T>::sum(F[k]);
+      dissipated += row.volume *
+          law_of[t].template advance<D>(Fi, factors[t], fix_history->of[row.i]);
+    }
+  };
+  have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
+  if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::INELASTIC] += dissipated;
 }
 
 /* ----------------------------------------------------------------------
