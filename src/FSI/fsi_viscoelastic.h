@@ -15,16 +15,18 @@
 // viscoelasticity: Simo, Comput. Methods Appl. Mech. Engrg. 60, 153 (1987); Simo and Hughes,
 // Computational Inelasticity (1998), sec. 10.3; Holzapfel and Gasser, Comput. Methods Appl. Mech.
 // Engrg. 190, 4379 (2001).
-//   psi = K/2 (ln J)^2 + mu/2 (tr Cb - 3) - q:(Cb - I)/2 + sum_k q_k:q_k/(4 g_k mu)
-//   Cb = J^(-2/3) C,  S = 2 d(psi)/dC,  q = sum_k q_k
+//   psi = K/2 (ln J)^2 + mu/2 (tr Cb - 3) - q:(Cb - I)/2 + sum_k X_k,  q = sum_k q_k
+//   X_k = 3/2 g_k mu (1 - det(I - q_k/(g_k mu))^(1/3)) - tr(q_k)/2
+//   Cb = J^(-2/3) C,  S = 2 d(psi)/dC
 //   tau_k dq_k/dt + q_k = g_k s,  s = mu DEV[I],  DEV[A] = A - (C:A) C^-1/3
 // K, mu: the instantaneous moduli [pressure]; g_k: part of mu that relaxes in the time tau_k. q_k
 // is what has relaxed of the second Piola-Kirchhoff stress, so that at small strain
 //   G(t) = mu (1 - sum_k g_k (1 - exp(-t/tau_k))).
 // A step dt is exact where s changes at a constant rate (Taylor, Pister and Goudreau, Int. J.
-// Numer. Meth. Eng. 2, 45 (1970)). What psi loses in it, at constant F, is dissipated: at small
-// strain sum_k tau_k |dq_k/dt|^2/(2 g_k mu) > 0; at large strain, since the energy of q_k is that of
-// small strain, the end of a relaxation may give back some 1e-5 of it.
+// Numer. Meth. Eng. 2, 45 (1970)). What psi loses in it, at constant F, is dissipated. X_k is the
+// Legendre transform of the part g_k of the neo-Hookean energy: psi is least where q_k = g_k s.
+// It is convex, so that dissipation is not negative at any strain. At small strain X_k is
+// q_k:q_k/(4 g_k mu).
 
 #ifndef LMP_FSI_VISCOELASTIC_H
 #define LMP_FSI_VISCOELASTIC_H
@@ -62,6 +64,22 @@ namespace FSI {
       for (int c = 0; c < NS<D>; c++) sum += (diagonal<D>(c) ? 1.0 : 2.0) * a[c] * b[c];
       return sum;
     }
+    // X_k of a q_k
+    template <int D> double stored(const double *q, double g) const
+    {
+      const double k = 1.0 / (g * mu);
+      double A[6], trace = 0.0;
+      for (int c = 0; c < NS<D>; c++) {
+        A[c] = (diagonal<D>(c) ? 1.0 : 0.0) - k * q[c];
+        if (diagonal<D>(c)) trace += q[c];
+      }
+      double det;
+      if constexpr (D == 2) det = (A[0] * A[1] - A[2] * A[2]) * A[3];
+      else
+        det = A[0] * (A[1] * A[2] - A[5] * A[5]) - A[3] * (A[3] * A[2] - A[5] * A[4]) +
+            A[4] * (A[3] * A[5] - A[1] * A[4]);
+      return 1.5 * g * mu * (1.0 - std::cbrt(det)) - 0.5 * trace;
+    }
     // M^T M of a matrix; 1 normal to the plane
     template <int D> static void square(const double *M, double *out)
     {
@@ -73,7 +91,7 @@ namespace FSI {
       if (D == 2) out[3] = 1.0;
     }
 
-    // History of a particle: q; energy of all q_k; s and (Cb - I)/2 of the last step; each q_k.
+    // History of a particle: q; sum of all X_k; s and (Cb - I)/2 of the last step; each q_k.
     template <int D> static constexpr int ENERGY = NS<D>;
     template <int D> static constexpr int LAST = NS<D> + 1;
     template <int D> static constexpr int FIRST = 3 * NS<D> + 1;
@@ -132,7 +150,7 @@ namespace FSI {
           qk[c] = f.decay * qk[c] + f.now * s[c] + f.before * last[c];
           q[c] += qk[c];
         }
-        energy += contract<D>(qk, qk) / (4.0 * terms[k].g * mu);
+        energy += stored<D>(qk, terms[k].g);
       }
       for (int c = 0; c < NS<D>; c++) last[c] = s[c];
       history[ENERGY<D>] = energy;

@@ -131,13 +131,13 @@ TYPED_TEST(Elastic, ViscoelasticEnergyThatIsLostIsDissipated)
   Random random(6);
   const ViscoElastic law(K, G, {{0.3, 0.5}, {0.2, 2.0}});
   std::vector<double> history(law.columns(D), 0.0);
-  const auto F = deformation<D>(random, 0.1);
+  const auto F = deformation<D>(random, 0.3);
   law.advance<D>(F.a, law.factors(1e-9), history.data());    // the strain, at once
   const double start = law.operator()<D>(F.a, history.data()).energy;
   double lost = 0.0;
   for (int n = 0; n < 50; n++) {
     const double part = law.advance<D>(F.a, law.factors(0.3), history.data());
-    EXPECT_GE(part, -1e-4 * start);    // the energy of q_k is that of small strain
+    EXPECT_GE(part, -1e-15);    // round-off of an energy of 0.1
     lost += part;
   }
   const double end = law.operator()<D>(F.a, history.data()).energy;
