@@ -98,7 +98,9 @@ void FixFSIReference::init()
     made.clear();
     keeps_places = self_range > 0.0;
   } else if (made != as_now())
-    error->all(FLERR, "Pair style fsi/solid/tl {}: the bonds of its bodies were made with {}, and stay so", as_now(), made);
+    error->all(FLERR,
+               "Pair style fsi/solid/tl {}: the bonds of its bodies were made with {}, and stay so",
+               as_now(), made);
   if (self_range > 0.0 && !keeps_places)
     error->all(FLERR,
                "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept "
@@ -152,8 +154,9 @@ bool FixFSIReference::is_solid(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless told not to: each bonded atom knows
-   its old one. Bonds to those that are gone are cut, as by damage. Solids cannot become something else, nor the reverse.
+   What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless
+   told not to: each bonded atom knows its old one. Bonds to those that are gone are cut, as by
+   damage. Solids cannot become something else, nor the reverse.
 ------------------------------------------------------------------------- */
 
 void FixFSIReference::follow_commands()
@@ -162,17 +165,23 @@ void FixFSIReference::follow_commands()
   int mine = 0, any;
   for (int i = 0; i < atom->nlocal; i++) {
     if (slot[i] == FOREIGN && is_solid(i))
-      error->one(FLERR, "Atom {} of type {} is a solid now and was none when a run began: delete it and create a solid in its place",
+      error->one(FLERR,
+                 "Atom {} of type {} is a solid now and was none when a run began: delete it and "
+                 "create a solid in its place",
                  tag[i], atom->type[i]);
     if (slot[i] < 0) continue;
     if (!is_solid(i))
-      error->one(FLERR, "Atom {} of type {} is bonded to body {} and no solid any more: delete it and create another in its place", tag[i],
-                 atom->type[i], atom->molecule[i]);
+      error->one(FLERR,
+                 "Atom {} of type {} is bonded to body {} and no solid any more: delete it and "
+                 "create another in its place",
+                 tag[i], atom->type[i], atom->molecule[i]);
     // volumes are masses over densities
     const double rho = atom->rho[i], rho0 = fix_fsi->state[atom->type[i]].rho0;
     if (std::fabs(rho - rho0) > 1.0e-9 * rho0)
-      error->one(FLERR, "Solid atom {} has the mass of a material of density {:g}, but that of its type {} has {:g} now: make the body anew", tag[i], rho,
-                 atom->type[i], rho0);
+      error->one(FLERR,
+                 "Solid atom {} has the mass of a material of density {:g}, but that of its type "
+                 "{} has {:g} now: make the body anew",
+                 tag[i], rho, atom->type[i], rho0);
     if (owner[slot[i]] != tag[i]) mine = 1;
     for (int k = 0; k < nbond[slot[i]] && !mine; k++) {
       const tagint t = partner[(size_t) slot[i] * maxbond + k];
@@ -225,7 +234,9 @@ void FixFSIReference::follow_commands()
     else find_quadrature<3>(of_them);
   }
   if (comm->me == 0)
-    utils::logmesg(lmp, "  fsi/solid/tl: {} bonds to deleted particles are cut, gradients of {} particles made anew, {} have no bonds left\n",
+    utils::logmesg(lmp,
+                   "  fsi/solid/tl: {} bonds to deleted particles are cut, gradients of {} "
+                   "particles made anew, {} have no bonds left\n",
                    all[0], all[1], all[2]);
 }
 
@@ -250,11 +261,14 @@ void FixFSIReference::take()
   bonded = gather(bonded, world);
   for (const int i : bare)
     if (bonded.count(atom->molecule[i]))
-      error->one(FLERR, "Solid atom {} has no bonds to body {}, which took them when an earlier run began: make a body at once, or give "
-                        "the atom a molecule ID of its own", atom->tag[i], atom->molecule[i]);
+      error->one(FLERR,
+                 "Solid atom {} has no bonds to body {}, which took them when an earlier run "
+                 "began: make a body at once, or give the atom a molecule ID of its own",
+                 atom->tag[i], atom->molecule[i]);
 
   made = as_now();
-  for (const int i : bare) atom->rho[i] = fix_fsi->state[atom->type[i]].rho0;    // from now on its strain says what it is
+  // from now on its strain says what it is
+  for (const int i : bare) atom->rho[i] = fix_fsi->state[atom->type[i]].rho0;
   neighbor->build_one(list);
   if (domain->dimension == 2) take_reference<2>(bare);
   else take_reference<3>(bare);
@@ -265,11 +279,12 @@ void FixFSIReference::take()
 }
 
 /* ----------------------------------------------------------------------
-   The energy is an integral over particles in the middle of their cells: the midpoint rule, which lacks 1/n^2 of the bending
-   stiffness of a plate n particles across. With its end corrections, 13/12, 7/8, 25/24 for the first three layers from a face
-   (Press et al., Numerical Recipes, eq. 4.1.18), quadratic integrands are exact. They apply along each axis of a lattice that is
-   aligned with the axes; a body thinner than three layers, or not on such a lattice, keeps plain volumes there. Masses do not
-   change.
+   The energy is an integral over particles in the middle of their cells: the midpoint rule,
+   which lacks 1/n^2 of the bending stiffness of a plate n particles across. With its end
+   corrections, 13/12, 7/8, 25/24 for the first three layers from a face (Press et al., Numerical
+   Recipes, eq. 4.1.18), quadratic integrands are exact. They apply along each axis of a lattice
+   that is aligned with the axes; a body thinner than three layers, or not on such a lattice,
+   keeps plain volumes there. Masses do not change.
 ------------------------------------------------------------------------- */
 
 template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &bare)
@@ -286,12 +301,14 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
       const double *const value = bond(i, b);
       bool found = true;
       for (int a = 0; a < D; a++)
-        if (std::fabs(value[(D + a) * BOND_BLOCK] - (a == k / 2 ? (k % 2 ? dx : -dx) : 0.0)) > near) found = false;
+        if (std::fabs(value[(D + a) * BOND_BLOCK] - (a == k / 2 ? (k % 2 ? dx : -dx) : 0.0)) > near)
+          found = false;
       if (found) return partners(i)[b];
     }
     return -1;
   };
-  // layer 1 has nobody ahead, layer m has layer m-1 ahead; 0 = deeper than what has been found so far
+  // layer 1 has nobody ahead, layer m has layer m-1 ahead; 0 = deeper than what has been found so
+  // far
   for (int m = 1; m <= 3; m++) {
     for (const int i : bare)
       for (int k = 0; k < 2 * D; k++) {
@@ -326,15 +343,88 @@ void FixFSIReference::unpack_forward_comm(int n, int first, double *buf)
   memcpy(layer + (size_t) first * comm_forward, buf, (size_t) n * comm_forward * sizeof(double));
 }
 
-template <int D> void FixFSIReference::take_reference(const std::vector<int> &bare)
+// the neighbors of i of its own body, their separations, and weights V_j W
+template <int D, class Kernel>
+void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<int> &near,
+                                     std::vector<double> &dX, std::vector<double> &w) const
 {
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
   const int *const type = atom->type;
-  std::vector<double> all_h;    // bodies by their smoothing length, in the order of the first of each
+  near.clear();
+  dX.clear();
+  w.clear();
+  for (int jj = 0; jj < list->numneigh[i]; jj++) {
+    const int j = list->firstneigh[i][jj] & NEIGHMASK;
+    if (molecule[j] != molecule[i] || !is_solid(j)) continue;
+    double rsq = 0.0, d[D];
+    bool halfway = false;    // round the box: the image on the other side is as near
+    for (int a = 0; a < D; a++) {
+      d[a] = x[j][a] - x[i][a];
+      rsq += d[a] * d[a];
+      halfway = halfway ||
+          (domain->periodicity[a] && 2.0 * std::fabs(d[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
+    }
+    if (rsq >= WITHIN * kernel.cutsq) continue;
+    if (fix_fsi->h_of(type[j]) != fix_fsi->h_of(type[i]))
+      error->one(FLERR,
+                 "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types "
+                 "{} and {}: a body has one",
+                 tag[i], tag[j], molecule[i], fix_fsi->dx_of(type[i]), fix_fsi->dx_of(type[j]),
+                 type[i], type[j]);
+    if (rsq == 0.0)
+      error->one(FLERR, "Solid atoms {} and {} of body {} are at the same place", tag[i], tag[j],
+                 molecule[i]);
+    if (halfway || domain->closest_image(i, j) != j)
+      error->one(FLERR,
+                 "Solid atoms {} and {} are neighbors through more than one image: a "
+                 "periodic box must be wider than two supports, {}, of the kernel",
+                 tag[i], tag[j], 2.0 * kernel.cut);
+    near.push_back(j);
+    dX.insert(dX.end(), d, d + D);
+    w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
+  }
+}
+
+// a slot with the bonds of i to them
+template <int D, class Kernel>
+void FixFSIReference::enter_bonds(int i, const Kernel &kernel, const std::vector<int> &near,
+                                  const std::vector<double> &dX, const std::vector<double> &G)
+{
+  const int n = near.size();
+  slot[i] = new_slot(n);
+  owner[slot[i]] = atom->tag[i];
+  if (keeps_places) std::copy_n(atom->x[i], D, &place[(size_t) slot[i] * D]);
+  for (int k = 0; k < n; k++) {
+    double *const value = bond_in(slot[i], k);
+    const double *d = &dX[k * D];
+    double rsq = 0.0;
+    for (int a = 0; a < D; a++) {
+      value[a * BOND_BLOCK] = G[k * D + a];
+      value[(D + a) * BOND_BLOCK] = d[a];
+      rsq += d[a] * d[a];
+    }
+    const double r = std::sqrt(rsq), vv = volume(i) * volume(near[k]);
+    value[2 * D * BOND_BLOCK] = vv * kernel.W(r) / rsq;
+    value[(2 * D + 1) * BOND_BLOCK] = vv * kernel.gradient(r);
+    partner[(size_t) slot[i] * maxbond + k] = atom->tag[near[k]];
+  }
+  complete(slot[i]);
+}
+
+double FixFSIReference::volume(int i) const
+{
+  return atom->rmass[i] / fix_fsi->state[atom->type[i]].rho0;
+}
+
+template <int D> void FixFSIReference::take_reference(const std::vector<int> &bare)
+{
+  const int *const type = atom->type;
+  // bodies by their smoothing length, in the order of the first of each
+  std::vector<double> all_h;
   for (const int i : bare)
-    if (std::find(all_h.begin(), all_h.end(), fix_fsi->h_of(type[i])) == all_h.end()) all_h.push_back(fix_fsi->h_of(type[i]));
-  const auto volume = [&](int i) { return atom->rmass[i] / fix_fsi->state[type[i]].rho0; };
+    if (std::find(all_h.begin(), all_h.end(), fix_fsi->h_of(type[i])) == all_h.end())
+      all_h.push_back(fix_fsi->h_of(type[i]));
   GradientWeights<D> weights;
   std::vector<int> near;
   std::vector<double> dX, w, G;
@@ -344,69 +434,32 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
     if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
       for (const int i : bare) {
         if (fix_fsi->h_of(type[i]) != h) continue;
-        near.clear();
-        dX.clear();
-        w.clear();
-        for (int jj = 0; jj < list->numneigh[i]; jj++) {
-          const int j = list->firstneigh[i][jj] & NEIGHMASK;
-          if (molecule[j] != molecule[i] || !is_solid(j)) continue;
-          double rsq = 0.0, d[D];
-          bool halfway = false;    // round the box: the image on the other side is as near
-          for (int a = 0; a < D; a++) {
-            d[a] = x[j][a] - x[i][a];
-            rsq += d[a] * d[a];
-            halfway = halfway || (domain->periodicity[a] && 2.0 * std::fabs(d[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
-          }
-          if (rsq >= WITHIN * kernel.cutsq) continue;
-          if (fix_fsi->h_of(type[j]) != h)
-            error->one(FLERR, "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types {} and {}: a body has one", tag[i], tag[j],
-                       molecule[i], fix_fsi->dx_of(type[i]), fix_fsi->dx_of(type[j]), type[i], type[j]);
-          if (rsq == 0.0) error->one(FLERR, "Solid atoms {} and {} of body {} are at the same place", tag[i], tag[j], molecule[i]);
-          if (halfway || domain->closest_image(i, j) != j)
-            error->one(FLERR, "Solid atoms {} and {} are neighbors through more than one image: a periodic box must be wider than two "
-                              "supports, {}, of the kernel", tag[i], tag[j], 2.0 * kernel.cut);
-          near.push_back(j);
-          dX.insert(dX.end(), d, d + D);
-          w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
-        }
+        find_neighbors<D>(i, kernel, near, dX, w);
         const int n = near.size();
         G.resize((size_t) n * D);
         const auto order = weights(n, dX.data(), w.data(), h, quadratic, G.data());
         if (order == GradientWeights<D>::DEFICIENT)
-          error->one(FLERR, "Solid atom {} of body {} has {} neighbors of its own body within {}: too few, or all in one {}, for a "
-                            "deformation gradient. A body must be at least two particles thick, and one body one molecule ID",
-                     tag[i], molecule[i], n, kernel.cut, D == 2 ? "line" : "plane");
+          error->one(FLERR,
+                     "Solid atom {} of body {} has {} neighbors of its own body within {}: too "
+                     "few, or all in one {}, for a deformation gradient. A body must be at least "
+                     "two particles thick, and one body one molecule ID",
+                     atom->tag[i], atom->molecule[i], n, kernel.cut, D == 2 ? "line" : "plane");
         mine[0]++;
         mine[1] += n;
         mine[2 + order]++;
-
-        slot[i] = new_slot(n);
-        owner[slot[i]] = tag[i];
-        if (keeps_places) std::copy_n(x[i], D, &place[(size_t) slot[i] * D]);
-        for (int k = 0; k < n; k++) {
-          double *const value = bond_in(slot[i], k);
-          const double *d = &dX[k * D];
-          double rsq = 0.0;
-          for (int a = 0; a < D; a++) {
-            value[a * BOND_BLOCK] = G[k * D + a];
-            value[(D + a) * BOND_BLOCK] = d[a];
-            rsq += d[a] * d[a];
-          }
-          const double r = std::sqrt(rsq), vv = volume(i) * volume(near[k]);
-          value[2 * D * BOND_BLOCK] = vv * kernel.W(r) / rsq;
-          value[(2 * D + 1) * BOND_BLOCK] = vv * kernel.gradient(r);
-          partner[(size_t) slot[i] * maxbond + k] = tag[near[k]];
-        }
-        complete(slot[i]);
+        enter_bonds<D>(i, kernel, near, dX, G);
       }
   });
 
   bigint all[6];
   MPI_Allreduce(mine, all, 6, MPI_LMP_BIGINT, MPI_SUM, world);
   if (comm->me == 0) {
-    utils::logmesg(lmp, "  fsi/solid/tl: reference of {} particles taken, {:.1f} bonds each\n", all[0], double(all[1]) / all[0]);
+    utils::logmesg(lmp, "  fsi/solid/tl: reference of {} particles taken, {:.1f} bonds each\n",
+                   all[0], double(all[1]) / all[0]);
     if (quadratic)
-      utils::logmesg(lmp, "    gradients: {} exact for quadratic fields, {} for part of their terms, {} for linear fields only\n",
+      utils::logmesg(lmp,
+                     "    gradients: {} exact for quadratic fields, {} for part of their terms, {} "
+                     "for linear fields only\n",
                      all[2 + GradientWeights<D>::QUADRATIC], all[2 + GradientWeights<D>::PARTIAL],
                      all[2 + GradientWeights<D>::LINEAR]);
   }
@@ -420,8 +473,9 @@ void FixFSIReference::break_bonds(double stretch, const Energy &energy)
   else break_bonds_of_all<3>(stretch, energy);
 }
 
-// Nobody of this rank's solids moves relative to anybody else by more than the diagonal of the box that holds all their displacements.
-// So a particle whose most stretched bond has more than this left is not looked at, and the same bonds break at the same step.
+// Nobody of this rank's solids moves relative to anybody else by more than the diagonal of the box
+// that holds all their displacements. So a particle whose most stretched bond has more than this
+// left is not looked at, and the same bonds break at the same step.
 template <int D> void FixFSIReference::move_apart()
 {
   double **x = atom->x;
@@ -504,7 +558,8 @@ template <int D> bool FixFSIReference::renew(int i)
     }
     w[k] = value[2 * D * BOND_BLOCK] * Rsq;    // V_i V_j W: the factor V_i does not matter
   }
-  if (weights(n, dX.data(), w.data(), fix_fsi->h_of(atom->type[i]), quadratic, G.data()) == GradientWeights<D>::DEFICIENT) {
+  if (weights(n, dX.data(), w.data(), fix_fsi->h_of(atom->type[i]), quadratic, G.data()) ==
+      GradientWeights<D>::DEFICIENT) {
     n = 0;
     return false;
   }
@@ -526,7 +581,10 @@ void FixFSIReference::resolve()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_solid(i)) continue;
     if (slot[i] < 0)
-      error->one(FLERR, "Solid atom {} has no reference configuration: it was made during a run. Make it before one", tag[i]);
+      error->one(FLERR,
+                 "Solid atom {} has no reference configuration: it was made during a run. Make it "
+                 "before one",
+                 tag[i]);
     solids.push_back(i);
     const size_t first = (size_t) slot[i] * maxbond;
     for (int k = 0; k < nbond[slot[i]]; k++) {
@@ -536,15 +594,20 @@ void FixFSIReference::resolve()
         // the image that is meant may be beyond the ghosts, too
         j = domain->closest_image(i, j);
         for (int a = 0; a < domain->dimension; a++)
-          if (domain->periodicity[a] && std::fabs(atom->x[j][a] - atom->x[i][a]) > 0.5 * domain->prd[a]) {
+          if (domain->periodicity[a] &&
+              std::fabs(atom->x[j][a] - atom->x[i][a]) > 0.5 * domain->prd[a]) {
             j = -1;
             break;
           }
       }
       if (j < 0)
-        error->one(FLERR, "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {}: one of them was lost, the solid "
-                          "blew up (try a shorter time step, more sub-steps), or it is stretched so far that comm_modify cutoff must be larger", tag[i], t,
-                   comm->cutghostuser > neighbor->cutneighmax ? comm->cutghostuser : neighbor->cutneighmax);
+        error->one(FLERR,
+                   "Bond of solid atoms {} and {} reaches beyond the ghost cutoff {}: one of them "
+                   "was lost, the solid blew up (try a shorter time step, more sub-steps), or it "
+                   "is stretched so far that comm_modify cutoff must be larger",
+                   tag[i], t,
+                   comm->cutghostuser > neighbor->cutneighmax ? comm->cutghostuser
+                                                              : neighbor->cutneighmax);
       local[first + k] = j;
     }
     std::fill(&local[first] + nbond[slot[i]], &local[first] + whole_blocks(nbond[slot[i]]), i);
@@ -661,7 +724,8 @@ void FixFSIReference::move_bond(int s, int from, int to)
   const size_t first = (size_t) s * maxbond;
   local[first + to] = local[first + from];
   partner[first + to] = partner[first + from];
-  for (int v = 0; v < nvalue; v++) bond_in(s, to)[v * BOND_BLOCK] = bond_in(s, from)[v * BOND_BLOCK];
+  for (int v = 0; v < nvalue; v++)
+    bond_in(s, to)[v * BOND_BLOCK] = bond_in(s, from)[v * BOND_BLOCK];
 }
 
 // what follows from the bonds of slot s
@@ -734,7 +798,8 @@ void FixFSIReference::grow_arrays(int n)
 
 void FixFSIReference::copy_arrays(int i, int j, int delflag)
 {
-  // when atom j is deleted its place becomes free; otherwise its bonds have moved on with an earlier copy
+  // when atom j is deleted its place becomes free; otherwise its bonds have moved on with an
+  // earlier copy
   if (delflag && slot[j] >= 0) unused.push_back(slot[j]);
   slot[j] = slot[i];
 }
@@ -798,7 +863,9 @@ int FixFSIReference::unpack_exchange(int i, double *buf)
 int FixFSIReference::pack_restart(int i, double *buf)
 {
   if (slot[i] >= 0 && owner[slot[i]] != atom->tag[i])
-    error->one(FLERR, "Solid atom {} was atom {} in the last run: after delete_atoms give run 0 before a restart file is written",
+    error->one(FLERR,
+               "Solid atom {} was atom {} in the last run: after delete_atoms give run 0 before a "
+               "restart file is written",
                atom->tag[i], owner[slot[i]]);
   buf[0] = 1 + pack(i, buf + 1);
   return (int) buf[0];
@@ -806,7 +873,8 @@ int FixFSIReference::pack_restart(int i, double *buf)
 
 std::string FixFSIReference::as_now() const
 {
-  return fmt::format("gradient {} volumes {}", quadratic ? "quadratic" : "linear", end_corrected ? "corrected" : "plain");
+  return fmt::format("gradient {} volumes {}", quadratic ? "quadratic" : "linear",
+                     end_corrected ? "corrected" : "plain");
 }
 
 void FixFSIReference::write_restart(FILE *fp)
@@ -823,7 +891,9 @@ void FixFSIReference::restart(char *buf)
   const Record record(lmp, "fix fsi/reference", buf);
   made = record.value("bonds");
   if (record.value("numbers of a bond") != std::to_string(nvalue))
-    error->all(FLERR, "The restart file has bonds of {} numbers, this version of pair_style fsi/solid/tl needs {}",
+    error->all(FLERR,
+               "The restart file has bonds of {} numbers, this version of pair_style fsi/solid/tl "
+               "needs {}",
                record.value("numbers of a bond"), nvalue);
   keeps_places = record.has("positions") && record.value("positions") == "yes";
   has_record = true;
@@ -831,7 +901,10 @@ void FixFSIReference::restart(char *buf)
 
 void FixFSIReference::unpack_restart(int i, int nth)
 {
-  if (!has_record) error->one(FLERR, "The restart file was written by another version of the FSI package: it does not say what its bonds are");
+  if (!has_record)
+    error->one(FLERR,
+               "The restart file was written by another version of the FSI package: it does not "
+               "say what its bonds are");
   unpack(i, restart_values(atom->extra[i], nth) + 1);
 }
 

@@ -32,10 +32,10 @@ FixStyle(fsi/reference,FixFSIReference);
 
 namespace LAMMPS_NS {
 
-// The reference configuration of total-Lagrangian solids: for every particle its bonds to the neighbours of its own body, with
-// the gradient's weights. Made by pair_style fsi/solid/tl; taken at the start of the first run; travels
-// with its atom between ranks, through restart files and from one pair_style command to the next.
-// Memory and messages exist for solid particles only.
+// The reference configuration of total-Lagrangian solids: for every particle its bonds to the
+// neighbours of its own body, with the gradient's weights. Made by pair_style fsi/solid/tl; taken
+// at the start of the first run; travels with its atom between ranks, through restart files and
+// from one pair_style command to the next. Memory and messages exist for solid particles only.
 
 class FixFSIReference : public Fix {
  public:
@@ -71,16 +71,24 @@ class FixFSIReference : public Fix {
   int nvalue;
   // bonds of local atom i; what fills up its last block has zeros for numbers
   int count(int i) const { return slot[i] < 0 ? 0 : nbond[slot[i]]; }    // 0: a solid only since
-  const int *partners(int i) const { return &local[(size_t) slot[i] * maxbond]; }    // indices of local and ghost atoms
-  const double *numbers(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }    // where they are: number_of_bond()
+  // indices of local and ghost atoms
+  const int *partners(int i) const { return &local[(size_t) slot[i] * maxbond]; }
+  // where they are: number_of_bond()
+  const double *numbers(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }
   const double *bond(int i, int k) const { return numbers(i) + FSI::number_of_bond(k, nvalue); }
-  const double *moments(int i) const { return &moment[(size_t) slot[i] * FSI::packed_size(domain->dimension)]; }    // sum_j w X_ij (x) X_ij
-  double weight(int i) const { return quadrature[slot[i]]; }    // of i in the energy's integral, times its volume
+  // sum_j w X_ij (x) X_ij
+  const double *moments(int i) const
+  {
+    return &moment[(size_t) slot[i] * FSI::packed_size(domain->dimension)];
+  }
+  // of i in the energy's integral, times its volume
+  double weight(int i) const { return quadrature[slot[i]]; }
 
-  // removes bonds longer than stretch times their reference length, and makes the gradient anew from those left; a particle
-  // whose bonds no longer suffice loses them all. The gradient of those left may be another than that of all: where the energy (per volume,
-  // of local atom i) would grow by it, the particle's weight shrinks instead, so that breaking makes no energy. Looks only at particles of
-  // which a bond may have become too long since
+  // removes bonds longer than stretch times their reference length, and makes the gradient anew
+  // from those left; a particle whose bonds no longer suffice loses them all. The gradient of those
+  // left may be another than that of all: where the energy (per volume, of local atom i) would grow
+  // by it, the particle's weight shrinks instead, so that breaking makes no energy. Looks only at
+  // particles of which a bond may have become too long since
   typedef std::function<double(int)> Energy;
   void break_bonds(double stretch, const Energy &energy);
 
@@ -114,12 +122,14 @@ class FixFSIReference : public Fix {
   enum { NO_BONDS = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began
   int maxbond;
   std::vector<int> nbond, local, unused;
-  std::vector<tagint> partner, owner;    // owner: ID of the slot's atom when its bonds were last looked at
+  // owner: ID of the slot's atom when its bonds were last looked at
+  std::vector<tagint> partner, owner;
   std::vector<double> data, moment, quadrature;
   bool keeps_places;            // for contact of a body with itself
   std::vector<double> place;    // D numbers per slot: positions in the reference
-  // damage: positions of solids and ghosts at the last look, empty = indices have changed; how far particles have moved apart since
-  // indices changed, at most; per slot, how far they may before one of its bonds can be too long
+  // damage: positions of solids and ghosts at the last look, empty = indices have changed; how far
+  // particles have moved apart since indices changed, at most; per slot, how far they may before
+  // one of its bonds can be too long
   std::vector<double> seen, slack;
   double apart;
   double *layer;       // of a message to ghosts: while the reference is taken layers to the face
@@ -130,6 +140,13 @@ class FixFSIReference : public Fix {
   void follow_commands();
   void take();
   template <int D> void take_reference(const std::vector<int> &);
+  template <int D, class Kernel>
+  void find_neighbors(int i, const Kernel &, std::vector<int> &, std::vector<double> &,
+                      std::vector<double> &) const;
+  template <int D, class Kernel>
+  void enter_bonds(int i, const Kernel &, const std::vector<int> &, const std::vector<double> &,
+                   const std::vector<double> &);
+  double volume(int i) const;
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
   template <int D> void find_self_pairs();
@@ -138,7 +155,10 @@ class FixFSIReference : public Fix {
   template <int D> void break_bonds_of_all(double stretch, const Energy &energy);
   template <int D> bool renew(int i);
   template <int D> void move_apart();
-  double *bond_in(int s, int k) { return &data[(size_t) s * maxbond * nvalue] + FSI::number_of_bond(k, nvalue); }
+  double *bond_in(int s, int k)
+  {
+    return &data[(size_t) s * maxbond * nvalue] + FSI::number_of_bond(k, nvalue);
+  }
   void move_bond(int s, int from, int to);
   void complete(int s);
   int nplace() const { return keeps_places ? domain->dimension : 0; }    // numbers of one

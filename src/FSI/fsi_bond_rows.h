@@ -11,15 +11,17 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Forces of total-Lagrangian solids over the bonds of a particle (pair_style fsi/solid/tl), as many bonds at a time as the number type T
-// holds (fsi_pack.h).
+// Forces of total-Lagrangian solids over the bonds of a particle (pair_style fsi/solid/tl), as many
+// bonds at a time as the number type T holds (fsi_pack.h).
 //
 //   F_i = sum_j (x_j - x_i) (x) G_ij,  f_j = -V_i P(F_i) G_ij, and the opposite on i
-// Hourglass control (after Ganzenmueller 2015, in energy form): psi_i gains sum_j zeta E w |r_ij|^2/2, w = V_i V_j W/|X|^2,
-//   r_ij = (x_j - x_i) - F_i X_ij: what the linear field F_i does not explain of its neighbours' positions. Its derivative with respect to
-//   F_i is -zeta E (A - F_i M), A = sum_j w (x_j - x_i) (x) X_ij, M = sum_j w X_ij (x) X_ij, so that one pass over the bonds has it; M is
-//   of the reference.
-// Artificial viscosity (fsi_viscosity_artificial.h) with the reference kernel; each particle of a pair does half.
+// Hourglass control (after Ganzenmueller 2015, in energy form): psi_i gains
+//   sum_j zeta E w |r_ij|^2/2,  w = V_i V_j W/|X|^2,  r_ij = (x_j - x_i) - F_i X_ij
+// r_ij is what the linear field F_i does not explain of its neighbours' positions. The derivative
+// with respect to F_i is -zeta E (A - F_i M), A = sum_j w (x_j - x_i) (x) X_ij,
+// M = sum_j w X_ij (x) X_ij, so that one pass over the bonds has it; M is of the reference.
+// Artificial viscosity (fsi_viscosity_artificial.h) with the reference kernel; each particle of a
+// pair does half.
 
 #ifndef LMP_FSI_BOND_ROWS_H
 #define LMP_FSI_BOND_ROWS_H
@@ -38,13 +40,18 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // Numbers of bonds are kept side by side, as loops take them: the first ones of BOND_BLOCK bonds, their second ones, and so on.
+  // Numbers of bonds are kept side by side, as loops take them: the first ones of BOND_BLOCK bonds,
+  // their second ones, and so on.
   constexpr int BOND_BLOCK = 4;
   constexpr int whole_blocks(int n) { return (n + BOND_BLOCK - 1) / BOND_BLOCK * BOND_BLOCK; }
   // place of the first number of bond k, of which each has n; the next ones are BOND_BLOCK further
-  constexpr size_t number_of_bond(int k, int n) { return (size_t) (k / BOND_BLOCK) * BOND_BLOCK * n + k % BOND_BLOCK; }
+  constexpr size_t number_of_bond(int k, int n)
+  {
+    return (size_t) (k / BOND_BLOCK) * BOND_BLOCK * n + k % BOND_BLOCK;
+  }
 
-  // The bonds of local particle i: n of them, each with 2 D + 2 numbers (fix_fsi_reference.h). What fills up the last block has partners, too.
+  // The bonds of local particle i: n of them, each with 2 D + 2 numbers (fix_fsi_reference.h). What
+  // fills up the last block has partners, too.
   struct BondRow {
     int i, n;
     const int *partner;
@@ -64,10 +71,10 @@ namespace FSI {
     const double *points;    // per particle x, v
     const int *type;
     const State *state;
-    const double *const *stress;    // per particle, of law hypo; null: none
-    const double *volumetric;       // per particle, q of fsi_volumetric.h; null: none
-    double alpha, beta;             // artificial viscosity
-    bool one_material;              // all solids have one density and one speed of sound
+    const double *const *history;    // per particle, of the law (fsi_solid_laws.h); null: none
+    const double *volumetric;        // per particle, q of fsi_volumetric.h; null: none
+    double alpha, beta;              // artificial viscosity
+    bool one_material;               // all solids have one density and one speed of sound
     BondSums *sums;
   };
 
@@ -80,7 +87,8 @@ namespace FSI {
     T x[D], v[D];
 
     // from: x, v of i
-    FSI_INLINE void read(const int *partner, const double *points, const T (&from)[2 * D], bool with_velocities)
+    FSI_INLINE void read(const int *partner, const double *points, const T (&from)[2 * D],
+                         bool with_velocities)
     {
       constexpr int N = row_of_points(D);
       const double *const p = points + N * partner[0];
@@ -89,11 +97,13 @@ namespace FSI {
         if (with_velocities)
           for (int a = 0; a < D; a++) v[a] = p[D + a] - from[D + a];
       } else {
-        const double *const q = points + N * partner[1], *const r = points + N * partner[2], *const s = points + N * partner[3];
+        const double *const q = points + N * partner[1], *const r = points + N * partner[2],
+                            *const s = points + N * partner[3];
         T at[2 * D];
         if (D == 2 && !with_velocities) T::columns(p, q, r, s, at[0], at[1]);
         else T::columns(p, q, r, s, at);
-        if (D == 3 && with_velocities) T::columns(p + 4, q + 4, r + 4, s + 4, at[2 * D - 2], at[2 * D - 1]);
+        if (D == 3 && with_velocities)
+          T::columns(p + 4, q + 4, r + 4, s + 4, at[2 * D - 2], at[2 * D - 1]);
         for (int a = 0; a < D; a++) x[a] = at[a] - from[a];
         if (with_velocities)
           for (int a = 0; a < D; a++) v[a] = at[D + a] - from[D + a];
@@ -102,7 +112,8 @@ namespace FSI {
   };
 
   // takes t F^T from a virial
-  template <int D> FSI_INLINE void subtract_product(const double *t, const double *F, double *virial)
+  template <int D>
+  FSI_INLINE void subtract_product(const double *t, const double *F, double *virial)
   {
     double component[D * D];
     for (int a = 0; a < D; a++)
@@ -113,8 +124,11 @@ namespace FSI {
     add_virial<D>([&](int a, int c) { return component[a * D + c]; }, virial);
   }
 
-  // takes what hourglass control adds to the derivative of the energy from t: F_i changes the straight lines that bonds are measured by
-  template <class T, int D> FSI_INLINE void subtract_hourglass(double stiffness, const T *A, const double *M, const double *F, double *t)
+  // takes what hourglass control adds to the derivative of the energy from t: F_i changes the
+  // straight lines that bonds are measured by
+  template <class T, int D>
+  FSI_INLINE void subtract_hourglass(double stiffness, const T *A, const double *M, const double *F,
+                                     double *t)
   {
     const auto at = [](int a, int c) { return a < c ? packed_size(c) + a : packed_size(a) + c; };
     for (int a = 0; a < D; a++)
@@ -126,7 +140,9 @@ namespace FSI {
   }
 
   // adds hourglass control of a bond, k = zeta E w, to the force on j; its energy
-  template <class T, int D> FSI_INLINE T straighten(const T &k, const double *F, const T (&x)[D], const T (&X)[D], T (&force)[D])
+  template <class T, int D>
+  FSI_INLINE T straighten(const T &k, const double *F, const T (&x)[D], const T (&X)[D],
+                          T (&force)[D])
   {
     T rsq = 0.0;
     for (int a = 0; a < D; a++) {
@@ -138,105 +154,144 @@ namespace FSI {
     return 0.5 * k * rsq;
   }
 
-  // adds artificial viscosity of a bond, g = V_i V_j (grad W)/x_ij, to the force on j; what it takes from their energy
+  // adds artificial viscosity of a bond, g = V_i V_j (grad W)/x_ij, to the force on j; what it
+  // takes from their energy
   template <class T, int D>
-  FSI_INLINE T rub(const ArtificialViscosity &viscosity, const State &si, const State &sj, const T &g, const Separation<T, D> &b, T (&force)[D])
+  FSI_INLINE T rub(const ArtificialViscosity &viscosity, const State &si, const State &sj,
+                   const T &g, const Separation<T, D> &b, T (&force)[D])
   {
     T vdotx = 0.0, rsq = 0.0;
     for (int a = 0; a < D; a++) {
       vdotx += b.v[a] * b.x[a];
       rsq += b.x[a] * b.x[a];
     }
-    const T q = 0.5 * g * viscosity(vdotx, rsq, T(0.5 * (si.rho0 + sj.rho0)), 0.5 * (si.c + sj.c), T(1.0));
+    const T q =
+        0.5 * g * viscosity(vdotx, rsq, T(0.5 * (si.rho0 + sj.rho0)), 0.5 * (si.c + sj.c), T(1.0));
     for (int a = 0; a < D; a++) force[a] -= q * b.x[a];
     return q * vdotx;
   }
 
+  // number v of bond k of a row, and of those that go side by side with it
+  template <class T, int D> FSI_INLINE T number_of(const BondRow &row, int k, int v)
+  {
+    constexpr int NV = 2 * D + 2;
+    return Lanes<T>::load(
+        row.numbers +
+        (Lanes<T>::WIDTH == BOND_BLOCK ? (size_t) k * NV : number_of_bond(k, NV)) + v * BOND_BLOCK);
+  }
+
+  // What loops over the bonds of a row need to know before they begin. Partners are read once and
+  // kept for the second pass over them; copied, since doubles need not be where packs may be
+  template <class T, int D, int FLAGS> struct BondPass {
+    using Partners = Separation<T, D>;
+    static constexpr bool VELOCITIES = FLAGS & (BondFlag::VISCOSITY | BondFlag::SUMS);
+    static constexpr int SIZE =
+        (VELOCITIES ? sizeof(Partners) : sizeof(Partners::x)) / sizeof(double);
+    static constexpr int W = Lanes<T>::WIDTH;
+  };
+
+  // The first pass: F and A of a row
+  template <class T, int D, int FLAGS>
+  FSI_INLINE void gather_row(const BondRow &row, const double *points, double *end, T (&F)[D * D],
+                             T (&A)[D * D])
+  {
+    using Pass = BondPass<T, D, FLAGS>;
+    T from[2 * D];
+    for (int a = 0; a < 2 * D; a++) from[a] = points[row_of_points(D) * row.i + a];
+    for (int k = 0; k < D * D; k++) F[k] = A[k] = 0.0;
+    for (int k = 0; k < row.n; k += Pass::W, end += Pass::SIZE) {
+      Separation<T, D> b;
+      b.read(row.partner + k, points, from, Pass::VELOCITIES);
+      for (int a = 0; a < D; a++) {
+        for (int c = 0; c < D; c++) F[a * D + c] += b.x[a] * number_of<T, D>(row, k, c);
+        if (!(FLAGS & BondFlag::HOURGLASS)) continue;
+        const T wx = number_of<T, D>(row, k, 2 * D) * b.x[a];
+        for (int c = 0; c < D; c++) A[a * D + c] += wx * number_of<T, D>(row, k, D + c);
+      }
+      __builtin_memcpy(end, b.x, sizeof(b.x));
+      if (Pass::VELOCITIES) __builtin_memcpy(end + Pass::SIZE / 2, b.v, sizeof(b.v));
+    }
+  }
+
+  // The derivative t of the energy of i with respect to F_i
+  template <class T, class Law, int D, int FLAGS>
+  FSI_INLINE void differentiate(const BondRow &row, const Law &law, const BondArguments &in,
+                                const double *F, const T *A, double *t)
+  {
+    const int i = row.i;
+    // inline: a call would write F number by number and read it in pairs, which waits until all
+    // stores before it are done
+    const auto piola = law.template operator()<D>(F, in.history ? in.history[i] : nullptr);
+    if (determinant<D>(F) <= 0.0) in.sums->inverted = i;
+    for (int k = 0; k < D * D; k++) t[k] = row.volume * piola.P[k];
+    if (in.volumetric) {
+      double dm[D * D];
+      law.template volumetric_strain<D>(F, dm);
+      for (int k = 0; k < D * D; k++) t[k] += in.volumetric[i] * dm[k];
+    }
+    if (FLAGS & BondFlag::HOURGLASS)
+      subtract_hourglass<T, D>(row.stiffness, A, row.moments, F, t);
+    if (FLAGS & BondFlag::SUMS) {
+      in.sums->energy += row.volume * piola.energy;
+      subtract_product<D>(t, F, in.sums->virial);
+    }
+  }
+
   // f: rows of row_of_forces(D), of local and ghost particles; laws: per type
   template <class T, class Law, int D, int FLAGS>
-  FSI_INLINE void bond_rows(const BondRow *const rows, const int nrows, const Law *const laws, const BondArguments in,
-                            double (*const f)[row_of_forces(D)])
+  FSI_INLINE void bond_rows(const BondRow *const rows, const int nrows, const Law *const laws,
+                            const BondArguments in, double (*const f)[row_of_forces(D)])
   {
     using namespace BondFlag;
     using L = Lanes<T>;
-    using Partners = Separation<T, D>;
-    constexpr int NV = 2 * D + 2, W = L::WIDTH;
-    constexpr bool VELOCITIES = FLAGS & (VISCOSITY | SUMS);
-    // partners of a row as read once, kept for the second pass over them; copied, since doubles need not be where packs may be
-    constexpr int SIZE = (VELOCITIES ? sizeof(Partners) : sizeof(Partners::x)) / sizeof(double);
+    using Pass = BondPass<T, D, FLAGS>;
     std::vector<double> kept;
     T energy = 0.0, artificial = 0.0, virial[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     for (int n = 0; n < nrows; n++) {
       const BondRow row = rows[n];
       const int i = row.i;
       const ArtificialViscosity viscosity(in.alpha, in.beta, row.h);
-      T from[2 * D];
-      for (int a = 0; a < 2 * D; a++) from[a] = in.points[row_of_points(D) * i + a];
-      const auto number = [&](int k, int v) __attribute__((always_inline)) {
-        return L::load(row.numbers + (W == BOND_BLOCK ? (size_t) k * NV : number_of_bond(k, NV)) + v * BOND_BLOCK);
-      };
-      if (kept.size() < (size_t) (row.n / W + 1) * SIZE) kept.resize((size_t) 2 * (row.n / W + 1) * SIZE);
-      double *end = kept.data();
+      if (kept.size() < (size_t) (row.n / Pass::W + 1) * Pass::SIZE)
+        kept.resize((size_t) 2 * (row.n / Pass::W + 1) * Pass::SIZE);
       T F[D * D], A[D * D];
-      for (int k = 0; k < D * D; k++) F[k] = A[k] = 0.0;
-      for (int k = 0; k < row.n; k += W, end += SIZE) {
-        Partners b;
-        b.read(row.partner + k, in.points, from, VELOCITIES);
-        for (int a = 0; a < D; a++) {
-          for (int c = 0; c < D; c++) F[a * D + c] += b.x[a] * number(k, c);
-          if (!(FLAGS & HOURGLASS)) continue;
-          const T wx = number(k, 2 * D) * b.x[a];
-          for (int c = 0; c < D; c++) A[a * D + c] += wx * number(k, D + c);
-        }
-        __builtin_memcpy(end, b.x, sizeof(b.x));
-        if (VELOCITIES) __builtin_memcpy(end + SIZE / 2, b.v, sizeof(b.v));
-      }
-
-      double Fi[D * D];
+      gather_row<T, D, FLAGS>(row, in.points, kept.data(), F, A);
+      double Fi[D * D], t[D * D];
       for (int k = 0; k < D * D; k++) Fi[k] = L::sum(F[k]);
-      // inline: a call would write F number by number and read it in pairs, which waits until all stores before it are done
-      const auto piola = laws[in.type[i]].template operator()<D>(Fi, in.stress ? in.stress[i] : nullptr);
-      if (determinant<D>(Fi) <= 0.0) in.sums->inverted = i;
-      double t[D * D];    // derivative of the energy of i with respect to F_i
-      for (int k = 0; k < D * D; k++) t[k] = row.volume * piola.P[k];
-      if (in.volumetric) {
-        double dm[D * D];
-        laws[in.type[i]].template volumetric_strain<D>(Fi, dm);
-        for (int k = 0; k < D * D; k++) t[k] += in.volumetric[i] * dm[k];
-      }
-      if (FLAGS & HOURGLASS) subtract_hourglass<T, D>(row.stiffness, A, row.moments, Fi, t);
-      if (FLAGS & SUMS) {
-        in.sums->energy += row.volume * piola.energy;
-        subtract_product<D>(t, Fi, in.sums->virial);
-      }
+      differentiate<T, Law, D, FLAGS>(row, laws[in.type[i]], in, Fi, A, t);
 
       const State &si = in.state[in.type[i]];
       T sum[D];
       for (T &s : sum) s = 0.0;
       const double *next = kept.data();
-      for (int k = 0; k < row.n; k += W, next += SIZE) {
-        Partners b;
+      for (int k = 0; k < row.n; k += Pass::W, next += Pass::SIZE) {
+        Separation<T, D> b;
         __builtin_memcpy(b.x, next, sizeof(b.x));
-        if (VELOCITIES) __builtin_memcpy(b.v, next + SIZE / 2, sizeof(b.v));
+        if (Pass::VELOCITIES) __builtin_memcpy(b.v, next + Pass::SIZE / 2, sizeof(b.v));
         T force[D], X[D], other[D];    // on j
-        T (&beyond)[D] = (FLAGS & SUMS) ? other : force;    // what does not act through F_i: the virial's
+        // what does not act through F_i: the virial's
+        T (&beyond)[D] = (FLAGS & SUMS) ? other : force;
         for (int a = 0; a < D; a++) {
-          force[a] = -t[a * D] * number(k, 0);
-          for (int c = 1; c < D; c++) force[a] -= t[a * D + c] * number(k, c);
-          X[a] = number(k, D + a);
+          force[a] = -t[a * D] * number_of<T, D>(row, k, 0);
+          for (int c = 1; c < D; c++) force[a] -= t[a * D + c] * number_of<T, D>(row, k, c);
+          X[a] = number_of<T, D>(row, k, D + a);
           if (FLAGS & SUMS) other[a] = 0.0;
         }
         if (FLAGS & HOURGLASS) {
-          const T stored = straighten(row.stiffness * number(k, 2 * D), Fi, b.x, X, beyond);
+          const T w = number_of<T, D>(row, k, 2 * D);
+          const T stored = straighten(row.stiffness * w, Fi, b.x, X, beyond);
           if (FLAGS & SUMS) energy += stored;
         }
         if (FLAGS & VISCOSITY) {
           // with several materials one by one, since the speed of sound is a number
           const State &sj = in.one_material ? si : in.state[in.type[row.partner[k]]];
-          const T loss = rub(viscosity, si, sj, number(k, 2 * D + 1), b, beyond);
+          const T g = number_of<T, D>(row, k, 2 * D + 1);
+          const T loss = rub(viscosity, si, sj, g, b, beyond);
           if (FLAGS & SUMS) artificial += loss;
         }
-        if (FLAGS & SUMS) add_virial<D>([&](int a, int c) __attribute__((always_inline)) { return b.x[a] * beyond[c]; }, virial);
+        if (FLAGS & SUMS)
+          add_virial<D>(
+              [&](int a, int c) __attribute__((always_inline)) { return b.x[a] * beyond[c]; },
+              virial);
         for (int a = 0; a < D; a++) {
           if (FLAGS & SUMS) force[a] += other[a];
           sum[a] += force[a];

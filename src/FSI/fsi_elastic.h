@@ -12,9 +12,9 @@
 ------------------------------------------------------------------------- */
 
 
-// Laws of the total-Lagrangian solid: from the deformation gradient F (D x D, row-major, F_aB = dx_a/dX_B) the
-// first Piola-Kirchhoff stress P = d(psi)/dF, the energy density psi per reference volume, and P_zz of plane strain.
-// Lame's constants: lambda = K - 2G/3, mu = G.
+// Laws of the total-Lagrangian solid: from the deformation gradient F (D x D, row-major, F_aB =
+// dx_a/dX_B) the first Piola-Kirchhoff stress P = d(psi)/dF, the energy density psi per reference
+// volume, and P_zz of plane strain. Lame's constants: lambda = K - 2G/3, mu = G.
 //
 // Of a nearly incompressible solid a part of the volumetric energy, k u(m), may be smoothed
 // (fsi_volumetric.h). m is the law's measure of volumetric strain: volumetric_strain(), and dm/dF
@@ -36,6 +36,12 @@ namespace FSI {
     double energy = 0.0;    // per reference volume
   };
 
+  // What most laws declare of themselves (fsi_solid_laws.h): no plane stress, no rates, no history
+  struct Hyperelastic {
+    static constexpr bool PLANE_STRESS = false, BY_RATE = false;
+    static constexpr const char *HISTORY = nullptr;
+  };
+
   // m = ln J, dm/dF = F^-T
   struct LogarithmOfVolume {
     template <int D> static double volumetric_strain(const double *F, double *derivative = nullptr)
@@ -49,8 +55,11 @@ namespace FSI {
     }
   };
 
-  // St. Venant-Kirchhoff: S = lambda tr(E) I + 2 mu E, E = (F^T F - I)/2, P = F S. Plane stress: lambda* = 2 lambda mu/(lambda + 2 mu)
-  struct StVenantKirchhoff {
+  // St. Venant-Kirchhoff: S = lambda tr(E) I + 2 mu E, E = (F^T F - I)/2, P = F S. Plane stress:
+  // lambda* = 2 lambda mu/(lambda + 2 mu)
+  struct StVenantKirchhoff : Hyperelastic {
+    static constexpr char NAME[] = "svk", TITLE[] = "St. Venant-Kirchhoff";
+    static constexpr bool PLANE_STRESS = true;
     double lambda, mu;
     bool plane_stress;
     StVenantKirchhoff(double bulk, double shear, bool plane_stress_in) :
@@ -95,7 +104,8 @@ namespace FSI {
   };
 
   // compressible neo-Hookean: psi = mu/2 (tr(F^T F) - 3) - mu ln J + lambda/2 (ln J)^2
-  struct NeoHookean : LogarithmOfVolume {
+  struct NeoHookean : Hyperelastic, LogarithmOfVolume {
+    static constexpr char NAME[] = "neohookean", TITLE[] = "neo-Hookean";
     double lambda, mu;
     NeoHookean(double bulk, double shear, bool) : lambda(bulk - 2.0 / 3.0 * shear), mu(shear) {}
     static double volumetric_energy(double m) { return 0.5 * m * m; }
@@ -116,8 +126,11 @@ namespace FSI {
     }
   };
 
-  // hypoelastic, as the updated-Lagrangian solid: sigma = -p I + S with S from fix fsi/stress and p = K (1/J - 1), P = J sigma F^-T
-  struct HypoElastic : LogarithmOfVolume {
+  // hypoelastic, as the updated-Lagrangian solid: sigma = -p I + S with S from fix fsi/stress and
+  // p = K (1/J - 1), P = J sigma F^-T
+  struct HypoElastic : Hyperelastic, LogarithmOfVolume {
+    static constexpr char NAME[] = "hypo", TITLE[] = "hypoelastic";
+    static constexpr bool PLANE_STRESS = true, BY_RATE = true;
     double bulk, shear;
     bool plane_stress;
     HypoElastic(double bulk_in, double shear_in, bool plane_stress_in) :

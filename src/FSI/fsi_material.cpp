@@ -61,6 +61,7 @@ double State::energy(double rho) const
 namespace {
 
 const char *const SPECIES[] = {"NULL", "fluid", "solid", "wall"};
+const char PRONY[] = "prony";    // of a solid: g tau, as often as wanted
 
 // what follows the name and the species
 const struct Property {
@@ -158,8 +159,13 @@ class MaterialReader : protected Pointers {
       std::string known, given = " ";
       for (const auto &p : properties)
         if (has(m.species, p)) known += (known.empty() ? "" : ", ") + std::string(p.name);
-      while (values.has_next()) {
-        const std::string key = values.next_string();
+      if (m.species == SOLID) known += std::string(", ") + PRONY;
+      std::string key = values.has_next() ? values.next_string() : "";
+      while (!key.empty()) {
+        if (key == PRONY && m.species == SOLID) {
+          key = parse_prony(fmt::format("Material {} {}: {}", name, where, PRONY), values, m);
+          continue;
+        }
         const auto p = std::find_if(std::begin(properties), std::end(properties),
                                     [&](const Property &q) { return key == q.name && has(m.species, q); });
         if (p == std::end(properties))
@@ -168,6 +174,7 @@ class MaterialReader : protected Pointers {
         m.*p->value = numeric(lmp, fmt::format("Material {} {}: {}", name, where, key),
                               values.next_string(), p->range, true);
         given += key + " ";
+        key = values.has_next() ? values.next_string() : "";
       }
       for (const auto &p : properties)
         if (p.needed && has(m.species, p) && given.find(std::string(" ") + p.name + " ") == std::string::npos)
@@ -176,6 +183,28 @@ class MaterialReader : protected Pointers {
       error->one(FLERR, "Cannot read a line of materials {}: {}", where, e.what());
     }
     return m;
+  }
+
+  // pairs of numbers up to the next keyword, which it returns; "" at the end
+  std::string parse_prony(const std::string &what, ValueTokenizer &values, Material &m)
+  {
+    double sum = 0.0;
+    std::string next = values.has_next() ? values.next_string() : "";
+    m.nprony = 0;
+    do {
+      if (m.nprony == Material::MAX_PRONY)
+        error->one(FLERR, "{} has more than {} terms", what, Material::MAX_PRONY);
+      auto &term = m.prony[m.nprony++];
+      term.g = numeric(lmp, what + " g", next, Range::inside(0.0, 1.0), true);
+      term.tau = numeric(lmp, what + " tau", values.has_next() ? values.next_string() : "",
+                         Range::above(0.0), true);
+      sum += term.g;
+      next = values.has_next() ? values.next_string() : "";
+    } while (!next.empty() && utils::is_double(next));
+    if (sum >= 1.0)
+      error->one(FLERR, "{}: the sum of all g is {:.10g}, expected below 1: a part must not relax",
+                 what, sum);
+    return next;
   }
 };
 
@@ -212,6 +241,8 @@ std::string FSI::describe(const Material &m)
   std::string line = fmt::format("{} {}", m.name, SPECIES[m.species]);
   for (const auto &p : properties)
     if (has(m.species, p)) line += fmt::format(" {} {}", p.name, m.*p.value);
+  for (int k = 0; k < m.nprony; k++)
+    line += fmt::format("{} {} {}", k ? "" : std::string(" ") + PRONY, m.prony[k].g, m.prony[k].tau);
   return line;
 }
 

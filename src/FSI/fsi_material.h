@@ -38,6 +38,12 @@ namespace FSI {
     double poisson;      // solid: Poisson's ratio
     double yield;        // solid: yield stress, 0 = elastic
     double hardening;    // solid: slope of the yield stress over equivalent plastic strain
+    // solid: a Prony series, parts of the shear modulus that relax, and their times
+    static constexpr int MAX_PRONY = 8;
+    struct Prony {
+      double g, tau;
+    } prony[MAX_PRONY];
+    int nprony;
 
     // solid, 3D and plane strain: shear and bulk modulus
     double shear_modulus() const { return 0.5 * young / (1.0 + poisson); }

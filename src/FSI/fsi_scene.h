@@ -108,7 +108,7 @@ namespace FSI {
 
     // Energy ledger (compute fsi/energy): what each term took from the particles' energy since fix fsi was defined, this
     // rank's part; kept only while such a compute exists
-    enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, PLASTIC, FIELDS, NTERM };
+    enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS, NTERM };
     bool ledger;
     double energy_out[NTERM];
     double guarding[2];    // energy that pairs held off by walls of particles and by solids have, if there is a ledger

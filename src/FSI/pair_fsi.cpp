@@ -18,6 +18,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fix_fsi_history.h"
 #include "fix_fsi_reference.h"
 #include "force.h"
 #include "fsi_record.h"
@@ -186,6 +187,7 @@ void PairFSI::drop_reference() const
     error->warning(FLERR, "There is no pair_style fsi/solid/tl any more: its bodies lose their reference, "
                           "and with it their strain");
   modify->delete_fix(FixFSIReference::ID);
+  FixFSIHistory::keep(lmp, nullptr, 0);
 }
 
 // a solid that has several styles has one material

@@ -275,7 +275,7 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
       for (int a = 0; a < D; a++)
         for (int b = 0; b < D; b++) power += sigma(a, b) * L[a * D + b];
       fix_fsi->tally(FixFSI::GRADIENT, -power * atom->rmass[i] / rho[i]);
-      fix_fsi->energy_out[FixFSI::PLASTIC] += work * atom->rmass[i] / rho[i];
+      fix_fsi->energy_out[FixFSI::INELASTIC] += work * atom->rmass[i] / rho[i];
     }
   }
 }

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
+#include "fix_fsi_history.h"
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
@@ -42,24 +43,32 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fsolid(nullptr), nmax(0), nmoving(0), changes_seen(-1), only_moving(false),
-    one_material(true), sends_strains(false)
+    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fix_stress(nullptr),
+    fix_history(nullptr), fsolid(nullptr), nmax(0), nmoving(0), changes_seen(-1),
+    only_moving(false), one_material(true), sends_strains(false)
 {
   no_virial_fdotr_compute = 1;
   artificial_row("solid");
-  keywords.key("hourglass").number(zeta, 0.05, Range::from(0.0)).effect("hourglass control of the solid {}");
-  keywords.key("law").choice(law, SVK, {"svk", "neohookean", "hypo"});
+  keywords.key("hourglass")
+      .number(zeta, 0.05, Range::from(0.0))
+      .effect("hourglass control of the solid {}");
+  keywords.key("law").choice(law, 0, SolidLaws::names());
   keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"});
   keywords.key("gradient").choice(linear, 0, {"quadratic", "linear"});
   keywords.key("volumes").choice(plain, 0, {"corrected", "plain"});
   keywords.key("volumetric").choice(volumetric, AUTO, {"auto", "smoothed", "local"});
   contact_row();
-  keywords.key("damage").number(damage, 0.0, Range::from(0.0), "strain").effect("damage at strain {}");
+  keywords.key("damage")
+      .number(damage, 0.0, Range::from(0.0), "strain")
+      .effect("damage at strain {}");
 
-  // bonds find their partners by atom ID. Not later than here: fix balance keeps, from when it is defined, whether there is a map to clear
+  // bonds find their partners by atom ID. Not later than here: fix balance keeps, from when it is
+  // defined, whether there is a map to clear
   if (atom->map_style != Atom::MAP_NONE) return;
   if (!modify->get_fix_by_style("^balance").empty())
-    error->all(FLERR, "Pair style fsi/solid/tl must come before fix balance, or give atom_modify map yes first");
+    error->all(
+        FLERR,
+        "Pair style fsi/solid/tl must come before fix balance, or give atom_modify map yes first");
   if (domain->box_exist) {
     atom->map_init();
     atom->map_set();
@@ -77,24 +86,17 @@ PairFSISolidTL *PairFSISolidTL::find(LAMMPS *lmp)
   return dynamic_cast<PairFSISolidTL *>(lmp->force->pair_match("fsi/solid/tl", 1));
 }
 
-template <> const StVenantKirchhoff *PairFSISolidTL::laws<StVenantKirchhoff>() const
-{
-  return svk.data();
-}
-template <> const NeoHookean *PairFSISolidTL::laws<NeoHookean>() const
-{
-  return neohookean.data();
-}
-template <> const HypoElastic *PairFSISolidTL::laws<HypoElastic>() const
-{
-  return hypo.data();
-}
-
 /* ---------------------------------------------------------------------- */
 
 void PairFSISolidTL::check_settings()
 {
-  if (plane_stress && law == NEOHOOKEAN) error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law svk or hypo");
+  laws.choose(law);
+  if (plane_stress && !laws.for_plane_stress()) {
+    std::string known;
+    for (const auto &name : SolidLaws::names_for_plane_stress())
+      known += (known.empty() ? "" : " or ") + name;
+    error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law {}", known);
+  }
   if (volumetric != SMOOTHED) return;
   if (plane_stress)
     error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed is not for plane stress, "
@@ -127,17 +129,12 @@ void PairFSISolidTL::init_style()
   PairFSI::init_style();
   check_contact();
   const int dim = fix_fsi->dim;
-  if (plane_stress && dim == 3) error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
-  if (force->pair_match("^fsi/solid$", 0)) error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
+  if (plane_stress && dim == 3)
+    error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
+  if (force->pair_match("^fsi/solid$", 0))
+    error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
   refuse_constraints();
-  fix_stress = FixFSIStress::find(lmp);
-  if (hypoelastic() && !fix_stress) error->all(FLERR, "Pair style fsi/solid/tl law hypo requires fix fsi/stress");
-  if (hypoelastic() && fix_stress->plane_stress != plane_stress) {
-    static const char *const planes[] = {"strain", "stress"};
-    error->all(FLERR, "Pair style fsi/solid/tl law hypo has plane {} and fix fsi/stress plane {}: expected the same in both", planes[plane_stress],
-               planes[fix_stress->plane_stress]);
-  }
-
+  make_laws();
   Fix *fix = modify->get_fix_by_id(FixFSIReference::ID);
   if (!fix) fix = modify->add_fix(fmt::format("{} all fsi/reference", FixFSIReference::ID));
   reference = dynamic_cast<FixFSIReference *>(fix);
@@ -145,7 +142,7 @@ void PairFSISolidTL::init_style()
   reference->end_corrected = !plain;
   reference->self_range = self_contact ? contact_range : 0.0;
   reference->tears = damage > 0.0;
-  comm_forward = has_artificial() || law == HYPO ? 2 * dim : dim;
+  comm_forward = has_artificial() || laws.by_rate() ? 2 * dim : dim;
   comm_reverse = dim;
 
   contacts.clear();
@@ -154,28 +151,40 @@ void PairFSISolidTL::init_style()
       contacts.emplace_back(dim, spacing_between(a, b), contact_range);
 
   changes_seen = -1;
-  svk.clear();
-  neohookean.clear();
-  hypo.clear();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSISolidTL::make_laws()
+{
   smoothed = VolumetricStrain();
   for (const auto &m : material)
     smoothed.modulus.push_back(is_smoothed(m) ? VolumetricStrain::excess(m) : 0.0);
   const auto none = [](double k) { return k == 0.0; };
   if (std::all_of(smoothed.modulus.begin(), smoothed.modulus.end(), none)) smoothed.modulus.clear();
-  for (const auto &m : material) {
-    const bool is = m.species == SOLID;
-    const double G = is ? m.shear_modulus() : 1.0;
-    double K = is ? m.bulk_modulus() : 1.0;
-    if (smoothed.on()) K -= smoothed.modulus[&m - material.data()];
-    svk.emplace_back(K, G, plane_stress);
-    neohookean.emplace_back(K, G, false);
-    hypo.emplace_back(is && plane_stress ? m.plane_stress_modulus() : K, G, plane_stress);
-  }
+  laws.choose(law);
+  laws.make(material, smoothed.modulus, plane_stress);
+  fix_history = FixFSIHistory::keep(lmp, laws.history(), laws.columns(fix_fsi->dim));
+  fix_stress = laws.by_rate() ? FixFSIStress::find(lmp) : nullptr;
+  if (!laws.by_rate()) return;
+  if (!fix_stress)
+    error->all(FLERR, "Pair style fsi/solid/tl law {} requires fix fsi/stress", laws.name());
+  if (fix_stress->plane_stress == plane_stress) return;
+  static const char *const planes[] = {"strain", "stress"};
+  error->all(FLERR,
+             "Pair style fsi/solid/tl law {} has plane {} and fix fsi/stress plane {}: "
+             "expected the same in both",
+             laws.name(), planes[plane_stress], planes[fix_stress->plane_stress]);
+}
+
+const double *const *PairFSISolidTL::history() const
+{
+  return fix_history ? fix_history->of : fix_stress ? fix_stress->stress : nullptr;
 }
 
 /* ----------------------------------------------------------------------
-   With sub-steps forces inside the solid come after all fixes have seen those from outside. What adds to these, as fix addforce, is
-   right; what sets or projects the whole force is not.
+   With sub-steps forces inside the solid come after all fixes have seen those from outside. What
+   adds to these, as fix addforce, is right; what sets or projects the whole force is not.
 ------------------------------------------------------------------------- */
 
 bool PairFSISolidTL::takes_substeps() const
@@ -187,24 +196,30 @@ bool PairFSISolidTL::takes_substeps() const
 
 void PairFSISolidTL::refuse_constraints() const
 {
-  static const char *const styles[] = {"setforce", "aveforce", "lineforce", "planeforce", "freeze", "manifoldforce", "damping/cundall",
-                                       "shake", "rattle"};
+  static const char *const styles[] = {"setforce",        "aveforce", "lineforce",
+                                       "planeforce",      "freeze",   "manifoldforce",
+                                       "damping/cundall", "shake",    "rattle"};
   if (!takes_substeps()) return;
   for (auto &fix : modify->get_fix_list())
     for (const char *style : styles) {
       const std::string name = style;
       if (fix->style != name && !utils::strmatch(fix->style, "^" + name + "/")) continue;
       const auto held = find_particles(atom, world, [&](int i) {
-        return material[atom->type[i]].species == SOLID && atom->mask[i] & fix_fsi->groupbit && atom->mask[i] & fix->groupbit;
+        return material[atom->type[i]].species == SOLID && atom->mask[i] & fix_fsi->groupbit &&
+            atom->mask[i] & fix->groupbit;
       });
       if (held.count)
-        error->all(FLERR, "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see forces inside the solid: to hold "
-                          "particles leave them out of the group of fix {}", fix->id, fix->style, held.first, fix_fsi->id);
+        error->all(
+            FLERR,
+            "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see "
+            "forces inside the solid: to hold particles leave them out of the group of fix {}",
+            fix->id, fix->style, held.first, fix_fsi->id);
     }
 }
 
 /* ----------------------------------------------------------------------
-   A rigid part of an elastic body is kicked once in a step, by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
+   A rigid part of an elastic body is kicked once in a step, by forces that the sub-steps do not
+   see: a beam with a rigid tip gains energy.
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::refuse_rigid_parts() const
@@ -213,9 +228,14 @@ void PairFSISolidTL::refuse_rigid_parts() const
     if (!utils::strmatch(fix->style, "^rigid") && !utils::strmatch(fix->style, "^poems")) continue;
     for (const BondRow &row : rows) {
       const auto elastic = [&](int i) { return atom->mask[i] & fix_fsi->groupbit; };
-      if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int j) { return !elastic(j) && atom->mask[j] & fix->groupbit; }))
-        error->one(FLERR, "Fix {} (style {}) moves a part of the elastic body of atom {}, which takes sub-steps: the part would gain energy. Use "
-                          "substeps 1 in fix fsi, or fix fsi/move if its motion is known", fix->id, fix->style, atom->tag[row.i]);
+      if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int j) {
+            return !elastic(j) && atom->mask[j] & fix->groupbit;
+          }))
+        error->one(FLERR,
+                   "Fix {} (style {}) moves a part of the elastic body of atom {}, which takes "
+                   "sub-steps: the part would gain energy. Use substeps 1 in fix fsi, or fix "
+                   "fsi/move if its motion is known",
+                   fix->id, fix->style, atom->tag[row.i]);
     }
   }
 }
@@ -228,7 +248,8 @@ const std::vector<int> &PairFSISolidTL::solids() const
 }
 
 /* ----------------------------------------------------------------------
-   with sub-steps the forces act inside fix fsi's last half of the step, not here; but in setup forces, energy and virial are seen
+   with sub-steps the forces act inside fix fsi's last half of the step, not here; but in setup
+   forces, energy and virial are seen
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::compute(int eflag, int vflag)
@@ -245,15 +266,12 @@ void PairFSISolidTL::compute(int eflag, int vflag)
 
 /* ---------------------------------------------------------------------- */
 
-template <class Call> void PairFSISolidTL::with_law(Call call)
+template <class Call> auto PairFSISolidTL::with_law(Call call) const
 {
-  const auto with = [&](auto dimension) {
-    if (law == SVK) call(svk[0], dimension);
-    else if (law == NEOHOOKEAN) call(neohookean[0], dimension);
-    else call(hypo[0], dimension);
-  };
-  if (fix_fsi->dim == 2) with(std::integral_constant<int, 2>());
-  else with(std::integral_constant<int, 3>());
+  return laws([&](const auto *law_of) {
+    if (fix_fsi->dim == 2) return call(law_of, std::integral_constant<int, 2>());
+    return call(law_of, std::integral_constant<int, 3>());
+  });
 }
 
 void PairFSISolidTL::internal_forces()
@@ -261,8 +279,8 @@ void PairFSISolidTL::internal_forces()
   if (fix_fsi->dim == 2) gather_points<2>();
   else gather_points<3>();
   const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
-  with_law([&](auto law_of, auto dimension) {
-    bond_forces<decltype(law_of), decltype(dimension)::value>();
+  with_law([&](const auto *law_of, auto dimension) {
+    bond_forces<std::decay_t<decltype(*law_of)>, decltype(dimension)::value>(law_of);
   });
   strain_energy += volumetric_energy;
   if (list) {
@@ -275,7 +293,12 @@ void PairFSISolidTL::internal_forces()
     else
       self_contact_forces<3>();
   }
-  exchange(fix_fsi->profile, comm, this, true, [this]() { reference->swaps.reverse(this); }, reference->swaps.skip_empty());
+  exchange(
+      fix_fsi->profile, comm, this, true,
+      [this]() {
+        reference->swaps.reverse(this);
+      },
+      reference->swaps.skip_empty());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -290,12 +313,15 @@ void PairFSISolidTL::find_rows()
     const State &s = fix_fsi->state[type[i]], &first = fix_fsi->state[type[reference->solids[0]]];
     one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
     if (reference->count(i) == 0) continue;    // torn off by damage
-    rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i), reference->moments(i),
-                    atom->rmass[i] / s.rho0 * reference->weight(i), zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
+    rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i),
+                    reference->moments(i), atom->rmass[i] / s.rho0 * reference->weight(i),
+                    zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
   }
   if (fix_fsi->substeps > 1 || (update->setupflag && takes_substeps())) refuse_rigid_parts();
   const auto moves = [=](const BondRow &row) {
-    return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [=](int j) { return mask[j] & groupbit; });
+    return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [=](int j) {
+             return mask[j] & groupbit;
+           });
   };
   nmoving = std::stable_partition(rows.begin(), rows.end(), moves) - rows.begin();
 }
@@ -354,8 +380,8 @@ double PairFSISolidTL::smooth_strains(bool of_all)
   smoothed.resize(atom->nmax);
   comm_forward = comm_reverse = 1;
   sends_strains = true;
-  with_law([&](auto law_of, auto dimension) {
-    using L = decltype(law_of);
+  with_law([&](const auto *law_of, auto dimension) {
+    using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;
     const auto find = [&](auto number) __attribute__((always_inline)) {
       find_volumetric_strains<decltype(number), L, D>(rows, atom->type, points.data(), smoothed);
@@ -380,7 +406,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
    fsi_bond_rows.h
 ------------------------------------------------------------------------- */
 
-template <class L, int D> void PairFSISolidTL::bond_forces()
+template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
 {
   using namespace BondFlag;
   constexpr int ALL = HOURGLASS | VISCOSITY | SUMS;
@@ -388,18 +414,20 @@ template <class L, int D> void PairFSISolidTL::bond_forces()
   const State *const state = fix_fsi->state.data();
   const int nrows = only_moving ? nmoving : (int) rows.size();
   BondSums sums;
-  const double *const *const stresses = hypoelastic() ? fix_stress->stress : nullptr;
   const double *const volumetric_forces = smoothed.on() ? smoothed.force.data() : nullptr;
-  const BondArguments in = {points.data(), type, state, stresses, volumetric_forces,
+  const BondArguments in = {points.data(), type, state, history(), volumetric_forces,
                             alpha, beta, one_material, &sums};
-  const L *const law_of = laws<L>();
   auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid ? fsolid[0] : nullptr);
-  // with sums, or one by one, there is one loop for all effects: those that are off have coefficients of zero
+  // with sums, or one by one, there is one loop for all effects: those that are off have
+  // coefficients of zero
   const bool packs = have_packs() && (one_material || !has_artificial());
   const int named = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
   with_flags<ALL>(fix_fsi->ledger || vflag_global || !packs ? ALL : named, [&](auto which) {
     if constexpr (!(which() & SUMS) || which() == ALL) {
-      const auto loop = [&](auto number) __attribute__((always_inline)) { bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f); };
+      const auto loop = [&](auto number) __attribute__((always_inline))
+      {
+        bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f);
+      };
       if (packs) return run_loop<Pack>(loop);
       if constexpr (which() == ALL) run_loop<double>(loop);
     }
@@ -490,19 +518,52 @@ template <int D> void PairFSISolidTL::deformation(int i, double *F) const
   }
 }
 
+/* ---------------------------------------------------------------------- */
+
+void PairFSISolidTL::advance_stress(double dt)
+{
+  if (!history()) return;
+  const Phase phase(fix_fsi->profile, Profile::STRESS);
+  with_law([&](const auto *law_of, auto dimension) {
+    using L = std::decay_t<decltype(*law_of)>;
+    constexpr int D = decltype(dimension)::value;
+    if constexpr (L::BY_RATE) advance_rates<D>(dt);
+    else if constexpr (L::HISTORY != nullptr) advance_history<L, D>(law_of, dt);
+  });
+}
+
+template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, double dt)
+{
+  std::vector<decltype(law_of->factors(dt))> factors;    // per type
+  for (int t = 0; t <= atom->ntypes; t++) factors.push_back(law_of[t].factors(dt));
+  gather_points<D>();
+  double dissipated = 0.0;
+  const auto loop = [&](auto number) __attribute__((always_inline))
+  {
+    using T = decltype(number);
+    using Pass = BondPass<T, D, 0>;
+    std::vector<double> kept;
+    for (const BondRow &row : rows) {
+      if (kept.size() < (size_t) (row.n / Pass::W + 1) * Pass::SIZE)
+        kept.resize((size_t) 2 * (row.n / Pass::W + 1) * Pass::SIZE);
+      const int t = atom->type[row.i];
+      T F[D * D], unused[D * D];
+      double Fi[D * D];
+      gather_row<T, D, 0>(row, points.data(), kept.data(), F, unused);
+      for (int k = 0; k < D * D; k++) Fi[k] = Lanes<T>::sum(F[k]);
+      dissipated += row.volume *
+          law_of[t].template advance<D>(Fi, factors[t], fix_history->of[row.i]);
+    }
+  };
+  have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
+  if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::INELASTIC] += dissipated;
+}
+
 /* ----------------------------------------------------------------------
    L = F' F^-1 at the time of the velocities, half a step before the positions
 ------------------------------------------------------------------------- */
 
-void PairFSISolidTL::advance_stress(double dt)
-{
-  if (law != HYPO) return;
-  const Phase phase(fix_fsi->profile, Profile::STRESS);
-  if (fix_fsi->dim == 2) advance_stress_of_all<2>(dt);
-  else advance_stress_of_all<3>(dt);
-}
-
-template <int D> void PairFSISolidTL::advance_stress_of_all(double dt)
+template <int D> void PairFSISolidTL::advance_rates(double dt)
 {
   double **x = atom->x;
   double **v = atom->v;
@@ -529,7 +590,7 @@ template <int D> void PairFSISolidTL::advance_stress_of_all(double dt)
         for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
     const State &s = fix_fsi->state[atom->type[i]];
     const double work = fix_stress->advance_stress<D>(i, L, dt, s);
-    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::PLASTIC] += work * atom->rmass[i] / s.rho0;
+    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::INELASTIC] += work * atom->rmass[i] / s.rho0;
   }
 }
 
@@ -539,21 +600,22 @@ void PairFSISolidTL::break_bonds()
 {
   if (damage <= 0.0) return;
   const Phase phase(fix_fsi->profile, Profile::STRESS);
-  reference->break_bonds(1.0 + damage, [this](int i) { return stored(i); });
+  reference->break_bonds(1.0 + damage, [this](int i) { return std::max(0.0, stored(i)); });
 }
 
-// elastic energy per reference volume; of law hypo, whose stress is no function of F, 0
+// elastic energy per reference volume; where stress comes by rates, and is no function of F, 0
 double PairFSISolidTL::stored(int i) const
 {
-  if (law == HYPO || reference->count(i) == 0) return 0.0;
-  const auto evaluate = [&](auto dimension) {
+  if (reference->count(i) == 0) return 0.0;
+  return with_law([&](const auto *law_of, auto dimension) {
+    using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;
+    if constexpr (L::BY_RATE) return 0.0;
     double F[D * D];
     deformation<D>(i, F);
-    const int t = atom->type[i];
-    return law == SVK ? svk[t].template operator()<D>(F, nullptr).energy : neohookean[t].template operator()<D>(F, nullptr).energy;
-  };
-  return fix_fsi->dim == 2 ? evaluate(std::integral_constant<int, 2>()) : evaluate(std::integral_constant<int, 3>());
+    const double *const own = L::HISTORY != nullptr ? fix_history->of[i] : nullptr;
+    return law_of[atom->type[i]].template operator()<D>(F, own).energy;
+  });
 }
 
 double PairFSISolidTL::volume_ratio(int i) const
@@ -582,35 +644,31 @@ void PairFSISolidTL::begin_stress()
 }
 
 // that of the smoothed strain at i itself: right for linear ones, to the face
-template <int D>
+template <class L, int D>
 void PairFSISolidTL::add_smoothed(int i, const double *F, PiolaStress<D> &piola) const
 {
-  double dm[D * D], p = smoothed.modulus[atom->type[i]];
-  if (law == SVK) StVenantKirchhoff::volumetric_strain<D>(F, dm);
-  else LogarithmOfVolume::volumetric_strain<D>(F, dm);
-  if (law == HYPO) p *= HypoElastic::volumetric_slope(smoothed.mean[i]);
-  else p *= NeoHookean::volumetric_slope(smoothed.mean[i]);
+  double dm[D * D];
+  L::template volumetric_strain<D>(F, dm);
+  const double p = smoothed.modulus[atom->type[i]] * L::volumetric_slope(smoothed.mean[i]);
   for (int k = 0; k < D * D; k++) piola.P[k] += p * dm[k];
   piola.zz += p;
 }
 
 PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
 {
-  const auto evaluate = [&](auto dimension) {
+  static constexpr int voigt[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  Stress s = {};
+  s.J = 1.0;
+  if (reference->count(i) == 0) return s;
+  with_law([&](const auto *law_of, auto dimension) {
+    using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;
-    static constexpr int voigt[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-    Stress s = {};
-    s.J = 1.0;
-    if (reference->count(i) == 0) return s;
     double F[D * D];
     deformation<D>(i, F);
-    const int t = atom->type[i];
-    PiolaStress<D> piola;
-    if (law == SVK) piola = svk[t].template operator()<D>(F, nullptr);
-    else if (law == NEOHOOKEAN) piola = neohookean[t].template operator()<D>(F, nullptr);
-    else piola = hypo[t].template operator()<D>(F, fix_stress->stress[i]);
+    const double *const own = history() ? history()[i] : nullptr;
+    PiolaStress<D> piola = law_of[atom->type[i]].template operator()<D>(F, own);
     s.J = determinant<D>(F);
-    if (smoothed.on()) add_smoothed<D>(i, F, piola);
+    if (smoothed.on()) add_smoothed<L, D>(i, F, piola);
     for (int a = 0; a < D; a++)
       for (int c = a; c < D; c++) {
         double sum = 0.0;
@@ -618,9 +676,8 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
         s.sigma[voigt[a][c]] = sum / s.J;
       }
     if (D == 2) s.sigma[2] = piola.zz / s.J;
-    return s;
-  };
-  return fix_fsi->dim == 2 ? evaluate(std::integral_constant<int, 2>()) : evaluate(std::integral_constant<int, 3>());
+  });
+  return s;
 }
 
 double PairFSISolidTL::Stress::von_mises() const
@@ -636,14 +693,20 @@ double PairFSISolidTL::Stress::von_mises() const
 
 void PairFSISolidTL::forward_positions()
 {
-  exchange(fix_fsi->profile, comm, this, false, [this]() { reference->swaps.forward(this); }, reference->swaps.skip_empty());
+  exchange(
+      fix_fsi->profile, comm, this, false,
+      [this]() {
+        reference->swaps.forward(this);
+      },
+      reference->swaps.skip_empty());
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
 {
   const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
-  const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0, pbc_flag ? pbc[1] * domain->yprd : 0.0,
+  const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0,
+                           pbc_flag ? pbc[1] * domain->yprd : 0.0,
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
   int m = 0;
   if (sends_strains) {
@@ -694,9 +757,10 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 }
 
 /* ----------------------------------------------------------------------
-   Stiff solids: from the state at the start of the step on, position Verlet with a step that many times shorter. What acts on
-   them from outside (f: fluid, gravity, ...), taken at the middle of the step, is held: what the fluid has lost in momentum, the
-   solid gains, to round-off.
+   Stiff solids: from the state at the start of the step on, position Verlet with a step that
+   many times shorter. What acts on them from outside (f: fluid, gravity, ...), taken at the
+   middle of the step, is held: what the fluid has lost in momentum, the solid gains, to
+   round-off.
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::integrate_substeps()
@@ -744,7 +808,8 @@ void PairFSISolidTL::integrate_substeps()
   }
   fix_fsi->check.after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
-  // what is seen from outside: the whole force and its virial, which a hybrid style has summed up already
+  // what is seen from outside: the whole force and its virial, which a hybrid style has summed up
+  // already
   if (force->pair != this)
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   for (const int i : solids())
@@ -766,7 +831,7 @@ void *PairFSISolidTL::extract(const char *name, int &dim_of_extract)
 {
   if (strcmp(name, "hypoelastic") == 0) {
     dim_of_extract = NOT_ADAPTABLE;
-    is_hypoelastic = hypoelastic();
+    is_hypoelastic = laws.by_rate();
     return &is_hypoelastic;
   }
   return PairFSI::extract(name, dim_of_extract);
@@ -784,20 +849,27 @@ void PairFSISolidTL::add_costs(Costs &costs) const
 
 void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
 {
-  if (all.solids == 0) nothing("Pair style fsi/solid/tl" + named_effects(), "no particle is a solid");
+  if (all.solids == 0)
+    nothing("Pair style fsi/solid/tl" + named_effects(), "no particle is a solid");
   else if (volumetric == SMOOTHED && !smoothed.on())
     nothing("Pair style fsi/solid/tl volumetric smoothed",
             fmt::format("no Poisson's ratio is above {}", VolumetricStrain::LOCAL));
+  const bool relaxes = std::any_of(material.begin(), material.end(),
+                                   [](const Material &m) { return m.nprony > 0; });
+  if (relaxes != (laws.history() != nullptr))
+    nothing(relaxes ? "Prony series of a material" : "Pair style fsi/solid/tl law viscoelastic",
+            relaxes ? "pair_style fsi/solid/tl has another law" : "no material has a Prony series");
 }
 
 /* ---------------------------------------------------------------------- */
 
 std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 {
-  static const char *const names[] = {"St. Venant-Kirchhoff", "neo-Hookean", "hypoelastic"};
   auto list = keywords.effects();
-  list.insert(list.begin(), {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields", names[law], linear ? "linear" : "quadratic"),
-                             "law", true});
+  list.insert(list.begin(),
+              {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields",
+                           laws.title(), linear ? "linear" : "quadratic"),
+               "law", true});
   if (smoothed.on())
     list.push_back({"smoothed volumetric strain of nearly incompressible solids",
                     "volumetric", true});
@@ -808,6 +880,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 
 double PairFSISolidTL::memory_usage()
 {
-  return (double) nmax * row_of_forces(domain->dimension) * sizeof(double) + (double) points.capacity() * sizeof(double) +
-      (double) rows.capacity() * sizeof(BondRow) + smoothed.memory_usage();
+  return (double) nmax * row_of_forces(domain->dimension) * sizeof(double) +
+      (double) points.capacity() * sizeof(double) + (double) rows.capacity() * sizeof(BondRow) +
+      smoothed.memory_usage();
 }

@@ -23,6 +23,7 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 
 #include "fsi_bond_rows.h"
 #include "fsi_contact.h"
+#include "fsi_solid_laws.h"
 #include "fsi_volumetric.h"
 #include "pair_fsi.h"
 
@@ -32,10 +33,11 @@ namespace LAMMPS_NS {
 
 // Elastic solids in total-Lagrangian form. The deformation gradient of particle i is
 //   F_i = sum_j (x_j - x_i) (x) G_ij
-// over its bonds, the neighbours in the reference configuration, and the force is minus the derivative of the energy
-// sum_i V_i psi(F_i): momentum, angular momentum and energy are kept to round-off and time step. Particle i alone gives
-// the forces -V_i P_i G_ij to its partners and the opposite to itself, so neither F nor P crosses ranks.
-// Particles of different bodies meet by contact only.
+// over its bonds, the neighbours in the reference configuration, and the force is minus the
+// derivative of the energy sum_i V_i psi(F_i): momentum, angular momentum and energy are kept to
+// round-off and time step. Particle i alone gives the forces -V_i P_i G_ij to its partners and the
+// opposite to itself, so neither F nor P crosses ranks. Particles of different bodies meet by
+// contact only.
 
 class PairFSISolidTL : public PairFSI {
  public:
@@ -51,7 +53,8 @@ class PairFSISolidTL : public PairFSI {
   void *extract(const char *, int &) override;
   std::vector<Effect> effects() const override;
   void advance(bool) override;
-  // Stiff solids: after the kick of what acts from outside is known, with a step that many times shorter
+  // Stiff solids: after the kick of what acts from outside is known, with a step that many times
+  // shorter
   void integrate_substeps() override;
   void add_costs(Costs &) const override;
   void find_idle(const Census &, const Idle &) const override;
@@ -61,12 +64,13 @@ class PairFSISolidTL : public PairFSI {
   void internal_forces();
   // positions, and velocities where a force needs them, of ghost solids from their owners
   void forward_positions();
-  // law hypo: deviatoric stress from half a step back to half a step ahead, at positions dt/2 ahead of the velocities' time
-  bool hypoelastic() const { return law == HYPO; }
+  // stress or history of a law that has one, from the middle of one step to that of the next, where
+  // positions are; velocities are those of the time between
   void advance_stress(double dt);
   void break_bonds();    // keyword damage
   const std::vector<int> &solids() const;
-  double strain_energy;    // of this rank's particles at the last forces; kept for compute fsi/energy
+  // of this rank's particles at the last forces; kept for compute fsi/energy
+  double strain_energy;
 
   struct Stress {
     double sigma[6];    // Cauchy: xx yy zz xy xz yz
@@ -86,16 +90,14 @@ class PairFSISolidTL : public PairFSI {
   FSI::State make_state(const FSI::Material &) const override;
 
  private:
-  enum Law { SVK, NEOHOOKEAN, HYPO };
   enum Volumetric { AUTO, SMOOTHED, LOCAL };
   double zeta, damage;
   int law, plane_stress, linear, plain, volumetric;
   int is_hypoelastic;    // for extract()
   class FixFSIReference *reference;
-  class FixFSIStress *fix_stress;    // null: no law needs it
-  std::vector<FSI::StVenantKirchhoff> svk;    // per type
-  std::vector<FSI::NeoHookean> neohookean;
-  std::vector<FSI::HypoElastic> hypo;
+  class FixFSIStress *fix_stress;      // null: the law has no rates
+  class FixFSIHistory *fix_history;    // null: the law has no history of its own
+  FSI::SolidLaws laws;
   double **fsolid;
   int nmax;
 
@@ -103,11 +105,15 @@ class PairFSISolidTL : public PairFSI {
   bool takes_substeps() const;    // or may choose to
   void refuse_rigid_parts() const;
   double stored(int i) const;
-  template <class L> const L *laws() const;
-  // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces are seen from outside
+  void make_laws();
+  // per particle, stress of rates or the law's own; or null
+  const double *const *history() const;
+  // the last ones act on held particles alone: of no use to sub-steps but the last, whose forces
+  // are seen from outside
   std::vector<FSI::BondRow> rows;
   int nmoving, changes_seen;    // how many do not; when they were found
-  bool only_moving, one_material;    // forces of those are wanted; all solids have one density and one speed of sound
+  // forces of those are wanted; all solids have one density and one speed of sound
+  bool only_moving, one_material;
   void find_rows();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
   template <int D> void gather_points();
@@ -115,16 +121,19 @@ class PairFSISolidTL : public PairFSI {
   bool sends_strains;    // what messages carry: these, or positions and forces
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
-  template <class Call> void with_law(Call call);    // call(law, constant with the dimension)
-  template <class L, int D> void bond_forces();
+  // what call(laws per type, constant with the dimension) returns
+  template <class Call> auto with_law(Call call) const;
+  template <class L, int D> void bond_forces(const L *law_of);
   std::vector<FSI::Contact> contacts;    // by both types
   template <int D> void contact_forces();
   template <int D> void self_contact_forces();
   template <int D>
   void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
-  template <int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
+  template <class L, int D>
+  void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
   template <int D> void deformation(int i, double *F) const;
-  template <int D> void advance_stress_of_all(double dt);
+  template <int D> void advance_rates(double dt);
+  template <class L, int D> void advance_history(const L *law_of, double dt);
 };
 
 }    // namespace LAMMPS_NS

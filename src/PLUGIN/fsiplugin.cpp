@@ -25,6 +25,7 @@
 #include "compute_fsi_surface_atom.h"
 #include "fix_fsi.h"
 #include "fix_fsi_dt.h"
+#include "fix_fsi_history.h"
 #include "fix_fsi_inlet.h"
 #include "fix_fsi_move.h"
 #include "fix_fsi_reference.h"
@@ -144,6 +145,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi/report", &create_with_arguments<FixFSIReport>);
   two("fix", "fsi/stress", &create_with_arguments<FixFSIStress>);
   two("fix", "fsi/reference", &create_with_arguments<FixFSIReference>);
+  two("fix", "FSI_HISTORY", &create_with_arguments<FixFSIHistory>);
   two("fix", "fsi", &create_with_arguments<FixFSI>);
   one("command", "fsi/material", &create<FSIMaterial>);
   one("command", "fsi/set", &create<FSISet>);

@@ -11,6 +11,7 @@
 
 #include "fsi_contact.h"
 #include "fsi_elastic.h"
+#include "fsi_viscoelastic.h"
 #include "fsi_volumetric.h"
 #include "reference.h"
 
@@ -91,6 +92,76 @@ TYPED_TEST(Elastic, LawIsItsLocalPartAndTheSmoothedOne)
   check(StVenantKirchhoff(K, G, false), StVenantKirchhoff(K - k, G, false));
   check(NeoHookean(K, G, false), NeoHookean(K - k, G, false));
   check(HypoElastic(K, G, false), HypoElastic(K - k, G, false));
+}
+
+// A history like that of some steps of any deformation
+template <int D> std::vector<double> history_of(const ViscoElastic &law, Random &random)
+{
+  std::vector<double> history(law.columns(D), 0.0);
+  for (int n = 0; n < 5; n++)
+    law.advance<D>(deformation<D>(random, 0.3).a, law.factors(0.4), history.data());
+  return history;
+}
+
+TYPED_TEST(Elastic, StressOfAViscoelasticLawIsTheDerivativeOfItsEnergy)
+{
+  constexpr int D = TypeParam::value;
+  Random random(5);
+  const ViscoElastic law(K, G, {{0.3, 0.5}, {0.2, 2.0}});
+  for (int n = 0; n < 20; n++) {
+    const auto history = history_of<D>(law, random);
+    auto F = deformation<D>(random, 0.3);
+    const auto P = stress_of<D>(law.operator()<D>(F.a, history.data()));
+    for (int k = 0; k < D * D; k++) {
+      const double step = 1e-5, f = F.a[k];
+      F.a[k] = f + step;
+      const double up = law.operator()<D>(F.a, history.data()).energy;
+      F.a[k] = f - step;
+      const double down = law.operator()<D>(F.a, history.data()).energy;
+      F.a[k] = f;
+      EXPECT_NEAR(P.a[k], (up - down) / (2 * step), 1e-8);
+    }
+  }
+}
+
+// What energy and stress lose at a constant deformation is what advance() says, exactly.
+TYPED_TEST(Elastic, ViscoelasticEnergyThatIsLostIsDissipated)
+{
+  constexpr int D = TypeParam::value;
+  Random random(6);
+  const ViscoElastic law(K, G, {{0.3, 0.5}, {0.2, 2.0}});
+  std::vector<double> history(law.columns(D), 0.0);
+  const auto F = deformation<D>(random, 0.3);
+  law.advance<D>(F.a, law.factors(1e-9), history.data());    // the strain, at once
+  const double start = law.operator()<D>(F.a, history.data()).energy;
+  double lost = 0.0;
+  for (int n = 0; n < 50; n++) {
+    const double part = law.advance<D>(F.a, law.factors(0.3), history.data());
+    EXPECT_GE(part, -1e-15);    // round-off of an energy of 0.1
+    lost += part;
+  }
+  const double end = law.operator()<D>(F.a, history.data()).energy;
+  EXPECT_NEAR(start - end, lost, 1e-14);
+  EXPECT_GT(lost, 0.1 * start);
+}
+
+// Small simple shear that grows at a constant rate, in steps of any length: at time t the stress is
+// rate times the integral of G.
+TYPED_TEST(Elastic, ViscoelasticStepIsExactForAConstantRate)
+{
+  constexpr int D = TypeParam::value;
+  constexpr double rate = 1e-7, g = 0.4, tau = 0.5;
+  const ViscoElastic law(K, G, {{g, tau}});
+  std::vector<double> history(law.columns(D), 0.0);
+  double t = 0.0;
+  for (const double dt : {0.1, 0.7, 3.0, 0.02}) {
+    t += dt;
+    auto F = unit<D>();
+    F.a[1] = rate * t;
+    law.advance<D>(F.a, law.factors(dt), history.data());
+    const double exact = G * rate * ((1.0 - g) * t + g * tau * (1.0 - std::exp(-t / tau)));
+    EXPECT_NEAR(law.operator()<D>(F.a, history.data()).P[1], exact, 1e-6 * exact);    // of the strain
+  }
 }
 
 TYPED_TEST(Elastic, WeightsOfTheSmoothedStrainKeepLinearFields)

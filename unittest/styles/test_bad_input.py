@@ -240,7 +240,7 @@ CASES = [
     ("wall velocity no number", "velocity 0.1", "velocity fast", r"fast"),
     # pair_style fsi/solid/tl, sub-steps
     ("tl keyword unknown", *tl("gradient linear colour 3"), r"fsi/solid/tl keyword colour"),
-    ("tl law unknown", *tl("law hooke"), r"fsi/solid/tl law hooke: expected svk, neohookean or hypo"),
+    ("tl law unknown", *tl("law hooke"), r"fsi/solid/tl law hooke: expected svk, neohookean, hypo or viscoelastic"),
     ("tl law without value", *tl("law"), r"fsi/solid/tl law command: missing"),
     ("tl plane unknown", *tl("plane flat"), r"fsi/solid/tl plane flat: expected strain or stress"),
     ("tl plane without value", *tl("plane"), r"fsi/solid/tl plane command: missing"),

@@ -8,7 +8,7 @@ from fsi import paths
 
 SOURCES = paths.ROOT / "src" / "FSI"
 LAWS = ["contact", "density_diffusion", "elastic", "gradient", "hourglass", "jaumann", "kernel", "lattice", "pack", "plasticity", "shift", "stress_artificial",
-        "tensor", "viscosity_artificial", "viscosity_laminar"]
+        "tensor", "viscoelastic", "viscosity_artificial", "viscosity_laminar"]
 
 
 def includes(name):
