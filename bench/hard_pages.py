@@ -47,7 +47,7 @@ def hard_page():
              "- Classic SPH: updated-Lagrangian solids with plain gradients and artificial stress, density of the fluid by summation, cubic spline.",
              "- All cases are coarse: 200 to 37,000 particles. They run in full with `tools/run hard`"
              f" ({found['runs']} runs, {found['cpu_seconds'] / 60:.0f} minutes on one core).",
-             "- Set-ups and settings are in [examples/hard](../../examples/hard/README.md), all values and messages in [hard.csv](hard.csv).",
+             "- Set-ups and settings are in [unittest/hard](../../unittest/hard/README.md), all values and messages in [hard.csv](hard.csv).",
              "- Materials and spacings that a user changes first are on the page of [robustness](robustness.md).", "",
              "What is *not* stable or not accurate:", "", *(f"- {text}" for text in unstable()), "",
              "| case | bound | here | | classic SPH | |", "|---|---|---|---|---|---|"]

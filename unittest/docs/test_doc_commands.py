@@ -30,7 +30,7 @@ import solid_variants  # noqa: E402
 
 NOTES = paths.ROOT / "doc/notes"    # of what was tried at its time
 PAGES = [paths.ROOT / "README.md", *(page for page in (paths.ROOT / "doc").rglob("*.md") if NOTES not in page.parents), *(paths.ROOT / "doc/src").glob("*.rst"),
-         *paths.EXAMPLES.glob("*/README.md")]
+         *(paths.folder(name) / "README.md" for name in paths.scenes())]
 PROGRAMS = r"tools/\w+|build/lmp|mpirun |fsi |python3? -m |pip install |cmake -|export |cp |git |apt(?:-get)? "
 PLACEHOLDERS = {"NAME": "elastic_gate", "SCENE": "elastic_gate", "CASE": "10MPa_3_across", "FILE": "unittest/styles/test_dt.py", "R": "2.5", "FOLDER": "results/beam",
                 "COMMAND": "log"}
@@ -279,7 +279,7 @@ def test_commands(reader, commands):
 
 def test_pages_are_read():
     """Each README of a scene says how it is run; and blocks are of known languages, none is left out."""
-    assert {path.parent.name for path in SESSIONS.values() if path.parts[0] == "examples"} == set(scene.scenes())
+    assert {path.parent.name for path in SESSIONS.values() if path.parts[0] in ("examples", "unittest")} == set(scene.scenes())
     for path in PAGES:
         languages = {language for language, _ in fenced(path, path.read_text())}
         assert languages <= {"bash", "sh", "LAMMPS", "python", "json", "text", "none"}, path

@@ -80,7 +80,7 @@ def runs(tmp_path, monkeypatch):
     for name in ("hard.json", "hard.csv", "thumbnails.png"):
         shutil.copyfile(evidence.HARD / name, made / "hard" / name)
     examples = tmp_path / "examples"
-    for name in paths.scenes():
+    for name in paths.examples():
         (examples / name).mkdir(parents=True)
         for file in ("README.md", f"in.{name}"):
             shutil.copyfile(paths.EXAMPLES / name / file, examples / name / file)

@@ -23,6 +23,7 @@ def figure(name, value, unit="", reference=None, source=None, target=None, met=N
 def tree(tmp_path, monkeypatch):
     """Three scenes: `stone`, one run; `study`, two cases and one that failed; `lost`, without results."""
     monkeypatch.setattr(paths, "EXAMPLES", tmp_path / "examples")
+    monkeypatch.setattr(paths, "DRIVERS", tmp_path / "unittest")
     for name, text in (("stone", "# Falling stone\n\nA stone falls.\n"), ("study", "# Study | stones\n\nMany.\n"), ("lost", "# Lost\n\nNo stone.\n")):
         folder = paths.EXAMPLES / name
         folder.mkdir(parents=True)
@@ -89,7 +90,7 @@ def test_headlines(found, monkeypatch):
 def test_headlines_are_of_the_bundled_scenes():
     """Interaction first; each has a truth in the results as they are committed, and so in the README; each name of a figure is in words."""
     found = results.scenes_of(paths.PAGE)
-    table = results.headlines(found, "examples")
+    table = results.headlines(found, "")
     assert len(table.splitlines()) == 2 + len(results.HEADLINES) == 10 and "no result" not in table and " None " not in table
     assert all("FSI" in line for line in table.splitlines()[2:5])
     assert not [line for line in table.splitlines() if "_" in line.split("|")[2]]
