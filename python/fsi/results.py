@@ -132,9 +132,14 @@ def headlines(scenes, up):
             rows.append([what, "no result", *[""] * 5])
             continue
         worst = max(outside, key=lambda f: abs(f["relative_error"]))
-        rows.append([what, words(worst["name"]), _value(worst), f"{number(worst['reference'])} ({_whose(worst, entry['summary']['figures'])})", deviation(worst),
-                     f"{sum(f['met'] for f in known)} of {len(known)}", duration(core_seconds(entry["summary"]["cases"][case]))])
+        rows.append([what, words(worst["name"]), _whole(_value(worst)), f"{number(worst['reference'])} ({_whose(worst, entry['summary']['figures'])})", _whole(deviation(worst)),
+                     _whole(f"{sum(f['met'] for f in known)} of {len(known)}"), _whole(duration(core_seconds(entry["summary"]["cases"][case])))])
     return _markdown(["scene", "its worst figure", "computed", "reference", "error", "targets met", "time on one core"], rows)
+
+
+def _whole(text):
+    """Text that a narrow column does not break."""
+    return text.replace(" ", "\u00a0")
 
 
 def _whose(figure, figures):
