@@ -14,6 +14,7 @@ from .summary import bound, deviation, number
 
 COST = ("cpu_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; no figures of a scene
 COLUMNS = ("scene", "figure", "value", "unit", "reference", "source", "error", "target", "met")
+WHOLE = "\u00a0"  # a blank that a narrow column does not break
 MARKS = ("<!-- results: written by tools/renew -->\n", "<!-- end of results -->\n")  # where the README has its table
 # The README's table: what, scene, its figures as a regular expression, the case whose time stands beside. The worst judged figure is shown
 HEADLINES = (
@@ -109,7 +110,7 @@ def _table(scenes, up):
             reference = "" if f["reference"] is None else number(f["reference"])
             if f["source"]:
                 reference = f"{reference} ({f['source']})" if reference else f["source"]
-            rows.append([f"[{title(name)}]({_page(name, up)})" if k == 0 else "", f"`{f['name']}`", _value(f), reference, deviation(f), bound(f),
+            rows.append([f"[{title(name)}]({_page(name, up)})" if k == 0 else "", f"`{f['name']}`", _value(f), reference, _whole(deviation(f)), bound(f),
                          "yes" if f["met"] else "**no**", f"{core_seconds(entry['summary']):,.0f}" if k == 0 else ""])
     return _markdown(["scene", "quantity", "computed", "reference", "error", "target", "met", "CPU s"], rows)
 
@@ -132,14 +133,14 @@ def headlines(scenes, up):
             rows.append([what, "no result", *[""] * 5])
             continue
         worst = max(outside, key=lambda f: abs(f["relative_error"]))
-        rows.append([what, words(worst["name"]), _whole(_value(worst)), f"{number(worst['reference'])} ({_whose(worst, entry['summary']['figures'])})", _whole(deviation(worst)),
+        rows.append([what, words(worst["name"]), _value(worst), f"{number(worst['reference'])} ({_whose(worst, entry['summary']['figures'])})", _whole(deviation(worst)),
                      _whole(f"{sum(f['met'] for f in known)} of {len(known)}"), _whole(duration(core_seconds(entry["summary"]["cases"][case])))])
     return _markdown(["scene", "its worst figure", "computed", "reference", "error", "targets met", "time on one core"], rows)
 
 
 def _whole(text):
     """Text that a narrow column does not break."""
-    return text.replace(" ", "\u00a0")
+    return text.replace(" ", WHOLE)
 
 
 def _whose(figure, figures):
@@ -161,7 +162,8 @@ def _markdown(head, rows):
 
 
 def _value(figure):
-    return f"{number(figure['value'])} {figure['unit']}".strip()
+    unit = figure["unit"]
+    return f"{number(figure['value'])}{' ' if ' ' in unit else WHOLE}{unit}" if unit else number(figure["value"])
 
 
 def duration(seconds):

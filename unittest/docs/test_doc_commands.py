@@ -84,7 +84,7 @@ def shell(text, home, cwd=None, status=0, without=()):
 
 def fewer_frames(path, left=6):
     """Keeps some frames of a dump, the first and the last among them: a film is a picture for each."""
-    start = "ITEM: TIMESTEP\n"
+    start = "ITEM: TIME\n"
     frames = path.read_text().split(start)[1:]
     path.write_text("".join(start + frames[round(k * (len(frames) - 1) / (left - 1))] for k in range(left)))
 

@@ -59,11 +59,11 @@ def test_head_says_what_is_met_and_what_failed(found):
 
 def test_table(found):
     page = results.render(found)
-    assert ("| [Falling stone](../../examples/stone/README.md) | `speed` | 11 m/s | 10 (experiment, A \\| B 1999) | +10.0 % | 5 % | **no** | 25 |"
+    assert ("| [Falling stone](../../examples/stone/README.md) | `speed` | 11\u00a0m/s | 10 (experiment, A \\| B 1999) | +10.0\u00a0% | 5 % | **no** | 25 |"
             in page)
-    assert "|  | `time` | 1.01 s | 1 (theory) | +1.0 % | 5 % | yes |  |" in page
+    assert "|  | `time` | 1.01\u00a0s | 1 (theory) | +1.0\u00a0% | 5 % | yes |  |" in page
     assert "|  | `lost` | 0 |  |  | 0 | yes |  |" in page
-    assert "| [Study \\| stones](../../examples/study/README.md) | `slope` | 1.9 | 2 (the same) | -5.0 % | 10 % | yes | 601 |" in page
+    assert "| [Study \\| stones](../../examples/study/README.md) | `slope` | 1.9 | 2 (the same) | -5.0\u00a0% | 10 % | yes | 601 |" in page
     # no target: in the table of all figures; what a run costs: in neither
     assert "`colour`" not in page and "`order`" not in page and "`cpu_seconds`" not in page
     rows = list(csv.DictReader(io.StringIO(results.table(found))))
