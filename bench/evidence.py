@@ -207,12 +207,20 @@ def draw_named(path):
 # ---- the page of all three ----
 
 def unstable():
-    """What is not stable or not accurate, a line each."""
-    return ["Two particles through the thickness: a plate bends some 25 % too little, and water may leak through it. Take three or more.",
+    """What is not stable or not accurate, a line each. The first and the last quote the sweeps; the others have no data and are words alone."""
+    two = _curve("elastic_gate", "TL")[0.0025]  # two particles in 5 mm
+    coarsest = min(x for x, r in _curve("oscillating_plate", "UL quadratic, hourglass, clamp at the face").items() if r["status"] == "ok")
+    return [f"Two particles through the thickness: the gate bends {-100 * two['error']:.0f} % too little, and water may leak through it. Take three or more.",
             "A plate lighter than the water that it moves in a step: with sub-steps it shakes. Halve the Courant number of the water.",
             "Thin free edges: single water particles may pass an edge that is thinner than the kernel's support.",
             "Updated-Lagrangian solids of Poisson's ratio near 1/2 are too stiff (locking). Total-Lagrangian solids are not.",
-            "Updated-Lagrangian solids: at coarse spacings they stop; total-Lagrangian solids are the default."]
+            "Coarse updated-Lagrangian solids stop, the elastic plate with fewer than "
+            f"{coarsest:.0f} particles through the thickness. Total-Lagrangian solids are the default."]
+
+
+def _curve(scene, method):
+    """{resolution: row} of a method's curve in the table of a sweep."""
+    return {r["x"]: r for r in read_csv(PAGE / f"{scene}.csv") if r["role"] == "curve" and r["group"] == method}
 
 
 def page():

@@ -47,7 +47,7 @@ def hard_page():
              "- Classic SPH: updated-Lagrangian solids with plain gradients and artificial stress, density of the fluid by summation, cubic spline.",
              "- All cases are coarse: 200 to 37,000 particles. They run in full with `tools/run hard`"
              f" ({found['runs']} runs, {found['cpu_seconds'] / 60:.0f} minutes on one core).",
-             "- Set-ups and settings are in [examples/hard](../../examples/hard/README.md), all values and messages in [hard.csv](hard.csv).",
+             "- Set-ups and settings are in [unittest/hard](../../unittest/hard/README.md), all values and messages in [hard.csv](hard.csv).",
              "- Materials and spacings that a user changes first are on the page of [robustness](robustness.md).", "",
              "What is *not* stable or not accurate:", "", *(f"- {text}" for text in unstable()), "",
              "| case | bound | here | | classic SPH | |", "|---|---|---|---|---|---|"]
@@ -61,7 +61,7 @@ def draw_hard(path):
     found = json.loads((HARD / "hard.json").read_text())
     rows, shown = found["rows"], found["pictures"]
     with plot.picture(path, 9.6, 7.2) as figure:
-        axes = figure.add_axes((0.345, 0.02, 0.12, 0.92))
+        axes = figure.add_axes((0.395, 0.02, 0.11, 0.92))
         for k, entry in enumerate(rows):
             for column, recipe in enumerate(("best", "paper")):
                 good = passed(entry, recipe)
@@ -84,7 +84,7 @@ def draw_hard(path):
                 place.set(xticks=[], yticks=[])
                 for spine in place.spines.values():
                     spine.set(visible=True, color=colour, linewidth=2)
-                text = f"{picture['title']}, t = {picture[which]:g} s" if row == 0 else f"t = {picture[which]:g} s"
+                text = f"{picture['title']}, t = {picture[which]:.2g} s" if row == 0 else f"t = {picture[which]:.2g} s"
                 stopped = row == 1 and picture["classic"] < 0.5 * picture["here"]
                 place.set_title(text + (", stopped" if stopped else ""), fontsize=7, pad=2, loc="left")
         for x, text in ((0.66, "here"), (0.885, "classic SPH")):

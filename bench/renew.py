@@ -66,7 +66,7 @@ def collect():
     (paths.PAGE / "results.json").write_text(json.dumps(found, indent=1) + "\n")
     for path, target in wanted.items():
         shutil.copyfile(path, target)
-    for name in paths.scenes():
+    for name in paths.examples():
         for _, file in gallery.pictures(name):
             if found := picture(name, file):
                 shutil.copyfile(found, paths.EXAMPLES / name / file)

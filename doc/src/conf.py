@@ -13,7 +13,7 @@ from pygments.token import Comment, Keyword, Name, String, Text
 project = "FSI package for LAMMPS"
 author = copyright = "the FSI package"
 root_doc = "doc/src/index"
-include_patterns = ["doc/**", "examples/*/README.md"]
+include_patterns = ["doc/**", "examples/*/README.md", "unittest/*/README.md"]
 exclude_patterns = ["build*", "results", ".*", "doc/notes"]
 extensions = ["sphinx_rtd_theme", "myst_parser", "sphinx.ext.mathjax", "sphinx.ext.extlinks"]
 extlinks = {"lammps": ("https://docs.lammps.org/%s.html", "%s")}

@@ -77,7 +77,7 @@ def page():
              "Each scene runs with ``tools/run NAME``. Its folder ``examples/NAME`` holds the input script, a page with what to expect, and reference logs.",
              "The command below a picture runs the short form that the logs are of. The :doc:`results <../results/README>` of all scenes are on one page.", "",
              ".. container:: cards", ""]
-    names = sorted(paths.scenes(), key=lambda name: ("starter" not in description(name), name))
+    names = sorted(paths.examples(), key=lambda name: ("starter" not in description(name), name))
     for name in names:
         lines += ["   .. container:: card", ""]
         shown = [found for found in pictures(name) if (paths.EXAMPLES / name / found[1]).exists()]

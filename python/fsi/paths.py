@@ -6,14 +6,27 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("FSI_BUILD_DIR") or ROOT / "build").resolve()
 EXAMPLES = ROOT / "examples"
+DRIVERS = ROOT / "unittest"  # of tests: scenes that tools/run takes, too, and that nobody copies
 POTENTIALS = ROOT / "potentials"
 RESULTS = ROOT / "results"
 PAGE = ROOT / "doc" / "results"
 
 
+def examples():
+    """Names of the scenes for users, sorted."""
+    return sorted(path.parent.name for path in EXAMPLES.glob("*/in.*") if path.name == f"in.{path.parent.name}")
+
+
 def scenes():
-    """Names of the bundled scenes, sorted."""
-    return sorted(f.name for f in EXAMPLES.iterdir() if (f / f"in.{f.name}").is_file())
+    """Names of all that tools/run takes, sorted: scenes for users and drivers of tests."""
+    drivers = [path.parent.name for path in DRIVERS.glob("*/in.*") if path.name == f"in.{path.parent.name}"]
+    return sorted([*examples(), *drivers])
+
+
+def folder(scene):
+    """Where a scene is, or would be."""
+    driver = DRIVERS / scene
+    return driver if (driver / f"in.{scene}").is_file() else EXAMPLES / scene
 
 
 def lammps_source():

@@ -64,7 +64,7 @@ def _json(path):
 
 def _head(name, found, record, summary):
     """What was run, with which settings."""
-    readme = paths.EXAMPLES / name / "README.md"
+    readme = paths.folder(name) / "README.md"
     lines = [line for line in (readme.read_text().splitlines() if readme.exists() else []) if line.strip()]
     title = lines[0].lstrip("# ") if lines else name
     text = [f"<h1>{escape(title)}{escape(': ' + record['case']) if record.get('case') else ''}</h1>"]

@@ -14,6 +14,7 @@ from .summary import bound, deviation, number
 
 COST = ("cpu_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; no figures of a scene
 COLUMNS = ("scene", "figure", "value", "unit", "reference", "source", "error", "target", "met")
+WHOLE = "\u00a0"  # a blank that a narrow column does not break
 MARKS = ("<!-- results: written by tools/renew -->\n", "<!-- end of results -->\n")  # where the README has its table
 # The README's table: what, scene, its figures as a regular expression, the case whose time stands beside. The worst judged figure is shown
 HEADLINES = (
@@ -49,8 +50,13 @@ def collect(results):
 
 def title(name):
     """The heading of a scene's README."""
-    path = paths.EXAMPLES / name / "README.md"
+    path = paths.folder(name) / "README.md"
     return next((line.lstrip("# ") for line in path.read_text().splitlines() if line.startswith("# ")), name) if path.exists() else name
+
+
+def _page(name, up):
+    """The link to a scene's page."""
+    return f"{up}{paths.folder(name).parent.name}/{name}/README.md"
 
 
 def scenes_of(page):
@@ -76,8 +82,8 @@ def table(found):
     return text.getvalue()
 
 
-def render(found, examples="../../examples"):
-    """The page as Markdown; `examples` leads from it to the scenes."""
+def render(found, up="../../"):
+    """The page as Markdown; `up` leads from it to the root."""
     scenes = {name: entry for name, entry in found["scenes"].items() if entry["summary"]}
     every = [f for entry in scenes.values() for f in judged(entry)]
     hours = sum(core_seconds(entry["summary"]) for entry in scenes.values()) / 3600
@@ -94,17 +100,17 @@ def render(found, examples="../../examples"):
     missing = [name for name, entry in found["scenes"].items() if not entry["summary"] or entry["summary"].get("failed_cases")]
     if missing:
         lines += [f"**Failed, in part or as a whole: {', '.join(missing)}.**", ""]
-    return "\n".join(lines) + "\n" + _table(scenes, examples) + "\n"
+    return "\n".join(lines) + "\n" + _table(scenes, up) + "\n"
 
 
-def _table(scenes, examples):
+def _table(scenes, up):
     rows = []
     for name, entry in scenes.items():
         for k, f in enumerate(judged(entry)):
             reference = "" if f["reference"] is None else number(f["reference"])
             if f["source"]:
                 reference = f"{reference} ({f['source']})" if reference else f["source"]
-            rows.append([f"[{title(name)}]({examples}/{name}/README.md)" if k == 0 else "", f"`{f['name']}`", _value(f), reference, deviation(f), bound(f),
+            rows.append([f"[{title(name)}]({_page(name, up)})" if k == 0 else "", f"`{f['name']}`", _value(f), reference, _whole(deviation(f)), bound(f),
                          "yes" if f["met"] else "**no**", f"{core_seconds(entry['summary']):,.0f}" if k == 0 else ""])
     return _markdown(["scene", "quantity", "computed", "reference", "error", "target", "met", "CPU s"], rows)
 
@@ -115,21 +121,26 @@ def core_seconds(ran):
     return sum((case["cpu_seconds"] or 0) * (case["ranks"] or 1) for case in cases)
 
 
-def headlines(scenes, examples):
+def headlines(scenes, up):
     """The README's table: of each line the judged figure that is off by most, of those with a reference from outside."""
     rows = []
     for what, name, figures, case in HEADLINES:
         entry = scenes.get(name)
         known = [f for f in judged(entry) if re.fullmatch(figures, f["name"])] if entry and entry["summary"] else []
         outside = [f for f in known if f["relative_error"] is not None and not f["source"].startswith("our ")]
-        what = f"[{what}]({examples}/{name}/README.md)"
+        what = f"[{what}]({_page(name, up)})"
         if not outside or case not in entry["summary"].get("cases", {}):
             rows.append([what, "no result", *[""] * 5])
             continue
         worst = max(outside, key=lambda f: abs(f["relative_error"]))
-        rows.append([what, words(worst["name"]), _value(worst), f"{number(worst['reference'])} ({_whose(worst, entry['summary']['figures'])})", deviation(worst),
-                     f"{sum(f['met'] for f in known)} of {len(known)}", duration(core_seconds(entry["summary"]["cases"][case]))])
+        rows.append([what, words(worst["name"]), _value(worst), f"{number(worst['reference'])} ({_whose(worst, entry['summary']['figures'])})", _whole(deviation(worst)),
+                     _whole(f"{sum(f['met'] for f in known)} of {len(known)}"), _whole(duration(core_seconds(entry["summary"]["cases"][case])))])
     return _markdown(["scene", "its worst figure", "computed", "reference", "error", "targets met", "time on one core"], rows)
+
+
+def _whole(text):
+    """Text that a narrow column does not break."""
+    return text.replace(" ", WHOLE)
 
 
 def _whose(figure, figures):
@@ -151,7 +162,8 @@ def _markdown(head, rows):
 
 
 def _value(figure):
-    return f"{number(figure['value'])} {figure['unit']}".strip()
+    unit = figure["unit"]
+    return f"{number(figure['value'])}{' ' if ' ' in unit else WHOLE}{unit}" if unit else number(figure["value"])
 
 
 def duration(seconds):
@@ -180,7 +192,7 @@ def draw(found, path):
         figure.tight_layout()
 
 
-def readme(text, found, examples="examples"):
+def readme(text, found, up=""):
     """The repository's README with its table made anew."""
     before, rest = text.split(MARKS[0])
-    return before + MARKS[0] + "\n" + headlines(found["scenes"], examples) + "\n\n" + MARKS[1] + rest.split(MARKS[1])[1]
+    return before + MARKS[0] + "\n" + headlines(found["scenes"], up) + "\n\n" + MARKS[1] + rest.split(MARKS[1])[1]

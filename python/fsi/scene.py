@@ -1,4 +1,4 @@
-"""Runs the scenes in examples/: builds, simulates, analyses. The command line of tools/run.
+"""Runs the scenes in examples/, and the drivers of tests in unittest/: builds, simulates, analyses. The command line of tools/run.
 
 Each scene is a folder with an analyze.py whose main(folder) writes summary.json and pictures, and a deck, study/in.<scene>. in.<scene> is the same
 in few lines, for users to copy (unittest/scenes/test_plain_decks.py); starters have this one alone.
@@ -37,18 +37,19 @@ RANKS = 1  # where nobody says how many: small scenes gain nothing by more, and 
 EDITS_FILE = "edits.json"  # {name: {"find": regular expression, "put": text with {value}}}: settings that no deck has a variable for
 ONE_RUN = {"variables": {}, "ranks": None, "deck": None, "may_fail": False}  # of a scene without cases
 OWN_RUN = "custom"  # folder of a run with the user's variables beside the cases, whose results stay as they are
-SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools", "bench")  # what decides a result
+SOURCES = ("src", "cmake", "potentials", "examples", "python", "tools", "bench", "unittest/hard")  # what decides a result
 
 
 def deck(scene):
     """The scene's input file with the settings that sweeps and tests need: that in study/ where there is one."""
-    study = paths.EXAMPLES / scene / "study" / f"in.{scene}"
-    return study if study.exists() else paths.EXAMPLES / scene / f"in.{scene}"
+    folder = paths.folder(scene)
+    study = folder / "study" / f"in.{scene}"
+    return study if study.exists() else folder / f"in.{scene}"
 
 
 def cases(scene):
     """The runs that make up a scene, {case: {"variables", "ranks", "deck", "may_fail"}}; {} if it is one run."""
-    path = paths.EXAMPLES / scene / CASES_FILE
+    path = paths.folder(scene) / CASES_FILE
     if not path.exists():
         return {}
     try:
@@ -76,7 +77,7 @@ def _borrowed(scene, name):
     """The deck of another scene, with the edits of `scene`."""
     if name not in scenes():
         raise Refusal(f"there is no scene '{name}'{_similar(name, scenes())}")
-    path = paths.EXAMPLES / scene / EDITS_FILE
+    path = paths.folder(scene) / EDITS_FILE
     return Deck(deck(name), json.loads(path.read_text()) if path.exists() else None)
 
 
@@ -243,7 +244,7 @@ def _seconds_of_page():
 
 def analysis(scene):
     """The scene's analyze.py as a module; None if it has none."""
-    path = paths.EXAMPLES / scene / "analyze.py"
+    path = paths.folder(scene) / "analyze.py"
     if not path.exists():
         return None
     spec = importlib.util.spec_from_file_location(f"fsi_analyze_{scene}", path)

@@ -581,7 +581,7 @@ class Adviser : protected Pointers {
   }
 
   /* A kernel that makes a solid of the fluid's lattice. In water a quarter as deep as a wave is long, linear theory with such a solid
-     changes the period by the part below (doc/choosing.md). */
+     changes the period by the part below (doc/notes/fluid.md). */
 
   void lattice() const
   {
@@ -713,7 +713,7 @@ class Adviser : protected Pointers {
 
   void time_step() const
   {
-    // where runs begin to fail (doc/choosing.md), over the limit that fix fsi/dt keeps
+    // where runs begin to fail (doc/notes/fluid.md, Courant number), over the limit that fix fsi/dt keeps
     static constexpr struct {
       int cause;
       double fails;

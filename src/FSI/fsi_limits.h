@@ -27,7 +27,7 @@ namespace FSI {
     enum Limit { SOUND, ELASTIC, ARTIFICIAL, LAMINAR, ACCELERATION, NLIMIT };
     static constexpr double UNLIMITED = 1.0e20;
     // limit = safe times the time that the Courant number of this cause divides dt by, times a factor of fluids or of solids;
-    // those that are usual (doc/choosing.md): fluids bear twice theirs, elastic solids 1.2 times
+    // those that are usual; fluids remain stable at twice theirs, elastic solids at 1.2 times (doc/notes/fluid.md)
     static constexpr double safe[NLIMIT] = {0.25, 0.25, 0.4, 0.0625, 0.25};
     static constexpr double FLUID_FACTOR = 2.0, SOLID_FACTOR = 1.0;
 

@@ -161,7 +161,7 @@ def test_manual(tmp_path):
                           stderr=subprocess.STDOUT, text=True, check=False)
     assert done.returncode == 0, done.stdout
     pages = {page.relative_to(tmp_path).as_posix(): page.read_text() for page in tmp_path.rglob("*.html") if "_static" not in page.parts}
-    assert {f"doc/src/{page}.html" for page in STYLES} | {f"examples/{name}/README.html" for name in paths.scenes()} <= set(pages)
+    assert {f"doc/src/{page}.html" for page in STYLES} | {f"{paths.folder(name).parent.name}/{name}/README.html" for name in paths.scenes()} <= set(pages)
     for name, text in pages.items():
         assert not re.search(r'(?:src|<link[^>]*href)="(?:https?:)?//', text), name
         assert not re.search(r">https?://", text), name

@@ -30,7 +30,7 @@ import solid_variants  # noqa: E402
 
 NOTES = paths.ROOT / "doc/notes"    # of what was tried at its time
 PAGES = [paths.ROOT / "README.md", *(page for page in (paths.ROOT / "doc").rglob("*.md") if NOTES not in page.parents), *(paths.ROOT / "doc/src").glob("*.rst"),
-         *paths.EXAMPLES.glob("*/README.md")]
+         *(paths.folder(name) / "README.md" for name in paths.scenes())]
 PROGRAMS = r"tools/\w+|build/lmp|mpirun |fsi |python3? -m |pip install |cmake -|export |cp |git |apt(?:-get)? "
 PLACEHOLDERS = {"NAME": "elastic_gate", "SCENE": "elastic_gate", "CASE": "10MPa_3_across", "FILE": "unittest/styles/test_dt.py", "R": "2.5", "FOLDER": "results/beam",
                 "COMMAND": "log"}
@@ -82,6 +82,13 @@ def shell(text, home, cwd=None, status=0, without=()):
     return done.stdout
 
 
+def fewer_frames(path, left=6):
+    """Keeps some frames of a dump, the first and the last among them: a film is a picture for each."""
+    start = "ITEM: TIME\n"
+    frames = path.read_text().split(start)[1:]
+    path.write_text("".join(start + frames[round(k * (len(frames) - 1) / (left - 1))] for k in range(left)))
+
+
 @pytest.fixture(scope="module")
 def home(tmp_path_factory):
     """What the reader has around: the repository (links), what two starters left there, a deck and an outline of their own, a LAMMPS tree."""
@@ -98,6 +105,7 @@ def home(tmp_path_factory):
         (folder / "bin" / name).chmod(0o755)
     for name, tend in (("droplet", 0.05), ("beam", 0.3)):
         shell(f"tools/run {name} tend={tend} ranks=1 out=results/{name}", folder)
+        fewer_frames(folder / "results" / name / "particles.dump")
     beam = folder / "results/beam"
     shutil.copy(beam / "log.lammps", beam / "log.fine")
     (beam / "outline.csv").write_text("0,0\n0.2,0\n0.2,0.1\n0,0.1\n")
@@ -147,8 +155,8 @@ class Reader:
         handler(command, words[1:])
 
     def prepare(self, command, _):
-        """What later commands rely on."""
-        self.before.append(command)
+        """What later commands rely on, wherever they run."""
+        self.before.append(command.replace("$PWD", shlex.quote(str(self.home))))
         self.set += re.findall(r"(\w+)=", command) if command.startswith("export") else []
         self.execute("true")
 
@@ -174,17 +182,20 @@ class Reader:
         return self.execute(f"{crowded} {command} -skiprun -log none")
 
     def lmp(self, _, words):
-        """A scene's deck, in its folder: here in another, where what it writes is no litter."""
+        """A scene's deck, in its folder: here in a copy, where what it writes is no litter."""
         assert words[0] == "-in" and len(words) == 2
-        deck = paths.EXAMPLES / words[1].removeprefix("in.") / words[1]
-        assert deck.exists(), f"there is no {deck}"
-        for beside in deck.parent.iterdir():  # what it includes
-            if beside.suffix == ".in" and not (self.home / beside.name).exists():
-                (self.home / beside.name).symlink_to(beside)
-        self.execute(shlex.join([str(paths.BUILD / "lmp"), "-in", str(deck), "-skiprun", "-log", "none"]))
+        folder = paths.EXAMPLES / words[1].removeprefix("in.")
+        assert (folder / words[1]).exists(), f"there is no {words[1]} in {folder}"
+        copy = self.home / "decks" / folder.name
+        copy.mkdir(parents=True, exist_ok=True)
+        for path in [folder / words[1], *folder.glob("*.in")]:  # what the deck includes
+            shutil.copy(path, copy)
+        self.execute(shlex.join([str(paths.BUILD / "lmp"), "-in", words[1], "-skiprun", "-log", "none"]), cwd=copy)
 
     def fsi(self, command, words):
-        """Of files that a run left: in its folder."""
+        """Of files that a run left: in its folder. A command without a file is spoken of, not run."""
+        if len(shlex.split(command)) == 2:
+            command += " --help"
         self.execute(command, cwd=self.home if re.search("results/|doc/", command) else self.home / "results/beam")
 
     def python3(self, command, words):
@@ -284,7 +295,7 @@ def test_commands(reader, commands):
 
 def test_pages_are_read():
     """Each README of a scene says how it is run; and blocks are of known languages, none is left out."""
-    assert {path.parent.name for path in SESSIONS.values() if path.parts[0] == "examples"} == set(scene.scenes())
+    assert {path.parent.name for path in SESSIONS.values() if path.parts[0] in ("examples", "unittest")} == set(scene.scenes())
     for path in PAGES:
         languages = {language for language, _ in fenced(path, path.read_text())}
         assert languages <= {"bash", "sh", "LAMMPS", "python", "json", "text", "none"}, path
@@ -293,6 +304,23 @@ def test_pages_are_read():
 def test_options_of_cmake_exist():
     named = {name for path in PAGES for name in re.findall(r"(?<!\S)[`\[]*-D(\w+)=", path.read_text())}
     assert {"FSI_NATIVE", "PKG_VTK", "LAMMPS_SIZES"} <= named <= cmake_variables() | {"PKG_FSI"}
+
+
+def test_container_and_ci_do_what_the_readme_says():
+    """The Dockerfile runs commands of the quick start in a system that the README names; .ci/run runs the tests that it names."""
+    read = (paths.ROOT / "README.md").read_text()
+    quick = next(lines for lines in SESSIONS if lines[0].startswith("git clone"))
+    steps = [line.split(maxsplit=1) for line in (paths.ROOT / "Dockerfile").read_text().splitlines() if line and not line.startswith("#")]
+    assert [word for word, _ in steps] == ["FROM", "COPY", "WORKDIR", "RUN", "ENV", "CMD"]
+    said = dict(steps)
+    assert said["FROM"] == "debian:bookworm" and "On Debian 12" in read
+    assert said["COPY"] == f". {said['WORKDIR']}" and said["RUN"] in quick
+    assert f"export {said['ENV'].replace(said['WORKDIR'], '$PWD')}" in quick
+    assert not {"build*", "results"} - set((paths.ROOT / ".dockerignore").read_text().split())
+    deck = re.search(r"^#.* build/lmp -in (\S+)$", (paths.ROOT / "Dockerfile").read_text(), re.M)[1]
+    assert (paths.ROOT / deck).exists()
+    suite = re.search(r"/\.\./(tools/\w+)\"$", (paths.ROOT / ".ci/run").read_text(), re.M)[1]
+    assert suite in {command.split()[0] for command in quick}
 
 
 @pytest.mark.parametrize("path", [path for path in PAGES if any(language == "python" for language, _ in fenced(path, path.read_text()))],

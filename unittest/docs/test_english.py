@@ -9,7 +9,7 @@ from fsi import paths
 
 ROOT = paths.ROOT
 PAGES = [*(ROOT / f"{name}.md" for name in ("README", "CONTRIBUTING", "CHANGELOG")),
-         *sorted(paths.EXAMPLES.glob("*/README.md")), *sorted((ROOT / "doc/src").glob("*.rst")),
+         *(paths.folder(name) / "README.md" for name in paths.scenes()), *sorted((ROOT / "doc/src").glob("*.rst")),
          *(page for folder in (".", "cost", "hard", "results")
            for page in sorted((ROOT / "doc" / folder).glob("*.md")))]
 NAMES = {page.relative_to(ROOT).as_posix(): page for page in PAGES}
@@ -57,7 +57,7 @@ def test_length():
 
 @pytest.mark.parametrize("name", paths.scenes())
 def test_page_of_a_scene_has_the_template(name):
-    assert not strays((paths.EXAMPLES / name / "README.md").read_text(encoding="utf-8"))
+    assert not strays((paths.folder(name) / "README.md").read_text(encoding="utf-8"))
 
 
 def strays(text):

@@ -90,12 +90,12 @@ def test_pieces_and_neighbours():
     ({"deck": "still_water", "variables": {"ring_gradient": "plain"}}, "the deck has no 'gradient corrected'"),
 ])
 def test_bad_borrowed_decks_are_refused(monkeypatch, tmp_path, case, message):
-    for name in scene.scenes():
+    for name in paths.examples():
         (tmp_path / name).symlink_to(paths.EXAMPLES / name)
     (tmp_path / "toy").mkdir()
     (tmp_path / "toy" / "in.toy").write_text("print 'toy'\n")
     (tmp_path / "toy" / "cases.json").write_text(json.dumps({"a": case}))
-    (tmp_path / "toy" / "edits.json").write_text((paths.EXAMPLES / "hard" / "edits.json").read_text())
+    (tmp_path / "toy" / "edits.json").write_text((paths.folder("hard") / "edits.json").read_text())
     monkeypatch.setattr(paths, "EXAMPLES", tmp_path)
     with pytest.raises(scene.Refusal, match=message):
         scene.cases("toy")

@@ -11,8 +11,7 @@ import pytest
 from fsi import launch, paths, scene
 
 STARTERS = ("beam", "column", "droplet")  # one deck each, which tools/run takes, too
-DECKS = {path.name.removeprefix("in."): path for path in sorted(paths.EXAMPLES.glob("*/in.*"))
-         if path.parent.name != "hard"}
+DECKS = {path.name.removeprefix("in."): path for path in sorted(paths.EXAMPLES.glob("*/in.*"))}
 STUDIED = [name for name in DECKS if name not in STARTERS]
 LINES, COLUMNS = 45, 132
 # until there are commands for what makes them long
@@ -75,8 +74,8 @@ def test_form(name):
 
 def test_who_has_a_study():
     """What sweeps and tests take is the study's deck where there is one, and else the plain one."""
-    for name in paths.scenes():
-        expected = "hard" != name not in STARTERS
+    for name in paths.examples():
+        expected = name not in STARTERS
         assert (scene.deck(name).parent.name == "study") == expected and scene.deck(name).is_file()
     for path in paths.EXAMPLES.glob("*/study/*"):
         assert path.name == f"in.{path.parents[1].name}"

@@ -31,7 +31,7 @@ def test_install(tmp_path):
 
 
 @pytest.mark.parametrize("form", ["package", "files"])
-def test_inside_a_lammps_tree(tmp_path, form):
+def test_inside_a_lammps_tree(tmp_path, monkeypatch, form):
     """Both forms of doc/src/Build_fsi.rst, configured; LAMMPS' style headers have the styles, and sources compile there."""
     source, tree = paths.lammps_source(), tmp_path / "lammps"
     tree.mkdir()
@@ -52,6 +52,7 @@ def test_inside_a_lammps_tree(tmp_path, form):
         for entry in (paths.ROOT / "src/FSI").iterdir():
             shutil.copy(entry, tree / "src")
     build = tmp_path / "build"
+    monkeypatch.setenv("CCACHE_BASEDIR", str(tmp_path))  # the compiler cache knows the objects in whatever folder the tree is
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     command("cmake", "-S", tree / "cmake", "-B", build, "-G", "Ninja", *launcher, *options)
     headers = "".join(h.read_text() for h in (build / "styles").glob("style_*.h"))

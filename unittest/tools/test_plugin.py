@@ -1,12 +1,13 @@
 """The package as a plugin: in a LAMMPS of the same release built without it, results are those of the package compiled in."""
 
+import re
 import shutil
 import subprocess
 
 import pytest
 from scenes import dam_gate, differing, fluid_box, lammps, run, watch
 
-from fsi import dump, paths
+from fsi import dump, launch, paths
 
 PLAIN = paths.ROOT / "build-plain"
 SCENE = dam_gate(2)
@@ -106,17 +107,29 @@ def test_hybrid_atom_style(plain, tmp_path):
     assert "\nentered" in load(plain, tmp_path, text).output
 
 
-def test_version_that_differs(plain, tmp_path):
-    """A library that says it is another release: refused with both versions, and nothing is registered."""
-    library = tmp_path / "lib"
+def version():
+    return next(line.split('"')[1] for line in (paths.lammps_source() / "src/version.h").read_text().splitlines() if "define LAMMPS_VERSION" in line)
+
+
+def another():
+    """Of another release, as long."""
+    return version()[:-1] + ("6" if version()[-1] != "6" else "7")
+
+
+def other_release(plain, folder):
+    """A folder with a library that says it is another release."""
+    library = folder / "lib"
     library.mkdir()
     data = (plain / "liblammps.so.0").resolve().read_bytes()
-    version = next(line.split('"')[1] for line in (paths.lammps_source() / "src/version.h").read_text().splitlines()
-                   if "define LAMMPS_VERSION" in line)
-    other = version[:-1] + ("6" if version[-1] != "6" else "7")
-    (library / "liblammps.so.0").write_bytes(data.replace(version.encode() + b"\0", other.encode() + b"\0"))
+    (library / "liblammps.so.0").write_bytes(data.replace(version().encode() + b"\0", another().encode() + b"\0"))
+    return library
+
+
+def test_version_that_differs(plain, tmp_path):
+    """Refused with both versions, and nothing is registered."""
+    library = other_release(plain, tmp_path)
     result = load(plain, tmp_path, LOAD + "plugin list\natom_style fsi\n", LD_LIBRARY_PATH=str(library))
-    assert f"FSI plugin not loaded: it was compiled for LAMMPS version {version}, this is version {other}" in result.output
+    assert f"FSI plugin not loaded: it was compiled for LAMMPS version {version()}, this is version {another()}" in result.output
     assert "style plugin fsi" not in result.output and "Unrecognized atom style 'fsi'" in result.output
 
 
@@ -129,17 +142,55 @@ def test_package_compiled_in(plain, tmp_path):
     assert "Overriding" not in result.output
 
 
-def test_plugin_alone(plain, tmp_path):
-    """Configured for a LAMMPS that is there, only the plugin is built, and it is the same one."""
+# ---- tools/setup --lammps, where LAMMPS is installed ----
+
+def run_setup(folder, *words, **environment):
+    """tools/setup with a build folder: (status, what it says)."""
+    own = {name: value for name, value in launch.environment().items() if name != "LD_LIBRARY_PATH"}  # which names the usual build
+    done = subprocess.run([paths.ROOT / "tools/setup", *words], env={**own, "FSI_BUILD_DIR": str(folder), **environment},
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    return done.returncode, done.stdout
+
+
+def source():
+    return {"LAMMPS_SOURCE_DIR": str(paths.lammps_source())}
+
+
+def test_setup_for_an_installed_lammps(plain, tmp_path):
+    """Only the plugin is built, it is the same one, and build/lmp is that LAMMPS with it. Of another release: refused when it starts."""
     build = paths.ROOT / "build-plugin"  # beside the usual one, whose objects the compiler cache then knows
-    for command in (["cmake", "-S", paths.ROOT, "-B", build, "-G", "Ninja", "-DFSI_BUILD_LAMMPS=OFF", "-DBUILD_OMP=OFF",
-                     *same_options()], ["cmake", "--build", build]):
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-        assert done.returncode == 0, "\n".join(done.stdout.splitlines()[-20:])
+    shutil.rmtree(build, ignore_errors=True)
+    status, said = run_setup(build, "--lammps", plain / "lmp", **source())
+    assert status == 0 and f"{build}/lmp is {plain}/lmp with the plugin" in said, said
     assert not list(build.rglob("liblammps*"))
-    folder = tmp_path / "run"
-    folder.mkdir()
-    shutil.copy(build / "fsiplugin.so", folder)
     text = SCENE.text() + watch() + "run 40\n"
-    frame = good(load(plain, folder, LOAD + text))
+    frame = good(lammps(tmp_path / "run", text, build=build, environment={"LD_LIBRARY_PATH": str(plain)}, scene_data=SCENE.data()))
     assert differing(frame, expected(tmp_path / "package", text, 1)) == []
+    status, said = run_setup(build, LD_LIBRARY_PATH=str(other_release(plain, tmp_path)), **source())
+    assert status == 1 and re.search(r"FSI plugin not loaded: it was compiled for LAMMPS version .*, this is version .*: compile it with", said), said
+    assert run_setup(build, "--tests", **source()) == (1, f"setup: {build} holds the plugin alone: the tests need LAMMPS built here, in another folder "
+                                                      "(FSI_BUILD_DIR)\n")
+
+
+@pytest.mark.parametrize("change, says", [
+    (("4 Feb 2025", "29 Aug 2024 - Update 1"), "is LAMMPS 29 Aug 2024, the sources are LAMMPS 4 Feb 2025: a plugin needs the sources of the same release"),
+    (("4 Feb 2025", "4 Feb 2025 - Update 2"), "built without LAMMPS' package PLUGIN"),
+    (("RIGID", "PLUGIN RIGID fsi/fluid"), "has the package already"),
+    (("Simulator - 4", "Simulator 4"), "names no release of LAMMPS")])
+def test_setup_refuses(tmp_path, change, says):
+    """Before anything is installed, downloaded or built, in one line."""
+    about = ("Large-scale Atomic/Molecular Massively Parallel Simulator - 4 Feb 2025\n\nInstalled packages:\n\nRIGID \n\n"
+             "List of individual style options included in this LAMMPS executable\nplugin PLUGIN\n")
+    program = tmp_path / "lmp"
+    program.write_text(f"#!/bin/sh\ncat <<'END'\n{about.replace(*change)}END\n")
+    program.chmod(0o755)
+    for environment in (source(), {"LAMMPS_SOURCE_DIR": ""}):  # the release that is obtained is the same
+        status, said = run_setup(tmp_path / "build", "--lammps", program, **environment)
+        assert status == 1 and says in said and said.count("\n") == 1, said
+    assert not (tmp_path / "build").exists()
+
+
+def test_setup_refuses_what_is_no_program_and_a_build_of_lammps(tmp_path):
+    assert run_setup(tmp_path, "--lammps", "no_such_lmp") == (1, "setup: --lammps no_such_lmp: there is no such program\n")
+    status, said = run_setup(paths.BUILD, "--lammps", paths.BUILD / "lmp")
+    assert status == 1 and f"{paths.BUILD} holds a build of LAMMPS: remove it, or name another folder with FSI_BUILD_DIR" in said

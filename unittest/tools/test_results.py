@@ -23,6 +23,7 @@ def figure(name, value, unit="", reference=None, source=None, target=None, met=N
 def tree(tmp_path, monkeypatch):
     """Three scenes: `stone`, one run; `study`, two cases and one that failed; `lost`, without results."""
     monkeypatch.setattr(paths, "EXAMPLES", tmp_path / "examples")
+    monkeypatch.setattr(paths, "DRIVERS", tmp_path / "unittest")
     for name, text in (("stone", "# Falling stone\n\nA stone falls.\n"), ("study", "# Study | stones\n\nMany.\n"), ("lost", "# Lost\n\nNo stone.\n")):
         folder = paths.EXAMPLES / name
         folder.mkdir(parents=True)
@@ -58,11 +59,11 @@ def test_head_says_what_is_met_and_what_failed(found):
 
 def test_table(found):
     page = results.render(found)
-    assert ("| [Falling stone](../../examples/stone/README.md) | `speed` | 11 m/s | 10 (experiment, A \\| B 1999) | +10.0 % | 5 % | **no** | 25 |"
+    assert ("| [Falling stone](../../examples/stone/README.md) | `speed` | 11\u00a0m/s | 10 (experiment, A \\| B 1999) | +10.0\u00a0% | 5 % | **no** | 25 |"
             in page)
-    assert "|  | `time` | 1.01 s | 1 (theory) | +1.0 % | 5 % | yes |  |" in page
+    assert "|  | `time` | 1.01\u00a0s | 1 (theory) | +1.0\u00a0% | 5 % | yes |  |" in page
     assert "|  | `lost` | 0 |  |  | 0 | yes |  |" in page
-    assert "| [Study \\| stones](../../examples/study/README.md) | `slope` | 1.9 | 2 (the same) | -5.0 % | 10 % | yes | 601 |" in page
+    assert "| [Study \\| stones](../../examples/study/README.md) | `slope` | 1.9 | 2 (the same) | -5.0\u00a0% | 10 % | yes | 601 |" in page
     # no target: in the table of all figures; what a run costs: in neither
     assert "`colour`" not in page and "`order`" not in page and "`cpu_seconds`" not in page
     rows = list(csv.DictReader(io.StringIO(results.table(found))))
@@ -76,20 +77,20 @@ def test_headlines(found, monkeypatch):
     monkeypatch.setattr(results, "HEADLINES", (("How fast", "study", r"slope|order", "large"), ("Gone", "study", "gone", "large"),
                                                ("No case", "study", "slope", "wide"), ("Not run", "lost", "x", None)))
     monkeypatch.setattr(results, "WORDS", ((r"slo", "slope of it"),))
-    rows = ["| [How fast](examples/study/README.md) | slope of it | 1.9 | 2 (theory) | -5.0 % | 1 of 1 | 10 min |",
+    rows = ["| [How fast](examples/study/README.md) | slope of it | 1.9 | 2 (theory) | -5.0\u00a0% | 1\u00a0of\u00a01 | 10\u00a0min |",
             "| [Gone](examples/study/README.md) | no result |  |  |  |  |  |"]
     text = results.readme(f"# Title\n{results.MARKS[0]}old\n{results.MARKS[1]}## Rest\n", found)
     assert text.startswith("# Title\n") and text.endswith("## Rest\n") and "old" not in text
     assert text.splitlines()[5:7] == rows and text.count("no result") == 3
     found["scenes"]["stone"]["summary"]["cases"] = {"one": {"cpu_seconds": 3.0, "ranks": 1}}
     monkeypatch.setattr(results, "HEADLINES", (("Worst", "stone", ".*", "one"),))
-    assert "| speed | 11 m/s | 10 (experiment) | +10.0 % | 3 of 4 | 3 s |" in results.readme(text, found)  # not the height, off by 20 % of our own run
+    assert "| speed | 11\u00a0m/s | 10 (experiment) | +10.0\u00a0% | 3\u00a0of\u00a04 | 3\u00a0s |" in results.readme(text, found)  # not the height, off by 20 % of our own run
 
 
 def test_headlines_are_of_the_bundled_scenes():
     """Interaction first; each has a truth in the results as they are committed, and so in the README; each name of a figure is in words."""
     found = results.scenes_of(paths.PAGE)
-    table = results.headlines(found, "examples")
+    table = results.headlines(found, "")
     assert len(table.splitlines()) == 2 + len(results.HEADLINES) == 10 and "no result" not in table and " None " not in table
     assert all("FSI" in line for line in table.splitlines()[2:5])
     assert not [line for line in table.splitlines() if "_" in line.split("|")[2]]

@@ -49,6 +49,7 @@ CASES = {"coarse": {"variables": {"dx": "0.5"}}, "fine": {"variables": {"dx": 0.
 def examples(tmp_path, monkeypatch):
     """A folder of examples with one scene, `toy`, of two cases; LAMMPS is replaced by something that writes a log."""
     monkeypatch.setattr(paths, "EXAMPLES", tmp_path / "examples")
+    monkeypatch.setattr(paths, "DRIVERS", tmp_path / "unittest")
     monkeypatch.setattr(paths, "RESULTS", tmp_path / "results")
     monkeypatch.setattr(paths, "PAGE", tmp_path / "page")
     monkeypatch.setattr(scene, "build", lambda: True)
