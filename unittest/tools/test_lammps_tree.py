@@ -17,7 +17,8 @@ EXAMPLES = "examples/PACKAGES/fsi"
 
 
 def lay(folder, *options):
-    return subprocess.run([sys.executable, TOOL, folder, "--lammps", LAMMPS, *options], text=True, capture_output=True)
+    return subprocess.run([sys.executable, TOOL, folder, "--lammps", LAMMPS, *options], text=True,
+                          capture_output=True)
 
 
 @pytest.fixture(scope="module")
@@ -43,10 +44,14 @@ def test_sources_are_all_there(tree):
 
 
 @pytest.mark.parametrize("file, line", [
-    ("cmake/CMakeLists.txt", "  FSI"), ("cmake/presets/all_on.cmake", "  FSI"), ("cmake/presets/all_off.cmake", "  FSI"),
-    ("cmake/presets/most.cmake", "  FSI"), ("src/Makefile", "\tfsi \\"), ("doc/src/Build_package.rst", "   * :ref:`FSI <fsi>`"),
-    ("doc/src/Build_extras.rst", ".. _fsi:"), ("doc/src/Packages_list.rst", "   * - :ref:`FSI <PKG-FSI>`"),
-    ("doc/src/Packages_details.rst", ".. _PKG-FSI:"), ("doc/src/Howto.rst", "   Howto_fsi"), ("doc/src/commands_list.rst", "   fsi_set")])
+    ("cmake/CMakeLists.txt", "  FSI"), ("cmake/presets/all_on.cmake", "  FSI"),
+                                        ("cmake/presets/all_off.cmake", "  FSI"),
+    ("cmake/presets/most.cmake", "  FSI"), ("src/Makefile", "\tfsi \\"),
+                                        ("doc/src/Build_package.rst", "   * :ref:`FSI <fsi>`"),
+    ("doc/src/Build_extras.rst", ".. _fsi:"), ("doc/src/Packages_list.rst",
+                                               "   * - :ref:`FSI <PKG-FSI>`"),
+    ("doc/src/Packages_details.rst", ".. _PKG-FSI:"), ("doc/src/Howto.rst", "   Howto_fsi"),
+                                        ("doc/src/commands_list.rst", "   fsi_set")])
 def test_lists_name_the_package(tree, file, line):
     assert (tree / file).read_text().splitlines().count(line) == 1
 
@@ -58,29 +63,35 @@ def test_lines_of_lammps_stay(tree):
         old = LAMMPS / path.relative_to(tree)
         if path.is_file() and old.exists():
             gone += Counter(old.read_text().splitlines()) - Counter(path.read_text().splitlines())
-    assert len(gone) == 2 and all("EXTRA-COMMAND)" in line or "*ellipsoid* or *full*" in line for line in gone)
+    assert len(gone) == 2 and all("EXTRA-COMMAND)" in line or "*ellipsoid* or *full*" in line
+                                  for line in gone)
 
 
 def test_no_page_is_forgotten(tree):
     """A page is in the tree, under its name or that of a Howto, or the tool says why not."""
     renamed = dict(re.findall(r'"(\w+)": "(Howto_fsi\w*)"', TOOL_TEXT))
     for page in (path.stem for path in PAGES.glob("*.rst")):
-        name = renamed.get(page, page.replace("Howto_", "Howto_fsi_") if page.startswith("Howto_") else page)
+        name = renamed.get(page, page.replace("Howto_", "Howto_fsi_") if page.startswith("Howto_")
+                           else page)
         assert (tree / f"doc/src/{name}.rst").exists() != (page in left_out()), page
     assert not left_out() - {path.stem for path in PAGES.glob("*.rst")}
 
 
 def test_pages_are_those_of_lammps_manual(tree):
-    """No role of this repository is left, and what pages name is there: pages, pictures, decks, labels."""
-    new = [path for path in (tree / "doc/src").glob("*.rst") if not (LAMMPS / "doc/src" / path.name).exists()]
-    pages = {path.stem for path in (LAMMPS / "doc/src").glob("*.rst")} | {path.stem for path in new} | {"pairs", "fixes", "computes"}
-    labels = [label for path in new for label in re.findall(r"^\.\. _([\w-]+):$", path.read_text(), re.M)]
+    """No role of this repository is left, and what pages name is there: pages, pictures, decks,
+    labels."""
+    new = [path for path in (tree / "doc/src").glob("*.rst")
+           if not (LAMMPS / "doc/src" / path.name).exists()]
+    pages = {path.stem for path in [*(LAMMPS / "doc/src").glob("*.rst"), *new]}
+    labels = [label for path in new for label in re.findall(r"^\.\. _([\w-]+):$", path.read_text(),
+                                                            re.M)]
     assert len(labels) == len(set(labels)) > 20
     theirs = "\n".join(path.read_text() for path in (LAMMPS / "doc/src").glob("*.rst"))
     assert not [label for label in labels if f".. _{label}:\n" in theirs]
     for path in new:
         text = path.read_text()
-        assert text.isascii() and ":lammps:" not in text and "tools/" not in text and "build/lmp" not in text, path.name
+        assert text.isascii(), path.name
+        assert not [word for word in (":lammps:", "tools/", "build/lmp") if word in text], path.name
         for target in re.findall(r":doc:`(?:[^<`]*<)?([^>`]+)>?`", text):
             assert target in pages, f"{path.name}: {target}"
         for label in re.findall(r":ref:`[^<`]+<([^>`]+)>`", text):
@@ -92,29 +103,38 @@ def test_pages_are_those_of_lammps_manual(tree):
 
 
 def test_no_deck_is_forgotten(tree):
-    """Recipes are examples, but for those of pages that are left out. They write no files, and their materials are there."""
-    decks = {path.name for path in (PAGES / "recipes").iterdir()} - {"in.spring", "circle.csv", "in.stl", "cup.stl"}
+    """Recipes are examples, but for those of pages that are left out. They write no files, and
+    their materials are there."""
+    decks = {path.name for path in (PAGES / "recipes").iterdir()} - {"in.spring", "circle.csv",
+                                                                     "in.stl", "cup.stl"}
     found = {path.name for path in (tree / EXAMPLES).iterdir()}
-    assert found == decks | {"in.shelf", "README", "materials.fsi"} | {path for path in found if path.startswith("log.")}
-    assert (tree / EXAMPLES / "materials.fsi").resolve() == (tree / "potentials/materials.fsi").resolve()
+    assert found == decks | {"in.shelf", "README", "materials.fsi"} | {path for path in found
+                                                                       if path.startswith("log.")}
+    materials = tree / "potentials/materials.fsi"
+    assert (tree / EXAMPLES / "materials.fsi").resolve() == materials.resolve()
     for deck in (tree / EXAMPLES).glob("in.*"):
-        assert not re.search(r"^dump ", deck.read_text(), re.M)
+        assert not re.search(r"^dump |cpu", deck.read_text(), re.M)
     for name in ("shelf", "float", "half"):
         for ranks in (1, 4):
             text = (tree / EXAMPLES / f"log.4Feb25.{name}.g++.{ranks}").read_text()
-            assert "Total wall time" in text and f"on {ranks} procs" in text and "/" + "work" not in text
+            assert "Total wall time" in text and f"on {ranks} procs" in text
 
 
 @pytest.mark.parametrize("check", ["homepage", "errordocs", "permissions", "whitespace"])
 def test_coding_standard(tree, check):
-    """LAMMPS' own checks. versiontags is for releases: it names what is still 'TBD', as contributors are to write."""
-    python = next(p for p in (sys.executable, "/usr/bin/python3") if subprocess.run([p, "-c", "import yaml"], capture_output=True).returncode == 0)
-    done = subprocess.run([python, LAMMPS / f"tools/coding_standard/{check}.py", tree], text=True, capture_output=True)
+    """LAMMPS' own checks. versiontags is for releases: it names what is still 'TBD', as
+    contributors are to write."""
+    python = next(p for p in (sys.executable, "/usr/bin/python3")
+                  if subprocess.run([p, "-c", "import yaml"], capture_output=True).returncode == 0)
+    done = subprocess.run([python, LAMMPS / f"tools/coding_standard/{check}.py", tree], text=True,
+                          capture_output=True)
     assert (done.returncode, done.stdout) == (0, ""), done.stdout + done.stderr
 
 
 def test_refusals(tmp_path):
     (tmp_path / "there").mkdir()
-    for folder, lammps, message in ((tmp_path / "there", LAMMPS, "exists: give a new folder"), (tmp_path / "new", tmp_path, "is not a LAMMPS source tree")):
-        done = subprocess.run([sys.executable, TOOL, folder, "--lammps", lammps], text=True, capture_output=True)
+    for folder, lammps, message in ((tmp_path / "there", LAMMPS, "exists: give a new folder"),
+                                    (tmp_path / "new", tmp_path, "is not a LAMMPS source tree")):
+        done = subprocess.run([sys.executable, TOOL, folder, "--lammps", lammps], text=True,
+                              capture_output=True)
         assert done.returncode == 1 and message in done.stderr and not (tmp_path / "new").exists()
