@@ -142,3 +142,21 @@ def test_refusals(tmp_path):
         done = subprocess.run([sys.executable, TOOL, folder, "--lammps", lammps], text=True,
                               capture_output=True)
         assert done.returncode == 1 and message in done.stderr and not (tmp_path / "new").exists()
+
+
+def test_references_are_those_of_numpy(tmp_path, monkeypatch):
+    """The tests of LAMMPS' frame are what unittest/lammps/make_yaml.py writes. Round-off differs
+    between libraries of linear algebra: 1e-9 of numbers, of which the smallest are sums that cancel
+    to a thousandth."""
+    for folder in ("unittest/styles", "unittest/lammps"):
+        monkeypatch.syspath_prepend(paths.ROOT / folder)
+    import make_yaml
+    make_yaml.main(tmp_path)
+    written = {path.name: path.read_text().split() for path in tmp_path.iterdir()}
+    assert len(written) == 6
+    for name, words in written.items():
+        kept = (make_yaml.TESTS / name).read_text().split()
+        assert len(kept) == len(words)
+        for a, b in zip(kept, words):
+            if a != b:
+                assert float(a) == pytest.approx(float(b), rel=1e-9, abs=1e-12), name
