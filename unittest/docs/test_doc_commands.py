@@ -149,7 +149,7 @@ class Reader:
         if program.startswith("tools/"):
             assert os.access(paths.ROOT / program, os.X_OK), f"there is no {program}"
         what = {"export": "prepare", ".": "prepare", "cp": "execute", "sed": "execute", "build/lmp": "mpirun", "python": "python3"}.get(
-            program, re.sub("^tools/", "tools_", program))
+            program, re.sub("^tools/", "tools_", program).replace("tools_lammps-tree", "tools_lammps_tree"))
         handler = getattr(self, what, None)
         assert handler, f"this test does not know what to do with {program}"
         handler(command, words[1:])
@@ -277,6 +277,9 @@ class Reader:
     def tools_setup(self, _, words):
         text = self.execute("tools/setup --help")
         assert all(word.partition("=")[0] in text for word in words)
+
+    def tools_lammps_tree(self, command, _):
+        self.execute(f"{command}/tree --changes --lammps {shlex.quote(str(paths.lammps_source()))}")
 
     def tools_doc(self, _, words):
         assert len(words) <= 1  # test_doc.py does it
