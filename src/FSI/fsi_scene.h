@@ -119,8 +119,9 @@ namespace FSI {
     // Energy ledger (compute fsi/energy): what each term took from the particles' energy since fix
     // fsi was defined, this rank's part; kept only while such a compute exists
     // clang-format off
-    enum Term { ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS,
-                NTERM };
+    enum Term {
+      ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS, NTERM
+    };
     // clang-format on
     bool ledger;
     double energy_out[NTERM];

@@ -37,6 +37,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
+static const std::vector<std::string> coupling_names = {"wall", "pressure", "full"};    // Couple
+
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
@@ -62,7 +64,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
       .effect("free surface where psi is below {}");
   keywords.key("tension").logical(tension, false).effect("tension in the fluid");
   keywords.key("background").number(background, 0.0).effect("background pressure {}");
-  keywords.key("couple").choice(couple, WALL, {"wall", "pressure", "full"});
+  keywords.key("couple").choice(couple, WALL, coupling_names);
   keywords.key("extrapolate").logical(extrapolate, false);
 }
 
@@ -992,9 +994,8 @@ bool PairFSIFluid::has_solids() const
 
 std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 {
-  static const char *const modes[] = {"wall", "pressure", "full"};
   auto list = keywords.effects();
-  list.push_back({fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
+  list.push_back({fmt::format("coupling of fluid and solid: {}{}", coupling_names[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
   if (shifting > 0.0 && shift_every > 1) list.push_back({fmt::format("shifted every {} steps", shift_every), "shift/every", true});
   if (fix_fsi && fix_fsi->sight) list.push_back({"line of sight: thin bodies hide fluids from each other", "fix fsi thin", true});
   list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});

@@ -103,7 +103,7 @@ def test_sound_deck_is_not_criticised(tmp_path):
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
 
 
-ON_TWO_RANKS = ("sound", "spacing", "overlap", "parts", "thin", "rows", "idle", "long fluid", "thin between", "contact", "held", "weightless body", "nothing acts",
+ON_TWO_RANKS = ("sound", "spacing", "overlap", "idle", "long fluid", "contact", "held", "weightless body", "nothing acts",
                 "cut by a mirror")  # what is summed over ranks
 
 
