@@ -34,8 +34,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -43,26 +41,33 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
+// clang-format off
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp),
-    check(lmp, *this), changes(lmp), number_density(lmp, *this, [this](double *n) { add_ghosts(n); }),
-    surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }), ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
+    check(lmp, *this), changes(lmp),
+    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }),
+    surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
+    ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
-  static const std::vector<std::string> modes = {"continuity", "summation", "ratio"};
-  static const char *const other_kernel = "masses of particles and bonds of total-Lagrangian solids are still those of the old one";
-  static const char *const other_mode = "continuity and ratio go on from the density that there is, summation makes it anew";
-  keywords.argument("particle spacing").number(dx, 0.0, Range::above(0.0)).kept("that of the particles cannot change");
-  keywords.argument("kernel").choice(kernel, CUBIC, {"cubic", "quintic", "wendland"}).changes(other_kernel);
-  keywords.argument("smoothing length over spacing").number(hdx, 0.0, Range::between(0.9, 4.0)).changes(other_kernel);
-  keywords.key("fluid").choice(density_fluid, CONTINUITY, modes, "density").changes(other_mode);
-  keywords.key("solid").choice(density_solid, CONTINUITY, modes, "density").changes(other_mode);
+  static const std::vector<std::string> names = {"cubic", "quintic", "wendland"};
+  static const char *const kept = "that of the particles cannot change", *const of_kernel =
+      "masses of particles and bonds of total-Lagrangian solids are still those of the old one",
+      *const of_mode =
+      "continuity and ratio go on from the density that there is, summation makes it anew";
+  const auto positive = Range::above(0.0), ratios = Range::between(0.9, 4.0);
+  keywords.argument("particle spacing").number(dx, 0.0, positive).kept(kept);
+  keywords.argument("kernel").choice(kernel, CUBIC, names).changes(of_kernel);
+  keywords.argument("smoothing length over spacing").number(hdx, 0.0, ratios).changes(of_kernel);
+  const auto &modes = density_names();
+  keywords.key("fluid").choice(density_fluid, CONTINUITY, modes, "density").changes(of_mode);
+  keywords.key("solid").choice(density_solid, CONTINUITY, modes, "density").changes(of_mode);
   keywords.key("substeps").integer(given_substeps, 1, 1, 10000);
   keywords.key("surface/every").integer(surface_every, 1, 1);
-  keywords.key("spacing").per_type(given_spacing, Range::above(0.0)).kept("that of the particles cannot change");
+  keywords.key("spacing").per_type(given_spacing, positive).kept(kept);
   keywords.key("thin").types(thin);
-  keywords.key("mach").number(mach, 1.0, Range::above(0.0)).or_word("off", Check::OFF);
+  keywords.key("mach").number(mach, 1.0, positive).or_word("off", Check::OFF);
   keywords.parse(narg - 3, arg + 3);
   substeps = given_substeps;
 
@@ -77,6 +82,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   register_fields();
   comm_reverse = 1;    // more with solids, see init()
 }
+// clang-format on
 
 // what the next one has to keep, if particles have masses since
 FixFSI::~FixFSI()
@@ -97,10 +103,13 @@ void FixFSI::set_fields()
   const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
   number_density.set_fields(fields);
   surface_room.set_array(fields);
-  for (int d = 0; d < 3; d++) fields.set(std::string("velocity of shifting along ") + "xyz"[d], Fields::RESTART, d < dim && density_follows_shift(), shift_velocity[d]);
+  for (int d = 0; d < 3; d++)
+    fields.set(std::string("velocity of shifting along ") + "xyz"[d], Fields::RESTART,
+               d < dim && density_follows_shift(), shift_velocity[d]);
   fields.set("walls near", Fields::STEP, walls.any(), wmask);
   fields.set("wall velocity", Fields::STEP, noslip_walls, wall_velocity, 3);
-  fields.set("wall stiffness", Fields::STEP, particle_walls && several_stiffnesses(), wall_stiffness);
+  fields.set("wall stiffness", Fields::STEP, particle_walls && several_stiffnesses(),
+             wall_stiffness);
 
   forward.clear();
   forward.add(atom->rho, {NONE, FLUID, SOLID, RIGID});
@@ -135,12 +144,10 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
   for (const auto *p : fix_fsi->parts) mine |= !p->is_set_up();
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
   if (any)
-    lmp->error->all(FLERR, "{} needs a run before it, if only run 0, and after atoms are made, deleted "
-                           "or changed, or a pair style is given", who);
+    lmp->error->all(FLERR, "{} needs a run before it, if only run 0, and after atoms are made, "
+                    "deleted or changed, or a pair style is given", who);
   return fix_fsi;
 }
-
-/* ---------------------------------------------------------------------- */
 
 int FixFSI::setmask()
 {
@@ -181,8 +188,6 @@ void FixFSI::init()
   check.init();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSI::setup(int)
 {
   clock.forget();
@@ -203,8 +208,6 @@ void FixFSI::give_defaults(int i)
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSI::find_parts()
 {
   parts.clear();
@@ -215,17 +218,16 @@ void FixFSI::find_parts()
   parts.push_back(&surface_room);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSI::setup_pre_force(int)
 {
   update_state(false);
 }
 
 /* ----------------------------------------------------------------------
-   A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must keep their order, which is
-   that of atoms and neighbour lists. So the first step of a run, and the one after a restart was written, do the same: wrap
-   positions, rebuild, and put the atoms of each rank in an order that depends on nothing but where they are and their IDs.
+   A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must
+   keep their order, which is that of atoms and neighbour lists. So the first step of a run, and
+   the one after a restart was written, do the same: wrap positions, rebuild, and put the atoms
+   of each rank in an order that depends on nothing but where they are and their IDs.
 ------------------------------------------------------------------------- */
 
 bool FixFSI::fresh_start() const
@@ -274,8 +276,6 @@ template <int D> void FixFSI::drift()
     if (mask[i] & groupbit)
       for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSI::pre_force(int)
 {
@@ -337,8 +337,10 @@ void FixFSI::update_state(bool advance)
     const Row *const x = rows(atom->x);
     // walls of particles go on behind a mirror themselves
     const InnerBox inner(walls.wall, cut);
-    for (int i = 0; i < nall; i++)
-      wmask[i] = inner.contains(x[i]) || state[atom->type[i]].species == RIGID ? 0 : walls.near(x[i], cut);
+    for (int i = 0; i < nall; i++) {
+      const bool none = inner.contains(x[i]) || state[atom->type[i]].species == RIGID;
+      wmask[i] = none ? 0 : walls.near(x[i], cut);
+    }
   }
 
   phase.next(Profile::DENSITY);
@@ -351,8 +353,6 @@ void FixFSI::update_state(bool advance)
   forward_comm(profile, comm, this);
   for (auto *p : parts) p->end_state(advance);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSI::add_ghosts(double *n)
 {
@@ -368,8 +368,8 @@ void FixFSI::send_to_ghosts(double *n)
 }
 
 /* ----------------------------------------------------------------------
-   ghosts get density, number density where in use, stress and the gradient's coefficients where they are solid; back come the sums that
-   pairs left on them
+   ghosts get density, number density where in use, stress and the gradient's coefficients where
+   they are solid; back come the sums that pairs left on them
 ------------------------------------------------------------------------- */
 
 int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
@@ -392,21 +392,20 @@ void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
   (carried ? scalar : back).add_up(n, list, buf);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   changes.forget();
   give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
-    error->one(FLERR, "Fluid atom {} was made during a run and is not in group {} of fix {}: it would hang in the air. Give the fix that "
-                      "makes it that group", atom->tag[i], group->names[igroup], id);
+    error->one(FLERR, "Fluid atom {} was made during a run and is not in group {} of fix {}: it "
+               "would hang in the air. Give the fix that makes it that group",
+               atom->tag[i], group->names[igroup], id);
 }
 
 /* ----------------------------------------------------------------------
-   Restart files: the command, the clock, what the ledger's terms have taken; per atom the reference of density mode ratio, or the
-   number density that is kept.
+   Restart files: the command, the clock, what the ledger's terms have taken; per atom the
+   reference of density mode ratio, or the number density that is kept.
 ------------------------------------------------------------------------- */
 
 void FixFSI::write_restart(FILE *fp)
@@ -428,10 +427,11 @@ bool FixFSI::goes_on(const Record &record, const std::string &when)
 {
   keywords.compare(record, when);
   check.read(record);
-  const bool other_kernel = keywords.differs(record, "kernel") || keywords.differs(record, "smoothing length over spacing");
+  const bool other_h = keywords.differs(record, "smoothing length over spacing");
+  const bool other_kernel = other_h || keywords.differs(record, "kernel");
   if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))
     error->all(FLERR, "Fix fsi: density mode summation must keep kernel and smoothing length, for "
-                      "which the masses of its particles were made");
+               "which the masses of its particles were made");
   return !other_kernel;
 }
 

@@ -36,8 +36,9 @@ FixStyle(fsi,FixFSI);
 
 namespace LAMMPS_NS {
 
-// The centre of the package: sets the scene (spacing, kernel), integrates in time (position Verlet) and calls what takes part in a
-// step, which brings density and stress of every particle to the middle of the step before forces are computed.
+// The centre of the package: sets the scene (spacing, kernel), integrates in time (position Verlet)
+// and calls what takes part in a step, which brings density and stress of every particle to the
+// middle of the step before forces are computed.
 
 class FixFSI : public FSI::FixFields, public FSI::Scene {
  public:
@@ -50,7 +51,8 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   // the same, for who needs what the setup of a run finds: an error if there was none since atoms
   // were made, deleted or changed, or pair styles given
   static FixFSI *ready(class LAMMPS *, const std::string &who);
-  // once, before the first run after a restart file was read: what the file keeps for fixes that go by another ID now
+  // once, before the first run after a restart file was read: what the file keeps for fixes that go
+  // by another ID now
   void check_restart_ids()
   {
     if (!ids_checked) FSI::check_ids(lmp);
@@ -75,7 +77,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
 
   FSI::Keywords keywords;
   FSI::Clock clock;
-  FSI::Check check;    // stops a run that has lost its meaning
+  FSI::Check check;        // stops a run that has lost its meaning
   FSI::Changes changes;    // since the last run
 
   FSI::NumberDensity number_density;
@@ -87,15 +89,16 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void set_fields();
   void give_defaults(int);
   int given_substeps;
-  double hdx;    // h over dx
+  double hdx;                           // h over dx
   std::vector<double> given_spacing;    // per type; 0: dx
   bool ids_checked;
 
   void find_parts();
   bool goes_on(const FSI::Record &, const std::string &when);
 
-  FSI::Message forward, back, scalar;    // to ghosts, and sums from them; of one array of numbers per atom, both ways
-  double *carried;                       // that array; null: the others
+  FSI::Message forward, back;    // to ghosts, and sums from them
+  FSI::Message scalar;           // of one array of numbers per atom, both ways
+  double *carried;               // that array; null: the others
   bool fresh_start() const;
   template <int D> void drift();
   template <int D> void kick();

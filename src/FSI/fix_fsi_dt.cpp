@@ -38,13 +38,15 @@ using namespace FSI;
 static constexpr double BIG = Limits::UNLIMITED;
 static constexpr int MAXSUBSTEPS = 1000;
 static constexpr double ROUNDING = 1.0e-9;    // of the time left, in steps
-static constexpr double PRINT = 0.95;    // causes whose limits differ by less than this are not worth a line each
+static constexpr double PRINT =
+    0.95;    // causes whose limits differ by less than this are not worth a line each
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), keywords(lmp, "fix fsi/dt"), cut(false), limits(lmp), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0),
-    next_substeps(0), warned(0), restored(false)
+    Fix(lmp, narg, arg), fix_fsi(nullptr), keywords(lmp, "fix fsi/dt"), cut(false), limits(lmp),
+    target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0),
+    restored(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   keywords.argument("interval").integer(interval, 1, 1);
@@ -61,8 +63,11 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
   if (of_fluid == 0.0) of_fluid = cfl > 0.0 ? cfl : Limits::FLUID_FACTOR;
   if (of_solid == 0.0) of_solid = cfl > 0.0 ? cfl : Limits::SOLID_FACTOR;
   if (low >= high) error->all(FLERR, "Fix fsi/dt min {} must be below max {}", low, high);
-  if (automatic && check) error->all(FLERR, "Fix fsi/dt substeps auto cannot be combined with check: a check changes nothing");
-  if (end < BIG && check) error->all(FLERR, "Fix fsi/dt stop cannot be combined with check: a check changes nothing");
+  if (automatic && check)
+    error->all(FLERR,
+               "Fix fsi/dt substeps auto cannot be combined with check: a check changes nothing");
+  if (end < BIG && check)
+    error->all(FLERR, "Fix fsi/dt stop cannot be combined with check: a check changes nothing");
 
   nevery = end < BIG ? 1 : interval;
   for (int k = 0; k < NLIMIT; k++) step[k] = sub[k] = limit[k] = BIG;
@@ -86,19 +91,27 @@ int FixFSIDt::setmask()
 void FixFSIDt::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/dt");
-  if (modify->get_fix_by_style("^fsi/dt$").size() > 1) error->all(FLERR, "There can be only one fix fsi/dt");
-  if (update->dt <= 0.0 || update->dt >= BIG) error->all(FLERR, "Fix fsi/dt: timestep {} must be > 0 and below {:g}", update->dt, BIG);
+  if (modify->get_fix_by_style("^fsi/dt$").size() > 1)
+    error->all(FLERR, "There can be only one fix fsi/dt");
+  if (update->dt <= 0.0 || update->dt >= BIG)
+    error->all(FLERR, "Fix fsi/dt: timestep {} must be > 0 and below {:g}", update->dt, BIG);
   if (check) return;
   if (!modify->get_fix_by_style("^dt/reset$").empty())
     error->all(FLERR, "Fix fsi/dt and fix dt/reset cannot both set the time step");
   for (auto &fix : modify->get_fix_by_style("^move$"))
-    error->all(FLERR, "Fix fsi/dt: fix {} (style {}) cannot have its time step changed: use fix fsi/move, which can", fix->id, fix->style);
-  // the time step changes when fix fsi begins its step: what moves earlier would still take the old one
+    error->all(FLERR,
+               "Fix fsi/dt: fix {} (style {}) cannot have its time step changed: use fix fsi/move, "
+               "which can",
+               fix->id, fix->style);
+  // the time step changes when fix fsi begins its step: what moves earlier would still take the old
+  // one
   for (auto &fix : modify->get_fix_list()) {
     if (fix == fix_fsi) break;
     if (modify->get_fix_mask(fix) & INITIAL_INTEGRATE)
-      error->all(FLERR, "Fix fsi/dt: fix {} (style {}) must be defined after fix {}, with which the time step changes", fix->id,
-                 fix->style, fix_fsi->id);
+      error->all(FLERR,
+                 "Fix fsi/dt: fix {} (style {}) must be defined after fix {}, with which the time "
+                 "step changes",
+                 fix->id, fix->style, fix_fsi->id);
   }
   if (restored) {
     // whatever a timestep command between read_restart and here has said
@@ -118,8 +131,9 @@ void FixFSIDt::init()
 }
 
 /* ----------------------------------------------------------------------
-   The first run, or one for which the script gave another time step, begins with the limits. Other runs go on with what was
-   chosen before: two runs are one, and a restarted run is the uninterrupted one.
+   The first run, or one for which the script gave another time step, begins with the limits.
+   Other runs go on with what was chosen before: two runs are one, and a restarted run is the
+   uninterrupted one.
 ------------------------------------------------------------------------- */
 
 void FixFSIDt::setup(int)
@@ -130,8 +144,10 @@ void FixFSIDt::setup(int)
     find_outside();
     find_limits();
     // down at once; up only where no time step was given
-    if (check) report();
-    else choose(update->dt_default ? BIG : update->dt);
+    if (check)
+      report();
+    else
+      choose(update->dt_default ? BIG : update->dt);
   }
   if (end < BIG) approach_end();
 }
@@ -143,13 +159,20 @@ void FixFSIDt::setup(int)
 void FixFSIDt::find_outside() const
 {
   const auto outside = [&](int i, int species) {
-    return !(atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit) && fix_fsi->state[atom->type[i]].species == species;
+    return !(atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit) &&
+        fix_fsi->state[atom->type[i]].species == species;
   };
-  const auto found = find_particles(atom, world, [&](int i) { return outside(i, FLUID) || outside(i, SOLID); });
+  const auto found = find_particles(atom, world, [&](int i) {
+    return outside(i, FLUID) || outside(i, SOLID);
+  });
   if (found.count == 0) return;
-  const auto text = fmt::format("Fix fsi/dt: {} particles that fix {} moves, the first of them atom {}, are not in group {}", found.count, fix_fsi->id,
-                                found.first, group->names[igroup]);
-  if (automatic && find_particles(atom, world, [&](int i) { return outside(i, SOLID); }).count) error->all(FLERR, "{}: substeps auto must know all solids", text);
+  const auto text = fmt::format(
+      "Fix fsi/dt: {} particles that fix {} moves, the first of them atom {}, are not in group {}",
+      found.count, fix_fsi->id, found.first, group->names[igroup]);
+  if (automatic && find_particles(atom, world, [&](int i) {
+                     return outside(i, SOLID);
+                   }).count)
+    error->all(FLERR, "{}: substeps auto must know all solids", text);
   if (comm->me == 0) error->warning(FLERR, "{}: they do not limit the time step", text);
 }
 
@@ -159,36 +182,44 @@ void FixFSIDt::end_of_step()
 {
   if (update->ntimestep % interval == 0) {
     find_limits();
-    if (check) report();
-    else choose(growth * update->dt);
+    if (check)
+      report();
+    else
+      choose(growth * update->dt);
   }
   if (end < BIG) approach_end();
 }
 
 /* ----------------------------------------------------------------------
-   What is left of the time is taken in one step, or, to have no tiny one, in two equal ones. LAMMPS is told which step will be the
-   last, by and by more exactly: for the time that remains and for the last thermo output. Then the run is cut as by fix halt.
+   What is left of the time is taken in one step, or, to have no tiny one, in two equal ones.
+   LAMMPS is told which step will be the last, by and by more exactly: for the time that remains
+   and for the last thermo output. Then the run is cut as by fix halt.
 ------------------------------------------------------------------------- */
 
 void FixFSIDt::approach_end()
 {
   const bigint now = update->ntimestep, last = update->firststep + update->nsteps;
-  const double time = update->atime + (now - update->atimestep) * update->dt;
+  const double time = Clock::now(update);
   const double next = next_dt > 0.0 ? next_dt : update->dt, left = end - time;
   if (left <= ROUNDING * next) {
-    if (comm->me == 0 && now > update->firststep) utils::logmesg(lmp, "Fix fsi/dt: time {:.8g} reached on step {}\n", end, now);
+    if (comm->me == 0 && now > update->firststep)
+      utils::logmesg(lmp, "Fix fsi/dt: time {:.8g} reached on step {}\n", end, now);
     else if (comm->me == 0 && update->nsteps > 0)
-      error->warning(FLERR, "Fix fsi/dt stop {:.8g}: the time is {:.8g} already, there is nothing to run", end, time);
+      error->warning(FLERR,
+                     "Fix fsi/dt stop {:.8g}: the time is {:.8g} already, there is nothing to run",
+                     end, time);
     timer->force_timeout();
     cut = true;
     return;
   }
   const double steps = std::ceil(left / next * (1.0 - ROUNDING));
   if (steps <= 2.0) next_dt = left / steps;
-  // not from the first guess: what LAMMPS never writes, restarts or dumps, it puts one step behind the last when a run is set up
-  // and would write nothing more beyond
-  if (now > update->firststep || steps <= 2.0) update->laststep = steps < last - now ? now + static_cast<bigint>(steps) : last;
-  if (steps > 1.0 || output->next_thermo <= now || now == update->firststep) return;    // output will see to it
+  // not from the first guess: what LAMMPS never writes, restarts or dumps, it puts one step behind
+  // the last when a run is set up and would write nothing more beyond
+  if (now > update->firststep || steps <= 2.0)
+    update->laststep = steps < last - now ? now + static_cast<bigint>(steps) : last;
+  if (steps > 1.0 || output->next_thermo <= now || now == update->firststep)
+    return;    // output will see to it
   output->next_thermo = update->laststep;
   output->next = std::min(output->next, output->next_thermo);
   modify->addstep_compute(output->next_thermo);
@@ -205,12 +236,14 @@ void FixFSIDt::post_run()
 }
 
 /* ----------------------------------------------------------------------
-   A new time step begins with a step, between two of position Verlet, each of which is second order on its own: positions and
-   velocities need no more care. What lives at the middle of steps, the density of continuity and the stress of fsi/solid, goes
-   from t^n - dt_old/2 to t^n + dt_new/2 with the rate of t^n: by the mean of the two, or every change would add an error of
-   first order, (dt_new - dt_old)/2 times the rate. Fix fsi takes the difference from dt_offset. (The rates' positions, dt/2 v
-   before those in atom->x, are of the new step, as they should.)
-   Other styles hear of it as from fix dt/reset; the clock and the dumps by time count from the end of the last step.
+   A new time step begins with a step, between two of position Verlet, each of which is second
+   order on its own: positions and velocities need no more care. What lives at the middle of
+   steps, the density of continuity and the stress of fsi/solid, goes from t^n - dt_old/2 to t^n
+   + dt_new/2 with the rate of t^n: by the mean of the two, or every change would add an error of
+   first order, (dt_new - dt_old)/2 times the rate. Fix fsi takes the difference from dt_offset.
+   (The rates' positions, dt/2 v before those in atom->x, are of the new step, as they should.)
+   Other styles hear of it as from fix dt/reset; the clock and the dumps by time count from the
+   end of the last step.
 ------------------------------------------------------------------------- */
 
 void FixFSIDt::start_step()
@@ -237,7 +270,9 @@ void FixFSIDt::start_step()
 
 void FixFSIDt::find_limits()
 {
-  limits.find(*fix_fsi, groupbit, force->pair_match("fsi/solid/tl", 1) && (automatic || fix_fsi->substeps > 1), of_fluid, of_solid);
+  const bool may = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
+  const bool substeps = may && (automatic || fix_fsi->substeps > 1);
+  limits.find(*fix_fsi, groupbit, substeps, of_fluid, of_solid);
   limits.reduce();
   std::copy_n(limits.step, NLIMIT, step);
   std::copy_n(limits.sub, NLIMIT, sub);
@@ -251,8 +286,8 @@ double FixFSIDt::largest_courant() const
 }
 
 /* ----------------------------------------------------------------------
-   the next time step, at most that much; with a given number of sub-steps the solid limits the step, else the step gives
-   the number
+   the next time step, at most that much; with a given number of sub-steps the solid limits the
+   step, else the step gives the number
 ------------------------------------------------------------------------- */
 
 void FixFSIDt::choose(double most)
@@ -278,13 +313,16 @@ void FixFSIDt::choose(double most)
     return;
   }
   if (!check && target < low)
-    error->all(FLERR, "Fix fsi/dt: on step {} the limit {:.4g} of {} is below the smallest time step {}", update->ntimestep, target,
-               name(cause), low);
+    error->all(FLERR,
+               "Fix fsi/dt: on step {} the limit {:.4g} of {} is below the smallest time step {}",
+               update->ntimestep, target, name(cause), low);
 
-  const bool fell_behind = ruling < 0 || (cause != ruling && target < PRINT * (ruling == MAXIMUM ? high : ruled[ruling]));
+  const bool fell_behind = ruling < 0 ||
+      (cause != ruling && target < PRINT * (ruling == MAXIMUM ? high : ruled[ruling]));
   if (!check && fell_behind) {
     if (comm->me == 0)
-      utils::logmesg(lmp, "Fix fsi/dt: from step {} on {} limits the time step, to {:.4g}\n", update->ntimestep, name(cause), target);
+      utils::logmesg(lmp, "Fix fsi/dt: from step {} on {} limits the time step, to {:.4g}\n",
+                     update->ntimestep, name(cause), target);
     ruling = cause;
   }
   next_dt = std::min(target, most);
@@ -292,8 +330,9 @@ void FixFSIDt::choose(double most)
   if (automatic) {
     const double count = std::ceil(next_dt / shortest * (1.0 - 1.0e-12));
     if (count > MAXSUBSTEPS)
-      error->all(FLERR, "Fix fsi/dt: on step {} the solid needs {:.0f} sub-steps of {:.4g}, more than {}", update->ntimestep, count,
-                 shortest, MAXSUBSTEPS);
+      error->all(FLERR,
+                 "Fix fsi/dt: on step {} the solid needs {:.0f} sub-steps of {:.4g}, more than {}",
+                 update->ntimestep, count, shortest, MAXSUBSTEPS);
     n = next_substeps = std::max(1, static_cast<int>(count));
     combine();
   }
@@ -303,11 +342,10 @@ void FixFSIDt::choose(double most)
 
 std::string FixFSIDt::name(int k) const
 {
-  static constexpr const char *names[] = {"sound in the fluid", "elastic waves in the solid", "artificial viscosity",
-                                          "laminar viscosity",  "acceleration",               "the upper bound"};
-  std::string text = names[k];
+  std::string text = k < NLIMIT ? Limits::names[k] : "the upper bound";
   if (k == Limits::SOUND) text += fmt::format(" (atom {})", limits.culprit[0][0]);
-  if (k == Limits::ACCELERATION) text += fmt::format(" (atom {})", limits.culprit[step[k] > limit[k]][1]);
+  if (k == Limits::ACCELERATION)
+    text += fmt::format(" (atom {})", limits.culprit[step[k] > limit[k]][1]);
   return text;
 }
 
@@ -321,8 +359,9 @@ void FixFSIDt::report()
   next_dt = 0.0;
   if (update->dt <= target * (1.0 + 1.0e-12) || warned & 1 << cause) return;
   warned |= 1 << cause;
-  const auto text = fmt::format("Fix fsi/dt: on step {} the time step {:.4g} is above {:.4g}, the limit of {}", update->ntimestep,
-                                update->dt, target, name(cause));
+  const auto text =
+      fmt::format("Fix fsi/dt: on step {} the time step {:.4g} is above {:.4g}, the limit of {}",
+                  update->ntimestep, update->dt, target, name(cause));
   if (check == STOP) error->all(FLERR, text);
   if (comm->me == 0) error->warning(FLERR, text);
 }
@@ -374,16 +413,18 @@ void FixFSIDt::restart(char *buf)
 
 /* ---------------------------------------------------------------------- */
 
-void *FixFSIDt::extract(const char *name, int &dim_of_extract)
+Facts FixFSIDt::facts() const
 {
-  dim_of_extract = 0;
-  if (strcmp(name, "step") == 0) return chooses() ? this : nullptr;
-  if (strcmp(name, "substeps") == 0) return automatic ? this : nullptr;
-  return nullptr;
+  Facts facts;
+  facts.chooses_step = chooses();
+  facts.chooses_substeps = automatic;
+  return facts;
 }
 
 void FixFSIDt::find_idle(const Census &, const Idle &nothing) const
 {
-  if (automatic && !force->pair_match("fsi/solid/tl", 1)) nothing("Fix fsi/dt substeps auto", "there is no pair_style fsi/solid/tl");
-  if (group->count(igroup) == 0) nothing("Fix fsi/dt", fmt::format("group {} is empty", group->names[igroup]));
+  if (automatic && facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS)
+    nothing("Fix fsi/dt substeps auto", "there is no pair_style fsi/solid/tl");
+  if (group->count(igroup) == 0)
+    nothing("Fix fsi/dt", fmt::format("group {} is empty", group->names[igroup]));
 }

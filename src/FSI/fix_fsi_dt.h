@@ -45,7 +45,7 @@ class FixFSIDt : public Fix, public FSI::Part {
   void restart(char *) override;
 
   void start_step() override;
-  void *extract(const char *, int &) override;    // "step", "substeps": null where it does not choose them
+  FSI::Facts facts() const override;
   void find_idle(const Census &, const Idle &) const override;
   bool chooses() const { return check == NO_CHECK; }
   bool chooses_substeps() const { return automatic; }
@@ -60,13 +60,14 @@ class FixFSIDt : public Fix, public FSI::Part {
   FSI::Keywords keywords;
   int interval;
   double cfl, of_fluid, of_solid, low, high, growth;
-  double end;    // of the run
-  bool cut;      // it was
+  double end;       // of the run
+  bool cut;         // it was
   int automatic;    // number of sub-steps
   int check;
 
   FSI::Limits limits;
-  double step[NLIMIT], sub[NLIMIT];    // limits of the step, and of a sub-step of what takes sub-steps, with the factors
+  double step[NLIMIT], sub[NLIMIT];    // limits of the step, and of a sub-step of what takes
+                                       // sub-steps, with the factors
   double limit[NLIMIT];                // both together
   double target;                       // smallest of these and of the bound
   int cause, ruling;                   // what sets the next step; last one that was printed

@@ -180,7 +180,7 @@ int FixFSIMove::setmask()
 
 double FixFSIMove::now() const
 {
-  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  return FSI::Clock::now(update);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -91,7 +91,7 @@ int FixFSIReference::setmask()
 void FixFSIReference::init()
 {
   // has a script put in its place what is not of this package?
-  resting = !force->pair_match("fsi/solid/tl", 1);
+  resting = facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   if (resting) return;
   fix_fsi = FixFSI::find(lmp, "Fix fsi/reference");
   if (!any()) {

@@ -21,9 +21,8 @@
 #include "fix_fsi.h"
 #include "fix_fsi_inlet.h"
 #include "fix_fsi_wall_mirror.h"
-#include "fix_fsi_watch.h"
-#include "pair_fsi_solid_tl.h"
 #include "force.h"
+#include "fsi_clock.h"
 #include "fsi_keywords.h"
 #include "group.h"
 #include "info.h"
@@ -41,7 +40,6 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-static constexpr double BIG = 1.0e20;
 static constexpr size_t WIDTH = 110;    // of the list of effects
 
 // "density of solids" -> density_of_solids
@@ -55,12 +53,15 @@ static std::string word(const std::string &text)
 /* ---------------------------------------------------------------------- */
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), every(100), fp(nullptr), worst{}, samples(0), sampled(-1), limits(lmp), usual(lmp), first_step(0),
-    natoms(0), flowed(0), first_time(0.0), counted(0), ghost_bytes(0.0), ghost_messages(0.0), any_held(false), listed(-1), momentum{}, by_gravity{}, by_walls{},
-    by_held{}, collected(-1), output{}
+    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), every(100), fp(nullptr), first_step(0),
+    natoms(0), flowed(0), first_time(0.0), counted(0), ghost_bytes(0.0), ghost_messages(0.0),
+    any_held(false), listed(-1), momentum{}, by_gravity{}, by_walls{}, by_held{},
+    collected(-1), output{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/report requires atom_style fsi");
-  if (igroup) error->all(FLERR, "Fix fsi/report must use group all: times, messages and energies have no group");
+  if (igroup)
+    error->all(FLERR,
+               "Fix fsi/report must use group all: times, messages and energies have no group");
 
   std::string file;
   Keywords keywords(lmp, "fix fsi/report");
@@ -69,12 +70,13 @@ FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
   keywords.parse(narg - 3, arg + 3);
   if (!file.empty() && comm->me == 0) {
     fp = fopen(file.c_str(), "w");
-    if (!fp) error->one(FLERR, "Fix fsi/report cannot write file {}: {}", file, utils::getsyserror());
+    if (!fp)
+      error->one(FLERR, "Fix fsi/report cannot write file {}: {}", file, utils::getsyserror());
   }
 
   nevery = 1;
   vector_flag = 1;
-  size_vector = NWORST + 3;
+  size_vector = 3;
   extvector = 0;
   global_freq = 1;
   dynamic_group_allow = 1;
@@ -100,10 +102,10 @@ int FixFSIReport::setmask()
 void FixFSIReport::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
-  if (modify->get_fix_by_style("^fsi/report$").size() > 1) error->all(FLERR, "There can be only one fix fsi/report");
+  if (modify->get_fix_by_style("^fsi/report$").size() > 1)
+    error->all(FLERR, "There can be only one fix fsi/report");
   auto computes = modify->get_compute_by_style("^fsi/energy$");
   energy = computes.empty() ? nullptr : dynamic_cast<ComputeFSIEnergy *>(computes[0]);
-  for (auto &fix : modify->get_fix_by_style("^fsi/watch$")) static_cast<FixFSIWatch *>(fix)->nearest = BIG;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -120,13 +122,12 @@ void FixFSIReport::setup(int)
 void FixFSIReport::begin()
 {
   first_step = update->ntimestep;
-  first_time = elapsed();
+  first_time = Clock::now(update);
   bigint mine = atom->nlocal;
   MPI_Allreduce(&mine, &natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   flowed = through_open_ends();
 
-  std::fill_n(worst, NWORST, Worst{0.0, 0.0, 0, 0});
-  samples = counted = 0;
+  counted = 0;
   ghost_bytes = ghost_messages = 0.0;
   by_gravity = by_walls = by_held = {};
   momentum = momentum_of_moving();
@@ -143,16 +144,8 @@ void FixFSIReport::begin()
     energy->compute_vector();
     ledger.assign(energy->vector, energy->vector + energy->size_vector);
   }
-  sample();
   profile.clear();
   profile.counting = true;    // of the first step
-}
-
-/* ---------------------------------------------------------------------- */
-
-double FixFSIReport::elapsed() const
-{
-  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -197,72 +190,10 @@ void FixFSIReport::end_of_step()
     }
   }
   counted += profile.counting;
-  if (update->ntimestep % every == 0) sample();
   profile.counting = (update->ntimestep + 1) % every == 0;
 }
 
-/* ----------------------------------------------------------------------
-   worst values, of this rank
-------------------------------------------------------------------------- */
-
-void FixFSIReport::enter(int k, double value, double of_limit, tagint tag)
-{
-  if (value > worst[k].value) worst[k] = {value, of_limit, update->ntimestep, tag};
-}
-
-void FixFSIReport::sample()
-{
-  const Phase phase(&profile, Profile::REPORT);
-  samples++;
-  sampled = update->ntimestep;
-  collected = -1;
-  const bool substeps = fix_fsi->substeps > 1;
-  usual.find(*fix_fsi, groupbit, substeps);
-  limits.find(*fix_fsi, groupbit, substeps, 1.0, 1.0);    // Courant numbers are of no factor
-  for (int k = 0; k < Limits::NLIMIT; k++)
-    for (const bool sub : {false, true}) {
-      const double limit = sub ? limits.sub[k] : limits.step[k];
-      if (limit >= Limits::UNLIMITED) continue;
-      const double dt = update->dt / (sub ? fix_fsi->substeps : 1);
-      enter(k, Limits::safe[k] * dt / limit, dt / (sub ? usual.sub[k] : usual.step[k]),
-            k == Limits::SOUND ? limits.culprit[sub][0] : k == Limits::ACCELERATION ? limits.culprit[sub][1] : 0);
-    }
-
-  double **v = atom->v;
-  const auto *const solid_tl = PairFSISolidTL::find(lmp);
-  for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = fix_fsi->state[atom->type[i]];
-    if (s.species == RIGID) continue;
-    const bool fluid = s.species == FLUID;
-    const double ratio = fix_fsi->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i) : fix_fsi->density_ratio(i);
-    enter(fluid ? FLUID_DENSITY : SOLID_DENSITY, std::abs(ratio - 1.0), 0.0, atom->tag[i]);
-    if (fluid) enter(MACH_NUMBER, std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]) / s.c, 0.0, atom->tag[i]);
-  }
-}
-
-/* ----------------------------------------------------------------------
-   of all ranks
-------------------------------------------------------------------------- */
-
-void FixFSIReport::gather(Worst *all) const
-{
-  double mine[NWORST], most[NWORST];
-  for (int k = 0; k < NWORST; k++) mine[k] = worst[k].value;
-  MPI_Allreduce(mine, most, NWORST, MPI_DOUBLE, MPI_MAX, world);
-  // steps and shares of one that has it; of particles that are as bad in the same step the last
-  bigint step[NWORST], last[NWORST];
-  tagint tag[NWORST], who[NWORST];
-  double share[NWORST], largest[NWORST];
-  for (int k = 0; k < NWORST; k++) {
-    step[k] = mine[k] == most[k] ? worst[k].step : 0;
-    share[k] = mine[k] == most[k] ? worst[k].of_limit : 0.0;
-  }
-  MPI_Allreduce(step, last, NWORST, MPI_LMP_BIGINT, MPI_MAX, world);
-  MPI_Allreduce(share, largest, NWORST, MPI_DOUBLE, MPI_MAX, world);
-  for (int k = 0; k < NWORST; k++) tag[k] = mine[k] == most[k] && worst[k].step == last[k] ? worst[k].tag : 0;
-  MPI_Allreduce(tag, who, NWORST, MPI_LMP_TAGINT, MPI_MAX, world);
-  for (int k = 0; k < NWORST; k++) all[k] = {most[k], largest[k], last[k], who[k]};
-}
+/* ---------------------------------------------------------------------- */
 
 FixFSIReport::Vector FixFSIReport::all_ranks(const Vector &mine) const
 {
@@ -278,7 +209,8 @@ FixFSIReport::Vector FixFSIReport::momentum_of_moving(double *scale) const
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & fix_fsi->groupbit)) continue;
     for (int d = 0; d < 3; d++) mine[d] += atom->rmass[i] * v[i][d];
-    mine[3] += atom->rmass[i] * std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+    mine[3] +=
+        atom->rmass[i] * std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
   }
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
   if (scale) *scale = all[3];
@@ -304,13 +236,14 @@ FixFSIReport::Balance FixFSIReport::balance() const
   for (int d = 0; d < 3; d++) {
     b.change[d] = now[d] - momentum[d];
     b.rest[d] = b.change[d] - b.gravity[d] - b.walls[d] - b.held[d];
-    for (const double part : {b.gravity[d], b.walls[d], b.held[d]}) b.scale = std::max(b.scale, std::abs(part));
+    for (const double part : {b.gravity[d], b.walls[d], b.held[d]})
+      b.scale = std::max(b.scale, std::abs(part));
   }
   return b;
 }
 
 /* ----------------------------------------------------------------------
-   so far in this run: Courant numbers of the five causes, Mach number, density errors of fluid and solid; momentum unaccounted for
+   momentum unaccounted for, so far in this run
 ------------------------------------------------------------------------- */
 
 double FixFSIReport::compute_vector(int k)
@@ -318,11 +251,7 @@ double FixFSIReport::compute_vector(int k)
   // before the first run, or with a new fix fsi
   if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
   if (collected != update->ntimestep) {
-    Worst all[NWORST];
-    gather(all);
-    for (int i = 0; i < NWORST; i++) output[i] = all[i].value;
-    const auto b = balance();
-    for (int d = 0; d < 3; d++) output[NWORST + d] = b.rest[d];
+    output = balance().rest;
     collected = update->ntimestep;
   }
   return output[k];
@@ -347,7 +276,6 @@ bigint FixFSIReport::through_open_ends() const
 void FixFSIReport::post_run()
 {
   if (update->whichflag != 1 || update->ntimestep == first_step) return;
-  if (sampled != update->ntimestep) sample();
 
   double loop = timer->get_wall(Timer::TOTAL), sum;
   if (!timer->has_loop()) {
@@ -360,6 +288,7 @@ void FixFSIReport::post_run()
   bigint mine = atom->nlocal, now;
   MPI_Allreduce(&mine, &now, 1, MPI_LMP_BIGINT, MPI_SUM, world);
 
+  const double time = Clock::now(update) - first_time;
   lines.clear();
   enter_line("first_step", first_step);
   enter_line("last_step", update->ntimestep);
@@ -367,17 +296,20 @@ void FixFSIReport::post_run()
   enter_line("particles", now);
   const bigint came = through_open_ends() - flowed, missing = natoms + came - now;
   std::string change;
-  if (came) change = fmt::format("{} {} through open ends", std::abs(came), came > 0 ? "more" : "fewer");
+  if (came)
+    change = fmt::format("{} {} through open ends", std::abs(came), came > 0 ? "more" : "fewer");
   if (missing) change += fmt::format("{}{} lost", came ? ", " : "", missing);
   enter_line("lost", missing);
-  enter_line("time", elapsed() - first_time);
+  enter_line("time", time);
   enter_line("loop_seconds", loop);
-  std::string text = fmt::format("\nFSI report: steps {} to {}, a time of {:.6g}; {} particles{} on {} rank{}, {:.4g} s\n", first_step,
-                                 update->ntimestep, elapsed() - first_time, now,
-                                 change.empty() ? "" : fmt::format(" ({})", change), comm->nprocs, comm->nprocs > 1 ? "s" : "", loop);
+  std::string text = fmt::format(
+      "\nFSI report: steps {} to {}, a time of {:.6g}; {} particles{} on {} rank{}, {:.4g} s\n",
+      first_step, update->ntimestep, time, now, change.empty() ? "" : fmt::format(" ({})", change),
+      comm->nprocs, comm->nprocs > 1 ? "s" : "", loop);
   std::string line = "  on:", effects;
   auto on = fix_fsi->effects_on;
-  if (fix_fsi->substeps > 1 && !modify->get_fix_by_style("^fsi/dt$").empty()) on.push_back(fmt::format("{} solid sub-steps at the end", fix_fsi->substeps));
+  if (fix_fsi->substeps > 1 && !modify->get_fix_by_style("^fsi/dt$").empty())
+    on.push_back(fmt::format("{} solid sub-steps at the end", fix_fsi->substeps));
   for (const auto &e : on) {
     if (line.size() + e.size() + 2 > WIDTH) {
       text += line + "\n";
@@ -394,7 +326,6 @@ void FixFSIReport::post_run()
   flowed += came;
   text += time_table(loop);
   text += cost_table(loop);
-  text += accuracy_table();
   text += momentum_table(missing != 0);
   text += energy_table();
   if (comm->me == 0) {
@@ -405,15 +336,15 @@ void FixFSIReport::post_run()
       fflush(to);
     }
   }
-
-  for (auto &fix : modify->get_fix_by_style("^fsi/watch$")) static_cast<FixFSIWatch *>(fix)->nearest = BIG;
   begin();
 }
 
 template <class T> void FixFSIReport::enter_line(const std::string &name, const T &value)
 {
-  if constexpr (std::is_same_v<T, double>) lines += fmt::format("FSI report {} {:.10g}\n", name, value);
-  else lines += fmt::format("FSI report {} {}\n", name, value);
+  if constexpr (std::is_same_v<T, double>)
+    lines += fmt::format("FSI report {} {:.10g}\n", name, value);
+  else
+    lines += fmt::format("FSI report {} {}\n", name, value);
 }
 
 /* ----------------------------------------------------------------------
@@ -430,7 +361,6 @@ std::string FixFSIReport::time_table(double loop)
       {"force of solids", "pairs, bonds, contact, sub-steps"},
       {"walls", "which walls are near, reflections"},
       {"communication", "ghosts, exchange; waiting for slower ranks"},
-      {"this report", "its samples"},
       {"neighbor lists", ""},
       {"output", "thermo, dumps, restarts, computes they need"},
       {"rest", "drift and kick, other fixes, their computes, LAMMPS"}};
@@ -445,17 +375,20 @@ std::string FixFSIReport::time_table(double loop)
   MPI_Allreduce(mine, sum, NROW, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(mine, most, NROW, MPI_DOUBLE, MPI_MAX, world);
 
-  std::string text = fmt::format("  {:<16} {:>7} {:>10} {:>10}\n", "time", "share", "mean, s", "max, s");
+  std::string text =
+      fmt::format("  {:<16} {:>7} {:>10} {:>10}\n", "time", "share", "mean, s", "max, s");
   for (int k = 0; k < NROW; k++) {
     const double mean = sum[k] / comm->nprocs;
     enter_line("seconds_" + word(about[k][0]), mean);
     enter_line("seconds_max_" + word(about[k][0]), most[k]);
     enter_line("share_" + word(about[k][0]), loop > 0.0 ? mean / loop : 0.0);
-    if (k < OUTPUT && k != Profile::REPORT && mean < 1.0e-3 * loop) continue;    // not in this scene
-    text += fmt::format("    {:<14} {:>6.1f}% {:>10.4g} {:>10.4g}   {}\n", about[k][0], loop > 0.0 ? 100.0 * mean / loop : 0.0, mean,
-                        most[k], about[k][1]);
+    if (k < OUTPUT && mean < 1.0e-3 * loop) continue;    // not in this scene
+    text += fmt::format("    {:<14} {:>6.1f}% {:>10.4g} {:>10.4g}   {}\n", about[k][0],
+                        loop > 0.0 ? 100.0 * mean / loop : 0.0, mean, most[k], about[k][1]);
   }
-  if (!known) text += "    (timer off or loop: the rest holds neighbor lists, output and LAMMPS' communication)\n";
+  if (!known)
+    text += "    (timer off or loop: the rest holds neighbor lists, output and LAMMPS' "
+            "communication)\n";
   return text;
 }
 
@@ -466,13 +399,15 @@ std::string FixFSIReport::cost_table(double loop)
   const double n = natoms;
   double meminfo[3];
   Info(lmp).get_memory_info(meminfo);
-  double sum[5], most[5], mine[5] = {1048576.0 * meminfo[0], neighbor->memory_usage(), profile.bytes / counted, ghost_bytes / counted,
-                                     (profile.messages + ghost_messages) / counted};
+  double sum[5], most[5],
+      mine[5] = {1048576.0 * meminfo[0], neighbor->memory_usage(), profile.bytes / counted,
+                 ghost_bytes / counted, (profile.messages + ghost_messages) / counted};
   MPI_Allreduce(mine, sum, 5, MPI_DOUBLE, MPI_SUM, world);
   mine[0] = mine[2] + mine[3];
   MPI_Allreduce(mine, most, 5, MPI_DOUBLE, MPI_MAX, world);
 
-  const double speed = loop > 0.0 ? n * (update->ntimestep - first_step) / loop : 0.0, per = n > 0.0 ? 1.0 / n : 0.0;
+  const double speed = loop > 0.0 ? n * (update->ntimestep - first_step) / loop : 0.0,
+               per = n > 0.0 ? 1.0 / n : 0.0;
   const double sent = sum[2] + sum[3];
   enter_line("particle_steps_per_second", speed);
   enter_line("particle_steps_per_second_per_rank", speed / comm->nprocs);
@@ -486,42 +421,10 @@ std::string FixFSIReport::cost_table(double loop)
   enter_line("steps_counted", counted);
   return fmt::format("  particle-steps per second {:.4g}, per rank {:.4g}\n"
                      "  bytes per particle {:.0f}, {:.0f} of them for neighbor lists\n"
-                     "  sent per step, all ranks {:.0f} bytes ({:.0f} by the package) in {:g} messages; largest rank {:.0f} in {:g}\n",
-                     speed, speed / comm->nprocs, sum[0] * per, sum[1] * per, sent, sum[2], sum[4], most[0], most[4]);
-}
-
-/* ---------------------------------------------------------------------- */
-
-std::string FixFSIReport::accuracy_table()
-{
-  static constexpr const char *about[NWORST][2] = {{"courant_sound", "Courant number of sound, dt (c+v)/h"},
-                                                   {"courant_elastic", "elastic waves, dt c_l/h"},
-                                                   {"courant_artificial", "artificial viscosity, dt c (1+0.6 alpha)/h"},
-                                                   {"courant_laminar", "laminar viscosity, dt nu/h^2"},
-                                                   {"courant_acceleration", "acceleration, dt sqrt(a/h)"},
-                                                   {"mach", "Mach number of fluid, v/c"},
-                                                   {"density_error_fluid", "density error of fluid, |rho/rho0-1|"},
-                                                   {"density_error_solid", "of solids"}};
-  Worst all[NWORST];
-  gather(all);
-  enter_line("samples", samples);
-  std::string text = fmt::format("  {:<46} {:>10} {:>9} {:>9} {:>9}\n", fmt::format("worst of {} samples", samples), "value", "of limit",
-                                 "on step", "atom");
-  for (int k = 0; k < NWORST; k++) {
-    enter_line(about[k][0], all[k].value);
-    if (k < Limits::NLIMIT) enter_line(fmt::format("{}_of_limit", about[k][0]), all[k].of_limit);
-    if (all[k].value == 0.0) continue;
-    text += fmt::format("    {:<44} {:>10.4g} {:>9} {:>9} {:>9}\n", about[k][1], all[k].value,
-                        k < Limits::NLIMIT ? fmt::format("{:.1f}%", 100.0 * all[k].of_limit) : "", all[k].step,
-                        all[k].tag ? std::to_string(all[k].tag) : "");
-  }
-  double nearest = BIG;
-  for (auto &fix : modify->get_fix_by_style("^fsi/watch$")) nearest = std::min(nearest, static_cast<FixFSIWatch *>(fix)->nearest);
-  if (nearest < BIG) {
-    enter_line("smallest_distance", nearest);
-    text += fmt::format("    {:<44} {:>10.4g}\n", "smallest distance over spacing (fix fsi/watch)", nearest);
-  }
-  return text;
+                     "  sent per step, all ranks {:.0f} bytes ({:.0f} by the package) in {:g} "
+                     "messages; largest rank {:.0f} in {:g}\n",
+                     speed, speed / comm->nprocs, sum[0] * per, sum[1] * per, sent, sum[2], sum[4],
+                     most[0], most[4]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -529,13 +432,17 @@ std::string FixFSIReport::accuracy_table()
 std::string FixFSIReport::momentum_table(bool lost)
 {
   const auto b = balance();
-  const double relative = std::sqrt(b.rest[0] * b.rest[0] + b.rest[1] * b.rest[1] + b.rest[2] * b.rest[2]) / (b.scale > 0.0 ? b.scale : 1.0);
+  const double relative =
+      std::sqrt(b.rest[0] * b.rest[0] + b.rest[1] * b.rest[1] + b.rest[2] * b.rest[2]) /
+      (b.scale > 0.0 ? b.scale : 1.0);
   std::string others = lost ? " lost particles," : "";
   if (fix_fsi->has_open_ends()) others += " flow through open ends,";
   for (auto &fix : modify->get_fix_list())
-    if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^fsi/") && !utils::strmatch(fix->style, "^gravity"))
+    if ((modify->get_fix_mask(fix) & POST_FORCE) && !utils::strmatch(fix->style, "^fsi/") &&
+        !utils::strmatch(fix->style, "^gravity"))
       others += fmt::format(" fix {},", fix->id);
-  std::string text = fmt::format("  {:<46} {:>12} {:>12}{}\n", "momentum", "x", "y", fix_fsi->dim == 3 ? fmt::format(" {:>12}", "z") : "");
+  std::string text = fmt::format("  {:<46} {:>12} {:>12}{}\n", "momentum", "x", "y",
+                                 fix_fsi->dim == 3 ? fmt::format(" {:>12}", "z") : "");
   const auto row = [&](const char *name, const std::string &label, const Vector &p, bool shown) {
     for (int d = 0; d < 3; d++) enter_line(fmt::format("momentum_{}_{}", name, "xyz"[d]), p[d]);
     if (!shown) return;
@@ -547,9 +454,12 @@ std::string FixFSIReport::momentum_table(bool lost)
   row("gravity", "from gravity", b.gravity, !fields.empty());
   row("walls", "from walls, reflections too", b.walls, fix_fsi->walls.any());
   row("held", "from held particles", b.held, any_held);
-  row("rest", others.empty() ? "unaccounted for: error" : fmt::format("unaccounted for:{} error", others), b.rest, true);
+  row("rest",
+      others.empty() ? "unaccounted for: error" : fmt::format("unaccounted for:{} error", others),
+      b.rest, true);
   enter_line("momentum_rest_relative", relative);
-  text += fmt::format("    {:<44} {:>12.2g}\n", "this over the sum of m|v| or largest impulse", relative);
+  text += fmt::format("    {:<44} {:>12.2g}\n", "this over the sum of m|v| or largest impulse",
+                      relative);
   return text;
 }
 
@@ -560,7 +470,9 @@ std::string FixFSIReport::energy_table()
   if (!energy) return "  energy: the ledger is off (compute fsi/energy)\n";
   energy->compute_vector();
   const int n = energy->size_vector;
-  std::string text = fmt::format("  {:<46} {:>12} {:>12} {:>12}\n", "energy (from artificial viscosity on: what was taken)", "start", "end", "change");
+  std::string text = fmt::format("  {:<46} {:>12} {:>12} {:>12}\n",
+                                 "energy (from artificial viscosity on: what was taken)", "start",
+                                 "end", "change");
   double start = 0.0, end = 0.0, exchanged = 0.0;
   for (int k = 0; k < n; k++) {
     const double now = energy->vector[k], change = now - ledger[k];
@@ -570,13 +482,14 @@ std::string FixFSIReport::energy_table()
     enter_line(fmt::format("energy_{}", word(ComputeFSIEnergy::name(k))), now);
     enter_line(fmt::format("energy_change_{}", word(ComputeFSIEnergy::name(k))), change);
     if (now != 0.0 || ledger[k] != 0.0)
-      text += fmt::format("    {:<44} {:>12.5g} {:>12.5g} {:>12.4g}\n", ComputeFSIEnergy::name(k), ledger[k], now, change);
+      text += fmt::format("    {:<44} {:>12.5g} {:>12.5g} {:>12.4g}\n", ComputeFSIEnergy::name(k),
+                          ledger[k], now, change);
   }
   const double relative = exchanged > 0.0 ? (end - start) / exchanged : 0.0;
   enter_line("energy_sum", end);
   enter_line("energy_change_sum", end - start);
   enter_line("energy_drift_relative", relative);
-  text += fmt::format("    {:<44} {:>12.5g} {:>12.5g} {:>12.4g}, {:.2g} of the largest\n", "sum: changes by the error only", start, end,
-                      end - start, relative);
+  text += fmt::format("    {:<44} {:>12.5g} {:>12.5g} {:>12.4g}, {:.2g} of the largest\n",
+                      "sum: changes by the error only", start, end, end - start, relative);
   return text;
 }

@@ -53,22 +53,10 @@ class FixFSIReport : public Fix, public FSI::Part {
   int every;
   FILE *fp;    // of rank 0; null: the log
 
-  // worst values of the run
-  enum { MACH_NUMBER = FSI::Limits::NLIMIT, FLUID_DENSITY, SOLID_DENSITY, NWORST };
-  struct Worst {
-    double value;
-    double of_limit;    // share of the largest Courant number allowed
-    bigint step;
-    tagint tag;    // 0: a property of the material
-  };
-  Worst worst[NWORST];
-  int samples;
-  bigint sampled;    // last step
-  FSI::Limits limits, usual;    // with factors of 1, and with the usual ones
-
-  bigint first_step, natoms, flowed;    // flowed: natoms is with so many that came in through open ends
+  bigint first_step, natoms,
+      flowed;    // flowed: natoms is with so many that came in through open ends
   double first_time;
-  int counted;    // steps whose messages were
+  int counted;                           // steps whose messages were
   double ghost_bytes, ghost_messages;    // of positions, velocities and forces, in those
 
   using Vector = std::array<double, 3>;
@@ -80,16 +68,14 @@ class FixFSIReport : public Fix, public FSI::Part {
   bool any_held;
   std::vector<int> held;    // local atoms that fix fsi does not integrate, as of
   bigint listed;            // this build of the neighbor lists
-  Vector momentum, by_gravity, by_walls, by_held;    // at the start, of all ranks; impulses, the last two of this rank
-  std::vector<double> ledger;                        // at the start
+  Vector momentum, by_gravity, by_walls,
+      by_held;                   // at the start, of all ranks; impulses, the last two of this rank
+  std::vector<double> ledger;    // at the start
 
   bigint collected;    // step of what follows
-  double output[NWORST + 3];
+  Vector output;
 
   void begin();
-  void sample();
-  void enter(int, double value, double of_limit, tagint);
-  void gather(Worst *) const;
   Vector momentum_of_moving(double *scale = nullptr) const;
   Vector all_ranks(const Vector &) const;
   struct Balance {
@@ -97,13 +83,11 @@ class FixFSIReport : public Fix, public FSI::Part {
     double scale;
   };
   Balance balance() const;
-  double elapsed() const;
 
   std::string lines;    // FSI report name value
   template <class T> void enter_line(const std::string &name, const T &value);
   std::string time_table(double loop);
   std::string cost_table(double loop);
-  std::string accuracy_table();
   bigint through_open_ends() const;
   std::string momentum_table(bool lost);
   std::string energy_table();

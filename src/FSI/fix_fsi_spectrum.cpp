@@ -17,6 +17,7 @@
 #include "comm.h"
 #include "compute.h"
 #include "error.h"
+#include "fsi_clock.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "input.h"
@@ -142,7 +143,7 @@ void FixFSISpectrum::end_of_step()
   last = step;
   modify->clearstep_compute();
   value.push_back(sample());
-  time.push_back(update->atime + (step - update->atimestep) * update->dt);
+  time.push_back(FSI::Clock::now(update));
   modify->addstep_compute(step + nevery);
   if (analyse_every && value.size() % analyse_every == 0) analyse();
 }

@@ -66,14 +66,14 @@ FixFSIStress *FixFSIStress::find(LAMMPS *lmp)
 
 void FixFSIStress::choose_fields()
 {
-  Pair *const pair = force->pair ? force->pair_match("^fsi/solid$", 0) : nullptr;
-  int dim_of_extract;
+  const Facts facts = facts_of_solids(lmp);
+  const bool updated = facts.style == Facts::OF_SOLIDS;
   fields.set("stress", Fields::RESTART, true, stress, ns);
   fields.set("plastic strain", Fields::RESTART, plastic, strain);
   fields.set("place at the start", Fields::RESTART,
-             pair && *static_cast<int *>(pair->extract("self", dim_of_extract)), start,
+             updated && facts.self_contact, start,
              domain->dimension + 1);
-  fields.set("hourglass force", Fields::RESTART, pair && *static_cast<double *>(pair->extract("hourglass", dim_of_extract)) > 0.0, hourglass, domain->dimension);
+  fields.set("hourglass force", Fields::RESTART, facts.hourglass, hourglass, domain->dimension);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -179,10 +179,7 @@ std::vector<FixFSIStress::Effect> FixFSIStress::effects() const
 
 void FixFSIStress::find_idle(const Census &all, const Idle &nothing) const
 {
-  int dim_of_extract;
-  Pair *const tl = force->pair_match("fsi/solid/tl", 1);
-  const bool used = force->pair_match("fsi/solid", 1) || (tl && *static_cast<int *>(tl->extract("hypoelastic", dim_of_extract)));
-  if (!used) nothing("Fix fsi/stress", "no solid is hypoelastic");
+  if (!facts_of_solids(lmp).by_rate) nothing("Fix fsi/stress", "no solid is hypoelastic");
   else if (all.solids == 0) nothing("Fix fsi/stress", "no particle is a solid");
 }
 

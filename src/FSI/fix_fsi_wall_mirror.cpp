@@ -233,12 +233,11 @@ void FixFSIWallMirror::go_back()
 
 void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
 {
-  Pair *const fluid = force->pair_match("fsi/fluid", 1);
-  int dim_of_extract;
-  if (!fluid) nothing("Fix fsi/wall/mirror", "walls mirror fluids, and there is no pair_style fsi/fluid");
+  const Facts fluid = facts_of_fluids(lmp);
+  if (!fluid.style) nothing("Fix fsi/wall/mirror", "walls mirror fluids, and there is no pair_style fsi/fluid");
   else if (all.fluids == 0) nothing("Fix fsi/wall/mirror", "no particle is a fluid");
   else if (std::any_of(walls.begin(), walls.end(), [](const Wall &w) { return w.noslip; }) &&
-           !*static_cast<int *>(fluid->extract("laminar/visc", dim_of_extract)))
+           !fluid.laminar)
     nothing("Fix fsi/wall/mirror slip no", "pair_style fsi/fluid has no laminar/visc");
 }
 

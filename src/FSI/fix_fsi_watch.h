@@ -28,7 +28,8 @@ FixStyle(fsi/watch,FixFSIWatch);
 
 namespace LAMMPS_NS {
 
-// Limits stricter than those of fix fsi itself (fsi_check.h): stops a run that goes wrong, or warns, and says what went wrong where.
+// Limits stricter than those of fix fsi itself (fsi_check.h): stops a run that goes wrong, or
+// warns, and says what went wrong where.
 
 class FixFSIWatch : public Fix, public FSI::Part {
  public:
@@ -40,8 +41,6 @@ class FixFSIWatch : public Fix, public FSI::Part {
   void post_force(int) override;
   double compute_scalar() override;
   double compute_vector(int) override;
-
-  double nearest;    // smallest distance over spacing of all checks so far; for fix fsi/report, which sets it back
 
  private:
   class FixFSI *fix_fsi;
@@ -55,9 +54,9 @@ class FixFSIWatch : public Fix, public FSI::Part {
   int warn;
   bool distances;    // found, whether there is a limit or not
 
-  FSI::Finding worst[FSI::NTROUBLE];     // on this rank
-  double total[FSI::NTROUBLE];      // of all ranks: ENERGY, LOST, REFLECTED
-  double seen[FSI::NTROUBLE];       // of all ranks at the last check: the output
+  FSI::Finding worst[FSI::NTROUBLE];    // on this rank
+  double total[FSI::NTROUBLE];          // of all ranks: ENERGY, LOST, REFLECTED
+  double seen[FSI::NTROUBLE];           // of all ranks at the last check: the output
   double energy_before, reflected_before;
   int warned;    // bits of quantities
   bigint violations;
@@ -65,6 +64,8 @@ class FixFSIWatch : public Fix, public FSI::Part {
   void clear();
   void enter(FSI::Trouble, int i, double value, int j = -1);
   double allowed(FSI::Trouble) const;
+  void look_at_particles(double &kinetic, double &little);
+  void look_at_pairs();
   void look(FSI::Stop::When);
   void judge(FSI::Stop::When);
 };

@@ -22,16 +22,12 @@
 #include "fsi_cells.h"
 #include "fsi_contact.h"
 #include "fsi_gather.h"
-#include "fsi_lattice.h"
 #include "fsi_limits.h"
+#include "fsi_part.h"
 #include "fsi_scene.h"
-#include "fsi_sight.h"
 #include "group.h"
-#include "math_eigen.h"
 #include "modify.h"
 #include "neighbor.h"
-#include "pair.h"
-#include "region.h"
 #include "update.h"
 
 #include <algorithm>
@@ -39,23 +35,21 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <numeric>
-#include <set>
 #include <vector>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr double BIG = 1.0e300;
-static constexpr double NEARLY_INCOMPRESSIBLE = 10.0;    // bulk over shear modulus: Poisson's ratio above 0.45
 static constexpr double SAME_PLACE = 1.0e-3;    // of the spacing
-static constexpr int ENOUGH = 3;    // particles across a body (doc/choosing.md)
 
 namespace {
 
 class Adviser : protected Pointers {
  public:
-  Adviser(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), present(atom->ntypes + 1, 0)
+  Adviser(LAMMPS *lmp, const Scene &scene) :
+      Pointers(lmp), scene(scene), fluids(facts_of_fluids(lmp)), solids(facts_of_solids(lmp)),
+      present(atom->ntypes + 1, 0)
   {
     std::vector<int> mine(present.size(), 0);
     for (int i = 0; i < atom->nlocal; i++)
@@ -68,41 +62,28 @@ class Adviser : protected Pointers {
     units();
     box();
     const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest());
-    if (spacing(cells) && pair("^fsi/solid")) {
-      const double reach = number<double>("^fsi/solid", "contact");
+    if (spacing(cells) && solids.style) {
+      const double reach = solids.contact;
       const Cells wide(atom->x, atom->nlocal + atom->nghost, scene.dim,
                        std::max(2.5, reach) * coarsest());
-      thickness(wide);
-      parts(wide);
       if (update->ntimestep == 0) contact(wide, reach);
-      rows();
       held_bodies();
       cut_by_walls();
       yields();
     }
-    if (pair("^fsi/fluid")) {
+    if (fluids.style) {
       idle_fluid();
       nothing_acts();
-      lattice();
       speeds();
-      see_through();
     }
     weightless();
     if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
-    if (scene.substeps > 1) held_forces();
   }
 
  private:
   const Scene &scene;
-  std::vector<int> present;    // types that are fluid or move, on any rank
-
-  // a pair style that there may be, and its settings
-  Pair *pair(const char *style) const { return force->pair_match(style, 0); }
-  template <class T> T number(const char *style, const char *setting) const
-  {
-    int dim_of_extract;
-    return *static_cast<T *>(pair(style)->extract(setting, dim_of_extract));
-  }
+  const Facts fluids, solids;    // of their pair styles
+  std::vector<int> present;      // types that are fluid or move, on any rank
 
   double dx(int i) const { return scene.dx_of(atom->type[i]); }
   double coarsest() const
@@ -131,7 +112,8 @@ class Adviser : protected Pointers {
       if (strcmp(update->unit_style, style) == 0) water = 1.0;
     if (water == 0.0) {
       if (strcmp(update->unit_style, "lj") != 0)
-        warn(fmt::format("units {} are made for atoms; for continua take si, cgs, micro, nano, or lj for numbers without units",
+        warn(fmt::format("units {} are made for atoms; for continua take si, cgs, micro, nano, or "
+                         "lj for numbers without units",
                          update->unit_style));
       return;
     }
@@ -139,10 +121,13 @@ class Adviser : protected Pointers {
       if (!present[t]) continue;
       const State &s = scene.state[t];
       if (s.rho0 < 1.0e-4 * water || s.rho0 > 30.0 * water)
-        warn(fmt::format("the density {:g} of type {} is that of no material in units {}, in which water has {:g}", s.rho0, t,
-                         update->unit_style, water));
+        warn(fmt::format("the density {:g} of type {} is that of no material in units {}, in which "
+                         "water has {:g}",
+                         s.rho0, t, update->unit_style, water));
       else if (si && s.species == SOLID && longitudinal(s) < 1.0)
-        warn(fmt::format("elastic waves in type {} run at {:.2g} m/s only: moduli are in pascal, 1 MPa = 1e6", t, longitudinal(s)));
+        warn(fmt::format(
+            "elastic waves in type {} run at {:.2g} m/s only: moduli are in pascal, 1 MPa = 1e6", t,
+            longitudinal(s)));
     }
   }
 
@@ -152,22 +137,29 @@ class Adviser : protected Pointers {
   {
     for (int d = 0; d < scene.dim; d++)
       if (domain->periodicity[d] && domain->prd[d] < 2.0 * scene.cut)
-        warn(fmt::format("the periodic box is {:g} long in {}, less than twice the kernel's support {:g}: particles see the same "
-                         "neighbor on both sides", domain->prd[d], "xyz"[d], scene.cut));
+        warn(fmt::format("the periodic box is {:g} long in {}, less than twice the kernel's "
+                         "support {:g}: particles see the same "
+                         "neighbor on both sides",
+                         domain->prd[d], "xyz"[d], scene.cut));
     double mine = 1.0, least;
     const double ghost = *std::max_element(comm->cutghost, comm->cutghost + scene.dim);
     for (int d = 0; d < scene.dim; d++)
-      if (comm->procgrid[d] > 1) mine = std::min(mine, (domain->subhi[d] - domain->sublo[d]) / ghost);
+      if (comm->procgrid[d] > 1)
+        mine = std::min(mine, (domain->subhi[d] - domain->sublo[d]) / ghost);
     MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE, MPI_MIN, world);
     if (least < 1.0)
-      warn(fmt::format("a sub-domain is thinner than what it needs of its neighbors ({:.2g} of {:g}), so messages travel over several "
-                       "ranks: use fewer ranks, or processors and balance along the longer sides", least, ghost));
-    if (pair("^fsi/fluid") && neighbor->skin > 1.5 * scene.dx)
-      warn(fmt::format("the skin {:g} is {:.1f} spacings wide, which only costs time: neighbor {:g} bin", neighbor->skin,
-                       neighbor->skin / scene.dx, 0.3 * scene.dx));
+      warn(fmt::format("a sub-domain is thinner than what it needs of its neighbors ({:.2g} of "
+                       "{:g}), so messages travel over several "
+                       "ranks: use fewer ranks, or processors and balance along the longer sides",
+                       least, ghost));
+    if (fluids.style && neighbor->skin > 1.5 * scene.dx)
+      warn(fmt::format(
+          "the skin {:g} is {:.1f} spacings wide, which only costs time: neighbor {:g} bin",
+          neighbor->skin, neighbor->skin / scene.dx, 0.3 * scene.dx));
   }
 
-  /* the particles' distance is the spacing that they were said to have (returned), and nobody sits on somebody else */
+  /* the particles' distance is the spacing that they were said to have (returned), and nobody sits
+   * on somebody else */
 
   bool spacing(const Cells &cells) const
   {
@@ -190,8 +182,10 @@ class Adviser : protected Pointers {
       if (who < 0) continue;
       const double r = std::sqrt(nearest);
       if (r < SAME_PLACE && (fluid(i) || solid(i)))
-        error->one(FLERR, "Fix fsi: atoms {} and {} are at the same place, {:g} {:g} {:g}: were they created twice? delete_atoms overlap", atom->tag[i],
-                   atom->tag[who], atom->x[i][0], atom->x[i][1], atom->x[i][2]);
+        error->one(FLERR,
+                   "Fix fsi: atoms {} and {} are at the same place, {:g} {:g} {:g}: were they "
+                   "created twice? delete_atoms overlap",
+                   atom->tag[i], atom->tag[who], atom->x[i][0], atom->x[i][1], atom->x[i][2]);
       mine[0] += r;
       mine[1]++;
       if (r < closest.r) {
@@ -204,127 +198,31 @@ class Adviser : protected Pointers {
     if (sum[2] < 2.0) return true;
     const double mean = sum[1] > 0.0 ? sum[0] / sum[1] : 0.0;
     if (sum[1] < 0.5 * sum[2]) {
-      warn(fmt::format("most particles have no neighbor within {:g}: is {:g} the spacing of the lattice?", 1.25 * scene.dx, scene.dx));
+      warn(fmt::format(
+          "most particles have no neighbor within {:g}: is {:g} the spacing of the lattice?",
+          1.25 * scene.dx, scene.dx));
       return false;
     }
     if (mean < 0.6 || mean > 1.1) {
-      warn(fmt::format("nearest neighbors are {:.3g} apart on average, but the spacing is {:g}: is that of the lattice?", mean * scene.dx,
-                       scene.dx));
+      warn(fmt::format("nearest neighbors are {:.3g} apart on average, but the spacing is {:g}: is "
+                       "that of the lattice?",
+                       mean * scene.dx, scene.dx));
       return false;
     }
     if (update->ntimestep == 0) {
       MPI_Allreduce(&closest, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
       MPI_Bcast(pair, 2, MPI_LMP_TAGINT, least.rank, world);
       if (least.r < 0.4)
-        warn(fmt::format("atoms {} and {} are {:.2g} spacings apart: do bodies or phases overlap? Put them on one lattice, or "
-                         "delete_atoms overlap", pair[0], pair[1], least.r));
+        warn(fmt::format("atoms {} and {} are {:.2g} spacings apart: do bodies or phases overlap? "
+                         "Put them on one lattice, or "
+                         "delete_atoms overlap",
+                         pair[0], pair[1], least.r));
     }
     return true;
   }
 
-  /* Particles across a moving body, however it lies: n layers have the variance (n^2-1)/12 dx^2 across, the least eigenvalue of the
-     covariance of a particle's surroundings. A body is thin if most of its particles say so. */
-
-  void thickness(const Cells &cells) const
-  {
-    std::map<tagint, std::array<double, ENOUGH>> bodies;    // particles with 1, 2, ENOUGH or more across
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!moves(i)) continue;
-      double n = 0.0, sum[3] = {}, moment[3][3] = {};
-      const double own = dx(i), reach = 2.5 * own;
-      cells.around(atom->x[i], [&](int j, double rsq) {
-        if (rsq > reach * reach || !solid(j) || atom->molecule[j] != atom->molecule[i]) return;
-        n++;
-        for (int a = 0; a < scene.dim; a++) {
-          const double r = (atom->x[j][a] - atom->x[i][a]) / own;
-          sum[a] += r;
-          for (int b = 0; b <= a; b++) moment[a][b] += r * (atom->x[j][b] - atom->x[i][b]) / own;
-        }
-      });
-      double least[3];
-      for (int a = 0; a < scene.dim; a++)
-        for (int b = 0; b <= a; b++) moment[b][a] = moment[a][b] = moment[a][b] / n - sum[a] / n * sum[b] / n;
-      if (scene.dim == 2) {
-        const double half = 0.5 * (moment[0][0] + moment[1][1]), diff = 0.5 * (moment[0][0] - moment[1][1]);
-        least[0] = half - std::sqrt(diff * diff + moment[0][1] * moment[0][1]);
-      } else {
-        double vectors[3][3];
-        MathEigen::jacobi3(moment, least, vectors, 1);
-        least[0] = *std::min_element(least, least + 3);
-      }
-      const int across = std::lround(std::sqrt(12.0 * std::max(least[0], 0.0) + 1.0));
-      bodies[atom->molecule[i]][std::min(across, ENOUGH) - 1]++;
-    }
-    for_bodies(bodies, {}, [&](tagint body, const std::array<double, ENOUGH> &mine) {
-      std::array<double, ENOUGH> sum;
-      MPI_Allreduce(const_cast<double *>(mine.data()), sum.data(), ENOUGH, MPI_DOUBLE, MPI_SUM, world);
-      if (sum[0] + sum[1] <= sum[2]) return true;
-      // a plate 2 across swings 12 % too fast (fsi/solid/tl), 8 to 16 % with the corrected gradients of fsi/solid
-      // and one that is nearly incompressible locks: the gate with Poisson's ratio 0.49 opens to 6.7 mm, 3 across to 35 mm
-      bool locks = false;
-      for (const auto &s : scene.state) locks = locks || (s.species == SOLID && s.shear > 0.0 && s.rho0 * s.csq > NEARLY_INCOMPRESSIBLE * s.shear);
-      const char *const how = pair("^fsi/solid$") && number<int>("^fsi/solid$", "gradient") == 0 ? "it will bend too easily"
-          : locks ? "it will hardly bend, since its material is nearly incompressible" : "it will bend too little, some 25 %";
-      warn(fmt::format("body {} is {} across: {}, and fluid may leak through; take a spacing of a third of its thickness", body,
-                       sum[0] > sum[1] ? "1 particle" : "2 particles", how));
-      return false;    // one is enough
-    });
-  }
-
-  /* Bodies touch if their molecule IDs differ; parts of one body that lie apart do not. A part is named by one of its tags, and a tag
-     that is in two parts, of different ranks or across a periodic boundary, makes them one. */
-
-  void parts(const Cells &cells) const
-  {
-    const int n = atom->nlocal + atom->nghost;
-    std::vector<int> up(n);
-    std::iota(up.begin(), up.end(), 0);
-    const auto root = [&](int i) {
-      while (up[i] != i) i = up[i] = up[up[i]];
-      return i;
-    };
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!solid(i)) continue;
-      const double reach = 2.5 * dx(i);
-      cells.around(atom->x[i], [&](int j, double rsq) {
-        if (rsq < reach * reach && solid(j) && atom->molecule[j] == atom->molecule[i]) up[root(j)] = root(i);
-      });
-    }
-    std::map<tagint, tagint> home, one_of;    // parts by the tags of their own atoms; a part by another name
-    std::vector<tagint> ghosts, same;
-    for (int i = 0; i < n; i++) {
-      if (!solid(i)) continue;
-      const tagint part = atom->tag[root(i)];
-      if (i < atom->nlocal) home[atom->tag[i]] = part;
-      else ghosts.insert(ghosts.end(), {part, atom->tag[i]});
-    }
-    ghosts = gather(ghosts, world);
-    for (size_t k = 0; k < ghosts.size(); k += 2)
-      if (home.count(ghosts[k + 1])) same.insert(same.end(), {ghosts[k], home[ghosts[k + 1]]});
-    same = gather(same, world);
-    const auto name = [&](tagint part) {
-      for (auto it = one_of.find(part); it != one_of.end(); it = one_of.find(part)) part = it->second;
-      return part;
-    };
-    for (size_t k = 0; k < same.size(); k += 2) {
-      const tagint a = name(same[k]), b = name(same[k + 1]);
-      if (a != b) one_of[std::max(a, b)] = std::min(a, b);
-    }
-    std::map<tagint, std::set<tagint>> mine;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (moves(i)) mine[atom->molecule[i]].insert(name(home[atom->tag[i]]));
-    for_bodies(mine, {}, [&](tagint body, const std::set<tagint> &here) {
-      const auto all = gather(here, world);
-      if (all.size() > 1)
-        warn(fmt::format("body {} lies in {} parts, with atoms {} and {} in different ones: parts of one molecule ID {} when they meet. "
-                         "If they are bodies of their own: set ... mol", body, all.size(), *all.begin(), *all.rbegin(),
-                         pair("^fsi/solid/tl$") ? "pass through each other" : "grow together"));
-      return all.size() < 2;    // one is enough
-    });
-  }
-
-  /* Bodies that begin within each other's range of contact are pushed apart with its energy at once: the
-     pair that has most of it. */
+  /* Bodies that begin within each other's range of contact are pushed apart with its energy at
+     once: the pair that has most of it. */
 
   void contact(const Cells &cells, double range) const
   {
@@ -391,7 +289,9 @@ class Adviser : protected Pointers {
 
   void held_bodies() const
   {
-    const auto all = find_particles(atom, world, [&](int i) { return solid(i); });
+    const auto all = find_particles(atom, world, [&](int i) {
+      return solid(i);
+    });
     const auto moving = find_particles(atom, world, [&](int i) {
       const double *const v = atom->v[i];
       return solid(i) && (scene.is_moved(i) || v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0);
@@ -431,7 +331,9 @@ class Adviser : protected Pointers {
       std::array<double, MOST> all;
       MPI_Allreduce(const_cast<double *>(mine.data()), all.data(), MOST, MPI_DOUBLE, MPI_MAX,
                     world);
-      const auto ends_at = [&](size_t k) { return all[k] > -0.75 && all[k] < 0.0; };
+      const auto ends_at = [&](size_t k) {
+        return all[k] > -0.75 && all[k] < 0.0;
+      };
       for (size_t k = 0; k < walls.size(); k++) {
         bool both = false;
         for (size_t m = 0; m < walls.size(); m++)
@@ -455,11 +357,17 @@ class Adviser : protected Pointers {
       const auto g = scene.body_forces.on(i);
       return g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0;
     };
-    const auto falls = [&](int i) { return fluid(i) ? scene.is_moved(i) : moves(i); };
-    if (!find_particles(atom, world, [&](int i) { return falls(i) && weighs(i); }).count) return;
+    const auto falls = [&](int i) {
+      return fluid(i) ? scene.is_moved(i) : moves(i);
+    };
+    if (!find_particles(atom, world, [&](int i) {
+           return falls(i) && weighs(i);
+         }).count)
+      return;
     for (const bool of_fluid : {true, false}) {
-      const auto found = find_particles(
-          atom, world, [&](int i) { return falls(i) && fluid(i) == of_fluid && !weighs(i); });
+      const auto found = find_particles(atom, world, [&](int i) {
+        return falls(i) && fluid(i) == of_fluid && !weighs(i);
+      });
       if (found.count)
         warn(fmt::format("{} moving particles of {}, the first of them atom {}, are in the group "
                          "of no fix gravity, while others are: they weigh nothing",
@@ -479,8 +387,9 @@ class Adviser : protected Pointers {
         "balance",   "store/",    "STORE/",     "FSI_"};
     for (const auto &fix : modify->get_fix_list())
       if (fix != scene.mover &&
-          std::none_of(std::begin(watching), std::end(watching),
-                       [&](const char *s) { return strncmp(fix->style, s, strlen(s)) == 0; }))
+          std::none_of(std::begin(watching), std::end(watching), [&](const char *s) {
+            return strncmp(fix->style, s, strlen(s)) == 0;
+          }))
         return;
     const auto found = find_particles(atom, world, [&](int i) {
       const double *const v = atom->v[i], *const f = atom->f[i];
@@ -500,49 +409,6 @@ class Adviser : protected Pointers {
            "start. Is fix gravity missing?");
   }
 
-  /* A moving body that was cut out by a block, as its bounding box within that of the region says, has as many rows as lattice points
-     fell into it: they may not be the block's width over the spacing, and stiffness goes with the cube. */
-
-  void rows() const
-  {
-    static constexpr std::array<double, 7> none = {-BIG, -BIG, -BIG, -BIG, -BIG, -BIG, 0.0};
-    std::map<tagint, std::array<double, 7>> bodies;    // upper ends of x, y, z, lower ends with the sign changed; spacing
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!moves(i)) continue;
-      auto &ends = bodies.insert({atom->molecule[i], none}).first->second;
-      for (int d = 0; d < 3; d++) {
-        ends[d] = std::max(ends[d], atom->x[i][d]);
-        ends[3 + d] = std::max(ends[3 + d], -atom->x[i][d]);
-      }
-      ends[6] = dx(i);
-    }
-    for_bodies(bodies, none, [&](tagint body, const std::array<double, 7> &mine) {
-      std::array<double, 7> ends;
-      MPI_Allreduce(const_cast<double *>(mine.data()), ends.data(), 7, MPI_DOUBLE, MPI_MAX, world);
-      const double own = ends[6];
-      for (const auto &region : domain->get_region_list()) {
-        if (strcmp(region->style, "block") != 0 || !region->interior || region->dynamic) continue;
-        const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
-        const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
-        bool inside = true;
-        for (int d = 0; d < scene.dim; d++)
-          inside &= -ends[3 + d] > lo[d] - 1.0e-6 * own && ends[d] < hi[d] + 1.0e-6 * own;
-        for (int d = 0; d < scene.dim && inside; d++) {
-          const double below = -ends[3 + d] - lo[d], above = hi[d] - ends[d], width = (hi[d] - lo[d]) / own;
-          const double count = (ends[d] + ends[3 + d]) / own + 1.0;
-          if (below > own || above > own || std::fabs(count - std::round(count)) > 0.01) continue;
-          const double off = std::fabs(count - width);
-          if (off < 0.25 || off < 0.02 * width) continue;
-          warn(fmt::format("body {} has {:.0f} rows along {}, but region {}, {:g} wide, holds {:.3g} spacings: the body is {:.2g} times as "
-                           "thick. Move the lattice (lattice ... origin 0.5 0.5 0.5) or take a spacing that fits",
-                           body, count, "xyz"[d], region->id, hi[d] - lo[d], width, count / width));
-          return false;
-        }
-      }
-      return true;
-    });
-  }
-
   /* fix fsi/stress says so of itself; law svk and neohookean do without it */
 
   void yields() const
@@ -550,14 +416,17 @@ class Adviser : protected Pointers {
     if (!modify->get_fix_by_style("^fsi/stress$").empty()) return;
     for (int t = 1; t <= atom->ntypes; t++)
       if (present[t] && scene.state[t].species == SOLID && scene.state[t].yield > 0.0)
-        warn(fmt::format("the material of type {} has a yield stress, but stays elastic: it acts with law hypo of pair_style fsi/solid/tl, or with "
-                         "pair_style fsi/solid, and fix fsi/stress ... plastic", t));
+        warn(fmt::format("the material of type {} has a yield stress, but stays elastic: it acts "
+                         "with law hypo of pair_style fsi/solid/tl, or with "
+                         "pair_style fsi/solid, and fix fsi/stress ... plastic",
+                         t));
   }
 
-  /* calls f(body, its entry) for the bodies of all ranks, with `none` on ranks that have nothing of it, until it says false. Bodies
-     are few; their IDs need not be small. */
+  /* calls f(body, its entry) for the bodies of all ranks, with `none` on ranks that have nothing of
+     it, until it says false. Bodies are few; their IDs need not be small. */
 
-  template <class T, class F> void for_bodies(const std::map<tagint, T> &bodies, const T &none, F f) const
+  template <class T, class F>
+  void for_bodies(const std::map<tagint, T> &bodies, const T &none, F f) const
   {
     tagint mine = bodies.empty() ? MAXTAGINT : bodies.begin()->first, body;
     for (;;) {
@@ -574,26 +443,14 @@ class Adviser : protected Pointers {
 
   void idle_fluid() const
   {
-    const auto found = find_particles(atom, world, [&](int i) { return fluid(i) && !scene.is_moved(i); });
+    const auto found = find_particles(atom, world, [&](int i) {
+      return fluid(i) && !scene.is_moved(i);
+    });
     if (found.count)
-      warn(fmt::format("{} fluid particles, the first of them atom {}, are not in group {} of fix {}: they stay where they are", found.count, found.first,
-                       group->names[scene.mover->igroup], scene.mover->id));
-  }
-
-  /* A kernel that makes a solid of the fluid's lattice. In water a quarter as deep as a wave is long, linear theory with such a solid
-     changes the period by the part below (doc/notes/fluid.md). */
-
-  void lattice() const
-  {
-    LatticeStiffness s = {0.0, 0.0};
-    with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &k) { s = lattice_stiffness(k, scene.dx); });
-    const double period = 0.18 * s.stretch + 0.27 * s.shear;
-    if (std::fabs(period) < 0.03) return;
-    const double free = lattice_free_ratio(scene.kernel, scene.dim, scene.h / scene.dx);
-    warn(fmt::format("with this kernel and h = {:g} dx a lattice of the fluid is elastic, by {:.2f} of the pressure when stretched and {:.2f} in shear: "
-                     "waves are some {:.0f} % too {} at any resolution. {}quintic 0.94 has next to none",
-                     scene.h / scene.dx, s.stretch, s.shear, 100.0 * std::fabs(period), period > 0.0 ? "fast" : "slow",
-                     free > 0.0 ? fmt::format("When stretched it has none at h = {:.2f} dx; ", free) : ""));
+      warn(fmt::format("{} fluid particles, the first of them atom {}, are not in group {} of fix "
+                       "{}: they stay where they are",
+                       found.count, found.first, group->names[scene.mover->igroup],
+                       scene.mover->id));
   }
 
   /* speed of sound against what the fluid has, or gets by falling through its own height */
@@ -619,7 +476,8 @@ class Adviser : protected Pointers {
         mine[6 + d] = std::max(mine[6 + d], -x[d]);
       }
       if (g == 0.0) continue;
-      const double z = (x[0] * gravity[0] + x[1] * gravity[1] + (scene.dim == 3 ? x[2] * gravity[2] : 0.0)) / g;
+      const double z =
+          (x[0] * gravity[0] + x[1] * gravity[1] + (scene.dim == 3 ? x[2] * gravity[2] : 0.0)) / g;
       mine[1] = std::max(mine[1], z);
       mine[2] = std::max(mine[2], -z);
     }
@@ -630,95 +488,62 @@ class Adviser : protected Pointers {
       const State &s = scene.state[t];
       if (!present[t] || s.species != FLUID || expected == 0.0) continue;
       if (s.c > 50.0 * expected) {
-        warn(fmt::format("the speed of sound {:g} of the fluid is {:.2g} times the speed {:.3g} that there is or falling gives: 10 times is "
-                         "enough. If the fluid should be faster: velocity ... units box (its default are lattice units per time)",
+        warn(fmt::format("the speed of sound {:g} of the fluid is {:.2g} times the speed {:.3g} "
+                         "that there is or falling gives: 10 times is "
+                         "enough. If the fluid should be faster: velocity ... units box (its "
+                         "default are lattice units per time)",
                          s.c, s.c / expected, expected));
         break;
       }
       if (s.c >= (7.0 - 1.0e-3) * expected) continue;
-      warn(fmt::format("the speed of sound {:g} of the fluid is {:.1f} times {}, {:.3g}: it should be 7 to 10 times the fastest flow, "
-                       "sound {:.3g}", s.c, s.c / expected,
-                       most[0] > falls ? std::string("its speed at the start") : fmt::format("sqrt(2gH) of its height H = {:.3g}", height),
+      warn(fmt::format("the speed of sound {:g} of the fluid is {:.1f} times {}, {:.3g}: it should "
+                       "be 7 to 10 times the fastest flow, "
+                       "sound {:.3g}",
+                       s.c, s.c / expected,
+                       most[0] > falls ? std::string("its speed at the start")
+                                       : fmt::format("sqrt(2gH) of its height H = {:.3g}", height),
                        expected, 10.0 * expected));
       break;
     }
     double length = BIG;
-    for (int d = 0; d < scene.dim; d++) length = std::min(length, most[3 + d] + most[6 + d] + scene.dx);
+    for (int d = 0; d < scene.dim; d++)
+      length = std::min(length, most[3 + d] + most[6 + d] + scene.dx);
     for (int t = 1; t <= atom->ntypes; t++)
       if (present[t] && scene.state[t].species == FLUID) viscosity(t, expected, length);
   }
 
-  /* Bodies thinner than the kernel's support, less what hardly counts, where thin would be accepted: that fluids on two opposite
-     sides see each other through, or that push on the fluid beside them with less than a thick one. Some of these particles are enough. */
-
-  void see_through() const
-  {
-    constexpr double PART = 0.95, LITTLE = 0.05;
-    constexpr int ENOUGH_OF_THEM = 2000;
-    if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY || number<int>("^fsi/fluid", "couple") != 0) return;
-    std::vector<double> bodies(atom->ntypes + 1, 0.0);
-    for (int t = 1; t <= atom->ntypes; t++) bodies[t] = scene.state[t].species != FLUID && scene.state[t].species != NONE && scene.thin[t] == 0.0;
-    if (std::count(bodies.begin(), bodies.end(), 1.0) == 0) return;
-    Sight sight(lmp, scene, bodies);
-    sight.find_bodies();
-    std::vector<int> near;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (fluid(i) && sight.near(atom->x[i])) near.push_back(i);
-    const double reach = PART * scene.cut;
-    const Cells cells(atom->x, near.empty() ? 0 : atom->nlocal + atom->nghost, scene.dim, reach);
-    const int n = bodies.size();
-    std::vector<double> mine(3 * n, BIG), least(3 * n);    // by type: thickness between fluids, thickness and -(1 + what is missing) beside one
-    for (size_t k = 0; k < near.size(); k += near.size() / ENOUGH_OF_THEM + 1) {
-      const int i = near[k];
-      sight.look_from(atom->x[i]);
-      Sight::Face face;
-      if (!sight.find_face(face)) continue;
-      const int t = face.type;
-      if (face.distance < 1.01 * scene.dx) {    // the next row of the same lattice, too
-        mine[n + t] = std::min(mine[n + t], face.thickness);
-        mine[2 * n + t] = std::min(mine[2 * n + t], -sight.fill(face).force);
-      }
-      cells.around(atom->x[i], [&](int j, double rsq) {
-        if (rsq < reach * reach && fluid(j) && sight.visible(atom->x[j]) < 0.5)
-          mine[t] = std::min(mine[t], face.thickness);
-      });
-    }
-    MPI_Allreduce(mine.data(), least.data(), 3 * n, MPI_DOUBLE, MPI_MIN, world);
-    for (int t = 1; t < n; t++)
-      if (least[t] < BIG)
-        warn(fmt::format("fluids see each other through what is of type {}, some {:.2g} thick, since the kernel reaches {:.2g}: if pressures on its "
-                         "two sides differ, they mix. Then fix {} ... thin {}", t, least[t], scene.cut, scene.mover->id, t));
-      else if (-least[2 * n + t] > 1.0 + LITTLE)
-        warn(fmt::format("what is of type {}, some {:.2g} thick, pushes {:.0f} % less on fluid beside it than a thick body would, since the kernel reaches {:.2g}: "
-                         "the fluid sinks in. Then fix {} ... thin {}", t, least[n + t], 100.0 * (1.0 + 1.0 / least[2 * n + t]), scene.cut, scene.mover->id, t));
-  }
-
-  /* what artificial viscosity is worth: half of alpha h c/2(d+2), since it acts on approach only (doc/src/theory.rst) */
+  /* what artificial viscosity is worth: half of alpha h c/2(d+2), since it acts on approach only
+   * (doc/src/theory.rst) */
 
   void viscosity(int type, double speed, double length) const
   {
     const State &s = scene.state[type];
-    const double alpha = number<double>("^fsi/fluid", "alpha"), nu = 0.25 * alpha * scene.h * s.c / (scene.dim + 2);
+    const double alpha = fluids.alpha, nu = 0.25 * alpha * scene.h * s.c / (scene.dim + 2);
     if (alpha == 0.0) return;
-    std::string text = fmt::format("  artificial viscosity, alpha {:g}, of type {} acts like a kinematic viscosity of about {:.2g}", alpha, type, nu);
+    std::string text = fmt::format("  artificial viscosity, alpha {:g}, of type {} acts like a "
+                                   "kinematic viscosity of about {:.2g}",
+                                   alpha, type, nu);
     if (speed > 0.0)
-      text += fmt::format(": Reynolds number {:.2g} with speed {:.3g} and the fluid's least width {:.3g}", speed * length / nu, speed,
-                          length);
+      text += fmt::format(
+          ": Reynolds number {:.2g} with speed {:.3g} and the fluid's least width {:.3g}",
+          speed * length / nu, speed, length);
     if (comm->me == 0) utils::logmesg(lmp, text + "\n");
     const double own = s.viscosity / s.rho0;
-    if (number<int>("^fsi/fluid", "laminar/visc") && own > 0.0 && nu > own)
-      warn(fmt::format("artificial viscosity of type {} is worth {:.2g}, {:.2g} times its laminar viscosity {:.2g}: take alpha {:.1g} or less, "
-                       "or a finer spacing", type, nu, nu / own, own, 0.1 * alpha * own / nu));
+    if (fluids.laminar && own > 0.0 && nu > own)
+      warn(fmt::format("artificial viscosity of type {} is worth {:.2g}, {:.2g} times its laminar "
+                       "viscosity {:.2g}: take alpha {:.1g} or less, "
+                       "or a finer spacing",
+                       type, nu, nu / own, own, 0.1 * alpha * own / nu));
   }
 
   void time_step() const
   {
-    // where runs begin to fail (doc/notes/fluid.md, Courant number), over the limit that fix fsi/dt keeps
+    // where runs begin to fail (doc/notes/fluid.md, Courant number), over the limit that fix fsi/dt
+    // keeps
     static constexpr struct {
       int cause;
       double fails;
-      const char *what;
-    } causes[] = {{Limits::SOUND, 2.0, "sound in the fluid"}, {Limits::ELASTIC, 1.6, "elastic waves in the solid"}, {Limits::LAMINAR, 2.0, "viscosity"}};
+    } causes[] = {{Limits::SOUND, 2.0}, {Limits::ELASTIC, 1.6}, {Limits::LAMINAR, 2.0}};
     Limits limits(lmp);
     limits.find(scene, scene.mover->groupbit, scene.substeps > 1);
     limits.reduce();
@@ -729,32 +554,19 @@ class Adviser : protected Pointers {
       good = std::min(good, limit);
       if (c.fails * limit < most) {
         most = c.fails * limit;
-        what = c.what;
+        what = Limits::names[c.cause];
       }
     }
     if (good == Limits::UNLIMITED) return;
     if (update->dt > most)
-      warn(fmt::format("the time step {:g} is too long for {}, {:.3g} at most: timestep {:.3g}, or fix fsi/dt", update->dt, what, most,
-                       good));
+      warn(fmt::format(
+          "the time step {:g} is too long for {}, {:.3g} at most: timestep {:.3g}, or fix fsi/dt",
+          update->dt, what, most, good));
     else if (update->dt < 0.02 * good)
-      warn(fmt::format("the time step {:g}{} is {:.2g} times shorter than it has to be: timestep {:.3g}, or fix fsi/dt", update->dt,
-                       update->dt_default ? ", LAMMPS' default," : "", good / update->dt, good));
-  }
-
-  /* what acts on the solid from outside is held over the sub-steps; what sets the whole force is refused (pair_fsi_solid_tl.cpp) */
-
-  void held_forces() const
-  {
-    for (auto &fix : modify->get_fix_list()) {
-      if (!utils::strmatch(fix->style, "^viscous") && !utils::strmatch(fix->style, "^langevin")) continue;
-      int mine = 0, any;
-      for (int i = 0; i < atom->nlocal; i++)
-        if (moves(i) && (atom->mask[i] & fix->groupbit)) mine = 1;
-      MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-      if (any)
-        warn(fmt::format("fix {} (style {}) acts on solids with sub-steps: its drag is held over a step and may drive what is faster; use "
-                         "artificial/visc", fix->id, fix->style));
-    }
+      warn(fmt::format("the time step {:g}{} is {:.2g} times shorter than it has to be: timestep "
+                       "{:.3g}, or fix fsi/dt",
+                       update->dt, update->dt_default ? ", LAMMPS' default," : "",
+                       good / update->dt, good));
   }
 };
 

@@ -20,8 +20,9 @@ class LAMMPS;
 namespace FSI {
   class Scene;
 
-  // Warns, before the first step, of numbers that are legal and most likely not what was meant: spacing, overlaps, thin
-  // bodies, speed of sound, time step, skin, box, units. Each says what to type. Reads only; a few operations per particle.
+  // Warns, before the first step, of numbers that are legal and most likely not what was meant:
+  // spacing, overlaps, thin bodies, speed of sound, time step, skin, box, units. Each says what to
+  // type. Reads only; a few operations per particle.
   void advise(LAMMPS *lmp, const Scene &scene);
 
 }    // namespace FSI

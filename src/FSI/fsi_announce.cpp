@@ -11,7 +11,6 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
 #include "fsi_announce.h"
 
 #include "atom.h"
@@ -37,28 +36,36 @@ using namespace FSI;
 
 static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
 {
-  static const char *const modes[] = {"continuity", "summation", "ratio"};
+  const auto &modes = Scene::density_names();
   static const char *const kernels[] = {"cubic spline", "quintic spline", "Wendland C2"};
-  const bool fluid = lmp->force->pair_match("fsi/fluid", 1), solid = lmp->force->pair_match("fsi/solid", 1);
+  const bool fluid = facts_of_fluids(lmp).style;
+  const auto solid = facts_of_solids(lmp).style;
   std::vector<Part::Effect> effects;
-  if (fluid) effects.push_back({fmt::format("density of the fluid by {}", modes[scene.density_fluid]), "", true});
-  if (solid) effects.push_back({fmt::format("density of the solid by {}", modes[scene.density_solid]), "", true});
+  if (fluid)
+    effects.push_back(
+        {fmt::format("density of the fluid by {}", modes[scene.density_fluid]), "", true});
+  if (solid == Facts::OF_SOLIDS)
+    effects.push_back(
+        {fmt::format("density of the solid by {}", modes[scene.density_solid]), "", true});
   for (const auto *p : scene.parts)
     for (const auto &e : p->effects()) effects.push_back(e);
   if (fluid) {
-    effects.push_back({fmt::format("{} mirror walls", scene.walls.wall.size()), "fix fsi/wall/mirror", scene.walls.any()});
+    effects.push_back({fmt::format("{} mirror walls", scene.walls.wall.size()),
+                       "fix fsi/wall/mirror", scene.walls.any()});
     const int n = lmp->modify->get_fix_by_style("^fsi/wall/particle$").size();
-    effects.push_back({fmt::format("{} groups of wall particles", n), "fix fsi/wall/particle", n > 0});
+    effects.push_back(
+        {fmt::format("{} groups of wall particles", n), "fix fsi/wall/particle", n > 0});
   }
-  if (lmp->force->pair_match("fsi/solid/tl", 1)) {
-    int dim;
+  if (solid == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS) {
     bool chosen = false;
-    for (auto *fix : lmp->modify->get_fix_by_style("^fsi/dt$")) chosen |= fix->extract("substeps", dim) != nullptr;
-    effects.push_back({chosen ? "solid sub-steps, as many as fix fsi/dt chooses" : fmt::format("{} solid sub-steps", scene.substeps), "fix fsi substeps",
-                       chosen || scene.substeps > 1});
+    for (const auto *p : scene.parts) chosen |= p->facts().chooses_substeps;
+    effects.push_back({chosen ? "solid sub-steps, as many as fix fsi/dt chooses"
+                              : fmt::format("{} solid sub-steps", scene.substeps),
+                       "fix fsi substeps", chosen || scene.substeps > 1});
   }
   if (scene.surface_ratio > 0.0)
-    effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every), "fix fsi surface/every", scene.keep_psi});
+    effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every),
+                       "fix fsi surface/every", scene.keep_psi});
   effects.push_back({"energy ledger", "compute fsi/energy", scene.ledger});
 
   std::string on, off;
@@ -67,23 +74,28 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
     if (e.on) {
       on += "\n    " + e.name;
       scene.effects_on.push_back(e.name);
-    } else off += (off.empty() ? "" : ", ") + e.keyword;
+    } else
+      off += (off.empty() ? "" : ", ") + e.keyword;
   }
   std::string finer;
   for (size_t t = 1; t < scene.resolution.size(); t++)
-    if (scene.dx_of(t) != scene.dx) finer += fmt::format("{} {:g} of type {}", finer.empty() ? "," : " and", scene.dx_of(t), t);
-  text += fmt::format("FSI: {}, h = {:g} dx, dx = {:g}{}\n  on: {}\n  off (keyword that turns it on): {}\n", kernels[scene.kernel], scene.h / scene.dx,
-                      scene.dx, finer, on, off.empty() ? "none" : off);
+    if (scene.dx_of(t) != scene.dx)
+      finer += fmt::format("{} {:g} of type {}", finer.empty() ? "," : " and", scene.dx_of(t), t);
+  text += fmt::format(
+      "FSI: {}, h = {:g} dx, dx = {:g}{}\n  on: {}\n  off (keyword that turns it on): {}\n",
+      kernels[scene.kernel], scene.h / scene.dx, scene.dx, finer, on, off.empty() ? "none" : off);
   if (fluid)
     with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &k) {
       const auto s = lattice_stiffness(k, scene.dx);
-      text += fmt::format("  a lattice of the fluid under a pressure p has a modulus of {:.3f} p when stretched, {:.3f} p in shear (a fluid: 0)\n",
+      text += fmt::format("  a lattice of the fluid under a pressure p has a modulus of {:.3f} p "
+                          "when stretched, {:.3f} p in shear (a fluid: 0)\n",
                           s.stretch, s.shear);
     });
 }
 
 /* ----------------------------------------------------------------------
-   memory, and what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a ghost
+   memory, and what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a
+   ghost
 ------------------------------------------------------------------------- */
 
 static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
@@ -98,16 +110,19 @@ static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
   for (const auto *p : scene.parts) p->add_costs(costs);
   costs.back += newton * costs.sums;
 
-  const auto have = [&](const char *style) { return lmp->force->pair_match(style, 0) != nullptr; };
   text += fmt::format("  arrays of all particles: {} bytes each{}\n", costs.bytes, costs.arrays);
-  text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} forward, {} back{}\n", costs.forward, costs.back,
-                      costs.solids);
-  const bool fluid = have("^fsi/fluid"), solid = have("^fsi/solid");
-  text += fmt::format("  they carry for each ghost:{}{}\n", fluid ? fmt::format(" {} bytes of a fluid", 8 * costs.fluid_ghost) : "",
-                      solid ? fmt::format("{} {} bytes of a solid", fluid ? "," : "", 8 * costs.solid_ghost) : "");
+  text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} "
+                      "forward, {} back{}\n",
+                      costs.forward, costs.back, costs.solids);
+  const bool fluid = facts_of_fluids(lmp).style, solid = facts_of_solids(lmp).style;
+  text += fmt::format(
+      "  they carry for each ghost:{}{}\n",
+      fluid ? fmt::format(" {} bytes of a fluid", 8 * costs.fluid_ghost) : "",
+      solid ? fmt::format("{} {} bytes of a solid", fluid ? "," : "", 8 * costs.solid_ghost) : "");
   if (psi && !send)
-    text += fmt::format("  every {} steps: {} message back and {} bytes of a ghost more, number density\n", scene.surface_every, (int) newton,
-                        8 * (1 + newton));
+    text += fmt::format(
+        "  every {} steps: {} message back and {} bytes of a ghost more, number density\n",
+        scene.surface_every, (int) newton, 8 * (1 + newton));
   text += costs.rarely;
 }
 
@@ -128,13 +143,15 @@ static void warn_idle(LAMMPS *lmp, const Scene &scene)
     if (lmp->comm->me == 0) lmp->error->warning(FLERR, what + " has nothing to act on: " + why);
   };
   for (const auto *p : scene.parts) p->find_idle({all[0], all[1]}, nothing);
-  const auto have = [&](const char *style) { return lmp->force->pair_match(style, 0) != nullptr; };
   if (scene.substeps > 1 && all[1] == 0) nothing("Fix fsi substeps", "no particle is a solid");
-  if (scene.surface_every > 1 && !scene.need_psi) nothing("Fix fsi surface/every", "pair_style fsi/fluid has no surface rule");
+  if (scene.surface_every > 1 && !scene.need_psi)
+    nothing("Fix fsi surface/every", "pair_style fsi/fluid has no surface rule");
   if (scene.surface_every > 1 && scene.need_psi && !scene.keep_psi)
     nothing("Fix fsi surface/every", "a density mode needs the number density in each step");
-  if (scene.density_fluid != Scene::CONTINUITY && !have("^fsi/fluid")) nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");
-  if (scene.density_solid != Scene::CONTINUITY && !have("^fsi/solid")) nothing("Fix fsi solid density", "there is no pair_style fsi/solid");
+  if (scene.density_fluid != Scene::CONTINUITY && !facts_of_fluids(lmp).style)
+    nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");
+  if (scene.density_solid != Scene::CONTINUITY && !facts_of_solids(lmp).style)
+    nothing("Fix fsi solid density", "there is no pair_style fsi/solid");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -11,7 +11,6 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
 #ifndef LMP_FSI_ANNOUNCE_H
 #define LMP_FSI_ANNOUNCE_H
 
@@ -21,8 +20,9 @@ class LAMMPS;
 namespace FSI {
   class Scene;
 
-  // Before the first step, when it changes: every effect that is on, every one that is not and how to turn it on, and what memory and
-  // messages they need; then advice, and what has nothing to act on.
+  // Before the first step, when it changes: every effect that is on, every one that is not and how
+  // to turn it on, and what memory and messages they need; then advice, and what has nothing to act
+  // on.
   void announce(LAMMPS *lmp, Scene &scene);
 
 }    // namespace FSI

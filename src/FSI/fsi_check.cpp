@@ -21,11 +21,11 @@
 #include "force.h"
 #include "fsi_gather.h"
 #include "fsi_pack.h"
+#include "fsi_part.h"
 #include "fsi_record.h"
 #include "fsi_scene.h"
 #include "modify.h"
 #include "neighbor.h"
-#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
@@ -36,13 +36,16 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr int EVERY = 10;    // steps from one close look to the next; and at each list build
-// A body may move as a whole, faster than the waves in it; one that blows up passes this in a step or two
+// A body may move as a whole, faster than the waves in it; one that blows up passes this in a step
+// or two
 static constexpr double SOLID_OVER_FLUID = 10.0;
 static constexpr int BLOCK = 256;
-static constexpr double COMPRESSED = 1.2;    // density over that at rest: Mach numbers of the limit make it in head-on impacts
+static constexpr double COMPRESSED =
+    1.2;    // density over that at rest: Mach numbers of the limit make it in head-on impacts
 
 /* ----------------------------------------------------------------------
-   Is no number of these larger than that? A comparison that NaN fails. In a form that compilers turn into vector instructions.
+   Is no number of these larger than that? A comparison that NaN fails. In a form that compilers
+   turn into vector instructions.
 ------------------------------------------------------------------------- */
 
 static FSI_INLINE bool none_above(int n, const double *a, double most)
@@ -67,7 +70,8 @@ static bool all_below(int n, const double *a, double most)
 /* ---------------------------------------------------------------------- */
 
 Check::Check(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0), lightest(0.0), substepped(nullptr), densest{}, told_dense(false), found{}
+    Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0),
+    lightest(0.0), substepped(nullptr), densest{}, told_dense(false), found{}
 {
   stop.restart_file = Stop::of_partition(lmp, "fsi_stop.restart");
   stop.dump_file = Stop::of_partition(lmp, "fsi_stop.dump");
@@ -77,27 +81,40 @@ Check::Check(LAMMPS *lmp, const Scene &scene) :
 
 void Check::before_init()
 {
-  if (modify->get_fix_by_style("^fsi$").size() > 1) error->all(FLERR, "There can be only one fix fsi");
+  if (modify->get_fix_by_style("^fsi$").size() > 1)
+    error->all(FLERR, "There can be only one fix fsi");
   if (update->whichflag == 2)
-    error->all(FLERR, "Fix fsi does not support minimize: there is no energy of all particles; run with fix viscous or artificial/visc to a state of rest");
+    error->all(FLERR,
+               "Fix fsi does not support minimize: there is no energy of all particles; run with "
+               "fix viscous or artificial/visc to a state of rest");
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix fsi does not support run_style respa");
-  if (force->pair_match("fsi/fluid", 1))
+  const bool fluid = facts_of_fluids(lmp).style;
+  if (fluid)
     for (const auto &fix : modify->get_fix_by_style("^deform"))
-      error->all(FLERR, "Fix {} (style deform) moves particles with the box, and densities of fluids would not follow: move walls instead", fix->id);
+      error->all(FLERR,
+                 "Fix {} (style deform) moves particles with the box, and densities of fluids "
+                 "would not follow: move walls instead",
+                 fix->id);
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
   if (comm->cutghostuser > 0.0 && comm->cutghostuser < scene.largest_cut)
-    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}", scene.largest_cut, comm->cutghostuser);
+    error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}",
+               scene.largest_cut, comm->cutghostuser);
   if (domain->dimension != scene.dim)
-    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", scene.dim, domain->dimension);
+    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", scene.dim,
+               domain->dimension);
   if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
 
-  const bool solid = force->pair_match("fsi/solid", 1), solid_tl = force->pair_match("fsi/solid/tl", 1);
-  if (!solid && !solid_tl && !force->pair_match("fsi/fluid", 1))
+  const auto solid = facts_of_solids(lmp).style;
+  const bool solid_tl = solid == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
+  if (!solid && !fluid)
     error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
-  if (scene.substeps > 1 && !solid_tl) error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
+  if (scene.substeps > 1 && !solid_tl)
+    error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
   if (solid_tl && scene.density_solid != Scene::CONTINUITY)
-    error->all(FLERR, "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of fsi/solid/tl follows from its strain");
+    error->all(FLERR,
+               "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of "
+               "fsi/solid/tl follows from its strain");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -108,9 +125,13 @@ void Check::materials()
   for (int i = 0; i < atom->nlocal; i++) {
     const int species = scene.state[atom->type[i]].species;
     if (species == NONE)
-      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff", atom->tag[i], atom->type[i]);
-    if (species == RIGID && std::none_of(walls.begin(), walls.end(), [&](const Fix *fix) { return atom->mask[i] & fix->groupbit; }))
-      error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle", atom->tag[i], atom->type[i]);
+      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff",
+                 atom->tag[i], atom->type[i]);
+    if (species == RIGID && std::none_of(walls.begin(), walls.end(), [&](const Fix *fix) {
+          return atom->mask[i] & fix->groupbit;
+        }))
+      error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle",
+                 atom->tag[i], atom->type[i]);
   }
   compare_densities();
   spacings();
@@ -120,8 +141,8 @@ void Check::materials()
 }
 
 /* ----------------------------------------------------------------------
-   Another material for particles that have a mass: it stays that of their lattice with the density of
-   before. (Fix fsi/reference looks at total-Lagrangian solids itself.)
+   Another material for particles that have a mass: it stays that of their lattice with the
+   density of before. (Fix fsi/reference looks at total-Lagrangian solids itself.)
 ------------------------------------------------------------------------- */
 
 void Check::compare_densities()
@@ -132,8 +153,11 @@ void Check::compare_densities()
     const State &s = scene.state[t];
     const bool same = densities[t] == 0.0 || densities[t] == s.rho0;
     if (same || atom->rmass[i] == 0.0 || s.form == TOTAL_LAGRANGIAN) continue;
-    error->one(FLERR, "Atom {} of type {} has the mass of a material of density {:g}, but that of its type "
-                      "has {:g} now: make the particles anew", atom->tag[i], t, densities[t], s.rho0);
+    error->one(
+        FLERR,
+        "Atom {} of type {} has the mass of a material of density {:g}, but that of its type "
+        "has {:g} now: make the particles anew",
+        atom->tag[i], t, densities[t], s.rho0);
   }
   for (int t = 1; t <= atom->ntypes; t++)
     if (scene.state[t].species != NONE) densities[t] = scene.state[t].rho0;
@@ -150,7 +174,8 @@ void Check::read(const Record &record)
 }
 
 /* ----------------------------------------------------------------------
-   A part of a body that has a velocity, but that nothing moves, strains the rest of it for ever. (A whole body is a surface that drags fluid along.)
+   A part of a body that has a velocity, but that nothing moves, strains the rest of it for ever.
+   (A whole body is a surface that drags fluid along.)
 ------------------------------------------------------------------------- */
 
 void Check::held_parts() const
@@ -160,15 +185,20 @@ void Check::held_parts() const
   for (int i = 0; i < atom->nlocal; i++) {
     if (scene.state[atom->type[i]].species != SOLID) continue;
     const double *const v = atom->v[i];
-    if (scene.is_moved(i)) mine.insert(atom->molecule[i]);
-    else if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0) suspects.push_back(i);
+    if (scene.is_moved(i))
+      mine.insert(atom->molecule[i]);
+    else if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0)
+      suspects.push_back(i);
   }
   const auto moving = gather(mine, world);
   for (const int i : suspects)
     if (moving.count(atom->molecule[i])) {
       const double *const v = atom->v[i];
-      error->one(FLERR, "Atom {} of a solid has the velocity {:g} {:g} {:g}, but neither fix fsi nor another fix moves it: it would strain its body "
-                        "{} without end. Set it to 0, or let a fix move it", atom->tag[i], v[0], v[1], v[2], atom->molecule[i]);
+      error->one(FLERR,
+                 "Atom {} of a solid has the velocity {:g} {:g} {:g}, but neither fix fsi nor "
+                 "another fix moves it: it would strain its body "
+                 "{} without end. Set it to 0, or let a fix move it",
+                 atom->tag[i], v[0], v[1], v[2], atom->molecule[i]);
     }
 }
 
@@ -192,34 +222,47 @@ void Check::integrators() const
 }
 
 /* ----------------------------------------------------------------------
-   The fluid's spacing is dx. Bodies and walls meet it with the fluid's kernel: they may be coarser as long as its support holds so many
-   of their spacings. With fewer it tells their particles one by one (theory.rst).
+   The fluid's spacing is dx. Bodies and walls meet it with the fluid's kernel: they may be
+   coarser as long as its support holds so many of their spacings. With fewer it tells their
+   particles one by one (theory.rst).
 ------------------------------------------------------------------------- */
 
 void Check::spacings() const
 {
   constexpr double FINEST = 4.0, COARSEST = 2.0, HELD = 1.5, ROUND = 1.0 + 1.0e-6;
-  Pair *const fluid = force->pair_match("fsi/fluid", 1);
-  int dim_of_extract;
+  const Facts fluid = facts_of_fluids(lmp);
   for (int t = 1; t <= atom->ntypes; t++) {
     const double own = scene.dx_of(t), dx = scene.dx;
     const State &s = scene.state[t];
     if (own == dx || s.species == NONE) continue;
     const auto what = fmt::format("Fix fsi spacing {:g} of type {}", own, t);
-    if (s.species == FLUID) error->all(FLERR, "{}, a fluid: fluids have the spacing dx, {:g}", what, dx);
+    if (s.species == FLUID)
+      error->all(FLERR, "{}, a fluid: fluids have the spacing dx, {:g}", what, dx);
     if (s.form == UPDATED_LAGRANGIAN)
-      error->all(FLERR, "{}: the sums of pair_style fsi/solid are over whatever is near, with one kernel. Use pair_style fsi/solid/tl, whose "
-                        "bonds are those of one body", what);
+      error->all(FLERR,
+                 "{}: the sums of pair_style fsi/solid are over whatever is near, with one kernel. "
+                 "Use pair_style fsi/solid/tl, whose "
+                 "bonds are those of one body",
+                 what);
     if (scene.density_solid != Scene::CONTINUITY)
-      error->all(FLERR, "{} requires fix fsi solid continuity: number densities are those of one spacing", what);
-    if (!fluid) continue;
+      error->all(FLERR,
+                 "{} requires fix fsi solid continuity: number densities are those of one spacing",
+                 what);
+    if (!fluid.style) continue;
     if (own > ROUND * std::min(COARSEST * dx, scene.cut / HELD))
-      error->all(FLERR, "{} is {:.3g} times coarser than the fluid's dx {:g}: expected {:g} at most, and the kernel's support, {:g}, to be {:g} of its "
-                        "spacings", what, own / dx, dx, COARSEST, scene.cut, HELD);
+      error->all(FLERR,
+                 "{} is {:.3g} times coarser than the fluid's dx {:g}: expected {:g} at most, and "
+                 "the kernel's support, {:g}, to be {:g} of its "
+                 "spacings",
+                 what, own / dx, dx, COARSEST, scene.cut, HELD);
     if (ROUND * FINEST * own < dx)
-      error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most", what, dx / own, dx, FINEST);
-    if (*static_cast<int *>(fluid->extract("couple", dim_of_extract)) != 0)
-      error->all(FLERR, "{} requires couple wall in pair_style fsi/fluid: a pressure of the body's own is that of its own volumes", what);
+      error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most",
+                 what, dx / own, dx, FINEST);
+    if (fluid.couples_stress)
+      error->all(FLERR,
+                 "{} requires couple wall in pair_style fsi/fluid: a pressure of the body's own is "
+                 "that of its own volumes",
+                 what);
   }
 }
 
@@ -227,17 +270,23 @@ void Check::spacings() const
 
 void Check::thin_bodies() const
 {
-  Pair *const fluid = force->pair_match("fsi/fluid", 1);
-  int dim_of_extract;
+  const Facts fluid = facts_of_fluids(lmp);
   for (int t = 1; t <= atom->ntypes; t++) {
     const int species = scene.state[t].species;
     if (scene.thin[t] == 0.0 || species == NONE) continue;
     const auto what = fmt::format("Fix fsi thin {}", t);
-    if (species == FLUID) error->all(FLERR, "{}: atom type {} is a fluid, expected a solid or a wall of particles", what, t);
+    if (species == FLUID)
+      error->all(FLERR, "{}: atom type {} is a fluid, expected a solid or a wall of particles",
+                 what, t);
     if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY)
-      error->all(FLERR, "{} requires fix fsi fluid continuity and solid continuity: number densities would jump where a body comes between", what);
-    if (fluid && *static_cast<int *>(fluid->extract("couple", dim_of_extract)) != 0)
-      error->all(FLERR, "{} requires couple wall in pair_style fsi/fluid: each side has its own pressure", what);
+      error->all(FLERR,
+                 "{} requires fix fsi fluid continuity and solid continuity: number densities "
+                 "would jump where a body comes between",
+                 what);
+    if (fluid.couples_stress)
+      error->all(FLERR,
+                 "{} requires couple wall in pair_style fsi/fluid: each side has its own pressure",
+                 what);
   }
 }
 
@@ -254,7 +303,8 @@ void Check::init()
     const double most = scene.mach * (s.species == SOLID ? SOLID_OVER_FLUID : 1.0);
     limit_sq[t] = most * most * s.wave_speed_sq();
   }
-  // |v + dv| is below a limit if no component of v is above 0.9, and none of dv above 0.1, of it over the root of 3
+  // |v + dv| is below a limit if no component of v is above 0.9, and none of dv above 0.1, of it
+  // over the root of 3
   const double component = std::sqrt(*std::min_element(limit_sq.begin() + 1, limit_sq.end()) / 3.0);
   calm_speed = 0.9 * component;
   calm_kick = 0.1 * component;
@@ -292,9 +342,11 @@ void Check::positions()
 }
 
 /* ----------------------------------------------------------------------
-   Positions of local and ghost atoms are those of the middle of the step, velocities those of its start, and both can be brought
-   back. Forces are looked at in each step, what follows from them every few: what the kicks between two looks add up to is finite.
-   (Stress that is not finite makes forces that are not, too; a position does not, since pairs do not see each other any more.)
+   Positions of local and ghost atoms are those of the middle of the step, velocities those of
+   its start, and both can be brought back. Forces are looked at in each step, what follows from
+   them every few: what the kicks between two looks add up to is finite. (Stress that is not
+   finite makes forces that are not, too; a position does not, since pairs do not see each other
+   any more.)
 ------------------------------------------------------------------------- */
 
 void Check::before_kick()
@@ -304,7 +356,8 @@ void Check::before_kick()
 }
 
 /* ----------------------------------------------------------------------
-   sub-steps may take solids anywhere: keep a state to go back to, and look at them before the fluid is kicked
+   sub-steps may take solids anywhere: keep a state to go back to, and look at them before the
+   fluid is kicked
 ------------------------------------------------------------------------- */
 
 void Check::before_substeps(const std::vector<int> &solids)
@@ -327,7 +380,8 @@ void Check::after_substeps()
   const auto *const v = Scene::rows(atom->v);
   const int *const type = atom->type;
   for (const int i : *substepped)
-    if (!(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2] <= limit_sq[type[i]])) examine(i, 0.0);
+    if (!(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2] <= limit_sq[type[i]]))
+      examine(i, 0.0);
   inside_out();
   judge(Stop::MIDDLE);
 }
@@ -341,7 +395,8 @@ void Check::look(bool closely, double kick)
   const int n = atom->nlocal;
   found = {};
   if (n == 0) return;
-  const double *const x = atom->x[0], *const v = atom->v[0], *const f = atom->f[0], *const rho = atom->rho;
+  const double *const x = atom->x[0], *const v = atom->v[0], *const f = atom->f[0],
+                      *const rho = atom->rho;
   if (closely) lightest = *std::min_element(atom->rmass, atom->rmass + n);
   const double force = kick > 0.0 ? std::min(OFF, calm_kick * lightest / kick) : OFF;
   for (int i = 0; i < n; i += BLOCK) {
@@ -349,7 +404,9 @@ void Check::look(bool closely, double kick)
     bool calm = all_below(3 * m, f + 3 * i, force);
     if (closely && calm)
       calm = all_below(3 * m, v + 3 * i, calm_speed) && all_below(3 * m, x + 3 * i, OFF) &&
-          std::all_of(rho + i, rho + i + m, [](double r) { return r > 0.0 && r < OFF; });
+          std::all_of(rho + i, rho + i + m, [](double r) {
+               return r > 0.0 && r < OFF;
+             });
     if (!calm)
       for (int k = i; k < i + m; k++) examine(k, kick);
   }
@@ -358,8 +415,9 @@ void Check::look(bool closely, double kick)
 }
 
 /* ----------------------------------------------------------------------
-   What is pressed together far more than sound allows for is no fluid of this method: a pressure in wrong units, two
-   inlets against each other, a force that holds particles where others come. It goes on, but not without a word.
+   What is pressed together far more than sound allows for is no fluid of this method: a pressure
+   in wrong units, two inlets against each other, a force that holds particles where others come.
+   It goes on, but not without a word.
 ------------------------------------------------------------------------- */
 
 void Check::look_at_densities()
@@ -377,14 +435,19 @@ void Check::look_at_densities()
 
 void Check::warn_of_density()
 {
-  const Finding worst = stop.worst(densest, densest.tag ? densest.value / dense[densest.type] : 0.0);
+  const Finding worst =
+      stop.worst(densest, densest.tag ? densest.value / dense[densest.type] : 0.0);
   told_dense = true;
   if (comm->me) return;
   const double rest = dense[worst.type] / COMPRESSED;
-  error->warning(FLERR, "Fix fsi: fluid atom {} (type {}) at {:g} {:g} {:g} has {:.3g} times its density at rest, {:g}, at step "
-                        "{}: fluids are to be compressed by a few per cent at most. Look at the pressures and velocities that are "
-                        "given, at forces that hold particles, and at sound", worst.tag, worst.type, worst.x[0], worst.x[1],
-                 worst.x[2], worst.value / rest, rest, update->ntimestep);
+  error->warning(FLERR,
+                 "Fix fsi: fluid atom {} (type {}) at {:g} {:g} {:g} has {:.3g} times its density "
+                 "at rest, {:g}, at step "
+                 "{}: fluids are to be compressed by a few per cent at most. Look at the pressures "
+                 "and velocities that are "
+                 "given, at forces that hold particles, and at sound",
+                 worst.tag, worst.type, worst.x[0], worst.x[1], worst.x[2], worst.value / rest,
+                 rest, update->ntimestep);
 }
 
 void Check::inside_out()
@@ -399,22 +462,28 @@ void Check::examine(int i, double kick)
   const double *const v = atom->v[i], *const f = atom->f[i];
   const State &s = scene.state[atom->type[i]];
   const double rho = atom->rho[i];
-  const bool kicked = (atom->mask[i] & scene.mover->groupbit) && (scene.substeps == 1 || s.species != SOLID);
+  const bool kicked =
+      (atom->mask[i] & scene.mover->groupbit) && (scene.substeps == 1 || s.species != SOLID);
   const double k = kicked ? kick / atom->rmass[i] : 0.0;
   const double a = v[0] + k * f[0], b = v[1] + k * f[1], c = v[2] + k * f[2];
   const double vsq = a * a + b * b + c * c;    // not a number if a force is not
   const double *const x = atom->x[i];
-  // torn fluid without tension has no pressure, whatever its density: spray whose density says nothing until it comes together
+  // torn fluid without tension has no pressure, whatever its density: spray whose density says
+  // nothing until it comes together
   const bool torn = s.species == FLUID && s.floor == 0.0 && scene.pressure(i) == 0.0;
-  if (vsq <= limit_sq[atom->type[i]] && rho > 0.0 && rho < OFF && std::isfinite(x[0] + x[1] + x[2])) return;
+  if (vsq <= limit_sq[atom->type[i]] && rho > 0.0 && rho < OFF && std::isfinite(x[0] + x[1] + x[2]))
+    return;
   const Finding lost = stop.not_finite(i, true);
-  if (lost.tag) enter(lost);
+  if (lost.tag)
+    enter(lost);
   else if (!(vsq < HUGE_SQUARE) || !(rho < OFF)) {
     Finding one = stop.finding(FINITE, i, vsq < HUGE_SQUARE ? rho : vsq);
     one.field = vsq < HUGE_SQUARE ? Stop::MASS_DENSITY : Stop::VELOCITY;
     enter(one);
-  } else if (rho <= 0.0 && !torn) enter(stop.finding(DENSITY, i, rho));
-  else if (vsq > limit_sq[atom->type[i]] && (s.species == FLUID || s.species == SOLID)) enter(stop.finding(MACH, i, std::sqrt(vsq / s.wave_speed_sq())));
+  } else if (rho <= 0.0 && !torn)
+    enter(stop.finding(DENSITY, i, rho));
+  else if (vsq > limit_sq[atom->type[i]] && (s.species == FLUID || s.species == SOLID))
+    enter(stop.finding(MACH, i, std::sqrt(vsq / s.wave_speed_sq())));
 }
 
 /* ----------------------------------------------------------------------
@@ -424,7 +493,9 @@ void Check::examine(int i, double kick)
 static double rank_of(const Finding &f)
 {
   if (!f.tag) return 0.0;
-  return f.trouble == FINITE ? 3.0e200 : f.trouble == DENSITY ? 2.0e200 : std::min(f.value, 1.0e200);
+  return f.trouble == FINITE ? 3.0e200
+      : f.trouble == DENSITY ? 2.0e200
+                             : std::min(f.value, 1.0e200);
 }
 
 void Check::enter(const Finding &one)
@@ -457,6 +528,7 @@ void Check::judge(Stop::When when)
   if (worst.trouble == DENSITY) what = fmt::format("density {:.4g} is not above 0", worst.value);
   if (worst.trouble == MACH)
     what = fmt::format("Mach number {:.4g} is above the limit {:g}", worst.value,
-                       scene.mach * (scene.state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
+                       scene.mach *
+                           (scene.state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
   stop.stop(scene, stop.describe(scene, what, worst, when), worst, when);
 }

@@ -11,8 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// What no run may lose: numbers that are finite, densities above 0, fluids slower than their sound. Fix fsi asks in every step,
-// before velocities are kicked: the last moment at which there is a state to go back to.
+// What no run may lose: numbers that are finite, densities above 0, fluids slower than their sound.
+// Fix fsi asks in every step, before velocities are kicked: the last moment at which there is a
+// state to go back to.
 
 #ifndef LMP_FSI_CHECK_H
 #define LMP_FSI_CHECK_H
@@ -30,14 +31,14 @@ namespace FSI {
     static constexpr double OFF = 1.0e20;
 
     Check(class LAMMPS *, const Scene &);
-    void before_init();       // what no run may have
-    void materials();         // every atom has one, of the density that its mass was made for
+    void before_init();            // what no run may have
+    void materials();              // every atom has one, of the density that its mass was made for
     void write(Record &) const;    // these densities
     void read(const Record &);
-    void init();              // of a run: what a restart file or a script has put there
-    void setup();             // after the first forces
-    void positions();         // before lists are built
-    void before_kick();       // in each step
+    void init();           // of a run: what a restart file or a script has put there
+    void setup();          // after the first forces
+    void positions();      // before lists are built
+    void before_kick();    // in each step
     void before_substeps(const std::vector<int> &solids);
     void after_substeps();
 
@@ -45,15 +46,16 @@ namespace FSI {
     const Scene &scene;
     Stop stop;
     std::vector<double> densities;    // per type, in the last run; 0: not known
-    std::vector<double> limit_sq;    // per type: of the speed
-    double calm_speed, calm_kick;    // components of velocities and of their change in a step from which no limit is in reach
-    double lightest;                 // mass of this rank's particles
+    std::vector<double> limit_sq;     // per type: of the speed
+    double calm_speed, calm_kick;     // components of velocities and of their change in a step from
+                                      // which no limit is in reach
+    double lightest;                  // mass of this rank's particles
     const std::vector<int> *substepped;    // solids with sub-steps,
-    std::vector<double> kept;        // and their positions and velocities before them
-    std::vector<double> dense;       // per type: density over which a fluid is no longer hardly compressed
-    Finding densest;                 // particle beyond that, of this rank; no tag: none
-    bool told_dense;                 // in this run
-    Finding found;                   // the first thing that is not finite, or the worst of this rank
+    std::vector<double> kept;              // and their positions and velocities before them
+    std::vector<double> dense;             // per type: density over which a fluid is far compressed
+    Finding densest;                       // particle beyond that, of this rank; no tag: none
+    bool told_dense;                       // in this run
+    Finding found;    // the first thing that is not finite, or the worst of this rank
 
     void spacings() const;
     void compare_densities();

@@ -23,6 +23,11 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
+double Clock::now(const Update *update)
+{
+  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
+}
+
 void Clock::write(Record &record) const
 {
   record.add("step", std::to_string(update->ntimestep));
@@ -46,7 +51,7 @@ void Clock::restore()
 {
   if (!kept) return;
   const Time &c = *kept;
-  const double elapsed = c.time + (c.step - c.first_step) * c.dt, now = update->atime + (update->ntimestep - update->atimestep) * update->dt;
+  const double elapsed = c.time + (c.step - c.first_step) * c.dt, now = Clock::now(update);
   const bool forgotten = update->atime == c.time || std::fabs(now - elapsed) <= 1.0e-12 * std::fabs(elapsed);
   if (update->ntimestep != c.step || !forgotten) return;
   if (update->dt == c.dt) {

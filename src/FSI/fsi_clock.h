@@ -28,6 +28,7 @@ namespace FSI {
   class Clock : protected Pointers {
    public:
     explicit Clock(LAMMPS *lmp) : Pointers(lmp) {}
+    static double now(const Update *);    // simulated time of this step
     void write(Record &) const;
     void read(const Record &);
     void restore();                      // before the first run after a restart file was read

@@ -16,8 +16,8 @@
 #include "atom.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_part.h"
 #include "fsi_scene.h"
-#include "pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,8 +34,8 @@ Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
 }
 
 /* ----------------------------------------------------------------------
-   fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6 alpha); laminar: h^2/16nu;
-   acceleration: sqrt(h/|a|)/4
+   fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6
+   alpha); laminar: h^2/16nu; acceleration: sqrt(h/|a|)/4
 ------------------------------------------------------------------------- */
 
 void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_fluid, double of_solid)
@@ -74,6 +74,7 @@ void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_flu
     }
   }
 
+  const Facts of_fluids = facts_of_fluids(lmp), of_solids = facts_of_solids(lmp);
   for (double *row : mine) std::fill_n(row, NLIMIT, UNLIMITED);
   if (fastest > 0.0) mine[0][SOUND] = of_fluid * safe[SOUND] * scene.h / fastest;
   for (int t = 1; t <= atom->ntypes; t++) {
@@ -82,17 +83,21 @@ void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_flu
     const bool fluid = s.species == FLUID;
     const int in_sub = substeps && !fluid;
     double *const m = mine[in_sub], own = fluid ? of_fluid : of_solid, h = scene.h_of(t);
-    const double pushing = asq_max[t] > 0.0 ? own * safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[t])) : UNLIMITED;
+    const double pushing = asq_max[t] > 0.0
+        ? own * safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[t]))
+        : UNLIMITED;
     if (pushing < m[ACCELERATION]) {
       m[ACCELERATION] = pushing;
       culprit[in_sub][1] = pushed[t];
     }
-    Pair *const pair = force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0);    // null: walls of held solids
-    int dim_of_extract;
-    const double alpha = pair ? *static_cast<double *>(pair->extract("alpha", dim_of_extract)) : 0.0;
-    if (!fluid) m[ELASTIC] = std::min(m[ELASTIC], own * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
-    if (alpha > 0.0) m[ARTIFICIAL] = std::min(m[ARTIFICIAL], own * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
-    if (fluid && s.viscosity > 0.0 && *static_cast<int *>(pair->extract("laminar/visc", dim_of_extract)))
+    const double alpha =
+        (fluid ? of_fluids : of_solids).alpha;    // held solids may be walls, without a style
+    if (!fluid)
+      m[ELASTIC] = std::min(m[ELASTIC], own * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
+    if (alpha > 0.0)
+      m[ARTIFICIAL] =
+          std::min(m[ARTIFICIAL], own * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
+    if (fluid && s.viscosity > 0.0 && of_fluids.laminar)
       m[LAMINAR] = std::min(m[LAMINAR], own * safe[LAMINAR] * h * h * s.rho0 / s.viscosity);
   }
 }

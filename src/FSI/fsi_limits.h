@@ -11,7 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Limits of the time step, by cause: fix fsi/dt chooses by them, fix fsi/report says how near a run came to them.
+// Limits of the time step, by cause: fix fsi/dt chooses by them, fix fsi/report says how near a run
+// came to them.
 
 #ifndef LMP_FSI_LIMITS_H
 #define LMP_FSI_LIMITS_H
@@ -26,17 +27,22 @@ namespace FSI {
    public:
     enum Limit { SOUND, ELASTIC, ARTIFICIAL, LAMINAR, ACCELERATION, NLIMIT };
     static constexpr double UNLIMITED = 1.0e20;
-    // limit = safe times the time that the Courant number of this cause divides dt by, times a factor of fluids or of solids;
-    // those that are usual; fluids remain stable at twice theirs, elastic solids at 1.2 times (doc/notes/fluid.md)
+    static constexpr const char *names[NLIMIT] = {
+        "sound in the fluid", "elastic waves in the solid", "artificial viscosity",
+        "laminar viscosity", "acceleration"};
+    // limit = safe times the time that the Courant number of this cause divides dt by, times a
+    // factor of fluids or of solids; those that are usual; fluids remain stable at twice theirs,
+    // elastic solids at 1.2 times (doc/notes/fluid.md)
     static constexpr double safe[NLIMIT] = {0.25, 0.25, 0.4, 0.0625, 0.25};
     static constexpr double FLUID_FACTOR = 2.0, SOLID_FACTOR = 1.0;
 
     double step[NLIMIT], sub[NLIMIT];    // of the step, and of a sub-step of what takes sub-steps
-    tagint culprit[2][2];                // particle behind sound and acceleration, of step and sub-step
+    tagint culprit[2][2];    // particle behind sound and acceleration, of step and sub-step
 
     Limits(class LAMMPS *);
     // of this rank's particles, times a factor of fluids and one of solids
-    void find(const Scene &, int groupbit, bool substeps, double of_fluid = FLUID_FACTOR, double of_solid = SOLID_FACTOR);
+    void find(const Scene &, int groupbit, bool substeps, double of_fluid = FLUID_FACTOR,
+              double of_solid = SOLID_FACTOR);
     void reduce();    // of all ranks
   };
 

@@ -11,9 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
-// What takes part in a step: pair styles, walls, what keeps stress, chooses the time step or writes reports. Fix fsi finds the parts that
-// there are and calls them in turn; it knows none of their styles.
+// What takes part in a step: pair styles, walls, what keeps stress, chooses the time step or writes
+// reports. Fix fsi finds the parts that there are and calls them in turn; it knows none of their
+// styles.
 
 #ifndef LMP_FSI_PART_H
 #define LMP_FSI_PART_H
@@ -26,48 +26,84 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class LAMMPS;
+
 namespace FSI {
 
   class Message;
   class Profile;
   class Scene;
 
+  // What others need to know of a style. A style that there is not has none of it.
+  struct Facts {
+    enum Style { NONE, OF_FLUIDS, OF_SOLIDS, OF_TOTAL_LAGRANGIAN_SOLIDS };
+    Style style = NONE;    // of pairs
+    // of fluids
+    bool laminar = false;                  // laminar viscosity
+    bool couples_stress = false;           // solids act with a pressure or stress of their own
+    bool density_at_surfaces = false;      // density/surface
+    bool density_follows_shift = false;    // where there are open ends
+    // of solids
+    double contact = 0.0;    // range over dx
+    bool self_contact = false;
+    bool hourglass = false;
+    bool by_rate = false;    // the stress is integrated: fix fsi/stress has it
+    bool corrected_gradients = false;
+    // of both
+    double alpha = 0.0;    // artificial viscosity
+    // of what chooses the time step, sub-steps
+    bool chooses_step = false, chooses_substeps = false;
+  };
+  // of the pair style of fluids, of solids, that there is now, hybrid or not
+  Facts facts_of_fluids(LAMMPS *);
+  Facts facts_of_solids(LAMMPS *);
+
   class Part {
    public:
+    virtual Facts facts() const { return {}; }
+
     // Between runs: is it as it was when the last one was set up, or has a command given it anew?
     virtual bool is_set_up() const { return true; }
 
-    // Before a run, when the states of all types are known: arrays per atom for the effects that are on; then what of them goes to
-    // ghosts, and what pairs leave on ghosts and comes back.
+    // Before a run, when the states of all types are known: arrays per atom for the effects that
+    // are on; then what of them goes to ghosts, and what pairs leave on ghosts and comes back.
     virtual void set_fields(Scene &) {}
     virtual void add_messages(Message &to_ghosts, Message &back) {}
 
-    // In a step, in this order. Not to advance, in setup: the same for the state that there is, nothing evolves.
-    virtual void start_step() {}                  // before anything moves: may change the time step
-    virtual void add_walls(Walls &, std::vector<WallForce> &) {}    // mirrors, and where the force on each is summed
-    virtual void begin_state(bool advance) {}     // positions are those of the middle of the step, where walls are and pairs meet
-    virtual bool add_rates(bool advance) { return false; }    // sums over pairs, some of them left on ghosts; whether there are any
-    virtual void advance(bool advance) {}         // density, stress, bonds to the middle of the step
-    virtual void add_number_density(double *n, bool of_all_bodies) {}    // psi, of what it has pairs of
-    virtual void add_gradient_sum(double *s) {}     // sum_j grad_i W_ij/psi_bulk of fluids, components one after the other
-    virtual void end_state(bool advance) {}       // when ghosts have it
-    virtual void prescribe() {}                   // when all forces are there: those that bring velocities to what is given
-    virtual void integrate_substeps() {}          // what takes shorter steps than the kick of all
+    // In a step, in this order. Not to advance, in setup: the same for the state that there is,
+    // nothing evolves.
+    virtual void start_step() {}    // before anything moves: may change the time step
+    // mirrors, and where the force on each is summed
+    virtual void add_walls(Walls &, std::vector<WallForce> &) {}
+    // positions are those of the middle of the step, where walls are and pairs meet
+    virtual void begin_state(bool advance) {}
+    // sums over pairs, some of them left on ghosts; whether there are any
+    virtual bool add_rates(bool advance) { return false; }
+    virtual void advance(bool advance) {}    // density, stress, bonds to the middle of the step
+    // psi, of what it has pairs of
+    virtual void add_number_density(double *n, bool of_all_bodies) {}
+    // sum_j grad_i W_ij/psi_bulk of fluids, components one after the other
+    virtual void add_gradient_sum(double *s) {}
+    virtual void end_state(bool advance) {}    // when ghosts have it
+    // when all forces are there: those that bring velocities to what is given
+    virtual void prescribe() {}
+    virtual void integrate_substeps() {}    // what takes shorter steps than the kick of all
 
-    virtual void go_back() {}    // from the middle of a step to its start: a run that stops leaves a state to go on from
+    // from the middle of a step to its start: a run that stops leaves a state to go on from
+    virtual void go_back() {}
     virtual Profile *counters() { return nullptr; }    // where others enter times and messages
 
     // Before the first step: what is simulated, and with what it costs
     using Effect = Keywords::Effect;
     virtual std::vector<Effect> effects() const { return {}; }
     struct Costs {
-      int bytes = 0;                               // of arrays of all particles
-      std::string arrays;                          // and what they are, beyond what every fluid needs
-      bool sums = false;                           // pairs leave sums of rates on ghosts: a message back for all of them
-      int forward = 0, back = 0;                   // messages to a neighbor rank, beyond positions and forces
-      int fluid_ghost = 0, solid_ghost = 0;        // numbers that they carry for a ghost
-      std::string solids;                          // messages to neighbors with solids
-      std::string rarely;                          // lines of what goes in some steps only
+      int bytes = 0;         // of arrays of all particles
+      std::string arrays;    // and what they are, beyond what every fluid needs
+      bool sums = false;     // pairs leave sums of rates on ghosts: a message back for all of them
+      int forward = 0, back = 0;    // messages to a neighbor rank, beyond positions and forces
+      int fluid_ghost = 0, solid_ghost = 0;    // numbers that they carry for a ghost
+      std::string solids;                      // messages to neighbors with solids
+      std::string rarely;                      // lines of what goes in some steps only
     };
     virtual void add_costs(Costs &) const {}
     // effects with nothing to act on: what, why

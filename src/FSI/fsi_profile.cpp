@@ -71,8 +71,11 @@ struct Tiled : public CommTiled {
       const int self = (comm.*&Tiled::sendself)[k];    // the last one
       const int count = (comm.*(back ? &Tiled::nrecvproc : &Tiled::nsendproc))[k] - self;
       for (int i = 0; i < count; i++) {
-        if (back) found.push_back({(comm.*&Tiled::recvnum)[k][i], nullptr, (comm.*&Tiled::firstrecv)[k][i]});
-        else found.push_back({(comm.*&Tiled::sendnum)[k][i], (comm.*&Tiled::sendlist)[k][i], 0});
+        if (back)
+          found.push_back(
+              {(comm.*&Tiled::recvnum)[k][i], nullptr, (comm.*&Tiled::firstrecv)[k][i]});
+        else
+          found.push_back({(comm.*&Tiled::sendnum)[k][i], (comm.*&Tiled::sendlist)[k][i], 0});
       }
     }
   }
@@ -83,7 +86,9 @@ struct Tiled : public CommTiled {
 std::vector<Profile::Message> Profile::messages_of(const Comm *comm, bool back)
 {
   std::vector<Message> found;
-  if (const auto *brick = dynamic_cast<const CommBrick *>(comm)) Brick::list(*brick, back, found);
-  else if (const auto *tiled = dynamic_cast<const CommTiled *>(comm)) Tiled::list(*tiled, back, found);
+  if (const auto *brick = dynamic_cast<const CommBrick *>(comm))
+    Brick::list(*brick, back, found);
+  else if (const auto *tiled = dynamic_cast<const CommTiled *>(comm))
+    Tiled::list(*tiled, back, found);
   return found;
 }

@@ -16,12 +16,10 @@
 #include "atom.h"
 #include "error.h"
 #include "fix.h"
-#include "force.h"
 #include "fsi_kernel.h"
 #include "fsi_part.h"
 #include "lammps.h"
 #include "modify.h"
-#include "pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,10 +30,11 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) :
-    mover(fix_fsi), state(lmp->atom->ntypes + 1), substeps(1), body_forces(lmp), profile(nullptr), dt_offset(0.0), psi(nullptr),
-    shift(nullptr), shifts(false), shift_velocity{}, wmask(nullptr), wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
-    surface_max(false), need_psi(false), keep_psi(false), ledger(false), energy_out{}, tally_dt(0.0),
-    states_entered(false), instance(lmp)
+    mover(fix_fsi), state(lmp->atom->ntypes + 1), substeps(1), body_forces(lmp), profile(nullptr),
+    dt_offset(0.0), psi(nullptr), shift(nullptr), shifts(false), shift_velocity{}, wmask(nullptr),
+    wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
+    surface_max(false), need_psi(false), keep_psi(false), ledger(false), energy_out{},
+    tally_dt(0.0), states_entered(false), instance(lmp)
 {
 }
 
@@ -94,12 +93,15 @@ void Scene::gather_walls()
 
 /* ---------------------------------------------------------------------- */
 
+const std::vector<std::string> &Scene::density_names()
+{
+  static const std::vector<std::string> names = {"continuity", "summation", "ratio"};
+  return names;
+}
+
 bool Scene::density_follows_shift() const
 {
-  Force *const force = instance->force;
-  Pair *const fluid = force->pair ? force->pair_match("fsi/fluid", 1) : nullptr;
-  int dim_of_extract;
-  return fluid && *static_cast<bool *>(fluid->extract("density follows shift", dim_of_extract));
+  return facts_of_fluids(instance).density_follows_shift;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -107,7 +109,8 @@ bool Scene::density_follows_shift() const
 bool Scene::has_open_ends() const
 {
   Modify *const modify = instance->modify;
-  return !modify->get_fix_by_style("^fsi/inlet$").empty() || !modify->get_fix_by_style("^fsi/outlet$").empty();
+  return !modify->get_fix_by_style("^fsi/inlet$").empty() ||
+      !modify->get_fix_by_style("^fsi/outlet$").empty();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -118,8 +121,10 @@ bool Scene::several_stiffnesses() const
   for (const auto &s : state) {
     if (s.species != FLUID) continue;
     const double K = s.rho0 * s.csq;
-    if (first == 0.0) first = K;
-    else if (std::abs(K - first) > 1.0e-12 * first) return true;
+    if (first == 0.0)
+      first = K;
+    else if (std::abs(K - first) > 1.0e-12 * first)
+      return true;
   }
   return false;
 }
@@ -130,8 +135,10 @@ double Scene::pressure(int i) const
 {
   const Atom *const atom = instance->atom;
   const State &s = state[atom->type[i]];
-  if (s.species == FLUID && surface_ratio > 0.0 && psi[i] <= surface_ratio * psi_reference) return 0.0;
-  if (s.species == RIGID && wall_stiffness) return std::max(s.floor, s.p0 + wall_stiffness[i] * (atom->rho[i] / s.rho0 - 1.0));
+  if (s.species == FLUID && surface_ratio > 0.0 && psi[i] <= surface_ratio * psi_reference)
+    return 0.0;
+  if (s.species == RIGID && wall_stiffness)
+    return std::max(s.floor, s.p0 + wall_stiffness[i] * (atom->rho[i] / s.rho0 - 1.0));
   return s.pressure(atom->rho[i]);
 }
 
@@ -166,9 +173,11 @@ bool Scene::is_total_lagrangian(int i) const
 
 bool Scene::is_moved(int i) const
 {
-  // not get_fix_list(), which makes the list anew: who asks in set_arrays() is called from a loop over it
+  // not get_fix_list(), which makes the list anew: who asks in set_arrays() is called from a loop
+  // over it
   const Modify *const modify = instance->modify;
   for (int k = 0; k < modify->nfix; k++)
-    if (modify->fix[k]->time_integrate && instance->atom->mask[i] & modify->fix[k]->groupbit) return true;
+    if (modify->fix[k]->time_integrate && instance->atom->mask[i] & modify->fix[k]->groupbit)
+      return true;
   return false;
 }

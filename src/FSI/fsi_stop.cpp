@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_clock.h"
 #include "fsi_kernel.h"
 #include "fsi_limits.h"
 #include "fsi_part.h"
@@ -55,7 +56,8 @@ std::string Stop::of_partition(LAMMPS *lmp, const std::string &name)
 Finding Stop::finding(Trouble trouble, int i, double value, int j) const
 {
   const double *const x = atom->x[i];
-  return {value, {x[0], x[1], x[2]}, atom->tag[i], j < 0 ? 0 : atom->tag[j], atom->type[i], trouble, 0};
+  return {value, {x[0], x[1], x[2]}, atom->tag[i], j < 0 ? 0 : atom->tag[j], atom->type[i], trouble,
+          0};
 }
 
 /* ---------------------------------------------------------------------- */
@@ -64,8 +66,8 @@ Finding Stop::not_finite(int i, bool forces) const
 {
   static constexpr double ZERO[3] = {0.0, 0.0, 0.0};
   const double *const f = forces ? atom->f[i] : ZERO, *const v = atom->v[i], *const x = atom->x[i];
-  const double values[] = {f[0] + f[1] + f[2], v[0] * v[0] + v[1] * v[1] + v[2] * v[2], atom->rho[i], x[0] + x[1] + x[2],
-                           atom->rmass[i]};
+  const double values[] = {f[0] + f[1] + f[2], v[0] * v[0] + v[1] * v[1] + v[2] * v[2],
+                           atom->rho[i], x[0] + x[1] + x[2], atom->rmass[i]};
   for (int k = FORCE; k <= MASS; k++) {
     if (std::abs(values[k]) < HUGE_SQUARE) continue;
     Finding found = finding(FINITE, i, values[k]);
@@ -91,12 +93,17 @@ Finding Stop::worst(const Finding &mine, double key) const
 
 /* ---------------------------------------------------------------------- */
 
-std::string Stop::describe(const Scene &scene, const std::string &what, const Finding &all, When when) const
+std::string Stop::describe(const Scene &scene, const std::string &what, const Finding &all,
+                           When when) const
 {
   static constexpr const char *fields[] = {"force", "velocity", "density", "position", "mass"};
-  auto text = who + ": " + (all.trouble == FINITE ? fmt::format("{} is not finite ({})", fields[all.field], all.value) : what);
+  auto text = who + ": " +
+      (all.trouble == FINITE ? fmt::format("{} is not finite ({})", fields[all.field], all.value)
+                             : what);
   text += fmt::format(" on step {}", update->ntimestep);
-  if (all.tag) text += fmt::format(", atom {} (type {}) at {:.6g} {:.6g} {:.6g}", all.tag, all.type, all.x[0], all.x[1], all.x[2]);
+  if (all.tag)
+    text += fmt::format(", atom {} (type {}) at {:.6g} {:.6g} {:.6g}", all.tag, all.type, all.x[0],
+                        all.x[1], all.x[2]);
   if (all.other) text += fmt::format(", and atom {}", all.other);
   const Neighbor body = nearest_body(scene, all);
   if (too_near(scene, body)) {
@@ -172,7 +179,9 @@ double Stop::courant(const Scene &scene, int type) const
 {
   const State &s = scene.state[type];
   const bool waves = s.species == FLUID || s.species == SOLID;
-  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) / (s.species == SOLID ? scene.substeps : 1) / scene.h_of(type) : 0.0;
+  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) /
+          (s.species == SOLID ? scene.substeps : 1) / scene.h_of(type)
+               : 0.0;
 }
 
 // where fluid is in a body
@@ -180,8 +189,33 @@ std::string Stop::advice(const Neighbor &body, When when)
 {
   if (when == START) return "delete_atoms overlap, where the fluid is put around bodies";
   if (body.species == SOLID)
-    return "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, which keeps fluid out";
+    return "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, which keeps "
+           "fluid out";
   return "a thicker wall, or guard 0.9 of fix fsi/wall/particle, which keeps fluid out";
+}
+
+static double usual_courant(bool fluid)
+{
+  return fluid ? Limits::FLUID_FACTOR * Limits::safe[Limits::SOUND]
+               : Limits::SOLID_FACTOR * Limits::safe[Limits::ELASTIC];
+}
+
+// how to get one
+static std::string shorter_step(const Scene &scene, double number, bool fluid, bool solid_tl)
+{
+  const double usual = usual_courant(fluid);
+  bool chooses_step = false, chooses_substeps = false;
+  for (const auto *p : scene.parts) {
+    chooses_step |= p->facts().chooses_step;
+    chooses_substeps |= p->facts().chooses_substeps;
+  }
+  std::string tip;
+  if (number > SUSPECT * usual)
+    tip = fmt::format("a shorter time step (the Courant number is {:.2g}, {:g} is usual): ", number,
+                      usual);
+  if (!chooses_step) return tip + "fix fsi/dt" + (solid_tl ? " with substeps auto" : "");
+  if (!fluid && solid_tl && !chooses_substeps) return tip + "substeps auto of fix fsi/dt";
+  return tip + fmt::format("a smaller cfl/{} of fix fsi/dt", fluid ? "fluid" : "solid");
 }
 
 /* ----------------------------------------------------------------------
@@ -192,12 +226,8 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when,
                          const Neighbor &body) const
 {
   const bool fluid = !all.tag || scene.state[all.type].species == FLUID;
-  const auto *const pair = dynamic_cast<Part *>(force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0));
-  const bool solid_tl = force->pair_match("fsi/solid/tl", 1);
-  // of fix fsi/dt: does it choose the time step, sub-steps, too?
-  int dim_of_extract;
-  auto dt_fixes = modify->get_fix_by_style("^fsi/dt$");
-  const auto chooses = [&](const char *what) { return !dt_fixes.empty() && dt_fixes[0]->extract(what, dim_of_extract); };
+  const auto *const pair =
+      dynamic_cast<Part *>(force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0));
   const auto off = [&](const std::string &keyword) {
     if (!pair) return false;
     for (const auto &e : pair->effects())
@@ -210,13 +240,9 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when,
   };
   const auto shorter = [&]() {
     const double number = all.tag ? courant(scene, all.type) : 0.0;
-    const double usual = fluid ? Limits::FLUID_FACTOR * Limits::safe[Limits::SOUND] : Limits::SOLID_FACTOR * Limits::safe[Limits::ELASTIC];
-    std::string tip;
-    if (number > SUSPECT * usual) tip = fmt::format("a shorter time step (the Courant number is {:.2g}, {:g} is usual): ", number, usual);
-    if (!chooses("step")) tip += std::string("fix fsi/dt") + (solid_tl ? " with substeps auto" : "");
-    else if (!fluid && solid_tl && !chooses("substeps")) tip += "substeps auto of fix fsi/dt";
-    else tip += fluid ? "a smaller cfl/fluid of fix fsi/dt" : "a smaller cfl/solid of fix fsi/dt";
-    tips.insert(number > SUSPECT * usual ? tips.begin() : tips.end(), tip);
+    const bool solid_tl = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
+    const auto tip = shorter_step(scene, number, fluid, solid_tl);
+    tips.insert(number > SUSPECT * usual_courant(fluid) ? tips.begin() : tips.end(), tip);
   };
 
   if (too_near(scene, body)) tips.emplace_back(advice(body, when));
@@ -227,7 +253,8 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when,
       if (when != BEFORE) shorter();
       break;
     case MACH:
-      if (when == START) tips.emplace_back("velocity ... units box (its default are lattice units per time)");
+      if (when == START)
+        tips.emplace_back("velocity ... units box (its default are lattice units per time)");
       if (fluid) tips.emplace_back("a higher speed of sound, if the flow is meant to be that fast");
       missing("artificial/visc", fluid ? "artificial/visc 0.02 0" : "artificial/visc 0.1 0");
       if (!fluid) missing("hourglass", "hourglass");
@@ -244,18 +271,22 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when,
     case DENSITY:
       if (fluid) tips.emplace_back("a higher speed of sound");
       missing("density/diffusion", "density/diffusion 0.1");
-      if (fluid && pair && !off("tension")) tips.emplace_back("tension no, if there is a free surface");
+      if (fluid && pair && !off("tension"))
+        tips.emplace_back("tension no, if there is a free surface");
       if (!fluid) missing("hourglass", "hourglass");
       shorter();
       break;
-    case COURANT: shorter(); break;
+    case COURANT:
+      shorter();
+      break;
     case ENERGY:
       tips.emplace_back("a look at this, the fastest particle");
       missing("artificial/visc", fluid ? "artificial/visc 0.02 0" : "artificial/visc 0.1 0");
       shorter();
       break;
     case LOST:
-      tips.emplace_back("walls where particles escape, or a larger box; if they are meant to leave, thermo_modify lost ignore");
+      tips.emplace_back("walls where particles escape, or a larger box; if they are meant to "
+                        "leave, thermo_modify lost ignore");
       break;
     default:
       tips.emplace_back("a larger distance from the wall at the start");
@@ -281,8 +312,9 @@ void Stop::stop(const Scene &scene, std::string text, const Finding &all, When w
 }
 
 /* ----------------------------------------------------------------------
-   In the middle of a step positions, walls and densities go back to its start: a state from which the step can be repeated. (The
-   stress of fsi/solid stays where it is, a step too far: an error of one step's strain.)
+   In the middle of a step positions, walls and densities go back to its start: a state from
+   which the step can be repeated. (The stress of fsi/solid stays where it is, a step too far: an
+   error of one step's strain.)
 ------------------------------------------------------------------------- */
 
 void Stop::go_back(const Scene &scene)
@@ -314,7 +346,9 @@ std::string Stop::write_state(const Scene &scene)
     if (fp) fclose(fp);
   }
   MPI_Bcast(&writable, 1, MPI_INT, 0, world);
-  if (!writable) return fmt::format(". Restart file {} cannot be written: {}", restart_file, utils::getsyserror());
+  if (!writable)
+    return fmt::format(". Restart file {} cannot be written: {}", restart_file,
+                       utils::getsyserror());
   bigint n = atom->nlocal;
   MPI_Allreduce(&n, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   domain->pbc();
@@ -326,7 +360,8 @@ std::string Stop::write_state(const Scene &scene)
     own[3 + d] = domain->boxhi[d];
     for (int i = 0; i < atom->nlocal && !domain->periodicity[d]; i++) {
       if (atom->x[i][d] < domain->boxlo[d]) own[d] = std::max(own[d], scene.dx - atom->x[i][d]);
-      if (atom->x[i][d] >= domain->boxhi[d]) own[3 + d] = std::max(own[3 + d], scene.dx + atom->x[i][d]);
+      if (atom->x[i][d] >= domain->boxhi[d])
+        own[3 + d] = std::max(own[3 + d], scene.dx + atom->x[i][d]);
     }
   }
   MPI_Allreduce(own, ends, 6, MPI_DOUBLE, MPI_MAX, world);
@@ -358,7 +393,8 @@ void Stop::write_neighbours(const Scene &scene, const Finding &all) const
       domain->minimum_image(d);
       if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach * reach) continue;
     }
-    for (const tagint n : {atom->tag[i], (tagint) atom->type[i], atom->molecule[i]}) mine.push_back(ubuf(n).d);
+    for (const tagint n : {atom->tag[i], (tagint) atom->type[i], atom->molecule[i]})
+      mine.push_back(ubuf(n).d);
     mine.insert(mine.end(), {x[0], x[1], x[2], v[0], v[1], v[2], f[0], f[1], f[2], atom->rho[i]});
   }
   int n = mine.size();
@@ -366,7 +402,8 @@ void Stop::write_neighbours(const Scene &scene, const Finding &all) const
   MPI_Gather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
   for (int k = 1; k < comm->nprocs; k++) starts[k] = starts[k - 1] + counts[k - 1];
   std::vector<double> rows(comm->me == 0 ? starts.back() + counts.back() : 0);
-  MPI_Gatherv(mine.data(), n, MPI_DOUBLE, rows.data(), counts.data(), starts.data(), MPI_DOUBLE, 0, world);
+  MPI_Gatherv(mine.data(), n, MPI_DOUBLE, rows.data(), counts.data(), starts.data(), MPI_DOUBLE, 0,
+              world);
   if (comm->me) return;
 
   FILE *fp = fopen(dump_file.c_str(), "w");
@@ -376,13 +413,15 @@ void Stop::write_neighbours(const Scene &scene, const Finding &all) const
   }
   char bounds[9];
   domain->boundary_string(bounds);
-  utils::print(fp, "ITEM: TIME\n{:.16g}\n", update->atime + (update->ntimestep - update->atimestep) * update->dt);
-  utils::print(fp, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n", update->ntimestep, rows.size() / NCOL,
-               bounds);
-  for (int d = 0; d < 3; d++) utils::print(fp, "{:.16g} {:.16g}\n", domain->boxlo[d], domain->boxhi[d]);
+  utils::print(fp, "ITEM: TIME\n{:.16g}\n", Clock::now(update));
+  utils::print(fp, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n",
+               update->ntimestep, rows.size() / NCOL, bounds);
+  for (int d = 0; d < 3; d++)
+    utils::print(fp, "{:.16g} {:.16g}\n", domain->boxlo[d], domain->boxhi[d]);
   utils::print(fp, "ITEM: ATOMS id type mol x y z vx vy vz fx fy fz rho\n");
   for (size_t k = 0; k < rows.size(); k += NCOL) {
-    for (int c = 0; c < NINT; c++) utils::print(fp, "{}{}", c ? " " : "", (tagint) ubuf(rows[k + c]).i);
+    for (int c = 0; c < NINT; c++)
+      utils::print(fp, "{}{}", c ? " " : "", (tagint) ubuf(rows[k + c]).i);
     for (int c = NINT; c < NCOL; c++) utils::print(fp, " {:.16g}", rows[k + c]);
     utils::print(fp, "\n");
   }

@@ -11,7 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// How a run that goes wrong is stopped: who, where, what, how much, what to try; files of the state before it went wrong.
+// How a run that goes wrong is stopped: who, where, what, how much, what to try; files of the state
+// before it went wrong.
 
 #ifndef LMP_FSI_STOP_H
 #define LMP_FSI_STOP_H

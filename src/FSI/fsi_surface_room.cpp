@@ -88,10 +88,7 @@ void SurfaceRoom::set_array(Fields &fields)
 {
   // a pair style that comes after fix fsi may want it: what a restart file has of it is read here
   const auto wanted = [&]() {
-    if (!force->pair) return true;
-    Pair *const fluid = force->pair_match("^fsi/fluid", 0);
-    int dim_of_extract;
-    return fluid && *static_cast<int *>(fluid->extract("density/surface", dim_of_extract));
+    return !force->pair || facts_of_fluids(lmp).density_at_surfaces;
   };
   fields.set("room at the surface", Fields::RESTART, scene.density_fluid == Scene::CONTINUITY && wanted(), room, 2);
   if (room) of_plane = RoomOfPlane(scene.kernel, scene.dim, scene.h / scene.dx);
@@ -148,7 +145,7 @@ void SurfaceRoom::go_back()
 
 std::vector<Part::Effect> SurfaceRoom::effects() const
 {
-  if (!force->pair_match("^fsi/fluid", 0)) return {};
+  if (!facts_of_fluids(lmp).style) return {};
   return {{"density that follows surfaces", "density/surface", room != nullptr}};
 }
 

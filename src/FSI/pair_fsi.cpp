@@ -208,8 +208,16 @@ void PairFSI::check_same_materials() const
 void *PairFSI::extract(const char *name, int &dim_of_extract)
 {
   dim_of_extract = 0;
-  if (strcmp(name, "contact") == 0) return &contact_range;
   return strcmp(name, "alpha") == 0 ? &alpha : nullptr;
+}
+
+Facts PairFSI::facts() const
+{
+  Facts facts;
+  facts.alpha = alpha;
+  facts.contact = contact_range;
+  facts.self_contact = self_contact;
+  return facts;
 }
 
 std::string PairFSI::named_effects() const

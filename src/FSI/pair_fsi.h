@@ -40,12 +40,10 @@ class PairFSI : public Pair, public FSI::Part {
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
 
-  void *extract(const char *, int &) override;
-  // the dimension that goes with what is no number that fix adapt could change
-  static constexpr int NOT_ADAPTABLE = -1;
+  void *extract(const char *, int &) override;    // "alpha", for fix adapt
+  FSI::Facts facts() const override;
   std::vector<Effect> effects() const override = 0;
   bool is_set_up() const override { return fix_fsi != nullptr; }
-  double artificial_alpha() const { return alpha; }
 
  protected:
   const std::string style;    // for messages

@@ -37,6 +37,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
+static const std::vector<std::string> coupling_names = {"wall", "pressure", "full"};    // Couple
+
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
@@ -62,7 +64,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
       .effect("free surface where psi is below {}");
   keywords.key("tension").logical(tension, false).effect("tension in the fluid");
   keywords.key("background").number(background, 0.0).effect("background pressure {}");
-  keywords.key("couple").choice(couple, WALL, {"wall", "pressure", "full"});
+  keywords.key("couple").choice(couple, WALL, coupling_names);
   keywords.key("extrapolate").logical(extrapolate, false);
 }
 
@@ -172,13 +174,12 @@ void PairFSIFluid::init_style()
     no_fdotr_before = hybrid->no_virial_fdotr_compute;
     hybrid->no_virial_fdotr_compute = 1;
   }
-  if (couple != WALL && force->pair_match("fsi/solid/tl", 1))
+  const Facts of_solids = facts_of_solids(lmp);
+  if (couple != WALL && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS)
     error->all(FLERR, "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress is not one that crosses to the fluid");
   // the plain forces of a solid end at its face with half a kernel of neighbours missing, which the fluid's pairs supply; forces with
   // corrected gradients are complete without them
-  Pair *const solid = force->pair_match("fsi/solid", 1);
-  int dim_of_extract;
-  if (couple != WALL && solid && *static_cast<int *>(solid->extract("gradient", dim_of_extract)) != 0)
+  if (couple != WALL && of_solids.corrected_gradients)
     error->all(FLERR, "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid gradient plain: with corrected gradients "
                       "use couple wall");
   open_ends = fix_fsi->has_open_ends();
@@ -188,26 +189,15 @@ void PairFSIFluid::init_style()
 
 /* ---------------------------------------------------------------------- */
 
-void *PairFSIFluid::extract(const char *name, int &dim_of_extract)
+Facts PairFSIFluid::facts() const
 {
-  if (strcmp(name, "laminar/visc") == 0) {
-    dim_of_extract = NOT_ADAPTABLE;
-    return &laminar;
-  }
-  if (strcmp(name, "density/surface") == 0) {
-    dim_of_extract = NOT_ADAPTABLE;
-    return &surfaces;
-  }
-  if (strcmp(name, "couple") == 0) {
-    dim_of_extract = NOT_ADAPTABLE;
-    return &couple;
-  }
-  if (strcmp(name, "density follows shift") == 0) {
-    dim_of_extract = NOT_ADAPTABLE;
-    density_follows = shifting > 0.0 && fills();
-    return &density_follows;
-  }
-  return PairFSI::extract(name, dim_of_extract);
+  Facts facts = PairFSI::facts();
+  facts.style = Facts::OF_FLUIDS;
+  facts.laminar = laminar;
+  facts.couples_stress = couple != WALL;
+  facts.density_at_surfaces = surfaces;
+  facts.density_follows_shift = shifting > 0.0 && fills();
+  return facts;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -1004,9 +994,8 @@ bool PairFSIFluid::has_solids() const
 
 std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 {
-  static const char *const modes[] = {"wall", "pressure", "full"};
   auto list = keywords.effects();
-  list.push_back({fmt::format("coupling of fluid and solid: {}{}", modes[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
+  list.push_back({fmt::format("coupling of fluid and solid: {}{}", coupling_names[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
   if (shifting > 0.0 && shift_every > 1) list.push_back({fmt::format("shifted every {} steps", shift_every), "shift/every", true});
   if (fix_fsi && fix_fsi->sight) list.push_back({"line of sight: thin bodies hide fluids from each other", "fix fsi thin", true});
   list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});

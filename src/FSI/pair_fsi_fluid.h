@@ -43,7 +43,7 @@ class PairFSIFluid : public PairFSI {
   ~PairFSIFluid() override;
   void init_style() override;
   void compute(int, int) override;
-  void *extract(const char *, int &) override;
+  FSI::Facts facts() const override;
   bool has_solids() const;
   std::vector<Effect> effects() const override;
   void add_costs(Costs &) const override;
@@ -158,7 +158,6 @@ class PairFSIFluid : public PairFSI {
   double *rate;      // local after the reverse communication
   int nshift() const, shift_sums() const;
   bool fills() const { return background > 0.0; }    // no free surfaces: with a background pressure they would blow up
-  bool density_follows;    // as extract() says: it may, if there are open ends
   bool open_ends;
   double *const *velocity_of_shifting() const;
   double **beyond;    // of solids that fluid sticks to: the sums of v W, and of W, of the fluid around

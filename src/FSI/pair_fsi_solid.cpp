@@ -122,11 +122,18 @@ int PairFSISolid::terms() const
 
 void *PairFSISolid::extract(const char *name, int &dim_of_extract)
 {
-  dim_of_extract = strcmp(name, "gradient") == 0 ? NOT_ADAPTABLE : 0;
-  if (strcmp(name, "gradient") == 0) return &gradient;    // 0: plain
-  if (strcmp(name, "hourglass") == 0) return &xi;
-  if (strcmp(name, "self") == 0) return &self_contact;
-  return PairFSI::extract(name, dim_of_extract);
+  dim_of_extract = 0;
+  return strcmp(name, "hourglass") == 0 ? &xi : PairFSI::extract(name, dim_of_extract);
+}
+
+Facts PairFSISolid::facts() const
+{
+  Facts facts = PairFSI::facts();
+  facts.style = Facts::OF_SOLIDS;
+  facts.hourglass = xi > 0.0;
+  facts.by_rate = true;
+  facts.corrected_gradients = gradient != PLAIN;
+  return facts;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -43,7 +43,8 @@ class PairFSISolid : public PairFSI {
   std::vector<Effect> effects() const override;
   double memory_usage() override;
 
-  void *extract(const char *, int &) override;
+  void *extract(const char *, int &) override;    // "hourglass", for fix adapt
+  FSI::Facts facts() const override;
   void set_fields(FSI::Scene &) override;
   void add_messages(FSI::Message &, FSI::Message &) override;
   void begin_state(bool) override;    // with new neighbor lists new rows

@@ -827,14 +827,12 @@ void PairFSISolidTL::advance(bool advance)
 
 /* ---------------------------------------------------------------------- */
 
-void *PairFSISolidTL::extract(const char *name, int &dim_of_extract)
+Facts PairFSISolidTL::facts() const
 {
-  if (strcmp(name, "hypoelastic") == 0) {
-    dim_of_extract = NOT_ADAPTABLE;
-    is_hypoelastic = laws.by_rate();
-    return &is_hypoelastic;
-  }
-  return PairFSI::extract(name, dim_of_extract);
+  Facts facts = PairFSI::facts();
+  facts.style = Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
+  facts.by_rate = laws.by_rate();
+  return facts;
 }
 
 void PairFSISolidTL::add_costs(Costs &costs) const

@@ -50,7 +50,7 @@ class PairFSISolidTL : public PairFSI {
   void unpack_forward_comm(int, int, double *) override;
   int pack_reverse_comm(int, int, double *) override;
   void unpack_reverse_comm(int, int *, double *) override;
-  void *extract(const char *, int &) override;
+  FSI::Facts facts() const override;
   std::vector<Effect> effects() const override;
   void advance(bool) override;
   // Stiff solids: after the kick of what acts from outside is known, with a step that many times
@@ -93,7 +93,6 @@ class PairFSISolidTL : public PairFSI {
   enum Volumetric { AUTO, SMOOTHED, LOCAL };
   double zeta, damage;
   int law, plane_stress, linear, plain, volumetric;
-  int is_hypoelastic;    // for extract()
   class FixFSIReference *reference;
   class FixFSIStress *fix_stress;      // null: the law has no rates
   class FixFSIHistory *fix_history;    // null: the law has no history of its own

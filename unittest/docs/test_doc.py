@@ -100,6 +100,8 @@ def test_page_has_every_keyword(page, name):
     if not source.exists():
         return
     code = source.read_text()
+    if page == "fix_fsi":  # the density modes are a table of their own
+        code += (SOURCES / "fsi_scene.cpp").read_text()
     words = set(re.findall(r'strcmp\(arg\[[^\]]*\](?:, | \+ \d\], )"([^"]+)"\)', code)) | set(re.findall(r'key == "([^"]+)"', code))
     words |= set(re.findall(r'^    \{"(\w+)", "', code, re.M))  # fix fsi/watch
     words |= set(re.findall(r'(?:\.key|or_word)\("([^"]+)"', code))
@@ -117,7 +119,7 @@ def run_time_messages():
     found = []
     for source in SOURCES.glob("*.cpp"):
         code = source.read_text()
-        for text in re.findall(r'(?:FLERR, |fmt::format\()((?:"[^"]*"\s*)+)', code):
+        for text in re.findall(r'(?:FLERR,\s+|fmt::format\(\s*)((?:"[^"]*"\s*)+)', code):
             text = re.sub(r"\{[^}]*\}", "|", re.sub(r'"\s*"', "", text).strip().strip('"')).removeprefix("Fix fsi/dt: ")
             if re.match(r"(\w+ )*atoms? (type )?\||on step \|", text, re.I):
                 found.append(max((part.strip(" ,.") for part in text.split(":")[0].split("|")), key=lambda part: len(part.split())))

@@ -36,12 +36,6 @@ def mine(**what):
     return [("materials.fsi", "mine.fsi")], MATERIALS.format(**{"rho": 1000, "young": 2e6, **what})
 
 
-BOTH_SIDES = [("create_atoms 2 region plate", "lattice sq 0.01 origin 0 0.5 0\nregion behind block 0.065 0.1 0 0.08 INF INF units box\ncreate_atoms 1 region behind\n"
-               "lattice sq 0.005 origin 0.5 0.5 0\ncreate_atoms 2 region plate"), ("0.08 0 0.08 INF", "0.065 0 0.08 INF"),
-              ("wendland 1.5", "wendland 1.5 spacing 2 0.005"), ("4e-5", "3e-5"), ("xlo 0 ylo 0", "xlo 0 xhi 0.1 ylo 0")]
-ONE_SIDE = [("create_atoms 2 region plate", "lattice sq 0.0025 origin 0.5 0.5 0\ncreate_atoms 2 region plate"), ("0.05 0.08 0 0.08 INF", "0.05 0.0625 0 0.08 INF"),
-            ("wendland 1.5", "wendland 1.5 spacing 2 0.0025"), ("4e-5", "1.5e-5")]
-
 TWO_BODIES = [("set group plate mol 1\n", "set group plate mol 1\nregion up block INF INF 0.04 INF INF INF units box\ngroup up region up\ngroup up intersect up plate\n"
                "set group up mol 2\n"), ("fsi/solid/tl\npair", "fsi/solid/tl contact 2.5\npair")]
 
@@ -54,20 +48,6 @@ CASES = {
     "spacing": ([("fsi 0.01", "fsi 0.0085"), ("4e-5", "3e-5")], None, r"nearest neighbors are 0.01 apart on average, but the spacing is 0.0085"),
     "coarse": ([("sq 0.01", "sq 0.013")], None, r"most particles have no neighbor within 0.0125: is 0.01 the spacing"),
     "overlap": ([("run 0", "create_atoms 1 single 0.028 0.025 0 units box\nrun 0")], None, r"atoms 13 and 65 are 0.3 spacings apart"),
-    # two plates 2 spacings apart would be one; these are 3 apart, and across them there is no bond
-    "parts": ([("0.05 0.08 0 0.08 INF", "0.05 0.14 0 0.08 INF"), ("run 0", "region gap block 0.08 0.11 INF INF INF INF units box\ndelete_atoms region gap\nrun 0")],
-              None, r"body 1 lies in 2 parts, with atoms \d+ and \d+ in different ones: parts of one molecule ID pass through each other when they meet"),
-    "thin": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF")], None, r"body 1 is 2 particles across: it will bend too little, some 25 %"),
-    "thin, nearly incompressible": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF"), ("materials.fsi", "mine.fsi")],
-                                    MATERIALS.format(rho=1000, young=1e5).replace("poisson 0.4", "poisson 0.49"),
-                                    r"body 1 is 2 particles across: it will hardly bend, since its material is nearly incompressible"),
-    "thin, plain": ([("0.08 0 0.08 INF", "0.07 0 0.08 INF"), ("fsi/solid/tl", "fsi/solid"),
-                     ("fix g all", "fix s all fsi/stress\nfix g all")], None, r"body 1 is 2 particles across: it will bend too easily"),
-    # 3.3 spacings; 3 spacings with lattice points on both edges
-    "rows": ([("plate block 0.05 0.08", "plate block 0.05 0.083")], None,
-             r"body 1 has 3 rows along x, but region plate, 0.033 wide, holds 3.3 spacings: the body is 0.91 times as thick"),
-    "edges": ([("origin 0.5 0.5 0", "origin 0 0.5 0"), ("water block 0 0.05", "water block 0.005 0.045")], None,
-              r"body 1 has 4 rows along x, but region plate, 0.03 wide, holds 3 spacings: the body is 1.3 times as thick"),
     "idle": ([("fix sph all", "group moving type 2\ngroup some id 1:20\ngroup moving union moving some\nfix sph moving")], None,
              r"20 fluid particles, the first of them atom 21, are not in group moving of fix sph"),
     # alpha h c/16 = 2.9e-3 against 1e-3/1000*1000
@@ -81,18 +61,11 @@ CASES = {
     "long fluid": ([("4e-5", "1.3e-3"), ("1.5\n", "1.5 substeps 40\n")], None, r"too long for sound in the fluid, 0.0012 at most"),
     "viscous": ([("sound 12.53", "sound 12.53 laminar/visc"), ("water_inviscid", "sirup"), ("materials.fsi", "mine.fsi")],
                 MATERIALS.format(rho=1000, young=2e6).replace("water_inviscid", "sirup").replace("fluid rho 1000", "fluid rho 1000 viscosity 2000"),
-                r"too long for viscosity, 2.81e-05 at most"),
+                r"too long for laminar viscosity, 2.81e-05 at most"),
     "short": ([("4e-5", "1e-8")], None, r"time step 1e-08 is 5.8e\+03 times shorter"),
     "default": ([("timestep 4e-5\n", "")], None, r"time step 1e-08, LAMMPS' default, is"),
     "grams": (*mine(rho=1.0e-3), r"density 0.001 of type 2 is that of no material in units si, in which water has 1000"),
     "megapascal": (*mine(young=2.0), r"elastic waves in type 2 run at 0.065 m/s only: moduli are in pascal"),
-    # 0.18 stretch + 0.27 shear = 0.079; 0.042 for the cubic spline; none for 1.5: 0.014
-    "elastic lattice": ([("wendland 1.5", "wendland 1.3")], None, r"h = 1.3 dx a lattice .* by 0.43 .* and 0.00 in shear: waves are some 8 % too fast .* at h = 1.53 dx; quintic 0.94"),
-    "elastic lattice, cubic": ([("wendland 1.5", "cubic 1.3"), ("4e-5", "3.5e-5")], None, r"by 0.13 .* 0.07 in shear: waves are some 4 % too fast .* h = 1.34 dx"),
-    # 3 across of half the spacing, water on both sides: 0.025 apart, where the kernel reaches 0.03
-    "thin between": (BOTH_SIDES, None, r"fluids see each other through what is of type 2, some 0.015 thick, since the kernel reaches 0.03: .* Then fix sph \.\.\. thin 2$"),
-    # 1.25 spacings of the water thick, nothing behind
-    "thin, one side": (ONE_SIDE, None, r"what is of type 2, some 0.012 thick, pushes 8 % less on fluid beside it .*, since the kernel reaches 0.03: .* Then fix sph \.\.\. thin 2$"),
     "yield": ([("materials.fsi", "mine.fsi")], MATERIALS.format(rho=1000, young=2e6).replace("poisson 0.4", "poisson 0.4 yield 1e4"),
               r"material of type 2 has a yield stress, but stays elastic: .* fix fsi/stress \.\.\. plastic"),
     "contact": (TWO_BODIES, None, r"bodies 1 and 2 begin 1 spacings apart at the start, and contact reaches 2.5: contact energy \S+ at once. Move them apart, or contact 1$"),
@@ -130,7 +103,7 @@ def test_sound_deck_is_not_criticised(tmp_path):
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
 
 
-ON_TWO_RANKS = ("sound", "spacing", "overlap", "parts", "thin", "rows", "idle", "long fluid", "thin between", "contact", "held", "weightless body", "nothing acts",
+ON_TWO_RANKS = ("sound", "spacing", "overlap", "idle", "long fluid", "contact", "held", "weightless body", "nothing acts",
                 "cut by a mirror")  # what is summed over ranks
 
 
@@ -173,18 +146,6 @@ def test_contact_energy_that_is_said(tmp_path):
     assert "at once" not in found["1"]
 
 
-@pytest.mark.parametrize("ranks, more", [(1, ""), (4, "processors 4 1 1\n"), (4, "processors 2 2 1\n")])
-def test_one_body_is_one(tmp_path, ranks, more):
-    """A horseshoe, whose legs are of one piece on no rank but those that have its bow, and a ring around a periodic box."""
-    horseshoe = [("plate block 0.05 0.08 0 0.08 INF INF", "plate block 0.05 0.15 0 0.03 INF INF"),
-                 ("run 0", "region legs block 0.05 0.15 0.03 0.12 INF INF units box\ncreate_atoms 2 region legs\nregion gap block 0.08 0.12 0.03 0.12 INF INF units box\n"
-                  "delete_atoms region gap\nset type 2 mol 1\nrun 0"), ("boundary", more + "boundary")]
-    assert [line for line in advice(tmp_path / "horseshoe", horseshoe, ranks=ranks) if "part" in line] == []
-    ring = [("box block -0.05 0.15 -0.05 0.15", "box block -0.05 0.15 0 0.08"), ("boundary f f p", more + "boundary f p p"), ("xlo 0 ylo 0", "xlo 0"), ("fix g all", "#"),
-            ("run 0", "region gap block 0.05 0.08 0.02 0.06 INF INF units box\ndelete_atoms region gap\nrun 0")]
-    assert [line for line in advice(tmp_path / "ring", ring, ranks=ranks) if "part" in line] == []
-
-
 @pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("type, body", [(1, 0), (2, 2)])
 def test_created_twice(tmp_path, type, body, ranks):
@@ -193,19 +154,6 @@ def test_created_twice(tmp_path, type, body, ranks):
                          f"set group plate mol {body}\ngroup both intersect plate old\nset group both mol 1\nrun 0")
     done = lammps(tmp_path, again, ranks)
     assert done.status != 0 and re.search(r"Fix fsi: atoms \d+ and \d+ are at the same place, .* delete_atoms overlap", done.errors[0])
-
-
-@pytest.mark.parametrize("angle", [-3, -9, -20, -45])
-@pytest.mark.parametrize("dim", [2, 3])
-def test_turned_bodies(tmp_path, angle, dim):
-    """A plate counts as many particles across however it lies."""
-    turn = ("run 0", f"displace_atoms plate rotate 0.08 0 0 0 0 1 {angle} units box\nrun 0")
-    deep = [] if dim == 2 else [("dimension 2", "dimension 3"), ("boundary f f p", "boundary f f f"), ("-0.005 0.005", "-0.05 0.1"), ("lattice sq", "lattice sc"),
-                                ("0.05 0 0.08 INF INF", "0.05 0 0.08 0 0.05"), ("0.08 0 0.08 INF INF", "0.08 0 0.08 0 0.05"), ("origin 0.5 0.5 0", "origin 0.5 0.5 0.5"),
-                                ("xlo 0 ylo 0", "xlo 0 ylo 0 zlo 0 zhi 0.05")]
-    assert advice(tmp_path / "3", [turn, *deep]) == []
-    found = advice(tmp_path / "2", [turn, *deep, ("0.08 0 0.08", "0.07 0 0.08")])
-    assert len(found) == 1 and "body 1 is 2 particles across" in found[0]
 
 
 @pytest.mark.parametrize("dim, expected", [(2, 16), (3, 20)])
@@ -229,14 +177,6 @@ def test_thin_sub_domains(tmp_path):
     narrow = [*wide, ("block -0.05 0.15", "block -0.02 0.10")]
     found = advice(tmp_path, narrow, ranks=4)
     assert len(found) == 1 and re.search(r"sub-domain is thinner .*0.91 of 0.033.*fewer ranks", found[0])
-
-
-def test_nobody_sees_through_a_body(tmp_path):
-    """That is said to be thin, or is a block as thick as the kernel's support, round whose corners they see each other"""
-    assert advice(tmp_path / "thin", [(old, new.replace("spacing 2 0.005", "spacing 2 0.005 thin 2")) for old, new in BOTH_SIDES]) == []
-    block = [("water block 0 0.05", "water block 0 0.14"), ("plate block 0.05 0.08 0 0.08 INF", "plate block 0.05 0.09 0 0.03 INF"), ("ylo 0", "xhi 0.14 ylo 0"),
-             ("create_atoms 1 region water", "region beside block 0.05 0.09 0 0.03 INF INF side out units box\nregion wet intersect 2 water beside\ncreate_atoms 1 region wet")]
-    assert advice(tmp_path / "block", block) == []
 
 
 @pytest.mark.parametrize("change", [("timestep 4e-5", "fix dt all fsi/dt 1"), ("timestep 4e-5", "fix dt all fsi/dt 1 substeps auto")])

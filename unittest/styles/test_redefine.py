@@ -319,7 +319,8 @@ AGAIN = {  # scene, what comes between, what is said: an error, or a warning and
                             "WARNING: There is no pair_style fsi/solid/tl any more: its bodies lose their reference"),
     "the step's number": ("tank", "reset_timestep 0", "ERROR: Cannot reset timestep with time-dependent fix"),
     "density set in a run": ("updated", "fsi/set water density 1001", "WARNING: Fsi/set water density after 20 steps: masses change with densities"),
-    "an integer adapted": ("updated", "variable c equal 1\nfix a all adapt 1 pair fsi/fluid couple * * v_c", "ERROR: .* couple is not compatible with fix adapt"),
+    "an integer adapted": ("updated", "variable c equal 1\nfix a all adapt 1 pair fsi/fluid couple * * v_c", "ERROR: .* param couple not supported"),
+    "a logical adapted": ("updated", "variable c equal 1\nfix a all adapt 1 pair fsi/solid self * * v_c", "ERROR: .* param self not supported"),
     "a variable that is gone": ("stream", "variable u delete\nrun 5 pre no", "ERROR: Variable u of fix fsi/stream does not exist"),
 }
 

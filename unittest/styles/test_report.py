@@ -16,7 +16,7 @@ H = 1.5 * DX
 YOUNG, POISSON = 1.9984472e6, 0.39751553  # of the plate
 SHEAR, BULK = YOUNG / (2 + 2 * POISSON), YOUNG / (3 - 6 * POISSON)
 PLATE_C, PLATE_BULK_C = np.sqrt((BULK + 4 / 3 * SHEAR) / 1000), np.sqrt(BULK / 1000)
-PARTS = ("density", "stress", "force_of_fluid", "force_of_solids", "walls", "communication", "this_report", "neighbor_lists", "output",
+PARTS = ("density", "stress", "force_of_fluid", "force_of_solids", "walls", "communication", "neighbor_lists", "output",
          "rest")
 AXES = "xyz"
 
@@ -49,19 +49,16 @@ def momentum(frame, moving=slice(None)):
 def test_one_report_per_run_and_the_log_stays_readable(tmp_path):
     scene, text = gate()
     plain = run(tmp_path / "plain", text + "run 100\nrun 50\n", scene_data=scene.data())
-    text += "compute e all fsi/energy\nfix report all fsi/report every 20\nfix watch all fsi/watch 1000\n"
+    text += "compute e all fsi/energy\nfix report all fsi/report every 20\n"
     done = run(tmp_path / "log", text + "run 100\nrun 50\n", scene_data=scene.data())
     first, second = reports(done)
     assert done.output.count("\nFSI report: ") == 2 and "FSI report first_step" not in done.output  # the table; the lines in the log only
     assert (first["first_step"], first["last_step"]) == (0, 100) and (second["first_step"], second["last_step"]) == (100, 150)
-    assert first["samples"] == 6 and second["samples"] == 4  # at 100, 120, 140 and the end
+    assert first["steps_counted"] == 6 and second["steps_counted"] == 3  # the first of a run; 20, 40, ...
     assert first["particles"] == len(scene.x) and first["lost"] == 0 and first["ranks"] == 1
     assert first["time"] == pytest.approx(100 * 3 * scene.dt, rel=1e-9)
     assert "total-Lagrangian solid" in first["effects"] and "3 solid sub-steps" in first["effects"]
     assert "shift" not in first["effects"]
-    nearest = np.sort(np.linalg.norm(scene.x[:, None] - scene.x, axis=2) + np.where(np.eye(len(scene.x)), 9, 0), axis=1)
-    outside = scene.type == 1  # the watch does not look into the plate
-    assert first["smallest_distance"] == pytest.approx(nearest[outside, 0].min() / DX, rel=1e-9)
     assert set(first) == set(second)
     a, b = (log.read(r.folder / "log.lammps").runs for r in (plain, done))
     for one, other in zip(a, b):  # tables between the thermo output and the loop time disturb neither
@@ -71,12 +68,12 @@ def test_one_report_per_run_and_the_log_stays_readable(tmp_path):
 
 def test_file(tmp_path):
     scene, text = gate()
-    more = "fix watch all fsi/watch 1000\nfix report all fsi/report file report.txt\nrun 30\nrun 20 pre no\nrun 0\n"
+    more = "fix report all fsi/report file report.txt\nrun 30\nrun 20 pre no\nrun 0\n"
     done = run(tmp_path, text + more, scene_data=scene.data())
     found = log.reports(tmp_path / "report.txt")
     assert [r["last_step"] for r in found] == [30, 50]  # run 0 does nothing that could be reported
     assert not any(reports(done)) and "ledger is off" in done.output
-    assert [r["first_step"] for r in found] == [0, 30] and set(found[0]) - set(found[1]) == {"smallest_distance"}  # nobody looked again
+    assert [r["first_step"] for r in found] == [0, 30] and set(found[0]) == set(found[1])
     assert found[1]["momentum_rest_relative"] < 1e-12 and not any(name.startswith("energy") for name in found[0])
 
 
@@ -110,7 +107,7 @@ def test_parts_are_the_whole(tmp_path, ranks):
     # what is timed inside a part of LAMMPS is no more than that part
     assert seconds["force_of_fluid"] <= lammps["Pair"] * (1 + 1e-4)
     assert lammps["Comm"] * (1 - 1e-4) <= seconds["communication"] and (ranks > 1 or seconds["communication"] <= lammps["Comm"] * (1 + 1e-4))
-    assert seconds["density"] + seconds["walls"] + seconds["this_report"] <= lammps["Modify"] * (1 + 1e-4)
+    assert seconds["density"] + seconds["walls"] <= lammps["Modify"] * (1 + 1e-4)
     speed = report["particle_steps_per_second"]
     assert speed == pytest.approx(60 * len(scene.x) / report["loop_seconds"], rel=1e-8)
     assert report["particle_steps_per_second_per_rank"] == pytest.approx(speed / ranks, rel=1e-9)
@@ -172,52 +169,15 @@ def test_one_rank_sends_nothing(tmp_path):
 
 # ---- accuracy ------------------------------------------------------------------------------------------------------
 
-VECTOR = 'print "V ' + " ".join(f"$(f_report[{k}]:%.12g)" for k in range(1, 12)) + '"\n'
-
-
-@pytest.mark.parametrize("ranks", (1, 2))
-def test_worst_values(tmp_path, ranks):
-    """By their formulas from the dumped first and last state; every 1000: no sample between. Artificial viscosity 0.05 and 0.1."""
-    scene, text = gate()
-    text += watch(every=40) + "fix report all fsi/report every 1000\nrun 0\nthermo_style custom step f_report[1]\nrun 40\n"
-    done = run(tmp_path, text, ranks, scene_data=scene.data())
-    report, frames = reports(done)[-1], done.frames()
-    dt, water = 3 * scene.dt, scene.type == 1
-    held = (scene.type == 2) & (scene.x[:, 1] > 0.07)
-    assert [f.step for f in frames] == [0, 40] and report["samples"] == 2
-    nu = 1.0e-3 / 1000 if report["courant_laminar"] else 0.0
-    for name, limit, value in (  # limit of water or of rubber, whichever has the larger number
-            ("sound", 0.5, [dt * (10 + np.linalg.norm(f.vector(("vx", "vy"))[water], axis=1).max()) / H for f in frames]),
-            ("elastic", 0.25, [dt / 3 * PLATE_C / H]),
-            ("artificial", 0.4, [dt * 10 * (1 + 0.6 * 0.05) / H, dt / 3 * PLATE_BULK_C * (1 + 0.6 * 0.1) / H]),
-            ("laminar", 0.125, [dt * nu / H**2]),
-            ("acceleration", 0.5, [t * np.sqrt((np.linalg.norm(f.vector(("fx", "fy")), axis=1) / f["mass"])[who].max() / H)
-                                    for f in frames for t, who in ((dt, water), (dt / 3, ~water & ~held))])):
-        assert report[f"courant_{name}"] == pytest.approx(max(value), rel=1e-9), name
-        assert report[f"courant_{name}_of_limit"] == pytest.approx(max(value) / limit, rel=1e-9), name
-    assert report["mach"] == pytest.approx(max(np.linalg.norm(f.vector(("vx", "vy"))[water], axis=1).max() for f in frames) / 10, rel=1e-9)
-    for name, who in (("fluid", water), ("solid", ~water)):
-        assert report[f"density_error_{name}"] == pytest.approx(max(np.abs(f["rho"][who] / 1000 - 1).max() for f in frames), rel=1e-7)
-    fastest = max(frames, key=lambda f: np.linalg.norm(f.vector(("vx", "vy"))[water], axis=1).max())
-    who = fastest["id"][water][np.argmax(np.linalg.norm(fastest.vector(("vx", "vy"))[water], axis=1))]
-    share = re.search(rf"Courant number of sound, .* (\S+)% +{fastest.step} +{who:.0f}$", done.output, re.M)[1]
-    assert share == f"{100 * report['courant_sound_of_limit']:.1f}"
-
-
 def test_vector_is_the_run_so_far(tmp_path):
     scene, text = gate()
     more = "fix report all fsi/report every 7\nfix push all addforce 3.0 0 0\nthermo 20\nthermo_style custom step " + \
-        " ".join(f"f_report[{k}]" for k in range(1, 12)) + "\nthermo_modify format float %.12g\nrun 40\n"
+        " ".join(f"f_report[{k}]" for k in range(1, 4)) + "\nthermo_modify format float %.12g\nrun 40\n"
     done = run(tmp_path, text + more, scene_data=scene.data())
     report, thermo = reports(done)[0], log.read(tmp_path / "log.lammps").runs[0].thermo
-    names = [f"courant_{n}" for n in ("sound", "elastic", "artificial", "laminar", "acceleration")] + \
-        ["mach", "density_error_fluid", "density_error_solid"]
-    table = np.array([thermo[f"f_report[{k}]"] for k in range(1, 12)])
-    assert (np.diff(table[:8]) >= 0).all()
-    for k, name in enumerate(names):
-        assert table[k, -1] <= report[name] * (1 + 1e-9)  # the last sample of the run is taken after the last line
-        assert table[k, -1] >= 0.5 * report[name]
-    np.testing.assert_allclose(table[8:, -1], vector(report, "rest"), rtol=1e-8)
+    table = np.array([thermo[f"f_report[{k}]"] for k in range(1, 4)])
+    assert table[0, 0] == 0.0 < table[0, 1] < table[0, 2]  # what pushes, by and by
+    np.testing.assert_allclose(table[:, -1], vector(report, "rest"), rtol=1e-8)
 
 
 CASES = {
