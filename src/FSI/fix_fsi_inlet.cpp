@@ -56,6 +56,8 @@ static constexpr double EXCESS = 0.02;    // of the mass near the plane that is 
 static constexpr double SETTLE = 50.0;
 // Part of the dynamic pressure of inflow that a given pressure answers, as usual (Esmaily Moghadam et al. 2011, Comput. Mech. 48, 277)
 static constexpr double STEADY = 0.2;
+// Part of the velocity against the mean that the buffer takes: where pressures are given counterflows feed each other
+static constexpr double COUNTER = 0.0;
 static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 // Spacing of what comes in: part of an error that a buffer's length of inflow mends; what a lattice that is
 // sheared or bent shows of one; and the range, where particles stay a fluid
@@ -912,6 +914,7 @@ void FixFSIInlet::advance(bool advance)
     double values[2] = {0.0, 0.0};
     place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
     place.normal = values[0];
+    if (!wants_pressure && place.normal * side * mean[SPEED] < 0.0) place.normal *= COUNTER;
     double p;
     if (wants_pressure)
       p = place.known ? values[wants_velocity] + state.rho0 * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * place.inside : state.p0;
