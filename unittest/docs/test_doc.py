@@ -117,7 +117,7 @@ def run_time_messages():
     found = []
     for source in SOURCES.glob("*.cpp"):
         code = source.read_text()
-        for text in re.findall(r'(?:FLERR, |fmt::format\()((?:"[^"]*"\s*)+)', code):
+        for text in re.findall(r'(?:FLERR,\s+|fmt::format\(\s*)((?:"[^"]*"\s*)+)', code):
             text = re.sub(r"\{[^}]*\}", "|", re.sub(r'"\s*"', "", text).strip().strip('"')).removeprefix("Fix fsi/dt: ")
             if re.match(r"(\w+ )*atoms? (type )?\||on step \|", text, re.I):
                 found.append(max((part.strip(" ,.") for part in text.split(":")[0].split("|")), key=lambda part: len(part.split())))
