@@ -53,15 +53,15 @@ class Kernel:
 
     def lattice_sum(self, dx, dim):
         """sum of W over an infinite square or cubic lattice"""
-        return self.W(np.linalg.norm(lattice([2 * int(self.cut / dx) + 3] * dim, dx, centre=True), axis=1)).sum()
+        return self.W(np.linalg.norm(lattice([2 * int(self.cut / dx) + 3] * dim, dx, center=True), axis=1)).sum()
 
 
-def lattice(n, dx, origin=0.0, centre=False):
+def lattice(n, dx, origin=0.0, center=False):
     """Points of a lattice with n[k] points along k, the first half a spacing from `origin`, or about 0; z = 0 in 2D."""
-    axes = [(np.arange(m) - (m - 1) / 2) * dx if centre else (np.arange(m) + 0.5) * dx for m in n]
+    axes = [(np.arange(m) - (m - 1) / 2) * dx if center else (np.arange(m) + 0.5) * dx for m in n]
     x = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, len(n))
     x = np.hstack([x, np.zeros((len(x), 3 - len(n)))])
-    x[:, :len(n)] += 0.0 if centre else origin
+    x[:, :len(n)] += 0.0 if center else origin
     return x
 
 
@@ -78,7 +78,7 @@ def cloud(n, dx, seed=1, jitter=0.2, origin=0.0, vmax=0.0):
 class Scene:
     """A scene of given particles. Types count from 1 and name `materials`, lines of a material file without the name.
 
-    dim, dx, kernel, hdx    discretisation
+    dim, dx, kernel, hdx    discretization
     v, type, mol            per particle, or one value for all
     fluid, solid            keywords of the pair styles ("sound 10" is there by default); density: those of fix fsi
     stress                  keywords of fix fsi/stress

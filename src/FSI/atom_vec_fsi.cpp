@@ -14,8 +14,8 @@
 #include "atom_vec_fsi.h"
 
 #include "atom.h"
-#include "fsi_record.h"
 #include "error.h"
+#include "fsi_record.h"
 
 using namespace LAMMPS_NS;
 
@@ -34,7 +34,8 @@ AtomVecFSI::AtomVecFSI(LAMMPS *lmp) : AtomVec(lmp), rmass(nullptr), rho(nullptr)
   // strings cannot contain fields in corresponding AtomVec default strings
   // order of fields in a string does not matter
   // except: fields_data_atom & fields_data_vel must match data file
-  // mass and body never change on a ghost; its density is refreshed by fix fsi, after the density step
+  // mass and body never change on a ghost; its density is refreshed by fix fsi, after the density
+  // step
 
   fields_grow = {"molecule", "rmass", "rho"};
   fields_copy = {"molecule", "rmass", "rho"};
@@ -58,8 +59,8 @@ void AtomVecFSI::grow_pointers()
 {
   rmass = atom->rmass;
   rho = atom->rho;
-  // create_atoms, fix deposit ... take the mass of a molecule without Masses from a radius, which is not there: here from the mass
-  // that it still is, create_atom_post()'s 0
+  // create_atoms, fix deposit ... take the mass of a molecule without Masses from a radius, which
+  // is not there: here from the mass that it still is, create_atom_post()'s 0
   if (!atom->radius_flag) atom->radius = rmass;
 }
 
@@ -86,10 +87,13 @@ void AtomVecFSI::create_atom_post(int ilocal)
 void AtomVecFSI::data_atom_post(int ilocal)
 {
   if (rho[ilocal] < 0.0)
-    error->one(FLERR, "Invalid density {} in Atoms section of data file: expected >= 0 (0 = of the material)",
-               rho[ilocal]);
+    error->one(
+        FLERR,
+        "Invalid density {} in Atoms section of data file: expected >= 0 (0 = of the material)",
+        rho[ilocal]);
   if (rmass[ilocal] < 0.0)
-    error->one(FLERR, "Invalid mass {} in Atoms section of data file: expected >= 0 (0 = of the lattice)",
+    error->one(FLERR,
+               "Invalid mass {} in Atoms section of data file: expected >= 0 (0 = of the lattice)",
                rmass[ilocal]);
 }
 

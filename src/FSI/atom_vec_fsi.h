@@ -31,9 +31,10 @@ namespace FSI {
   class Record;
 }
 
-// Particles of fluid or solid: mass, density, and the body they belong to (the molecule ID; 0 for fluid).
-// These are what a restart must carry for every particle. Stress and the like live with the fix that
-// evolves them; pressure and number density are functions of the state and live with fix fsi.
+// Particles of fluid or solid: mass, density, and the body they belong to (the molecule ID; 0 for
+// fluid). These are what a restart must carry for every particle. Stress and the like live with the
+// fix that evolves them; pressure and number density are functions of the state and live with fix
+// fsi.
 
 class AtomVecFSI : virtual public AtomVec {
  public:
@@ -48,8 +49,8 @@ class AtomVecFSI : virtual public AtomVec {
 
   // lines of a material file that command fsi/material has given, by name
   std::map<std::string, std::string> materials;
-  // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds of
-  // solids are still of its spacing and kernel
+  // keywords of the last fix fsi that is gone; null: there was none. Masses of particles and bonds
+  // of solids are still of its spacing and kernel
   std::unique_ptr<FSI::Record> of_fix_fsi;
 
  private:

@@ -44,6 +44,7 @@ class ComputeFSIAtom : public Compute {
   class FixFSI *fix_fsi;
   class FixFSIStress *fix_stress;    // null: no solid has one
 
+  void grow();
   double cauchy(int i, int component) const;
 };
 

@@ -28,7 +28,8 @@ static constexpr int NHAVE = 4;    // kinetic, gravitational, compressive, shear
 
 /* ---------------------------------------------------------------------- */
 
-ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), fix_fsi(nullptr)
+ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg), fix_fsi(nullptr)
 {
   if (narg != 3) error->all(FLERR, "Compute fsi/energy takes no arguments");
   if (igroup) error->all(FLERR, "Compute fsi/energy must use group all: pairs have no group");
@@ -54,9 +55,19 @@ void ComputeFSIEnergy::init()
 
 const char *ComputeFSIEnergy::name(int k)
 {
-  static const char *const names[NHAVE + FixFSI::NTERM] = {
-      "kinetic",           "gravitational",     "compressive", "shear",    "artificial viscosity", "laminar viscosity",
-      "density diffusion", "artificial stress", "walls",       "coupling", "gradient",             "plastic", "changing gravity"};
+  static const char *const names[NHAVE + FixFSI::NTERM] = {"kinetic",
+                                                           "gravitational",
+                                                           "compressive",
+                                                           "shear",
+                                                           "artificial viscosity",
+                                                           "laminar viscosity",
+                                                           "density diffusion",
+                                                           "artificial stress",
+                                                           "walls",
+                                                           "coupling",
+                                                           "gradient",
+                                                           "plastic",
+                                                           "changing gravity"};
   return names[k];
 }
 
@@ -93,7 +104,9 @@ void ComputeFSIEnergy::compute_vector()
     const double m = atom->rmass[i];
     const bool tl = fix_fsi->is_total_lagrangian(i);
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it
-    const double dth = !(atom->mask[i] & fix_fsi->groupbit) ? 0.0 : tl ? half / fix_fsi->substeps : half;
+    const double dth = !(atom->mask[i] & fix_fsi->groupbit) ? 0.0
+        : tl                                                ? half / fix_fsi->substeps
+                                                            : half;
     const auto g = fix_fsi->body_forces.on(i);
     for (int d = 0; d < fix_fsi->dim; d++) {
       const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;

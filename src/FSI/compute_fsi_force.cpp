@@ -27,7 +27,8 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg), sum{}, origin{}, reduced(false), fix_fsi(nullptr)
+ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) :
+    Compute(lmp, narg, arg), sum{}, origin{}, reduced(false), fix_fsi(nullptr)
 {
   FSI::Keywords keywords(lmp, "compute fsi/force");
   keywords.key("split").logical(split, false);
@@ -50,7 +51,8 @@ ComputeFSIForce::~ComputeFSIForce()
 void ComputeFSIForce::init()
 {
   fix_fsi = FixFSI::find(lmp, "Compute fsi/force");
-  if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Compute fsi/force requires pair_style fsi/fluid");
+  if (!force->pair_match("fsi/fluid", 1))
+    error->all(FLERR, "Compute fsi/force requires pair_style fsi/fluid");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -62,7 +64,8 @@ bool ComputeFSIForce::counts(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   a point inside the body: where its first particle is; later its centre of mass when it was last asked for
+   a point inside the body: where its first particle is; later its center of mass when it was last
+   asked for
 ------------------------------------------------------------------------- */
 
 void ComputeFSIForce::find_body()
@@ -80,8 +83,9 @@ void ComputeFSIForce::find_body()
 }
 
 /* ----------------------------------------------------------------------
-   Forces on ghosts count where they are, before they are sent home: the sum is the same. Without newton ghosts get none.
-   Lever arms are those of the nearest periodic image, from a point inside the body.
+   Forces on ghosts count where they are, before they are sent home: the sum is the same. Without
+   newton ghosts get none. Lever arms are those of the nearest periodic image, from a point inside
+   the body.
 ------------------------------------------------------------------------- */
 
 void ComputeFSIForce::add(int i, const double *f, double sign, int where)
@@ -136,7 +140,8 @@ void ComputeFSIForce::compute_vector()
       const int a = (d + 1) % 3, b = (d + 2) % 3;
       vector[k + d] = f[d];
       vector[k + 3 + d] = f[3 + d];
-      if (all[MASS] > 0.0) vector[k + 3 + d] -= (all[MOMENT + a] * f[b] - all[MOMENT + b] * f[a]) / all[MASS];
+      if (all[MASS] > 0.0)
+        vector[k + 3 + d] -= (all[MOMENT + a] * f[b] - all[MOMENT + b] * f[a]) / all[MASS];
     }
   }
   if (all[MASS] == 0.0) return;    // no such particle in the group

@@ -24,7 +24,8 @@ ComputeStyle(fsi/force,ComputeFSIForce);
 
 namespace LAMMPS_NS {
 
-// Force and torque of the fluid on the solid and wall particles of a group: what pair_style fsi/fluid gives them.
+// Force and torque of the fluid on the solid and wall particles of a group: what pair_style
+// fsi/fluid gives them.
 
 class ComputeFSIForce : public Compute {
  public:
@@ -33,14 +34,17 @@ class ComputeFSIForce : public Compute {
   void init() override;
   void compute_vector() override;
 
-  // adds the forces in atom->f with this sign: pair_style fsi/fluid calls it with -1 before its loop and with +1 after it
+  // adds the forces in atom->f with this sign: pair_style fsi/fluid calls it with -1 before its
+  // loop and with +1 after it
   void tally(double sign);
-  // between the two: forces of viscosity alone, per particle, rows of so many numbers; only if split
+  // between the two: forces of viscosity alone, per particle, rows of so many numbers; only if
+  // split
   void tally_viscosity(const double *, int row);
   int split;
 
  private:
-  enum { FORCE = 0, TORQUE = 3, VISCOUS = 6, VISCOUS_TORQUE = 9, MOMENT = 12, MASS = 15, NSUM };    // about and from `origin`
+  // about and from `origin`
+  enum { FORCE = 0, TORQUE = 3, VISCOUS = 6, VISCOUS_TORQUE = 9, MOMENT = 12, MASS = 15, NSUM };
   double sum[NSUM], origin[3];
   bool reduced;    // over ranks, since the last forces
   class FixFSI *fix_fsi;

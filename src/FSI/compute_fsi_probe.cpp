@@ -38,12 +38,14 @@ static constexpr double MOST = 1.0e7;    // points of one place
 ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1), fix_fsi(nullptr)
 {
-  static const std::vector<std::string> names = {"p", "rho", "vx", "vy", "vz", "fill", "level", "wet"};
+  static const std::vector<std::string> names = {"p",  "rho",  "vx",    "vy",
+                                                 "vz", "fill", "level", "wet"};
   int iarg = 3;
   while (iarg < narg) {
     const auto it = std::find(names.begin(), names.end(), arg[iarg]);
     const auto need = [&](int n) {
-      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, fmt::format("compute fsi/probe {}", arg[iarg]), error);
+      if (iarg + n >= narg)
+        utils::missing_cmd_args(FLERR, fmt::format("compute fsi/probe {}", arg[iarg]), error);
     };
     if (it != names.end()) {
       quantity.push_back(it - names.begin());
@@ -52,7 +54,8 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
       need(1);
       extrapolate = utils::logical(FLERR, arg[iarg + 1], false, lmp);
       iarg += 2;
-    } else if (strcmp(arg[iarg], "point") == 0 || strcmp(arg[iarg], "patch") == 0 || strcmp(arg[iarg], "line") == 0) {
+    } else if (strcmp(arg[iarg], "point") == 0 || strcmp(arg[iarg], "patch") == 0 ||
+               strcmp(arg[iarg], "line") == 0) {
       const bool point = strcmp(arg[iarg], "point") == 0;
       const int n = point ? 3 : 6;
       need(n);
@@ -64,22 +67,28 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
         place.from[d] = numeric(lmp, what, arg[iarg + 1 + d]);
         place.to[d] = point ? place.from[d] : numeric(lmp, what, arg[iarg + 4 + d]);
         if (!place.line && place.to[d] < place.from[d])
-          error->all(FLERR, "Compute fsi/probe patch ends at {} = {} below its start {}", "xyz"[d], arg[iarg + 4 + d], arg[iarg + 1 + d]);
+          error->all(FLERR, "Compute fsi/probe patch ends at {} = {} below its start {}", "xyz"[d],
+                     arg[iarg + 4 + d], arg[iarg + 1 + d]);
         length += std::fabs(place.to[d] - place.from[d]);
       }
-      if (!point && length == 0.0) error->all(FLERR, "Compute fsi/probe {} has no extent: use point", arg[iarg]);
+      if (!point && length == 0.0)
+        error->all(FLERR, "Compute fsi/probe {} has no extent: use point", arg[iarg]);
       places.push_back(place);
       iarg += n + 1;
     } else
-      error->all(FLERR, "Unknown compute fsi/probe argument {}: expected p, rho, vx, vy, vz, fill, level, wet, point, patch, line or "
-                        "extrapolate", arg[iarg]);
+      error->all(FLERR,
+                 "Unknown compute fsi/probe argument {}: expected p, rho, vx, vy, vz, fill, level, "
+                 "wet, point, patch, line or extrapolate",
+                 arg[iarg]);
   }
-  if (quantity.empty()) error->all(FLERR, "Compute fsi/probe needs a quantity: p, rho, vx, vy, vz, fill, level or wet");
+  if (quantity.empty())
+    error->all(FLERR, "Compute fsi/probe needs a quantity: p, rho, vx, vy, vz, fill, level or wet");
   if (places.empty()) error->all(FLERR, "Compute fsi/probe needs a place: point, patch or line");
   for (const int q : quantity)
     for (const auto &place : places)
       if (place.line != (q == LEVEL || q == WET))
-        error->all(FLERR, "Compute fsi/probe {} needs {}", names[q], place.line ? "a point or a patch, not a line" : "a line");
+        error->all(FLERR, "Compute fsi/probe {} needs {}", names[q],
+                   place.line ? "a point or a patch, not a line" : "a line");
 
   const int rows = places.size(), columns = quantity.size();
   if (rows * columns == 1) {
@@ -108,7 +117,8 @@ ComputeFSIProbe::~ComputeFSIProbe()
 }
 
 /* ----------------------------------------------------------------------
-   points: half a spacing apart on a patch, in the middle of their cells; a quarter along a line, with both ends
+   points: half a spacing apart on a patch, in the middle of their cells; a quarter along a line,
+   with both ends
 ------------------------------------------------------------------------- */
 
 void ComputeFSIProbe::init()
@@ -127,23 +137,31 @@ void ComputeFSIProbe::init()
       place.origin[d] = place.from[d];
       if (place.line) continue;
       // the tolerance: 0.1/0.005 is not 21 cells
-      place.n[d] = std::max(1, static_cast<int>(std::min(std::ceil(2.0 * extent / fix_fsi->dx - 1.0e-6), MOST + 1.0)));
+      place.n[d] = std::max(
+          1,
+          static_cast<int>(std::min(std::ceil(2.0 * extent / fix_fsi->dx - 1.0e-6), MOST + 1.0)));
       place.step[d][d] = extent / place.n[d];
       place.origin[d] += 0.5 * place.step[d][d];
     }
     if (place.line) {
-      place.n[0] = 1 + static_cast<int>(std::min(std::ceil(4.0 * std::sqrt(length) / fix_fsi->dx - 1.0e-6), MOST));
-      for (int d = 0; d < 3; d++) place.step[0][d] = (place.to[d] - place.from[d]) / (place.n[0] - 1);
+      place.n[0] = 1 +
+          static_cast<int>(
+                       std::min(std::ceil(4.0 * std::sqrt(length) / fix_fsi->dx - 1.0e-6), MOST));
+      for (int d = 0; d < 3; d++)
+        place.step[0][d] = (place.to[d] - place.from[d]) / (place.n[0] - 1);
     }
     double n = 1.0;
     for (const int k : place.n) n *= k;
-    if (n > MOST) error->all(FLERR, "Compute fsi/probe {} has {:g} points, more than {:g}", place.line ? "line" : "patch", n, MOST);
+    if (n > MOST)
+      error->all(FLERR, "Compute fsi/probe {} has {:g} points, more than {:g}",
+                 place.line ? "line" : "patch", n, MOST);
     place.first = points.size() / 3;
     for (int a = 0; a < place.n[0]; a++)
       for (int b = 0; b < place.n[1]; b++)
         for (int c = 0; c < place.n[2]; c++)
           for (int d = 0; d < 3; d++)
-            points.push_back(place.origin[d] + a * place.step[0][d] + b * place.step[1][d] + c * place.step[2][d]);
+            points.push_back(place.origin[d] + a * place.step[0][d] + b * place.step[1][d] +
+                             c * place.step[2][d]);
   }
 }
 
@@ -157,7 +175,8 @@ double ComputeFSIProbe::Place::along(int d, const double *x) const
 }
 
 /* ----------------------------------------------------------------------
-   particles that may come within the kernel's support of a place before the neighbor lists are built anew
+   particles that may come within the kernel's support of a place before the neighbor lists are
+   built anew
 ------------------------------------------------------------------------- */
 
 void ComputeFSIProbe::find_near()
@@ -194,8 +213,54 @@ void ComputeFSIProbe::find_near()
 }
 
 /* ----------------------------------------------------------------------
-   sums of V W and of V W times each quantity over fluid particles and their images in mirror walls; along lines of V W over fluids
-   and over solids
+   points of the grid within the kernel's support of x: from lo to hi on each axis
+------------------------------------------------------------------------- */
+
+void ComputeFSIProbe::Place::range(const double *x, double cut, int *lo, int *hi) const
+{
+  for (int d = 0; d < 3; d++) {
+    lo[d] = hi[d] = 0;
+    if (n[d] == 1) continue;
+    const double *const e = step[d];
+    const double t = along(d, x), r = cut / std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    lo[d] = std::max(0, static_cast<int>(std::ceil(t - r)));
+    hi[d] = std::min(n[d] - 1, static_cast<int>(std::floor(t + r)));
+  }
+}
+
+/* ----------------------------------------------------------------------
+   mirror walls near each point, as bits; points on a wall are put where it is: not behind it
+------------------------------------------------------------------------- */
+
+std::vector<int> ComputeFSIProbe::walls_near(const Walls &walls, std::vector<double> &at) const
+{
+  std::vector<int> mask(at.size() / 3, 0);
+  if (walls.any())
+    for (size_t k = 0; k < mask.size(); k++) {
+      for (const auto &w : walls.wall)
+        if (std::fabs(w.distance(&at[3 * k])) < 1.0e-6 * fix_fsi->dx)
+          at[3 * k + w.axis] = w.position;
+      mask[k] = walls.near(&at[3 * k], fix_fsi->cut);
+    }
+  return mask;
+}
+
+/* ----------------------------------------------------------------------
+   volume of particle i at x. Behind a mirror wall a solid is not there, but its image is; walls of
+   particles have no images, and are there
+------------------------------------------------------------------------- */
+
+double ComputeFSIProbe::volume_at(const double *x, int i, const Walls &walls) const
+{
+  double vol = atom->rmass[i] / atom->rho[i];
+  if (fix_fsi->state[atom->type[i]].species == SOLID)
+    for (const auto &w : walls.wall) vol *= w.before(x, fix_fsi->dx_of(atom->type[i]));
+  return vol;
+}
+
+/* ----------------------------------------------------------------------
+   sums of V W and of V W times each quantity over fluid particles and their images in mirror walls;
+   along lines of V W over fluids and over solids
 ------------------------------------------------------------------------- */
 
 void ComputeFSIProbe::sum_up()
@@ -208,16 +273,10 @@ void ComputeFSIProbe::sum_up()
   all.resize(sums.size());
 
   // walls are known at the middle of the step, where forces are; positions are those of its end
-  const Walls walls = fix_fsi->walls.moved(update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt);
+  const Walls walls =
+      fix_fsi->walls.moved(update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt);
   std::vector<double> at(points);
-  std::vector<int> mask(npoints, 0);
-  if (walls.any())
-    for (int k = 0; k < npoints; k++) {
-      // a point on a wall is not behind it
-      for (const auto &w : walls.wall)
-        if (std::fabs(w.distance(&at[3 * k])) < 1.0e-6 * fix_fsi->dx) at[3 * k + w.axis] = w.position;
-      mask[k] = walls.near(&at[3 * k], fix_fsi->cut);
-    }
+  const std::vector<int> mask = walls_near(walls, at);
 
   double *const *const v = atom->v;
   Sight *const sight = fix_fsi->sight.get();
@@ -231,22 +290,13 @@ void ComputeFSIProbe::sum_up()
         const auto &g = fix_fsi->body_forces.of_type[atom->type[i]];
         const bool fluid = state.species == FLUID;
         const double rho = atom->rho[i], pressure = fluid ? fix_fsi->pressure(i) : 0.0;
-        double vol = atom->rmass[i] / rho;
-        // behind a mirror wall a solid is not there, but its image; walls of particles have no images, and are
-        if (state.species == SOLID)
-          for (const auto &w : walls.wall) vol *= w.before(x, fix_fsi->dx_of(atom->type[i]));
+        const double vol = volume_at(x, i, walls);
         if (vol == 0.0) continue;
         const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, fix_fsi->cut) : 0;
         const bool may_hide = sight && fluid && sight->near(atom->x[i]);
         if (may_hide) sight->look_from(atom->x[i]);
-        int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
-        for (int d = 0; d < 3; d++) {
-          if (place.n[d] == 1) continue;
-          const double *const e = place.step[d];
-          const double t = place.along(d, x), r = kernel.cut / std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-          lo[d] = std::max(0, static_cast<int>(std::ceil(t - r)));
-          hi[d] = std::min(place.n[d] - 1, static_cast<int>(std::floor(t + r)));
-        }
+        int lo[3], hi[3];
+        place.range(x, kernel.cut, lo, hi);
         for (int a = lo[0]; a <= hi[0]; a++)
           for (int b = lo[1]; b <= hi[1]; b++)
             for (int c = lo[2]; c <= hi[2]; c++) {
@@ -273,9 +323,13 @@ void ComputeFSIProbe::sum_up()
                 }
                 sum[0] += w;
                 for (size_t q = 0; q < quantity.size(); q++) {
-                  if (quantity[q] == P) sum[q + 1] += w * (extrapolate ? std::max(pressure + head, state.floor) : pressure);
-                  else if (quantity[q] == RHO) sum[q + 1] += w * rho;
-                  else if (quantity[q] != FILL) sum[q + 1] += w * velocity[quantity[q] - VX];
+                  if (quantity[q] == P)
+                    sum[q + 1] +=
+                        w * (extrapolate ? std::max(pressure + head, state.floor) : pressure);
+                  else if (quantity[q] == RHO)
+                    sum[q + 1] += w * rho;
+                  else if (quantity[q] != FILL)
+                    sum[q + 1] += w * velocity[quantity[q] - VX];
                 }
               };
               add(kernel.W(std::sqrt(rsq)), v[i]);
@@ -283,7 +337,7 @@ void ComputeFSIProbe::sum_up()
                 walls.images(mask_i & mask[k], rsq, xk, x, kernel.cutsq,
                              [&](const Walls::Reflection &s, double rsq_image, const double *) {
                                double image[3];
-                               walls.reflect_velocity(s, v[i], false, image);
+                               walls.reflect_velocity(s, v[i], image);
                                add(kernel.W(std::sqrt(rsq_image)), image);
                              });
             }
@@ -293,7 +347,8 @@ void ComputeFSIProbe::sum_up()
 }
 
 /* ----------------------------------------------------------------------
-   mean over the points of a place of quantity k; a point without fluid within the kernel's support counts as 0
+   mean over the points of a place of quantity k; a point without fluid within the kernel's support
+   counts as 0
 ------------------------------------------------------------------------- */
 
 double ComputeFSIProbe::field(const Place &place, int k) const
@@ -301,15 +356,17 @@ double ComputeFSIProbe::field(const Place &place, int k) const
   double mean = 0.0;
   for (int m = 0; m < place.size(); m++) {
     const double *const sum = &all[(size_t) (place.first + m) * nsums];
-    if (quantity[k] == FILL) mean += sum[0];
-    else if (sum[0] > 0.0) mean += sum[k + 1] / sum[0];
+    if (quantity[k] == FILL)
+      mean += sum[0];
+    else if (sum[0] > 0.0)
+      mean += sum[k + 1] / sum[0];
   }
   return mean / place.size();
 }
 
 /* ----------------------------------------------------------------------
-   Water is where fluid fills more than half of what solids leave: F > (1 - S)/2. The level is where that ends last, seen from the
-   line's start; wet is the length over which it holds.
+   Water is where fluid fills more than half of what solids leave: F > (1 - S)/2. The level is where
+   that ends last, seen from the line's start; wet is the length over which it holds.
 ------------------------------------------------------------------------- */
 
 double ComputeFSIProbe::level(const Place &place, bool wet) const

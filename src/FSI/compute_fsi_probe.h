@@ -25,9 +25,13 @@ ComputeStyle(fsi/probe,ComputeFSIProbe);
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  struct Walls;
+}
 
 // Gauges: the fluid's fields interpolated at points and over patches, and its level along lines.
-// Each rank sums over its own particles, a reduction does the rest; particles near a place are listed as seldom as neighbors are.
+// Each rank sums over its own particles, a reduction does the rest; particles near a place are
+// listed as seldom as neighbors are.
 
 class ComputeFSIProbe : public Compute {
  public:
@@ -45,19 +49,20 @@ class ComputeFSIProbe : public Compute {
   bool extrapolate;
 
   struct Particle {
-    int i;
-    double shift[3];    // to the periodic image that is near
+    int i = 0;
+    double shift[3] = {};    // to the periodic image that is near
   };
   // points of an orthogonal grid: one, along a line, or all over a patch
   struct Place {
-    bool line;
-    double from[3], to[3];
-    int n[3], first;    // first: index of its first point among all
-    double origin[3], step[3][3];
+    bool line = false;
+    double from[3] = {}, to[3] = {};
+    int n[3] = {}, first = 0;    // first: index of its first point among all
+    double origin[3] = {}, step[3][3] = {};
     std::vector<Particle> near;
 
     int size() const { return n[0] * n[1] * n[2]; }
     double along(int d, const double *x) const;    // where x is on grid axis d, in steps
+    void range(const double *x, double cut, int *lo, int *hi) const;
   };
   std::vector<Place> places;
   std::vector<double> points, sums, all;
@@ -67,6 +72,8 @@ class ComputeFSIProbe : public Compute {
   class FixFSI *fix_fsi;
 
   void find_near();
+  double volume_at(const double *x, int i, const FSI::Walls &) const;
+  std::vector<int> walls_near(const FSI::Walls &, std::vector<double> &at) const;
   void sum_up();
   void evaluate(double *result);
   double field(const Place &, int k) const;

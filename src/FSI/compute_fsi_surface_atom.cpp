@@ -34,8 +34,12 @@ ComputeFSISurfaceAtom::ComputeFSISurfaceAtom(LAMMPS *lmp, int narg, char **arg) 
     Compute(lmp, narg, arg), nmax(0), fix_fsi(nullptr)
 {
   Keywords keywords(lmp, "compute fsi/surface/atom");
-  keywords.key("number/density").set(rule, NUMBER_DENSITY).number(threshold, 0.75, Range::inside(0.0, 1.0), "threshold");
-  keywords.key("divergence").set(rule, DIVERGENCE).number(threshold, 0.75, Range::inside(0.0, 1.0), "threshold");
+  keywords.key("number/density")
+      .set(rule, NUMBER_DENSITY)
+      .number(threshold, 0.75, Range::inside(0.0, 1.0), "threshold");
+  keywords.key("divergence")
+      .set(rule, DIVERGENCE)
+      .number(threshold, 0.75, Range::inside(0.0, 1.0), "threshold");
   keywords.parse(narg - 3, arg + 3);
   peratom_flag = 1;
   size_peratom_cols = 0;
@@ -53,12 +57,14 @@ ComputeFSISurfaceAtom::~ComputeFSISurfaceAtom()
 void ComputeFSISurfaceAtom::init()
 {
   fix_fsi = FixFSI::find(lmp, "Compute fsi/surface/atom");
-  if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
+  if (!force->pair_match("fsi/fluid", 1))
+    error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
 }
 
 /* ----------------------------------------------------------------------
    number/density: psi_i <= threshold * psi of the bulk lattice (the paper's rule)
-   divergence: sum_j V_j x_ji.grad_i W_ij <= threshold * dim (Lee et al. 2008, J. Comput. Phys. 227, 8417); it does not
+   divergence: sum_j V_j x_ji.grad_i W_ij <= threshold * dim (Lee et al. 2008, J. Comput. Phys. 227,
+   8417); it does not
      depend on how dense the fluid is packed
 ------------------------------------------------------------------------- */
 
@@ -79,13 +85,16 @@ void ComputeFSISurfaceAtom::compute_peratom()
     limit = threshold * fix_fsi->psi_bulk;
   } else {
     std::fill(sum.begin(), sum.end(), 0.0);
-    dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1))->add_position_divergence(sum.data());
+    dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1))
+        ->add_position_divergence(sum.data());
     fix_fsi->add_ghosts(sum.data());
     limit = threshold * fix_fsi->dim;
   }
   const int *const mask = atom->mask, *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++)
-    vector_atom[i] = (mask[i] & groupbit) && fix_fsi->state[type[i]].species == FLUID && sum[i] <= limit ? 1.0 : 0.0;
+    vector_atom[i] =
+        (mask[i] & groupbit) && fix_fsi->state[type[i]].species == FLUID && sum[i] <= limit ? 1.0
+                                                                                            : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */

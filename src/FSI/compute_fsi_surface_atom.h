@@ -26,7 +26,8 @@ ComputeStyle(fsi/surface/atom,ComputeFSISurfaceAtom);
 
 namespace LAMMPS_NS {
 
-// 1 for fluid particles at a free surface, else 0. A solid or a wall next to the fluid is not a free surface.
+// 1 for fluid particles at a free surface, else 0. A solid or a wall next to the fluid is not a
+// free surface.
 
 class ComputeFSISurfaceAtom : public Compute {
  public:

@@ -41,56 +41,75 @@ using namespace FSI;
 
 static constexpr double AUTO = -1.0;
 static constexpr int PRESSURE = 3, NVALUES = 4;    // after the components of the velocity
-static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with; a column more or less is there at any time
-static constexpr double TOLD = 0.05;    // part of a term of the fit that the fluid must tell from lower ones
+static constexpr double STARVED = 1.0 / 3.0;    // of what the buffer began with; a column more or
+                                                // less is there at any time
+static constexpr double FIT_INDEPENDENCE = 0.05;    // a monomial is fitted if this part of its norm
+                                                    // is orthogonal to the lower ones
 static constexpr double NEXT = 1.01;    // in spacings along the plane: rows on both sides of a node
 static constexpr double LITTLE = 1.0e-3;    // of the lattice's number density: no fluid to speak of
-static constexpr double OCCUPIED = 0.5;    // of the spacing: a place is taken by who is as near
-static constexpr double STIFF = 40.0;    // absorb auto over c/2L between given pressures: a channel c/K longer, L/20
-static constexpr double FAR = 0.1;    // of rho c^2: a pressure that is not one of a fluid that is hardly compressed
-static constexpr double SPARSE = 0.75;    // of the particles at the plane: a slice with fewer is not full
-static constexpr double AT_SURFACE = 0.9;    // of the density: m psi of a particle at a free surface is less
-static constexpr double EXCESS = 0.02;    // of the mass near the plane that is worth a word
-// Time in h/c in which particles and room come together before the plane; steps between two looks, and of
-// how many looks the mean is that is told
+static constexpr double OCCUPIED = 0.5;     // of the spacing: a place is taken by who is as near
+static constexpr double STIFF = 40.0;    // absorb auto over c/2L between given pressures: a channel
+                                         // c/K longer, L/20
+static constexpr double FAR = 0.1;    // of rho c^2: a pressure that is not one of a fluid that is
+                                      // hardly compressed
+static constexpr double SPARSE = 0.75;       // of the particles at the plane: a slice with fewer is
+                                             // not full
+static constexpr double AT_SURFACE = 0.9;    // of the density: m psi of a particle at a free
+                                             // surface is less
+static constexpr double EXCESS = 0.02;       // of the mass near the plane that is worth a word
+// Time in h/c in which particles and room come together before the plane; steps between two looks,
+// and of how many looks the mean is that is told
 static constexpr double SETTLE = 50.0;
-// Part of the dynamic pressure of inflow that a given pressure answers, as usual (Esmaily Moghadam et al. 2011, Comput. Mech. 48, 277)
+// Part of the dynamic pressure of inflow that a given pressure answers, as usual (Esmaily Moghadam
+// et al. 2011, Comput. Mech. 48, 277)
 static constexpr double STEADY = 0.2;
 // Part of the velocity against the mean that the buffer takes: where pressures are given counterflows feed each other
 static constexpr double COUNTER = 0.0;
 static constexpr int LOOK_EVERY = 20, LOOKS = 20;
-// Spacing of what comes in: part of an error that a buffer's length of inflow mends; what a lattice that is
-// sheared or bent shows of one; and the range, where particles stay a fluid
+// Spacing of what comes in: part of an error that a buffer's length of inflow mends; what a lattice
+// that is sheared or bent shows of one; and the range, where particles stay a fluid
 static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15;
 
 /* ---------------------------------------------------------------------- */
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
-    given(lmp, std::string("fix ") + style, NVALUES), background(false),
-    length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{}, filled(false), wave(0.0), gradient(0.0),
-    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{}
+    FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style),
+    outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
+    given(lmp, std::string("fix ") + style, NVALUES), background(false), length(0.0),
+    region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{}, filled(false),
+    wave(0.0), gradient(0.0), before(0.0), served(0.0), has_before(false), passed_in(0.0),
+    passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0),
+    last_buffer(-1.0), told{}, push_sum{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
   const std::string face = arg[3];
-  if (face.size() != 3 || face[0] < 'x' || face[0] > 'z' || (face.substr(1) != "lo" && face.substr(1) != "hi"))
-    error->all(FLERR, "Unknown {} face {}: expected xlo, xhi, ylo, yhi, zlo or zhi", std::string("fix ") + style, face);
+  if (face.size() != 3 || face[0] < 'x' || face[0] > 'z' ||
+      (face.substr(1) != "lo" && face.substr(1) != "hi"))
+    error->all(FLERR, "Unknown {} face {}: expected xlo, xhi, ylo, yhi, zlo or zhi",
+               std::string("fix ") + style, face);
   axis = face[0] - 'x';
   side = face[1] == 'l' ? 1.0 : -1.0;
-  if (axis >= domain->dimension) error->all(FLERR, "{} {} is not possible for dimension 2", who, face);
+  if (axis >= domain->dimension)
+    error->all(FLERR, "{} {} is not possible for dimension 2", who, face);
   position = numeric(lmp, who + " " + face, arg[4]);
 
   keywords.key("velocity").word(words[0], "").word(words[1], "").word(words[2], "");
   keywords.key("pressure").word(words[PRESSURE], "");
-  keywords.key("absorb").number(absorb, outlet ? AUTO : 0.0, Range::from(0.0)).or_word("auto", AUTO);
+  keywords.key("absorb")
+      .number(absorb, outlet ? AUTO : 0.0, Range::from(0.0))
+      .or_word("auto", AUTO);
   keywords.key("buffer").number(given_length, AUTO, Range::above(0.0)).or_word("auto", AUTO);
   keywords.key("region").word(region_id, "");
   keywords.parse(narg - 5, arg + 5);
 
   const std::string p = words[PRESSURE];
-  if (!words[0].empty() && !p.empty()) error->all(FLERR, "{} {} takes velocity or pressure, not both: the other one is that of the fluid", who, face);
-  if (words[0].empty() && p.empty() && !outlet) error->all(FLERR, "{} {} requires keyword velocity or pressure", who, face);
+  if (!words[0].empty() && !p.empty())
+    error->all(FLERR,
+               "{} {} takes velocity or pressure, not both: the other one is that of the fluid",
+               who, face);
+  if (words[0].empty() && p.empty() && !outlet)
+    error->all(FLERR, "{} {} requires keyword velocity or pressure", who, face);
   if (words[0].empty()) {
     background = p.empty();
     if (!background && p != "free") given.read(PRESSURE, p, "pressure", "v_name or free");
@@ -101,8 +120,10 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
         error->all(FLERR, "{} velocity along z must be 0 in 2D, not {}", who, words[d]);
     }
   }
-  if (p == "free" && absorb > 0.0) error->all(FLERR, "{} absorb is not for pressure free, which has no value to go back to", who);
-  if (!region_id.empty() && !domain->get_region_by_id(region_id)) error->all(FLERR, "Region {} of {} does not exist", region_id, keywords_name());
+  if (p == "free" && absorb > 0.0)
+    error->all(FLERR, "{} absorb is not for pressure free, which has no value to go back to", who);
+  if (!region_id.empty() && !domain->get_region_by_id(region_id))
+    error->all(FLERR, "Region {} of {} does not exist", region_id, keywords_name());
 
   force_reneighbor = 1;
   next_reneighbor = -1;    // whenever lists are built
@@ -131,8 +152,8 @@ double FixFSIInlet::value(int k, int i) const
   const double x = given(k, i);
   if (!std::isfinite(x))
     error->one(FLERR, "{} {}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", who, id,
-               k == PRESSURE ? "pressure" : fmt::format("velocity along {}", "xyz"[k]), x, atom->tag[i],
-               atom->x[i][0], atom->x[i][1], atom->x[i][2], given.see(k));
+               k == PRESSURE ? "pressure" : fmt::format("velocity along {}", "xyz"[k]), x,
+               atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given.see(k));
   return x;
 }
 
@@ -141,69 +162,114 @@ double FixFSIInlet::value(int k, int i) const
 void FixFSIInlet::init()
 {
   fix_fsi = FixFSI::find(lmp, who);
-  if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
+  if (!force->pair_match("fsi/fluid", 1))
+    error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
   if (fix_fsi->density_fluid != FixFSI::CONTINUITY)
-    error->all(FLERR, "{} requires fix fsi with fluid continuity: a density that is summed cannot be prescribed", who);
+    error->all(
+        FLERR,
+        "{} requires fix fsi with fluid continuity: a density that is summed cannot be prescribed",
+        who);
   if (!neighbor->dist_check)
-    error->all(FLERR, "{} requires neigh_modify check yes: particles are made and deleted when lists are built, before they have moved far", who);
-  if (domain->periodicity[axis]) error->all(FLERR, "{} {} is in periodic dimension {}: its boundary must be fixed (f)", who, id, "xyz"[axis]);
+    error->all(FLERR,
+               "{} requires neigh_modify check yes: particles are made and deleted when lists are "
+               "built, before they have moved far",
+               who);
+  if (domain->periodicity[axis])
+    error->all(FLERR, "{} {} is in periodic dimension {}: its boundary must be fixed (f)", who, id,
+               "xyz"[axis]);
 
-  // lists hold for half a skin; a place that becomes free at the end is filled when a column has gone by
+  // lists hold for half a skin; a place that becomes free at the end is filled when a column has
+  // gone by
   const double least = fix_fsi->cut + fix_fsi->dx + 0.5 * neighbor->skin;
   length = fix_fsi->dx * std::ceil(least / fix_fsi->dx - 1.0e-9);
   if (given_length != AUTO) {
     length = fix_fsi->dx * std::round(given_length / fix_fsi->dx);
     if (std::fabs(length - given_length) > 1.0e-6 * fix_fsi->dx)
-      error->all(FLERR, "{} buffer {} must be a multiple of the spacing {}: its end is where the lattice goes on", who, given_length, fix_fsi->dx);
+      error->all(
+          FLERR,
+          "{} buffer {} must be a multiple of the spacing {}: its end is where the lattice goes on",
+          who, given_length, fix_fsi->dx);
     if (length < least - 1.0e-9 * fix_fsi->dx)
-      error->all(FLERR, "{} buffer {} is too short: expected at least {:g}, the kernel's support {:g}, a spacing and half the skin", who, given_length,
-                 fix_fsi->dx * std::ceil(least / fix_fsi->dx - 1.0e-9), fix_fsi->cut);
+      error->all(FLERR,
+                 "{} buffer {} is too short: expected at least {:g}, the kernel's support {:g}, a "
+                 "spacing and half the skin",
+                 who, given_length, fix_fsi->dx * std::ceil(least / fix_fsi->dx - 1.0e-9),
+                 fix_fsi->cut);
   }
-  if (!made.empty() && (std::fabs(position - made[0]) > 1.0e-6 * fix_fsi->dx || std::fabs(length - made[1]) > 1.0e-6 * fix_fsi->dx))
-    error->all(FLERR, "{} {}: the restart file has its plane at {:g} with a buffer of {:g}, here it is {:g} with {:g}: expected the same, since the buffer is "
-                      "full. Give keyword buffer if the skin has changed", who, id, made[0], made[1], position, length);
-  // a number in a script may be that of the box but for its last digits
-  const double end = position - side * length, little = 1.0e-9 * domain->prd[axis], lo = domain->boxlo[axis], hi = domain->boxhi[axis];
-  if (position < lo - little || position > hi + little)
-    error->all(FLERR, "{} {}: its plane at {} = {} is outside the box, from {} to {}", who, id, "xyz"[axis], position, lo, hi);
-  // what has passed the end of the buffer is deleted with the next list
-  const double last = end - side * 0.5 * neighbor->skin;
-  if (domain->boundary[axis][side < 0.0] == 1 && (last < lo - little || last > hi + little))
-    error->all(FLERR, "{} {}: its buffer, {} = {:g} to {:g}, and half the neighbor skin, {:g}, must be inside the box, from {} to {}", who, id, "xyz"[axis],
-               position, end, 0.5 * neighbor->skin, lo, hi);
-
-  region = nullptr;
-  if (!region_id.empty()) {
-    region = domain->get_region_by_id(region_id);
-    if (!region) error->all(FLERR, "Region {} of {} does not exist", region_id, keywords_name());
-    if (region->dynamic_check()) error->all(FLERR, "Region {} of {} must not move nor change", region_id, keywords_name());
-    if (region->bboxflag) {
-      const double from[] = {region->extent_xlo, region->extent_ylo, region->extent_zlo}, to[] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
-      for (int d = 0; d < fix_fsi->dim; d++)
-        if (d != axis && (from[d] > domain->boxhi[d] || to[d] < domain->boxlo[d]))
-          error->all(FLERR, "Region {} of {}, from {} to {} along {}, is outside the box", region_id, keywords_name(), from[d], to[d], "xyz"[d]);
-      if (from[axis] > position || to[axis] < position)
-        error->all(FLERR, "Region {} of {}, from {} to {} along {}, does not reach its plane at {}", region_id, keywords_name(), from[axis], to[axis],
-                   "xyz"[axis], position);
-    }
-  }
+  if (!made.empty() &&
+      (std::fabs(position - made[0]) > 1.0e-6 * fix_fsi->dx ||
+       std::fabs(length - made[1]) > 1.0e-6 * fix_fsi->dx))
+    error->all(FLERR,
+               "{} {}: the restart file has its plane at {:g} with a buffer of {:g}, here it is "
+               "{:g} with {:g}: expected the same, since the buffer is full. Give keyword buffer "
+               "if the skin has changed",
+               who, id, made[0], made[1], position, length);
+  check_plane();
+  find_region();
   given.find();
   zone_group = igroup;
-  if (given.of_atoms())
-    zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
+  if (given.of_atoms()) zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
   driven = false;
-  for (const auto &fix : modify->get_fix_by_style("^fsi/[inout]+let$"))
+  for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
     driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->words[0].empty();
   told = {};
   if (given.source(PRESSURE) == Values::NUMBER && is_far(given.number(PRESSURE))) {
     const State &soft = softest();
     const double away = std::fabs(given.number(PRESSURE) - soft.p0);
-    error->all(FLERR, "{} {}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
-                      "most. Is it in units {}? Else take sound {:.3g} or more in pair_style fsi/fluid",
+    error->all(FLERR,
+               "{} {}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
+               "most. Is it in units {}? Else take sound {:.3g} or more in pair_style fsi/fluid",
                who, id, given.number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
                update->unit_style, std::sqrt(away / (FAR * soft.rho0)));
   }
   leave_an_id_free();
+}
+
+/* ----------------------------------------------------------------------
+   plane and buffer are inside the box
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::check_plane()
+{
+  // a number in a script may be that of the box but for its last digits
+  const double end = position - side * length, little = 1.0e-9 * domain->prd[axis],
+               lo = domain->boxlo[axis], hi = domain->boxhi[axis];
+  if (position < lo - little || position > hi + little)
+    error->all(FLERR, "{} {}: its plane at {} = {} is outside the box, from {} to {}", who, id,
+               "xyz"[axis], position, lo, hi);
+  // what has passed the end of the buffer is deleted with the next list
+  const double last = end - side * 0.5 * neighbor->skin;
+  if (domain->boundary[axis][side < 0.0] == 1 && (last < lo - little || last > hi + little))
+    error->all(FLERR,
+               "{} {}: its buffer, {} = {:g} to {:g}, and half the neighbor skin, {:g}, must be "
+               "inside the box, from {} to {}",
+               who, id, "xyz"[axis], position, end, 0.5 * neighbor->skin, lo, hi);
+}
+
+/* ----------------------------------------------------------------------
+   the part of the plane that is open
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::find_region()
+{
+  region = nullptr;
+  if (!region_id.empty()) {
+    region = domain->get_region_by_id(region_id);
+    if (!region) error->all(FLERR, "Region {} of {} does not exist", region_id, keywords_name());
+    if (region->dynamic_check())
+      error->all(FLERR, "Region {} of {} must not move nor change", region_id, keywords_name());
+    if (region->bboxflag) {
+      const double from[] = {region->extent_xlo, region->extent_ylo, region->extent_zlo},
+                   to[] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
+      for (int d = 0; d < fix_fsi->dim; d++)
+        if (d != axis && (from[d] > domain->boxhi[d] || to[d] < domain->boxlo[d]))
+          error->all(FLERR, "Region {} of {}, from {} to {} along {}, is outside the box",
+                     region_id, keywords_name(), from[d], to[d], "xyz"[d]);
+      if (from[axis] > position || to[axis] < position)
+        error->all(FLERR, "Region {} of {}, from {} to {} along {}, does not reach its plane at {}",
+                   region_id, keywords_name(), from[axis], to[axis], "xyz"[axis], position);
+    }
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -225,9 +291,9 @@ bool FixFSIInlet::is_far(double p) const
 }
 
 /* ----------------------------------------------------------------------
-   Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps that
-   sort), before the buffers are filled, and as many may come as leave: so one is left free, below the
-   largest of a fluid.
+   Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps
+   that sort), before the buffers are filled, and as many may come as leave: so one is left free,
+   below the largest of a fluid.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::leave_an_id_free()
@@ -272,7 +338,8 @@ bool FixFSIInlet::holds(const double *x) const
 double FixFSIInlet::energy(int i) const
 {
   const double *const v = atom->v[i];
-  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + fix_fsi->potential(i) + fix_fsi->stored(i);
+  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + fix_fsi->potential(i) +
+      fix_fsi->stored(i);
 }
 
 // as Comm::exchange() does, which comes next: new atoms take their places
@@ -292,7 +359,8 @@ void FixFSIInlet::setup_pre_exchange()
   for (const auto &w : fix_fsi->walls.wall) {
     const double at = side * (w.position - position);
     if (w.axis == axis && !w.finite && at < 0.5 * fix_fsi->dx && at > -length)
-      error->all(FLERR, "{} {}: the mirror wall {}{} at {} closes it", who, id, "xyz"[axis], w.side > 0.0 ? "lo" : "hi", w.position);
+      error->all(FLERR, "{} {}: the mirror wall {}{} at {} closes it", who, id, "xyz"[axis],
+                 w.side > 0.0 ? "lo" : "hi", w.position);
   }
   if (region) region->prematch();
   if (filled) return;
@@ -308,7 +376,8 @@ void FixFSIInlet::fill_buffer()
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (s <= -2.0 * length || s >= length) continue;
-    if (fix_fsi->state[atom->type[i]].species == RIGID && s > -length) own[s > 0.0 ? WALLS_AHEAD : WALLS_BEHIND]++;
+    if (fix_fsi->state[atom->type[i]].species == RIGID && s > -length)
+      own[s > 0.0 ? WALLS_AHEAD : WALLS_BEHIND]++;
     if (!is_fluid(i) || !in_patch(atom->x[i])) continue;
     if (s > 0.0) {
       own[AHEAD]++;
@@ -322,14 +391,21 @@ void FixFSIInlet::fill_buffer()
   MPI_Allreduce(own, all, NCOUNT, MPI_LMP_BIGINT, MPI_SUM, world);
   const double end = position - side * length;
   if (all[BEHIND] == 0 && all[AHEAD] == 0 && !outlet)
-    error->all(FLERR, "{} {}: there is no fluid of group {} at its plane {} = {}: fill the buffer, to {} = {:g}, or what is before it", who, id,
-               group->names[igroup], "xyz"[axis], position, "xyz"[axis], end);
+    error->all(FLERR,
+               "{} {}: there is no fluid of group {} at its plane {} = {}: fill the buffer, to {} "
+               "= {:g}, or what is before it",
+               who, id, group->names[igroup], "xyz"[axis], position, "xyz"[axis], end);
   if (all[BEYOND] > 0)
-    error->all(FLERR, "{} {}: {} particles of fluid are beyond the end of its buffer, {} = {:g}: {}{} has the fluid at {} {} {}", who, id, all[BEYOND],
-               "xyz"[axis], end, "xyz"[axis], side > 0.0 ? "lo" : "hi", "xyz"[axis], side > 0.0 ? ">" : "<", position);
+    error->all(FLERR,
+               "{} {}: {} particles of fluid are beyond the end of its buffer, {} = {:g}: {}{} has "
+               "the fluid at {} {} {}",
+               who, id, all[BEYOND], "xyz"[axis], end, "xyz"[axis], side > 0.0 ? "lo" : "hi",
+               "xyz"[axis], side > 0.0 ? ">" : "<", position);
   if (all[WALLS_AHEAD] > 0 && 2 * all[WALLS_BEHIND] < all[WALLS_AHEAD] && comm->me == 0)
-    error->warning(FLERR, "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls should go on along the buffer, to {} = {:g}", who,
-                   id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
+    error->warning(FLERR,
+                   "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls "
+                   "should go on along the buffer, to {} = {:g}",
+                   who, id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
   if (all[BEHIND] > 0) check_slices(slices);
   if (all[BEHIND] == 0 && all[AHEAD] > 0) {
     auto copies = go_on_behind();
@@ -364,36 +440,41 @@ void FixFSIInlet::check_slices(const std::vector<int> &mine) const
   std::vector<int> all(mine.size());
   MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_INT, MPI_SUM, world);
   const int most = *std::max_element(all.begin(), all.end());
-  const auto few = std::find_if(all.begin(), all.end(), [&](int n) { return n < 0.5 * most; });
+  const auto few = std::find_if(all.begin(), all.end(), [&](int n) {
+    return n < 0.5 * most;
+  });
   if (few == all.end() || comm->me) return;
   const double from = position - side * (few - all.begin()) * fix_fsi->dx;
-  error->warning(FLERR, "{} {}: its buffer has {} particles from {} = {:g} to {:g} and {} elsewhere: what is not "
-                        "there will not come in. Fill it to {} = {:g}, or leave it empty",
+  error->warning(FLERR,
+                 "{} {}: its buffer has {} particles from {} = {:g} to {:g} and {} elsewhere: what "
+                 "is not there will not come in. Fill it to {} = {:g}, or leave it empty",
                  who, id, *few, "xyz"[axis], from, from - side * fix_fsi->dx, most, "xyz"[axis],
                  position - side * length);
 }
 
 /* ----------------------------------------------------------------------
-   Copies of the fluid at the plane that fill the buffer: of as many slices as are full, again and again,
-   so that its lattice goes on. A slice is not where the fluid ends, or where a body stands in the way of
-   the fluid at the plane.
+   Copies of the fluid at the plane that fill the buffer: of as many slices as are full, again and
+   again, so that its lattice goes on. A slice is not where the fluid ends, or where a body stands
+   in the way of the fluid at the plane.
 ------------------------------------------------------------------------- */
 
 std::vector<FixFSIInlet::Copy> FixFSIInlet::go_on_behind() const
 {
   const int most = number_of_slices(), full = full_slices();
   if (full == 0 && !outlet)
-    error->all(FLERR, "{} {}: there is fluid of group {} before its plane {} = {}, but none within a spacing of it: "
-                      "fill what is between, or the buffer, to {} = {:g}", who, id, group->names[igroup],
-               "xyz"[axis], position, "xyz"[axis], position - side * length);
+    error->all(FLERR,
+               "{} {}: there is fluid of group {} before its plane {} = {}, but none within a "
+               "spacing of it: fill what is between, or the buffer, to {} = {:g}",
+               who, id, group->names[igroup], "xyz"[axis], position, "xyz"[axis],
+               position - side * length);
   std::vector<Copy> copies;
   if (full == 0) return copies;
   const double period = fix_fsi->dx * full;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], *const v = atom->v[i], s = inside(x);
     if (s <= 0.0 || s >= length || !is_fluid(i) || !in_patch(x) || slice(s) >= full) continue;
-    Copy c = {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i],
-              atom->molecule[i], atom->type[i], atom->mask[i]};
+    Copy c = {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i],  atom->rmass[i],
+              atom->tag[i],       atom->molecule[i],  atom->type[i], atom->mask[i]};
     for (int k = 1; slice(k * period - s) < most; k++) {
       c.x[axis] = x[axis] - side * k * period;
       copies.push_back(c);
@@ -411,7 +492,9 @@ std::vector<FixFSIInlet::Column> FixFSIInlet::columns_at_plane() const
     if (s > 0.0 && slice(s) == 0 && is_fluid(i) && in_patch(x)) own.push_back(along(x));
   }
   auto columns = gather(own, world);
-  std::sort(columns.begin(), columns.end(), [](const Column &a, const Column &b) { return a.at[0] < b.at[0]; });
+  std::sort(columns.begin(), columns.end(), [](const Column &a, const Column &b) {
+    return a.at[0] < b.at[0];
+  });
   return columns;
 }
 
@@ -441,13 +524,16 @@ int FixFSIInlet::full_slices() const
       below = below || c.at[0] < here.at[0];
       above = above || c.at[0] > here.at[0];
       if (std::fabs(c.at[0] - here.at[0]) < 0.5 * dx)
-        limit = std::min(limit, static_cast<int>((s - 0.5 * fix_fsi->dx_of(atom->type[i])) / dx + 1.0e-6));
+        limit = std::min(limit,
+                         static_cast<int>((s - 0.5 * fix_fsi->dx_of(atom->type[i])) / dx + 1.0e-6));
     }
     if (state.species == SOLID && slice(s) == 0 && below && above && !hole++)
-      error->warning(FLERR, "{} {}: atom {} of a solid is within a spacing of its plane {} = {}: behind it the buffer "
-                            "has a hole, and what is not there will not come in. Move the solid or the plane, or "
-                            "fill the buffer, to {} = {:g}", who, id, atom->tag[i], "xyz"[axis], position,
-                     "xyz"[axis], position - side * length);
+      error->warning(FLERR,
+                     "{} {}: atom {} of a solid is within a spacing of its plane {} = {}: behind "
+                     "it the buffer has a hole, and what is not there will not come in. Move the "
+                     "solid or the plane, or fill the buffer, to {} = {:g}",
+                     who, id, atom->tag[i], "xyz"[axis], position, "xyz"[axis],
+                     position - side * length);
   }
   limit = std::max(limit, 1);
   MPI_Allreduce(&limit, &all, 1, MPI_INT, MPI_MIN, world);
@@ -455,14 +541,11 @@ int FixFSIInlet::full_slices() const
 }
 
 /* ----------------------------------------------------------------------
-   Makes copies: IDs go on from the largest that there ever was, in the order of those of the parents, whatever rank has them. Fluid that is
-   in the place keeps it.
+   sorts copies along the plane; is there somebody already where they will be?
 ------------------------------------------------------------------------- */
 
-void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
+std::vector<int> FixFSIInlet::find_occupied(std::vector<Copy> &copies, bool at_start)
 {
-  std::vector<Copy> copies = gather(own, world);
-  if (copies.empty()) return;
   double low = inside(copies[0].x), high = low;
   for (auto &c : copies) {
     domain->remap(c.x);
@@ -473,7 +556,9 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
   // along the lateral axis, then the distance
   const int a = axis == 0 ? 1 : 0;
   const double reach = OCCUPIED * fix_fsi->dx;
-  std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) { return b.x[a] < c.x[a] || (b.x[a] == c.x[a] && b.parent < c.parent); });
+  std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) {
+    return b.x[a] < c.x[a] || (b.x[a] == c.x[a] && b.parent < c.parent);
+  });
   std::vector<int> is_occupied(copies.size(), 0), occupied(copies.size());
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
@@ -482,22 +567,40 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
     if (species != FLUID && !at_start) continue;    // as near as its parent is in front
     for (int image = -domain->periodicity[a]; image <= domain->periodicity[a]; image++) {
       const double from = atom->x[i][a] + image * domain->prd[a] - reach;
-      auto c = std::lower_bound(copies.begin(), copies.end(), from, [&](const Copy &b, double x) { return b.x[a] < x; });
+      auto c = std::lower_bound(copies.begin(), copies.end(), from, [&](const Copy &b, double x) {
+        return b.x[a] < x;
+      });
       for (; c != copies.end() && c->x[a] < from + 2.0 * reach; c++) {
         double d[3] = {c->x[0] - atom->x[i][0], c->x[1] - atom->x[i][1], c->x[2] - atom->x[i][2]};
         domain->minimum_image(d);
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] >= reach * reach) continue;
         if (species != FLUID)
-          error->one(FLERR, "{} {}: atom {} of a {} at {:g} {:g} {:g} is where fluid of its buffer should be", who, id, atom->tag[i],
-                     species == RIGID ? "wall" : "solid", atom->x[i][0], atom->x[i][1], atom->x[i][2]);
+          error->one(
+              FLERR,
+              "{} {}: atom {} of a {} at {:g} {:g} {:g} is where fluid of its buffer should be",
+              who, id, atom->tag[i], species == RIGID ? "wall" : "solid", atom->x[i][0],
+              atom->x[i][1], atom->x[i][2]);
         is_occupied[c - copies.begin()] = 1;
       }
     }
   }
   MPI_Allreduce(is_occupied.data(), occupied.data(), occupied.size(), MPI_INT, MPI_MAX, world);
+  return occupied;
+}
 
+/* ----------------------------------------------------------------------
+   Makes copies: IDs go on from the largest that there ever was, in the order of those of the
+   parents, whatever rank has them. Fluid that is in the place keeps it.
+------------------------------------------------------------------------- */
+
+void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
+{
+  std::vector<Copy> copies = gather(own, world);
+  if (copies.empty()) return;
+  const std::vector<int> occupied = find_occupied(copies, at_start);
   tagint largest = last_id, id_now;
-  for (const auto &fix : modify->get_fix_by_style("^fsi/[inout]+let$")) largest = std::max(largest, dynamic_cast<FixFSIInlet *>(fix)->last_id);
+  for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
+    largest = std::max(largest, dynamic_cast<FixFSIInlet *>(fix)->last_id);
   for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
   MPI_Allreduce(&largest, &id_now, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   for (size_t k = 0; k < copies.size(); k++)
@@ -510,7 +613,9 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
   bigint wanted = 0, made, mine;
   for (auto &c : copies) {
     if (c.parent == 0) continue;
-    if (id_now >= MAXTAGINT) error->all(FLERR, "{} {}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who, id);
+    if (id_now >= MAXTAGINT)
+      error->all(FLERR, "{} {}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them",
+                 who, id);
     id_now++;
     wanted++;
     if (!domain->ownatom(id_now, c.x, nullptr, 1)) continue;
@@ -531,7 +636,9 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
   }
   mine = atom->nlocal - first;
   MPI_Allreduce(&mine, &made, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (made != wanted) error->all(FLERR, "{} {}: {} of {} new particles are outside the box", who, id, wanted - made, wanted);
+  if (made != wanted)
+    error->all(FLERR, "{} {}: {} of {} new particles are outside the box", who, id, wanted - made,
+               wanted);
   atom->natoms += made;
   net += made;
   if (atom->map_style != Atom::MAP_NONE) {
@@ -547,7 +654,7 @@ void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
 void FixFSIInlet::pre_exchange()
 {
   if (region) region->prematch();
-  const auto others = modify->get_fix_by_style("^fsi/[inout]+let$");
+  const auto others = modify->get_fix_by_style("^fsi/[io][nu]t?let$");
   std::vector<Copy> copies;
   std::vector<int> gone;
   double own[5] = {}, all[5];    // in, out, net mass, made, deleted
@@ -561,8 +668,14 @@ void FixFSIInlet::pre_exchange()
     }
     if (of_buffer[i] == FOLLOWED) {
       const double *const v = atom->v[i], *const y = behind[i];
-      copies.push_back({{y[0], y[1], y[2]}, {v[0], v[1], v[2]}, atom->rho[i], atom->rmass[i], atom->tag[i],
-                        atom->molecule[i], type[i], atom->mask[i]});
+      copies.push_back({{y[0], y[1], y[2]},
+                        {v[0], v[1], v[2]},
+                        atom->rho[i],
+                        atom->rmass[i],
+                        atom->tag[i],
+                        atom->molecule[i],
+                        type[i],
+                        atom->mask[i]});
       of_buffer[i] = MEMBER;
     }
     if (of_buffer[i] && s > 0.0) {
@@ -579,8 +692,10 @@ void FixFSIInlet::pre_exchange()
     if (!of_buffer[i]) continue;
     for (const auto &other : others)
       if (other != this && dynamic_cast<FixFSIInlet *>(other)->holds(x))
-        error->one(FLERR, "Atom {} at {:g} {:g} {:g} is in the buffers of fix {} and fix {}: keep them apart, with keyword region", atom->tag[i], x[0],
-                   x[1], x[2], id, other->id);
+        error->one(FLERR,
+                   "Atom {} at {:g} {:g} {:g} is in the buffers of fix {} and fix {}: keep them "
+                   "apart, with keyword region",
+                   atom->tag[i], x[0], x[1], x[2], id, other->id);
     if (s <= -length) gone.push_back(i);
   }
   own[3] = copies.size();
@@ -610,7 +725,8 @@ void FixFSIInlet::pre_exchange()
 }
 
 /* ----------------------------------------------------------------------
-   behind the plane, and no fluid that this end lets pass: LAMMPS would say of it that it is lost, and no more
+   behind the plane, and no fluid that this end lets pass: LAMMPS would say of it that it is lost,
+   and no more
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::stranger(int i)
@@ -619,23 +735,30 @@ void FixFSIInlet::stranger(int i)
   const int species = fix_fsi->state[atom->type[i]].species;
   if (!in_patch(x)) return;
   if (species == SOLID && inside(x) > -length)
-    error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone", atom->tag[i], keywords_name(), id);
-  const std::string what = fmt::format("{} {}: atom {} of type {}, {},", who, id, atom->tag[i], atom->type[i],
-                                       species == FLUID ? fmt::format("a fluid that is not of group {}", group->names[igroup])
-                                           : species == SOLID ? "of a solid" : "of a wall or rigid body");
+    error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone",
+               atom->tag[i], keywords_name(), id);
+  const std::string what = fmt::format(
+      "{} {}: atom {} of type {}, {},", who, id, atom->tag[i], atom->type[i],
+      species == FLUID       ? fmt::format("a fluid that is not of group {}", group->names[igroup])
+          : species == SOLID ? "of a solid"
+                             : "of a wall or rigid body");
   const bool out = side > 0.0 ? x[axis] < domain->boxlo[axis] : x[axis] >= domain->boxhi[axis];
   if (out && domain->boundary[axis][side < 0.0] == 1 && output->thermo->lostflag == Thermo::ERROR)
-    error->one(FLERR, "{} leaves the box through this end, which lets only fluid of its group pass", what);
+    error->one(FLERR, "{} leaves the box through this end, which lets only fluid of its group pass",
+               what);
   if (told.stranger || !fix_fsi->is_moved(i) || side * atom->v[i][axis] >= 0.0) return;
   told.stranger = true;
-  error->warning(FLERR, "{} moves into the buffer, which only fluid of its group can pass: it will be lost at the end of the box", what);
+  error->warning(FLERR,
+                 "{} moves into the buffer, which only fluid of its group can pass: it will be "
+                 "lost at the end of the box",
+                 what);
 }
 
 /* ----------------------------------------------------------------------
-   The last of a row has come a spacing from the end: another follows it, from the next list on, but where
-   it would be had it been made now, so that it does not matter when lists are built. The spacing is that
-   at which particles have the room of their density (Copies made a buffer's length behind those that pass
-   the plane would bring each gap again and again.)
+   The last of a row has come a spacing from the end: another follows it, from the next list on, but
+   where it would be had it been made now, so that it does not matter when lists are built. The
+   spacing is that at which particles have the room of their density (Copies made a buffer's length
+   behind those that pass the plane would bring each gap again and again.)
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::follow(int i, double s)
@@ -649,7 +772,8 @@ void FixFSIInlet::follow(int i, double s)
 }
 
 /* ----------------------------------------------------------------------
-   Fluid at the plane and in the buffer, of this rank: from one list to the next. Variables are evaluated for a group: it gets one of its own.
+   Fluid at the plane and in the buffer, of this rank: from one list to the next. Variables are
+   evaluated for a group: it gets one of its own.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::find_places()
@@ -667,9 +791,11 @@ void FixFSIInlet::find_places()
 }
 
 /* ----------------------------------------------------------------------
-   Pressure or normal velocity of the fluid at the nodes of a lattice in the plane: a fit, quadratic along the plane, of the fluid within the
-   kernel's support, which is on one side only. (A linear one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is
-   missing in the pressure, too.) The nodes are the same on all ranks. Terms that the fluid there cannot tell from lower ones are left out.
+   Pressure or normal velocity of the fluid at the nodes of a lattice in the plane: a fit, quadratic
+   along the plane, of the fluid within the kernel's support, which is on one side only. (A linear
+   one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the
+   pressure, too.) The nodes are the same on all ranks. Terms that the fluid there cannot tell from
+   lower ones are left out.
 ------------------------------------------------------------------------- */
 
 template <class Visit> void FixFSIInlet::at_nodes(const double *x, double reach, Visit visit) const
@@ -719,19 +845,43 @@ int FixFSIInlet::place_nodes()
   return nodes;
 }
 
-// the row of a fit's inverse that gives its value at the node: terms 1, x, xx or 1, x, y, xx, xy, yy
+// the row of a fit's inverse that gives its value at the node: terms 1, x, xx or 1, x, y, xx, xy,
+// yy
 template <int TERMS> static void value_weights(const double *moment, double *row)
 {
   constexpr bool PLANE = TERMS == 6;
-  constexpr int degree[] = {0, 1, PLANE ? 1 : 2, 2, 2, 2}, power_of_y[] = {0, 0, PLANE ? 1 : 0, 0, 1, 2};
+  constexpr int degree[] = {0, 1, PLANE ? 1 : 2, 2, 2, 2},
+                power_of_y[] = {0, 0, PLANE ? 1 : 0, 0, 1, 2};
   double A[packed_size(TERMS)];
   for (int a = 0, k = 0; a < TERMS; a++)
     for (int b = 0; b <= a; b++, k++) {
       const int n = degree[a] + degree[b];
       A[k] = moment[PLANE ? n * (n + 1) / 2 + power_of_y[a] + power_of_y[b] : n];
     }
-  gradient_coefficients<1, TERMS>(A, row, TOLD);
+  gradient_coefficients<1, TERMS>(A, row, FIT_INDEPENDENCE);
 }
+
+// the fields at the nodes, from the sums there; first whether there is fluid at all
+void FixFSIInlet::fit_nodes(int nodes, int nmoment, int nfit, int nfields)
+{
+  for (int node = 0; node < nodes; node++) {
+    double *const c = &sums[node * ncolumns], *const moment = c, row[6];
+    if (moment[0] <= LITTLE * fix_fsi->psi_bulk) {
+      c[0] = 0.0;
+      continue;
+    }
+    nlateral == 2 ? value_weights<6>(moment, row) : value_weights<3>(moment, row);
+    for (int field = 0; field < nfields; field++) {
+      const double *const F = c + nmoment + field * nfit;
+      double result = 0.0;
+      for (int k = 0; k < nfit; k++) result += row[k] * F[k];
+      c[1 + field] = result;
+    }
+    c[0] = 1.0;
+  }
+}
+
+/* ---------------------------------------------------------------------- */
 
 void FixFSIInlet::measure()
 {
@@ -754,7 +904,8 @@ void FixFSIInlet::measure()
       const double s = place.inside = inside(x), u = atom->v[i][axis], m = atom->rmass[i];
       const State &state = fix_fsi->state[atom->type[i]];
       // hat functions, which a lattice sums to a constant
-      const double width = 2.0 * fix_fsi->dx, hat = std::max(0.0, 1.0 - std::fabs(s) / width) / width;
+      const double width = 2.0 * fix_fsi->dx,
+                   hat = std::max(0.0, 1.0 - std::fabs(s) / width) / width;
       total[MASS_FLOW] += m * side * u * hat;
       total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
       if (s <= 0.0) {
@@ -781,7 +932,8 @@ void FixFSIInlet::measure()
       total[MEAN_PRESSURE] += w * p;
       total[OVER_IMPEDANCE] += w * p / (state.rho0 * state.c);
       at_nodes(x, std::sqrt(kernel.cutsq - s * s), [&](int node, const double *d) {
-        const double W = kernel.W(std::sqrt(std::min(s * s + d[0] * d[0] + d[1] * d[1], kernel.cutsq)));
+        const double W =
+            kernel.W(std::sqrt(std::min(s * s + d[0] * d[0] + d[1] * d[1], kernel.cutsq)));
         const double y[] = {d[0] / fix_fsi->dx, d[1] / fix_fsi->dx};
         double f[15] = {W};
         for (int degree = 1, k = 1, before = 0; degree <= 4; degree++) {
@@ -811,48 +963,38 @@ void FixFSIInlet::measure()
   if (wants_velocity)
     MPI_Allreduce(MPI_IN_PLACE, bounds.data(), bounds.size(), MPI_DOUBLE, MPI_MAX, world);
 
-  for (int node = 0; node < nodes; node++) {
-    double *const c = &sums[node * ncolumns], *const moment = c, row[6];
-    if (moment[0] <= LITTLE * fix_fsi->psi_bulk) {
-      c[0] = 0.0;
-      continue;
-    }
-    plane ? value_weights<6>(moment, row) : value_weights<3>(moment, row);
-    for (int field = 0; field < wants_velocity + wants_pressure; field++) {
-      const double *const F = c + nmoment + field * nfit;
-      double result = 0.0;
-      for (int k = 0; k < nfit; k++) result += row[k] * F[k];
-      c[1 + field] = result;
-    }
-    c[0] = 1.0;
-  }
+  fit_nodes(nodes, nmoment, nfit, wants_velocity + wants_pressure);
 }
 
-// exact for quadratics (Keys 1981, IEEE Trans. Acoust. Speech Signal Process. 29, 1153, eq. 15); linear interpolation cuts maxima
+// exact for quadratics (Keys 1981, IEEE Trans. Acoust. Speech Signal Process. 29, 1153, eq. 15);
+// linear interpolation cuts maxima
 static double cubic_convolution(double t)
 {
   if (t < 1.0) return 1.0 + t * t * (1.5 * t - 2.5);
   return t < 2.0 ? 2.0 - t * (4.0 - t * (2.5 - 0.5 * t)) : 0.0;
 }
 
-// Fit of a place from the nodes around it: normal velocity, pressure. The velocity is one that the fluid has there: the first row at a
-// wall would else go back for as much as a parabola falls below it, and bring in more and more.
+// Fit of a place from the nodes around it: normal velocity, pressure. The velocity is one that the
+// fluid has there: the first row at a wall would else go back for as much as a parabola falls below
+// it, and bring in more and more.
 bool FixFSIInlet::at_plane(const double *x, double *values) const
 {
   const int n = has_own_velocity() + has_own_pressure();
   double weight = 0.0, most = -HUGE_VAL, least = HUGE_VAL;
   std::fill_n(values, n, 0.0);
-  at_nodes(x, 2.0 * *std::max_element(node_distance, node_distance + nlateral), [&](int node, const double *d) {
-    const double *const c = &sums[node * ncolumns];
-    if (c[0] == 0.0) return;
-    double w = 1.0;
-    for (int k = 0; k < nlateral; k++) w *= cubic_convolution(std::fabs(d[k]) / node_distance[k]);
-    weight += w;
-    for (int k = 0; k < n; k++) values[k] += w * c[1 + k];
-    if (bounds.empty()) return;
-    most = std::max(most, bounds[2 * node]);
-    least = std::min(least, -bounds[2 * node + 1]);
-  });
+  at_nodes(x, 2.0 * *std::max_element(node_distance, node_distance + nlateral),
+           [&](int node, const double *d) {
+             const double *const c = &sums[node * ncolumns];
+             if (c[0] == 0.0) return;
+             double w = 1.0;
+             for (int k = 0; k < nlateral; k++)
+               w *= cubic_convolution(std::fabs(d[k]) / node_distance[k]);
+             weight += w;
+             for (int k = 0; k < n; k++) values[k] += w * c[1 + k];
+             if (bounds.empty()) return;
+             most = std::max(most, bounds[2 * node]);
+             least = std::min(least, -bounds[2 * node + 1]);
+           });
   if (weight < 0.5) return false;    // no fluid near
   for (int k = 0; k < n; k++) values[k] /= weight;
   if (least <= most) values[0] = std::clamp(values[0], least, most);
@@ -860,13 +1002,16 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
 }
 
 /* ----------------------------------------------------------------------
-   The density of the buffer is that of its pressure: the fluid's at the plane with the weight of what lies between, or as given.
-   Sound that leaves meets its own impedance: to a change of the fluid's velocity the pressure at the plane answers with rho c times that, or
-   the velocity to one of its pressure, and goes back to what is given at the rate of absorption. Of the mean over the plane: vortices
-   that pass do not change it. A pressure that is given is that of the plane; along the buffer it goes on as the mean of the fluid does, or
-   the fluid would be pushed by less than its gradient for as long as it sees the buffer. What is slower than sound through the box counts.
-   What is drawn in by a pressure has one total pressure all over the plane (no vorticity, by Crocco's theorem), and the given one in the
-   mean: with one static pressure each jet would keep its shape, and bring more momentum than what it mixes to takes out.
+   The density of the buffer is that of its pressure: the fluid's at the plane with the weight of
+   what lies between, or as given. Sound that leaves meets its own impedance: to a change of the
+   fluid's velocity the pressure at the plane answers with rho c times that, or the velocity to one
+   of its pressure, and goes back to what is given at the rate of absorption. Of the mean over the
+   plane: vortices that pass do not change it. A pressure that is given is that of the plane; along
+   the buffer it goes on as the mean of the fluid does, or the fluid would be pushed by less than
+   its gradient for as long as it sees the buffer. What is slower than sound through the box counts.
+   What is drawn in by a pressure has one total pressure all over the plane (no vorticity, by
+   Crocco's theorem), and the given one in the mean: with one static pressure each jet would keep
+   its shape, and bring more momentum than what it mixes to takes out.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::advance(bool advance)
@@ -883,10 +1028,13 @@ void FixFSIInlet::advance(bool advance)
   for (const auto &s : fix_fsi->state)
     if (s.species == FLUID) c = std::max(c, s.c);
   const double slow = 0.5 * c / domain->prd[axis];
-  const double rate = wants_velocity && wants_pressure ? 0.0 : absorb == AUTO ? (driven ? slow : STIFF * slow) : absorb;
+  const double rate = wants_velocity && wants_pressure ? 0.0
+      : absorb == AUTO                                 ? (driven ? slow : STIFF * slow)
+                                                       : absorb;
   const double spread = mean[MASS] * mean[SECOND] - mean[FIRST] * mean[FIRST];
   if (spread > LITTLE * std::pow(mean[MASS] * fix_fsi->dx, 2))
-    gradient += (1.0 - std::exp(-slow * dt)) * ((mean[MASS] * mean[SLOPE] - mean[FIRST] * mean[BEYOND]) / spread - gradient);
+    gradient += (1.0 - std::exp(-slow * dt)) *
+        ((mean[MASS] * mean[SLOPE] - mean[FIRST] * mean[BEYOND]) / spread - gradient);
   if (rate > 0.0 && mean[WEIGHT] > 0.0) {
     const double now = (wants_velocity ? mean[SPEED] : mean[OVER_IMPEDANCE]) / mean[WEIGHT];
     if (has_before) wave -= now - before;
@@ -896,11 +1044,14 @@ void FixFSIInlet::advance(bool advance)
     has_before = false;
   wave *= std::exp(-rate * dt);
   const bool backflow = mean[SPEED] <= 0.0;    // what comes in does so against the mean
-  const double drawn = mean[WEIGHT] > 0.0 && !backflow ? mean[DYNAMIC] / mean[WEIGHT] : 0.0, steady = backflow ? 1.0 : STEADY;
+  const double drawn = mean[WEIGHT] > 0.0 && !backflow ? mean[DYNAMIC] / mean[WEIGHT] : 0.0,
+               steady = backflow ? 1.0 : STEADY;
 
   if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
-    error->warning(FLERR, "{} {}: pressure of variable {} is more than {} rho c^2 from the background: the fluid is no "
-                          "longer hardly compressed. Is it in units {}? Else a higher sound in pair_style fsi/fluid",
+    error->warning(FLERR,
+                   "{} {}: pressure of variable {} is more than {} rho c^2 from the background: "
+                   "the fluid is no longer hardly compressed. Is it in units {}? Else a higher "
+                   "sound in pair_style fsi/fluid",
                    who, id, given.name(PRESSURE), FAR, update->unit_style);
   told.far = told.far || mean[TOO_FAR] > 0.0;
   check_supply();
@@ -917,11 +1068,14 @@ void FixFSIInlet::advance(bool advance)
     if (!wants_pressure && place.normal * side * mean[SPEED] < 0.0) place.normal *= COUNTER;
     double p;
     if (wants_pressure)
-      p = place.known ? values[wants_velocity] + state.rho0 * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * place.inside : state.p0;
+      p = place.known ? values[wants_velocity] +
+              state.rho0 * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * place.inside
+                      : state.p0;
     else
       p = (background ? state.p0 : value(PRESSURE, i)) + gradient * place.inside +
           state.rho0 * state.c * wave;
-    if (place.known && wants_velocity && !wants_pressure) p += steady * (drawn - dynamic_pressure(state, place.normal));
+    if (place.known && wants_velocity && !wants_pressure)
+      p += steady * (drawn - dynamic_pressure(state, place.normal));
     const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
     atom->rho[i] = state.density(std::max(p, state.floor));
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
@@ -929,7 +1083,8 @@ void FixFSIInlet::advance(bool advance)
 }
 
 /* ----------------------------------------------------------------------
-   What has a given velocity goes without the fluid where that does not follow, and has nothing to come back with
+   What has a given velocity goes without the fluid where that does not follow, and has nothing to
+   come back with
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::check_supply()
@@ -942,20 +1097,24 @@ void FixFSIInlet::check_supply()
   std::string why;
   const double speed = mean[WEIGHT] > 0.0 ? mean[SPEED] / mean[WEIGHT] : 0.0;
   if (taken > 0.1 * served)
-    why = fmt::format("{} were deleted, or have left group {}, between the runs", taken, group->names[igroup]);
+    why = fmt::format("{} were deleted, or have left group {}, between the runs", taken,
+                      group->names[igroup]);
   else if (softest().floor == 0.0 && softest().p0 <= 0.0)
-    why = "The fluid does not follow the velocity that is given: it tears under suction, without keyword tension yes or "
-          "background of pair_style fsi/fluid";
+    why = "The fluid does not follow the velocity that is given: it tears under suction, without "
+          "keyword tension yes or background of pair_style fsi/fluid";
   else
-    why = fmt::format("The fluid does not follow the velocity that is given: within the kernel's support it comes in "
-                      "with {:g} in the mean, so there is too little of it, or what is given goes out where none is", speed);
-  error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. {}", who, id, served, "xyz"[axis],
-             position, mean[BUFFER], why);
+    why = fmt::format("The fluid does not follow the velocity that is given: within the kernel's "
+                      "support it comes in with {:g} in the mean, so there is too little of it, or "
+                      "what is given goes out where none is",
+                      speed);
+  error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. {}", who,
+             id, served, "xyz"[axis], position, mean[BUFFER], why);
 }
 
 /* ----------------------------------------------------------------------
-   Shifting carries nobody through the plane: the buffer, which moves as it is told to, could not give back what comes. Along the axis it
-   fades over the kernel's support before the plane; what is left there is less than the distance from it.
+   Shifting carries nobody through the plane: the buffer, which moves as it is told to, could not
+   give back what comes. Along the axis it fades over the kernel's support before the plane; what is
+   left there is less than the distance from it.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::hold_shift(const Place &place)
@@ -968,18 +1127,20 @@ void FixFSIInlet::hold_shift(const Place &place)
   } else if (fix_fsi->shifts && place.inside < fix_fsi->cut) {
     double *const shift = fix_fsi->shift[place.i];
     const double part = place.inside / fix_fsi->cut;
-    fix_fsi->dim == 2 ? Shift<2>::reduce(shift, fills, axis, part) : Shift<3>::reduce(shift, fills, axis, part);
+    fix_fsi->dim == 2 ? Shift<2>::reduce(shift, fills, axis, part)
+                      : Shift<3>::reduce(shift, fills, axis, part);
     if (fills) velocity[axis][place.i] *= part;
   }
 }
 
 /* ----------------------------------------------------------------------
-   Is there as much fluid as there is room? Continuity keeps rho - m psi of a particle, density less that
-   of its number. But what comes in through the plane has the density that is given, and the neighbors with
-   which it went out when pressure was another: where flow reverses each time adds to their number, since
-   it goes out when pressure is higher. And diffusion passes between fluid and buffer what has no volume.
-   So mass is compared with density times room, 1/psi, of the fluid before the plane and in the buffer.
-   Particles at a free surface do not count; where there is one, a lack says nothing.
+   Is there as much fluid as there is room? Continuity keeps rho - m psi of a particle, density less
+   that of its number. But what comes in through the plane has the density that is given, and the
+   neighbors with which it went out when pressure was another: where flow reverses each time adds to
+   their number, since it goes out when pressure is higher. And diffusion passes between fluid and
+   buffer what has no volume. So mass is compared with density times room, 1/psi, of the fluid
+   before the plane and in the buffer. Particles at a free surface do not count; where there is one,
+   a lack says nothing.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::end_state(bool advance)
@@ -1012,18 +1173,21 @@ void FixFSIInlet::warn_of_fill(bool full)
   const bool few = full && mean_fill < 1.0 - EXCESS;
   if (told.fill || comm->me || !(mean_fill > 1.0 + EXCESS || few)) return;
   told.fill = true;
-  error->warning(FLERR, "{} {}: within {:g} before its plane there is {:.2g} % {} mass than the fluid's density has "
-                        "room for, at step {}: particles {}. {}",
-                 who, id, zone(), 100.0 * std::fabs(mean_fill - 1.0), few ? "less" : "more", update->ntimestep,
-                 few ? "are missing" : "pile up",
-                 softest().p0 > 0.0 ? "Vortices, bodies or a valve near the plane do so: move it away from them, or "
-                                      "take a lower shift in pair_style fsi/fluid"
-                                    : "Nothing holds their number without keyword background of pair_style fsi/fluid");
+  error->warning(
+      FLERR,
+      "{} {}: within {:g} before its plane there is {:.2g} % {} mass than the fluid's density has "
+      "room for, at step {}: particles {}. {}",
+      who, id, zone(), 100.0 * std::fabs(mean_fill - 1.0), few ? "less" : "more", update->ntimestep,
+      few ? "are missing" : "pile up",
+      softest().p0 > 0.0
+          ? "Vortices, bodies or a valve near the plane do so: move it away from them, or take a "
+            "lower shift in pair_style fsi/fluid"
+          : "Nothing holds their number without keyword background of pair_style fsi/fluid");
 }
 
 /* ----------------------------------------------------------------------
-   Where fluid fills the box: too many particles before the plane get a density that presses them out, and
-   those that come in follow each other at another spacing
+   Where fluid fills the box: too many particles before the plane get a density that presses them
+   out, and those that come in follow each other at another spacing
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::keep_full()
@@ -1034,7 +1198,8 @@ void FixFSIInlet::keep_full()
   const double inflow = mean[WEIGHT] > 0.0 ? std::max(0.0, mean[SPEED] / mean[WEIGHT]) : 0.0;
   if (fill == 0.0) return;
   const double excess = std::max(0.0, std::fabs(fill - 1.0) - DISORDER);
-  column = std::clamp(column + std::copysign(MEND * excess * inflow * dt / length, fill - 1.0), NARROW, WIDE);
+  column = std::clamp(column + std::copysign(MEND * excess * inflow * dt / length, fill - 1.0),
+                      NARROW, WIDE);
   const double rise = (fill - 1.0) * soft.c * dt / (SETTLE * fix_fsi->h);
   if (rise == 0.0) return;
   for (const auto &place : places) {
@@ -1048,7 +1213,8 @@ void FixFSIInlet::keep_full()
 }
 
 /* ----------------------------------------------------------------------
-   forces that give the buffer its velocity at the end of the step; where there is no fluid at the plane it keeps what it has
+   forces that give the buffer its velocity at the end of the step; where there is no fluid at the
+   plane it keeps what it has
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::prescribe()
@@ -1065,8 +1231,10 @@ void FixFSIInlet::prescribe()
     double *const f = atom->f[i], *const v = atom->v[i];
     for (int d = 0; d < fix_fsi->dim; d++) {
       double u;
-      if (wants_velocity) u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
-      else u = value(d, i) + (d == axis ? side * wave : 0.0);
+      if (wants_velocity)
+        u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
+      else
+        u = value(d, i) + (d == axis ? side * wave : 0.0);
       if (of_buffer[i] == FOLLOWED) behind[i][d] += dt * u;
       const double to = m * (u - v[d]) / (dt * force->ftm2v), push = to - f[d];
       f[d] = to;
@@ -1088,14 +1256,23 @@ double FixFSIInlet::compute_vector(int n)
 {
   double own = 0.0, all;
   switch (n) {
-    case 1: return passed_in;
-    case 2: return passed_out;
-    case 3: return mean[MASS_FLOW];
-    case 4: return mean[VOLUME_FLOW];
-    case 5: return mean[WEIGHT] > 0.0 ? mean[MEAN_PRESSURE] / mean[WEIGHT] : 0.0;
-    case 10: return mean_fill;
-    case 0: own = atom->nlocal - std::count(of_buffer, of_buffer + atom->nlocal, double(NOT)); break;
-    default: own = push_sum[n - 6];
+    case 1:
+      return passed_in;
+    case 2:
+      return passed_out;
+    case 3:
+      return mean[MASS_FLOW];
+    case 4:
+      return mean[VOLUME_FLOW];
+    case 5:
+      return mean[WEIGHT] > 0.0 ? mean[MEAN_PRESSURE] / mean[WEIGHT] : 0.0;
+    case 10:
+      return mean_fill;
+    case 0:
+      own = atom->nlocal - std::count(of_buffer, of_buffer + atom->nlocal, double(NOT));
+      break;
+    default:
+      own = push_sum[n - 6];
   }
   MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
@@ -1147,6 +1324,7 @@ void FixFSIInlet::restart(char *buf)
 
 double FixFSIInlet::memory_usage()
 {
-  return FixFields::memory_usage() + given.memory_usage() + (double) (mine.capacity() + sums.capacity()) * sizeof(double) +
+  return FixFields::memory_usage() + given.memory_usage() +
+      (double) (mine.capacity() + sums.capacity()) * sizeof(double) +
       (double) places.capacity() * sizeof(Place);
 }

@@ -32,9 +32,12 @@ FixStyle(fsi/outlet,FixFSIInlet);
 
 namespace LAMMPS_NS {
 
-// An open end of the fluid: a plane, and behind it a buffer of particles whose velocity or pressure is prescribed, and the other one that of
-// the fluid at the plane. One that passes the plane inwards is fluid from then on; the last of a row that has come a spacing from
-// the buffer's end is followed by another; fluid that passes it outwards is of the buffer, and deleted at its end. Inlets and outlets are the same but for defaults.
+// An open end of the fluid: a plane, and behind it a buffer of particles whose velocity or pressure
+// is prescribed, and the other one that of
+// the fluid at the plane. One that passes the plane inwards is fluid from then on; the last of a
+// row that has come a spacing from
+// the buffer's end is followed by another; fluid that passes it outwards is of the buffer, and
+// deleted at its end. Inlets and outlets are the same but for defaults.
 
 class FixFSIInlet : public FSI::FixFields, public FSI::Part {
  public:
@@ -51,26 +54,43 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void restart(char *) override;
   double memory_usage() override;
 
-  void advance(bool) override;    // density of the buffer, when the fluid has its own
-  void end_state(bool) override;  // is there as much fluid as there is room?
-  void prescribe() override;      // velocity of the buffer
+  void advance(bool) override;      // density of the buffer, when the fluid has its own
+  void end_state(bool) override;    // is there as much fluid as there is room?
+  void prescribe() override;        // velocity of the buffer
 
   bool holds(const double *x) const;    // is a place in the buffer?
   tagint last_id;                       // largest that it has given
 
  private:
   struct Place {    // of a particle near the plane
-    int i;
-    double inside;    // distance from the plane into the fluid
-    double normal;    // velocity of the fluid at the plane, along the axis
-    bool known;       // is there fluid at the plane?
+    int i = 0;
+    double inside = 0.0;    // distance from the plane into the fluid
+    double normal = 0.0;    // velocity of the fluid at the plane, along the axis
+    bool known = false;     // is there fluid at the plane?
   };
   struct Copy {
-    double x[3], v[3], rho, rmass;
-    tagint parent, molecule;
-    int type, mask;
+    double x[3] = {}, v[3] = {}, rho = 0.0, rmass = 0.0;
+    tagint parent = 0, molecule = 0;
+    int type = 0, mask = 0;
   };
-  enum { WEIGHT, SPEED, DYNAMIC, MEAN_PRESSURE, OVER_IMPEDANCE, MASS_FLOW, VOLUME_FLOW, BUFFER, TOO_FAR, MASS, BEYOND, FIRST, SECOND, SLOPE, NMEAN };    // sums over the fluid at the plane
+  // sums over the fluid at the plane
+  enum {
+    WEIGHT,
+    SPEED,
+    DYNAMIC,
+    MEAN_PRESSURE,
+    OVER_IMPEDANCE,
+    MASS_FLOW,
+    VOLUME_FLOW,
+    BUFFER,
+    TOO_FAR,
+    MASS,
+    BEYOND,
+    FIRST,
+    SECOND,
+    SLOPE,
+    NMEAN
+  };
 
   const std::string who;    // Fix fsi/inlet
   const bool outlet;
@@ -80,18 +100,19 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   std::string words[4], region_id;
   FSI::Values given;    // velocity and pressure; the other one is that of the fluid
   bool background;      // is the pressure that of the background?
-  double absorb;    // 1/time; < 0: of the domain's length
-  bool driven;      // has an open end of the scene a given velocity?
+  double absorb;        // 1/time; < 0: of the domain's length
+  bool driven;          // has an open end of the scene a given velocity?
   double given_length, length;
   std::vector<double> made;    // of a restart file: plane and length of its buffer
   class Region *region;
   class FixFSI *fix_fsi;
 
-  enum Membership { NOT, MEMBER, LAST, FOLLOWED };    // of a row; followed by one that the next list has
-  double *of_buffer;     // per atom
-  double **behind;       // of one that is followed: where who follows would be now
+  // LAST of a row; FOLLOWED by one that the next list has
+  enum Membership { NOT, MEMBER, LAST, FOLLOWED };
+  double *of_buffer;    // per atom
+  double **behind;      // of one that is followed: where who follows would be now
   std::vector<Place> places;
-  int zone_group;       // that of the places
+  int zone_group;    // that of the places
 
   // sums over the fluid at the nodes of a lattice in the plane, then values there
   int nlateral, lateral[2], first[2], count[2], ncolumns;
@@ -102,28 +123,37 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
 
   // what is kept
   bool filled;
-  double wave, before;       // of absorption: velocity or pressure over impedance that it adds; the mean from which it has that
-  double gradient;           // of the fluid's pressure beyond that given, into the fluid: mean over the plane and some time
-  double served;             // particles near the plane at first
+  double wave, before;    // of absorption: velocity or pressure over impedance that it adds; the
+                          // mean from which it has that
+  double gradient;    // of the fluid's pressure beyond that given, into the fluid: mean over the
+                      // plane and some time
+  double served;      // particles near the plane at first
   bool has_before;
   double passed_in, passed_out, mass_in;
-  // mass of the fluid near the plane over what its density has room for (0: not known yet); its mean of late
+  // mass of the fluid near the plane over what its density has room for (0: not known yet); its
+  // mean of late
   double fill, mean_fill;
-  double column;    // spacing along the axis of what comes in, in dx
-  double last_buffer, taken = 0.0;    // particles behind the plane in the last step; that went between two runs
+  double column;                      // spacing along the axis of what comes in, in dx
+  double last_buffer, taken = 0.0;    // particles behind the plane in the last step; that went
+                                      // between two runs
   struct {
     bool far, stranger, fill;
-  } told;                    // warnings of this run
-  double push_sum[4];           // force on the buffer and its power, this rank's part
+  } told;                // warnings of this run
+  double push_sum[4];    // force on the buffer and its power, this rank's part
 
   double inside(const double *x) const { return side * (x[axis] - position); }
-  double zone() const { return 2.0 * length; }    // before the plane: where slope and room are looked at
+  // before the plane: where slope and room are looked at
+  double zone() const { return 2.0 * length; }
   bool in_patch(const double *x) const;
   bool is_fluid(int i) const;
   std::string keywords_name() const { return std::string("fix ") + style; }
   bool has_own_velocity() const { return !given.given(0); }    // which is extrapolated
   bool has_own_pressure() const { return !given.given(3) && !background; }
   double value(int k, int i) const;    // which is a number
+  void check_plane();
+  void find_region();
+  std::vector<int> find_occupied(std::vector<Copy> &copies, bool at_start);
+  void fit_nodes(int nodes, int nmoment, int nfit, int nfields);
   double energy(int i) const;
   double dynamic_pressure(const FSI::State &state, double u) const    // of what comes in
   {
@@ -131,7 +161,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     return 0.5 * state.rho0 * in * in;
   }
   struct Column {
-    double at[2];    // along the plane
+    double at[2] = {};    // along the plane
   };
   Column along(const double *x) const { return {{x[axis == 0 ? 1 : 0], x[axis == 2 ? 1 : 2]}}; }
   void fill_buffer();

@@ -39,7 +39,10 @@ using namespace FSI;
 
 class FixFSIMove::Words : protected Pointers {
  public:
-  Words(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp), word(arg, arg + narg), at(0) { motion = next(); }
+  Words(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp), word(arg, arg + narg), at(0)
+  {
+    motion = next();
+  }
   std::string motion;
 
   bool any() const { return at < word.size(); }
@@ -51,7 +54,8 @@ class FixFSIMove::Words : protected Pointers {
   }
   std::string next()
   {
-    if (!any()) utils::missing_cmd_args(FLERR, "fix fsi/move" + (motion.empty() ? "" : " " + motion), error);
+    if (!any())
+      utils::missing_cmd_args(FLERR, "fix fsi/move" + (motion.empty() ? "" : " " + motion), error);
     return word[at++];
   }
   double number()
@@ -71,7 +75,8 @@ class FixFSIMove::Words : protected Pointers {
   {
     if (skip_null()) return "";
     const auto text = next();
-    if (!utils::strmatch(text, "^v_")) error->all(FLERR, "Fix fsi/move variable {} must be NULL or v_name", text);
+    if (!utils::strmatch(text, "^v_"))
+      error->all(FLERR, "Fix fsi/move variable {} must be NULL or v_name", text);
     return text.substr(2);
   }
 
@@ -84,7 +89,8 @@ class FixFSIMove::Words : protected Pointers {
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), driven{},
-    given(lmp, "fix fsi/move", 2 * VELOCITY), evaluated(-1), origin(now()), original(nullptr), begun(false)
+    given(lmp, "fix fsi/move", 2 * VELOCITY), evaluated(-1), origin(now()), original(nullptr),
+    begun(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
   Words words(lmp, narg - 3, arg + 3);
@@ -114,9 +120,11 @@ void FixFSIMove::read_motion(Words &words)
     for (double &p : point) p = words.number();
     for (double &a : axis) a = words.number();
     const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-    if (length == 0.0) error->all(FLERR, "Fix fsi/move {} axis must not be of length 0", words.motion);
+    if (length == 0.0)
+      error->all(FLERR, "Fix fsi/move {} axis must not be of length 0", words.motion);
     for (double &a : axis) a /= length;
-    if (domain->dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0)) error->all(FLERR, "Fix fsi/move {} axis must be z in 2D", words.motion);
+    if (domain->dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0))
+      error->all(FLERR, "Fix fsi/move {} axis must be z in 2D", words.motion);
     std::fill_n(driven, 3, true);
     omega = MathConst::MY_2PI / words.period();
   };
@@ -140,13 +148,19 @@ void FixFSIMove::read_motion(Words &words)
     for (int k = 0; k < 2 * VELOCITY; k++) {
       const auto name = words.variable();
       if (!name.empty()) given.set_variable(k, name);
-      if (k < VELOCITY) driven[k] = !name.empty();
+      if (k < VELOCITY)
+        driven[k] = !name.empty();
       else if (name.empty() && driven[k - VELOCITY])
-        error->all(FLERR, "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels "
-                          "how fast a wall moves", given.name(k - VELOCITY));
+        error->all(FLERR,
+                   "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels "
+                   "how fast a wall moves",
+                   given.name(k - VELOCITY));
     }
   } else
-    error->all(FLERR, "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable", words.motion);
+    error->all(
+        FLERR,
+        "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable",
+        words.motion);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -158,11 +172,13 @@ void FixFSIMove::read_units(Words &words)
     const auto key = words.next();
     if (key != "units") error->all(FLERR, "Unknown fix fsi/move keyword {}: expected units", key);
     const auto value = words.next();
-    if (value != "box" && value != "lattice") error->all(FLERR, "Unknown fix fsi/move units {}: expected box or lattice", value);
+    if (value != "box" && value != "lattice")
+      error->all(FLERR, "Unknown fix fsi/move units {}: expected box or lattice", value);
     lattice = motion != VARIABLE && value == "lattice";
   }
   if (!lattice) return;
-  const double scale[] = {domain->lattice->xlattice, domain->lattice->ylattice, domain->lattice->zlattice};
+  const double scale[] = {domain->lattice->xlattice, domain->lattice->ylattice,
+                          domain->lattice->zlattice};
   for (int k = 0; k < 3; k++) {
     rate[k] *= scale[k];
     point[k] *= scale[k];
@@ -192,7 +208,11 @@ void FixFSIMove::init()
   for (int i = 0; i < atom->nlocal; i++)
     if ((atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit)) mine = 1;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any) error->all(FLERR, "Particles of fix fsi/move {} are also in the group of fix fsi, which moves them, too: leave them out", id);
+  if (any)
+    error->all(FLERR,
+               "Particles of fix fsi/move {} are also in the group of fix fsi, which moves them, "
+               "too: leave them out",
+               id);
   refuse_free_walls(fix_fsi);
   given.find();
 }
@@ -207,9 +227,11 @@ void FixFSIMove::refuse_free_walls(const FixFSI *fix_fsi) const
     if (sets_velocity(k)) continue;
     for (int i = 0; i < atom->nlocal; i++)
       if ((atom->mask[i] & groupbit) && fix_fsi->state[atom->type[i]].species == RIGID)
-        error->one(FLERR, "Fix fsi/move {} leaves {} of atom {} free, which is of a wall: forces would "
-                          "take each wall particle its own way. Write 0 instead of NULL to hold that component{}",
-                   id, "xyz"[k], atom->tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
+        error->one(
+            FLERR,
+            "Fix fsi/move {} leaves {} of atom {} free, which is of a wall: forces would take each "
+            "wall particle its own way. Write 0 instead of NULL to hold that component{}",
+            id, "xyz"[k], atom->tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
   }
 }
 
@@ -266,10 +288,11 @@ void FixFSIMove::compare_velocity(int k, double moved, double dt, double v, doub
   // what a velocity may do in a step
   const double slack = high - low + TOLERANCE * most + ROUND * round / dt;
   if (mean >= low - slack && mean <= high + slack) return;
-  const auto text = fmt::format("Fix fsi/move {}: on step {} the displacement v_{} changes by {:g} per "
-                                "time, but the velocity v_{} is {:g}: expected its derivative{}",
-                                id, update->ntimestep, given.name(k), mean, given.name(VELOCITY + k), v_end,
-                                i < 0 ? "" : fmt::format(" (atom {})", atom->tag[i]));
+  const auto text =
+      fmt::format("Fix fsi/move {}: on step {} the displacement v_{} changes by {:g} per time, but "
+                  "the velocity v_{} is {:g}: expected its derivative{}",
+                  id, update->ntimestep, given.name(k), mean, given.name(VELOCITY + k), v_end,
+                  i < 0 ? "" : fmt::format(" (atom {})", atom->tag[i]));
   if (i < 0) error->all(FLERR, text);
   error->one(FLERR, text);
 }
@@ -317,8 +340,8 @@ bool FixFSIMove::velocity_at_end(int i, double *v) const
 }
 
 /* ----------------------------------------------------------------------
-   In a step: positions to its middle, where forces are; velocities and positions to its end. What is free goes with position
-   Verlet, as fix fsi has it.
+   In a step: positions to its middle, where forces are; velocities and positions to its end. What
+   is free goes with position Verlet, as fix fsi has it.
 ------------------------------------------------------------------------- */
 
 void FixFSIMove::move(When when)
@@ -346,14 +369,17 @@ void FixFSIMove::move(When when)
           double moved[3] = {};
           moved[k] = to[k] - x[k];
           domain->minimum_image(moved);
-          compare_velocity(k, moved[k], 0.5 * dt, v[k], fast[k], std::fabs(x[k]) + std::fabs(to[k]), i);
+          compare_velocity(k, moved[k], 0.5 * dt, v[k], fast[k], std::fabs(x[k]) + std::fabs(to[k]),
+                           i);
         }
       }
       if (when != MIDDLE && sets_velocity(k)) v[k] = fast[k];
       if (when == START) continue;
       if (when == END && !sets_velocity(k)) v[k] += dt * force->ftm2v / atom->rmass[i] * f[i][k];
-      if (driven[k]) x[k] = to[k];
-      else x[k] += 0.5 * dt * v[k];
+      if (driven[k])
+        x[k] = to[k];
+      else
+        x[k] += 0.5 * dt * v[k];
     }
     if (when != START) domain->remap_near(x, old);
   }
@@ -400,8 +426,9 @@ void FixFSIMove::restart(char *buf)
     return;
   }
   if (comm->me == 0)
-    error->warning(FLERR, "Fix fsi/move {}: the motion was {} {}, and is {} now: it begins anew, with the "
-                          "time and the places of the file",
+    error->warning(FLERR,
+                   "Fix fsi/move {}: the motion was {} {}, and is {} now: it begins anew, with the "
+                   "time and the places of the file",
                    id, record.value("motion"), Keywords::OF_RESTART, text());
   fields.read(record, {"place before the motion"});
 }
@@ -421,8 +448,10 @@ void FixFSIMove::set_arrays(int i)
     if (given.of_atoms())
       error->one(FLERR, "Cannot add atoms to fix fsi/move {} with an atom-style variable", id);
     if (evaluated != update->ntimestep)
-      error->one(FLERR, "Cannot add atoms to fix fsi/move {} now: its variables are known from the setup "
-                        "of a run on. Give run 0 before", id);
+      error->one(FLERR,
+                 "Cannot add atoms to fix fsi/move {} now: its variables are known from the setup "
+                 "of a run on. Give run 0 before",
+                 id);
     for (int k = 0; k < 3; k++) shift[k] = given.number(k);
   } else if (motion == ROTATE || motion == TRANSROT) {
     // the turn alone, backwards, of what has not been shifted; follow() shifts it back once more

@@ -27,8 +27,8 @@ FixStyle(fsi/move,FixFSIMove);
 
 namespace LAMMPS_NS {
 
-// Prescribed motion of walls and held solids as a function of time: fix move of LAMMPS for time steps that change, with
-// positions at the middle of the step where fix fsi has its forces.
+// Prescribed motion of walls and held solids as a function of time: fix move of LAMMPS for time
+// steps that change, with positions at the middle of the step where fix fsi has its forces.
 
 class FixFSIMove : public FSI::FixFields {
  public:
@@ -40,7 +40,8 @@ class FixFSIMove : public FSI::FixFields {
   void initial_integrate(int) override;
   void final_integrate() override;
   void reset_dt() override {}
-  // velocity of a particle of the group at the end of the step that is going on; false: not known before it is there
+  // velocity of a particle of the group at the end of the step that is going on; false: not known
+  // before it is there
   bool velocity_at_end(int i, double *v) const;
   double memory_usage() override;
   void write_restart(FILE *) override;
@@ -55,7 +56,7 @@ class FixFSIMove : public FSI::FixFields {
   int motion;
   double rate[3];    // velocity, or amplitude of wiggle
   double point[3], axis[3], omega;
-  bool driven[3];       // components: others go where forces take them
+  bool driven[3];    // components: others go where forces take them
   // variables of displacements and, from VELOCITY on, of velocities; at the end of the step that is
   // going on, but for move(MIDDLE)
   static constexpr int VELOCITY = 3;

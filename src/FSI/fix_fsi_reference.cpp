@@ -18,9 +18,9 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "force.h"
 #include "fsi_cells.h"
 #include "fsi_contact.h"
-#include "force.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
@@ -93,7 +93,7 @@ void FixFSIReference::init()
   // has a script put in its place what is not of this package?
   resting = facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   if (resting) return;
-  fix_fsi = FixFSI::find(lmp, "Fix fsi/reference");
+  fix_fsi = FixFSI::find(lmp, "Fix FSI_REFERENCE");
   if (!any()) {
     made.clear();
     keeps_places = self_range > 0.0;
@@ -102,16 +102,20 @@ void FixFSIReference::init()
                "Pair style fsi/solid/tl {}: the bonds of its bodies were made with {}, and stay so",
                as_now(), made);
   if (self_range > 0.0 && !keeps_places)
-    error->all(FLERR,
-               "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept "
-               "only if it is on when the reference is taken: "
-               "give it before the first run of the bodies");
+    error->all(
+        FLERR,
+        "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept only if "
+        "it is on when the reference is taken: give it before the first run of the bodies");
   neighbor->add_request(this, NeighConst::REQ_FULL | NeighConst::REQ_OCCASIONAL);
 }
 
 bool FixFSIReference::any() const
 {
-  int mine = std::any_of(slot, slot + atom->nlocal, [](int s) { return s >= 0; }), all;
+  int mine = std::any_of(slot, slot + atom->nlocal,
+                         [](int s) {
+                           return s >= 0;
+                         }),
+      all;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
   return all;
 }
@@ -230,8 +234,10 @@ void FixFSIReference::follow_commands()
     std::vector<int> of_them;
     for (int i = 0; i < atom->nlocal; i++)
       if (slot[i] >= 0 && changed.count(atom->molecule[i])) of_them.push_back(i);
-    if (domain->dimension == 2) find_quadrature<2>(of_them);
-    else find_quadrature<3>(of_them);
+    if (domain->dimension == 2)
+      find_quadrature<2>(of_them);
+    else
+      find_quadrature<3>(of_them);
   }
   if (comm->me == 0)
     utils::logmesg(lmp,
@@ -270,11 +276,15 @@ void FixFSIReference::take()
   // from now on its strain says what it is
   for (const int i : bare) atom->rho[i] = fix_fsi->state[atom->type[i]].rho0;
   neighbor->build_one(list);
-  if (domain->dimension == 2) take_reference<2>(bare);
-  else take_reference<3>(bare);
+  if (domain->dimension == 2)
+    take_reference<2>(bare);
+  else
+    take_reference<3>(bare);
   if (end_corrected) {
-    if (domain->dimension == 2) find_quadrature<2>(bare);
-    else find_quadrature<3>(bare);
+    if (domain->dimension == 2)
+      find_quadrature<2>(bare);
+    else
+      find_quadrature<3>(bare);
   }
 }
 
@@ -368,8 +378,8 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<in
     if (rsq >= WITHIN * kernel.cutsq) continue;
     if (fix_fsi->h_of(type[j]) != fix_fsi->h_of(type[i]))
       error->one(FLERR,
-                 "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types "
-                 "{} and {}: a body has one",
+                 "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types {} and "
+                 "{}: a body has one",
                  tag[i], tag[j], molecule[i], fix_fsi->dx_of(type[i]), fix_fsi->dx_of(type[j]),
                  type[i], type[j]);
     if (rsq == 0.0)
@@ -377,8 +387,8 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<in
                  molecule[i]);
     if (halfway || domain->closest_image(i, j) != j)
       error->one(FLERR,
-                 "Solid atoms {} and {} are neighbors through more than one image: a "
-                 "periodic box must be wider than two supports, {}, of the kernel",
+                 "Solid atoms {} and {} are neighbors through more than one image: a periodic box "
+                 "must be wider than two supports, {}, of the kernel",
                  tag[i], tag[j], 2.0 * kernel.cut);
     near.push_back(j);
     dX.insert(dX.end(), d, d + D);
@@ -430,26 +440,27 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
   std::vector<double> dX, w, G;
   bigint mine[6] = {};    // particles, bonds, particles by order reached
 
-  for (const double h : all_h) with_kernel(fix_fsi->kernel, D, h, [&](const auto &kernel) {
-    if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
-      for (const int i : bare) {
-        if (fix_fsi->h_of(type[i]) != h) continue;
-        find_neighbors<D>(i, kernel, near, dX, w);
-        const int n = near.size();
-        G.resize((size_t) n * D);
-        const auto order = weights(n, dX.data(), w.data(), h, quadratic, G.data());
-        if (order == GradientWeights<D>::DEFICIENT)
-          error->one(FLERR,
-                     "Solid atom {} of body {} has {} neighbors of its own body within {}: too "
-                     "few, or all in one {}, for a deformation gradient. A body must be at least "
-                     "two particles thick, and one body one molecule ID",
-                     atom->tag[i], atom->molecule[i], n, kernel.cut, D == 2 ? "line" : "plane");
-        mine[0]++;
-        mine[1] += n;
-        mine[2 + order]++;
-        enter_bonds<D>(i, kernel, near, dX, G);
-      }
-  });
+  for (const double h : all_h)
+    with_kernel(fix_fsi->kernel, D, h, [&](const auto &kernel) {
+      if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
+        for (const int i : bare) {
+          if (fix_fsi->h_of(type[i]) != h) continue;
+          find_neighbors<D>(i, kernel, near, dX, w);
+          const int n = near.size();
+          G.resize((size_t) n * D);
+          const auto order = weights(n, dX.data(), w.data(), h, quadratic, G.data());
+          if (order == GradientWeights<D>::DEFICIENT)
+            error->one(FLERR,
+                       "Solid atom {} of body {} has {} neighbors of its own body within {}: too "
+                       "few, or all in one {}, for a deformation gradient. A body must be at least "
+                       "two particles thick, and one body one molecule ID",
+                       atom->tag[i], atom->molecule[i], n, kernel.cut, D == 2 ? "line" : "plane");
+          mine[0]++;
+          mine[1] += n;
+          mine[2 + order]++;
+          enter_bonds<D>(i, kernel, near, dX, G);
+        }
+    });
 
   bigint all[6];
   MPI_Allreduce(mine, all, 6, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -469,8 +480,10 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
 
 void FixFSIReference::break_bonds(double stretch, const Energy &energy)
 {
-  if (domain->dimension == 2) break_bonds_of_all<2>(stretch, energy);
-  else break_bonds_of_all<3>(stretch, energy);
+  if (domain->dimension == 2)
+    break_bonds_of_all<2>(stretch, energy);
+  else
+    break_bonds_of_all<3>(stretch, energy);
 }
 
 // Nobody of this rank's solids moves relative to anybody else by more than the diagonal of the box
@@ -616,7 +629,9 @@ void FixFSIReference::resolve()
     if (is_solid(i)) ghosts.push_back(i);
   changes++;
   seen.clear();
-  swaps.find([this](int i) { return is_solid(i); });
+  swaps.find([this](int i) {
+    return is_solid(i);
+  });
   if (domain->dimension == 2)
     find_self_pairs<2>();
   else
@@ -649,7 +664,9 @@ template <int D> void FixFSIReference::find_self_pairs()
   layer = nullptr;
 
   const Cells cells(x, atom->nlocal + atom->nghost, D, self_range * widest + neighbor->skin,
-                    [this](int i) { return is_solid(i); });
+                    [this](int i) {
+                      return is_solid(i);
+                    });
   for (const int i : solids) {
     const double most = self_range * fix_fsi->dx_of(atom->type[i]),
                  support = fix_fsi->resolution[atom->type[i]].cut;
@@ -669,8 +686,9 @@ template <int D> void FixFSIReference::find_self_pairs()
       if (rsq < near * near) near_itself.push_back({i, j, reach, neighbors});
     });
     // sums do not depend on the order of ghosts
-    std::sort(near_itself.begin() + first, near_itself.end(),
-              [this](const auto &a, const auto &b) { return atom->tag[a.j] < atom->tag[b.j]; });
+    std::sort(near_itself.begin() + first, near_itself.end(), [this](const auto &a, const auto &b) {
+      return atom->tag[a.j] < atom->tag[b.j];
+    });
   }
 }
 
@@ -694,7 +712,9 @@ void FixFSIReference::look_for_passing()
   tagint pair[3] = {0, 0, 0};
   if (!solids.empty()) {
     const Cells cells(atom->x, atom->nlocal + atom->nghost, domain->dimension, NEAR * widest,
-                      [this](int i) { return is_solid(i); });
+                      [this](int i) {
+                        return is_solid(i);
+                      });
     for (const int i : solids)
       cells.around(atom->x[i], [&](int j, double rsq) {
         const double r = std::sqrt(rsq) / fix_fsi->dx_of(atom->type[i]);
@@ -712,8 +732,8 @@ void FixFSIReference::look_for_passing()
   if (comm->me == 0)
     error->warning(FLERR,
                    "Pair style fsi/solid/tl: atoms {} and {} of body {} have no bond and are "
-                   "{:.2g} spacings apart at step {}: parts of one body "
-                   "pass through each other. Contact between them: contact 2 self yes",
+                   "{:.2g} spacings apart at step {}: parts of one body pass through each other. "
+                   "Contact between them: contact 2 self yes",
                    pair[0], pair[1], pair[2], least.r, update->ntimestep);
 }
 
@@ -793,7 +813,7 @@ int FixFSIReference::new_slot(int n)
 
 void FixFSIReference::grow_arrays(int n)
 {
-  memory->grow(slot, n, "fsi/reference:slot");
+  memory->grow(slot, n, "FSI_REFERENCE:slot");
 }
 
 void FixFSIReference::copy_arrays(int i, int j, int delflag)
@@ -879,7 +899,7 @@ std::string FixFSIReference::as_now() const
 
 void FixFSIReference::write_restart(FILE *fp)
 {
-  Record record(lmp, "fix fsi/reference");
+  Record record(lmp, "fix FSI_REFERENCE");
   record.add("bonds", made.empty() ? as_now() : made);
   record.add("numbers of a bond", std::to_string(nvalue));
   record.add("positions", keeps_places ? "yes" : "no");
@@ -888,7 +908,7 @@ void FixFSIReference::write_restart(FILE *fp)
 
 void FixFSIReference::restart(char *buf)
 {
-  const Record record(lmp, "fix fsi/reference", buf);
+  const Record record(lmp, "fix FSI_REFERENCE", buf);
   made = record.value("bonds");
   if (record.value("numbers of a bond") != std::to_string(nvalue))
     error->all(FLERR,

@@ -11,10 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
 #ifdef FIX_CLASS
 // clang-format off
-FixStyle(fsi/reference,FixFSIReference);
+FixStyle(FSI_REFERENCE,FixFSIReference);
 // clang-format on
 #else
 
@@ -33,7 +32,7 @@ FixStyle(fsi/reference,FixFSIReference);
 namespace LAMMPS_NS {
 
 // The reference configuration of total-Lagrangian solids: for every particle its bonds to the
-// neighbours of its own body, with the gradient's weights. Made by pair_style fsi/solid/tl; taken
+// neighbors of its own body, with the gradient's weights. Made by pair_style fsi/solid/tl; taken
 // at the start of the first run; travels with its atom between ranks, through restart files and
 // from one pair_style command to the next. Memory and messages exist for solid particles only.
 
@@ -64,7 +63,7 @@ class FixFSIReference : public Fix {
 
   bool any() const;    // bonds, on any rank: all ask together
 
-  bool quadratic;    // gradients exact for quadratic fields, where neighbours suffice
+  bool quadratic;        // gradients exact for quadratic fields, where neighbors suffice
   bool end_corrected;    // volumes of the energy's integral with corrections at faces
 
   // per bond, 2 D + 2 numbers: G_ij, X_j - X_i, w = V_i V_j W/|X|^2, V_i V_j (grad W)/x_ij
@@ -99,9 +98,9 @@ class FixFSIReference : public Fix {
   double self_range;
   bool tears;    // keyword damage
   struct SelfPair {
-    int i, j;
-    double reach;
-    bool torn;    // neighbors in the reference
+    int i = 0, j = 0;
+    double reach = 0.0;
+    bool torn = false;    // neighbors in the reference
   };
   std::vector<SelfPair> near_itself;
   bool bonded(int i, int j) const;    // local i with j

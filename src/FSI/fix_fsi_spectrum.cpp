@@ -21,6 +21,7 @@
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "input.h"
+#include "math_const.h"
 #include "modify.h"
 #include "update.h"
 #include "variable.h"
@@ -28,7 +29,8 @@
 #include <algorithm>
 #include <cmath>
 
-// set by this package's CMake files where it found FFTW; inside a LAMMPS tree, LAMMPS' own with KSPACE
+// set by this package's CMake files where it found FFTW; inside a LAMMPS tree, LAMMPS' own with
+// KSPACE
 #if defined(FSI_FFTW3) || (defined(FFT_FFTW3) && !defined(FFT_SINGLE))
 #define FSI_HAS_FFTW
 #include <fftw3.h>
@@ -38,16 +40,18 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-static constexpr double PI = 3.14159265358979323846;
 static constexpr int LEAST = 8;    // samples that make a spectrum
 
 /* ---------------------------------------------------------------------- */
 
 FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), input_kind(0), input_index(0), input_variable(-1), input_compute(nullptr), input_fix(nullptr), last(-1)
+    Fix(lmp, narg, arg), input_kind(0), input_index(0), input_variable(-1), input_compute(nullptr),
+    input_fix(nullptr), last(-1)
 {
 #if !defined(FSI_HAS_FFTW)
-  error->all(FLERR, "Fix fsi/spectrum is not in this build, which did not find FFTW3: install it (Debian: libfftw3-dev) and configure again");
+  error->all(FLERR,
+             "Fix fsi/spectrum is not in this build, which did not find FFTW3: install it (Debian: "
+             "libfftw3-dev) and configure again");
 #endif
   int npeaks;
   Keywords keywords(lmp, "fix fsi/spectrum");
@@ -56,14 +60,15 @@ FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("window").choice(order, 1, {"none", "hann", "hann2"});
   keywords.key("detrend").choice(detrend, MEAN, {"none", "mean", "linear"});
   keywords.key("peaks").integer(npeaks, 3, 1, 1000);
-  keywords.key("every").integer(analyse_every, 0, 0);
+  keywords.key("every").integer(analyze_every, 0, 0);
   keywords.key("file").word(file, "");
   keywords.parse(narg - 3, arg + 3);
   peaks.resize(npeaks);
   find_input();
   if (!file.empty() && comm->me == 0) {    // not only at the end of the run
     FILE *fp = fopen(file.c_str(), "a");
-    if (!fp) error->one(FLERR, "Cannot open fix fsi/spectrum file {}: {}", file, utils::getsyserror());
+    if (!fp)
+      error->one(FLERR, "Cannot open fix fsi/spectrum file {}: {}", file, utils::getsyserror());
     fclose(fp);
   }
 
@@ -92,16 +97,22 @@ void FixFSISpectrum::find_input()
   input_kind = info.get_type();
   input_index = info.get_index1();
   const char *const name = info.get_name();
-  if ((input_kind != ArgInfo::COMPUTE && input_kind != ArgInfo::FIX && input_kind != ArgInfo::VARIABLE) || info.get_dim() > 1 ||
-      (input_kind == ArgInfo::VARIABLE && input_index))
-    error->all(FLERR, "Fix fsi/spectrum input {}: expected v_name, c_ID, c_ID[i], f_ID or f_ID[i] (an entry of an array: through an "
-                      "equal-style variable)", argument);
+  if ((input_kind != ArgInfo::COMPUTE && input_kind != ArgInfo::FIX &&
+       input_kind != ArgInfo::VARIABLE) ||
+      info.get_dim() > 1 || (input_kind == ArgInfo::VARIABLE && input_index))
+    error->all(FLERR,
+               "Fix fsi/spectrum input {}: expected v_name, c_ID, c_ID[i], f_ID or f_ID[i] (an "
+               "entry of an array: through an equal-style variable)",
+               argument);
   const auto check = [&](const char *what, const auto *source) {
-    if (!source) error->all(FLERR, "Fix fsi/spectrum input {}: there is no {} {}", argument, what, name);
+    if (!source)
+      error->all(FLERR, "Fix fsi/spectrum input {}: there is no {} {}", argument, what, name);
     if (input_index ? !source->vector_flag : !source->scalar_flag)
-      error->all(FLERR, "Fix fsi/spectrum input {}: {} {} has no global {}", argument, what, name, input_index ? "vector" : "scalar");
+      error->all(FLERR, "Fix fsi/spectrum input {}: {} {} has no global {}", argument, what, name,
+                 input_index ? "vector" : "scalar");
     if (input_index > 0 && input_index > source->size_vector)
-      error->all(FLERR, "Fix fsi/spectrum input {}: the vector of {} {} has {} entries", argument, what, name, source->size_vector);
+      error->all(FLERR, "Fix fsi/spectrum input {}: the vector of {} {} has {} entries", argument,
+                 what, name, source->size_vector);
   };
   if (input_kind == ArgInfo::COMPUTE) {
     input_compute = modify->get_compute_by_id(name);
@@ -110,13 +121,15 @@ void FixFSISpectrum::find_input()
     input_fix = modify->get_fix_by_id(name);
     check("fix", input_fix);
     if (nevery % input_fix->global_freq)
-      error->all(FLERR, "Fix fsi/spectrum input {}: fix {} has values every {} steps, Nevery is {}", argument, name, input_fix->global_freq,
-                 nevery);
+      error->all(FLERR, "Fix fsi/spectrum input {}: fix {} has values every {} steps, Nevery is {}",
+                 argument, name, input_fix->global_freq, nevery);
   } else {
     input_variable = input->variable->find(name);
-    if (input_variable < 0) error->all(FLERR, "Fix fsi/spectrum input {}: there is no variable {}", argument, name);
+    if (input_variable < 0)
+      error->all(FLERR, "Fix fsi/spectrum input {}: there is no variable {}", argument, name);
     if (!input->variable->equalstyle(input_variable))
-      error->all(FLERR, "Fix fsi/spectrum input {}: variable {} is not equal-style", argument, name);
+      error->all(FLERR, "Fix fsi/spectrum input {}: variable {} is not equal-style", argument,
+                 name);
   }
 }
 
@@ -145,7 +158,7 @@ void FixFSISpectrum::end_of_step()
   value.push_back(sample());
   time.push_back(FSI::Clock::now(update));
   modify->addstep_compute(step + nevery);
-  if (analyse_every && value.size() % analyse_every == 0) analyse();
+  if (analyze_every && value.size() % analyze_every == 0) analyze();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -153,11 +166,14 @@ void FixFSISpectrum::end_of_step()
 double FixFSISpectrum::sample()
 {
   if (input_kind == ArgInfo::VARIABLE) return input->variable->compute_equal(input_variable);
-  if (input_kind == ArgInfo::FIX) return input_index ? input_fix->compute_vector(input_index - 1) : input_fix->compute_scalar();
+  if (input_kind == ArgInfo::FIX)
+    return input_index ? input_fix->compute_vector(input_index - 1) : input_fix->compute_scalar();
   const int flag = input_index ? Compute::INVOKED_VECTOR : Compute::INVOKED_SCALAR;
   if (!(input_compute->invoked_flag & flag)) {
-    if (input_index) input_compute->compute_vector();
-    else input_compute->compute_scalar();
+    if (input_index)
+      input_compute->compute_vector();
+    else
+      input_compute->compute_scalar();
     input_compute->invoked_flag |= flag;
   }
   return input_index ? input_compute->vector[input_index - 1] : input_compute->scalar;
@@ -168,13 +184,14 @@ double FixFSISpectrum::sample()
 void FixFSISpectrum::post_run()
 {
   if ((int) value.size() < LEAST && update->nsteps && comm->me == 0)
-    error->warning(FLERR, "Fix fsi/spectrum {} has {} samples, no spectrum: it needs at least {}", id, value.size(), LEAST);
-  analyse();
+    error->warning(FLERR, "Fix fsi/spectrum {} has {} samples, no spectrum: it needs at least {}",
+                   id, value.size(), LEAST);
+  analyze();
 }
 
 /* ----------------------------------------------------------------------
-   samples equally spaced in time (interpolated where fix fsi/dt has changed their distance), without trend, times the window;
-   area: sum of the window
+   samples equally spaced in time (interpolated where fix fsi/dt has changed their distance),
+   without trend, times the window; area: sum of the window
 ------------------------------------------------------------------------- */
 
 std::vector<double> FixFSISpectrum::prepare(double &area) const
@@ -192,7 +209,7 @@ std::vector<double> FixFSISpectrum::prepare(double &area) const
   area = 0.0;
   double s1 = 0.0, s2 = 0.0, sy = 0.0, s1y = 0.0;
   for (int k = 0; k < n; k++) {
-    const double s = std::sin(PI * k / n), x = k - 0.5 * n;
+    const double s = std::sin(MathConst::MY_PI * k / n), x = k - 0.5 * n;
     w[k] = order == 0 ? 1.0 : order == 1 ? s * s : s * s * s * s;
     area += w[k];
     s1 += w[k] * x;
@@ -208,13 +225,15 @@ std::vector<double> FixFSISpectrum::prepare(double &area) const
 }
 
 /* ----------------------------------------------------------------------
-   Amplitudes A_k = 2 |X_k|/sum of w at k/(n dt). A sine whose frequency lies the part d of the distance to the next frequency
-   beyond k has, with the window sin^2m and many periods, the ratio of its two largest amplitudes
+   Amplitudes A_k = 2 |X_k|/sum of w at k/(n dt). A sine whose frequency lies the part d of the
+   distance to the next frequency beyond k has, with the window sin^2m and many periods, the ratio
+   of its two largest amplitudes
      a = A_k+1/A_k = (m + d)/(m + 1 - d)
-   (m = 0, 1: Rife & Vincent 1970, Grandke 1983), and A_k = amplitude sin(pi d)/(pi d)/prod_j=1..m (1 - d^2/j^2).
+   (m = 0, 1: Rife & Vincent 1970, Grandke 1983), and A_k = amplitude sin(pi d)/(pi d)/prod_j=1..m
+   (1 - d^2/j^2).
 ------------------------------------------------------------------------- */
 
-void FixFSISpectrum::analyse()
+void FixFSISpectrum::analyze()
 {
   std::fill(peaks.begin(), peaks.end(), Peak{0.0, 0.0});
   const int n = value.size();
@@ -226,7 +245,8 @@ void FixFSISpectrum::analyse()
     auto *X = (fftw_complex *) fftw_malloc(sizeof(fftw_complex) * A.size());
     fftw_plan plan = fftw_plan_dft_r2c_1d(n, y.data(), X, FFTW_ESTIMATE);
     fftw_execute(plan);
-    for (int k = 0; k <= n / 2; k++) A[k] = (k == 0 || 2 * k == n ? 1.0 : 2.0) * std::hypot(X[k][0], X[k][1]) / area;
+    for (int k = 0; k <= n / 2; k++)
+      A[k] = (k == 0 || 2 * k == n ? 1.0 : 2.0) * std::hypot(X[k][0], X[k][1]) / area;
     fftw_destroy_plan(plan);
     fftw_free(X);
 
@@ -238,19 +258,23 @@ void FixFSISpectrum::analyse()
       const double a = (up ? A[k + 1] : A[k - 1]) / A[k];
       const double d = std::max(0.0, ((order + 1) * a - order) / (a + 1.0));
       double amplitude = A[k];
-      if (d > 0.0) amplitude *= PI * d / std::sin(PI * d);
+      if (d > 0.0) amplitude *= MathConst::MY_PI * d / std::sin(MathConst::MY_PI * d);
       for (int j = 1; j <= order; j++) amplitude *= 1.0 - d * d / (j * j);
       found.push_back({(up ? k + d : k - d) * df, amplitude});
     }
-    std::stable_sort(found.begin(), found.end(), [](const Peak &p, const Peak &q) { return p.amplitude > q.amplitude; });
+    std::stable_sort(found.begin(), found.end(), [](const Peak &p, const Peak &q) {
+      return p.amplitude > q.amplitude;
+    });
     std::copy_n(found.begin(), std::min(found.size(), peaks.size()), peaks.begin());
 
     if (!file.empty()) {
       FILE *fp = fopen(file.c_str(), "w");
-      if (!fp) error->one(FLERR, "Cannot open fix fsi/spectrum file {}: {}", file, utils::getsyserror());
+      if (!fp)
+        error->one(FLERR, "Cannot open fix fsi/spectrum file {}: {}", file, utils::getsyserror());
       utils::print(fp, "frequency,amplitude\n");
       for (int k = 0; k <= n / 2; k++) utils::print(fp, "{:.10g},{:.10g}\n", k * df, A[k]);
-      if (ferror(fp) + fclose(fp)) error->one(FLERR, "Cannot write fix fsi/spectrum file {}: {}", file, utils::getsyserror());
+      if (ferror(fp) + fclose(fp))
+        error->one(FLERR, "Cannot write fix fsi/spectrum file {}: {}", file, utils::getsyserror());
     }
   }
 #endif
@@ -301,11 +325,15 @@ void FixFSISpectrum::restart(char *buf)
 {
   const Record record(lmp, "fix fsi/spectrum", buf);
   if (record.value("input") != argument)
-    error->all(FLERR, "Fix fsi/spectrum {} is of {}, the restart file has samples of {}: give it another ID to begin anew", id, argument,
-               record.value("input"));
+    error->all(FLERR,
+               "Fix fsi/spectrum {} is of {}, the restart file has samples of {}: give it another "
+               "ID to begin anew",
+               id, argument, record.value("input"));
   if (record.has("Nevery") && record.value("Nevery") != std::to_string(nevery) && comm->me == 0)
-    error->warning(FLERR, "Fix fsi/spectrum: Nevery was {} {}, and is {} now: between samples of the file "
-                          "it is interpolated", record.value("Nevery"), Keywords::OF_RESTART, nevery);
+    error->warning(FLERR,
+                   "Fix fsi/spectrum: Nevery was {} {}, and is {} now: between samples of the file "
+                   "it is interpolated",
+                   record.value("Nevery"), Keywords::OF_RESTART, nevery);
   last = std::stoll(record.value("last"));
   time = record.numbers("times");
   value = record.numbers("values");

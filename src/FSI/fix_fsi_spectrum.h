@@ -47,7 +47,7 @@ class FixFSISpectrum : public Fix {
  private:
   enum Detrend { UNCHANGED, MEAN, LINEAR };
   struct Peak {
-    double frequency, amplitude;
+    double frequency = 0.0, amplitude = 0.0;
   };
   std::string argument, file;    // the input as in the script
   int input_kind, input_index, input_variable;
@@ -55,14 +55,14 @@ class FixFSISpectrum : public Fix {
   class Fix *input_fix;
 
   int order;    // of the window sin^(2 order)
-  int detrend, analyse_every;
+  int detrend, analyze_every;
   std::vector<Peak> peaks;
   bigint last;    // step of the last sample
   std::vector<double> time, value;
 
   void find_input();
   double sample();
-  void analyse();
+  void analyze();
   std::vector<double> prepare(double &) const;
 };
 

@@ -36,15 +36,16 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"), velocity(lmp, "fix fsi/stream", 3), low(0.0),
-    high(0.0), region(nullptr), fix_fsi(nullptr), step(-1), given{}, work(0.0)
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"), velocity(lmp, "fix fsi/stream", 3),
+    low(0.0), high(0.0), region(nullptr), fix_fsi(nullptr), step(-1), given{}, work(0.0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stream requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi/stream", error);
   for (int d = 0; d < 3; d++) {
     const std::string word = arg[3 + d];
     if (word == "NULL") continue;
-    if (d >= domain->dimension) error->all(FLERR, "Fix fsi/stream velocity along z must be NULL in 2D, not {}", word);
+    if (d >= domain->dimension)
+      error->all(FLERR, "Fix fsi/stream velocity along z must be NULL in 2D, not {}", word);
     velocity.read(d, word, "velocity", "NULL or v_name");
   }
   keywords.key("region").word(region_id, "");
@@ -52,10 +53,16 @@ FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("density").number(density_rate, 0.0, Range::from(0.0));
   keywords.key("along").choice(along, 0, {"x", "y", "z"});
   keywords.parse(narg - 6, arg + 6);
-  if (region_id.empty()) error->all(FLERR, "Fix fsi/stream requires keyword region: the zone in which it acts");
-  if (rate == 0.0) error->all(FLERR, "Fix fsi/stream requires keyword rate: of the fluid's approach to the velocity, 1/time");
-  if (along >= domain->dimension) error->all(FLERR, "Fix fsi/stream along z: there is no flow along z in 2D");
-  if (!domain->get_region_by_id(region_id)) error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
+  if (region_id.empty())
+    error->all(FLERR, "Fix fsi/stream requires keyword region: the zone in which it acts");
+  if (rate == 0.0)
+    error->all(
+        FLERR,
+        "Fix fsi/stream requires keyword rate: of the fluid's approach to the velocity, 1/time");
+  if (along >= domain->dimension)
+    error->all(FLERR, "Fix fsi/stream along z: there is no flow along z in 2D");
+  if (!domain->get_region_by_id(region_id))
+    error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
 
   scalar_flag = vector_flag = 1;
   size_vector = 4;
@@ -76,13 +83,20 @@ int FixFSIStream::setmask()
 void FixFSIStream::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/stream");
-  if (!force->pair_match("fsi/fluid", 1)) error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
+  if (!force->pair_match("fsi/fluid", 1))
+    error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
   if (density_rate > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
-    error->all(FLERR, "Fix fsi/stream density requires fix fsi with fluid continuity: a density that is summed cannot be damped");
+    error->all(FLERR,
+               "Fix fsi/stream density requires fix fsi with fluid continuity: a density that is "
+               "summed cannot be damped");
   region = domain->get_region_by_id(region_id);
   if (!region) error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
-  if (region->dynamic_check()) error->all(FLERR, "Region {} of fix fsi/stream must not move nor change", region_id);
-  if (!region->bboxflag) error->all(FLERR, "Region {} of fix fsi/stream must be inside of its faces: it has no ends along {}", region_id, "xyz"[along]);
+  if (region->dynamic_check())
+    error->all(FLERR, "Region {} of fix fsi/stream must not move nor change", region_id);
+  if (!region->bboxflag)
+    error->all(FLERR,
+               "Region {} of fix fsi/stream must be inside of its faces: it has no ends along {}",
+               region_id, "xyz"[along]);
   const double lo[] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const double hi[] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   low = lo[along];
@@ -90,8 +104,10 @@ void FixFSIStream::init()
   // a number in a script may be that of the box but for its last digits
   const double little = 1.0e-9 * domain->prd[along];
   if (low < domain->boxlo[along] - little || high > domain->boxhi[along] + little)
-    error->all(FLERR, "Region {} of fix fsi/stream, from {} to {} along {}, must be inside the box, from {} to {}", region_id, low, high, "xyz"[along],
-               domain->boxlo[along], domain->boxhi[along]);
+    error->all(FLERR,
+               "Region {} of fix fsi/stream, from {} to {} along {}, must be inside the box, from "
+               "{} to {}",
+               region_id, low, high, "xyz"[along], domain->boxlo[along], domain->boxhi[along]);
 
   velocity.find();
   zone_group = igroup;
@@ -105,14 +121,21 @@ void FixFSIStream::setup(int vflag)
 {
   step = -1;
   find_weights();
-  int mine = std::any_of(zone.begin(), zone.end(), [](const Member &m) { return m.weight > 0.0; }), any;
+  int mine = std::any_of(zone.begin(), zone.end(),
+                         [](const Member &m) {
+                           return m.weight > 0.0;
+                         }),
+      any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) error->all(FLERR, "Region {} of fix fsi/stream has no fluid of group {}", region_id, group->names[igroup]);
+  if (!any)
+    error->all(FLERR, "Region {} of fix fsi/stream has no fluid of group {}", region_id,
+               group->names[igroup]);
   post_force(vflag);
 }
 
 /* ----------------------------------------------------------------------
-   Fluid that may be in the zone before the next list. Variables are evaluated for a group: it gets one of its own.
+   Fluid that may be in the zone before the next list. Variables are evaluated for a group: it gets
+   one of its own.
 ------------------------------------------------------------------------- */
 
 void FixFSIStream::find_zone()
@@ -133,7 +156,9 @@ void FixFSIStream::find_zone()
       zone.push_back({i, 0.0});
       mask[i] |= bit;
     } else if (in_zone(i) >= 0.0)
-      error->one(FLERR, "Atom {} of a solid is in region {} of fix fsi/stream, which is for fluid alone", atom->tag[i], region_id);
+      error->one(FLERR,
+                 "Atom {} of a solid is in region {} of fix fsi/stream, which is for fluid alone",
+                 atom->tag[i], region_id);
   }
 }
 
@@ -142,11 +167,14 @@ double FixFSIStream::in_zone(int i) const
 {
   double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
   domain->remap(x);
-  return x[along] > low && x[along] < high && region->match(x[0], x[1], x[2]) ? (x[along] - low) / (high - low) : -1.0;
+  return x[along] > low && x[along] < high && region->match(x[0], x[1], x[2])
+      ? (x[along] - low) / (high - low)
+      : -1.0;
 }
 
 /* ----------------------------------------------------------------------
-   sin^2 along the axis: smooth, 0 at the ends. Solids would be torn by what drives the fluid around them
+   sin^2 along the axis: smooth, 0 at the ends. Solids would be torn by what drives the fluid around
+   them
 ------------------------------------------------------------------------- */
 
 void FixFSIStream::find_weights()
@@ -174,7 +202,9 @@ void FixFSIStream::advance(bool advance)
   const int *const type = atom->type, n = atom->ntypes + 1;
   double *const rho = atom->rho;
   std::vector<double> mine(2 * n, 0.0), all(2 * n);
-  const auto part = [&](double weight) { return -std::expm1(-density_rate * weight * dt); };
+  const auto part = [&](double weight) {
+    return -std::expm1(-density_rate * weight * dt);
+  };
   for (const auto &[i, weight] : zone) {
     if (weight == 0.0) continue;
     const double a = part(weight);
@@ -208,12 +238,14 @@ void FixFSIStream::post_force(int)
     for (int d = 0; d < 3; d++) {
       if (!velocity.given(d)) continue;
       const double u = velocity(d, i);
-      if (!std::isfinite(u)) error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u, "xyz"[d], atom->tag[i],
-                                        velocity.see(d));
+      if (!std::isfinite(u))
+        error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u,
+                   "xyz"[d], atom->tag[i], velocity.see(d));
       const double push = m * part * (u - v[d]) / (dt * force->ftm2v);
       f[d] += push;
       given[d] += push;
-      given[3] += push * (v[d] + 0.5 * dt * force->ftm2v * f[d] / m);    // in the middle of the kick
+      // in the middle of the kick
+      given[3] += push * (v[d] + 0.5 * dt * force->ftm2v * f[d] / m);
     }
   }
   fix_fsi->tally(FixFSI::FIELDS, -given[3]);

@@ -30,8 +30,8 @@ FixStyle(fsi/stream,FixFSIStream);
 
 namespace LAMMPS_NS {
 
-// Brings the fluid of a zone to a given velocity, and, where asked, its density to the zone's mean: with one rate for both a sound wave
-// that passes decays without a reflection.
+// Brings the fluid of a zone to a given velocity, and, where asked, its density to the zone's mean:
+// with one rate for both a sound wave that passes decays without a reflection.
 
 class FixFSIStream : public Fix, public FSI::Part {
  public:
@@ -52,20 +52,20 @@ class FixFSIStream : public Fix, public FSI::Part {
   FSI::Keywords keywords;
   std::string region_id;
   FSI::Values velocity;
-  int along;                     // axis
-  double rate, density_rate;     // 1/time, in the middle of the zone
-  double low, high;              // ends of the zone along the axis
+  int along;                    // axis
+  double rate, density_rate;    // 1/time, in the middle of the zone
+  double low, high;             // ends of the zone along the axis
   class Region *region;
   class FixFSI *fix_fsi;
-  bigint step;                   // of the weights
+  bigint step;    // of the weights
   struct Member {
-    int i;
-    double weight;    // 0 outside of the zone and at its ends, 1 in its middle
+    int i = 0;
+    double weight = 0.0;    // 0 outside of the zone and at its ends, 1 in its middle
   };
   std::vector<Member> zone;    // local fluid in and near it, as of the last list
   int zone_group;
-  double given[4];               // force on the fluid and its power, this rank's part
-  double work;                   // since the fix was defined, likewise
+  double given[4];    // force on the fluid and its power, this rank's part
+  double work;        // since the fix was defined, likewise
 
   void find_zone();
   double in_zone(int i) const;

@@ -38,11 +38,17 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
-  keywords.key("plane").choice(plane_stress, 0, {"strain", "stress"}).kept("the deviator in the file is that of the other");
-  keywords.key("plastic").set(plastic, 1).changes("the plastic strain begins with 0, or is forgotten");
+  keywords.key("plane")
+      .choice(plane_stress, 0, {"strain", "stress"})
+      .kept("the deviator in the file is that of the other");
+  keywords.key("plastic")
+      .set(plastic, 1)
+      .changes("the plastic strain begins with 0, or is forgotten");
   keywords.parse(narg - 3, arg + 3);
-  if (plane_stress && domain->dimension == 3) error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
-  if (plastic && plane_stress) error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
+  if (plane_stress && domain->dimension == 3)
+    error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
+  if (plastic && plane_stress)
+    error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
   restart_global = 1;
   comm_forward = domain->dimension;
   choose_fields();
@@ -70,8 +76,7 @@ void FixFSIStress::choose_fields()
   const bool updated = facts.style == Facts::OF_SOLIDS;
   fields.set("stress", Fields::RESTART, true, stress, ns);
   fields.set("plastic strain", Fields::RESTART, plastic, strain);
-  fields.set("place at the start", Fields::RESTART,
-             updated && facts.self_contact, start,
+  fields.set("place at the start", Fields::RESTART, updated && facts.self_contact, start,
              domain->dimension + 1);
   fields.set("hourglass force", Fields::RESTART, facts.hourglass, hourglass, domain->dimension);
 }
@@ -80,7 +85,8 @@ void FixFSIStress::choose_fields()
 
 void FixFSIStress::init()
 {
-  if (modify->get_fix_by_style("^fsi/stress$").size() > 1) error->all(FLERR, "There can be only one fix fsi/stress");
+  if (modify->get_fix_by_style("^fsi/stress$").size() > 1)
+    error->all(FLERR, "There can be only one fix fsi/stress");
   const FixFSI *fix_fsi = FixFSI::find(lmp, "Fix fsi/stress");
   choose_fields();    // another pair_style command may have changed what is kept
   // what had a stress keeps it, what had none never gets the right one
@@ -88,16 +94,22 @@ void FixFSIStress::init()
     double &first = stress[i][0];
     const bool solid = fix_fsi->state[atom->type[i]].species == FSI::SOLID;
     if (solid ? first == FOREIGN : first != FOREIGN && first != 0.0)
-      error->one(FLERR, "Atom {} of type {} is {} solid{} when a run began: delete it and create another in its place", atom->tag[i],
-                 atom->type[i], solid ? "a" : "no", solid ? " now and was none" : " any more, as it was");
+      error->one(FLERR,
+                 "Atom {} of type {} is {} solid{} when a run began: delete it and create another "
+                 "in its place",
+                 atom->tag[i], atom->type[i], solid ? "a" : "no",
+                 solid ? " now and was none" : " any more, as it was");
     if (!solid) first = FOREIGN;
   }
   bool yields = false;
   for (const auto &s : fix_fsi->state) yields = yields || s.yield > 0.0;
   if (comm->me == 0 && plastic && !yields)
-    error->warning(FLERR, "Fix fsi/stress plastic has nothing to act on: no material has a yield stress");
+    error->warning(FLERR,
+                   "Fix fsi/stress plastic has nothing to act on: no material has a yield stress");
   if (comm->me == 0 && yields && !plastic)
-    error->warning(FLERR, "A material has a yield stress, but stays elastic: fix fsi/stress lacks keyword plastic");
+    error->warning(
+        FLERR,
+        "A material has a yield stress, but stays elastic: fix fsi/stress lacks keyword plastic");
 }
 
 /* ----------------------------------------------------------------------
@@ -179,8 +191,10 @@ std::vector<FixFSIStress::Effect> FixFSIStress::effects() const
 
 void FixFSIStress::find_idle(const Census &all, const Idle &nothing) const
 {
-  if (!facts_of_solids(lmp).by_rate) nothing("Fix fsi/stress", "no solid is hypoelastic");
-  else if (all.solids == 0) nothing("Fix fsi/stress", "no particle is a solid");
+  if (!facts_of_solids(lmp).by_rate)
+    nothing("Fix fsi/stress", "no solid is hypoelastic");
+  else if (all.solids == 0)
+    nothing("Fix fsi/stress", "no particle is a solid");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -21,16 +21,16 @@ FixStyle(fsi/stress,FixFSIStress);
 #define LMP_FIX_FSI_STRESS_H
 
 #include "fsi_fields.h"
-#include "fsi_part.h"
 #include "fsi_jaumann.h"
 #include "fsi_keywords.h"
 #include "fsi_material.h"
+#include "fsi_part.h"
 #include "fsi_plasticity.h"
 
 namespace LAMMPS_NS {
 
-// Deviatoric stress of hypoelastic solids: owns it, evolves it by the Jaumann rate (paper eq. 3). Driven by fix fsi,
-// which forms the velocity gradient.
+// Deviatoric stress of hypoelastic solids: owns it, evolves it by the Jaumann rate (paper eq. 3).
+// Driven by fix fsi, which forms the velocity gradient.
 
 class FixFSIStress : public FSI::FixFields, public FSI::Part {
  public:
@@ -48,7 +48,8 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
 
   // deviatoric stress per atom, in-plane in 2D; see fsi_tensor.h for the order
   double **stress;
-  double **hourglass;        // force per atom that pair_style fsi/solid keeps here; null without its hourglass control
+  double **hourglass;    // force per atom that pair_style fsi/solid keeps here; null without its
+                         // hourglass control
   int plane_stress;
   int plastic;    // materials yield
   double *hourglass_force(int i) { return hourglass[i]; }
@@ -57,15 +58,17 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   void enter_start(const std::vector<FSI::State> &);
   double distance_at_start(int i, int j) const;
 
-  // half a step back to half a step ahead, with the velocity gradient L of the time between (fsi_jaumann.h)
-  // returns the plastic work per volume
-  template <int D> double advance_stress(int i, const double *L, double dt, const FSI::State &material)
+  // half a step back to half a step ahead, with the velocity gradient L of the time between
+  // (fsi_jaumann.h) returns the plastic work per volume
+  template <int D>
+  double advance_stress(int i, const double *L, double dt, const FSI::State &material)
   {
     auto s = FSI::Sym<D>::load(stress[i]);
     double work = 0.0;
     FSI::jaumann_update<D>(s, L, dt, material.shear, plane_stress);
     if (plastic && material.yield > 0.0)
-      work = FSI::radial_return<D>(s, strain[i], material.shear, material.yield, material.hardening);
+      work =
+          FSI::radial_return<D>(s, strain[i], material.shear, material.yield, material.hardening);
     s.store(stress[i]);
     return work;
   }
@@ -78,8 +81,9 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
 
  private:
   FSI::Keywords keywords;
-  static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a run began
-  int ns;    // components of the deviator
+  static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a
+                                                 // run began
+  int ns;                                        // components of the deviator
   double **start;    // places, and whether there is one; null without keyword self
   double *strain;    // equivalent plastic strain; null without plastic
   void choose_fields();

@@ -52,9 +52,11 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   while (iarg < narg) {
     const std::string key = arg[iarg];
     const auto number = [&](const char *value, const Range &range = {}) {
-      return numeric(lmp, "Fix fsi/wall/mirror " + key, value, range, false, key == "range" ? "INF" : key == "guard" || key == "velocity" ? "" : "EDGE");
+      return numeric(lmp, "Fix fsi/wall/mirror " + key, value, range, false,
+                     key == "guard" || key == "velocity" ? "" : "EDGE");
     };
-    if (key.size() == 3 && strchr("xyz", key[0]) && (key.substr(1) == "lo" || key.substr(1) == "hi")) {
+    if (key.size() == 3 && strchr("xyz", key[0]) &&
+        (key.substr(1) == "lo" || key.substr(1) == "hi")) {
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror " + key, error);
       Wall w = {};
       w.axis = key[0] - 'x';
@@ -66,7 +68,8 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
       } else
         w.position = number(arg[iarg + 1]);
       if (domain->periodicity[w.axis])
-        error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", key, "xyz"[w.axis]);
+        error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", key,
+                   "xyz"[w.axis]);
       for (int b = 0; b < 3; b++) {
         w.lo[b] = -BIG;
         w.hi[b] = BIG;
@@ -76,27 +79,20 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
       iarg += 2;
     } else if (key == "range") {
       if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror range", error);
-      if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror range must follow the wall that it belongs to");
-      Wall &w = walls.back();
-      const char *axes = "xyz", *a = strchr(axes, arg[iarg + 1][0]);
-      if (strlen(arg[iarg + 1]) != 1 || !a)
-        error->all(FLERR, "Unknown fix fsi/wall/mirror range axis {}: expected x, y or z", arg[iarg + 1]);
-      const int b = a - axes;
-      if (b == w.axis) error->all(FLERR, "Fix fsi/wall/mirror range axis {} is the normal of its wall", arg[iarg + 1]);
-      if (strcmp(arg[iarg + 2], "INF") != 0) w.lo[b] = number(arg[iarg + 2]);
-      if (strcmp(arg[iarg + 3], "INF") != 0) w.hi[b] = number(arg[iarg + 3]);
-      if (w.lo[b] >= w.hi[b])
-        error->all(FLERR, "Fix fsi/wall/mirror range {} {} is empty", arg[iarg + 2], arg[iarg + 3]);
-      w.finite = true;
+      if (walls.empty())
+        error->all(FLERR, "Fix fsi/wall/mirror range must follow the wall that it belongs to");
+      parse_range(arg + iarg + 1);
       iarg += 4;
     } else if (key == "velocity") {
       if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror velocity", error);
-      if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror velocity must follow the wall that it belongs to");
+      if (walls.empty())
+        error->all(FLERR, "Fix fsi/wall/mirror velocity must follow the wall that it belongs to");
       for (int b = 0; b < 3; b++) walls.back().velocity[b] = number(arg[iarg + 1 + b]);
       iarg += 4;
     } else if (key == "slip") {
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror slip", error);
-      if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror slip must follow the wall that it belongs to");
+      if (walls.empty())
+        error->all(FLERR, "Fix fsi/wall/mirror slip must follow the wall that it belongs to");
       walls.back().noslip = !utils::logical(FLERR, arg[iarg + 1], false, lmp);
       slip_said.back() = true;
       iarg += 2;
@@ -105,18 +101,15 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
       guard = number(arg[iarg + 1], Range::between(0.0, 0.45));
       iarg += 2;
     } else
-      error->all(FLERR, "Unknown fix fsi/wall/mirror keyword {}: expected xlo, xhi, ylo, yhi, zlo, zhi, range, "
-                        "velocity, slip or guard", key);
+      error->all(FLERR,
+                 "Unknown fix fsi/wall/mirror keyword {}: expected xlo, xhi, ylo, yhi, zlo, zhi, "
+                 "range, velocity, slip or guard",
+                 key);
   }
-  if (walls.empty()) error->all(FLERR, "Fix fsi/wall/mirror needs at least one of xlo, xhi, ylo, yhi, zlo, zhi");
+  if (walls.empty())
+    error->all(FLERR, "Fix fsi/wall/mirror needs at least one of xlo, xhi, ylo, yhi, zlo, zhi");
 
-  // a channel of which one wall slips is most likely one whose script says slip once for both
-  for (size_t a = 0; a < walls.size() && comm->me == 0; a++)
-    for (size_t b = 0; b < walls.size(); b++)
-      if (walls[a].axis == walls[b].axis && walls[a].noslip && !walls[b].noslip && !slip_said[b])
-        error->warning(FLERR, "Fix fsi/wall/mirror {}: slip no is of wall {} alone, wall {} slips: slip belongs to the wall that it follows", id,
-                       face(walls[a]), face(walls[b]));
-
+  warn_of_slip(slip_said);
   for (const auto &w : walls) start.push_back(w.position);
   force_on.resize(walls.size());
   begin_state(false);
@@ -128,6 +121,44 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   restart_global = 1;
   nevery = 1;
+}
+
+/* ----------------------------------------------------------------------
+   extent of the last wall along another axis
+------------------------------------------------------------------------- */
+
+void FixFSIWallMirror::parse_range(char **arg)
+{
+  const auto number = [&](const char *value) {
+    return numeric(lmp, "Fix fsi/wall/mirror range", value, Range(), false, "INF");
+  };
+  Wall &w = walls.back();
+  const char *axes = "xyz", *a = strchr(axes, arg[0][0]);
+  if (strlen(arg[0]) != 1 || !a)
+    error->all(FLERR, "Unknown fix fsi/wall/mirror range axis {}: expected x, y or z", arg[0]);
+  const int b = a - axes;
+  if (b == w.axis)
+    error->all(FLERR, "Fix fsi/wall/mirror range axis {} is the normal of its wall", arg[0]);
+  if (strcmp(arg[1], "INF") != 0) w.lo[b] = number(arg[1]);
+  if (strcmp(arg[2], "INF") != 0) w.hi[b] = number(arg[2]);
+  if (w.lo[b] >= w.hi[b])
+    error->all(FLERR, "Fix fsi/wall/mirror range {} {} is empty", arg[1], arg[2]);
+  w.finite = true;
+}
+
+/* ----------------------------------------------------------------------
+   a channel of which one wall slips is most likely one whose script says slip once for both
+------------------------------------------------------------------------- */
+
+void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
+{
+  for (size_t a = 0; a < walls.size() && comm->me == 0; a++)
+    for (size_t b = 0; b < walls.size(); b++)
+      if (walls[a].axis == walls[b].axis && walls[a].noslip && !walls[b].noslip && !slip_said[b])
+        error->warning(FLERR,
+                       "Fix fsi/wall/mirror {}: slip no is of wall {} alone, wall {} slips: slip "
+                       "belongs to the wall that it follows",
+                       id, face(walls[a]), face(walls[b]));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -156,16 +187,18 @@ void FixFSIWallMirror::setup(int)
     if (!(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID) continue;
     for (const auto &w : walls)
       if (!w.finite && w.distance(x[i]) < -fix_fsi->dx)
-        error->one(FLERR, "Fluid atom {} at {} {} {} is behind the {}{} wall of fix {}", atom->tag[i], x[i][0],
-                   x[i][1], x[i][2], "xyz"[w.axis], w.side > 0.0 ? "lo" : "hi", id);
+        error->one(FLERR, "Fluid atom {} at {} {} {} is behind the {}{} wall of fix {}",
+                   atom->tag[i], x[i][0], x[i][1], x[i][2], "xyz"[w.axis],
+                   w.side > 0.0 ? "lo" : "hi", id);
   }
 }
 
 /* ----------------------------------------------------------------------
-   after the first drift: walls move along, and a fluid particle nearer than the guard distance, or behind the wall, is
-   reflected. A segment acts on what has come through it in this step, not on what flows behind it.
-   The ledger has velocities of the middle of a step, half a kick on, of which the kick of gravity is not reflected. What that of the other
-   forces differs by, density takes up.
+   after the first drift: walls move along, and a fluid particle nearer than the guard distance, or
+   behind the wall, is reflected. A segment acts on what has come through it in this step, not on
+   what flows behind it.
+   The ledger has velocities of the middle of a step, half a kick on, of which the kick of gravity
+   is not reflected. What that of the other forces differs by, density takes up.
 ------------------------------------------------------------------------- */
 
 void FixFSIWallMirror::post_integrate()
@@ -179,7 +212,8 @@ void FixFSIWallMirror::post_integrate()
 
   const InnerBox inner(walls, near);
   for (int i = 0; i < atom->nlocal; i++) {
-    if (inner.contains(x[i]) || !(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID) continue;
+    if (inner.contains(x[i]) || !(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID)
+      continue;
     for (const auto &w : walls) {
       const double a = w.distance(x[i]);
       if (a >= near || (w.finite && !w.spans(x[i], 0.0))) continue;
@@ -192,7 +226,8 @@ void FixFSIWallMirror::post_integrate()
       const double vn = v[i][w.axis] - w.velocity[w.axis];
       if (vn * w.side < 0.0) {
         if (fix_fsi->ledger)
-          fix_fsi->energy_out[FixFSI::WALLS] += 2.0 * vn * atom->rmass[i] * (v[i][w.axis] - vn + dth * fix_fsi->body_forces.on(i)[w.axis]);
+          fix_fsi->energy_out[FixFSI::WALLS] += 2.0 * vn * atom->rmass[i] *
+              (v[i][w.axis] - vn + dth * fix_fsi->body_forces.on(i)[w.axis]);
         v[i][w.axis] -= 2.0 * vn;
         if (fix_fsi->profile) fix_fsi->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
       }
@@ -209,7 +244,8 @@ void FixFSIWallMirror::end_of_step()
     Wall &w = walls[k];
     w.position += 0.5 * update->dt * w.velocity[w.axis];
     if (fix_fsi->ledger)
-      for (int d = 0; d < 3; d++) fix_fsi->energy_out[FixFSI::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
+      for (int d = 0; d < 3; d++)
+        fix_fsi->energy_out[FixFSI::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
   }
 }
 
@@ -234,9 +270,14 @@ void FixFSIWallMirror::go_back()
 void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
 {
   const Facts fluid = facts_of_fluids(lmp);
-  if (!fluid.style) nothing("Fix fsi/wall/mirror", "walls mirror fluids, and there is no pair_style fsi/fluid");
-  else if (all.fluids == 0) nothing("Fix fsi/wall/mirror", "no particle is a fluid");
-  else if (std::any_of(walls.begin(), walls.end(), [](const Wall &w) { return w.noslip; }) &&
+  if (!fluid.style)
+    nothing("Fix fsi/wall/mirror", "walls mirror fluids, and there is no pair_style fsi/fluid");
+  else if (all.fluids == 0)
+    nothing("Fix fsi/wall/mirror", "no particle is a fluid");
+  else if (std::any_of(walls.begin(), walls.end(),
+                       [](const Wall &w) {
+                         return w.noslip;
+                       }) &&
            !fluid.laminar)
     nothing("Fix fsi/wall/mirror slip no", "pair_style fsi/fluid has no laminar/visc");
 }
@@ -264,15 +305,18 @@ double FixFSIWallMirror::compute_array(int i, int j)
 }
 
 /* ----------------------------------------------------------------------
-   restart: count of reflections and where the walls are; a wall that the command puts elsewhere than before stands there
+   restart: count of reflections and where the walls are; a wall that the command puts elsewhere
+   than before stands there
 ------------------------------------------------------------------------- */
 
 std::string FixFSIWallMirror::settings(int k) const
 {
   const Wall &w = walls[k];
-  std::string text = fmt::format("velocity {} {} {} slip {} guard {}", w.velocity[0], w.velocity[1], w.velocity[2], w.noslip ? "no" : "yes", guard);
+  std::string text = fmt::format("velocity {} {} {} slip {} guard {}", w.velocity[0], w.velocity[1],
+                                 w.velocity[2], w.noslip ? "no" : "yes", guard);
   for (int b = 0; b < 3; b++)
-    if (w.lo[b] > -BIG || w.hi[b] < BIG) text += fmt::format(" range {} {} {}", "xyz"[b], w.lo[b], w.hi[b]);
+    if (w.lo[b] > -BIG || w.hi[b] < BIG)
+      text += fmt::format(" range {} {} {}", "xyz"[b], w.lo[b], w.hi[b]);
   return text;
 }
 
@@ -298,18 +342,25 @@ void FixFSIWallMirror::restart(char *buf)
   std::string faces;
   for (const auto &w : walls) faces += (faces.empty() ? "" : " ") + face(w);
   if (faces != record.value("walls"))
-    error->all(FLERR, "Fix fsi/wall/mirror {} has the walls {}, the restart file {} of it: give it another ID to place all walls anew", id, faces,
-               record.value("walls"));
+    error->all(FLERR,
+               "Fix fsi/wall/mirror {} has the walls {}, the restart file {} of it: give it "
+               "another ID to place all walls anew",
+               id, faces, record.value("walls"));
   reflected = (comm->me == 0) ? static_cast<bigint>(record.numbers("reflections")[0]) : 0;
   for (size_t k = 0; k < walls.size(); k++) {
     const auto place = record.numbers(fmt::format("place {}", k));
     const auto &before = record.value(fmt::format("settings {}", k));
-    if (place[0] == start[k]) walls[k].position = place[1];
+    if (place[0] == start[k])
+      walls[k].position = place[1];
     else if (comm->me == 0)
-      error->warning(FLERR, "Fix fsi/wall/mirror {}: wall {} was put at {} when the restart file was written, and is at {} now", id,
-                     face(walls[k]), place[0], start[k]);
+      error->warning(FLERR,
+                     "Fix fsi/wall/mirror {}: wall {} was put at {} when the restart file was "
+                     "written, and is at {} now",
+                     id, face(walls[k]), place[0], start[k]);
     if (before != settings(k) && comm->me == 0)
-      error->warning(FLERR, "Fix fsi/wall/mirror {}: wall {} had {} when the restart file was written, and has {} now", id, face(walls[k]),
-                     before, settings(k));
+      error->warning(FLERR,
+                     "Fix fsi/wall/mirror {}: wall {} had {} when the restart file was written, "
+                     "and has {} now",
+                     id, face(walls[k]), before, settings(k));
   }
 }

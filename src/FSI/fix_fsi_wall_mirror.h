@@ -30,8 +30,9 @@ FixStyle(fsi/wall/mirror,FixFSIWallMirror);
 
 namespace LAMMPS_NS {
 
-// Planar walls and wall segments by image particles. The images act inside the pair loops (fsi_walls.h); this fix holds
-// the walls, moves them, sums the force on them, and turns back a fluid particle that gets too close.
+// Planar walls and wall segments by image particles. The images act inside the pair loops
+// (fsi_walls.h); this fix holds the walls, moves them, sums the force on them, and turns back a
+// fluid particle that gets too close.
 
 class FixFSIWallMirror : public Fix, public FSI::Part {
  public:
@@ -56,6 +57,8 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
  private:
   std::vector<double> start;    // positions in the command
   std::string settings(int) const;
+  void parse_range(char **arg);
+  void warn_of_slip(const std::vector<bool> &slip_said) const;
   double guard;    // smallest distance to a wall, in spacings
   bigint reflected;
   class FixFSI *fix_fsi;

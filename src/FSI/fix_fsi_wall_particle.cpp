@@ -43,7 +43,8 @@ static constexpr double AUTO = -1.0;
 /* ---------------------------------------------------------------------- */
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), fix_fsi(nullptr), sum(nullptr), nmax(0), nsum(0), force_on{}
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), fix_fsi(nullptr),
+    sum(nullptr), nmax(0), nsum(0), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
@@ -89,17 +90,22 @@ void FixFSIWallParticle::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/particle");
   const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
-  if (!fluid) error->all(FLERR, "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
+  if (!fluid)
+    error->all(FLERR,
+               "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
 
   std::vector<int> mine(atom->ntypes + 1, 0), types(atom->ntypes + 1);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     if (fix_fsi->state[atom->type[i]].species != RIGID)
-      error->one(FLERR, "Atom {} of fix fsi/wall/particle {} is of type {}, whose material is not a wall", atom->tag[i], id,
-                 atom->type[i]);
+      error->one(FLERR,
+                 "Atom {} of fix fsi/wall/particle {} is of type {}, whose material is not a wall",
+                 atom->tag[i], id, atom->type[i]);
     if (atom->mask[i] & fix_fsi->groupbit)
-      error->one(FLERR, "Atom {} of fix fsi/wall/particle {} is also in the group of fix fsi: leave it out, and move it with fix move "
-                 "or fix rigid", atom->tag[i], id);
+      error->one(FLERR,
+                 "Atom {} of fix fsi/wall/particle {} is also in the group of fix fsi: leave it "
+                 "out, and move it with fix move or fix rigid",
+                 atom->tag[i], id);
     mine[atom->type[i]] = 1;
   }
   MPI_Allreduce(mine.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
@@ -109,15 +115,20 @@ void FixFSIWallParticle::init()
     if (s.kept) error->all(FLERR, "Atom type {} is in two fixes fsi/wall/particle", t);
     s.kept = true;
     s.noslip = !slip;
-    // fluid with tension has no spray that loses its density, and where it flows along a wall the guard is noise
+    // fluid with tension has no spray that loses its density, and where it flows along a wall the
+    // guard is noise
     const double spacings = guard != AUTO ? guard : s.floor < 0.0 ? 0.0 : 0.9;
-    s.guard = spacings * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t));    // of the distance from the fluid
+    // of the distance from the fluid
+    s.guard = spacings * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t));
   }
   if (!slip && !fluid->has_laminar() && comm->me == 0)
-    error->warning(FLERR, "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has no laminar/visc");
+    error->warning(FLERR,
+                   "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has "
+                   "no laminar/visc");
 
   movers.clear();
-  for (auto &fix : modify->get_fix_by_style("^fsi/move$")) movers.push_back(dynamic_cast<FixFSIMove *>(fix));
+  for (auto &fix : modify->get_fix_by_style("^fsi/move$"))
+    movers.push_back(dynamic_cast<FixFSIMove *>(fix));
   const bool stiffness = fix_fsi->several_stiffnesses();
   const int dim = fix_fsi->dim;
   first_moment = 2 + dim * (slip ? 1 : 2);
@@ -154,18 +165,22 @@ template <class F> void FixFSIWallParticle::for_pairs(F f) const
 }
 
 /* ----------------------------------------------------------------------
-   What is added to the mean of the fluid's pressures p at a wall particle by weighted least squares for a pressure linear in
-   d = x_wall - x: -mean(d).C^-1 cov(d, p), C = cov(d, d). In both means p has on it what body forces and the wall's acceleration a add
-   on the way, -rho a.d, so that only the rest is extrapolated. Particles in a line or plane tell nothing across it: 0.005 dx^2 more of
+   What is added to the mean of the fluid's pressures p at a wall particle by weighted least squares
+   for a pressure linear in d = x_wall - x: -mean(d).C^-1 cov(d, p), C = cov(d, d). In both means p
+   has on it what body forces and the wall's acceleration a add on the way, -rho a.d, so that only
+   the rest is extrapolated. Particles in a line or plane tell nothing across it: 0.005 dx^2 more of
    variance in all directions takes the rest for constant there.
 ------------------------------------------------------------------------- */
 
-template <int D> double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p, double rho, const double *a) const
+template <int D>
+double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p, double rho,
+                                       const double *a) const
 {
   const double *const d = moments, *const dd = d + D, *const pd = dd + D * (D + 1) / 2;
   double C[D * D], adjoint[D * D], covariance[D];
   for (int k = 0, m = 0; k < D; k++) {
-    for (int l = k; l < D; l++, m++) C[k * D + l] = C[l * D + k] = dd[m] / W - d[k] * d[l] / (W * W);
+    for (int l = k; l < D; l++, m++)
+      C[k * D + l] = C[l * D + k] = dd[m] / W - d[k] * d[l] / (W * W);
     covariance[k] = (pd[k] - p * d[k]) / W;
   }
   for (int k = 0; k < D; k++)
@@ -179,17 +194,15 @@ template <int D> double FixFSIWallParticle::beyond_mean(const double *moments, d
 }
 
 /* ----------------------------------------------------------------------
-   p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq. 27), a_w: acceleration of the
-   wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of fluids of different rho c^2 the wall has the mean, likewise
+   sums over the fluid around each particle of the wall
 ------------------------------------------------------------------------- */
 
-void FixFSIWallParticle::end_state(bool advance)
+void FixFSIWallParticle::sum_up()
 {
-  const Phase phase(fix_fsi->profile, Profile::WALLS);
   const int dim = fix_fsi->dim;
   double **x = atom->x;
   double **v = atom->v;
-  double *rho = atom->rho;
+  const double *const rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
   const bool stiffness = fix_fsi->wall_stiffness;
   if (neighbor->ago == 0) {
@@ -228,19 +241,38 @@ void FixFSIWallParticle::end_state(bool advance)
           for (int l = k; l < dim; l++) *m++ += W * d[k] * d[l];
         for (int k = 0; k < dim; k++) *m++ += W * p * d[k];
       }
-      if (stiffness) s[first_stiffness] += W * fix_fsi->state[type[j]].rho0 * fix_fsi->state[type[j]].csq;
+      if (stiffness)
+        s[first_stiffness] += W * fix_fsi->state[type[j]].rho0 * fix_fsi->state[type[j]].csq;
       if (!slip)
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     });
   });
   if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
+}
+
+/* ----------------------------------------------------------------------
+   p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq.
+   27), a_w: acceleration of the wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of
+   fluids of different rho c^2 the wall has the mean, likewise
+------------------------------------------------------------------------- */
+
+void FixFSIWallParticle::end_state(bool advance)
+{
+  const Phase phase(fix_fsi->profile, Profile::WALLS);
+  const int dim = fix_fsi->dim;
+  double **v = atom->v;
+  double *rho = atom->rho;
+  const int *const mask = atom->mask, *const type = atom->type;
+  const bool stiffness = fix_fsi->wall_stiffness;
+  sum_up();
 
   for (const int i : members) {
     if (i >= atom->nlocal) break;    // ghosts come last
     const State &state = fix_fsi->state[type[i]];
     const double *const s = sum[i];
     double *const old = before->astore[i];
-    // acceleration: in this step where the motion is known, else in the last; a wall that is set in motion has none in its first step
+    // acceleration: in this step where the motion is known, else in the last; a wall that is set in
+    // motion has none in its first step
     const double *from = old, *to = v[i];
     double known = old[3], span = update->dt + 2.0 * fix_fsi->dt_offset, next[3];
     for (const auto *mover : movers)
@@ -254,16 +286,20 @@ void FixFSIWallParticle::end_state(bool advance)
     for (int k = 0; k < dim; k++) {
       a[k] = advance && known > 0.0 ? (to[k] - from[k]) / span : 0.0;
       p -= a[k] * s[2 + k];
-      if (!slip) fix_fsi->wall_velocity[i][k] = 2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
+      if (!slip)
+        fix_fsi->wall_velocity[i][k] =
+            2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
     }
     p = s[0] > 0.0 ? p / s[0] : state.p0;
     if (linear && s[0] > 0.0) {
       const double *const m = s + first_moment, mean = s[1] / s[0];
-      p += dim == 2 ? beyond_mean<2>(m, s[0], mean, state.rho0, a) : beyond_mean<3>(m, s[0], mean, state.rho0, a);
+      p += dim == 2 ? beyond_mean<2>(m, s[0], mean, state.rho0, a)
+                    : beyond_mean<3>(m, s[0], mean, state.rho0, a);
     }
     p = std::max(p, state.floor);
     if (stiffness) {
-      const double K = fix_fsi->wall_stiffness[i] = s[0] > 0.0 ? s[first_stiffness] / s[0] : state.rho0 * state.csq;
+      const double K = fix_fsi->wall_stiffness[i] = s[0] > 0.0 ? s[first_stiffness] / s[0]
+                                                               : state.rho0 * state.csq;
       rho[i] = state.rho0 * (1.0 + (p - state.p0) / K);
     } else
       rho[i] = state.density(p);
@@ -313,10 +349,12 @@ double FixFSIWallParticle::compute_scalar()
   double counted = 0.0, all;
   for_pairs([&](int w, int j) {
     double rsq = 0.0;
-    for (int k = 0; k < fix_fsi->dim; k++) rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
+    for (int k = 0; k < fix_fsi->dim; k++)
+      rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
     const double limit = fix_fsi->state[atom->type[w]].guard;
     // without newton a pair across ranks is in the lists of both
-    if (rsq < limit * limit) counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
+    if (rsq < limit * limit)
+      counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
   });
   MPI_Allreduce(&counted, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;

@@ -29,10 +29,11 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 
 namespace LAMMPS_NS {
 
-// Walls of any shape, made of particles (Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057): a wall particle's pressure, and
-// for no slip its velocity in viscous forces, are extrapolated from the fluid around it. The pressure is kept as the density
-// that has it, so the pair loops treat the particle as fluid. What moves the particles (fix move, fix rigid, nothing) is of no
-// concern here: their acceleration is that of their velocity.
+// Walls of any shape, made of particles (Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057): a
+// wall particle's pressure, and for no slip its velocity in viscous forces, are extrapolated from
+// the fluid around it. The pressure is kept as the density that has it, so the pair loops treat the
+// particle as fluid. What moves the particles (fix move, fix rigid, nothing) is of no concern here:
+// their acceleration is that of their velocity.
 
 class FixFSIWallParticle : public Fix, public FSI::Part {
  public:
@@ -55,23 +56,30 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
 
   int slip, linear;    // linear: pressure is extrapolated with its gradient, not as a mean
   void set_fields(FSI::Scene &) override;
-  void end_state(bool advance) override;    // the fluid's densities and the positions are those at which forces are computed
+  void end_state(bool advance) override;    // the fluid's densities and the positions are those at
+                                            // which forces are computed
   void add_costs(Costs &) const override;
 
  private:
   FSI::Keywords keywords;
-  double guard;    // distance of a fluid particle below which it is pushed off, in spacings; < 0: as the fluid has tension or not
+  double guard;    // distance of a fluid particle below which it is pushed off, in spacings; < 0:
+                   // as the fluid has tension or not
   std::string id_store;
   std::vector<class FixFSIMove *> movers;
   class FixStoreAtom *before;    // velocity at the last step, and whether there was one
   class FixFSI *fix_fsi;
   std::vector<int> members;    // the group's particles, local and ghost
-  template <class F> void for_pairs(F f) const;    // f(wall particle, fluid particle) of those that may be within the kernel's support
-  double **sum;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d W, d d W, p d W, d = x_wall - x
+  template <class F>
+  void for_pairs(F f) const;    // f(wall particle, fluid particle) of those that
+                                // may be within the kernel's support
+  void sum_up();
+  double **sum;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d
+                   // W, d d W, p d W, d = x_wall - x
   int nmax, nsum, first_moment, first_stiffness;
   double force_on[3];    // this group, this rank's part
 
-  template <int D> double beyond_mean(const double *moments, double W, double p, double rho, const double *a) const;
+  template <int D>
+  double beyond_mean(const double *moments, double W, double p, double rho, const double *a) const;
 };
 
 }    // namespace LAMMPS_NS

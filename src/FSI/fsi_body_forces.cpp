@@ -11,7 +11,6 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
 #include "fsi_body_forces.h"
 
 #include "atom.h"
@@ -28,8 +27,8 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 /* ----------------------------------------------------------------------
-   all fix gravity commands, and which of them act on all particles of a type: only then two neighbours are pushed alike, and what is
-   hydrostatic between them has a meaning
+   all fix gravity commands, and which of them act on all particles of a type: only then two
+   neighbors are pushed alike, and what is hydrostatic between them has a meaning
 ------------------------------------------------------------------------- */
 
 namespace {
@@ -44,30 +43,39 @@ void BodyForces::find(const std::vector<State> &state)
   all.clear();
   for (auto &fix : modify->get_fix_by_style("^gravity"))
     if (auto *g = dynamic_cast<FixGravity *>(fix)) {
-      all.push_back({g, Peek::is_disabled(g) ? 0 : g->groupbit, Peek::has_variable(g), {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}});
+      all.push_back({g,
+                     Peek::is_disabled(g) ? 0 : g->groupbit,
+                     Peek::has_variable(g),
+                     {0.0, 0.0, 0.0},
+                     {0.0, 0.0, 0.0}});
       g->init();    // its variables are looked up
     }
   const int ntypes = atom->ntypes, nfields = all.size();
-  const auto at = [ntypes](int field, int type) { return (size_t) field * (ntypes + 1) + type; };
+  const auto at = [ntypes](int field, int type) {
+    return (size_t) field * (ntypes + 1) + type;
+  };
   std::vector<int> without(nfields * (ntypes + 1), 0), with(without), some(without);
   for (int i = 0; i < atom->nlocal; i++)
-    for (int k = 0; k < nfields; k++) (atom->mask[i] & all[k].mask ? with : without)[at(k, atom->type[i])] = 1;
+    for (int k = 0; k < nfields; k++)
+      (atom->mask[i] & all[k].mask ? with : without)[at(k, atom->type[i])] = 1;
   acts_on_all.resize(without.size());
   MPI_Allreduce(without.data(), acts_on_all.data(), (int) without.size(), MPI_INT, MPI_MAX, world);
   MPI_Allreduce(with.data(), some.data(), (int) with.size(), MPI_INT, MPI_MAX, world);
   for (int k = 0; k < nfields; k++)
     for (int t = 1; t <= ntypes; t++) {
       if (some[at(k, t)] && acts_on_all[at(k, t)] && state[t].species == FLUID && comm->me == 0)
-        error->warning(FLERR, "Fix gravity {} acts on a part of the particles of type {} only: for what is hydrostatic between them, as in "
-                              "density diffusion, it does not count", all[k].fix->id, t);
+        error->warning(FLERR,
+                       "Fix gravity {} acts on a part of the particles of type {} only: for what "
+                       "is hydrostatic between them, as in density diffusion, it does not count",
+                       all[k].fix->id, t);
       acts_on_all[at(k, t)] = all[k].mask && !acts_on_all[at(k, t)];
     }
   of_type.assign(ntypes + 1, {0.0, 0.0, 0.0});
 }
 
 /* ----------------------------------------------------------------------
-   Body forces of this step. Fix gravity evaluates its variables when it acts, after the pair styles: it is asked to do so earlier, with
-   nothing to act on.
+   Body forces of this step. Fix gravity evaluates its variables when it acts, after the pair
+   styles: it is asked to do so earlier, with nothing to act on.
 ------------------------------------------------------------------------- */
 
 void BodyForces::evaluate()
@@ -92,7 +100,8 @@ void BodyForces::evaluate()
 }
 
 /* ----------------------------------------------------------------------
-   Where a field changes, so does the potential energy of what is there, which the ledger has to know.
+   Where a field changes, so does the potential energy of what is there, which the ledger has to
+   know.
 ------------------------------------------------------------------------- */
 
 double BodyForces::work(const std::vector<State> &state, int groupbit) const
@@ -104,7 +113,8 @@ double BodyForces::work(const std::vector<State> &state, int groupbit) const
     for (int i = 0; i < atom->nlocal; i++)
       if ((atom->mask[i] & field.mask) && state[atom->type[i]].species != RIGID)
         for (int d = 0; d < domain->dimension; d++)
-          sum += atom->rmass[i] * field.change[d] * (atom->x[i][d] - (atom->mask[i] & groupbit ? dth * atom->v[i][d] : 0.0));
+          sum += atom->rmass[i] * field.change[d] *
+              (atom->x[i][d] - (atom->mask[i] & groupbit ? dth * atom->v[i][d] : 0.0));
   }
   return sum;
 }

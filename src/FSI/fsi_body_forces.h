@@ -11,7 +11,6 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
 // Body forces per mass: each fix gravity as it acts in this step.
 
 #ifndef LMP_FSI_BODY_FORCES_H
@@ -33,16 +32,16 @@ namespace FSI {
     explicit BodyForces(LAMMPS *lmp) : Pointers(lmp) {}
     void find(const std::vector<State> &);    // before a run
     void evaluate();                          // at the time of the step
-    // Energy that this rank's particles have lost because fields changed in the last evaluate(), taken in the middle between two steps.
-    // Those of the group are half a step further.
+    // Energy that this rank's particles have lost because fields changed in the last evaluate(),
+    // taken in the middle between two steps. Those of the group are half a step further.
     double work(const std::vector<State> &, int groupbit) const;
     std::array<double, 3> on(int i) const;    // atom i, over its mass
 
     struct Field {
-      Fix *fix;
-      int mask;    // of its group; 0 if it is disabled
-      bool varies;
-      double g[3], change[3];
+      Fix *fix = nullptr;
+      int mask = 0;    // of its group; 0 if it is disabled
+      bool varies = false;
+      double g[3] = {}, change[3] = {};
     };
     std::vector<Field> all;
     std::vector<std::array<double, 3>> of_type;    // sum of those that act on all its particles

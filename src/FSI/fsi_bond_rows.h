@@ -17,7 +17,7 @@
 //   F_i = sum_j (x_j - x_i) (x) G_ij,  f_j = -V_i P(F_i) G_ij, and the opposite on i
 // Hourglass control (after Ganzenmueller 2015, in energy form): psi_i gains
 //   sum_j zeta E w |r_ij|^2/2,  w = V_i V_j W/|X|^2,  r_ij = (x_j - x_i) - F_i X_ij
-// r_ij is what the linear field F_i does not explain of its neighbours' positions. The derivative
+// r_ij is what the linear field F_i does not explain of its neighbors' positions. The derivative
 // with respect to F_i is -zeta E (A - F_i M), A = sum_j w (x_j - x_i) (x) X_ij,
 // M = sum_j w X_ij (x) X_ij, so that one pass over the bonds has it; M is of the reference.
 // Artificial viscosity (fsi_viscosity_artificial.h) with the reference kernel; each particle of a
@@ -34,6 +34,7 @@
 #include "fsi_tensor.h"
 #include "fsi_viscosity_artificial.h"
 
+#include <cstring>
 #include <type_traits>
 #include <vector>
 
@@ -43,7 +44,10 @@ namespace FSI {
   // Numbers of bonds are kept side by side, as loops take them: the first ones of BOND_BLOCK bonds,
   // their second ones, and so on.
   constexpr int BOND_BLOCK = 4;
-  constexpr int whole_blocks(int n) { return (n + BOND_BLOCK - 1) / BOND_BLOCK * BOND_BLOCK; }
+  constexpr int whole_blocks(int n)
+  {
+    return (n + BOND_BLOCK - 1) / BOND_BLOCK * BOND_BLOCK;
+  }
   // place of the first number of bond k, of which each has n; the next ones are BOND_BLOCK further
   constexpr size_t number_of_bond(int k, int n)
   {
@@ -57,25 +61,26 @@ namespace FSI {
     const int *partner;
     const double *numbers;
     const double *moments;    // M of hourglass control, lower triangle
-    double volume;    // of i in the energy's integral
-    double stiffness; // zeta E of hourglass control
-    double h;         // smoothing length of its body
+    double volume;            // of i in the energy's integral
+    double stiffness;         // zeta E of hourglass control
+    double h;                 // smoothing length of its body
   };
 
   struct BondSums {
     double energy = 0.0, artificial = 0.0, virial[6] = {};    // artificial: power that it takes
-    int inverted = -1;    // a particle with det F <= 0
+    int inverted = -1;                                        // a particle with det F <= 0
   };
 
   struct BondArguments {
-    const double *points;    // per particle x, v
-    const int *type;
-    const State *state;
-    const double *const *history;    // per particle, of the law (fsi_solid_laws.h); null: none
-    const double *volumetric;        // per particle, q of fsi_volumetric.h; null: none
-    double alpha, beta;              // artificial viscosity
-    bool one_material;               // all solids have one density and one speed of sound
-    BondSums *sums;
+    const double *points = nullptr;    // per particle x, v
+    const int *type = nullptr;
+    const State *state = nullptr;
+    const double *const *history = nullptr;    // per particle, of the law (fsi_solid_laws.h); null:
+                                               // none
+    const double *volumetric = nullptr;        // per particle, q of fsi_volumetric.h; null: none
+    double alpha = 0.0, beta = 0.0;            // artificial viscosity
+    bool one_material = false;                 // all solids have one density and one speed of sound
+    BondSums *sums = nullptr;
   };
 
   namespace BondFlag {
@@ -100,8 +105,10 @@ namespace FSI {
         const double *const q = points + N * partner[1], *const r = points + N * partner[2],
                             *const s = points + N * partner[3];
         T at[2 * D];
-        if (D == 2 && !with_velocities) T::columns(p, q, r, s, at[0], at[1]);
-        else T::columns(p, q, r, s, at);
+        if (D == 2 && !with_velocities)
+          T::columns(p, q, r, s, at[0], at[1]);
+        else
+          T::columns(p, q, r, s, at);
         if (D == 3 && with_velocities)
           T::columns(p + 4, q + 4, r + 4, s + 4, at[2 * D - 2], at[2 * D - 1]);
         for (int a = 0; a < D; a++) x[a] = at[a] - from[a];
@@ -111,7 +118,7 @@ namespace FSI {
     }
   };
 
-  // takes t F^T from a virial
+  // takes F t^T from a virial
   template <int D>
   FSI_INLINE void subtract_product(const double *t, const double *F, double *virial)
   {
@@ -119,9 +126,13 @@ namespace FSI {
     for (int a = 0; a < D; a++)
       for (int c = 0; c < D; c++) {
         component[a * D + c] = 0.0;
-        for (int k = 0; k < D; k++) component[a * D + c] -= t[a * D + k] * F[c * D + k];
+        for (int k = 0; k < D; k++) component[a * D + c] -= F[a * D + k] * t[c * D + k];
       }
-    add_virial<D>([&](int a, int c) { return component[a * D + c]; }, virial);
+    add_virial<D>(
+        [&](int a, int c) {
+          return component[a * D + c];
+        },
+        virial);
   }
 
   // takes what hourglass control adds to the derivative of the energy from t: F_i changes the
@@ -130,7 +141,9 @@ namespace FSI {
   FSI_INLINE void subtract_hourglass(double stiffness, const T *A, const double *M, const double *F,
                                      double *t)
   {
-    const auto at = [](int a, int c) { return a < c ? packed_size(c) + a : packed_size(a) + c; };
+    const auto at = [](int a, int c) {
+      return a < c ? packed_size(c) + a : packed_size(a) + c;
+    };
     for (int a = 0; a < D; a++)
       for (int c = 0; c < D; c++) {
         double s = Lanes<T>::sum(A[a * D + c]);
@@ -176,8 +189,8 @@ namespace FSI {
   {
     constexpr int NV = 2 * D + 2;
     return Lanes<T>::load(
-        row.numbers +
-        (Lanes<T>::WIDTH == BOND_BLOCK ? (size_t) k * NV : number_of_bond(k, NV)) + v * BOND_BLOCK);
+        row.numbers + (Lanes<T>::WIDTH == BOND_BLOCK ? (size_t) k * NV : number_of_bond(k, NV)) +
+        v * BOND_BLOCK);
   }
 
   // What loops over the bonds of a row need to know before they begin. Partners are read once and
@@ -208,8 +221,8 @@ namespace FSI {
         const T wx = number_of<T, D>(row, k, 2 * D) * b.x[a];
         for (int c = 0; c < D; c++) A[a * D + c] += wx * number_of<T, D>(row, k, D + c);
       }
-      __builtin_memcpy(end, b.x, sizeof(b.x));
-      if (Pass::VELOCITIES) __builtin_memcpy(end + Pass::SIZE / 2, b.v, sizeof(b.v));
+      std::memcpy(end, b.x, sizeof(b.x));
+      if (Pass::VELOCITIES) std::memcpy(end + Pass::SIZE / 2, b.v, sizeof(b.v));
     }
   }
 
@@ -229,8 +242,7 @@ namespace FSI {
       law.template volumetric_strain<D>(F, dm);
       for (int k = 0; k < D * D; k++) t[k] += in.volumetric[i] * dm[k];
     }
-    if (FLAGS & BondFlag::HOURGLASS)
-      subtract_hourglass<T, D>(row.stiffness, A, row.moments, F, t);
+    if (FLAGS & BondFlag::HOURGLASS) subtract_hourglass<T, D>(row.stiffness, A, row.moments, F, t);
     if (FLAGS & BondFlag::SUMS) {
       in.sums->energy += row.volume * piola.energy;
       subtract_product<D>(t, F, in.sums->virial);
@@ -265,11 +277,11 @@ namespace FSI {
       const double *next = kept.data();
       for (int k = 0; k < row.n; k += Pass::W, next += Pass::SIZE) {
         Separation<T, D> b;
-        __builtin_memcpy(b.x, next, sizeof(b.x));
-        if (Pass::VELOCITIES) __builtin_memcpy(b.v, next + Pass::SIZE / 2, sizeof(b.v));
+        std::memcpy(b.x, next, sizeof(b.x));
+        if (Pass::VELOCITIES) std::memcpy(b.v, next + Pass::SIZE / 2, sizeof(b.v));
         T force[D], X[D], other[D];    // on j
         // what does not act through F_i: the virial's
-        T (&beyond)[D] = (FLAGS & SUMS) ? other : force;
+        T(&beyond)[D] = (FLAGS & SUMS) ? other : force;
         for (int a = 0; a < D; a++) {
           force[a] = -t[a * D] * number_of<T, D>(row, k, 0);
           for (int c = 1; c < D; c++) force[a] -= t[a * D + c] * number_of<T, D>(row, k, c);
@@ -290,7 +302,9 @@ namespace FSI {
         }
         if (FLAGS & SUMS)
           add_virial<D>(
-              [&](int a, int c) __attribute__((always_inline)) { return b.x[a] * beyond[c]; },
+              [&](int a, int c) FSI_INLINE_LAMBDA {
+                return b.x[a] * beyond[c];
+              },
               virial);
         for (int a = 0; a < D; a++) {
           if (FLAGS & SUMS) force[a] += other[a];

@@ -28,7 +28,9 @@ namespace FSI {
     static constexpr double LARGE = 1.0e300;
 
     Cells(const double *const *x, int n, int dim, double size) :
-        Cells(x, n, dim, size, [](int) { return true; })
+        Cells(x, n, dim, size, [](int) {
+          return true;
+        })
     {
     }
     template <class Choose>

@@ -55,7 +55,9 @@ bool Changes::of_atoms() const
 
 bool Changes::any_mass() const
 {
-  const auto has_mass = [](double m) { return m != 0.0; };
+  const auto has_mass = [](double m) {
+    return m != 0.0;
+  };
   int mine = std::any_of(atom->rmass, atom->rmass + atom->nlocal, has_mass), any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
@@ -66,7 +68,9 @@ bool Changes::any_mass() const
 std::vector<std::uintptr_t> Changes::present() const
 {
   std::vector<std::uintptr_t> list;
-  const auto add = [&](const void *p) { list.push_back(reinterpret_cast<std::uintptr_t>(p)); };
+  const auto add = [&](const void *p) {
+    list.push_back(reinterpret_cast<std::uintptr_t>(p));
+  };
   add(force->pair);
   for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"}) {
     Pair *const pair = force->pair_match(style, 1);
@@ -86,6 +90,7 @@ std::vector<std::uintptr_t> Changes::present() const
 void Changes::check_pre_no() const
 {
   if (there != present())
-    error->all(FLERR, "Run with pre no: fixes, computes, regions or pair styles are others than when the "
-                      "last run was set up. Leave out pre no");
+    error->all(FLERR,
+               "Run with pre no: fixes, computes, regions or pair styles are others than when the "
+               "last run was set up. Leave out pre no");
 }

@@ -30,16 +30,16 @@ namespace FSI {
     explicit Changes(LAMMPS *lmp) : Pointers(lmp), nlocal(0), known(0), stale(true) {}
 
     // particles of this rank
-    void begin_run() { stale = true; }      // in init(): nothing is known of them
-    void forget() { stale = true; }         // one was made, or what others know of it is gone
-    void in_step();                         // the state is brought up to date
+    void begin_run() { stale = true; }    // in init(): nothing is known of them
+    void forget() { stale = true; }       // one was made, or what others know of it is gone
+    void in_step();                       // the state is brought up to date
     void end_run() { known = fingerprint(); }
-    bool of_atoms() const;                  // since then
-    bool any_mass() const;                  // has any on any rank been in a run? all ask together
+    bool of_atoms() const;    // since then
+    bool any_mass() const;    // has any on any rank been in a run? all ask together
 
     // what a run points to
     void set_up() { there = present(); }
-    void check_pre_no() const;              // at its first step: an error if it is another one
+    void check_pre_no() const;    // at its first step: an error if it is another one
 
    private:
     int nlocal;

@@ -38,13 +38,14 @@ void Clock::write(Record &record) const
 void Clock::read(const Record &record)
 {
   const auto at = record.numbers("clock");
-  kept = Time{std::stoll(record.value("step")), std::stoll(record.value("clock's step")), at[0], at[1]};
+  kept = Time{std::stoll(record.value("step")), std::stoll(record.value("clock's step")), at[0],
+              at[1]};
 }
 
 /* ----------------------------------------------------------------------
-   LAMMPS counts time from a step on, and forgets that step at each init: in a run that goes on without a timestep command the time
-   since then is lost. With the numbers of the file it is that of the uninterrupted run, bit for bit. Where a command has set another
-   time or step, that holds.
+   LAMMPS counts time from a step on, and forgets that step at each init: in a run that goes on
+   without a timestep command the time since then is lost. With the numbers of the file it is that
+   of the uninterrupted run, bit for bit. Where a command has set another time or step, that holds.
 ------------------------------------------------------------------------- */
 
 void Clock::restore()
@@ -52,7 +53,8 @@ void Clock::restore()
   if (!kept) return;
   const Time &c = *kept;
   const double elapsed = c.time + (c.step - c.first_step) * c.dt, now = Clock::now(update);
-  const bool forgotten = update->atime == c.time || std::fabs(now - elapsed) <= 1.0e-12 * std::fabs(elapsed);
+  const bool forgotten = update->atime == c.time ||
+      std::fabs(now - elapsed) <= 1.0e-12 * std::fabs(elapsed);
   if (update->ntimestep != c.step || !forgotten) return;
   if (update->dt == c.dt) {
     update->atime = c.time;

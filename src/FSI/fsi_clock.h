@@ -11,7 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Simulated time as a restart file has it, which LAMMPS forgets where it has no timestep command after reading.
+// Simulated time as a restart file has it, which LAMMPS forgets where it has no timestep command
+// after reading.
 
 #ifndef LMP_FSI_CLOCK_H
 #define LMP_FSI_CLOCK_H
@@ -31,13 +32,13 @@ namespace FSI {
     static double now(const Update *);    // simulated time of this step
     void write(Record &) const;
     void read(const Record &);
-    void restore();                      // before the first run after a restart file was read
-    void forget() { kept.reset(); }      // from that run on
+    void restore();                    // before the first run after a restart file was read
+    void forget() { kept.reset(); }    // from that run on
 
    private:
     struct Time {
-      bigint step, first_step;
-      double dt, time;
+      bigint step = 0, first_step = 0;
+      double dt = 0.0, time = 0.0;
     };
     std::optional<Time> kept;
   };

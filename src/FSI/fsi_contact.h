@@ -11,14 +11,14 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
-// Contact of solid bodies: a penalty on particles of different bodies that are nearer than a range of R spacings, conservative and
-// without adhesion. Energy per pair s K dx^D/2 (1 - r/(R dx))^2, K the harmonic mean of the two bulk moduli. s makes two lattices
-// that face each other at a distance of dx as stiff against coming nearer as the bulk: a layer pushed in by e dx pushes back with
-// K e. With R = 1, particle against particle, s = 1.
+// Contact of solid bodies: a penalty on particles of different bodies that are nearer than a range
+// of R spacings, conservative and without adhesion. Energy per pair s K dx^D/2 (1 - r/(R dx))^2, K
+// the harmonic mean of the two bulk moduli. s makes two lattices that face each other at a distance
+// of dx as stiff against coming nearer as the bulk: a layer pushed in by e dx pushes back with K e.
+// With R = 1, particle against particle, s = 1.
 //
-// With R = 1 a particle feels one or two of the other body's, and the face is as bumpy as a row of balls. With R = 2 or more it
-// feels several, and their bumps average out.
+// With R = 1 a particle feels one or two of the other body's, and the face is as bumpy as a row of
+// balls. With R = 2 or more it feels several, and their bumps average out.
 
 #ifndef LMP_FSI_CONTACT_H
 #define LMP_FSI_CONTACT_H
@@ -60,7 +60,8 @@ namespace FSI {
     {
       if (none(rsq < T(reachsq))) return T(0.0);
       const double k = 2.0 * Ki * Kj / (Ki + Kj) * scale;
-      return where(rsq < T(reachsq), k * (reach / root(rsq + T(1.0e-18 * reachsq)) - T(1.0)), T(0.0));
+      return where(rsq < T(reachsq), k * (reach / root(rsq + T(1.0e-18 * reachsq)) - T(1.0)),
+                   T(0.0));
     }
     template <class T> FSI_INLINE T stored(const T &rsq, double K) const
     {
@@ -74,8 +75,9 @@ namespace FSI {
       return Ki * Kj / (Ki + Kj) * scale * gap * gap;
     }
 
-    // second derivative of the energy (R - r)^2/2 per particle of a face by the distance of the faces, where this is 1 (all lengths
-    // over dx): the sum over the other lattice, with n pairs of layers at a distance of n, of 1 - R (r^2 - n^2)/r^3
+    // second derivative of the energy (R - r)^2/2 per particle of a face by the distance of the
+    // faces, where this is 1 (all lengths over dx): the sum over the other lattice, with n pairs of
+    // layers at a distance of n, of 1 - R (r^2 - n^2)/r^3
     static double stiffness(int dim, double R)
     {
       const int m = static_cast<int>(R);

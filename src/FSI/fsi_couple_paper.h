@@ -11,9 +11,10 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// The rules of pair_style fsi/fluid couple pressure and couple full, by which the source paper lets a fluid and a solid share one
-// equation of motion (eq. 14): the mean of both pressures, with couple full the solid's stress, too. Kept to compare with; the
-// recommended couple wall is in fsi_fluid_rows.h.
+// The rules of pair_style fsi/fluid couple pressure and couple full, by which the source paper lets
+// a fluid and a solid share one equation of motion (eq. 14): the mean of both pressures, with
+// couple full the solid's stress, too. Kept to compare with; the recommended couple wall is in
+// fsi_fluid_rows.h.
 
 #ifndef LMP_FSI_COUPLE_PAPER_H
 #define LMP_FSI_COUPLE_PAPER_H
@@ -27,11 +28,16 @@ namespace FSI {
 
   namespace CouplePaper {
     // of both = p_i V_i^2 + p_j V_j^2: couple full pulls, too; couple pressure does not
-    template <class T> FSI_INLINE T pressure(const T &both, bool full) { return full ? both : greater(both, T(0.0)); }
+    template <class T> FSI_INLINE T pressure(const T &both, bool full)
+    {
+      return full ? both : greater(both, T(0.0));
+    }
 
-    // adds the stress of solid j to the force on fluid i and gives its power; it is that of the particle, not of its image, so look from the solid
+    // adds the stress of solid j to the force on fluid i and gives its power; it is that of the
+    // particle, not of its image, so look from the solid
     template <bool IMAGE, int D>
-    FSI_INLINE double add_stress(const double *stress, const Mirror &mirror, double v2g, const double (&x)[D], const double (&v)[D], double (&force)[D])
+    FSI_INLINE double add_stress(const double *stress, const Mirror &mirror, double v2g,
+                                 const double (&x)[D], const double (&v)[D], double (&force)[D])
     {
       double seen[D], shear[D] = {}, power = 0.0;
       for (int d = 0; d < D; d++) seen[d] = (IMAGE ? mirror.sign[d] : 1.0) * x[d];

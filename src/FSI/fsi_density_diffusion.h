@@ -11,9 +11,10 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Density diffusion (delta-SPH: Molteni and Colagrossi 2009) with the hydrostatic part of the density difference taken
-// out (Fourtakas et al. 2019), so that still water does not drift:
-//   d rho_i/dt += 2 delta h c sum_j V_j (rho_j - rho_i + rho0/c^2 b.x_ij) x_ji.grad_i W_ij / r^2,  b: body force per mass
+// Density diffusion (delta-SPH: Molteni and Colagrossi 2009) with the hydrostatic part of the
+// density difference taken out (Fourtakas et al. 2019), so that still water does not drift:
+//   d rho_i/dt += 2 delta h c sum_j V_j (rho_j - rho_i + rho0/c^2 b.x_ij) x_ji.grad_i W_ij / r^2,
+//     b: body force per mass
 
 #ifndef LMP_FSI_DENSITY_DIFFUSION_H
 #define LMP_FSI_DENSITY_DIFFUSION_H
@@ -31,9 +32,11 @@ namespace FSI {
     {
       return rho0_over_csq * (gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]);
     }
-    // flux k: d rho_i/dt += k V_j, d rho_j/dt -= k V_i; hydro: difference i - j of the hydrostatic parts at the particles
-    // themselves, also where g, with grad_i W_ij = g x_ij, belongs to an image; T: double or Pack
-    template <class T> FSI_INLINE T operator()(const T &rho_i, const T &rho_j, const T &hydro, const T &g) const
+    // flux k: d rho_i/dt += k V_j, d rho_j/dt -= k V_i; hydro: difference i - j of the hydrostatic
+    // parts at the particles themselves, also where g, with grad_i W_ij = g x_ij, belongs to an
+    // image; T: double or Pack
+    template <class T>
+    FSI_INLINE T operator()(const T &rho_i, const T &rho_j, const T &hydro, const T &g) const
     {
       return -scale * g * (rho_j - rho_i + hydro);
     }

@@ -11,7 +11,6 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
 // Laws of the total-Lagrangian solid: from the deformation gradient F (D x D, row-major, F_aB =
 // dx_a/dX_B) the first Piola-Kirchhoff stress P = d(psi)/dF, the energy density psi per reference
 // volume, and P_zz of plane strain. Lame's constants: lambda = K - 2G/3, mu = G.

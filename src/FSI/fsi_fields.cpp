@@ -132,7 +132,9 @@ void Fields::hand_over(const Field &f)
 
 bool Fields::any(Life life) const
 {
-  return std::any_of(fields.begin(), fields.end(), [=](const Field &f) { return f.life >= life; });
+  return std::any_of(fields.begin(), fields.end(), [=](const Field &f) {
+    return f.life >= life;
+  });
 }
 
 void Fields::grow()
@@ -140,15 +142,18 @@ void Fields::grow()
   for (auto &f : fields) {
     if (f.life != STEP || f.rows >= atom->nmax) continue;
     resize(f, atom->nmax);
-    if (f.integers) memset(f.integers, 0, f.rows * sizeof(int));
-    else memset(f.at(0), 0, (size_t) f.rows * f.columns * sizeof(double));
+    if (f.integers)
+      memset(f.integers, 0, f.rows * sizeof(int));
+    else
+      memset(f.at(0), 0, (size_t) f.rows * f.columns * sizeof(double));
   }
 }
 
 double Fields::memory_usage() const
 {
   double bytes = 0.0;
-  for (const auto &f : fields) bytes += (double) f.rows * f.columns * (f.integers ? sizeof(int) : sizeof(double));
+  for (const auto &f : fields)
+    bytes += (double) f.rows * f.columns * (f.integers ? sizeof(int) : sizeof(double));
   return bytes;
 }
 
@@ -215,8 +220,9 @@ void Fields::read(const Record &record, const std::vector<std::string> &forget)
     Field *const f = find(name);
     if (f && f->life == RESTART && std::find(forget.begin(), forget.end(), name) == forget.end()) {
       if (f->columns != columns)
-        error->all(FLERR, "The restart file has {} numbers of {} for each atom, this script's {} needs {}", columns, name, record.style,
-                   f->columns);
+        error->all(FLERR,
+                   "The restart file has {} numbers of {} for each atom, this script's {} needs {}",
+                   columns, name, record.style, f->columns);
       f->in_file = place;
     }
     place += columns;
@@ -243,7 +249,9 @@ int Fields::pack_restart(int i, double *buf) const
 void Fields::unpack_restart(int i, int nth)
 {
   if (!has_record)
-    error->one(FLERR, "The restart file was written by another version of the FSI package: it does not say what it has of each atom");
+    error->one(FLERR,
+               "The restart file was written by another version of the FSI package: it does not "
+               "say what it has of each atom");
   const double *const values = restart_values(atom->extra[i], nth);
   for (auto &f : fields)
     if (f.in_file > 0) std::copy_n(values + f.in_file, f.columns, f.at(i));
@@ -259,7 +267,10 @@ const double *FSI::restart_values(const double *extra, int nth)
    a fix with fields
 ------------------------------------------------------------------------- */
 
-FixFields::FixFields(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), fields(lmp), grows(false), restarts(false) {}
+FixFields::FixFields(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), fields(lmp), grows(false), restarts(false)
+{
+}
 
 FixFields::~FixFields()
 {
@@ -282,8 +293,8 @@ void FixFields::register_fields()
   }
 }
 
-// LAMMPS books the fix that is being constructed, which stands behind all others. A field that is first
-// wanted later, in init(), is that of a fix in the list.
+// LAMMPS books the fix that is being constructed, which stands behind all others. A field that is
+// first wanted later, in init(), is that of a fix in the list.
 void FixFields::add_callback(int kind, int *&booked, int &n)
 {
   const int mine = modify->find_fix(id), constructed = modify->nfix;
@@ -359,7 +370,8 @@ void Message::add(double *&array, std::initializer_list<int> species, const bool
   columns.push_back({&array, nullptr, 0, 1, mask_of(species), when});
 }
 
-void Message::add(double **&array, int first, int n, std::initializer_list<int> species, const bool *when)
+void Message::add(double **&array, int first, int n, std::initializer_list<int> species,
+                  const bool *when)
 {
   if (n > 0) columns.push_back({nullptr, &array, first, n, mask_of(species), when});
 }
@@ -386,7 +398,10 @@ template <class Visit> void Message::visit(int i, Visit visit) const
 int Message::pack(int n, const int *list, double *buf) const
 {
   double *const first = buf;
-  for (int k = 0; k < n; k++) visit(list[k], [&](const double *a, int m) { buf = std::copy_n(a, m, buf); });
+  for (int k = 0; k < n; k++)
+    visit(list[k], [&](const double *a, int m) {
+      buf = std::copy_n(a, m, buf);
+    });
   return buf - first;
 }
 
@@ -402,7 +417,10 @@ void Message::unpack(int n, int first, const double *buf) const
 int Message::pack_back(int n, int first, double *buf) const
 {
   double *const begin = buf;
-  for (int i = first; i < first + n; i++) visit(i, [&](const double *a, int m) { buf = std::copy_n(a, m, buf); });
+  for (int i = first; i < first + n; i++)
+    visit(i, [&](const double *a, int m) {
+      buf = std::copy_n(a, m, buf);
+    });
   return buf - begin;
 }
 

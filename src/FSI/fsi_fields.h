@@ -11,8 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
-// Per-atom arrays, each described once: memory, migration, restart files and messages to ghosts follow from that.
+// Per-atom arrays, each described once: memory, migration, restart files and messages to ghosts
+// follow from that.
 
 #ifndef LMP_FSI_FIELDS_H
 #define LMP_FSI_FIELDS_H
@@ -30,15 +30,17 @@ namespace FSI {
 
   class Fields : protected Pointers {
    public:
-    // how long its numbers last: until the next step finds them anew, for local and ghost atoms; or as long as the (local) atom, with
-    // which they go from rank to rank; or that and in restart files
+    // how long its numbers last: until the next step finds them anew, for local and ghost atoms; or
+    // as long as the (local) atom, with which they go from rank to rank; or that and in restart
+    // files
     enum Life { STEP, ATOM, RESTART };
 
     Fields(LAMMPS *lmp) : Pointers(lmp) {}
     Fields(const Fields &) = delete;
     ~Fields();
 
-    // The array is there while it is wanted, else null. One that lasts begins with 0 for every atom. May be said again at any time.
+    // The array is there while it is wanted, else null. One that lasts begins with 0 for every
+    // atom. May be said again at any time.
     void set(const std::string &name, Life, bool wanted, double *&array);
     void set(const std::string &name, Life, bool wanted, double **&array, int columns);
     void set(const std::string &name, Life, bool wanted, int *&array);
@@ -54,8 +56,8 @@ namespace FSI {
     int pack(int i, double *buf) const;
     int unpack(int i, const double *buf);
 
-    // Restart files. The record says which numbers of an atom are whose; those that it does not know begin anew, as do the ones to
-    // forget.
+    // Restart files. The record says which numbers of an atom are whose; those that it does not
+    // know begin anew, as do the ones to forget.
     void write(Record &) const;
     void read(const Record &, const std::vector<std::string> &forget = {});
     int restart_size() const;
@@ -111,17 +113,20 @@ namespace FSI {
     void add_callback(int kind, int *&booked, int &n);
   };
 
-  // The numbers of atom i that the nth fix of a restart file left there; all begin with their length.
+  // The numbers of atom i that the nth fix of a restart file left there; all begin with their
+  // length.
   const double *restart_values(const double *extra, int nth);
 
   // What a message between ranks carries of an atom: columns of arrays, of atoms of some species.
   class Message : protected Pointers {
    public:
     Message(LAMMPS *lmp, const std::vector<State> &state) : Pointers(lmp), state(state) {}
+    Message(const Message &) = delete;    // holds addresses of its owner
     void clear() { columns.clear(); }
     // when: null, or whether it is carried now
     void add(double *&array, std::initializer_list<int> species, const bool *when = nullptr);
-    void add(double **&array, int first, int n, std::initializer_list<int> species, const bool *when = nullptr);
+    void add(double **&array, int first, int n, std::initializer_list<int> species,
+             const bool *when = nullptr);
     int size() const;    // at most, of an atom
 
     int pack(int n, const int *list, double *buf) const;
@@ -132,9 +137,9 @@ namespace FSI {
 
    private:
     struct Column {
-      double **one, ***many;
-      int first, n, species;
-      const bool *when;
+      double **one = nullptr, ***many = nullptr;
+      int first = 0, n = 0, species = 0;
+      const bool *when = nullptr;
       double *at(int i) const { return one ? *one + i : (*many)[i] + first; }
     };
     std::vector<Column> columns;

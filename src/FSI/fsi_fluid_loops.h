@@ -11,11 +11,13 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// The loops of pair_style fsi/fluid over pairs: what they read and write, and the choice among them by kernel and dimension.
+// The loops of pair_style fsi/fluid over pairs: what they read and write, and the choice among them
+// by kernel and dimension.
 //
-// Pairs come as rows: a fluid particle i and neighbours j of one atom type, so that whatever depends on types is constant in a row.
-// The images of neighbours in a mirror wall are rows of their own. One text serves numbers one by one and several side by side
-// (fsi_pack.h); for several it is compiled once per kernel (fsi_fluid_loops_*.cpp), one by one for all (fsi_fluid_loops_any.cpp).
+// Pairs come as rows: a fluid particle i and neighbors j of one atom type, so that whatever depends
+// on types is constant in a row. The images of neighbors in a mirror wall are rows of their own.
+// One text serves numbers one by one and several side by side (fsi_pack.h); for several it is
+// compiled once per kernel (fsi_fluid_loops_*.cpp), one by one for all (fsi_fluid_loops_any.cpp).
 
 #ifndef LMP_FSI_FLUID_LOOPS_H
 #define LMP_FSI_FLUID_LOOPS_H
@@ -31,20 +33,27 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // What a fluid particle meets, and by which rule: couple wall; the paper's rules, couple pressure and full.
+  // What a fluid particle meets, and by which rule: couple wall; the paper's rules, couple pressure
+  // and full.
   enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_PRESSURE, WITH_SOLID_FULL };
 
   // What a loop needs of a particle, side by side (in 2D a cache line).
   template <int D> struct Point {
     double x[D], v[D], rho, vol;
-    // force loop: pressure, p V^2; rate loop: 1 where there is pressure, else 0, and the hydrostatic part of the density
+    // force loop: pressure, p V^2; rate loop: 1 where there is pressure, else 0, and the
+    // hydrostatic part of the density
     double p, pv2;
-    std::array<double, 3> position(const double *atom_x) const { return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]}; }
+    std::array<double, 3> position(const double *atom_x) const
+    {
+      return {x[0], x[1], D == 3 ? x[D - 1] : atom_x[2]};
+    }
   };
 
-  // Powers that terms take from the particles of all pairs visited, and their virial xx yy zz xy xz yz.
+  // Powers that terms take from the particles of all pairs visited, and their virial xx yy zz xy xz
+  // yz.
   struct PairSums {
-    double artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, diffusion = 0.0, virial[6] = {};
+    double artificial = 0.0, laminar = 0.0, coupling = 0.0, walls = 0.0, diffusion = 0.0,
+           virial[6] = {};
     double guard = 0.0;    // energy that it holds
   };
 
@@ -52,79 +61,94 @@ namespace FSI {
   struct Share {
     double volume = 1.0;     // of a particle of the lattice over that of a fluid particle
     double sharper = 0.0;    // e of Kernel::sharper_gradient(): negative where it is coarser
-    bool thin = false;       // the body counts as if it went on behind, and under the pressure of the side that meets it
+    bool thin = false;    // the body counts as if it went on behind, and under the pressure of the
+                          // side that meets it
   };
 
   // By particle: by how much more thin bodies count (fsi_sight.h), in forces and in sums of W
   struct Thin {
-    const double *fill, *fill_weight;
+    const double *fill = nullptr, *fill_weight = nullptr;
   };
 
   // By particle: how much of solids is before mirror walls, and its rate (Walls::before)
   struct Cut {
-    const double *part, *rate;
+    const double *part = nullptr, *rate = nullptr;
   };
 
   // By pair: how much of it thin bodies leave, of the rows' neighbors from first on (fsi_sight.h)
   struct Visible {
-    const double *part;
-    const int *first;
+    const double *part = nullptr;
+    const int *first = nullptr;
   };
 
   // Of all loops: by local and ghost particle.
   struct FluidParticles {
-    const double *points;    // Point<D>
-    const int *type;
-    const State *state;
-    int nlocal;
-    const Share *share;    // per type
-    bool unequal;          // does any type differ from fluids in it?
-    const Thin *thin;    // null: none is
-    const Cut *cut;      // null: none is
-    bool newton;    // else a pair across ranks is visited on both: each counts half of powers and forces on walls
-    const Visible *visible = nullptr;    // of pairs of fluids, in loops pair by pair; null: all of each
+    const double *points = nullptr;    // Point<D>
+    const int *type = nullptr;
+    const State *state = nullptr;
+    int nlocal = 0;
+    const Share *share = nullptr;    // per type
+    bool unequal = false;            // does any type differ from fluids in it?
+    const Thin *thin = nullptr;      // null: none is
+    const Cut *cut = nullptr;        // null: none is
+    // else a pair across ranks is visited on both: each counts half of powers and forces on walls
+    bool newton = false;
+    // of pairs of fluids, in loops pair by pair; null: all of each
+    const Visible *visible = nullptr;
   };
 
   struct RateLaws {
-    double delta;                         // of density diffusion; 0: none
-    const double *pressure_over_density;  // per particle, with sums
-    double wdx;                           // W(dx), for shifting
-    bool slopes;                          // shifting changes velocities, too
-    double reach;
+    double delta = 0.0;                               // of density diffusion; 0: none
+    const double *pressure_over_density = nullptr;    // per particle, with sums
+    double wdx = 0.0;                                 // W(dx), for shifting
+    bool slopes = false;                              // shifting changes velocities, too
+    double reach = 0.0;
   };
 
   struct ForceLaws {
-    double alpha, beta;      // artificial viscosity
-    int laminar;             // 0: none, 1: plain, 2: central
-    const std::array<double, 3> *extrapolate;    // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
-    double stored;           // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0
-    const struct Contact *guard;           // per type: of walls and solids
-    bool solids_slip;
-    const double (*wall_velocity)[3];      // per particle, that no-slip walls of particles and solids have in viscous forces
-    const double *const *stress;           // per particle, of solids (couple full); null: they have none
-    const std::array<double, 3> *gravity;  // per type
-    double *taken;           // with sums: adds to rows of row_of_points(D) the forces, with the sign of what they take, of coupling and of friction; or null
+    double alpha = 0.0, beta = 0.0;    // artificial viscosity
+    int laminar = 0;                   // 0: none, 1: plain, 2: central
+    // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
+    const std::array<double, 3> *extrapolate = nullptr;
+    // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0
+    double stored = 0.0;
+    const struct Contact *guard = nullptr;    // per type: of walls and solids
+    bool solids_slip = false;
+    // per particle, that no-slip walls of particles and solids have in viscous forces
+    const double (*wall_velocity)[3] = nullptr;
+    // per particle, of solids (couple full); null: they have none
+    const double *const *stress = nullptr;
+    const std::array<double, 3> *gravity = nullptr;    // per type
+    // with sums: adds to rows of row_of_points(D) the forces, with the sign of what they take, of
+    // coupling and of friction; or null
+    double *taken = nullptr;
   };
 
   class FluidLoops {
    public:
     virtual ~FluidLoops() = default;
 
-    // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting to shift, rows of Shift<D>::ROW; mirror: the
-    // rows' neighbours are images in it; shift, sums: or null; near: the rows become those of what is within laws.reach
-    virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, const RateLaws &, double *rate,
-                       double *shift, PairSums *sums, RowList &near) const = 0;
-    // adds pressure, viscosity and what keeps fluid out of walls to force, rows of row_of_forces(D); with mirror the sum of the
-    // forces on all particles to total[D]
-    virtual void forces(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, const ForceLaws &, double *force,
-                        double *total, PairSums *sums) const = 0;
+    // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting to
+    // shift, rows of Shift<D>::ROW; mirror: the rows' neighbors are images in it; shift, sums: or
+    // null; near: the rows become those of what is within laws.reach
+    virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror,
+                       const FluidParticles &, const RateLaws &, double *rate, double *shift,
+                       PairSums *sums, RowList &near) const = 0;
+    // adds pressure, viscosity and what keeps fluid out of walls to force, rows of
+    // row_of_forces(D); with mirror the sum of the forces on all particles to total[D]
+    virtual void forces(PairKind, const std::vector<Row> &, const Mirror *mirror,
+                        const FluidParticles &, const ForceLaws &, double *force, double *total,
+                        PairSums *sums) const = 0;
     // adds the sums of particle shifting alone
-    virtual void shifts(PairKind, const std::vector<Row> &, const Mirror *mirror, const FluidParticles &, double wdx, double *shift) const = 0;
-    // adds W_ij, by the neighbours' share, to sum; of the neighbours only if both
-    virtual void number_density(PairKind, const std::vector<Row> &, bool both, const Mirror *mirror, const FluidParticles &,
-                                const double (*x)[3], double *sum) const = 0;
+    virtual void shifts(PairKind, const std::vector<Row> &, const Mirror *mirror,
+                        const FluidParticles &, double wdx, double *shift) const = 0;
+    // adds W_ij, by the neighbors' share, to sum; of the neighbors only if both
+    virtual void number_density(PairKind, const std::vector<Row> &, bool both, const Mirror *mirror,
+                                const FluidParticles &, const double (*x)[3],
+                                double *sum) const = 0;
     // adds V_j x_ji.grad_i W_ij to sum, likewise
-    virtual void position_divergence(const std::vector<Row> &, bool both, const Mirror *mirror, const FluidParticles &, const double (*x)[3],
+    virtual void position_divergence(const std::vector<Row> &, bool both, const Mirror *mirror,
+                                     const FluidParticles &, const double (*x)[3],
                                      const double *vol, double *sum) const = 0;
   };
 

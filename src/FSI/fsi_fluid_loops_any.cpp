@@ -11,7 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// The loops of pair_style fsi/fluid pair by pair, once for any kernel: for processors and compilers without packs, and for the paper's couplings.
+// The loops of pair_style fsi/fluid pair by pair, once for any kernel: for processors and compilers
+// without packs, and for the paper's couplings.
 
 #include "fsi_fluid_rows.h"
 
@@ -20,6 +21,7 @@ using namespace FSI;
 
 std::shared_ptr<FluidLoops> FSI::make_fluid_loops_any(int kernel, int dim, double h)
 {
-  if (dim == 2) return std::make_shared<FluidLoopsOf<double, AnyKernel<2>>>(AnyKernel<2>(kernel, h));
+  if (dim == 2)
+    return std::make_shared<FluidLoopsOf<double, AnyKernel<2>>>(AnyKernel<2>(kernel, h));
   return std::make_shared<FluidLoopsOf<double, AnyKernel<3>>>(AnyKernel<3>(kernel, h));
 }

@@ -11,12 +11,12 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// The loops of fsi_fluid_loops.h, row by row, for a kernel: one text for numbers one by one and several side by side (T: double or Pack).
+// The loops of fsi_fluid_loops.h, row by row, for a kernel: one text for numbers one by one and
+// several side by side (T: double or Pack).
 //
-// There is no branch on the distance: kernels are zero from their support on, and who is not near a wall is too far from its
-// images, too. Places that are left over at the end of a row hold i itself, which adds nothing where no formula divides by the
-// distance; but it has a kernel and images, so there it has no weight. What is constant comes by value: stores to the sums could
-// change what is behind a reference.
+// No branch on distance: W and its gradient vanish beyond the support. The last vector of a row is
+// padded with i: x_ij = 0 cancels gradient terms; W(0) and images get weight 0. Constants come by
+// value: stores to the sums could alias what is behind a reference.
 
 #ifndef LMP_FSI_FLUID_ROWS_H
 #define LMP_FSI_FLUID_ROWS_H
@@ -37,10 +37,24 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // what a loop is compiled for: effects; sums of powers; neighbours that are images; results for neighbours, too; neighbours of another spacing; shifting,
-  // and what it changes of velocities; pairs that thin bodies hide in part
+  // what a loop is compiled for: effects; sums of powers; neighbors that are images; results for
+  // neighbors, too; neighbors of another spacing; shifting, and what it changes of velocities;
+  // pairs that thin bodies hide in part
   namespace Flag {
-    enum { ARTIFICIAL = 1, LAMINAR = 2, SUMS = 4, IMAGES = 8, DIFFUSION = 16, BOTH = 32, DIVERGENCE = 64, UNEQUAL = 128, SHIFT = 256, CENTRAL = 512, SLOPES = 1024, PARTLY = 2048 };
+    enum {
+      ARTIFICIAL = 1,
+      LAMINAR = 2,
+      SUMS = 4,
+      IMAGES = 8,
+      DIFFUSION = 16,
+      BOTH = 32,
+      DIVERGENCE = 64,
+      UNEQUAL = 128,
+      SHIFT = 256,
+      CENTRAL = 512,
+      SLOPES = 1024,
+      PARTLY = 2048
+    };
   }
 
   template <class T, int D> struct Particle {
@@ -95,21 +109,37 @@ namespace FSI {
     }
   };
 
-  // How much more neighbours of this type count at i: in forces of pressure; in sums of W and along the face
-  FSI_INLINE double fill_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.thin->fill[i] : 1.0; }
-  FSI_INLINE double fill_weight_of(const FluidParticles &in, int i, int type_j) { return in.share[type_j].thin ? in.thin->fill_weight[i] : 1.0; }
+  // How much more neighbors of this type count at i: in forces of pressure; in sums of W and along
+  // the face
+  FSI_INLINE double fill_of(const FluidParticles &in, int i, int type_j)
+  {
+    return in.share[type_j].thin ? in.thin->fill[i] : 1.0;
+  }
+  FSI_INLINE double fill_weight_of(const FluidParticles &in, int i, int type_j)
+  {
+    return in.share[type_j].thin ? in.thin->fill_weight[i] : 1.0;
+  }
 
-  // Kernel or gradient of neighbours that mirror walls cut
-  template <class T> FSI_INLINE T cut_off(const FluidParticles &in, const int *j, const T &w) { return in.cut ? Lanes<T>::read(in.cut->part, j) * w : w; }
+  // Kernel or gradient of neighbors that mirror walls cut
+  template <class T> FSI_INLINE T cut_off(const FluidParticles &in, const int *j, const T &w)
+  {
+    return in.cut ? Lanes<T>::read(in.cut->part, j) * w : w;
+  }
 
   // Kernel or gradient of a pair that a thin body hides in part
-  FSI_INLINE double as_visible(const FluidParticles &in, const int *j, double w) { return in.visible->part[j - in.visible->first] * w; }
+  FSI_INLINE double as_visible(const FluidParticles &in, const int *j, double w)
+  {
+    return in.visible->part[j - in.visible->first] * w;
+  }
 
-  // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j. Solids and walls count, but are not shifted.
-  // v: difference of velocities, if ALL of the sums are wanted
+  // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j.
+  // Solids and walls count, but are not shifted. v: difference of velocities, if ALL of the sums
+  // are wanted
   template <class T, class K, bool BOTH, bool IMAGE, int D, int N>
-  FSI_INLINE void add_shift(const Shift<D> &law, const K &kernel, const Mirror &mirror, const T &r, const T &rsq, const T &g, const T &vol_i, const T &vol_j,
-                            const T (&x)[D], const T *v, const int *j, T (&sum)[N], double (*const shift)[Shift<D>::ROW])
+  FSI_INLINE void add_shift(const Shift<D> &law, const K &kernel, const Mirror &mirror, const T &r,
+                            const T &rsq, const T &g, const T &vol_i, const T &vol_j,
+                            const T (&x)[D], const T *v, const int *j, T (&sum)[N],
+                            double (*const shift)[Shift<D>::ROW])
   {
     const T w = kernel.W(r);
     law.add(sum, vol_j, g, w, rsq, x);
@@ -122,34 +152,41 @@ namespace FSI {
     Lanes<T>::add_rows(of_j, shift, j);
   }
 
-  // sum_j W_ij d part_j/dt over solids that come out of walls. To rho_i they add m_i of it, and to the energy of i m_i p_i/rho_i^2 of that,
-  // which no force on them does. A loop of its own: with it the loop of all rows would cost 6 % more where there are none.
+  // sum_j W_ij d part_j/dt over solids that come out of walls. To rho_i they add m_i of it, and to
+  // the energy of i m_i p_i/rho_i^2 of that, which no force on them does. A loop of its own: with
+  // it the loop of all rows would cost 6 % more where there are none.
   template <class T, class K, bool IMAGE>
-  FSI_INLINE double coming_out(const Row &row, const Mirror &mirror, const K &kernel, const FluidParticles &in, double sharper)
+  FSI_INLINE double coming_out(const Row &row, const Mirror &mirror, const K &kernel,
+                               const FluidParticles &in, double sharper)
   {
     constexpr int D = K::DIM;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Particle<T, D> pi(point[row.i]);
     T sum = 0.0;
-    for_neighbors<T, IMAGE>(row, [&](const int *j, const T &) __attribute__((always_inline)) {
+    for_neighbors<T, IMAGE>(row, [&](const int *j, const T &) FSI_INLINE_LAMBDA {
       Particle<T, D> pj(point, j);
       if (IMAGE) pj.reflect(mirror);
       T x[D];
       difference(pi.x, pj.x, x);
-      sum += kernel.sharper(root(product(x, x)), sharper) * L::read(in.cut->rate, j);    // of a place left over, i itself, the rate is 0
+      // of a place left over, i itself, the rate is 0
+      sum += kernel.sharper(root(product(x, x)), sharper) * L::read(in.cut->rate, j);
     });
     return L::sum(sum);
   }
 
-  // d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which makes the work of the pair force
-  // -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures; and the sums of particle shifting
+  // d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which
+  // makes the work of the pair force -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures;
+  // and the sums of particle shifting
   template <class T, class K, int KIND, int FLAGS>
-  FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
-                            const RateLaws laws, double *const rate, double (*const shift)[Shift<K::DIM>::ROW], PairSums *const sums, RowList &near)
+  FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror,
+                            const K kernel, const FluidParticles in, const RateLaws laws,
+                            double *const rate, double (*const shift)[Shift<K::DIM>::ROW],
+                            PairSums *const sums, RowList &near)
   {
     constexpr int D = K::DIM;
-    constexpr bool IMAGE = FLAGS & Flag::IMAGES, CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL);
+    constexpr bool IMAGE = FLAGS & Flag::IMAGES,
+                   CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL);
     constexpr int N = (FLAGS & Flag::SLOPES) ? Shift<D>::ALL : Shift<D>::N;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
@@ -162,13 +199,15 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
       const Particle<T, D> pi(point[i]);
-      const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
-      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0, fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0;
+      const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h,
+                                       in.state[type_i].c);
+      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0,
+                   fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0;
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
       int *last = near.room(row.n);
       int picked = 0;
-      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
+      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
         Particle<T, D> pj(point, j);
         if (IMAGE) pj.reflect(mirror);
         T x[D], v[D];
@@ -182,7 +221,8 @@ namespace FSI {
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         if (FLAGS & Flag::SHIFT) {
           const T vol_j = (FLAGS & Flag::UNEQUAL) ? fill * pj.vol : pj.vol;
-          add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j, x, v, j, displacement, shift);
+          add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j,
+                                                     x, v, j, displacement, shift);
         }
         if (FLAGS & Flag::UNEQUAL) {
           g = kernel.sharper_gradient(r, sharper);
@@ -190,7 +230,8 @@ namespace FSI {
           if (CUT) g = cut_off(in, j, g);
         }
         T s = g * product(v, x);
-        if (CUT && in.cut) s += kernel.sharper(r, sharper) * L::read(in.cut->rate, j);    // of a place left over, i itself, it is 0
+        // of a place left over, i itself, it is 0
+        if (CUT && in.cut) s += kernel.sharper(r, sharper) * L::read(in.cut->rate, j);
         sum += s;
         if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
         T rate_j = pj.rho * pj.vol * s;
@@ -205,13 +246,15 @@ namespace FSI {
         }
         L::add(rate_j, rate, j);
       });
-      if (picked >> (L::WIDTH - 1)) last -= -row.n & (L::WIDTH - 1);    // i itself, in places left over
+      // i itself, in places left over
+      if (picked >> (L::WIDTH - 1)) last -= -row.n & (L::WIDTH - 1);
       near.close(i, last);
       const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if constexpr (CUT)
         if (in.cut && sums && (in.newton || i < in.nlocal))
-          sums->walls -= laws.pressure_over_density[i] * point[i].rho * volume * point[i].vol * point[i].vol * coming_out<T, K, IMAGE>(row, mirror, kernel, in, sharper);
+          sums->walls -= laws.pressure_over_density[i] * point[i].rho * volume * point[i].vol *
+              point[i].vol * coming_out<T, K, IMAGE>(row, mirror, kernel, in, sharper);
       if (FLAGS & Flag::SHIFT)
         for (int m = 0; m < N; m++) shift[i][m] += L::sum(displacement[m]);
     }
@@ -219,14 +262,16 @@ namespace FSI {
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);
   }
 
-  // Pressure p_i V_i^2 + p_j V_j^2 that fluid particle i and its neighbour share (paper eq. 14); x_j: of the neighbour itself, not of its
-  // image; back: the fluid's volume over the neighbour's; own: is it the fluid's own, whatever the neighbour has?
+  // Pressure p_i V_i^2 + p_j V_j^2 that fluid particle i and its neighbor share (paper eq. 14);
+  // x_j: of the neighbor itself, not of its image; back: the fluid's volume over the neighbor's;
+  // own: is it the fluid's own, whatever the neighbor has?
   template <class T, int KIND, int D>
-  FSI_INLINE T shared_pressure(const Particle<T, D> &pi, const Particle<T, D> &pj, const T *x_j, const double *extrapolate, double floor,
-                               double back, bool own)
+  FSI_INLINE T shared_pressure(const Particle<T, D> &pi, const Particle<T, D> &pj, const T *x_j,
+                               const double *extrapolate, double floor, double back, bool own)
   {
     const T both = pi.pv2 + back * pj.pv2;
-    if (KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL) return CouplePaper::pressure(both, KIND == WITH_SOLID_FULL);
+    if (KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL)
+      return CouplePaper::pressure(both, KIND == WITH_SOLID_FULL);
     if (!own) return both;
     // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
     T p = pi.p;
@@ -234,29 +279,42 @@ namespace FSI {
     return pi.pv2 + greater(p, T(floor)) * (back * pj.vol) * pj.vol;
   }
 
-  // Viscosity between two fluids: the harmonic mean, with which the stress is the same on both sides of their interface, as the flux of
-  // heat in Cleary and Monaghan, J. Comput. Phys. 148 (1999) 227
-  FSI_INLINE double between(double a, double b) { return a == b ? a : 2.0 * a * b / (a + b); }
+  // Viscosity between two fluids: the harmonic mean, with which the stress is the same on both
+  // sides of their interface, as the flux of heat in Cleary and Monaghan, J. Comput. Phys. 148
+  // (1999) 227
+  FSI_INLINE double between(double a, double b)
+  {
+    return a == b ? a : 2.0 * a * b / (a + b);
+  }
 
   // What is constant in a row of forces.
   struct RowConstants {
-    double c, bulk, floor;    // speed of sound of viscosity, modulus of the guard, lowest pressure
-    double rubs, visc;        // does the wall? sum of both viscosities
-    double volume, sharper;    // of neighbours of another spacing
+    double c, bulk, floor;     // speed of sound of viscosity, modulus of the guard, lowest pressure
+    double rubs, visc;         // does the wall? sum of both viscosities
+    double volume, sharper;    // of neighbors of another spacing
     bool thin;
-    double extrapolate[3];     // solids and thin walls: gravity, if pressures beyond them are hydrostatic
+    double extrapolate[3];    // solids and thin walls: gravity, if pressures beyond them are
+                              // hydrostatic
   };
-  template <int D, int KIND, int FLAGS> FSI_INLINE RowConstants constants_of_row(const FluidParticles &in, const ForceLaws &laws, int i, int type_i, int type_j)
+  template <int D, int KIND, int FLAGS>
+  FSI_INLINE RowConstants constants_of_row(const FluidParticles &in, const ForceLaws &laws, int i,
+                                           int type_i, int type_j)
   {
     const State &fluid = in.state[type_i], &other = in.state[type_j];
     RowConstants r;
-    r.c = KIND == WITH_FLUID ? 0.5 * (fluid.c + other.c) : KIND == WITH_WALL || fluid.c < other.c ? fluid.c : other.c;
+    r.c = KIND == WITH_FLUID                     ? 0.5 * (fluid.c + other.c)
+        : KIND == WITH_WALL || fluid.c < other.c ? fluid.c
+                                                 : other.c;
     r.bulk = fluid.rho0 * fluid.csq;
     r.floor = fluid.floor;
     // beyond a wall or solid with no slip there is fluid, where it slips it does not rub
-    const bool slips = KIND == WITH_FLUID ? false : KIND == WITH_WALL ? !other.noslip : laws.solids_slip;
+    const bool slips = KIND == WITH_FLUID ? false
+        : KIND == WITH_WALL               ? !other.noslip
+                                          : laws.solids_slip;
     r.rubs = KIND == WITH_WALL && slips ? 0.0 : 1.0;
-    r.visc = !laws.laminar || slips ? 0.0 : 2.0 * (KIND == WITH_FLUID ? between(fluid.viscosity, other.viscosity) : fluid.viscosity);
+    r.visc = !laws.laminar || slips
+        ? 0.0
+        : 2.0 * (KIND == WITH_FLUID ? between(fluid.viscosity, other.viscosity) : fluid.viscosity);
     if (FLAGS & Flag::UNEQUAL) {
       r.volume = in.share[type_j].volume;
       r.sharper = in.share[type_j].sharper;
@@ -290,23 +348,30 @@ namespace FSI {
     }
   };
 
-  // Adds laminar viscosity to the force on i and, of images, on j; what it takes from their energy, times 2 for images, which each pair meets from both sides.
+  // Adds laminar viscosity to the force on i and, of images, on j; what it takes from their energy,
+  // times 2 for images, which each pair meets from both sides.
   template <class T, int KIND, int FLAGS, int D>
-  FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, const Mirror &mirror, const Particle<T, D> &pi, const Particle<T, D> &pj,
-                   const T (&velocity_of_j)[D], const int *j, const RowConstants &constant, const T &g, const T &rsq, const T (&x)[D], const T (&v)[D], T (&force)[D], T (&on_j)[D])
+  FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, const Mirror &mirror,
+                   const Particle<T, D> &pi, const Particle<T, D> &pj, const T (&velocity_of_j)[D],
+                   const int *j, const RowConstants &constant, const T &g, const T &rsq,
+                   const T (&x)[D], const T (&v)[D], T (&force)[D], T (&on_j)[D])
   {
     using L = Lanes<T>;
     const double visc = constant.visc;
     // what fluid would have in the place of j, of a wall or solid
-    const auto beyond_face = [&](int d) __attribute__((always_inline)) {
-      return constant.thin ? 2.0 * velocity_of_j[d] - pi.v[d] : L::make([&](int k) { return laws.wall_velocity[j[k]][d]; });
+    const auto beyond_face = [&](int d) FSI_INLINE_LAMBDA {
+      return constant.thin ? 2.0 * velocity_of_j[d] - pi.v[d] : L::make([&](int k) {
+        return laws.wall_velocity[j[k]][d];
+      });
     };
     const T vv = pi.vol * pj.vol;
     T rubbing[D], loss = 0.0;
     for (T &r : rubbing) r = 0.0;
     if (FLAGS & Flag::IMAGES) {
       // of both, each relative to the other's image, which a no-slip wall turns around
-      const auto beyond = [&](int d, const T &u) __attribute__((always_inline)) { return mirror.rubbing_v[d] + mirror.rubbing_sign[d] * u; };
+      const auto beyond = [&](int d, const T &u) FSI_INLINE_LAMBDA {
+        return mirror.rubbing_v[d] + mirror.rubbing_sign[d] * u;
+      };
       T w[D], seen[D], back[D], of_j[D];
       for (int d = 0; d < D; d++) {
         const T vj = KIND == WITH_FLUID ? velocity_of_j[d] : beyond_face(d);
@@ -320,7 +385,8 @@ namespace FSI {
         // the power is that of the solid's own velocity
         loss = 0.0;
         for (int d = 0; d < D; d++)
-          loss -= rubbing[d] * (pi.v[d] - beyond(d, velocity_of_j[d])) + of_j[d] * (velocity_of_j[d] - beyond(d, pi.v[d]));
+          loss -= rubbing[d] * (pi.v[d] - beyond(d, velocity_of_j[d])) +
+              of_j[d] * (velocity_of_j[d] - beyond(d, pi.v[d]));
       }
       for (int d = 0; d < D; d++) on_j[d] += of_j[d];
     } else if (KIND != WITH_FLUID) {
@@ -339,7 +405,8 @@ namespace FSI {
   template <class T, int D> struct Taken {
     T of_i[2 * D];
     double (*const rows)[row_of_points(D)];
-    FSI_INLINE explicit Taken(double *rows_in) : rows(reinterpret_cast<double(*)[row_of_points(D)]>(rows_in))
+    FSI_INLINE explicit Taken(double *rows_in) :
+        rows(reinterpret_cast<double (*)[row_of_points(D)]>(rows_in))
     {
       for (T &s : of_i) s = 0.0;
     }
@@ -361,13 +428,119 @@ namespace FSI {
     }
   };
 
+  // Does a mirror wall cut off part of these neighbors' cells?
+  constexpr bool is_cut(int kind, int flags)
+  {
+    return kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL ||
+        (kind == WITH_SOLID && (flags & Flag::UNEQUAL));
+  }
+
+  // A pair as its terms need it. weight: 0 in places that are left over; g = W'/r; pushing: that of
+  // pressures; share: the part of its powers that this rank counts.
+  template <class T, int D> struct Between {
+    T x[D], v[D], rsq, vdotx, weight, g, pushing, share;
+  };
+
+  template <class T, class K, int KIND, int FLAGS, int D>
+  FSI_INLINE void relate(const K &kernel, const FluidParticles &in, const RowConstants &constant,
+                         const int i, const Particle<T, D> &pi, const Particle<T, D> &pj,
+                         const int *j, const T &weight, Between<T, D> &m)
+  {
+    constexpr bool CUT = is_cut(KIND, FLAGS);
+    difference(pi.x, pj.x, m.x);
+    difference(pi.v, pj.v, m.v);
+    m.weight = weight;
+    m.rsq = product(m.x, m.x);
+    m.vdotx = product(m.v, m.x);
+    m.g = kernel.gradient(root(m.rsq));
+    if (FLAGS & Flag::IMAGES) m.g = weight * m.g;
+    if (CUT) m.g = cut_off(in, j, m.g);
+    if constexpr (FLAGS & Flag::PARTLY) m.g = as_visible(in, j, m.g);
+    m.pushing = m.g;
+    if (FLAGS & Flag::UNEQUAL) {
+      m.pushing = kernel.sharper_gradient(root(m.rsq), constant.sharper);
+      if (FLAGS & Flag::IMAGES) m.pushing = weight * m.pushing;
+      if (CUT) m.pushing = cut_off(in, j, m.pushing);
+    }
+    m.share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton)
+                                                    : T(1.0);
+  }
+
+  // The force of pressure p and of artificial viscosity on i. What they take, as forces: coupling,
+  // beyond the compression of the fluid and, in density mode summation, of the solid, and friction;
+  // coupled: the power of coupling.
+  template <class T, int KIND, int FLAGS, int D>
+  FSI_INLINE void push(const ArtificialViscosity &artificial, const ForceLaws &laws,
+                       const RowConstants &constant, const Particle<T, D> &pi,
+                       const Particle<T, D> &pj, T p, const Between<T, D> &m, T (&force)[D],
+                       T (&coupling)[D], T (&friction)[D], T &coupled, Powers<T> &by)
+  {
+    T viscous_push = 0.0, rubbing = 0.0;
+    coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2;
+    if (FLAGS & Flag::ARTIFICIAL) {
+      T q = artificial(m.vdotx, m.rsq, 0.5 * (pi.rho + pj.rho), constant.c, pi.vol * pj.vol);
+      if (KIND == WITH_WALL) q = constant.rubs * q;
+      if (FLAGS & Flag::UNEQUAL)
+        viscous_push = q * m.g;
+      else
+        p += q;
+      if (FLAGS & Flag::SUMS) by.artificial += m.share * q * m.g * m.vdotx;
+      rubbing = q * m.g;
+    }
+    p = (FLAGS & Flag::UNEQUAL) ? -(p * m.pushing + viscous_push) : -p * m.g;
+    for (int d = 0; d < D; d++) {
+      coupling[d] = KIND == WITH_FLUID ? T(0.0) : coupled * m.pushing * m.x[d];
+      friction[d] = rubbing * m.x[d];
+    }
+    coupled = coupled * m.pushing * m.vdotx;
+    for (int d = 0; d < D; d++) force[d] = p * m.x[d];
+  }
+
+  // The guard keeps out what has no pressure of its own.
+  template <class T, int KIND, int FLAGS, int D>
+  FSI_INLINE void keep_out(const Contact &guard, const FluidParticles &in, double bulk,
+                           const int *j, const Between<T, D> &m, T (&force)[D], Powers<T> &by)
+  {
+    constexpr bool CUT = is_cut(KIND, FLAGS);
+    T k = guard(m.rsq, bulk, bulk);
+    if (FLAGS & Flag::IMAGES) k = m.weight * k;
+    if (CUT) k = cut_off(in, j, k);
+    for (int d = 0; d < D; d++) force[d] += k * m.x[d];
+    if (FLAGS & Flag::SUMS) {
+      T stored = m.weight * guard.stored(m.rsq, bulk);
+      if (CUT) stored = cut_off(in, j, stored);
+      by.guard += m.share * stored;
+    }
+  }
+
+  // Laminar viscosity in the forces, in friction and in the powers.
+  template <class T, int KIND, int FLAGS, int D>
+  FSI_INLINE void slow(const LaminarViscosity<D> &viscous, const ForceLaws &laws,
+                       const Mirror &mirror, const Particle<T, D> &pi, const Particle<T, D> &pj,
+                       const T (&velocity_of_j)[D], const int *j, const RowConstants &constant,
+                       const Between<T, D> &m, T (&force)[D], T (&on_j)[D], T (&friction)[D],
+                       Powers<T> &by)
+  {
+    // walls and solids have another velocity than i itself in places that are left over
+    const T there = KIND == WITH_FLUID || (FLAGS & Flag::IMAGES) ? m.g : m.weight * m.g;
+    if (FLAGS & Flag::SUMS)
+      for (int d = 0; d < D; d++) friction[d] += force[d];
+    const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, velocity_of_j, j, constant,
+                                       there, m.rsq, m.x, m.v, force, on_j);
+    if (FLAGS & Flag::SUMS)
+      for (int d = 0; d < D; d++) friction[d] -= force[d];
+    if (FLAGS & Flag::SUMS)
+      by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * m.share * loss : m.share * loss;
+  }
+
   // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14)
   template <class T, class K, int KIND, int FLAGS>
-  FSI_INLINE void force_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
-                             const ForceLaws laws, double (*const f)[row_of_forces(K::DIM)], double *const total, PairSums *const sums)
+  FSI_INLINE void force_rows(const Row *const rows, const int nrows, const Mirror mirror,
+                             const K kernel, const FluidParticles in, const ForceLaws laws,
+                             double (*const f)[row_of_forces(K::DIM)], double *const total,
+                             PairSums *const sums)
   {
     constexpr int D = K::DIM;
-    constexpr bool CUT = KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL || (KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL));
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
@@ -379,97 +552,60 @@ namespace FSI {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i, type_j = in.type[row.j[0]];
-      const RowConstants constant = constants_of_row<D, KIND, FLAGS>(in, laws, i, in.type[i], type_j);
+      const RowConstants constant =
+          constants_of_row<D, KIND, FLAGS>(in, laws, i, in.type[i], type_j);
       Particle<T, D> pi(point[i]);
-      // neighbours of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i of the lattices
-      const double fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0, back = (FLAGS & Flag::UNEQUAL) ? fill / constant.volume : 1.0;
+      // neighbors of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i
+      // of the lattices
+      const double fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0,
+                   back = (FLAGS & Flag::UNEQUAL) ? fill / constant.volume : 1.0;
       if (FLAGS & Flag::UNEQUAL) pi.pv2 = fill * constant.volume * pi.pv2;
       const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && constant.thin);
       T sum[D];
       for (T &s : sum) s = 0.0;
       Taken<T, D> taken((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES) ? laws.taken : nullptr);
-      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
-        Particle<T, D> pj(point, j);
-        const Particle<T, D> original = pj;
-        if (FLAGS & Flag::IMAGES) pj.reflect(mirror);
-        T x[D], v[D];
-        difference(pi.x, pj.x, x);
-        difference(pi.v, pj.v, v);
-        const T rsq = product(x, x), vdotx = product(v, x);
-        T g = kernel.gradient(root(rsq));
-        if (FLAGS & Flag::IMAGES) g = weight * g;
-        if (CUT) g = cut_off(in, j, g);
-        if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
-        T pushing = g;    // of pressures
-        if (FLAGS & Flag::UNEQUAL) {
-          pushing = kernel.sharper_gradient(root(rsq), constant.sharper);
-          if (FLAGS & Flag::IMAGES) pushing = weight * pushing;
-          if (CUT) pushing = cut_off(in, j, pushing);
-        }
-        const T share = (FLAGS & (Flag::SUMS | Flag::IMAGES)) ? share_of<T>(i, j, in.nlocal, in.newton) : T(1.0);
-
-        T viscous_push = 0.0;
-        T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate, constant.floor, back, own);
-        // beyond the compression of the fluid and, in density mode summation, of the solid
-        T coupled = p - pi.pv2 - (KIND == WITH_WALL ? 0.0 : laws.stored) * pj.pv2, rubbing = 0.0;
-        if (FLAGS & Flag::ARTIFICIAL) {
-          T q = artificial(vdotx, rsq, 0.5 * (pi.rho + pj.rho), constant.c, pi.vol * pj.vol);
-          if (KIND == WITH_WALL) q = constant.rubs * q;
-          if (FLAGS & Flag::UNEQUAL) viscous_push = q * g;
-          else p += q;
-          if (FLAGS & Flag::SUMS) by.artificial += share * q * g * vdotx;
-          rubbing = q * g;
-        }
-        p = (FLAGS & Flag::UNEQUAL) ? -(p * pushing + viscous_push) : -p * g;
-        T coupling[D], friction[D];    // what they take, as forces
-        for (int d = 0; d < D; d++) {
-          coupling[d] = KIND == WITH_FLUID ? T(0.0) : coupled * pushing * x[d];
-          friction[d] = rubbing * x[d];
-        }
-        coupled = coupled * pushing * vdotx;
-
-        T force[D], on_j[D];    // on i, on j
-        for (int d = 0; d < D; d++) force[d] = p * x[d];
-        if (KIND == WITH_WALL || KIND == WITH_SOLID) {
-          // the guard keeps out what has no pressure of its own
-          T k = laws.guard[type_j](rsq, constant.bulk, constant.bulk);
-          if (FLAGS & Flag::IMAGES) k = weight * k;
-          if (CUT) k = cut_off(in, j, k);
-          for (int d = 0; d < D; d++) force[d] += k * x[d];
-          if (FLAGS & Flag::SUMS) {
-            T stored = weight * laws.guard[type_j].stored(rsq, constant.bulk);
-            if (CUT) stored = cut_off(in, j, stored);
-            by.guard += share * stored;
-          }
-        }
-        if constexpr (KIND == WITH_SOLID_FULL)
-          if (laws.stress) coupled -= CouplePaper::add_stress<(FLAGS & Flag::IMAGES) != 0>(laws.stress[*j], mirror, pj.vol * pj.vol * g, x, v, force);
-        if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) by.coupling += share * coupled;
-        if (FLAGS & Flag::IMAGES)
-          for (int d = 0; d < D; d++) on_j[d] = -mirror.sign[d] * force[d];
-        if (FLAGS & Flag::LAMINAR) {
-          // walls and solids have another velocity than i itself in places that are left over
-          const T there = KIND == WITH_FLUID || (FLAGS & Flag::IMAGES) ? g : weight * g;
-          if (FLAGS & Flag::SUMS)
-            for (int d = 0; d < D; d++) friction[d] += force[d];
-          const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, there, rsq, x, v, force, on_j);
-          if (FLAGS & Flag::SUMS)
-            for (int d = 0; d < D; d++) friction[d] -= force[d];
-          if (FLAGS & Flag::SUMS) by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * share * loss : share * loss;
-        }
-        if (!(FLAGS & Flag::IMAGES))
-          for (int d = 0; d < D; d++) on_j[d] = -force[d];
-        // what wall particles are given: they are not in the sum of energies
-        if ((FLAGS & Flag::SUMS) && KIND == WITH_WALL) by.walls -= share * product(force, pj.v);
-        if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES))
-          add_virial<D>([&](int a, int c) __attribute__((always_inline)) { return share * x[a] * force[c]; }, by.virial);
-        for (int d = 0; d < D; d++) {
-          sum[d] += force[d];
-          if (FLAGS & Flag::IMAGES) on_all[d] += share * (force[d] + on_j[d]);
-        }
-        if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) taken.add(coupling, friction, j);
-        L::add_rows(on_j, f, j);
-      });
+      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(
+          row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
+            Particle<T, D> pj(point, j);
+            const Particle<T, D> original = pj;
+            if (FLAGS & Flag::IMAGES) pj.reflect(mirror);
+            Between<T, D> m;
+            relate<T, K, KIND, FLAGS>(kernel, in, constant, i, pi, pj, j, weight, m);
+            const T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate,
+                                                    constant.floor, back, own);
+            T force[D], on_j[D], coupling[D], friction[D], coupled;
+            push<T, KIND, FLAGS>(artificial, laws, constant, pi, pj, p, m, force, coupling,
+                                 friction, coupled, by);
+            if (KIND == WITH_WALL || KIND == WITH_SOLID)
+              keep_out<T, KIND, FLAGS>(laws.guard[type_j], in, constant.bulk, j, m, force, by);
+            if constexpr (KIND == WITH_SOLID_FULL)
+              if (laws.stress)
+                coupled -= CouplePaper::add_stress<(FLAGS & Flag::IMAGES) != 0>(
+                    laws.stress[*j], mirror, pj.vol * pj.vol * m.g, m.x, m.v, force);
+            if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) by.coupling += m.share * coupled;
+            if (FLAGS & Flag::IMAGES)
+              for (int d = 0; d < D; d++) on_j[d] = -mirror.sign[d] * force[d];
+            if (FLAGS & Flag::LAMINAR)
+              slow<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, m, force,
+                                   on_j, friction, by);
+            if (!(FLAGS & Flag::IMAGES))
+              for (int d = 0; d < D; d++) on_j[d] = -force[d];
+            // what wall particles are given: they are not in the sum of energies
+            if ((FLAGS & Flag::SUMS) && KIND == WITH_WALL)
+              by.walls -= m.share * product(force, pj.v);
+            if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) {
+              const auto stress = [&](int a, int c) FSI_INLINE_LAMBDA {
+                return m.share * m.x[a] * force[c];
+              };
+              add_virial<D>(stress, by.virial);
+            }
+            for (int d = 0; d < D; d++) {
+              sum[d] += force[d];
+              if (FLAGS & Flag::IMAGES) on_all[d] += m.share * (force[d] + on_j[d]);
+            }
+            if ((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES)) taken.add(coupling, friction, j);
+            L::add_rows(on_j, f, j);
+          });
       taken.close(i);
       for (int d = 0; d < D; d++) f[i][d] += L::sum(sum[d]);
     }
@@ -480,8 +616,9 @@ namespace FSI {
 
   // the sums of particle shifting alone
   template <class T, class K, int FLAGS>
-  FSI_INLINE void shift_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
-                             const double wdx, double (*const shift)[Shift<K::DIM>::ROW])
+  FSI_INLINE void shift_rows(const Row *const rows, const int nrows, const Mirror mirror,
+                             const K kernel, const FluidParticles in, const double wdx,
+                             double (*const shift)[Shift<K::DIM>::ROW])
   {
     constexpr int D = K::DIM, N = Shift<D>::N;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES;
@@ -493,10 +630,11 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i;
       const Particle<T, D> pi(point[i]);
-      const double fill = !(FLAGS & Flag::BOTH) && in.thin ? fill_of(in, i, in.type[row.j[0]]) : 1.0;
+      const double fill = !(FLAGS & Flag::BOTH) && in.thin ? fill_of(in, i, in.type[row.j[0]])
+                                                           : 1.0;
       T sum[N];
       for (T &s : sum) s = 0.0;
-      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
+      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
         Particle<T, D> pj(point, j);
         if (IMAGE) pj.reflect(mirror);
         T x[D];
@@ -506,7 +644,8 @@ namespace FSI {
         if (!(FLAGS & Flag::BOTH)) g = cut_off(in, j, g);
         if (IMAGE) g = weight * g;
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
-        add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, fill * pj.vol, x, nullptr, j, sum, shift);
+        add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol,
+                                                          fill * pj.vol, x, nullptr, j, sum, shift);
       });
       for (int m = 0; m < N; m++) shift[i][m] += L::sum(sum[m]);
     }
@@ -514,8 +653,9 @@ namespace FSI {
 
   // W_ij, or V_j x_ji.grad_i W_ij
   template <class T, class K, int FLAGS>
-  FSI_INLINE void distance_rows(const Row *const rows, const int nrows, const Mirror mirror, const K kernel, const FluidParticles in,
-                                const double (*const x)[3], const double *const vol, double *const sum)
+  FSI_INLINE void distance_rows(const Row *const rows, const int nrows, const Mirror mirror,
+                                const K kernel, const FluidParticles in, const double (*const x)[3],
+                                const double *const vol, double *const sum)
   {
     constexpr int D = K::DIM;
     using L = Lanes<T>;
@@ -523,32 +663,37 @@ namespace FSI {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i;
-      // of neighbours of another spacing
+      // of neighbors of another spacing
       double volume = (FLAGS & Flag::UNEQUAL) ? in.share[in.type[row.j[0]]].volume : 1.0;
-      if (in.thin) volume *= ((FLAGS & Flag::DIVERGENCE) ? fill_of : fill_weight_of)(in, i, in.type[row.j[0]]);
+      if (in.thin)
+        volume *= ((FLAGS & Flag::DIVERGENCE) ? fill_of : fill_weight_of)(in, i, in.type[row.j[0]]);
       const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[in.type[row.j[0]]].sharper : 0.0;
       T of_i = 0.0;
-      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(row, [&](const int *j, const T &weight) __attribute__((always_inline)) {
-        T rsq = 0.0;
-        for (int d = 0; d < D; d++) {
-          const T xj = L::make([&](int k) { return x[j[k]][d]; });
-          const T r = x[i][d] - ((FLAGS & Flag::IMAGES) ? mirror.x[d] + mirror.sign[d] * xj : xj);
-          rsq += r * r;
-        }
-        const T r = root(rsq);
-        if (FLAGS & Flag::DIVERGENCE) {
-          T w = cut_off<T>(in, j, -weight * rsq * kernel.gradient(r));
-          if constexpr (FLAGS & Flag::PARTLY) w = as_visible(in, j, w);
-          of_i += w * L::read(vol, j);
-          if (FLAGS & Flag::BOTH) L::add(w * vol[i], sum, j);
-        } else {
-          T w = weight * ((FLAGS & Flag::UNEQUAL) ? kernel.sharper(r, sharper) : kernel.W(r));
-          if (FLAGS & Flag::UNEQUAL) w = cut_off(in, j, w);
-          if constexpr (FLAGS & Flag::PARTLY) w = as_visible(in, j, w);
-          of_i += w;
-          if (FLAGS & Flag::BOTH) L::add(w, sum, j);
-        }
-      });
+      for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(
+          row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
+            T rsq = 0.0;
+            for (int d = 0; d < D; d++) {
+              const T xj = L::make([&](int k) {
+                return x[j[k]][d];
+              });
+              const T r =
+                  x[i][d] - ((FLAGS & Flag::IMAGES) ? mirror.x[d] + mirror.sign[d] * xj : xj);
+              rsq += r * r;
+            }
+            const T r = root(rsq);
+            if (FLAGS & Flag::DIVERGENCE) {
+              T w = cut_off<T>(in, j, -weight * rsq * kernel.gradient(r));
+              if constexpr (FLAGS & Flag::PARTLY) w = as_visible(in, j, w);
+              of_i += w * L::read(vol, j);
+              if (FLAGS & Flag::BOTH) L::add(w * vol[i], sum, j);
+            } else {
+              T w = weight * ((FLAGS & Flag::UNEQUAL) ? kernel.sharper(r, sharper) : kernel.W(r));
+              if (FLAGS & Flag::UNEQUAL) w = cut_off(in, j, w);
+              if constexpr (FLAGS & Flag::PARTLY) w = as_visible(in, j, w);
+              of_i += w;
+              if (FLAGS & Flag::BOTH) L::add(w, sum, j);
+            }
+          });
       sum[i] += volume * L::sum(of_i);
     }
   }
@@ -562,115 +707,160 @@ namespace FSI {
    public:
     explicit FluidLoopsOf(const K &kernel_in) : kernel(kernel_in) {}
 
-    void rates(PairKind kind, const std::vector<Row> &rows, const Mirror *image, const FluidParticles &in, const RateLaws &laws, double *rate,
-               double *shift, PairSums *sums, RowList &near) const override
+    void rates(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
+               const FluidParticles &in, const RateLaws &laws, double *rate, double *shift,
+               PairSums *sums, RowList &near) const override
     {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       const auto loop = [&](auto kind_is, auto flags) {
-        run_loop<T>([&](auto number) __attribute__((always_inline)) {
-          rate_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, rate,
-                                                             reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums, near);
+        run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+          rate_rows<decltype(number), K, kind_is(), flags()>(
+              rows.data(), rows.size(), mirror, kernel, in, laws, rate,
+              reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums, near);
         });
       };
-      // density diffusion, with a coefficient of zero where it is off, comes with what is rarely without: images and slopes
-      const bool fluid = kind == WITH_FLUID, diffuses = fluid && (laws.delta > 0.0 || laws.slopes || image);
-      const int named = (shift ? SHIFT : 0) | (fluid && !image && laws.slopes ? SLOPES : 0) | (diffuses || partly(in) ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
-      with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY>((image ? IMAGES : 0) | unequal_or_cut(kind, in) | partly(in) | named, [&](auto flags) {
-        constexpr int effects = flags() & (DIFFUSION | SUMS | SHIFT | SLOPES);
-        constexpr bool parts = flags() & PARTLY, compiled = !parts || (ONE_BY_ONE && (flags() & DIFFUSION));
-        if constexpr (!parts && (effects == 0 || effects == SHIFT))
-          if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
-        constexpr bool has_slopes = effects & SLOPES, diffusing = effects & DIFFUSION, plain = !(flags() & IMAGES);
-        if constexpr (compiled && !(flags() & UNEQUAL) && (diffusing || (plain && (effects == 0 || effects == SHIFT))) && (!has_slopes || (plain && (effects & SHIFT))))
-          loop(std::integral_constant<int, WITH_FLUID>(), flags);
-      });
+      // density diffusion, with a coefficient of zero where it is off, comes with what is rarely
+      // without: images and slopes
+      const bool fluid = kind == WITH_FLUID,
+                 diffuses = fluid && (laws.delta > 0.0 || laws.slopes || image);
+      const int named = (shift ? SHIFT : 0) | (fluid && !image && laws.slopes ? SLOPES : 0) |
+          (diffuses || partly(in) ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
+      with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY>(
+          (image ? IMAGES : 0) | unequal_or_cut(kind, in) | partly(in) | named, [&](auto flags) {
+            constexpr int effects = flags() & (DIFFUSION | SUMS | SHIFT | SLOPES);
+            constexpr bool parts = flags() & PARTLY,
+                           compiled = !parts || (ONE_BY_ONE && (flags() & DIFFUSION));
+            if constexpr (!parts && (effects == 0 || effects == SHIFT))
+              if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
+            constexpr bool has_slopes = effects & SLOPES, diffusing = effects & DIFFUSION,
+                           plain = !(flags() & IMAGES);
+            if constexpr (compiled && !(flags() & UNEQUAL) &&
+                          (diffusing || (plain && (effects == 0 || effects == SHIFT))) &&
+                          (!has_slopes || (plain && (effects & SHIFT))))
+              loop(std::integral_constant<int, WITH_FLUID>(), flags);
+          });
     }
 
-    void forces(PairKind kind, const std::vector<Row> &rows, const Mirror *image, const FluidParticles &in, const ForceLaws &laws,
-                double *force, double *total, PairSums *sums) const override
+    void forces(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
+                const FluidParticles &in, const ForceLaws &laws, double *force, double *total,
+                PairSums *sums) const override
     {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();
       auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
-      // with sums, images, neighbours of another spacing, both viscosities, the central one, or pair by pair there is one loop for all
-      // effects: those that are off have coefficients of zero
+      // with sums, images, neighbors of another spacing, both viscosities, the central one, or pair
+      // by pair there is one loop for all effects: those that are off have coefficients of zero
       constexpr int EFFECTS = ARTIFICIAL | LAMINAR | CENTRAL;
       PairSums unused;
-      const int unequal_rows = kind == WITH_SOLID || kind == WITH_WALL ? unequal_or_cut(kind, in) : 0;
-      if (!sums && (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL || (image && unequal_rows))) sums = &unused;
+      const int unequal_rows = kind == WITH_SOLID || kind == WITH_WALL ? unequal_or_cut(kind, in)
+                                                                       : 0;
+      if (!sums &&
+          (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL || (image && unequal_rows)))
+        sums = &unused;
       const auto loop = [&](auto kind_is, auto flags) {
-        run_loop<T>([&](auto number) __attribute__((always_inline)) {
-          force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror, kernel, in, laws, f, total, sums);
+        run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+          force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror,
+                                                              kernel, in, laws, f, total, sums);
         });
       };
       const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
       if (!sums && partly(in)) sums = &unused;
       const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | unequal_rows | partly(in);
       const bool all = special || ONE_BY_ONE || laws.laminar == 2 || (artificial && laws.laminar);
-      with_flags<EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY>(special | (all ? EFFECTS : artificial ? ARTIFICIAL : laws.laminar ? LAMINAR : 0), [&](auto flags) {
-        constexpr int effects = flags() & EFFECTS;
-        constexpr bool alone = flags() == 0 || flags() == ARTIFICIAL || flags() == LAMINAR;
-        constexpr bool counted = (flags() & SUMS) || !((flags() & IMAGES) && (flags() & UNEQUAL));    // few: their sums may be for nothing
-        constexpr bool with_parts = flags() & PARTLY;
-        if constexpr (with_parts) {
-          if constexpr (ONE_BY_ONE && effects == EFFECTS && (flags() & SUMS) && !(flags() & UNEQUAL))
-            loop(std::integral_constant<int, WITH_FLUID>(), flags);
-        } else if constexpr ((effects == EFFECTS && counted) || (alone && !ONE_BY_ONE)) {
-          if constexpr (!(flags() & UNEQUAL))
-            if (kind == WITH_FLUID) loop(std::integral_constant<int, WITH_FLUID>(), flags);
-          if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
-          if constexpr (!(flags() & IMAGES))    // walls of particles have no images
-            if (kind == WITH_WALL) loop(std::integral_constant<int, WITH_WALL>(), flags);
-          if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & UNEQUAL)) {
-            if (kind == WITH_SOLID_PRESSURE) loop(std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
-            if (kind == WITH_SOLID_FULL) loop(std::integral_constant<int, WITH_SOLID_FULL>(), flags);
-          }
-        }
-      });
+      with_flags<EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY>(
+          special |
+              (all                ? EFFECTS
+                   : artificial   ? ARTIFICIAL
+                   : laws.laminar ? LAMINAR
+                                  : 0),
+          [&](auto flags) {
+            constexpr int effects = flags() & EFFECTS;
+            constexpr bool alone = flags() == 0 || flags() == ARTIFICIAL || flags() == LAMINAR;
+            // few: their sums may be for nothing
+            constexpr bool counted = (flags() & SUMS) ||
+                !((flags() & IMAGES) && (flags() & UNEQUAL));
+            constexpr bool with_parts = flags() & PARTLY;
+            if constexpr (with_parts) {
+              if constexpr (ONE_BY_ONE && effects == EFFECTS && (flags() & SUMS) &&
+                            !(flags() & UNEQUAL))
+                loop(std::integral_constant<int, WITH_FLUID>(), flags);
+            } else if constexpr ((effects == EFFECTS && counted) || (alone && !ONE_BY_ONE)) {
+              if constexpr (!(flags() & UNEQUAL))
+                if (kind == WITH_FLUID) loop(std::integral_constant<int, WITH_FLUID>(), flags);
+              if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
+              if constexpr (!(flags() & IMAGES))    // walls of particles have no images
+                if (kind == WITH_WALL) loop(std::integral_constant<int, WITH_WALL>(), flags);
+              if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & UNEQUAL)) {
+                if (kind == WITH_SOLID_PRESSURE)
+                  loop(std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
+                if (kind == WITH_SOLID_FULL)
+                  loop(std::integral_constant<int, WITH_SOLID_FULL>(), flags);
+              }
+            }
+          });
     }
 
-    void shifts(PairKind kind, const std::vector<Row> &rows, const Mirror *image, const FluidParticles &in, double wdx,
-                double *shift) const override
+    void shifts(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
+                const FluidParticles &in, double wdx, double *shift) const override
     {
       const Mirror mirror = image ? *image : Mirror();
-      with_flags<Flag::IMAGES | Flag::BOTH | Flag::PARTLY>((image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0) | partly(in), [&](auto flags) {
-        if constexpr (!(flags() & Flag::PARTLY) || (ONE_BY_ONE && (flags() & Flag::BOTH))) run_loop<T>([&](auto number) __attribute__((always_inline)) {
-          shift_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, wdx,
-                                                   reinterpret_cast<double(*)[Shift<D>::ROW]>(shift));
-        });
-      });
+      with_flags<Flag::IMAGES | Flag::BOTH | Flag::PARTLY>(
+          (image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0) | partly(in),
+          [&](auto flags) {
+            if constexpr (!(flags() & Flag::PARTLY) || (ONE_BY_ONE && (flags() & Flag::BOTH)))
+              run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+                shift_rows<decltype(number), K, flags()>(
+                    rows.data(), rows.size(), mirror, kernel, in, wdx,
+                    reinterpret_cast<double(*)[Shift<D>::ROW]>(shift));
+              });
+          });
     }
 
-    void number_density(PairKind kind, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
-                        double *sum) const override
+    void number_density(PairKind kind, const std::vector<Row> &rows, bool both, const Mirror *image,
+                        const FluidParticles &in, const double (*x)[3], double *sum) const override
     {
       distances(unequal_or_cut(kind, in), rows, both, image, in, x, nullptr, sum);
     }
 
-    void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
-                             const double *vol, double *sum) const override
+    void position_divergence(const std::vector<Row> &rows, bool both, const Mirror *image,
+                             const FluidParticles &in, const double (*x)[3], const double *vol,
+                             double *sum) const override
     {
       distances(Flag::DIVERGENCE, rows, both, image, in, x, vol, sum);
     }
 
    private:
-    // Rows of solids and walls of another spacing than the fluid's; those that have it, among them, have shares that change nothing.
-    static int unequal(PairKind kind, const FluidParticles &in) { return in.unequal && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::UNEQUAL : 0; }
+    // Rows of solids and walls of another spacing than the fluid's; those that have it, among them,
+    // have shares that change nothing.
+    static int unequal(PairKind kind, const FluidParticles &in)
+    {
+      return in.unequal && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::UNEQUAL : 0;
+    }
     static int partly(const FluidParticles &in) { return in.visible ? Flag::PARTLY : 0; }
     // Those that mirror walls cut are in the same loops.
-    static int unequal_or_cut(PairKind kind, const FluidParticles &in) { return in.cut && kind != WITH_FLUID ? Flag::UNEQUAL : unequal(kind, in); }
+    static int unequal_or_cut(PairKind kind, const FluidParticles &in)
+    {
+      return in.cut && kind != WITH_FLUID ? Flag::UNEQUAL : unequal(kind, in);
+    }
 
-    void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image, const FluidParticles &in, const double (*x)[3],
-                   const double *vol, double *sum) const
+    void distances(int what, const std::vector<Row> &rows, bool both, const Mirror *image,
+                   const FluidParticles &in, const double (*x)[3], const double *vol,
+                   double *sum) const
     {
       const Mirror mirror = image ? *image : Mirror();
       with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::UNEQUAL | Flag::PARTLY>(
-          what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0) | partly(in), [&](auto flags) {
-            constexpr bool of_fluids = ONE_BY_ONE && (flags() & Flag::BOTH) && !(flags() & Flag::UNEQUAL);
-            if constexpr ((flags() & Flag::PARTLY) ? of_fluids : !(flags() & Flag::UNEQUAL) || !(flags() & Flag::DIVERGENCE)) run_loop<T>([&](auto number) __attribute__((always_inline)) {
-              distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror, kernel, in, x, vol, sum);
-            });
+          what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0) | partly(in),
+          [&](auto flags) {
+            constexpr bool of_fluids =
+                ONE_BY_ONE && (flags() & Flag::BOTH) && !(flags() & Flag::UNEQUAL);
+            if constexpr ((flags() & Flag::PARTLY)
+                              ? of_fluids
+                              : !(flags() & Flag::UNEQUAL) || !(flags() & Flag::DIVERGENCE))
+              run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+                distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror,
+                                                            kernel, in, x, vol, sum);
+              });
           });
     }
   };

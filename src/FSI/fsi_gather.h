@@ -40,8 +40,8 @@ namespace FSI {
       total += count[k];
     }
     std::vector<T> all(total / sizeof(T));
-    MPI_Allgatherv(const_cast<T *>(mine.data()), n, MPI_BYTE, all.data(), count.data(), first.data(),
-                   MPI_BYTE, world);
+    MPI_Allgatherv(const_cast<T *>(mine.data()), n, MPI_BYTE, all.data(), count.data(),
+                   first.data(), MPI_BYTE, world);
     return all;
   }
 

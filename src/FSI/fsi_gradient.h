@@ -11,19 +11,20 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
-// Gradients at a particle from its neighbours: grad u_i = sum_j (u_j - u_i) (x) G_ij, the weights G_ij from moving least
-// squares about i.
+// Gradients at a particle from its neighbors: grad u_i = sum_j (u_j - u_i) (x) G_ij, the weights
+// G_ij from moving least squares about i.
 //
-// Exact for linear fields (Bonet and Lok 1999 give the same property), or for quadratic ones. At a free face, where all
-// neighbours are on one side, a gradient that is only exact for linear fields is that of a place about 0.6 dx inside the
-// body: a bent plate with n particles across comes out soft by an error of order 1/n. Exactness for quadratic fields
-// removes that error and costs nothing per step where the weights are computed once, in the reference configuration.
+// Exact for linear fields (Bonet and Lok 1999 give the same property), or for quadratic ones. At a
+// free face, where all neighbors are on one side, a gradient that is only exact for linear fields
+// is that of a place about 0.6 dx inside the body: a bent plate with n particles across comes out
+// soft by an error of order 1/n. Exactness for quadratic fields removes that error and costs
+// nothing per step where the weights are computed once, in the reference configuration.
 //
-// There is one quadratic term that a face is better without: the square of the distance along its normal. Neighbours on one
-// side hardly tell it from the linear term, and the weights that do, -3/2, 2, -1/2 for three layers, make the stiffest mode of
-// the body. Without it a body bears steps twice as long, and a free plate's frequency is nearer to the exact one
-// (doc/src/theory.rst, Total-Lagrangian solids).
+// There is one quadratic term that a face is better without: the square of the distance along its
+// normal. Neighbors on one side hardly tell it from the linear term, and the weights that do, -3/2,
+// 2, -1/2 for three layers, make the stiffest mode of the body. Without it a body bears steps twice
+// as long, and a free plate's frequency is nearer to the exact one (doc/src/theory.rst,
+// Total-Lagrangian solids).
 
 #ifndef LMP_FSI_GRADIENT_H
 #define LMP_FSI_GRADIENT_H
@@ -42,9 +43,13 @@ namespace FSI {
     static constexpr int NLINEAR = D, NQUADRATIC = D * (D + 3) / 2;
     enum Order { DEFICIENT, LINEAR, PARTIAL, QUADRATIC };
   };
-  constexpr int packed_size(int n) { return n * (n + 1) / 2; }
+  constexpr int packed_size(int n)
+  {
+    return n * (n + 1) / 2;
+  }
 
-  // basis about a particle, x = offset times 1/length: x, y, (z), then, for quadratic exactness, their products
+  // basis about a particle, x = offset times 1/length: x, y, (z), then, for quadratic exactness,
+  // their products
   template <int D, int TERMS, class T> FSI_INLINE void gradient_basis(const T *x, T *phi)
   {
     int k = 0;
@@ -54,23 +59,28 @@ namespace FSI {
         for (int b = a; b < D; b++) phi[k++] = x[a] * x[b];
   }
 
-  // The first D rows C (D x TERMS) of the inverse of A = sum_j w_j phi_j phi_j^T (packed lower triangle, by rows):
-  // G_ij = w_ij C phi_j/length. Terms that the neighbours cannot tell from lower ones are left out (PARTIAL; LINEAR if all
-  // quadratic ones are, as in a body two particles thick); DEFICIENT, with C not set, where neighbours lie in a line (2D)
-  // or plane (3D) or are too few.
+  // The first D rows C (D x TERMS) of the inverse of A = sum_j w_j phi_j phi_j^T (packed lower
+  // triangle, by rows): G_ij = w_ij C phi_j/length. Terms that the neighbors cannot tell from lower
+  // ones are left out (PARTIAL; LINEAR if all quadratic ones are, as in a body two particles
+  // thick); DEFICIENT, with C not set, where neighbors lie in a line (2D) or plane (3D) or are too
+  // few.
   //
-  // quadratic_tolerance: part of a quadratic term's own square that must be independent of earlier terms. Nearly dependent terms
-  // give large weights of both signs, which amplify particle noise and cost time step: a body two particles thick whose particles
-  // are 0.01 dx off their lattice would have 1/40 of the usual one. In the axes of the lattice terms have 0.05 or more (Wendland,
-  // h = 1.3 to 2 dx; 0.03 for quintic, h = 0.9 dx), 0.02 or less in such a body up to 0.1 dx. least: the smallest such part among
-  // the quadratic terms kept, 0 if there are none.
-  constexpr double WELL_TOLD = 0.025;
+  // quadratic_tolerance: part of a quadratic term's own square that must be independent of earlier
+  // terms. Nearly dependent terms give large weights of both signs, which amplify particle noise
+  // and cost time step: a body two particles thick whose particles are 0.01 dx off their lattice
+  // would have 1/40 of the usual one. In the axes of the lattice terms have 0.05 or more (Wendland,
+  // h = 1.3 to 2 dx; 0.03 for quintic, h = 0.9 dx), 0.02 or less in such a body up to 0.1 dx.
+  // least: the smallest such part among the quadratic terms kept, 0 if there are none.
+  constexpr double MIN_INDEPENDENCE = 0.025;
   constexpr double FLAT = 1.0e-4;    // so much, for linear terms
   template <int D, int TERMS>
-  inline typename Gradient<D>::Order gradient_coefficients(const double *A, double *C, double quadratic_tolerance = WELL_TOLD,
-                                                           double *least = nullptr)
+  inline typename Gradient<D>::Order
+  gradient_coefficients(const double *A, double *C, double quadratic_tolerance = MIN_INDEPENDENCE,
+                        double *least = nullptr)
   {
-    const auto at = [](int a, int b) { return packed_size(a) + b; };
+    const auto at = [](int a, int b) {
+      return packed_size(a) + b;
+    };
 
     // A = L d L^T
     double L[TERMS][TERMS] = {}, d[TERMS], part = 1.0;
@@ -107,22 +117,24 @@ namespace FSI {
     return dropped ? Gradient<D>::PARTIAL : Gradient<D>::QUADRATIC;
   }
 
-  // the weights of one particle, from all its neighbours at once
+  // the weights of one particle, from all its neighbors at once
   template <int D> class GradientWeights : public Gradient<D> {
    public:
     using Order = typename Gradient<D>::Order;
 
-    // G (n x D, 1/length) for n neighbours at X_j - X_i = dX (n x D) with weights w > 0; scale = length of the order of |dX|;
-    // quadratic = false asks for linear exactness only. Returns what was reached.
-    Order operator()(int n, const double *dX, const double *w, double scale, bool quadratic, double *G) const
+    // G (n x D, 1/length) for n neighbors at X_j - X_i = dX (n x D) with weights w > 0; scale =
+    // length of the order of |dX|; quadratic = false asks for linear exactness only. Returns what
+    // was reached.
+    Order operator()(int n, const double *dX, const double *w, double scale, bool quadratic,
+                     double *G) const
     {
       return quadratic ? solve<Gradient<D>::NQUADRATIC>(n, dX, w, 1.0 / scale, G)
                        : solve<Gradient<D>::NLINEAR>(n, dX, w, 1.0 / scale, G);
     }
 
    private:
-    // squares along the normal of a face keep 0.05 to 0.15 of themselves (cubic to quintic kernel, h = 1 to 2 dx), all others 0.38 or
-    // more, in the axes chosen
+    // squares along the normal of a face keep 0.05 to 0.15 of themselves (cubic to quintic kernel,
+    // h = 1 to 2 dx), all others 0.38 or more, in the axes chosen
     static constexpr double ONE_SIDED = 0.3;
     // among equals a preference of this size for the box's axes chooses, and not round-off
     static constexpr double PREFERENCE = 1.0e-4;
@@ -132,13 +144,15 @@ namespace FSI {
       Order order;
     };
 
-    // Of two sets of axes (rows), both the neighbourhood's own whichever way the body lies, that is taken in which the terms kept are
-    // best told from each other. The principal ones of sum_j w_j x_j x_j have the normal of a plane face, that of a lattice cut aslant,
-    // too. At an edge they are diagonal; there a lattice's own are normal to both faces, and other terms would lock a bar two by two
-    // across. False if the neighbours lie in a line (2D) or plane (3D).
+    // Of two sets of axes (rows), both the neighborhood's own whichever way the body lies, that is
+    // taken in which the terms kept are best told from each other. The principal ones of sum_j w_j
+    // x_j x_j have the normal of a plane face, that of a lattice cut aslant, too. At an edge they
+    // are diagonal; there a lattice's own are normal to both faces, and other terms would lock a
+    // bar two by two across. False if the neighbors lie in a line (2D) or plane (3D).
     static bool principal_axes(int n, const double *dX, const double *w, double (*axes)[D])
     {
-      double moment[3][3] = {}, value[3], principal[3][3];    // in 2D a third axis, the last, without neighbours along it
+      // in 2D a third axis, the last, without neighbors along it
+      double moment[3][3] = {}, value[3], principal[3][3];
       for (int j = 0; j < n; j++)
         for (int a = 0; a < D; a++)
           for (int b = 0; b < D; b++) moment[a][b] += w[j] * dX[j * D + a] * dX[j * D + b];
@@ -149,7 +163,8 @@ namespace FSI {
       return value[D - 1] > FLAT * value[0];
     }
 
-    // Those of a lattice: directions of the nearest neighbours, made orthogonal. False if there are not D of them, 45 degrees apart.
+    // Those of a lattice: directions of the nearest neighbors, made orthogonal. False if there are
+    // not D of them, 45 degrees apart.
     static bool lattice_axes(int n, const double *dX, double (*axes)[D])
     {
       for (int k = 0; k < D; k++) {
@@ -176,7 +191,7 @@ namespace FSI {
       return true;
     }
 
-    // by how one-sided the neighbours are along them, so that squares along normals come last
+    // by how one-sided the neighbors are along them, so that squares along normals come last
     static void sort_axes(int n, const double *dX, const double *w, double (*axes)[D])
     {
       double first[D] = {}, one_sided[D], length = 0.0, unsorted[D][D];
@@ -195,12 +210,15 @@ namespace FSI {
         }
         one_sided[k] = std::max(std::fabs(one_sided[k]), 1.0e-3 * length);
       }
-      std::stable_sort(order, order + D, [&](int a, int b) { return one_sided[a] < one_sided[b]; });
+      std::stable_sort(order, order + D, [&](int a, int b) {
+        return one_sided[a] < one_sided[b];
+      });
       for (int k = 0; k < D; k++) std::copy_n(unsorted[order[k]], D, axes[k]);
     }
 
     // basis in the axes of a fit
-    template <int TERMS> static void terms_of(const Fit<TERMS> &fit, const double *dX, double inv, double *phi)
+    template <int TERMS>
+    static void terms_of(const Fit<TERMS> &fit, const double *dX, double inv, double *phi)
     {
       double x[D] = {};
       for (int k = 0; k < D; k++)
@@ -208,7 +226,8 @@ namespace FSI {
       gradient_basis<D, TERMS>(x, phi);
     }
 
-    template <int TERMS> static void solve_in_axes(int n, const double *dX, const double *w, double inv, Fit<TERMS> &fit)
+    template <int TERMS>
+    static void solve_in_axes(int n, const double *dX, const double *w, double inv, Fit<TERMS> &fit)
     {
       double A[packed_size(TERMS)] = {}, phi[TERMS];
       sort_axes(n, dX, w, fit.axes);
@@ -220,7 +239,8 @@ namespace FSI {
       fit.order = gradient_coefficients<D, TERMS>(A, fit.C, ONE_SIDED, &fit.least);
     }
 
-    template <int TERMS> static Order solve(int n, const double *dX, const double *w, double inv, double *G)
+    template <int TERMS>
+    static Order solve(int n, const double *dX, const double *w, double inv, double *G)
     {
       Fit<TERMS> fit, other;
       if (!principal_axes(n, dX, w, fit.axes)) return Gradient<D>::DEFICIENT;

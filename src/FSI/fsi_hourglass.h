@@ -11,12 +11,12 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
-// Hourglass control of the updated-Lagrangian solid, a penalty on what the linear velocity field of a particle's neighbourhood does
-// not explain (after Zhang, Haidn and Hu 2024, arXiv 2409.11474): every pair has a spring of rate
+// Hourglass control of the updated-Lagrangian solid, a penalty on what the linear velocity field of
+// a particle's neighborhood does not explain (after Zhang, Haidn and Hu 2024, arXiv 2409.11474):
+// every pair has a spring of rate
 //   d f_i/dt = xi G V_i V_j (-g_ij) [v_ji - (L_i + L_j) x_ji/2],  grad_i W_ij = g_ij x_ij,
-// whose forces are kept summed per particle, in a vector that turns with it. Zero in any uniform gradient; second order in the spacing
-// in a smooth field.
+// whose forces are kept summed per particle, in a vector that turns with it. Zero in any uniform
+// gradient; second order in the spacing in a smooth field.
 
 #ifndef LMP_FSI_HOURGLASS_H
 #define LMP_FSI_HOURGLASS_H
@@ -28,9 +28,11 @@ namespace FSI {
 
   struct Hourglass {
     double xi;
-    // rate of the force on i; shear: mean of the pair, vv = V_i V_j, x, v: i minus j, L: L_i + L_j, row-major; T: double or Pack
+    // rate of the force on i; shear: mean of the pair, vv = V_i V_j, x, v: i minus j, L: L_i + L_j,
+    // row-major; T: double or Pack
     template <int D, class T>
-    FSI_INLINE void operator()(const T &shear, const T &vv, const T &g, const T (&x)[D], const T (&v)[D], const T (&L)[D * D], T (&rate)[D]) const
+    FSI_INLINE void operator()(const T &shear, const T &vv, const T &g, const T (&x)[D],
+                               const T (&v)[D], const T (&L)[D * D], T (&rate)[D]) const
     {
       const T k = xi * shear * vv * g;
       for (int a = 0; a < D; a++) {

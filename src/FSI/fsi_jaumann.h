@@ -21,11 +21,14 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // Deviatoric stress s^{n-1/2} -> s^{n+1/2} with the velocity gradient L (row-major D x D) of time n, G = shear:
+  // Deviatoric stress s^{n-1/2} -> s^{n+1/2} with the velocity gradient L (row-major D x D) of time
+  // n, G = shear:
   //   ds/dt = 2G dev(e) + w s - s w,  e, w = symmetric and antisymmetric part of L,
-  // as s' = Q (Q s Q^T + 2G dt dev(e)) Q^T with Q = exp(dt w/2): second order in dt, and exact for rigid rotation.
-  // The deviator takes away a third of the trace in 3D and in plane strain, half of it in plane stress.
-  template <int D> void jaumann_update(Sym<D> &s, const double *L, double dt, double shear, bool plane_stress)
+  // as s' = Q (Q s Q^T + 2G dt dev(e)) Q^T with Q = exp(dt w/2): second order in dt, and exact for
+  // rigid rotation. The deviator takes away a third of the trace in 3D and in plane strain, half of
+  // it in plane stress.
+  template <int D>
+  void jaumann_update(Sym<D> &s, const double *L, double dt, double shear, bool plane_stress)
   {
     double Q[D * D];
     rotation<D>(L, 0.5 * dt, Q);

@@ -13,15 +13,18 @@
 
 // Smoothing kernels, the only place where they are written down.
 //
-// A kernel is W(r) = norm * w(q), q = r/h, zero from q = support on. Its gradient with respect to x_i is
+// A kernel is W(r) = norm * w(q), q = r/h, zero from q = support on. Its gradient with respect to
+// x_i is
 //   grad_i W_ij = norm/h^2 * dwq(q) * x_ij,   dwq(q) = (dw/dq)/q,  x_ij = x_i - x_j,
 // so that loops never divide by a distance that may vanish. All are finite at q = 0.
-// No LAMMPS types here: the header is also compiled alone by unittest/ and can be used on accelerators.
+// No LAMMPS types here: the header is also compiled alone by unittest/ and can be used on
+// accelerators.
 
 #ifndef LMP_FSI_KERNEL_H
 #define LMP_FSI_KERNEL_H
 
 #include "fsi_pack.h"
+#include "math_const.h"
 
 #include <cmath>
 #include <type_traits>
@@ -30,26 +33,31 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   enum KernelKind { CUBIC, QUINTIC, WENDLAND };
-  constexpr double PI = 3.14159265358979323846;
 
-  // base: normalisation and scaling shared by all shapes
+  // base: normalization and scaling shared by all shapes
   template <int D, class Shape> struct Kernel : Shape {
     static constexpr int DIM = D;
     double h, hinv, cut, cutsq;
-    double norm;      // W(r) = norm w(q)            [1/length^D]
-    double gnorm;     // grad_i W = gnorm dwq(q) x_ij
+    double norm;     // W(r) = norm w(q)            [1/length^D]
+    double gnorm;    // grad_i W = gnorm dwq(q) x_ij
 
     explicit Kernel(double h_in) :
         h(h_in), hinv(1.0 / h_in), cut(Shape::support * h_in), cutsq(cut * cut),
-        norm(Shape::sigma(D) / (D == 2 ? h_in * h_in : h_in * h_in * h_in)), gnorm(norm * hinv * hinv)
+        norm(Shape::sigma(D) / (D == 2 ? h_in * h_in : h_in * h_in * h_in)),
+        gnorm(norm * hinv * hinv)
     {
     }
     // T: a number, or several side by side (fsi_pack.h)
     template <class T> FSI_INLINE T W(const T &r) const { return norm * Shape::w(r * hinv); }
     // factor g with grad_i W_ij = g x_ij
-    template <class T> FSI_INLINE T gradient(const T &r) const { return gnorm * Shape::dwq(r * hinv); }
-    // For neighbours on a lattice finer than that of i (coarser: e < 0), the kernel less its Laplacian times e h^2, and the same factor of its gradient: the mean of
-    // it over a cell of i's lattice is what a neighbour in the middle of this cell has (theory.rst). Bounded where they meet.
+    template <class T> FSI_INLINE T gradient(const T &r) const
+    {
+      return gnorm * Shape::dwq(r * hinv);
+    }
+    // For neighbors on a lattice finer than that of i (coarser: e < 0), the kernel less its
+    // Laplacian times e h^2, and the same factor of its gradient: the mean of it over a cell of i's
+    // lattice is what a neighbor in the middle of this cell has (theory.rst). Bounded where they
+    // meet.
     template <class T> FSI_INLINE T sharper(const T &r, double e) const
     {
       const T q = r * hinv;
@@ -67,7 +75,10 @@ namespace FSI {
   // paper, eq. 10: cubic spline with sigma = 15/(7 pi) in 2D, 3/(2 pi) in 3D
   struct CubicShape {
     static constexpr double support = 2.0;
-    static double sigma(int dim) { return dim == 2 ? 15.0 / (7.0 * PI) : 3.0 / (2.0 * PI); }
+    static double sigma(int dim)
+    {
+      return dim == 2 ? 15.0 / (7.0 * MathConst::MY_PI) : 3.0 / (2.0 * MathConst::MY_PI);
+    }
     template <class T> FSI_INLINE static T w(const T &q)
     {
       const T t = greater(2.0 - q, T(0.0));
@@ -78,17 +89,27 @@ namespace FSI {
       const T t = greater(2.0 - q, T(0.0));
       return where(q < T(1.0), -2.0 + 1.5 * q, -0.5 * t * t / greater(q, T(1.0)));
     }
-    template <class T> FSI_INLINE static T d2w(const T &q) { return where(q < T(1.0), 3.0 * q - 2.0, greater(2.0 - q, T(0.0))); }
-    template <class T> FSI_INLINE static T d3w(const T &q) { return where(q < T(1.0), T(3.0), where(q < T(2.0), T(-1.0), T(0.0))); }
+    template <class T> FSI_INLINE static T d2w(const T &q)
+    {
+      return where(q < T(1.0), 3.0 * q - 2.0, greater(2.0 - q, T(0.0)));
+    }
+    template <class T> FSI_INLINE static T d3w(const T &q)
+    {
+      return where(q < T(1.0), T(3.0), where(q < T(2.0), T(-1.0), T(0.0)));
+    }
   };
 
   // paper, eq. 11: quintic spline with sigma = 7/(478 pi) in 2D, 1/(120 pi) in 3D
   struct QuinticShape {
     static constexpr double support = 3.0;
-    static double sigma(int dim) { return dim == 2 ? 7.0 / (478.0 * PI) : 1.0 / (120.0 * PI); }
+    static double sigma(int dim)
+    {
+      return dim == 2 ? 7.0 / (478.0 * MathConst::MY_PI) : 1.0 / (120.0 * MathConst::MY_PI);
+    }
     template <class T> FSI_INLINE static T w(const T &q)
     {
-      const T a = greater(3.0 - q, T(0.0)), b = greater(2.0 - q, T(0.0)), c = greater(1.0 - q, T(0.0));
+      const T a = greater(3.0 - q, T(0.0)), b = greater(2.0 - q, T(0.0)),
+              c = greater(1.0 - q, T(0.0));
       return pow4(a) * a - 6.0 * (pow4(b) * b) + 15.0 * (pow4(c) * c);
     }
     template <class T> FSI_INLINE static T dwq(const T &q)
@@ -99,12 +120,14 @@ namespace FSI {
     }
     template <class T> FSI_INLINE static T d2w(const T &q)
     {
-      const T a = greater(3.0 - q, T(0.0)), b = greater(2.0 - q, T(0.0)), c = greater(1.0 - q, T(0.0));
+      const T a = greater(3.0 - q, T(0.0)), b = greater(2.0 - q, T(0.0)),
+              c = greater(1.0 - q, T(0.0));
       return 20.0 * (a * a * a - 6.0 * (b * b * b) + 15.0 * (c * c * c));
     }
     template <class T> FSI_INLINE static T d3w(const T &q)
     {
-      const T a = greater(3.0 - q, T(0.0)), b = greater(2.0 - q, T(0.0)), c = greater(1.0 - q, T(0.0));
+      const T a = greater(3.0 - q, T(0.0)), b = greater(2.0 - q, T(0.0)),
+              c = greater(1.0 - q, T(0.0));
       return -60.0 * (a * a - 6.0 * (b * b) + 15.0 * (c * c));
     }
 
@@ -116,10 +139,14 @@ namespace FSI {
     }
   };
 
-  // Wendland (1995) C2 with support 2h, sigma = 7/(4 pi) in 2D, 21/(16 pi) in 3D; does not pair under load
+  // Wendland (1995) C2 with support 2h, sigma = 7/(4 pi) in 2D, 21/(16 pi) in 3D; does not pair
+  // under load
   struct WendlandShape {
     static constexpr double support = 2.0;
-    static double sigma(int dim) { return dim == 2 ? 7.0 / (4.0 * PI) : 21.0 / (16.0 * PI); }
+    static double sigma(int dim)
+    {
+      return dim == 2 ? 7.0 / (4.0 * MathConst::MY_PI) : 21.0 / (16.0 * MathConst::MY_PI);
+    }
     template <class T> FSI_INLINE static T w(const T &q)
     {
       const T t = greater(1.0 - 0.5 * q, T(0.0)), t2 = t * t;
@@ -135,14 +162,20 @@ namespace FSI {
       const T t = greater(1.0 - 0.5 * q, T(0.0));
       return t * t * (7.5 * q - 5.0 * t);
     }
-    template <class T> FSI_INLINE static T d3w(const T &q) { return greater(1.0 - 0.5 * q, T(0.0)) * (15.0 - 15.0 * q); }
+    template <class T> FSI_INLINE static T d3w(const T &q)
+    {
+      return greater(1.0 - 0.5 * q, T(0.0)) * (15.0 - 15.0 * q);
+    }
   };
 
   template <int D> using Cubic = Kernel<D, CubicShape>;
   template <int D> using Quintic = Kernel<D, QuinticShape>;
   template <int D> using Wendland = Kernel<D, WendlandShape>;
 
-  inline double kernel_support(int kind) { return kind == QUINTIC ? QuinticShape::support : 2.0; }
+  inline double kernel_support(int kind)
+  {
+    return kind == QUINTIC ? QuinticShape::support : 2.0;
+  }
 
   // Any of them, by its kind: for loops that need not be fast, of which there is then one.
   template <int D> struct AnyKernel {
@@ -154,47 +187,73 @@ namespace FSI {
     double h, hinv, cut, cutsq;
 
     AnyKernel(int kind_in, double h_in) :
-        kind(kind_in), cubic(h_in), quintic(h_in), wendland(h_in), h(h_in), hinv(1.0 / h_in), cut(kernel_support(kind_in) * h_in), cutsq(cut * cut)
+        kind(kind_in), cubic(h_in), quintic(h_in), wendland(h_in), h(h_in), hinv(1.0 / h_in),
+        cut(kernel_support(kind_in) * h_in), cutsq(cut * cut)
     {
     }
-    template <class T> FSI_INLINE T W(const T &r) const { return kind == CUBIC ? cubic.W(r) : kind == QUINTIC ? quintic.W(r) : wendland.W(r); }
-    template <class T> FSI_INLINE T gradient(const T &r) const { return kind == CUBIC ? cubic.gradient(r) : kind == QUINTIC ? quintic.gradient(r) : wendland.gradient(r); }
-    double sharper(double r, double e) const { return kind == CUBIC ? cubic.sharper(r, e) : kind == QUINTIC ? quintic.sharper(r, e) : wendland.sharper(r, e); }
+    template <class T> FSI_INLINE T W(const T &r) const
+    {
+      return kind == CUBIC ? cubic.W(r) : kind == QUINTIC ? quintic.W(r) : wendland.W(r);
+    }
+    template <class T> FSI_INLINE T gradient(const T &r) const
+    {
+      return kind == CUBIC  ? cubic.gradient(r)
+          : kind == QUINTIC ? quintic.gradient(r)
+                            : wendland.gradient(r);
+    }
+    double sharper(double r, double e) const
+    {
+      return kind == CUBIC  ? cubic.sharper(r, e)
+          : kind == QUINTIC ? quintic.sharper(r, e)
+                            : wendland.sharper(r, e);
+    }
     double sharper_gradient(double r, double e) const
     {
-      return kind == CUBIC ? cubic.sharper_gradient(r, e) : kind == QUINTIC ? quintic.sharper_gradient(r, e) : wendland.sharper_gradient(r, e);
+      return kind == CUBIC  ? cubic.sharper_gradient(r, e)
+          : kind == QUINTIC ? quintic.sharper_gradient(r, e)
+                            : wendland.sharper_gradient(r, e);
     }
   };
 
   // The kernel of this kind as a K, one of them or any.
   template <class K> K make_kernel(int kind, double h)
   {
-    if constexpr (std::is_constructible_v<K, double>) return K(h);
-    else return K(kind, h);
+    if constexpr (std::is_constructible_v<K, double>)
+      return K(h);
+    else
+      return K(kind, h);
   }
 
   // Calls f with the kernel object that kind and dim name: the one run-time choice between kernels.
   template <class F> void with_kernel(int kind, int dim, double h, F &&f)
   {
     if (dim == 2) {
-      if (kind == CUBIC) f(Cubic<2>(h));
-      else if (kind == QUINTIC) f(Quintic<2>(h));
-      else f(Wendland<2>(h));
+      if (kind == CUBIC)
+        f(Cubic<2>(h));
+      else if (kind == QUINTIC)
+        f(Quintic<2>(h));
+      else
+        f(Wendland<2>(h));
     } else {
-      if (kind == CUBIC) f(Cubic<3>(h));
-      else if (kind == QUINTIC) f(Quintic<3>(h));
-      else f(Wendland<3>(h));
+      if (kind == CUBIC)
+        f(Cubic<3>(h));
+      else if (kind == QUINTIC)
+        f(Quintic<3>(h));
+      else
+        f(Wendland<3>(h));
     }
   }
 
-  // sum_j W_ij of a particle inside an infinite square (2D) or simple cubic (3D) lattice of spacing dx, self included
+  // sum_j W_ij of a particle inside an infinite square (2D) or simple cubic (3D) lattice of spacing
+  // dx, self included
   template <class K> double lattice_number_density(const K &kernel, double dx)
   {
     const int n = static_cast<int>(kernel.cut / dx) + 1;
     double psi = 0.0;
     for (int k = (K::DIM == 3 ? -n : 0); k <= (K::DIM == 3 ? n : 0); k++)
       for (int j = -n; j <= n; j++)
-        for (int i = -n; i <= n; i++) psi += kernel.W(dx * std::sqrt(double(i * i + j * j + k * k)));
+        for (int i = -n; i <= n; i++)
+          psi += kernel.W(dx * std::sqrt(double(i * i + j * j + k * k)));
     return psi;
   }
 

@@ -29,34 +29,44 @@ using namespace FSI;
 
 std::string Range::text() const
 {
-  if (low > -LARGEST && high < LARGEST && !low_open && !high_open) return fmt::format("between {:g} and {:g}", low, high);
+  if (low > -LARGEST && high < LARGEST && !low_open && !high_open)
+    return fmt::format("between {:g} and {:g}", low, high);
   std::string text;
   if (low > -LARGEST) text = fmt::format("{} {:g}", low_open ? ">" : ">=", low);
-  if (high < LARGEST) text += fmt::format("{}{} {:g}", text.empty() ? "" : " and ", high_open ? "<" : "<=", high);
+  if (high < LARGEST)
+    text += fmt::format("{}{} {:g}", text.empty() ? "" : " and ", high_open ? "<" : "<=", high);
   return text.empty() ? "a number" : text;
 }
 
 /* ---------------------------------------------------------------------- */
 
-double FSI::numeric(LAMMPS *lmp, const std::string &what, const std::string &value, const Range &range, bool alone, const std::string &other)
+double FSI::numeric(LAMMPS *lmp, const std::string &what, const std::string &value,
+                    const Range &range, bool alone, const std::string &other)
 {
   const double x = std::strtod(value.c_str(), nullptr), size = std::fabs(x);
   const auto expected = range.text() + (other.empty() ? "" : ", or " + other);
   std::string wrong;
-  if (!utils::is_double(value)) wrong = "is not a number: expected " + expected;
-  else if (size >= Range::LARGEST) wrong = fmt::format("is too large: expected {}, below {:g}", expected, Range::LARGEST);
-  else if (!range.holds(x)) wrong = "must be " + expected;
-  else if (x != 0.0 && size < Range::SMALLEST) wrong = fmt::format("is too small: expected {}, above {:g}", expected, Range::SMALLEST);
+  if (!utils::is_double(value))
+    wrong = "is not a number: expected " + expected;
+  else if (size >= Range::LARGEST)
+    wrong = fmt::format("is too large: expected {}, below {:g}", expected, Range::LARGEST);
+  else if (!range.holds(x))
+    wrong = "must be " + expected;
+  else if (x != 0.0 && size < Range::SMALLEST)
+    wrong = fmt::format("is too small: expected {}, above {:g}", expected, Range::SMALLEST);
   if (wrong.empty()) return x;
   if (alone) lmp->error->one(FLERR, "{} {} {}", what, value, wrong);
   lmp->error->all(FLERR, "{} {} {}", what, value, wrong);
   return 0.0;
 }
 
-int FSI::integer(LAMMPS *lmp, const std::string &what, const std::string &value, int least, int most)
+int FSI::integer(LAMMPS *lmp, const std::string &what, const std::string &value, int least,
+                 int most)
 {
-  const auto expected = most == MAXSMALLINT ? fmt::format(">= {}", least) : fmt::format("between {} and {}", least, most);
-  if (!utils::is_integer(value)) lmp->error->all(FLERR, "{} {} is not an integer: expected {}", what, value, expected);
+  const auto expected = most == MAXSMALLINT ? fmt::format(">= {}", least)
+                                            : fmt::format("between {} and {}", least, most);
+  if (!utils::is_integer(value))
+    lmp->error->all(FLERR, "{} {} is not an integer: expected {}", what, value, expected);
   const double x = std::strtod(value.c_str(), nullptr);    // of any length
   if (x < least || x > most) lmp->error->all(FLERR, "{} {} must be {}", what, value, expected);
   return static_cast<int>(x);
@@ -66,7 +76,8 @@ int FSI::integer(LAMMPS *lmp, const std::string &what, const std::string &value,
 static std::string list_of(const std::vector<std::string> &words)
 {
   std::string text;
-  for (size_t k = 0; k < words.size(); k++) text += (k == 0 ? "" : k + 1 < words.size() ? ", " : " or ") + words[k];
+  for (size_t k = 0; k < words.size(); k++)
+    text += (k == 0 ? "" : k + 1 < words.size() ? ", " : " or ") + words[k];
   return text;
 }
 
@@ -74,7 +85,7 @@ static std::string list_of(const std::vector<std::string> &words)
    building the rows
 ------------------------------------------------------------------------- */
 
-// pair_style name -> Pair style name, fix name -> Fix name
+// pair_style name->Pair style name, fix name->Fix name
 static std::string sentence(const std::string &command)
 {
   std::string text = command;
@@ -83,7 +94,10 @@ static std::string sentence(const std::string &command)
   return text;
 }
 
-Keywords::Keywords(LAMMPS *lmp, const std::string &command_in) : Pointers(lmp), command(command_in), who(sentence(command_in)) {}
+Keywords::Keywords(LAMMPS *lmp, const std::string &command_in) :
+    Pointers(lmp), command(command_in), who(sentence(command_in))
+{
+}
 
 Keywords &Keywords::argument(const std::string &name)
 {
@@ -128,7 +142,8 @@ Keywords &Keywords::integer(int &where, int start, int least, int most)
   return *this;
 }
 
-Keywords &Keywords::choice(int &where, int start, const std::vector<std::string> &words, const std::string &what)
+Keywords &Keywords::choice(int &where, int start, const std::vector<std::string> &words,
+                           const std::string &what)
 {
   Value &v = add(Value::CHOICE, start, what);
   v.words = words;
@@ -218,17 +233,24 @@ Keywords &Keywords::of_a_run()
 
 void Keywords::Value::begin() const
 {
-  if (number) *number = start;
-  else if (word) *word = start_word;
-  else if (each) std::fill(each->begin(), each->end(), start);
-  else *n = kind == SET ? 0 : static_cast<int>(start);
+  if (number)
+    *number = start;
+  else if (word)
+    *word = start_word;
+  else if (each)
+    std::fill(each->begin(), each->end(), start);
+  else
+    *n = kind == SET ? 0 : static_cast<int>(start);
 }
 
 bool Keywords::Value::at_start() const
 {
   if (number) return *number == start;
   if (word) return *word == start_word;
-  if (each) return std::all_of(each->begin(), each->end(), [this](double x) { return x == start; });
+  if (each)
+    return std::all_of(each->begin(), each->end(), [this](double x) {
+      return x == start;
+    });
   return *n == (kind == SET ? 0 : static_cast<int>(start));
 }
 
@@ -236,17 +258,24 @@ bool Keywords::Value::at_start() const
 std::string Keywords::Value::text() const
 {
   switch (kind) {
-    case NUMBER: return !other.empty() && *number == other_number ? other : fmt::format("{}", *number);
-    case INTEGER: return std::to_string(*n);
-    case CHOICE: return words[*n];
-    case WORD: return !other.empty() && word->empty() ? other : *word;
+    case NUMBER:
+      return !other.empty() && *number == other_number ? other : fmt::format("{}", *number);
+    case INTEGER:
+      return std::to_string(*n);
+    case CHOICE:
+      return words[*n];
+    case WORD:
+      return !other.empty() && word->empty() ? other : *word;
     case PER_TYPE: {
       std::string list;
       for (size_t t = 1; t < each->size(); t++)
-        if ((*each)[t] != start) list += fmt::format("{}{}", list.empty() ? "" : " ", t) + (types_alone ? "" : fmt::format(" {}", (*each)[t]));
+        if ((*each)[t] != start)
+          list += fmt::format("{}{}", list.empty() ? "" : " ", t) +
+              (types_alone ? "" : fmt::format(" {}", (*each)[t]));
       return list.empty() ? "none" : list;
     }
-    default: return (kind == SET ? *n == static_cast<int>(start) : *n) ? "yes" : "no";
+    default:
+      return (kind == SET ? *n == static_cast<int>(start) : *n) ? "yes" : "no";
   }
 }
 
@@ -255,15 +284,26 @@ void Keywords::take(const Row &row, const Value &v, const std::string &text) con
   const auto name = row.name + (v.what.empty() ? "" : " " + v.what);
   const bool other = !v.other.empty() && text == v.other;
   switch (v.kind) {
-    case Value::NUMBER: *v.number = other ? v.other_number : FSI::numeric(lmp, who + " " + name, text, v.range, false, v.other); break;
-    case Value::INTEGER: *v.n = FSI::integer(lmp, who + " " + name, text, v.least, v.most); break;
-    case Value::WORD: *v.word = other ? "" : text; break;
-    case Value::SET: *v.n = static_cast<int>(v.start); break;
+    case Value::NUMBER:
+      *v.number = other ? v.other_number
+                        : FSI::numeric(lmp, who + " " + name, text, v.range, false, v.other);
+      break;
+    case Value::INTEGER:
+      *v.n = FSI::integer(lmp, who + " " + name, text, v.least, v.most);
+      break;
+    case Value::WORD:
+      *v.word = other ? "" : text;
+      break;
+    case Value::SET:
+      *v.n = static_cast<int>(v.start);
+      break;
     case Value::PER_TYPE: {
       const size_t gap = text.find(' ');
       int first, last;
-      utils::bounds_typelabel(FLERR, text.substr(0, gap), 1, atom->ntypes, first, last, lmp, Atom::ATOM);
-      const double x = v.types_alone ? 1.0 : FSI::numeric(lmp, who + " " + name, text.substr(gap + 1), v.range);
+      utils::bounds_typelabel(FLERR, text.substr(0, gap), 1, atom->ntypes, first, last, lmp,
+                              Atom::ATOM);
+      const double x =
+          v.types_alone ? 1.0 : FSI::numeric(lmp, who + " " + name, text.substr(gap + 1), v.range);
       std::fill(v.each->begin() + first, v.each->begin() + last + 1, x);
       break;
     }
@@ -276,7 +316,8 @@ void Keywords::take(const Row &row, const Value &v, const std::string &text) con
       break;
     case Value::CHOICE: {
       const auto it = std::find(v.words.begin(), v.words.end(), text);
-      if (it == v.words.end()) error->all(FLERR, "Unknown {} {} {}: expected {}", command, name, text, list_of(v.words));
+      if (it == v.words.end())
+        error->all(FLERR, "Unknown {} {} {}: expected {}", command, name, text, list_of(v.words));
       *v.n = it - v.words.begin();
     }
   }
@@ -318,7 +359,9 @@ void Keywords::parse(int narg, char **arg)
     const bool keyword = row == rows.end() || row->keyword;
     auto it = row;
     if (keyword) {
-      it = std::find_if(rows.begin(), rows.end(), [&](const Row &r) { return r.keyword && r.name == arg[iarg]; });
+      it = std::find_if(rows.begin(), rows.end(), [&](const Row &r) {
+        return r.keyword && r.name == arg[iarg];
+      });
       if (it == rows.end()) {
         if (known.empty()) error->all(FLERR, "{} takes no argument {}", who, arg[iarg]);
         error->all(FLERR, "Unknown {} keyword {}: expected {}", command, arg[iarg], list_of(known));
@@ -326,7 +369,8 @@ void Keywords::parse(int narg, char **arg)
       iarg++;
     } else
       row++;
-    if (iarg + it->count() > narg) utils::missing_cmd_args(FLERR, keyword ? command + " " + it->name : command, error);
+    if (iarg + it->count() > narg)
+      utils::missing_cmd_args(FLERR, keyword ? command + " " + it->name : command, error);
     for (const auto &v : it->values) {
       std::string text;
       for (int k = 0; k < v.count(); k++) text += (k ? " " : "") + std::string(arg[iarg + k]);
@@ -350,7 +394,8 @@ void Keywords::read(const Record &record)
   begin();
   for (const auto &row : rows) {
     const auto words = utils::split_words(record.value(row.name));
-    if (words.size() != row.values.size()) error->all(FLERR, "The restart file is damaged in {} of {}", row.name, record.style);
+    if (words.size() != row.values.size())
+      error->all(FLERR, "The restart file is damaged in {} of {}", row.name, record.style);
     for (size_t k = 0; k < words.size(); k++)
       if (row.values[k].kind != Value::SET || words[k] == "yes") take(row, row.values[k], words[k]);
   }
@@ -368,9 +413,9 @@ void Keywords::compare(const Record &record, const std::string &when) const
   for (const auto &row : rows) {
     const bool meant = row.may_change || (row.restart.empty() && when != OF_RESTART);
     if (meant || !differs(record, row.name)) continue;
-    const auto text = fmt::format("{}: {} was {} {}, and is {} now{}", who, row.name,
-                                  record.value(row.name), when, row.text(),
-                                  row.restart.empty() ? "" : ": " + row.restart);
+    const auto text =
+        fmt::format("{}: {} was {} {}, and is {} now{}", who, row.name, record.value(row.name),
+                    when, row.text(), row.restart.empty() ? "" : ": " + row.restart);
     if (row.must_not_change) error->all(FLERR, text);
     if (comm->me == 0) error->warning(FLERR, text);
   }
@@ -384,7 +429,9 @@ std::vector<Keywords::Effect> Keywords::effects() const
   for (const auto &row : rows) {
     if (row.effect.empty()) continue;
     bool on = false;
-    for (const auto &v : row.values) on = on || (v.kind == Value::NUMBER ? *v.number != 0.0 : v.kind != Value::CHOICE && !v.at_start());
+    for (const auto &v : row.values)
+      on = on ||
+          (v.kind == Value::NUMBER ? *v.number != 0.0 : v.kind != Value::CHOICE && !v.at_start());
     std::string name = row.effect;
     const size_t gap = name.find("{}");
     if (gap != std::string::npos) name.replace(gap, 2, fmt::format("{:g}", *row.values[0].number));

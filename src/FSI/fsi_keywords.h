@@ -11,9 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
-// The arguments of a command, one row each: what it is called, what values follow, where they go, what they are if nothing is said, what
-// they may be. Parsing, messages, the list of effects and what stands in restart files come from these rows.
+// The arguments of a command, one row each: what it is called, what values follow, where they go,
+// what they are if nothing is said, what they may be. Parsing, messages, the list of effects and
+// what stands in restart files come from these rows.
 
 #ifndef LMP_FSI_KEYWORDS_H
 #define LMP_FSI_KEYWORDS_H
@@ -28,7 +28,8 @@ namespace FSI {
 
   class Record;
 
-  // What a number may be. All are 0 or of a size between SMALLEST and LARGEST, so that products of some of them are numbers.
+  // What a number may be. All are 0 or of a size between SMALLEST and LARGEST, so that products of
+  // some of them are numbers.
   struct Range {
     static constexpr double SMALLEST = 1.0e-20, LARGEST = 1.0e20;
     double low = -LARGEST, high = LARGEST;
@@ -37,40 +38,53 @@ namespace FSI {
     static constexpr Range above(double low) { return {low, LARGEST, true, true}; }
     static constexpr Range from(double low) { return {low, LARGEST, false, true}; }
     static constexpr Range between(double low, double high) { return {low, high, false, false}; }
-    static constexpr Range from_to_below(double low, double high) { return {low, high, false, true}; }
+    static constexpr Range from_to_below(double low, double high)
+    {
+      return {low, high, false, true};
+    }
     static constexpr Range inside(double low, double high) { return {low, high, true, true}; }
 
-    bool holds(double x) const { return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high); }
+    bool holds(double x) const
+    {
+      return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
+    }
     std::string text() const;
   };
 
-  // A number, or an integer, that stands in a command; else an error that says what it is and what was expected. Alone: on this rank
-  // only; other: a word that may stand there, too
-  double numeric(LAMMPS *, const std::string &what, const std::string &value, const Range & = {}, bool alone = false,
-                 const std::string &other = "");
-  int integer(LAMMPS *, const std::string &what, const std::string &value, int least, int most = MAXSMALLINT);
+  // A number, or an integer, that stands in a command; else an error that says what it is and what
+  // was expected. Alone: on this rank only; other: a word that may stand there, too
+  double numeric(LAMMPS *, const std::string &what, const std::string &value, const Range & = {},
+                 bool alone = false, const std::string &other = "");
+  int integer(LAMMPS *, const std::string &what, const std::string &value, int least,
+              int most = MAXSMALLINT);
 
   class Keywords : protected Pointers {
    public:
     Keywords(LAMMPS *, const std::string &command);    // as a user writes it
+    Keywords(const Keywords &) = delete;               // rows hold addresses of their owner
 
-    // a row: an argument that stands before all keywords, or a keyword. Its values follow in the order in which they are described;
-    // what: their names in messages, where there is more than one
+    // a row: an argument that stands before all keywords, or a keyword. Its values follow in the
+    // order in which they are described; what: their names in messages, where there is more than
+    // one
     Keywords &argument(const std::string &name);
     Keywords &key(const std::string &name);
     Keywords &number(double &where, double start, const Range & = {}, const std::string &what = "");
     Keywords &integer(int &where, int start, int least, int most = MAXSMALLINT);
-    Keywords &choice(int &where, int start, const std::vector<std::string> &words, const std::string &what = "");
+    Keywords &choice(int &where, int start, const std::vector<std::string> &words,
+                     const std::string &what = "");
     Keywords &logical(int &where, bool start);
     Keywords &word(std::string &where, const std::string &start);    // any
-    Keywords &per_type(std::vector<double> &where, const Range & = {});    // atom types and a number, as often as wanted; 0: not given
-    Keywords &types(std::vector<double> &where);                     // atom types alone, 1 if named
-    Keywords &set(int &where, int value);                            // no value follows: the keyword sets it; 0 without
+    // atom types and a number, as often as wanted; 0: not given
+    Keywords &per_type(std::vector<double> &where, const Range & = {});
+    Keywords &types(std::vector<double> &where);    // atom types alone, 1 if named
+    Keywords &set(int &where, int value);    // no value follows: the keyword sets it; 0 without
     // of the last value: a word that stands for a number, or for no word
     Keywords &or_word(const std::string &word, double number = 0.0);
-    // of the last row: the effect in words, {} stands for its first value; on if a number is not 0, or another value not the one at the start
+    // of the last row: the effect in words, {} stands for its first value; on if a number is not 0,
+    // or another value not the one at the start
     Keywords &effect(const std::string &text);
-    // of the last row: a run that goes on from a restart file must not change it, or may, and what that does
+    // of the last row: a run that goes on from a restart file must not change it, or may, and what
+    // that does
     Keywords &kept(const std::string &why);
     Keywords &changes(const std::string &what_happens);
     Keywords &of_a_run();    // or may as a matter of course, without a warning
@@ -79,15 +93,15 @@ namespace FSI {
 
     void write(Record &) const;
     void read(const Record &);
-    // rows that differ from a restart file, or from the last run: an error, or a warning that names both
-    // sides and says what happens. Between runs a change of what has no consequence is meant
+    // rows that differ from a restart file, or from the last run: an error, or a warning that names
+    // both sides and says what happens. Between runs a change of what has no consequence is meant
     static constexpr char OF_RESTART[] = "when the restart file was written";
     void compare(const Record &, const std::string &when = OF_RESTART) const;
     bool differs(const Record &, const std::string &name) const;
 
     struct Effect {
       std::string name, keyword;
-      bool on;
+      bool on = false;
     };
     std::vector<Effect> effects() const;
 
@@ -109,7 +123,8 @@ namespace FSI {
       std::string other;    // a word that stands for other_number
       double other_number = 0.0;
 
-      int count() const { return kind == SET ? 0 : kind == PER_TYPE && !types_alone ? 2 : 1; }    // words that follow
+      // words that follow
+      int count() const { return kind == SET ? 0 : kind == PER_TYPE && !types_alone ? 2 : 1; }
       void begin() const;
       bool at_start() const;
       std::string text() const;

@@ -47,7 +47,8 @@ double State::energy(double rho) const
     const double s = r / rho0;
     if (tait) {
       const double b = rho0 * csq / 7.0;
-      return b / rho0 * ((std::pow(s, 6) - 1.0) / 6.0 + 1.0 / s - 1.0) + p0 / rho0 * (1.0 - 1.0 / s);
+      return b / rho0 * ((std::pow(s, 6) - 1.0) / 6.0 + 1.0 / s - 1.0) +
+          p0 / rho0 * (1.0 - 1.0 / s);
     }
     return csq * (std::log(s) + 1.0 / s - 1.0) + p0 / rho0 * (1.0 - 1.0 / s);
   };
@@ -93,8 +94,11 @@ class MaterialReader : protected Pointers {
     std::vector<Material> all;
     if (file == SPECIES[NONE]) return all;
     if (utils::get_potential_file_path(file).empty())
-      error->one(FLERR, "Cannot open material file {}: it is neither in the working folder nor in those of the environment variable "
-                        "LAMMPS_POTENTIALS; type  export LAMMPS_POTENTIALS=<folder of the .fsi files>", file);
+      error->one(FLERR,
+                 "Cannot open material file {}: it is neither in the working folder nor in those "
+                 "of the environment variable LAMMPS_POTENTIALS; type  export "
+                 "LAMMPS_POTENTIALS=<folder of the .fsi files>",
+                 file);
     PotentialFileReader reader(lmp, file, "fsi material");
     while (char *line = reader.next_line()) all.push_back(parse("in file " + file, line));
     return all;
@@ -117,7 +121,8 @@ class MaterialReader : protected Pointers {
             matches++;
           }
         if (matches == 0) not_found(name, file, all, given);
-        if (matches > 1) error->one(FLERR, "Material {} stands {} times in file {}", name, matches, file);
+        if (matches > 1)
+          error->one(FLERR, "Material {} stands {} times in file {}", name, matches, file);
       }
       found.push_back(m);
     }
@@ -166,8 +171,10 @@ class MaterialReader : protected Pointers {
           key = parse_prony(fmt::format("Material {} {}: {}", name, where, PRONY), values, m);
           continue;
         }
-        const auto p = std::find_if(std::begin(properties), std::end(properties),
-                                    [&](const Property &q) { return key == q.name && has(m.species, q); });
+        const auto p =
+            std::find_if(std::begin(properties), std::end(properties), [&](const Property &q) {
+              return key == q.name && has(m.species, q);
+            });
         if (p == std::end(properties))
           error->one(FLERR, "Unknown keyword {} of {} {} {}: expected {}", key, species, name,
                      where, known);
@@ -177,7 +184,8 @@ class MaterialReader : protected Pointers {
         key = values.has_next() ? values.next_string() : "";
       }
       for (const auto &p : properties)
-        if (p.needed && has(m.species, p) && given.find(std::string(" ") + p.name + " ") == std::string::npos)
+        if (p.needed && has(m.species, p) &&
+            given.find(std::string(" ") + p.name + " ") == std::string::npos)
           error->one(FLERR, "Material {} {} needs {} {}", name, where, p.name, p.range.text());
     } catch (TokenizerException &e) {
       error->one(FLERR, "Cannot read a line of materials {}: {}", where, e.what());
@@ -218,7 +226,8 @@ std::vector<Material> FSI::read_materials(LAMMPS *lmp, const std::string &file,
 {
   std::vector<Material> found(names.size());
   if (lmp->comm->me == 0) found = MaterialReader(lmp).find(file, names, given);
-  MPI_Bcast(found.data(), static_cast<int>(found.size() * sizeof(Material)), MPI_BYTE, 0, lmp->world);
+  MPI_Bcast(found.data(), static_cast<int>(found.size() * sizeof(Material)), MPI_BYTE, 0,
+            lmp->world);
   return found;
 }
 
@@ -242,7 +251,8 @@ std::string FSI::describe(const Material &m)
   for (const auto &p : properties)
     if (has(m.species, p)) line += fmt::format(" {} {}", p.name, m.*p.value);
   for (int k = 0; k < m.nprony; k++)
-    line += fmt::format("{} {} {}", k ? "" : std::string(" ") + PRONY, m.prony[k].g, m.prony[k].tau);
+    line +=
+        fmt::format("{} {} {}", k ? "" : std::string(" ") + PRONY, m.prony[k].g, m.prony[k].tau);
   return line;
 }
 

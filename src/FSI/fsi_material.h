@@ -29,34 +29,36 @@ namespace FSI {
 
   // Trivially copyable: it is sent to other ranks as it is.
   struct Material {
-    char name[64];
-    int species;         // FLUID, SOLID or RIGID (wall)
-    double rho0;         // reference density
-    double viscosity;    // fluid: dynamic viscosity
-    double sound;        // fluid: numerical speed of sound, 0 = that of its pair style
-    double young;        // solid: Young's modulus
-    double poisson;      // solid: Poisson's ratio
-    double yield;        // solid: yield stress, 0 = elastic
-    double hardening;    // solid: slope of the yield stress over equivalent plastic strain
+    char name[64] = {};
+    int species = NONE;        // FLUID, SOLID or RIGID (wall)
+    double rho0 = 0.0;         // reference density
+    double viscosity = 0.0;    // fluid: dynamic viscosity
+    double sound = 0.0;        // fluid: numerical speed of sound, 0 = that of its pair style
+    double young = 0.0;        // solid: Young's modulus
+    double poisson = 0.0;      // solid: Poisson's ratio
+    double yield = 0.0;        // solid: yield stress, 0 = elastic
+    double hardening = 0.0;    // solid: slope of the yield stress over equivalent plastic strain
     // solid: a Prony series, parts of the shear modulus that relax, and their times
     static constexpr int MAX_PRONY = 8;
     struct Prony {
-      double g, tau;
+      double g = 0.0, tau = 0.0;
     } prony[MAX_PRONY];
-    int nprony;
+    int nprony = 0;
 
     // solid, 3D and plane strain: shear and bulk modulus
     double shear_modulus() const { return 0.5 * young / (1.0 + poisson); }
     double bulk_modulus() const { return young / (3.0 * (1.0 - 2.0 * poisson)); }
-    // solid, plane stress: E/(2(1-nu)), the in-plane bulk modulus that goes with a trace over two axes
+    // solid, plane stress: E/(2(1-nu)), the in-plane bulk modulus that goes with a trace over two
+    // axes
     double plane_stress_modulus() const { return young / (2.0 * (1.0 - poisson)); }
   };
 
-  // Equation of state of one atom type, and what loops need of its material.
-  // Linear, paper eq. 16: p = p0 + c^2 (rho - rho0). Tait: p = p0 + rho0 c^2/7 ((rho/rho0)^7 - 1), the same slope at rho0.
-  // of a solid: the configuration that its equations of motion refer to; 0 where no style moves it
+  // Of a solid: the configuration that its equations of motion refer to; 0 where no style moves it.
   enum Form { UPDATED_LAGRANGIAN = 1, TOTAL_LAGRANGIAN };
 
+  // Equation of state of one atom type, and what loops need of its material.
+  // Linear, paper eq. 16: p = p0 + c^2 (rho - rho0). Tait: p = p0 + rho0 c^2/7 ((rho/rho0)^7 - 1),
+  // the same slope at rho0.
   struct State {
     int species = NONE;
     int form = 0;
@@ -82,7 +84,8 @@ namespace FSI {
         p = p0 + csq * (rho - rho0);
       return p > floor ? p : floor;
     }
-    // energy per mass that pressure() stores from rho0 on: the integral of p/rho^2 (linear or Tait, floor included)
+    // energy per mass that pressure() stores from rho0 on: the integral of p/rho^2 (linear or Tait,
+    // floor included)
     double energy(double rho) const;
     double density(double p) const;    // the inverse of pressure(), for initial states
   };

@@ -41,11 +41,14 @@ NumberDensity::NumberDensity(LAMMPS *lmp, Scene &scene, SumOverGhosts add_ghosts
 void NumberDensity::set_fields(Fields &fields)
 {
   const int of_fluid = scene.density_fluid, of_solid = scene.density_solid;
-  scene.keep_psi = scene.surface_every > 1 && of_fluid == Scene::CONTINUITY && of_solid == Scene::CONTINUITY;
+  scene.keep_psi =
+      scene.surface_every > 1 && of_fluid == Scene::CONTINUITY && of_solid == Scene::CONTINUITY;
   scene.need_psi = of_fluid != Scene::CONTINUITY || scene.surface_ratio > 0.0 ||
       (of_solid != Scene::CONTINUITY && facts_of_solids(lmp).style == Facts::OF_SOLIDS);
-  fields.set("reference of ratio", Fields::RESTART, of_fluid == Scene::RATIO || of_solid == Scene::RATIO, ratio);
-  fields.set("number density", scene.keep_psi ? Fields::RESTART : Fields::STEP, scene.keep_psi || scene.need_psi, scene.psi);
+  fields.set("reference of ratio", Fields::RESTART,
+             of_fluid == Scene::RATIO || of_solid == Scene::RATIO, ratio);
+  fields.set("number density", scene.keep_psi ? Fields::RESTART : Fields::STEP,
+             scene.keep_psi || scene.need_psi, scene.psi);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -59,7 +62,8 @@ void NumberDensity::add_messages(Message &to_ghosts)
 
 void NumberDensity::renew(bool advance)
 {
-  send = scene.need_psi && (!scene.keep_psi || !advance || neighbor->ago == 0);    // or to new ghosts
+  // or to new ghosts
+  send = scene.need_psi && (!scene.keep_psi || !advance || neighbor->ago == 0);
   if (scene.need_psi && is_due(advance)) {
     const Phase phase(scene.profile, Profile::DENSITY);
     find(scene.psi);
@@ -73,7 +77,8 @@ void NumberDensity::renew(bool advance)
       if (scene.state[atom->type[i]].species == FLUID && scene.psi[i] > mine) mine = scene.psi[i];
     MPI_Allreduce(&mine, &scene.psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
   }
-  if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY) find_density();
+  if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY)
+    find_density();
 }
 
 /* ----------------------------------------------------------------------
@@ -90,8 +95,8 @@ bool NumberDensity::is_due(bool advance) const
 }
 
 /* ----------------------------------------------------------------------
-   psi_i = sum_j W_ij, self included (paper eq. 8): over all neighbours for a fluid; for a solid over
-   its own body, and over all neighbours in density mode summation, the paper's
+   psi_i = sum_j W_ij, self included (paper eq. 8): over all neighbors for a fluid; for a solid over
+   its own body, and over all neighbors in density mode summation, the paper's
 ------------------------------------------------------------------------- */
 
 void NumberDensity::find(double *n) const
@@ -115,7 +120,8 @@ void NumberDensity::find_density()
     const int species = scene.state[atom->type[i]].species;
     if (species == RIGID) continue;
     const int mode = species == FLUID ? scene.density_fluid : scene.density_solid;
-    if (mode == Scene::SUMMATION) rho[i] = rmass[i] * psi[i];
+    if (mode == Scene::SUMMATION)
+      rho[i] = rmass[i] * psi[i];
     else if (mode == Scene::RATIO) {
       if (ratio[i] == 0.0) ratio[i] = rho[i] / psi[i];
       rho[i] = ratio[i] * psi[i];

@@ -11,7 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Number density, for what needs it: density by summation or ratio in place of continuity (the paper's), the free-surface rule.
+// Number density, for what needs it: density by summation or ratio in place of continuity (the
+// paper's), the free-surface rule.
 
 #ifndef LMP_FSI_NUMBER_DENSITY_H
 #define LMP_FSI_NUMBER_DENSITY_H
@@ -32,9 +33,10 @@ namespace FSI {
     // adds what pairs left on ghosts to the local atoms
     using SumOverGhosts = std::function<void(double *)>;
     NumberDensity(LAMMPS *, Scene &, SumOverGhosts);
-    void set_fields(Fields &);           // for the effects that there are now
+    void set_fields(Fields &);    // for the effects that there are now
     void add_messages(Message &to_ghosts);
-    void renew(bool advance);            // of the positions in atom->x; and the densities that follow from it
+    // of the positions in atom->x; and the densities that follow from it
+    void renew(bool advance);
     // of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
     void find(double *n) const;
 

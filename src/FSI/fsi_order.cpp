@@ -11,7 +11,6 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
 #include "fsi_order.h"
 
 #include "atom.h"
@@ -25,8 +24,8 @@
 using namespace LAMMPS_NS;
 
 /* ----------------------------------------------------------------------
-   By cells of space, by ID in each: what is near in space is near in memory, whatever IDs are like. Cells
-   do not depend on the box, whose bounds may follow the particles.
+   By cells of space, by ID in each: what is near in space is near in memory, whatever IDs are like.
+   Cells do not depend on the box, whose bounds may follow the particles.
 ------------------------------------------------------------------------- */
 
 void FSI::sort_by_place(Atom *atom, double width)
@@ -37,13 +36,19 @@ void FSI::sort_by_place(Atom *atom, double width)
     std::array<bigint, 3> cell;    // slowest first
     tagint tag;
     int i;
-    bool operator<(const Place &other) const { return cell != other.cell ? cell < other.cell : tag < other.tag; }
+    bool operator<(const Place &other) const
+    {
+      return cell != other.cell ? cell < other.cell : tag < other.tag;
+    }
   };
   const double per_length = 1.0 / width;
   std::vector<Place> places(n);
   for (int i = 0; i < n; i++) {
     const double *const x = atom->x[i];
-    places[i] = {{(bigint) std::floor(x[2] * per_length), (bigint) std::floor(x[1] * per_length), (bigint) std::floor(x[0] * per_length)}, atom->tag[i], i};
+    places[i] = {{(bigint) std::floor(x[2] * per_length), (bigint) std::floor(x[1] * per_length),
+                  (bigint) std::floor(x[0] * per_length)},
+                 atom->tag[i],
+                 i};
   }
   std::sort(places.begin(), places.end());
   std::vector<int> order(n);    // new place i gets the atom that is now at order[i]

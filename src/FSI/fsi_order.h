@@ -11,7 +11,6 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
 #ifndef LMP_FSI_ORDER_H
 #define LMP_FSI_ORDER_H
 
@@ -20,8 +19,9 @@ class Atom;
 
 namespace FSI {
 
-  // Puts this rank's atoms in an order that depends on nothing but where they are and their IDs: cells of that width, by ID in each.
-  // Positions must be wrapped. (Widths from half to twice the support make no difference in time.)
+  // Puts this rank's atoms in an order that depends on nothing but where they are and their IDs:
+  // cells of that width, by ID in each. Positions must be wrapped. (Widths from half to twice the
+  // support make no difference in time.)
   void sort_by_place(Atom *atom, double width);
 
 }    // namespace FSI

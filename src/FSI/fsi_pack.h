@@ -11,14 +11,16 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Four numbers side by side, for loops that take four pairs at a time: a vector register of AVX2, two of Arm's.
+// Four numbers side by side, for loops that take four pairs at a time: a vector register of AVX2,
+// two of Arm's.
 //
-// Formulas are templates over the number, double or Pack, and written once: lesser, greater and where are what they use for
-// branches. FSI_INLINE makes them part of the loop that calls them, a function marked FSI_TARGET, which on x86 is compiled for a
-// processor that has AVX2 and fused multiply-add whatever the rest is compiled for: ask have_packs() before calling it. Sums
-// differ from those of other processors by round-off. Where the compiler is another, FSI_PACKS is 0 and loops go pair by pair; with
-// the environment variable FSI_PACKS=no they do on any processor. Those loops have all effects, with coefficients of zero for what is
-// off: they are for old processors.
+// Formulas are templates over the number, double or Pack, and written once: lesser, greater and
+// where are what they use for branches. FSI_INLINE makes them part of the loop that calls them, a
+// function marked FSI_TARGET, which on x86 is compiled for a processor that has AVX2 and fused
+// multiply-add whatever the rest is compiled for: ask have_packs() before calling it. Sums differ
+// from those of other processors by round-off. Where the compiler is another, FSI_PACKS is 0 and
+// loops go pair by pair; with the environment variable FSI_PACKS=no they do on any processor. Those
+// loops have all effects, with coefficients of zero for what is off: they are for old processors.
 
 #ifndef LMP_FSI_PACK_H
 #define LMP_FSI_PACK_H
@@ -28,13 +30,17 @@
 #include <cstring>
 #include <type_traits>
 
-// compilers with the front end of EDG (nvc++, icpc) call themselves GNU C without having its vectors
-#if defined(__GNUC__) && (defined(__x86_64__) || defined(__aarch64__)) && !defined(__EDG__) && !defined(__NVCOMPILER) && !defined(__INTEL_COMPILER)
+// compilers with the front end of EDG (nvc++, icpc) call themselves GNU C without having its
+// vectors
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__aarch64__)) && !defined(__EDG__) && \
+    !defined(__NVCOMPILER) && !defined(__INTEL_COMPILER)
 #define FSI_PACKS 1
 #define FSI_INLINE inline __attribute__((always_inline))
+#define FSI_INLINE_LAMBDA __attribute__((always_inline))
 #else
 #define FSI_PACKS 0
 #define FSI_INLINE inline
+#define FSI_INLINE_LAMBDA
 #endif
 #if FSI_PACKS && defined(__x86_64__)
 #define FSI_TARGET __attribute__((target("avx2,fma")))
@@ -45,11 +51,13 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
+  // clang-format off
   FSI_INLINE double root(double x) { return std::sqrt(x); }
   FSI_INLINE double lesser(double a, double b) { return a < b ? a : b; }
   FSI_INLINE double greater(double a, double b) { return a > b ? a : b; }
   FSI_INLINE double where(bool condition, double a, double b) { return condition ? a : b; }
-  FSI_INLINE bool none(bool condition) { return !condition; }    // a way out, if it is worth a branch
+  FSI_INLINE bool none(bool condition) { return !condition; }  // a way out, if it is worth a branch
+  // clang-format on
 
 #if FSI_PACKS
   struct Pack {
@@ -66,13 +74,18 @@ namespace FSI {
 #if defined(__clang__) || !defined(__x86_64__)
       v = Vector{x, x, x, x};
 #else
-      // one instruction, outside loops: gcc 12 takes {x, x, x, x} apart, and valgrind does not know all of what comes of other forms
+      // one instruction, outside loops: gcc 12 takes {x, x, x, x} apart, and valgrind does not know
+      // all of what comes of other forms
       asm("vbroadcastsd %1, %0" : "=x"(v) : "x"(x));
 #endif
     }
     FSI_INLINE Pack(double a, double b, double c, double d) : v(Vector{a, b, c, d}) {}
-    FSI_INLINE double sum() const { return (v[0] + v[1]) + (v[2] + v[3]); }
+    FSI_INLINE double sum() const
+    {
+      return (v[0] + v[1]) + (v[2] + v[3]);
+    }
 
+    // clang-format off
     FSI_INLINE friend Pack operator+(const Pack &a, const Pack &b) { return make(a.v + b.v); }
     FSI_INLINE friend Pack operator-(const Pack &a, const Pack &b) { return make(a.v - b.v); }
     FSI_INLINE friend Pack operator*(const Pack &a, const Pack &b) { return make(a.v * b.v); }
@@ -81,23 +94,30 @@ namespace FSI {
     FSI_INLINE Pack &operator-=(const Pack &b) { v -= b.v; return *this; }
     FSI_INLINE friend Pack operator-(const Pack &a) { return make(-a.v); }
     FSI_INLINE friend Mask operator<(const Pack &a, const Pack &b) { return {a.v < b.v}; }
-    FSI_INLINE friend Pack lesser(const Pack &a, const Pack &b) { return make(a.v < b.v ? a.v : b.v); }
-    FSI_INLINE friend Pack greater(const Pack &a, const Pack &b) { return make(a.v > b.v ? a.v : b.v); }
-    FSI_INLINE friend Pack where(const Mask &condition, const Pack &a, const Pack &b) { return make(condition.m ? a.v : b.v); }
+    FSI_INLINE friend Pack lesser(const Pack &a, const Pack &b)
+    { return make(a.v < b.v ? a.v : b.v); }
+    FSI_INLINE friend Pack greater(const Pack &a, const Pack &b)
+    { return make(a.v > b.v ? a.v : b.v); }
+    FSI_INLINE friend Pack where(const Mask &condition, const Pack &a, const Pack &b)
+    { return make(condition.m ? a.v : b.v); }
     FSI_INLINE friend bool none(const Mask &) { return false; }
+    // clang-format on
     FSI_INLINE friend Pack root(const Pack &a)
     {
-      return {__builtin_sqrt(a.v[0]), __builtin_sqrt(a.v[1]), __builtin_sqrt(a.v[2]), __builtin_sqrt(a.v[3])};
+      return {__builtin_sqrt(a.v[0]), __builtin_sqrt(a.v[1]), __builtin_sqrt(a.v[2]),
+              __builtin_sqrt(a.v[3])};
     }
 
     // the four doubles at each of a, b, c, d become the columns out[0] to out[3]
-    FSI_INLINE static void columns(const double *a, const double *b, const double *c, const double *d, Pack *out)
+    FSI_INLINE static void columns(const double *a, const double *b, const double *c,
+                                   const double *d, Pack *out)
     {
       transpose(load(a), load(b), load(c), load(d), out);
     }
 
     // the inverse: adds the nth numbers of x, y, z, w to the four doubles at a, b, c, d
-    FSI_INLINE static void add_rows(const Pack &x, const Pack &y, const Pack &z, const Pack &w, double *a, double *b, double *c, double *d)
+    FSI_INLINE static void add_rows(const Pack &x, const Pack &y, const Pack &z, const Pack &w,
+                                    double *a, double *b, double *c, double *d)
     {
       Pack row[WIDTH];
       transpose(x, y, z, w, row);
@@ -108,7 +128,8 @@ namespace FSI {
     }
 
     // likewise x, y to the two doubles at a, b, c, d
-    FSI_INLINE static void add_rows(const Pack &x, const Pack &y, double *a, double *b, double *c, double *d)
+    FSI_INLINE static void add_rows(const Pack &x, const Pack &y, double *a, double *b, double *c,
+                                    double *d)
     {
       const Pack low = shuffle<0, 4, 2, 6>(x, y), high = shuffle<1, 5, 3, 7>(x, y);
       add(a, half<0>(low));
@@ -118,7 +139,8 @@ namespace FSI {
     }
 
     // the two doubles at each of a, b, c, d
-    FSI_INLINE static void columns(const double *a, const double *b, const double *c, const double *d, Pack &first, Pack &second)
+    FSI_INLINE static void columns(const double *a, const double *b, const double *c,
+                                   const double *d, Pack &first, Pack &second)
     {
       const Pack A = both(a, c), B = both(b, d);
       first = shuffle<0, 4, 2, 6>(A, B);
@@ -145,13 +167,26 @@ namespace FSI {
       const Half y = load_half(p) + x;
       __builtin_memcpy(p, &y, sizeof(y));
     }
-    // the two doubles at p and at q; those of a from number I on: as halves of registers where the compiler has words for it
+    // the two doubles at p and at q; those of a from number I on: as halves of registers where the
+    // compiler has words for it
 #if defined(__clang__) || __GNUC__ >= 12
-    FSI_INLINE static Pack both(const double *p, const double *q) { return make(__builtin_shufflevector(load_half(p), load_half(q), 0, 1, 2, 3)); }
-    template <int I> FSI_INLINE static Half half(const Pack &a) { return __builtin_shufflevector(a.v, a.v, I, I + 1); }
+    FSI_INLINE static Pack both(const double *p, const double *q)
+    {
+      return make(__builtin_shufflevector(load_half(p), load_half(q), 0, 1, 2, 3));
+    }
+    template <int I> FSI_INLINE static Half half(const Pack &a)
+    {
+      return __builtin_shufflevector(a.v, a.v, I, I + 1);
+    }
 #else
-    FSI_INLINE static Pack both(const double *p, const double *q) { return {p[0], p[1], q[0], q[1]}; }
-    template <int I> FSI_INLINE static Half half(const Pack &a) { return Half{a.v[I], a.v[I + 1]}; }
+    FSI_INLINE static Pack both(const double *p, const double *q)
+    {
+      return {p[0], p[1], q[0], q[1]};
+    }
+    template <int I> FSI_INLINE static Half half(const Pack &a)
+    {
+      return Half{a.v[I], a.v[I + 1]};
+    }
 #endif
     FSI_INLINE static Pack make(const Vector &x)
     {
@@ -159,7 +194,8 @@ namespace FSI {
       p.v = x;
       return p;
     }
-    FSI_INLINE static void transpose(const Pack &a, const Pack &b, const Pack &c, const Pack &d, Pack *out)
+    FSI_INLINE static void transpose(const Pack &a, const Pack &b, const Pack &c, const Pack &d,
+                                     Pack *out)
     {
       const Pack low = shuffle<0, 4, 2, 6>(a, b), high = shuffle<1, 5, 3, 7>(a, b);
       const Pack low2 = shuffle<0, 4, 2, 6>(c, d), high2 = shuffle<1, 5, 3, 7>(c, d);
@@ -168,9 +204,13 @@ namespace FSI {
       out[2] = shuffle<2, 3, 6, 7>(low, low2);
       out[3] = shuffle<2, 3, 6, 7>(high, high2);
     }
-    FSI_INLINE static void store(double *p, const Pack &x) { __builtin_memcpy(p, &x.v, sizeof(x.v)); }
+    FSI_INLINE static void store(double *p, const Pack &x)
+    {
+      __builtin_memcpy(p, &x.v, sizeof(x.v));
+    }
     // elements of a (0 to 3) and b (4 to 7)
-    template <int I, int J, int K, int L> FSI_INLINE static Pack shuffle(const Pack &a, const Pack &b)
+    template <int I, int J, int K, int L>
+    FSI_INLINE static Pack shuffle(const Pack &a, const Pack &b)
     {
 #if defined(__clang__) || __GNUC__ >= 12
       return make(__builtin_shufflevector(a.v, b.v, I, J, K, L));
@@ -193,10 +233,14 @@ namespace FSI {
   }
 #else
   typedef double Pack;
-  inline bool have_packs() { return false; }
+  inline bool have_packs()
+  {
+    return false;
+  }
 #endif
 
-  // What a loop over particles j needs of a number type: how many it takes at a time, and how it reads and adds to their entries.
+  // What a loop over particles j needs of a number type: how many it takes at a time, and how it
+  // reads and adds to their entries.
   template <class T> struct Lanes;
   template <> struct Lanes<double> {
     static constexpr int WIDTH = 1;
@@ -204,8 +248,9 @@ namespace FSI {
     FSI_INLINE static double read(const double *a, const int *j) { return a[*j]; }
     FSI_INLINE static void add(double x, double *a, const int *j) { a[*j] += x; }
     FSI_INLINE static double sum(double x) { return x; }
-    // puts those of the places j that are not far at `last`, where there is room for WIDTH, and moves it behind them; returns which as bits, the first
-    // place's lowest. (What is not a number is not far: it is to be seen.)
+    // puts those of the places j that are not far at `last`, where there is room for WIDTH, and
+    // moves it behind them; returns which as bits, the first place's lowest. (What is not a number
+    // is not far: it is to be seen.)
     FSI_INLINE static int pick(bool far, const int *j, int *&last)
     {
       *last = *j;
@@ -217,7 +262,8 @@ namespace FSI {
     // 1 in the first n places, else 0
     FSI_INLINE static double first(int n) { return n; }
     // adds x to the first n numbers of a row of N
-    template <int n, int N> FSI_INLINE static void add_rows(const double (&x)[n], double (*a)[N], const int *j)
+    template <int n, int N>
+    FSI_INLINE static void add_rows(const double (&x)[n], double (*a)[N], const int *j)
     {
       for (int d = 0; d < n; d++) a[*j][d] += x[d];
     }
@@ -226,7 +272,10 @@ namespace FSI {
   template <> struct Lanes<Pack> {
     static constexpr int WIDTH = Pack::WIDTH;
     FSI_INLINE static Pack load(const double *a) { return Pack::load(a); }
-    FSI_INLINE static Pack read(const double *a, const int *j) { return {a[j[0]], a[j[1]], a[j[2]], a[j[3]]}; }
+    FSI_INLINE static Pack read(const double *a, const int *j)
+    {
+      return {a[j[0]], a[j[1]], a[j[2]], a[j[3]]};
+    }
     FSI_INLINE static void add(const Pack &x, double *a, const int *j)
     {
       for (int k = 0; k < WIDTH; k++) a[j[k]] += x.v[k];
@@ -237,8 +286,13 @@ namespace FSI {
     {
 #if defined(__x86_64__)
       // by bits: the places of those that are set
-      static constexpr int order[16][WIDTH] = {{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 1, 3}, {1, 2, 0, 3}, {0, 1, 2, 3},
-                                               {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2}, {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+      // clang-format off
+      static constexpr int order[16][WIDTH] = {
+          {0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3},
+          {2, 0, 1, 3}, {0, 2, 1, 3}, {1, 2, 0, 3}, {0, 1, 2, 3},
+          {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
+          {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+      // clang-format on
       typedef int Places __attribute__((vector_size(WIDTH * sizeof(int))));
       int bits;
       Places all, picked;
@@ -265,7 +319,8 @@ namespace FSI {
       static constexpr double ones[2 * WIDTH] = {1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0};
       return Pack::load(ones + WIDTH - n);
     }
-    template <int n, int N> FSI_INLINE static void add_rows(const Pack (&x)[n], double (*a)[N], const int *j)
+    template <int n, int N>
+    FSI_INLINE static void add_rows(const Pack (&x)[n], double (*a)[N], const int *j)
     {
       static_assert(N == 2 || N % 4 == 0, "a row is two or fours of numbers");
       if constexpr (N == 2)
@@ -276,10 +331,14 @@ namespace FSI {
 
    private:
     // from number K on; what x lacks in its last four is zero
-    template <int K, int n, int N> FSI_INLINE static void add_fours(const Pack (&x)[n], double (*a)[N], const int *j)
+    template <int K, int n, int N>
+    FSI_INLINE static void add_fours(const Pack (&x)[n], double (*a)[N], const int *j)
     {
-      const auto at = [&](int k) __attribute__((always_inline)) { return k < n ? x[k < n ? k : 0] : Pack(0.0); };
-      Pack::add_rows(x[K], at(K + 1), at(K + 2), at(K + 3), a[j[0]] + K, a[j[1]] + K, a[j[2]] + K, a[j[3]] + K);
+      const auto at = [&](int k) FSI_INLINE_LAMBDA {
+        return k < n ? x[k < n ? k : 0] : Pack(0.0);
+      };
+      Pack::add_rows(x[K], at(K + 1), at(K + 2), at(K + 3), a[j[0]] + K, a[j[1]] + K, a[j[2]] + K,
+                     a[j[3]] + K);
       if constexpr (K + 4 < n) add_fours<K + 4>(x, a, j);
     }
   };
@@ -288,11 +347,14 @@ namespace FSI {
   // calls f with the flags among ALL that are set, as a constant
   template <int ALL, int SET = 0, class F> void with_flags(int flags, F &&f)
   {
-    if constexpr (ALL == 0) f(std::integral_constant<int, SET>());
+    if constexpr (ALL == 0)
+      f(std::integral_constant<int, SET>());
     else {
       constexpr int LOWEST = ALL & -ALL;
-      if (flags & LOWEST) with_flags<(ALL & ~LOWEST), (SET | LOWEST)>(flags, f);
-      else with_flags<(ALL & ~LOWEST), SET>(flags, f);
+      if (flags & LOWEST)
+        with_flags<(ALL & ~LOWEST), (SET | LOWEST)>(flags, f);
+      else
+        with_flags<(ALL & ~LOWEST), SET>(flags, f);
     }
   }
 
@@ -306,7 +368,8 @@ namespace FSI {
   template <class T, class Loop> void run_loop(Loop loop)
   {
 #if FSI_PACKS
-    if constexpr (std::is_same_v<T, Pack>) run_packed(loop);
+    if constexpr (std::is_same_v<T, Pack>)
+      run_packed(loop);
     else
 #endif
       loop(T());

@@ -11,9 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
-// J2 plasticity of hypoelastic solids: radial return of the deviatoric stress to the von Mises surface (Wilkins 1964; Simo and
-// Hughes 1998, sec. 3.3.1), with linear isotropic hardening: sigma_y = yield + hardening * (equivalent plastic strain).
+// J2 plasticity of hypoelastic solids: radial return of the deviatoric stress to the von Mises
+// surface (Wilkins 1964; Simo and Hughes 1998, sec. 3.3.1), with linear isotropic hardening:
+// sigma_y = yield + hardening * (equivalent plastic strain).
 
 #ifndef LMP_FSI_PLASTICITY_H
 #define LMP_FSI_PLASTICITY_H
@@ -25,9 +25,11 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // s: elastic trial deviator, of plane strain in 2D, brought back to the surface; strain: equivalent plastic strain, which grows.
-  // Returns the plastic work per volume.
-  template <int D> inline double radial_return(Sym<D> &s, double &strain, double shear, double yield, double hardening)
+  // s: elastic trial deviator, of plane strain in 2D, brought back to the surface; strain:
+  // equivalent plastic strain, which grows. Returns the plastic work per volume.
+  template <int D>
+  inline double radial_return(Sym<D> &s, double &strain, double shear, double yield,
+                              double hardening)
   {
     double ss = s.squared();
     if (D == 2) ss += (s.c[0] + s.c[1]) * (s.c[0] + s.c[1]);    // s_zz

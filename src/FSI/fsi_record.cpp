@@ -31,14 +31,19 @@ static constexpr char MAGIC[] = "FSI 2 ";    // of the format
 
 Record::Record(LAMMPS *lmp, const std::string &style_in) : Pointers(lmp), style(style_in) {}
 
-Record::Record(LAMMPS *lmp, const std::string &style_in, const char *text) : Pointers(lmp), style(style_in)
+Record::Record(LAMMPS *lmp, const std::string &style_in, const char *text) :
+    Pointers(lmp), style(style_in)
 {
   const std::string first = MAGIC + style + "\n";
   if (strncmp(text, first.c_str(), first.size()) != 0)
-    error->all(FLERR, "The restart file was written by another version of the FSI package: {} cannot read what is its own in it", style);
+    error->all(FLERR,
+               "The restart file was written by another version of the FSI package: {} cannot read "
+               "what is its own in it",
+               style);
   for (text += first.size(); *text;) {
     const char *const tab = strchr(text, '\t'), *const end = strchr(text, '\n');
-    if (!tab || !end || tab > end) error->all(FLERR, "The restart file is damaged in what {} keeps", style);
+    if (!tab || !end || tab > end)
+      error->all(FLERR, "The restart file is damaged in what {} keeps", style);
     lines.emplace_back(std::string(text, tab), std::string(tab + 1, end));
     text = end + 1;
   }
@@ -49,7 +54,8 @@ Record::Record(LAMMPS *lmp, const std::string &style_in, const char *text) : Poi
 void Record::add(const std::string &name, const std::vector<double> &numbers)
 {
   std::string text;
-  for (const double x : numbers) text += fmt::format("{}{}", text.empty() ? "" : " ", x);    // shortest that gives the same number
+  // shortest that gives the same number
+  for (const double x : numbers) text += fmt::format("{}{}", text.empty() ? "" : " ", x);
   add(name, text);
 }
 
@@ -70,7 +76,8 @@ const std::string &Record::value(const std::string &name) const
 std::vector<double> Record::numbers(const std::string &name) const
 {
   std::vector<double> list;
-  for (const auto &word : utils::split_words(value(name))) list.push_back(std::strtod(word.c_str(), nullptr));
+  for (const auto &word : utils::split_words(value(name)))
+    list.push_back(std::strtod(word.c_str(), nullptr));
   return list;
 }
 
@@ -96,7 +103,8 @@ Record Record::read(LAMMPS *lmp, const std::string &style, FILE *fp)
     // of another version anything may stand here
     utils::sfread(FLERR, &size, sizeof(int), 1, fp, nullptr, lmp->error);
     utils::sfread(FLERR, text.data(), 1, FIRST, fp, nullptr, lmp->error);
-    if (strcmp(text.data(), MAGIC) != 0 || size <= FIRST) size = FIRST + 1;
+    if (strcmp(text.data(), MAGIC) != 0 || size <= FIRST)
+      size = FIRST + 1;
     else {
       text.resize(size);
       utils::sfread(FLERR, &text[FIRST], 1, size - FIRST, fp, nullptr, lmp->error);
@@ -114,7 +122,8 @@ Record Record::read(LAMMPS *lmp, const std::string &style, FILE *fp)
 // LAMMPS shows what it has read to classes derived from its own only
 namespace {
 struct Stored : public Modify {
-  static constexpr auto global_id = &Stored::id_restart_global, global_style = &Stored::style_restart_global;
+  static constexpr auto global_id = &Stored::id_restart_global,
+                        global_style = &Stored::style_restart_global;
   static constexpr auto global_used = &Stored::used_restart_global;
 };
 }    // namespace
@@ -126,16 +135,20 @@ void FSI::check_ids(LAMMPS *lmp)
   const bool first = lmp->comm->me == 0;
   for (int k = 0; k < modify->nfix_restart_global; k++) {
     if ((modify->*Stored::global_used)[k]) continue;
-    const std::string style_before = (modify->*Stored::global_style)[k], id_before = (modify->*Stored::global_id)[k];
-    if (!utils::strmatch(style_before, "^fsi")) continue;
+    const std::string style_before = (modify->*Stored::global_style)[k],
+                      id_before = (modify->*Stored::global_id)[k];
+    if (!utils::strmatch(style_before, "^fsi") && style_before != "FSI_REFERENCE") continue;
     for (const auto *fix : modify->get_fix_by_style("^" + style_before + "$")) {
       if (fix->restart_reset) continue;
-      const auto text = fmt::format("Fix {} (style {}) takes nothing from the restart file, in which it had the ID {}: give it that ID",
+      const auto text = fmt::format("Fix {} (style {}) takes nothing from the restart file, in "
+                                    "which it had the ID {}: give it that ID",
                                     fix->id, style_before, id_before);
       if (style_before == "fsi" || style_before == "fsi/stress") error->all(FLERR, text);
       if (first) error->warning(FLERR, text);
     }
-    if (style_before == "fsi/reference" && lmp->force->pair_match("^fsi/solid$", 0) && first)
-      error->warning(FLERR, "The strain of total-Lagrangian solids in the restart file is lost: they go on in pair_style fsi/solid");
+    if (style_before == "FSI_REFERENCE" && lmp->force->pair_match("^fsi/solid$", 0) && first)
+      error->warning(FLERR,
+                     "The strain of total-Lagrangian solids in the restart file is lost: they go "
+                     "on in pair_style fsi/solid");
   }
 }

@@ -11,8 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
-// What a style leaves in a restart file: text, a line for each thing that it keeps, with its name. Numbers come back bit for bit.
+// What a style leaves in a restart file: text, a line for each thing that it keeps, with its name.
+// Numbers come back bit for bit.
 
 #ifndef LMP_FSI_RECORD_H
 #define LMP_FSI_RECORD_H
@@ -29,8 +29,9 @@ namespace FSI {
 
   class Record : protected Pointers {
    public:
-    Record(LAMMPS *, const std::string &style);                     // to be written
-    Record(LAMMPS *, const std::string &style, const char *text);   // that was read; an error if it is none of this style
+    Record(LAMMPS *, const std::string &style);    // to be written
+    // that was read; an error if it is none of this style
+    Record(LAMMPS *, const std::string &style, const char *text);
 
     void add(const std::string &name, const std::string &value) { lines.emplace_back(name, value); }
     void add(const std::string &name, const std::vector<double> &numbers);
@@ -51,7 +52,8 @@ namespace FSI {
     const std::string *find(const std::string &name) const;
   };
 
-  // once, before the first run after a restart file was read: what the file keeps for fixes of the package that go by another ID now
+  // once, before the first run after a restart file was read: what the file keeps for fixes of the
+  // package that go by another ID now
   void check_ids(LAMMPS *);
 
 }    // namespace FSI

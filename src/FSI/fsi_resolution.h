@@ -11,8 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// How finely an atom type is resolved: the spacing of its lattice, and what follows from it. The smoothing length over the spacing is the
-// same for all types. Particles of different types meet with the larger of their two kernels, each with its own volume.
+// How finely an atom type is resolved: the spacing of its lattice, and what follows from it. The
+// smoothing length over the spacing is the same for all types. Particles of different types meet
+// with the larger of their two kernels, each with its own volume.
 
 #ifndef LMP_FSI_RESOLUTION_H
 #define LMP_FSI_RESOLUTION_H
@@ -23,11 +24,15 @@ namespace FSI {
   struct Resolution {
     double dx = 0.0, h = 0.0;    // spacing, smoothing length
     double cut = 0.0;            // support radius of the kernel
-    double psi_bulk = 0.0;       // number density inside the lattice: the volume of a particle is 1/psi_bulk
+    double psi_bulk = 0.0;       // number density inside the lattice: the volume of a particle is
+                                 // 1/psi_bulk
   };
 
-  // distance of neighbours of two lattices that face each other, cell by cell
-  inline double spacing_between(const Resolution &a, const Resolution &b) { return 0.5 * (a.dx + b.dx); }
+  // distance of neighbors of two lattices that face each other, cell by cell
+  inline double spacing_between(const Resolution &a, const Resolution &b)
+  {
+    return 0.5 * (a.dx + b.dx);
+  }
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

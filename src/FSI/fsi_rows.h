@@ -11,8 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Pairs as rows, of a particle and its neighbours, and how loops go over them, as many neighbours at a time as the number type T holds
-// (fsi_pack.h).
+// Pairs as rows, of a particle and its neighbors, and how loops go over them, as many neighbors at
+// a time as the number type T holds (fsi_pack.h).
 
 #ifndef LMP_FSI_ROWS_H
 #define LMP_FSI_ROWS_H
@@ -24,14 +24,14 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // A particle i (local or ghost) and n neighbours j, each pair of particles in one row. In a row of images the last neighbour may be i
-  // itself.
+  // A particle i (local or ghost) and n neighbors j, each pair of particles in one row. In a row of
+  // images the last neighbor may be i itself.
   struct Row {
     int i, n;
     const int *j;
   };
 
-  // Rows and, where they are not those of LAMMPS' neighbour list, their neighbours.
+  // Rows and, where they are not those of LAMMPS' neighbor list, their neighbors.
   class RowList {
    public:
     std::vector<Row> rows;
@@ -40,8 +40,10 @@ namespace FSI {
       rows.clear();
       used = 0;
     }
-    // a row of i with the n of the neighbours that choose(j) holds for, and then i itself if with_own; none if it would be empty
-    template <class Choose> void add(int i, const int *neighbors, int n, bool with_own, bool even_empty, Choose choose)
+    // a row of i with the n of the neighbors that choose(j) holds for, and then i itself if
+    // with_own; none if it would be empty
+    template <class Choose>
+    void add(int i, const int *neighbors, int n, bool with_own, bool even_empty, Choose choose)
     {
       if (used + n + 1 > pool.size()) pool.resize(2 * (used + n + 1));
       int *const first = pool.data() + used, *last = first;
@@ -54,10 +56,12 @@ namespace FSI {
       if (found || even_empty) rows.push_back({i, found, nullptr});
       used += found;
     }
-    // likewise a row that a loop over another's n neighbours writes: room for them, and for what Lanes::pick() writes behind them
+    // likewise a row that a loop over another's n neighbors writes: room for them, and for what
+    // Lanes::pick() writes behind them
     int *room(int n)
     {
-      if (used + n + Lanes<Pack>::WIDTH > pool.size()) pool.resize(5 * (used + n + Lanes<Pack>::WIDTH) / 4);
+      if (used + n + Lanes<Pack>::WIDTH > pool.size())
+        pool.resize(5 * (used + n + Lanes<Pack>::WIDTH) / 4);
       return pool.data() + used;
     }
     // ends that row
@@ -67,7 +71,7 @@ namespace FSI {
       if (found) rows.push_back({i, found, nullptr});
       used += found;
     }
-    // no more rows: points them at their neighbours
+    // no more rows: points them at their neighbors
     void end()
     {
       const int *first = pool.data();
@@ -76,7 +80,10 @@ namespace FSI {
         first += row.n;
       }
     }
-    double memory_usage() const { return (double) rows.capacity() * sizeof(Row) + (double) pool.capacity() * sizeof(int); }
+    double memory_usage() const
+    {
+      return (double) rows.capacity() * sizeof(Row) + (double) pool.capacity() * sizeof(int);
+    }
 
    private:
     std::vector<int> pool;
@@ -84,10 +91,16 @@ namespace FSI {
   };
 
   // Doubles from the force on a particle to that on the next.
-  constexpr int row_of_forces(int dim) { return dim == 3 ? 4 : 2; }
+  constexpr int row_of_forces(int dim)
+  {
+    return dim == 3 ? 4 : 2;
+  }
 
   // the same for positions and velocities
-  constexpr int row_of_points(int dim) { return dim == 3 ? 8 : 4; }
+  constexpr int row_of_points(int dim)
+  {
+    return dim == 3 ? 8 : 4;
+  }
 
   template <int D, class T> FSI_INLINE T product(const T (&a)[D], const T (&b)[D])
   {
@@ -100,14 +113,19 @@ namespace FSI {
     for (int d = 0; d < D; d++) c[d] = a[d] - b[d];
   }
 
-  // Calls pairs(j, weight) with the places of as many neighbours as T holds. The weight is 1, but 0 for places that are left over
-  // and, in rows of images, 1/2 for i itself: it is seen from both sides of the pair.
-  template <class T, bool MIRRORED, class Pairs> FSI_INLINE void for_neighbors(const Row &row, Pairs pairs)
+  // Calls pairs(j, weight) with the places of as many neighbors as T holds. The weight is 1, but 0
+  // for places that are left over and, in rows of images, 1/2 for i itself: it is seen from both
+  // sides of the pair.
+  template <class T, bool MIRRORED, class Pairs>
+  FSI_INLINE void for_neighbors(const Row &row, Pairs pairs)
   {
     constexpr int W = Lanes<T>::WIDTH;
-    const auto weight = [&](const int *j, int n) __attribute__((always_inline)) {
+    const auto weight = [&](const int *j, int n) FSI_INLINE_LAMBDA {
       const T there = W == 1 ? T(1.0) : Lanes<T>::first(n < W ? n : W);
-      return MIRRORED ? there * Lanes<T>::make([&](int k) { return j[k] == row.i ? 0.5 : 1.0; }) : there;
+      return MIRRORED ? there * Lanes<T>::make([&](int k) {
+                          return j[k] == row.i ? 0.5 : 1.0;
+                        })
+                      : there;
     };
     // one place for the text of a pair: written out again for the last ones loops are twice as long
     int last[W];
@@ -126,7 +144,9 @@ namespace FSI {
   template <class T> FSI_INLINE T share_of(int i, const int *j, int nlocal, bool newton)
   {
     if (newton) return T(1.0);
-    return Lanes<T>::make([&](int k) { return i < nlocal && j[k] < nlocal ? 1.0 : 0.5; });
+    return Lanes<T>::make([&](int k) {
+      return i < nlocal && j[k] < nlocal ? 1.0 : 0.5;
+    });
   }
 
 }    // namespace FSI

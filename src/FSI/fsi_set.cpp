@@ -37,16 +37,20 @@ using namespace FSI;
    fsi/set group-ID pressure value      density that gives this pressure
    fsi/set group-ID hydrostatic level
      the same for p = rho0 |g| (level - height), height along -g; nothing above the level
-   fsi/set group-ID volume value        mass of a particle that has another place than that of the square or cubic lattice
+   fsi/set group-ID volume value        mass of a particle that has another place than that of the
+                                        square or cubic lattice
    value: a number or, of density, pressure and volume, an atom-style variable
-   The mass follows: a particle keeps the volume of its place in the lattice. (With the mass of the uncompressed lattice
-   volumes would say "compressed" where distances do not, and still water would settle 2 % off at c = 10 sqrt(2 g H).)
+   The mass follows: a particle keeps the volume of its place in the lattice. (With the mass of the
+   uncompressed lattice volumes would say "compressed" where distances do not, and still water would
+   settle 2 % off at c = 10 sqrt(2 g H).)
 ------------------------------------------------------------------------- */
 
 void FSISet::command(int narg, char **arg)
 {
   if (domain->box_exist == 0) error->all(FLERR, "Fsi/set command before simulation box is defined");
-  if (narg != 3) error->all(FLERR, "Fsi/set expects group-ID, density, pressure, hydrostatic or volume, and a value");
+  if (narg != 3)
+    error->all(FLERR,
+               "Fsi/set expects group-ID, density, pressure, hydrostatic or volume, and a value");
 
   const int igroup = group->find(arg[0]);
   if (igroup == -1) error->all(FLERR, "Fsi/set group-ID {} does not exist", arg[0]);
@@ -55,7 +59,9 @@ void FSISet::command(int narg, char **arg)
   const bool pressure = strcmp(arg[1], "pressure") == 0;
   const bool volume = strcmp(arg[1], "volume") == 0;
   if (!hydrostatic && !pressure && !volume && strcmp(arg[1], "density") != 0)
-    error->all(FLERR, "Unknown fsi/set keyword {}: expected density, pressure, hydrostatic or volume", arg[1]);
+    error->all(FLERR,
+               "Unknown fsi/set keyword {}: expected density, pressure, hydrostatic or volume",
+               arg[1]);
   int variable = -1;
   if (utils::strmatch(arg[2], "^v_") && !hydrostatic) {
     variable = input->variable->find(arg[2] + 2);
@@ -66,13 +72,19 @@ void FSISet::command(int narg, char **arg)
 
   FixFSI *fix_fsi = FixFSI::find(lmp, "Fsi/set");
   if (update->ntimestep > 0 && comm->me == 0)
-    error->warning(FLERR, "Fsi/set {} {} after {} steps: masses change with densities, which is meant "
-                          "before the first run", arg[0], arg[1], update->ntimestep);
+    error->warning(FLERR,
+                   "Fsi/set {} {} after {} steps: masses change with densities, which is meant "
+                   "before the first run",
+                   arg[0], arg[1], update->ntimestep);
 
   // materials, masses and gravity are entered in init()
   lmp->init();
   fix_fsi->body_forces.evaluate();
-  if (hydrostatic && std::none_of(fix_fsi->body_forces.all.begin(), fix_fsi->body_forces.all.end(), [](const BodyForces::Field &f) { return f.mask; }))
+  if (hydrostatic &&
+      std::none_of(fix_fsi->body_forces.all.begin(), fix_fsi->body_forces.all.end(),
+                   [](const BodyForces::Field &f) {
+                     return f.mask;
+                   }))
     error->all(FLERR, "Fsi/set hydrostatic requires fix gravity");
 
   std::vector<double> each(atom->nlocal, number);
@@ -89,28 +101,32 @@ void FSISet::command(int narg, char **arg)
       count++;
       continue;
     }
-    if (s.species == RIGID) continue;    // has its pressure from the fluid, and its mass
+    if (s.species == RIGID) continue;            // has its pressure from the fluid, and its mass
     if (s.form == TOTAL_LAGRANGIAN) continue;    // has its density from its strain
     double rho = value;
     if (hydrostatic) {
       const auto g = fix_fsi->body_forces.on(i);
       const double *x = atom->x[i], size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-      if (size == 0.0) error->one(FLERR, "Fsi/set hydrostatic: no fix gravity acts on atom {}", atom->tag[i]);
+      if (size == 0.0)
+        error->one(FLERR, "Fsi/set hydrostatic: no fix gravity acts on atom {}", atom->tag[i]);
       const double height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
       if (height > value) continue;
       rho = s.density(s.rho0 * size * (value - height) + s.p0);
     } else if (pressure)
       rho = s.density(value);
     if (!(rho > 0.0 && rho < Range::LARGEST))
-      error->one(FLERR, "Fsi/set {} {} must be > 0", pressure || hydrostatic ? std::string(arg[1]) + ": density" : "density", rho);
+      error->one(FLERR, "Fsi/set {} {} must be > 0",
+                 pressure || hydrostatic ? std::string(arg[1]) + ": density" : "density", rho);
     atom->rmass[i] *= rho / atom->rho[i];
     atom->rho[i] = rho;
     count++;
   }
   bigint all;
   MPI_Allreduce(&count, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all == 0 && comm->me == 0) error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", arg[0], arg[1], arg[2]);
-  if (comm->me == 0) utils::logmesg(lmp, "  fsi/set: {} of {} particles\n", volume ? "mass" : "density", all);
+  if (all == 0 && comm->me == 0)
+    error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", arg[0], arg[1], arg[2]);
+  if (comm->me == 0)
+    utils::logmesg(lmp, "  fsi/set: {} of {} particles\n", volume ? "mass" : "density", all);
 }
 
 void FSISetRenamed::command(int, char **)

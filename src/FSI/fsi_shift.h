@@ -11,28 +11,38 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Particle shifting (delta-plus-SPH: Sun, Colagrossi, Marrone and Zhang 2017, Comput. Methods Appl. Mech. Eng. 315, 25):
+// Particle shifting (delta-plus-SPH: Sun, Colagrossi, Marrone and Zhang 2017, Comput. Methods Appl.
+// Mech. Eng. 315, 25):
 //   delta r_i = -C c h dt sum_j V_j [1 + 0.2 (W_ij/W(dx))^4] grad_i W_ij,  |delta r_i| <= C c dt/4
-// Particles move from where they are dense to where they are not. Sun et al. have C = 2 Ma, with Ma = 0.1 the largest
+// Particles move from where they are dense to where they are not. Sun et al. have C = 2 Ma, with Ma
+// = 0.1 the largest
 // expected speed U over c; the bound is then their U/2. The sum vanishes on a lattice.
 //
-// Where kernels are cut off by a free surface the sum points out of the fluid. There the part along the normal
-// n ~ sum_j V_j grad_i W_ij is taken out, and nothing is left on edges, in jets and drops. What tells is how much of the
-// divergence of position is missing, d - sum_j V_j x_ji.grad_i W_ij: 0 inside, 0.7 to 0.8 in the first row of a plane surface
-// and 0.1 to 0.4 in the second, 1.3 on a straight edge, in 2D and 3D. Walls (images) and solids count as full. A fluid that fills
-// its box has no surface: what is missing there is a gap, which the whole sum closes.
+// Where kernels are cut off by a free surface the sum points out of the fluid. There the part along
+// the normal
+// n ~ sum_j V_j grad_i W_ij is taken out, and nothing is left on edges, in jets and drops. What
+// tells is how much of the divergence of position is missing, d - sum_j V_j x_ji.grad_i W_ij: 0
+// inside, 0.7 to 0.8 in the first row of a plane surface
+// and 0.1 to 0.4 in the second, 1.3 on a straight edge, in 2D and 3D. Walls (images) and solids
+// count as full. A fluid that fills its box has no surface: what is missing there is a gap, which
+// the whole sum closes.
 //
-// The flow does not move with the particles: where a particle comes to it takes the velocity of the flow there (Sun, Colagrossi, Marrone,
-// Antuono and Zhang 2019, Comput. Phys. Commun. 244, 36, have it as a term of the rate):
-//   delta v_i = delta r_i.grad v,  grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,  g_ij = grad_i W_ij,
-// of fluid neighbours alone, exact for linear fields wherever they are. Without it vortices behind a cylinder are too weak
-// (doc/src/theory.rst). This does not keep momentum, so it is done where the fluid fills its box: there walls and streams give and take
-// momentum all the time; a jet or a drop has but its own. Density goes along
-// unchanged: delta r.grad rho is sound, which goes as it comes. But displaced particles fill their places with the mass that they have, and
-// density and volume drift apart: in a closed stream pressure falls, and between open ends, where nothing else holds the number of particles, it
-// grows until some are pressed out. So there the rate of density has the velocity v + delta r/dt (delta r of the step before), at the price
-// of sound: half as much again in forces.
-// Angular momentum and energy are not kept exactly, and the energy ledger knows nothing of shifting.
+// The flow does not move with the particles: where a particle comes to it takes the velocity of the
+// flow there (Sun, Colagrossi, Marrone, Antuono and Zhang 2019, Comput. Phys. Commun. 244, 36, have
+// it as a term of the rate):
+//   delta v_i = delta r_i.grad v,  grad v = [sum_j V_j v_ji (x) g_ij] [sum_j V_j x_ji (x) g_ij]^-1,
+//     g_ij = grad_i W_ij,
+// of fluid neighbors alone, exact for linear fields wherever they are. Without it vortices behind a
+// cylinder are too weak (doc/src/theory.rst). This does not keep momentum, so it is done where the
+// fluid fills its box: there walls and streams give and take momentum all the time; a jet or a drop
+// has but its own. Density goes along
+// unchanged: delta r.grad rho is sound, which goes as it comes. But displaced particles fill their
+// places with the mass that they have, and density and volume drift apart: in a closed stream
+// pressure falls, and between open ends, where nothing else holds the number of particles, it grows
+// until some are pressed out. So there the rate of density has the velocity v + delta r/dt (delta r
+// of the step before), at the price of sound: half as much again in forces.
+// Angular momentum and energy are not kept exactly, and the energy ledger knows nothing of
+// shifting.
 
 #ifndef LMP_FSI_SHIFT_H
 #define LMP_FSI_SHIFT_H
@@ -46,16 +56,23 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   template <int D> struct Shift {
-    static constexpr int N = 2 * D + 1;             // sums of a particle: weighted and plain sum of V_j grad_i W_ij, divergence
-    static constexpr int ALL = N + Sym<D>::N + D * D;    // with those of fluid neighbours' x (x) g and v (x) g
-    static constexpr int ROW = (ALL + 3) / 4 * 4;    // numbers from one particle to the next: fours are added at once
-    double wdx;                            // W(dx)
+    static constexpr int N = 2 * D + 1;    // sums of a particle: weighted and plain sum of V_j
+                                           // grad_i W_ij, divergence
+    // with those of fluid neighbors' x (x) g and v (x) g
+    static constexpr int ALL = N + Sym<D>::N + D * D;
+    static constexpr int ROW = (ALL + 3) / 4 * 4;    // numbers from one particle to the next: fours
+                                                     // are added at once
+    double wdx;                                      // W(dx)
     explicit Shift(double w) : wdx(w) {}
 
-    // adds neighbour j of volume V_j to the sums of i; g: grad_i W_ij = g x_ij, w = W_ij; T: double or Pack
-    template <class T> FSI_INLINE void add(T *sum, const T &vol, const T &g, const T &w, const T &rsq, const T *x_ij) const
+    // adds neighbor j of volume V_j to the sums of i; g: grad_i W_ij = g x_ij, w = W_ij; T: double
+    // or Pack
+    template <class T>
+    FSI_INLINE void add(T *sum, const T &vol, const T &g, const T &w, const T &rsq,
+                        const T *x_ij) const
     {
-      const T q = w * (1.0 / wdx), qq = q * q, vg = vol * g, weighted = vg * (1.0 + 0.2 * (qq * qq));
+      const T q = w * (1.0 / wdx), qq = q * q, vg = vol * g,
+              weighted = vg * (1.0 + 0.2 * (qq * qq));
       for (int d = 0; d < D; d++) {
         sum[d] += weighted * x_ij[d];
         sum[D + d] += vg * x_ij[d];
@@ -63,10 +80,13 @@ namespace FSI {
       sum[2 * D] -= vg * rsq;
     }
 
-    // adds to the sums of two fluid particles what the gradient of the velocity comes of; v_ij: v_i - v_j
-    template <class T> FSI_INLINE static void add_slopes(T *of_i, T *of_j, const T &vol_i, const T &vol_j, const T &g, const T *x_ij, const T *v_ij)
+    // adds to the sums of two fluid particles what the gradient of the velocity comes of; v_ij: v_i
+    // - v_j
+    template <class T>
+    FSI_INLINE static void add_slopes(T *of_i, T *of_j, const T &vol_i, const T &vol_j, const T &g,
+                                      const T *x_ij, const T *v_ij)
     {
-      const auto add = [&](int k, const T &product) __attribute__((always_inline)) {
+      const auto add = [&](int k, const T &product) FSI_INLINE_LAMBDA {
         of_i[k] -= vol_j * product;
         of_j[k] -= vol_i * product;
       };
@@ -77,8 +97,9 @@ namespace FSI {
       }
     }
 
-    // The sums become the displacement, in their first D places, and the change of velocity, in the next; fills: the fluid has no
-    // surface, and the sums are ALL; scale = C c h dt, most = C c dt/4
+    // The sums become the displacement, in their first D places, and the change of velocity, in the
+    // next; fills: the fluid has no surface, and the sums are ALL; scale = C c h dt, most = C c
+    // dt/4
     static void displacement(double *sum, bool fills, double scale, double most)
     {
       if (fills)
@@ -91,7 +112,8 @@ namespace FSI {
       change_of_velocity(sum, fills);
     }
 
-    // Only a part of the displacement along an axis is left, and the change of velocity is that of what is left
+    // Only a part of the displacement along an axis is left, and the change of velocity is that of
+    // what is left
     static void reduce(double *sum, bool fills, int axis, double part)
     {
       sum[axis] *= part;
@@ -120,8 +142,8 @@ namespace FSI {
       for (int d = 0; d < D; d++) sum[d] = -scale * along * (sum[d] - normal * n[d]);
     }
 
-    // y = m^-1 x, and the share it has: none where neighbours do not span the space. The determinant of m is 1 inside, about 1/2 at a
-    // face and 1/4 or 1/8 in a corner
+    // y = m^-1 x, and the share it has: none where neighbors do not span the space. The determinant
+    // of m is 1 inside, about 1/2 at a face and 1/4 or 1/8 in a corner
     static double solve(const Sym<D> &m, const double *x, double *y)
     {
       Sym<D> adjoint;

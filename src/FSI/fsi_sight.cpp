@@ -31,7 +31,8 @@ static constexpr int NTABLE = 400;    // distances for which forces are tabulate
 static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4, AT_EDGE = 0.3;
 
 /* ----------------------------------------------------------------------
-   A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice is finer than the fluid's.
+   A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice
+   is finer than the fluid's.
 ------------------------------------------------------------------------- */
 
 Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
@@ -94,7 +95,8 @@ void Sight::find_bodies()
     }
     count++;
   }
-  for (int d = 0; d < 3; d++) n[d] = count ? static_cast<int>((high[d] - low[d]) * per_cell) + 1 : 0;
+  for (int d = 0; d < 3; d++)
+    n[d] = count ? static_cast<int>((high[d] - low[d]) * per_cell) + 1 : 0;
   first.assign((size_t) n[0] * n[1] * n[2] + 2, 0);
   places.resize(count);
   const auto cell = [&](const double *p) {
@@ -136,7 +138,9 @@ template <class Visit> void Sight::for_near(const double *x, Visit visit) const
 bool Sight::near(const double *x) const
 {
   bool any = false;
-  for_near(x, [&](const Place &p) { return any = any || p.thin; });
+  for_near(x, [&](const Place &p) {
+    return any = any || p.thin;
+  });
   return any;
 }
 
@@ -164,8 +168,9 @@ void Sight::look_from(const double *x, double slack)
     s.volume = scene.dim == 3 ? s.dx * s.dx * s.dx : s.dx * s.dx;
     s.thin = p.thin;
     const bool behind = by_walls && scene.state[s.type].species == SOLID &&
-        std::any_of(walls.wall.begin(), walls.wall.end(),
-                    [&](const Wall &w) { return !w.finite && w.distance(p.x) < 0.0; });
+        std::any_of(walls.wall.begin(), walls.wall.end(), [&](const Wall &w) {
+                          return !w.finite && w.distance(p.x) < 0.0;
+                        });
     if (!behind) seen.push_back(s);
     return false;
   });
@@ -208,9 +213,9 @@ bool Sight::may_hide(const double *y, double slack) const
 
 /* ----------------------------------------------------------------------
    sum = how many particles of thin bodies the line meets, which end with their spacing and at both
-   ends of the line; lean = the mean place across the line of what is around where it meets them, over
-   that beside a straight edge. The ball in which that is reaches as far as both supports do, so that
-   each rank that has one of the pair has what is in it.
+   ends of the line; lean = the mean place across the line of what is around where it meets them,
+   over that beside a straight edge. The ball in which that is reaches as far as both supports do,
+   so that each rank that has one of the pair has what is in it.
 ------------------------------------------------------------------------- */
 
 static double smooth(double x)
@@ -263,7 +268,10 @@ double Sight::visible(const double *y) const
    side of the nearest particle. What is seen beyond the support tells that it is thicker.
 ------------------------------------------------------------------------- */
 
-static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double *a, const double *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 bool Sight::find_face(Face &face) const
 {
@@ -315,5 +323,6 @@ Sight::Fill Sight::fill(const Face &face) const
 
 double Sight::memory_usage() const
 {
-  return (double) places.capacity() * sizeof(Place) + (double) seen.capacity() * sizeof(Seen) + (double) first.capacity() * sizeof(int);
+  return (double) places.capacity() * sizeof(Place) + (double) seen.capacity() * sizeof(Seen) +
+      (double) first.capacity() * sizeof(int);
 }

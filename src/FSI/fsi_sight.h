@@ -30,7 +30,8 @@ namespace FSI {
 
   class Sight : protected Pointers {
    public:
-    Sight(LAMMPS *, const Scene &, const std::vector<double> &types);    // whose kernel and spacings are known; past types that are not 0
+    // whose kernel and spacings are known; past types that are not 0
+    Sight(LAMMPS *, const Scene &, const std::vector<double> &types);
     void find_bodies();      // when neighbor lists are new
     void follow_bodies();    // to where they are; what follows is said of then
 
@@ -45,14 +46,14 @@ namespace FSI {
     // of the body beside x: distance of the first layer along its normal, which points to it, and
     // how thick it is
     struct Face {
-      int type;
-      double normal[3], distance, thickness;
+      int type = 0;
+      double normal[3] = {}, distance = 0.0, thickness = 0.0;
     };
     bool find_face(Face &) const;    // false: there is none within the support
     // of a half-space of layers over those that there are: forces, and weights in sums of W, as
     // forces along the face are
     struct Fill {
-      double force, weight;
+      double force = 0.0, weight = 0.0;
     };
     Fill fill(const Face &) const;
 
@@ -65,20 +66,21 @@ namespace FSI {
     int n[3];
     std::vector<int> first;    // of each cell, and behind the last
     struct Place {
-      double x[3];
-      int i;
-      bool thin;
+      double x[3] = {};
+      int i = 0;
+      bool thin = false;
     };
     std::vector<Place> places;    // by cell
     double from[3];
     struct Seen {
-      double x[3], rsq;       // from x
-      double dx, volume;      // spacing, of its cell
+      double x[3], rsq;     // from x
+      double dx, volume;    // spacing, of its cell
       int type;
       bool thin;
     };
     std::vector<Seen> seen;
-    std::vector<std::vector<Fill>> half_space;    // per type: of its layers by the distance of the first
+    std::vector<std::vector<Fill>> half_space;    // per type: of its layers by the distance of the
+                                                  // first
     Fill beyond(int type, double distance) const;
     bool counts(int type) const;
     void see_images();

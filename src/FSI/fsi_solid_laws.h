@@ -90,28 +90,42 @@ namespace FSI {
     // call(laws per type): what it returns
     template <class Call> auto operator()(Call call) const
     {
-      return std::visit([&](const auto &laws) { return call(laws.data()); }, of_type);
+      return std::visit(
+          [&](const auto &laws) {
+            return call(laws.data());
+          },
+          of_type);
     }
 
     const char *name() const
     {
-      return (*this)([](auto *law) -> const char * { return Of<decltype(law)>::NAME; });
+      return (*this)([](auto *law) -> const char * {
+        return Of<decltype(law)>::NAME;
+      });
     }
     const char *title() const
     {
-      return (*this)([](auto *law) -> const char * { return Of<decltype(law)>::TITLE; });
+      return (*this)([](auto *law) -> const char * {
+        return Of<decltype(law)>::TITLE;
+      });
     }
     bool for_plane_stress() const
     {
-      return (*this)([](auto *law) { return Of<decltype(law)>::PLANE_STRESS; });
+      return (*this)([](auto *law) {
+        return Of<decltype(law)>::PLANE_STRESS;
+      });
     }
     bool by_rate() const
     {
-      return (*this)([](auto *law) { return Of<decltype(law)>::BY_RATE; });
+      return (*this)([](auto *law) {
+        return Of<decltype(law)>::BY_RATE;
+      });
     }
     const char *history() const
     {
-      return (*this)([](auto *law) -> const char * { return Of<decltype(law)>::HISTORY; });
+      return (*this)([](auto *law) -> const char * {
+        return Of<decltype(law)>::HISTORY;
+      });
     }
     int columns(int dim) const    // of the history
     {

@@ -11,12 +11,14 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Loops of updated-Lagrangian solids (pair_style fsi/solid) over rows of pairs, as many at a time as the number type T holds (fsi_pack.h):
-// sums of the velocity gradient, hourglass control, forces.
+// Loops of updated-Lagrangian solids (pair_style fsi/solid) over rows of pairs, as many at a time
+// as the number type T holds (fsi_pack.h): sums of the velocity gradient, hourglass control,
+// forces.
 //
-// What a pair needs of a particle lies side by side in a record, filled once per particle. There is no branch on the distance: kernels are
-// zero from their support on, and nothing here divides by it. Places left over at the end of a row hold i itself, whose distance and
-// velocity from i are zero and all sums with them.
+// What a pair needs of a particle lies side by side in a record, filled once per particle. There is
+// no branch on the distance: kernels are zero from their support on, and nothing here divides by
+// it. Places left over at the end of a row hold i itself, whose distance and velocity from i are
+// zero and all sums with them.
 
 #ifndef LMP_FSI_SOLID_ROWS_H
 #define LMP_FSI_SOLID_ROWS_H
@@ -35,46 +37,67 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  constexpr int fours(int n) { return (n + 3) / 4 * 4; }
+  constexpr int fours(int n)
+  {
+    return (n + 3) / 4 * 4;
+  }
 
-  // Places in a record of the sums of rates: x half a step ago, to which v belongs, v, m/rho0, shear modulus.
+  // Places in a record of the sums of rates: x half a step ago, to which v belongs, v, m/rho0,
+  // shear modulus.
   template <int D> struct RateRecord {
     enum { X = 0, V = D, VOL = 2 * D, SHEAR, N = 8 };
     static_assert(SHEAR < N, "");
   };
 
-  // In a record of forces. Plain gradients (no TERMS): stress and, for artificial stress, R, times V^2. Else the stress times V, m/rho0, and the
-  // coefficients of the gradient's weights.
+  // In a record of forces. Plain gradients (no TERMS): stress and, for artificial stress, R, times
+  // V^2. Else the stress times V, m/rho0, and the coefficients of the gradient's weights.
   template <int D, int TERMS> struct ForceRecord {
     static constexpr int NS = Sym<D>::N;
-    enum { X = 0, V = D, VOL = 2 * D, RHO, SOUND, STRESS, VOL0 = STRESS + NS, FIT = VOL0 + (TERMS ? 1 : 0), ARTIFICIAL = FIT + D * TERMS, N = fours(ARTIFICIAL + NS) };
+    enum {
+      X = 0,
+      V = D,
+      VOL = 2 * D,
+      RHO,
+      SOUND,
+      STRESS,
+      VOL0 = STRESS + NS,
+      FIT = VOL0 + (TERMS ? 1 : 0),
+      ARTIFICIAL = FIT + D * TERMS,
+      N = fours(ARTIFICIAL + NS)
+    };
   };
 
-  // Doubles of a particle's velocity gradient: its sums, afterwards L and the coefficients of the weights (pair_fsi_solid.h)
+  // Doubles of a particle's velocity gradient: its sums, afterwards L and the coefficients of the
+  // weights (pair_fsi_solid.h)
   template <int D, int TERMS> struct GradientSums {
     static constexpr int N = TERMS ? D * TERMS + 2 * packed_size(TERMS) : D * D, ROW = fours(N);
   };
 
   // The first COUNT numbers of record j, of N; of several side by side.
-  template <int N, int COUNT, class T> FSI_INLINE void read_records(const double *records, const int *j, T (&a)[COUNT])
+  template <int N, int COUNT, class T>
+  FSI_INLINE void read_records(const double *records, const int *j, T (&a)[COUNT])
   {
     static_assert(N % 4 == 0 && COUNT % 4 == 0, "records are fours of numbers");
     if constexpr (std::is_same_v<T, double>) {
       for (int k = 0; k < COUNT; k++) a[k] = records[(size_t) N * j[0] + k];
     } else {
-      const double *const p = records + (size_t) N * j[0], *const q = records + (size_t) N * j[1], *const r = records + (size_t) N * j[2],
+      const double *const p = records + (size_t) N * j[0], *const q = records + (size_t) N * j[1],
+                          *const r = records + (size_t) N * j[2],
                           *const s = records + (size_t) N * j[3];
       for (int k = 0; k < COUNT; k += 4) T::columns(p + k, q + k, r + k, s + k, a + k);
     }
   }
   // those of i, the same in all places
-  template <int N, int COUNT, class T> FSI_INLINE void read_own(const double *records, int i, T (&a)[COUNT])
+  template <int N, int COUNT, class T>
+  FSI_INLINE void read_own(const double *records, int i, T (&a)[COUNT])
   {
     for (int k = 0; k < COUNT; k++) a[k] = records[(size_t) N * i + k];
   }
 
-  // sum_j w phi (x) phi of both particles of a pair, phi as seen from i: from j the linear terms change sign
-  template <int D, int TERMS, class T> FSI_INLINE void add_moments(const T *phi, const T &wi, const T &wj, T *of_i, T *of_j)
+  // sum_j w phi (x) phi of both particles of a pair, phi as seen from i: from j the linear terms
+  // change sign
+  template <int D, int TERMS, class T>
+  FSI_INLINE void add_moments(const T *phi, const T &wi, const T &wj, T *of_i, T *of_j)
   {
     for (int a = 0, m = 0; a < TERMS; a++)
       for (int b = 0; b <= a; b++, m++) {
@@ -84,11 +107,13 @@ namespace FSI {
       }
   }
 
-  // Adds the sums of the velocity gradient to rows of both particles, V_j = m_j/rho0: the density at hand is half a step older than positions
-  // and velocities, and would make the solid first order in time and irreversible; what it would change is its compression, below the error
-  // of the plain gradient. half: half of the step that positions went since.
+  // Adds the sums of the velocity gradient to rows of both particles, V_j = m_j/rho0: the density
+  // at hand is half a step older than positions and velocities, and would make the solid first
+  // order in time and irreversible; what it would change is its compression, below the error of the
+  // plain gradient. half: half of the step that positions went since.
   template <class T, class K, int TERMS>
-  FSI_INLINE void gradient_rows(const Row *const rows, const int nrows, const K kernel, const double *const records, const double half,
+  FSI_INLINE void gradient_rows(const Row *const rows, const int nrows, const K kernel,
+                                const double *const records, const double half,
                                 double (*const grad)[GradientSums<K::DIM, TERMS>::ROW])
   {
     constexpr int D = K::DIM, N = GradientSums<D, TERMS>::N, NR = RateRecord<D>::N;
@@ -98,7 +123,7 @@ namespace FSI {
       T own[NR], of_i[N];
       read_own<NR>(records, row.i, own);
       for (T &s : of_i) s = 0.0;
-      for_neighbors<T, false>(row, [&](const int *j, const T &) __attribute__((always_inline)) {
+      for_neighbors<T, false>(row, [&](const int *j, const T &) FSI_INLINE_LAMBDA {
         T other[NR], x[D], v[D], of_j[N], rsq = 0.0;
         read_records<NR>(records, j, other);
         for (int d = 0; d < D; d++) {
@@ -135,7 +160,8 @@ namespace FSI {
           const T now = kernel.gradient(root(nowsq));
           gradient_basis<D, TERMS>(seen, phi);
           constexpr int FORCES = D * TERMS + packed_size(TERMS);
-          add_moments<D, TERMS>(phi, -now * other[At::VOL], -now * own[At::VOL], of_i + FORCES, of_j + FORCES);
+          add_moments<D, TERMS>(phi, -now * other[At::VOL], -now * own[At::VOL], of_i + FORCES,
+                                of_j + FORCES);
         }
         Lanes<T>::add_rows(of_j, grad, j);
       });
@@ -143,10 +169,13 @@ namespace FSI {
     }
   }
 
-  // Adds the rate of the forces of hourglass control (fsi_hourglass.h); gradients: rows of ROW, with L in front
+  // Adds the rate of the forces of hourglass control (fsi_hourglass.h); gradients: rows of ROW,
+  // with L in front
   template <class T, class K, int ROW>
-  FSI_INLINE void hourglass_rows(const Row *const rows, const int nrows, const K kernel, const double *const records, const double *const gradients,
-                                 const Hourglass hourglass, double (*const rate)[row_of_forces(K::DIM)])
+  FSI_INLINE void hourglass_rows(const Row *const rows, const int nrows, const K kernel,
+                                 const double *const records, const double *const gradients,
+                                 const Hourglass hourglass,
+                                 double (*const rate)[row_of_forces(K::DIM)])
   {
     constexpr int D = K::DIM, NR = RateRecord<D>::N, NL = fours(D * D);
     using At = RateRecord<D>;
@@ -156,7 +185,7 @@ namespace FSI {
       read_own<NR>(records, row.i, own);
       read_own<ROW>(gradients, row.i, L_i);
       for (T &s : of_i) s = 0.0;
-      for_neighbors<T, false>(row, [&](const int *j, const T &) __attribute__((always_inline)) {
+      for_neighbors<T, false>(row, [&](const int *j, const T &) FSI_INLINE_LAMBDA {
         T other[NR], L_j[NL], L[D * D], x[D], v[D], of_pair[D], of_j[D], rsq = 0.0;
         read_records<NR>(records, j, other);
         read_records<ROW>(gradients, j, L_j);
@@ -166,7 +195,9 @@ namespace FSI {
           v[d] = own[At::V + d] - other[At::V + d];
           rsq += x[d] * x[d];
         }
-        hourglass.operator()<D, T>(0.5 * (own[At::SHEAR] + other[At::SHEAR]), own[At::VOL] * other[At::VOL], kernel.gradient(root(rsq)), x, v, L, of_pair);
+        hourglass.operator()<D, T>(0.5 * (own[At::SHEAR] + other[At::SHEAR]),
+                                   own[At::VOL] * other[At::VOL], kernel.gradient(root(rsq)), x, v,
+                                   L, of_pair);
         for (int d = 0; d < D; d++) {
           of_i[d] += of_pair[d];
           of_j[d] = -of_pair[d];
@@ -177,7 +208,8 @@ namespace FSI {
     }
   }
 
-  // what a loop of forces is compiled for: artificial viscosity, artificial stress, sums of powers, pairs of different bodies
+  // what a loop of forces is compiled for: artificial viscosity, artificial stress, sums of powers,
+  // pairs of different bodies
   namespace SolidFlag {
     enum { VISCOSITY = 1, STRESS = 2, SUMS = 4, CONTACT = 8 };
   }
@@ -191,15 +223,19 @@ namespace FSI {
     ArtificialViscosity viscosity;
     ArtificialStress artificial;
     Contact contact;
-    const int *type;
-    const State *state;
-    int nlocal;
-    bool newton;    // else a pair across ranks is visited on both: each counts half of powers
-    SolidSums *sums;
+    const int *type = nullptr;
+    const State *state = nullptr;
+    int nlocal = 0;
+    // else a pair across ranks is visited on both: each counts half of powers
+    bool newton = false;
+    SolidSums *sums = nullptr;
   };
 
-  // takes w_i V_i sigma_i G_i - w_j V_j sigma_j G_j from t, with the corrected gradients G of i and of j (fsi_gradient.h) over -g
-  template <int D, int TERMS, class T> FSI_INLINE void subtract_corrected(const T *own, const T *other, const T (&x)[D], double hinv, T (&t)[D])
+  // takes w_i V_i sigma_i G_i - w_j V_j sigma_j G_j from t, with the corrected gradients G of i and
+  // of j (fsi_gradient.h) over -g
+  template <int D, int TERMS, class T>
+  FSI_INLINE void subtract_corrected(const T *own, const T *other, const T (&x)[D], double hinv,
+                                     T (&t)[D])
   {
     using At = ForceRecord<D, TERMS>;
     T seen[D], phi[TERMS], Gi[D], Gj[D], si[D], sj[D];
@@ -211,8 +247,10 @@ namespace FSI {
     for (int a = 0; a < D; a++)
       for (int k = 0; k < TERMS; k++) {
         Gi[a] += own[At::FIT + a * TERMS + k] * phi[k];
-        if (k < D) Gj[a] -= other[At::FIT + a * TERMS + k] * phi[k];
-        else Gj[a] += other[At::FIT + a * TERMS + k] * phi[k];
+        if (k < D)
+          Gj[a] -= other[At::FIT + a * TERMS + k] * phi[k];
+        else
+          Gj[a] += other[At::FIT + a * TERMS + k] * phi[k];
       }
     dot(Sym<D, T>::load(own + At::STRESS), Gi, si);
     dot(Sym<D, T>::load(other + At::STRESS), Gj, sj);
@@ -220,12 +258,14 @@ namespace FSI {
   }
 
   // Adds the forces of pairs to both.
-  // gradient plain: F_ij = [sigma_i V_i^2 + sigma_j V_j^2 + (R_i + R_j) (W_ij/W(dx))^4 - Q_ij I] . grad_i W_ij (paper eq. 14), sigma = -p I + S
-  // corrected, quadratic: with the weights G_ij = -V_j g C phi of the gradient V_i sigma_i G_ij - V_j sigma_j G_ji instead of the first two
-  // terms. What deforms the solid is what resists: energy and angular momentum are kept
+  // gradient plain: F_ij = [sigma_i V_i^2 + sigma_j V_j^2 + (R_i + R_j) (W_ij/W(dx))^4 - Q_ij I] .
+  // grad_i W_ij (paper eq. 14), sigma = -p I + S corrected, quadratic: with the weights G_ij = -V_j
+  // g C phi of the gradient V_i sigma_i G_ij - V_j sigma_j G_ji instead of the first two terms.
+  // What deforms the solid is what resists: energy and angular momentum are kept
   // between bodies only contact (fsi_contact.h) and Q: bodies do not stick, nor share their stress
   template <class T, class K, int TERMS, int FLAGS>
-  FSI_INLINE void force_rows(const Row *const rows, const int nrows, const K kernel, const double *const records, const SolidLaws laws,
+  FSI_INLINE void force_rows(const Row *const rows, const int nrows, const K kernel,
+                             const double *const records, const SolidLaws laws,
                              double (*const f)[row_of_forces(K::DIM)])
   {
     using namespace SolidFlag;
@@ -239,7 +279,7 @@ namespace FSI {
       T own[NR], of_i[D];
       read_own<NR>(records, row.i, own);
       for (T &s : of_i) s = 0.0;
-      for_neighbors<T, false>(row, [&](const int *j, const T &) __attribute__((always_inline)) {
+      for_neighbors<T, false>(row, [&](const int *j, const T &) FSI_INLINE_LAMBDA {
         T other[NR], x[D], v[D], force[D], of_j[D];
         read_records<NR>(records, j, other);
         for (int d = 0; d < D; d++) {
@@ -247,7 +287,8 @@ namespace FSI {
           v[d] = own[At::V + d] - other[At::V + d];
           force[d] = 0.0;
         }
-        const T rsq = product(x, x), r = root(rsq), g = kernel.gradient(r), share = (FLAGS & SUMS) ? share_of<T>(row.i, j, laws.nlocal, laws.newton) : T(1.0);
+        const T rsq = product(x, x), r = root(rsq), g = kernel.gradient(r),
+                share = (FLAGS & SUMS) ? share_of<T>(row.i, j, laws.nlocal, laws.newton) : T(1.0);
         if constexpr (!(FLAGS & CONTACT)) {
           Sym<D, T> t;
           if constexpr (TERMS == 0) {
@@ -278,11 +319,19 @@ namespace FSI {
         if (FLAGS & SUMS) by_gradient -= share * product(force, v);
         if (FLAGS & VISCOSITY) {
           const T vdotx = product(v, x);
-          const T q = g * laws.viscosity(vdotx, rsq, T(0.5 * (own[At::RHO] + other[At::RHO])), T(0.5 * (own[At::SOUND] + other[At::SOUND])), T(own[At::VOL] * other[At::VOL]));
+          const T q = g *
+              laws.viscosity(vdotx, rsq, T(0.5 * (own[At::RHO] + other[At::RHO])),
+                             T(0.5 * (own[At::SOUND] + other[At::SOUND])),
+                             T(own[At::VOL] * other[At::VOL]));
           for (int d = 0; d < D; d++) force[d] -= q * x[d];
           if (FLAGS & SUMS) by_viscosity += share * q * vdotx;
         }
-        if (FLAGS & SUMS) add_virial<D>([&](int a, int b) __attribute__((always_inline)) { return share * x[a] * force[b]; }, virial);
+        if (FLAGS & SUMS)
+          add_virial<D>(
+              [&](int a, int b) FSI_INLINE_LAMBDA {
+                return share * x[a] * force[b];
+              },
+              virial);
         for (int d = 0; d < D; d++) {
           of_i[d] += force[d];
           of_j[d] = -force[d];

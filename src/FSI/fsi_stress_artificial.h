@@ -11,9 +11,10 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Artificial stress (Gray, Monaghan and Swift 2001), paper eq. 14: short-range repulsion along tensile principal
-// directions, against the tensile instability of solids.
-//   R_i = -epsilon V_i^2 sum_k s_k n_k n_k^T over principal stresses s_k > 0,  F_ij += (R_i + R_j) (W_ij/W(dx))^q . grad_i W_ij
+// Artificial stress (Gray, Monaghan and Swift 2001), paper eq. 14: short-range repulsion along
+// tensile principal directions, against the tensile instability of solids.
+//   R_i = -epsilon V_i^2 sum_k s_k n_k n_k^T over principal stresses s_k > 0,  F_ij += (R_i + R_j)
+//     (W_ij/W(dx))^q . grad_i W_ij
 
 #ifndef LMP_FSI_STRESS_ARTIFICIAL_H
 #define LMP_FSI_STRESS_ARTIFICIAL_H

@@ -31,8 +31,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-// time from one look to the next over h/c: ten usual time steps, in which particles move by h/2 at a
-// Mach number of 0.1
+// time from one look to the next over h/c: ten usual time steps, in which particles move by h/2 at
+// a Mach number of 0.1
 static constexpr double PERIOD = 5.0;
 static const std::string SINCE = "time since the last look at surfaces";
 static constexpr double ROUND = 1.0e-6;    // missing parts of a lattice's sum that may be round-off
@@ -78,8 +78,10 @@ double RoomOfPlane::operator()(double s) const
 
 /* ---------------------------------------------------------------------- */
 
-SurfaceRoom::SurfaceRoom(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density, SumOverGhosts add_ghosts) :
-    Pointers(lmp), scene(scene), number_density(number_density), add_ghosts(std::move(add_ghosts)), room(nullptr),
+SurfaceRoom::SurfaceRoom(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density,
+                         SumOverGhosts add_ghosts) :
+    Pointers(lmp),
+    scene(scene), number_density(number_density), add_ghosts(std::move(add_ghosts)), room(nullptr),
     since(0.0), since_before(0.0), due(false)
 {
 }
@@ -90,7 +92,8 @@ void SurfaceRoom::set_array(Fields &fields)
   const auto wanted = [&]() {
     return !force->pair || facts_of_fluids(lmp).density_at_surfaces;
   };
-  fields.set("room at the surface", Fields::RESTART, scene.density_fluid == Scene::CONTINUITY && wanted(), room, 2);
+  fields.set("room at the surface", Fields::RESTART,
+             scene.density_fluid == Scene::CONTINUITY && wanted(), room, 2);
   if (room) of_plane = RoomOfPlane(scene.kernel, scene.dim, scene.h / scene.dx);
 }
 
@@ -161,7 +164,9 @@ void SurfaceRoom::add_costs(Costs &costs) const
 void SurfaceRoom::begin()
 {
   const int nlocal = atom->nlocal, *const type = atom->type;
-  const auto is_new = [&](int i) { return scene.state[type[i]].species == FLUID && room[i][0] == 0.0; };
+  const auto is_new = [&](int i) {
+    return scene.state[type[i]].species == FLUID && room[i][0] == 0.0;
+  };
   int mine = 0, any;
   for (int i = 0; i < nlocal; i++) mine |= is_new(i);
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
@@ -171,7 +176,8 @@ void SurfaceRoom::begin()
   const auto asymmetry = gradients();
   for (int i = 0; i < nlocal; i++)
     if (is_new(i)) {
-      const double missing = std::max(0.0, 1.0 - psi[i] / scene.psi_bulk), plane = of_plane(asymmetry[i]);
+      const double missing = std::max(0.0, 1.0 - psi[i] / scene.psi_bulk),
+                   plane = of_plane(asymmetry[i]);
       room[i][0] = 1.0 + missing;
       const bool inside = missing <= std::max(plane, ROUND);
       room[i][1] = inside ? 1.0 : missing < EDGE * plane ? missing / plane : EDGE;
@@ -204,7 +210,8 @@ void SurfaceRoom::follow()
   for (int i = 0; i < atom->nlocal; i++) {
     const State &state = scene.state[atom->type[i]];
     if (state.species != FLUID) continue;
-    const double had = room[i][0] - 1.0, most = room[i][1] * of_plane(asymmetry[i]), free = 1.0 - atom->rho[i] / state.rho0;
+    const double had = room[i][0] - 1.0, most = room[i][1] * of_plane(asymmetry[i]),
+                 free = 1.0 - atom->rho[i] / state.rho0;
     const double has = had > most ? most : free > 0.0 ? std::min(most, had + free) : had;
     if (has == had) continue;
     const double before = atom->rho[i];
@@ -212,13 +219,15 @@ void SurfaceRoom::follow()
     atom->rho[i] = std::max(before + (has - had) * state.rho0, atom->rmass[i] * scene.w0);
     changes[2 * i] = has - had;
     changes[2 * i + 1] = atom->rho[i] - before;
-    if (scene.ledger) scene.energy_out[Scene::DIFFUSION] += energy_loss(i, before, atom->rho[i] - before);
+    if (scene.ledger)
+      scene.energy_out[Scene::DIFFUSION] += energy_loss(i, before, atom->rho[i] - before);
   }
 }
 
 /* ----------------------------------------------------------------------
-   Forces have the density of before until the step's start, and that of after from there: the change is one at its start, between
-   two densities, which is what the ledger's energy is of (where it takes half of a step's work, the other is in the next)
+   Forces have the density of before until the step's start, and that of after from there: the
+   change is one at its start, between two densities, which is what the ledger's energy is of (where
+   it takes half of a step's work, the other is in the next)
 ------------------------------------------------------------------------- */
 
 double SurfaceRoom::energy_loss(int i, double now, double change) const

@@ -11,16 +11,18 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
-// The room at free surfaces. Continuity keeps rho - m psi of a particle, psi being its number density (pair_fsi_fluid.cpp): what began
-// at a surface, where neighbours are missing, would keep the room of those inside, and a block of water that has fallen into a box
-// would stay too large. So the part of rho that stands for missing neighbours,
+// The kernel's deficit at free surfaces. Continuity conserves rho - m psi of a particle, psi being
+// its number density (pair_fsi_fluid.cpp): a particle that starts at a surface keeps its deficit
+// when it is covered, and a block of water that has fallen into a box would stay too large. So the
+// part of rho that stands for missing neighbors,
 //   room = 1 - psi/psi_bulk  at the start,
-// is kept for each particle, and may not be more than that of a particle at a plane surface with the same sum of gradients,
+// is kept for each particle, and is bounded by that of a particle at a plane surface with the same
+// sum of gradients,
 //   s = h |sum_j grad W_ij|/psi_bulk
-// (on edges, in proportion to what it was at the start):
-// where neighbours come, room and density go. Where a surface opens it grows to that bound, at p = 0, as long as the density does not
-// exceed rho0: no pressure comes of it. Nothing depends on how often this is asked, but for what happens in between.
+// (at edges in proportion to its value at the start):
+// where neighbors come, room and density decrease. Where a surface opens, room grows to that bound,
+// at p = 0, as long as the density does not exceed rho0: this adds no pressure. Apart from what
+// happens in between, the result does not depend on how often it is evaluated.
 
 #ifndef LMP_FSI_SURFACE_ROOM_H
 #define LMP_FSI_SURFACE_ROOM_H
@@ -69,7 +71,8 @@ namespace FSI {
     Scene &scene;
     const NumberDensity &number_density;
     const SumOverGhosts add_ghosts;
-    double **room;    // 1 + room (0: not known yet), and how often that of a plane it was at the start, on an edge
+    double **room;    // 1 + room (0: not known yet), and how often that of a plane it was at the
+                      // start, on an edge
     double since, since_before;    // time since the last look, now and at the start of this step
     bool due;
     RoomOfPlane of_plane;

@@ -26,8 +26,8 @@ using namespace FSI;
 namespace {
 struct Brick : public CommBrick {
   static constexpr auto number = &Brick::nswap;
-  static constexpr auto to = &Brick::sendproc, from = &Brick::recvproc, nsend = &Brick::sendnum, nrecv = &Brick::recvnum,
-                        first = &Brick::firstrecv, flag = &Brick::pbc_flag;
+  static constexpr auto to = &Brick::sendproc, from = &Brick::recvproc, nsend = &Brick::sendnum,
+                        nrecv = &Brick::recvnum, first = &Brick::firstrecv, flag = &Brick::pbc_flag;
   static constexpr auto list = &Brick::sendlist, pbc = &Brick::pbc;
 };
 }    // namespace
@@ -92,6 +92,7 @@ void Swaps::reverse(Pair *pair)
   for (auto s = swaps.rbegin(); s != swaps.rend(); ++s) {
     if ((int) out.size() < s->arriving * size) out.resize(s->arriving * size);
     const int n = pair->pack_reverse_comm(s->n, s->first, out.data());
-    pair->unpack_reverse_comm(s->list.size(), s->list.data(), pass(s->from, n, s->to, s->list.size() * size));
+    pair->unpack_reverse_comm(s->list.size(), s->list.data(),
+                              pass(s->from, n, s->to, s->list.size() * size));
   }
 }

@@ -24,8 +24,9 @@ class Pair;
 
 namespace FSI {
 
-  // LAMMPS' exchanges with ghosts, without those that carry none of the chosen particles: both ends of an exchange see whether it
-  // does, so nobody waits for an empty message. With comm_style tiled they are LAMMPS' own.
+  // LAMMPS' exchanges with ghosts, without those that carry none of the chosen particles: both ends
+  // of an exchange see whether it does, so nobody waits for an empty message. With comm_style tiled
+  // they are LAMMPS' own.
   class Swaps : protected Pointers {
    public:
     explicit Swaps(LAMMPS *lmp) : Pointers(lmp), chosen(false) {}
@@ -37,8 +38,10 @@ namespace FSI {
 
    private:
     struct Swap {
-      std::vector<int> list;                         // chosen particles that are sent
-      int to, from, first, n, arriving, flag, *pbc;  // ghosts first to first + n - 1, chosen or not; how many are
+      std::vector<int> list;    // chosen particles that are sent
+      // ghosts first to first + n - 1, chosen or
+      int to = 0, from = 0, first = 0, n = 0, arriving = 0, flag = 0, *pbc = nullptr;
+      // not; how many are
     };
     bool chosen;
     std::vector<Swap> swaps;

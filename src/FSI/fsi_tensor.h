@@ -11,10 +11,12 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Symmetric tensors and rotations in 2D and 3D, the only place where tensor algebra is written down.
+// Symmetric tensors and rotations in 2D and 3D, the only place where tensor algebra is written
+// down.
 //
 // A symmetric tensor of dimension D keeps its in-plane part in Voigt order {xx, yy, xy} (2D) or
-// {xx, yy, zz, xy, xz, yz} (3D). A full D x D matrix is row-major. No LAMMPS types except MathEigen.
+// {xx, yy, zz, xy, xz, yz} (3D). A full D x D matrix is row-major. No LAMMPS types except
+// MathEigen.
 
 #ifndef LMP_FSI_TENSOR_H
 #define LMP_FSI_TENSOR_H
@@ -30,9 +32,11 @@ namespace FSI {
   // of full matrices
   template <int D> inline double determinant(const double *F)
   {
-    if constexpr (D == 2) return F[0] * F[3] - F[1] * F[2];
+    if constexpr (D == 2)
+      return F[0] * F[3] - F[1] * F[2];
     else
-      return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+      return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+          F[2] * (F[3] * F[7] - F[4] * F[6]);
   }
 
   // det(F) F^-T
@@ -139,8 +143,9 @@ namespace FSI {
     return e;
   }
 
-  // Rotation Q = exp(dt w) for the spin w = antisym(L), L_ab = dv_a/dx_b (Rodrigues' formula; exact, so that a rigid
-  // spin keeps every invariant of a rotated tensor to round-off whatever the step).
+  // Rotation Q = exp(dt w) for the spin w = antisym(L), L_ab = dv_a/dx_b (Rodrigues' formula;
+  // exact, so that a rigid spin keeps every invariant of a rotated tensor to round-off whatever the
+  // step).
   template <int D> inline void rotation(const double *L, double dt, double *Q)
   {
     if constexpr (D == 2) {
@@ -151,7 +156,8 @@ namespace FSI {
       Q[2] = s;
       Q[3] = c;
     } else {
-      const double wx = 0.5 * dt * (L[7] - L[5]), wy = 0.5 * dt * (L[2] - L[6]), wz = 0.5 * dt * (L[3] - L[1]);
+      const double wx = 0.5 * dt * (L[7] - L[5]), wy = 0.5 * dt * (L[2] - L[6]),
+                   wz = 0.5 * dt * (L[3] - L[1]);
       const double t2 = wx * wx + wy * wy + wz * wz, t = std::sqrt(t2);
       // sin(t)/t and (1-cos t)/t^2, with their limits
       const double a = t > 1.0e-4 ? std::sin(t) / t : 1.0 - t2 / 6.0;
@@ -205,7 +211,8 @@ namespace FSI {
       r.c[1] = f * (radius - half);
       r.c[2] = f * t.c[2];
     } else {
-      const double m[3][3] = {{t.c[0], t.c[3], t.c[4]}, {t.c[3], t.c[1], t.c[5]}, {t.c[4], t.c[5], t.c[2]}};
+      const double m[3][3] = {
+          {t.c[0], t.c[3], t.c[4]}, {t.c[3], t.c[1], t.c[5]}, {t.c[4], t.c[5], t.c[2]}};
       double s[3], n[3][3];    // columns of n are the principal directions
       MathEigen::jacobi3(m, s, n);
       for (int k = 0; k < 3; k++) {
@@ -218,7 +225,8 @@ namespace FSI {
   }
 
   // adds a tensor, by its components, to a virial in LAMMPS' order
-  template <int D, class Component, class T> FSI_INLINE void add_virial(Component component, T *virial)
+  template <int D, class Component, class T>
+  FSI_INLINE void add_virial(Component component, T *virial)
   {
     virial[0] += component(0, 0);
     virial[1] += component(1, 1);

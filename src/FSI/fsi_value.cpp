@@ -65,9 +65,12 @@ int Values::variable(Value &v) const
 {
   const int n = input->variable->find(v.name.c_str());
   if (n < 0) error->all(FLERR, "Variable {} of {} does not exist", v.name, command);
-  if (input->variable->equalstyle(n)) v.source = EQUAL;
-  else if (input->variable->atomstyle(n)) v.source = ATOM;
-  else error->all(FLERR, "Variable {} of {} must be equal-style or atom-style", v.name, command);
+  if (input->variable->equalstyle(n))
+    v.source = EQUAL;
+  else if (input->variable->atomstyle(n))
+    v.source = ATOM;
+  else
+    error->all(FLERR, "Variable {} of {} must be equal-style or atom-style", v.name, command);
   return n;
 }
 
@@ -79,7 +82,9 @@ void Values::find()
 
 bool Values::of_atoms() const
 {
-  return std::any_of(list.begin(), list.end(), [](const Value &v) { return v.source == ATOM; });
+  return std::any_of(list.begin(), list.end(), [](const Value &v) {
+    return v.source == ATOM;
+  });
 }
 
 std::string Values::text() const

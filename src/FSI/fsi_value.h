@@ -42,13 +42,14 @@ namespace FSI {
     void find();
     Source source(int k) const { return list[k].source; }
     bool given(int k) const { return list[k].source != FREE; }
-    bool of_atoms() const;    // is any an atom-style variable?
+    bool of_atoms() const;       // is any an atom-style variable?
     std::string text() const;    // as in the command
 
     // all ranks together, at the time that LAMMPS has; atom-style ones of the particles of a group;
     // n of them from the first one on
     void evaluate(int igroup, int first, int n, bool atoms = true);
-    double number(int k) const { return list[k].number; }    // of none or of an atom-style variable: 0
+    // of none or of an atom-style variable: 0
+    double number(int k) const { return list[k].number; }
     double operator()(int k, int i) const
     {
       return list[k].source == ATOM ? each[i][k] : list[k].number;

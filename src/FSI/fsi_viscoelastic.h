@@ -45,7 +45,7 @@ namespace FSI {
     static constexpr char HISTORY[] = "viscoelastic stress";
 
     struct Term {
-      double g, tau;
+      double g = 0.0, tau = 0.0;
     };
     double bulk, mu;
     std::vector<Term> terms;
@@ -74,7 +74,8 @@ namespace FSI {
         if (diagonal<D>(c)) trace += q[c];
       }
       double det;
-      if constexpr (D == 2) det = (A[0] * A[1] - A[2] * A[2]) * A[3];
+      if constexpr (D == 2)
+        det = (A[0] * A[1] - A[2] * A[2]) * A[3];
       else
         det = A[0] * (A[1] * A[2] - A[5] * A[5]) - A[3] * (A[3] * A[2] - A[5] * A[4]) +
             A[4] * (A[3] * A[5] - A[1] * A[4]);

@@ -12,7 +12,8 @@
 ------------------------------------------------------------------------- */
 
 // Artificial viscosity (Monaghan 1992), paper eq. 14: damps approach only, never separation.
-//   F_ij = -Q_ij grad_i W_ij,  Q_ij = rho_ij V_i V_j (-alpha c_ij mu + beta mu^2),  mu = h v_ij.x_ij/(r^2 + 0.01 h^2) < 0
+//   F_ij = -Q_ij grad_i W_ij,  Q_ij = rho_ij V_i V_j (-alpha c_ij mu + beta mu^2),  mu = h
+//     v_ij.x_ij/(r^2 + 0.01 h^2) < 0
 
 #ifndef LMP_FSI_VISCOSITY_ARTIFICIAL_H
 #define LMP_FSI_VISCOSITY_ARTIFICIAL_H
@@ -29,7 +30,9 @@ namespace FSI {
     {
     }
     // vdotx = v_ij.x_ij; rho, c: means of the pair; vv = V_i V_j; T: double or Pack, C, too
-    template <class T, class C> FSI_INLINE T operator()(const T &vdotx, const T &rsq, const T &rho, const C &c, const T &vv) const
+    template <class T, class C>
+    FSI_INLINE T operator()(const T &vdotx, const T &rsq, const T &rho, const C &c,
+                            const T &vv) const
     {
       if (none(vdotx < T(0.0))) return T(0.0);
       const T mu = h * lesser(vdotx, T(0.0)) / (rsq + eta);

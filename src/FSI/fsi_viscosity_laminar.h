@@ -14,12 +14,15 @@
 // Laminar viscosity, with V = m/rho and in both forms the mean viscosity of two fluids:
 //   plain (Morris, Fox and Zhu 1997, eq. 22):
 //     F_ij = V_i V_j (eta_i + eta_j) (x_ij.grad_i W_ij)/r^2 v_ij
-//   central (Monaghan and Gingold 1983, with Monaghan's 2005 factor 2(d+2)), along the line of centres:
+//   central (Monaghan and Gingold 1983, with Monaghan's 2005 factor 2(d+2)), along the line of
+//     centers:
 //     F_ij = V_i V_j (d + 2)(eta_i + eta_j) (v_ij.x_ij)/r^2 grad_i W_ij
-// Both papers add 0.01 h^2 to r^2, which makes the viscosity 0.6 % smaller; but nothing is singular here: grad_i W_ij = g x_ij, g is finite.
-// Both are the Laplacian of an incompressible flow. The plain one takes eta |grad v|^2 from the flow, the central one
-// 2 eta e:e, e the rate of strain: only that is right at a free surface (Colagrossi, Antuono, Souto-Iglesias and Le Touze
-// 2011), and only that keeps angular momentum; the plain one is quieter in shear.
+// Both papers add 0.01 h^2 to r^2, which makes the viscosity 0.6 % smaller; but nothing is singular
+// here: grad_i W_ij = g x_ij, g is finite. Both are the Laplacian of an incompressible flow. The
+// plain one takes eta |grad v|^2 from the flow, the central one
+// 2 eta e:e, e the rate of strain: only that is right at a free surface (Colagrossi, Antuono,
+// Souto-Iglesias and Le Touze 2011), and only that keeps angular momentum; the plain one is quieter
+// in shear.
 
 #ifndef LMP_FSI_VISCOSITY_LAMINAR_H
 #define LMP_FSI_VISCOSITY_LAMINAR_H
@@ -33,8 +36,11 @@ namespace FSI {
     double tiny;    // for places that hold i itself
     bool central;
     LaminarViscosity(double h, bool c) : tiny(1.0e-12 * h * h), central(c) {}
-    // adds F_ij to f and returns the power it takes; g: grad_i W_ij = g x_ij; visc: eta_i + eta_j; vv = V_i V_j; T: double or Pack
-    template <class T> FSI_INLINE T operator()(const T &g, const T &rsq, double visc, const T &vv, const T *x_ij, const T *v_ij, T *f) const
+    // adds F_ij to f and returns the power it takes; g: grad_i W_ij = g x_ij; visc: eta_i + eta_j;
+    // vv = V_i V_j; T: double or Pack
+    template <class T>
+    FSI_INLINE T operator()(const T &g, const T &rsq, double visc, const T &vv, const T *x_ij,
+                            const T *v_ij, T *f) const
     {
       const T k = vv * visc * g;
       T power = 0.0;

@@ -13,12 +13,13 @@
 
 // Mirror walls: planar walls and wall segments that act through images of the particles near them.
 //
-// The images that matter to particle i are images of i itself and of its own neighbours, because an image is never
-// nearer to i than its original while both are on the wall's fluid side. So walls are treated inside the pair loops:
-// no ghost atoms, no communication. With a_i the distance of i to the plane, |x_i - M x_j|^2 = r_ij^2 + 4 a_i a_j.
-// Corners need the image of the image: every set of mutually perpendicular walls that both particles can see is a
-// reflection of its own. A wall segment reflects i onto j if the straight line from i to the image of j passes
-// through the segment; the rule is symmetric in i and j.
+// The images that matter to particle i are images of i itself and of its own neighbors, because an
+// image is never nearer to i than its original while both are on the wall's fluid side. So walls
+// are treated inside the pair loops: no ghost atoms, no communication. With a_i the distance of i
+// to the plane, |x_i - M x_j|^2 = r_ij^2 + 4 a_i a_j. Corners need the image of the image: every
+// set of mutually perpendicular walls that both particles can see is a reflection of its own. A
+// wall segment reflects i onto j if the straight line from i to the image of j passes through the
+// segment; the rule is symmetric in i and j.
 // Bodies that pass through a wall: before().
 
 #ifndef LMP_FSI_WALLS_H
@@ -31,17 +32,20 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   struct Wall {
-    int axis;              // normal direction 0,1,2
-    double side;           // +1: fluid above the plane (xlo), -1: below (xhi)
-    double position;       // of the plane along axis
-    double velocity[3];    // of the wall; the component along axis moves the plane
-    bool noslip;           // image velocity for viscous forces
-    bool finite;           // has an extent
-    double lo[3], hi[3];   // extent along the other two axes
+    int axis = 0;                     // normal direction 0,1,2
+    double side = 1.0;                // +1: fluid above the plane (xlo), -1: below (xhi)
+    double position = 0.0;            // of the plane along axis
+    double velocity[3] = {};          // of the wall; the component along axis moves the plane
+    bool noslip = false;              // image velocity for viscous forces
+    bool finite = false;              // has an extent
+    double lo[3] = {}, hi[3] = {};    // extent along the other two axes
 
     double distance(const double *x) const { return side * (x[axis] - position); }
     // part of the cell of a particle with spacing dx that is before a plane without end
-    double before(const double *x, double dx) const { return finite ? 1.0 : std::fmin(std::fmax(0.5 + distance(x) / dx, 0.0), 1.0); }
+    double before(const double *x, double dx) const
+    {
+      return finite ? 1.0 : std::fmin(std::fmax(0.5 + distance(x) / dx, 0.0), 1.0);
+    }
     // inside the extent, widened by margin
     bool spans(const double *x, double margin) const
     {
@@ -52,7 +56,8 @@ namespace FSI {
     }
   };
 
-  // Where no point is within a margin of a wall's plane or behind it: the many that are there need no look at each wall.
+  // Where no point is within a margin of a wall's plane or behind it: the many that are there need
+  // no look at each wall.
   struct InnerBox {
     double lo[3], hi[3];
     InnerBox(const std::vector<Wall> &walls, double margin)
@@ -62,12 +67,15 @@ namespace FSI {
         hi[d] = INFINITY;
       }
       for (const auto &w : walls)
-        if (w.side > 0.0) lo[w.axis] = std::fmax(lo[w.axis], w.position + margin);
-        else hi[w.axis] = std::fmin(hi[w.axis], w.position - margin);
+        if (w.side > 0.0)
+          lo[w.axis] = std::fmax(lo[w.axis], w.position + margin);
+        else
+          hi[w.axis] = std::fmin(hi[w.axis], w.position - margin);
     }
     bool contains(const double *x) const
     {
-      return x[0] > lo[0] && x[0] < hi[0] && x[1] > lo[1] && x[1] < hi[1] && x[2] > lo[2] && x[2] < hi[2];
+      return x[0] > lo[0] && x[0] < hi[0] && x[1] > lo[1] && x[1] < hi[1] && x[2] > lo[2] &&
+          x[2] < hi[2];
     }
   };
 
@@ -78,7 +86,7 @@ namespace FSI {
     std::vector<Wall> wall;
 
     struct Reflection {    // a set of up to three mutually perpendicular walls
-      int mask, n, w[3];
+      int mask = 0, n = 0, w[3] = {};
     };
     std::vector<Reflection> reflections;
 
@@ -106,26 +114,31 @@ namespace FSI {
       }
     }
 
-    // bits of the walls that x is near enough to have images in; behind: so far may it be behind a plane without end
+    // bits of the walls that x is near enough to have images in; behind: so far may it be behind a
+    // plane without end
     int near(const double *x, double cut, double behind = 0.0) const
     {
       int mask = 0;
       const int n = wall.size();
       for (int k = 0; k < n; k++) {
         const double a = wall[k].distance(x);
-        if (a >= (wall[k].finite ? 0.0 : -behind) && a < cut && wall[k].spans(x, cut)) mask |= 1 << k;
+        if (a >= (wall[k].finite ? 0.0 : -behind) && a < cut && wall[k].spans(x, cut))
+          mask |= 1 << k;
       }
       return mask;
     }
 
-    // To the fluid a body that passes through a plane without end goes on in its images: what is behind is not there. How much counts of a
-    // particle with spacing dx, and its rate: the part of its cell before the plane, so that nothing jumps when a body slides through,
-    // whatever its lattice. Bodies that end before the plane are whole, so it begins with the first dx/2 that they go behind it.
-    // depth[k]: how deep bodies of its type are behind wall k at most, with its rate
+    // To the fluid a body that passes through a plane without end goes on in its images: what is
+    // behind is not there. How much counts of a particle with spacing dx, and its rate: the part of
+    // its cell before the plane, so that nothing jumps when a body slides through, whatever its
+    // lattice. Bodies that end before the plane are whole, so it begins with the first dx/2 that
+    // they go behind it. depth[k]: how deep bodies of its type are behind wall k at most, with its
+    // rate
     struct Depth {
-      double depth, rate;
+      double depth = 0.0, rate = 0.0;
     };
-    double before(const double *x, const double *v, double dx, const Depth *depth, double &rate) const
+    double before(const double *x, const double *v, double dx, const Depth *depth,
+                  double &rate) const
     {
       double part = 1.0;
       rate = 0.0;
@@ -136,17 +149,21 @@ namespace FSI {
         const bool deep = depth[k].depth >= 0.5 * dx;
         const double share = deep ? 1.0 : 2.0 * depth[k].depth / dx, behind = 1.0 - cell;
         const double left = 1.0 - share * behind;
-        const double grows = (cell > 0.0 ? share / dx * w.side * (v[w.axis] - w.velocity[w.axis]) : 0.0) - (deep ? 0.0 : 2.0 / dx * depth[k].rate * behind);
+        const double grows =
+            (cell > 0.0 ? share / dx * w.side * (v[w.axis] - w.velocity[w.axis]) : 0.0) -
+            (deep ? 0.0 : 2.0 / dx * depth[k].rate * behind);
         rate = rate * left + part * grows;
         part *= left;
       }
       return part;
     }
 
-    // Calls f(reflection, rsq, dx) for every image M x_j of x_j that x_i sees within the cutoff: rsq = |x_i - M x_j|^2,
-    // dx[3] = x_i - M x_j. mask: walls near both; rsq0 = |x_i - x_j|^2 (0 and x_j = x_i for the images of i itself).
+    // Calls f(reflection, rsq, dx) for every image M x_j of x_j that x_i sees within the cutoff:
+    // rsq = |x_i - M x_j|^2, dx[3] = x_i - M x_j. mask: walls near both; rsq0 = |x_i - x_j|^2 (0
+    // and x_j = x_i for the images of i itself).
     template <class F>
-    void images(int mask, double rsq0, const double *xi, const double *xj, double cutsq, F &&f) const
+    void images(int mask, double rsq0, const double *xi, const double *xj, double cutsq,
+                F &&f) const
     {
       for (const auto &s : reflections) {
         if ((s.mask & mask) != s.mask) continue;
@@ -163,27 +180,15 @@ namespace FSI {
       }
     }
 
-    // velocity of the image of a particle with velocity v; no-slip walls turn it around (viscous forces only)
-    // (where no-slip walls of different velocity meet, the image depends on the order of the walls: the corner's flow is
-    // singular there, and the walls are taken in the order of the script)
-    void reflect_velocity(const Reflection &s, const double *v, bool viscous, double *image) const
+    // velocity of the image of a particle with velocity v, as for walls that slip (viscous forces:
+    // Mirror)
+    void reflect_velocity(const Reflection &s, const double *v, double *image) const
     {
-      image[0] = v[0];
-      image[1] = v[1];
-      image[2] = v[2];
+      for (int d = 0; d < 3; d++) image[d] = v[d];
       for (int k = 0; k < s.n; k++) {
         const Wall &w = wall[s.w[k]];
-        if (viscous && w.noslip)
-          for (int b = 0; b < 3; b++) image[b] = 2.0 * w.velocity[b] - image[b];
-        else
-          image[w.axis] = 2.0 * w.velocity[w.axis] - image[w.axis];
+        image[w.axis] = 2.0 * w.velocity[w.axis] - image[w.axis];
       }
-    }
-
-    // mirror a vector (a force, or a difference of velocities of non-moving walls)
-    void reflect_vector(const Reflection &s, double *f) const
-    {
-      for (int k = 0; k < s.n; k++) f[wall[s.w[k]].axis] = -f[wall[s.w[k]].axis];
     }
 
     // the same walls a time dt later
@@ -196,7 +201,8 @@ namespace FSI {
 
    private:
     // does the line from x_i to the image cross every wall of the set inside its extent?
-    bool passes(const Reflection &s, const double *xi, const double *dx, const double *ai, const double *aj) const
+    bool passes(const Reflection &s, const double *xi, const double *dx, const double *ai,
+                const double *aj) const
     {
       for (int k = 0; k < s.n; k++) {
         const Wall &w = wall[s.w[k]];
@@ -216,8 +222,10 @@ namespace FSI {
     }
   };
 
-  // A reflection as what it makes of a point and its velocity, axis by axis: image = x + sign * original; for viscous forces no-slip
-  // walls turn the velocity around (see Walls::reflect_velocity).
+  // A reflection as what it makes of a point and its velocity, axis by axis: image = x + sign *
+  // original; for viscous forces no-slip walls turn the velocity around.
+  // Where no-slip walls of different velocity meet, the corner's flow is singular: the image
+  // depends on the order of the walls, which is that of the script.
   struct Mirror {
     double sign[3], x[3], v[3], rubbing_sign[3], rubbing_v[3];
     Mirror() = default;

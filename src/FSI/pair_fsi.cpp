@@ -98,10 +98,15 @@ void PairFSI::coeff(int narg, char **arg)
 void PairFSI::check_pair_coeff(int narg, char **arg) const
 {
   if (narg < 2 || strcmp(arg[0], "*") != 0 || strcmp(arg[1], "*") != 0)
-    error->all(FLERR, "Pair style {} needs pair_coeff * * followed by a material file and one material per atom type", style);
+    error->all(FLERR,
+               "Pair style {} needs pair_coeff * * followed by a material file and one material "
+               "per atom type",
+               style);
   if (narg != 3 + atom->ntypes)
-    error->all(FLERR, "Pair_coeff of pair style {} has {} materials, expected one for each of {} atom types", style,
-               narg > 3 ? narg - 3 : 0, atom->ntypes);
+    error->all(
+        FLERR,
+        "Pair_coeff of pair style {} has {} materials, expected one for each of {} atom types",
+        style, narg > 3 ? narg - 3 : 0, atom->ntypes);
 }
 
 /* ----------------------------------------------------------------------
@@ -154,8 +159,9 @@ void PairFSI::set_flags()
       count += acts;
     }
   if (count == 0)
-    error->all(FLERR, "Pair_coeff gives pair style {} no pair to act on: none of its materials is a {}", style,
-               handles(FLUID, FLUID) ? "fluid" : "solid");
+    error->all(FLERR,
+               "Pair_coeff gives pair style {} no pair to act on: none of its materials is a {}",
+               style, handles(FLUID, FLUID) ? "fluid" : "solid");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -166,26 +172,34 @@ void PairFSI::init_style()
   fix_fsi = FixFSI::find(lmp, "Pair style " + style);
   fix_fsi->check_restart_ids();
   if (force->pair_match(style, 1, 1) != force->pair_match(style, 1, 2))
-    error->all(FLERR, "Pair style hybrid has {} more than once: one is for the materials of all atom types{}", style,
-               style == "fsi/fluid" ? ", and a speed of sound of its own is keyword sound of a fluid in the material file" : "");
+    error->all(
+        FLERR,
+        "Pair style hybrid has {} more than once: one is for the materials of all atom types{}",
+        style,
+        style == "fsi/fluid"
+            ? ", and a speed of sound of its own is keyword sound of a fluid in the material file"
+            : "");
   check_same_materials();
   drop_reference();
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) fix_fsi->enter_state(t, make_state(material[t]));
-  if (needs_neighbors()) neighbor->add_request(this);
-  else list = nullptr;    // that of an earlier run is gone
+  if (needs_neighbors())
+    neighbor->add_request(this);
+  else
+    list = nullptr;    // that of an earlier run is gone
 }
 
-// Bodies keep their reference from one pair_style fsi/solid/tl to the next. Nobody could say what it
-// means after a run in another style
+// Bodies keep their reference from one pair_style fsi/solid/tl to the next. Nobody could say what
+// it means after a run in another style
 void PairFSI::drop_reference() const
 {
   Fix *const fix = modify->get_fix_by_id(FixFSIReference::ID);
   const auto *const reference = dynamic_cast<FixFSIReference *>(fix);
   if (!reference || force->pair_match("fsi/solid/tl", 1)) return;
   if (reference->any() && comm->me == 0)
-    error->warning(FLERR, "There is no pair_style fsi/solid/tl any more: its bodies lose their reference, "
-                          "and with it their strain");
+    error->warning(FLERR,
+                   "There is no pair_style fsi/solid/tl any more: its bodies lose their reference, "
+                   "and with it their strain");
   modify->delete_fix(FixFSIReference::ID);
   FixFSIHistory::keep(lmp, nullptr, 0);
 }
@@ -198,7 +212,10 @@ void PairFSI::check_same_materials() const
     for (int t = 1; other && t <= atom->ntypes; t++) {
       const Material &a = material[t], &b = other->material[t];
       if (a.species == SOLID && b.species == SOLID && strcmp(a.name, b.name) != 0)
-        error->all(FLERR, "Pair_coeff of pair style {} gives atom type {} the material {}, that of {} {}: expected the same", style, t, a.name, name, b.name);
+        error->all(FLERR,
+                   "Pair_coeff of pair style {} gives atom type {} the material {}, that of {} {}: "
+                   "expected the same",
+                   style, t, a.name, name, b.name);
     }
   }
 }
@@ -251,7 +268,9 @@ bool PairFSI::several_bodies() const
 double PairFSI::init_one(int i, int j)
 {
   if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set: types {} and {}", i, j);
-  return handles(material[i].species, material[j].species) ? std::max(fix_fsi->resolution[i].cut, fix_fsi->resolution[j].cut) : 0.0;
+  return handles(material[i].species, material[j].species)
+      ? std::max(fix_fsi->resolution[i].cut, fix_fsi->resolution[j].cut)
+      : 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -275,7 +294,9 @@ void PairFSI::contact_row()
 void PairFSI::check_contact() const
 {
   if (contact_range * fix_fsi->dx > fix_fsi->cut * (1.0 + 1.0e-12))
-    error->all(FLERR, "Pair style {} contact {} must not exceed the kernel's support, {:g} spacings", style, contact_range, fix_fsi->cut / fix_fsi->dx);
+    error->all(FLERR,
+               "Pair style {} contact {} must not exceed the kernel's support, {:g} spacings",
+               style, contact_range, fix_fsi->cut / fix_fsi->dx);
 }
 
 /* ----------------------------------------------------------------------
@@ -301,8 +322,9 @@ State PairFSI::solid_state(const Material &m, bool plane_stress) const
 
 void PairFSI::check_tally()
 {
-  if (vflag_atom || eflag_atom)
-    error->all(FLERR, "Pair style {} has no per-atom virial or energy: use compute fsi/atom for stress and pressure", style);
+  if (vflag_atom)
+    error->all(FLERR, "Pair style {} has no per-atom virial: use compute fsi/atom for stress and pressure",
+               style);
 }
 
 /* ----------------------------------------------------------------------

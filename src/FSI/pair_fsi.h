@@ -11,7 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// What the pair styles fsi/fluid and fsi/solid share: materials per atom type, link to fix fsi, restart.
+// What the pair styles fsi/fluid and fsi/solid share: materials per atom type, link to fix fsi,
+// restart.
 
 #ifndef LMP_PAIR_FSI_H
 #define LMP_PAIR_FSI_H
@@ -46,13 +47,13 @@ class PairFSI : public Pair, public FSI::Part {
   bool is_set_up() const override { return fix_fsi != nullptr; }
 
  protected:
-  const std::string style;    // for messages
-  FSI::Keywords keywords;     // of settings()
-  class FixFSI *fix_fsi;      // null: not since settings() or coeff()
+  const std::string style;                // for messages
+  FSI::Keywords keywords;                 // of settings()
+  class FixFSI *fix_fsi;                  // null: not since settings() or coeff()
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
-  double alpha, beta;    // artificial/visc (fsi_viscosity_artificial.h)
-  double contact_range;    // of solids, over dx (fsi_contact.h)
-  int self_contact;        // of a body with itself
+  double alpha, beta;                     // artificial/visc (fsi_viscosity_artificial.h)
+  double contact_range;                   // of solids, over dx (fsi_contact.h)
+  int self_contact;                       // of a body with itself
 
   // does this style handle pairs of these species?
   virtual bool handles(int, int) const = 0;

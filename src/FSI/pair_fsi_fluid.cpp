@@ -42,10 +42,10 @@ static const std::vector<std::string> coupling_names = {"wall", "pressure", "ful
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_FLUID}, images_step(-1),
-    reach(INFINITY), near_known(false), cut(false), solids_pass(false), fields(lmp), fill(nullptr),
-    fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, rate(nullptr), beyond(nullptr),
-    hybrid(nullptr), no_fdotr_before(0)
+    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_FLUID},
+    images_step(-1), reach(INFINITY), near_known(false), cut(false), solids_pass(false),
+    fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{},
+    rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -54,9 +54,13 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("laminar/visc/central").set(laminar, CENTRAL);
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("solid/guard").number(solids_guard, 0.5, Range::between(0.0, 1.0));
-  keywords.key("density/diffusion").number(delta, 0.0, Range::from(0.0)).effect("density diffusion {}");
+  keywords.key("density/diffusion")
+      .number(delta, 0.0, Range::from(0.0))
+      .effect("density diffusion {}");
   keywords.key("density/surface").logical(surfaces, false);
-  keywords.key("shift").number(shifting, 0.0, Range::between(0.0, 1.0)).effect("particle shifting {}");
+  keywords.key("shift")
+      .number(shifting, 0.0, Range::between(0.0, 1.0))
+      .effect("particle shifting {}");
   keywords.key("shift/every").integer(shift_every, 1, 1);
   keywords.key("surface")
       .number(surface_ratio, 0.0, Range::from_to_below(0.0, 1.0), "ratio")
@@ -95,9 +99,11 @@ State PairFSIFluid::make_state(const Material &m) const
   s.rho0 = m.rho0;
   s.inv_rho0 = 1.0 / s.rho0;
   if (m.species == RIGID) {
-    // its density is what says its pressure, its volume should be that of fluid under this pressure; if fluids differ in this, that
-    // of the fluid that is near (fix fsi/wall/particle)
-    const auto first = std::find_if(material.begin(), material.end(), [](const Material &other) { return other.species == FLUID; });
+    // its density is what says its pressure, its volume should be that of fluid under this
+    // pressure; if fluids differ in this, that of the fluid that is near (fix fsi/wall/particle)
+    const auto first = std::find_if(material.begin(), material.end(), [](const Material &other) {
+      return other.species == FLUID;
+    });
     s.csq = sound_of(*first) * sound_of(*first) * first->rho0 / m.rho0;
     s.c = std::sqrt(s.csq);
   } else {
@@ -118,8 +124,10 @@ double PairFSIFluid::sound_of(const Material &m) const
 {
   if (m.sound > 0.0) return m.sound;
   if (sound == 0.0)
-    error->all(FLERR, "Fluid {} has no speed of sound: give it keyword sound in its material file, or pair_style fsi/fluid one for all "
-                      "fluids that have none of their own", m.name);
+    error->all(FLERR,
+               "Fluid {} has no speed of sound: give it keyword sound in its material file, or "
+               "pair_style fsi/fluid one for all fluids that have none of their own",
+               m.name);
   return sound;
 }
 
@@ -131,29 +139,38 @@ void PairFSIFluid::init_style()
 {
   PairFSI::init_style();
   if (delta > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
-    error->all(FLERR, "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
+    error->all(FLERR,
+               "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
   if (surfaces && fix_fsi->density_fluid != FixFSI::CONTINUITY)
-    error->all(FLERR, "Pair style fsi/fluid density/surface requires fix fsi with fluid continuity");
+    error->all(FLERR,
+               "Pair style fsi/fluid density/surface requires fix fsi with fluid continuity");
   if (surfaces && (tension || background != 0.0))
-    error->all(FLERR, "Pair style fsi/fluid density/surface is for fluids with a free surface: without tension yes and background");
+    error->all(FLERR,
+               "Pair style fsi/fluid density/surface is for fluids with a free surface: without "
+               "tension yes and background");
   if (shifting > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR, "Pair style fsi/fluid shift requires fix fsi with fluid continuity");
   if (laminar) {
     bool any = false;
     for (const auto &m : material) any = any || m.viscosity > 0.0;
     if (!any && comm->me == 0)
-      error->warning(FLERR, "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
+      error->warning(
+          FLERR,
+          "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
   }
   if (!fix_fsi->sight) beside.clear();
   force_computes.clear();
-  for (auto *compute : modify->get_compute_by_style("^fsi/force$")) force_computes.push_back(dynamic_cast<ComputeFSIForce *>(compute));
+  for (auto *compute : modify->get_compute_by_style("^fsi/force$"))
+    force_computes.push_back(dynamic_cast<ComputeFSIForce *>(compute));
   if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
     error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
                    has_solids() ? "it is for couple wall" : "there is no solid");
   if (solids_slip && (!laminar || !has_solids()) && comm->me == 0)
     error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
                    has_solids() ? "there is no laminar/visc" : "there is no solid");
-  const auto make_loops = [this](bool packs) { return make_fluid_loops(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, packs); };
+  const auto make_loops = [this](bool packs) {
+    return make_fluid_loops(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, packs);
+  };
   loops = make_loops(have_packs());
   solid_loops = couple == WALL ? loops : make_loops(false);
   single_loops = fix_fsi->sight ? make_loops(false) : loops;
@@ -165,9 +182,11 @@ void PairFSIFluid::init_style()
     const bool thin = fix_fsi->thin[t] != 0.0;
     if (ratio == 1.0 && !thin) continue;
     unequal = true;
-    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, fix_fsi->sharper_of(t), thin};
+    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, fix_fsi->sharper_of(t),
+                 thin};
   }
-  // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count their own
+  // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count
+  // their own
   give_back_virial();
   if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) {
     hybrid = force->pair;
@@ -176,15 +195,20 @@ void PairFSIFluid::init_style()
   }
   const Facts of_solids = facts_of_solids(lmp);
   if (couple != WALL && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS)
-    error->all(FLERR, "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress is not one that crosses to the fluid");
-  // the plain forces of a solid end at its face with half a kernel of neighbours missing, which the fluid's pairs supply; forces with
-  // corrected gradients are complete without them
+    error->all(FLERR,
+               "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress "
+               "is not one that crosses to the fluid");
+  // the plain forces of a solid end at its face with half a kernel of neighbors missing, which the
+  // fluid's pairs supply; forces with corrected gradients are complete without them
   if (couple != WALL && of_solids.corrected_gradients)
-    error->all(FLERR, "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid gradient plain: with corrected gradients "
-                      "use couple wall");
+    error->all(FLERR,
+               "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid "
+               "gradient plain: with corrected gradients use couple wall");
   open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);
-  kinds[SOLIDS] = couple == WALL ? WITH_SOLID : couple == PRESSURE ? WITH_SOLID_PRESSURE : WITH_SOLID_FULL;
+  kinds[SOLIDS] = couple == WALL ? WITH_SOLID
+      : couple == PRESSURE       ? WITH_SOLID_PRESSURE
+                                 : WITH_SOLID_FULL;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -243,12 +267,14 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
 
 void PairFSIFluid::add_costs(Costs &costs) const
 {
-  const int newton = force->newton_pair, continuity = fix_fsi->density_fluid == FixFSI::CONTINUITY, ns = shifting > 0.0 ? shift_sums() : 0;
+  const int newton = force->newton_pair, continuity = fix_fsi->density_fluid == FixFSI::CONTINUITY,
+            ns = shifting > 0.0 ? shift_sums() : 0;
   costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + (shift_every == 1 ? ns : 0));
   if (ns && shift_every > 1)
-    costs.rarely += fmt::format("  every {} steps: {} bytes of a ghost more, particle shifting\n", shift_every, 8 * newton * ns);
+    costs.rarely += fmt::format("  every {} steps: {} bytes of a ghost more, particle shifting\n",
+                                shift_every, 8 * newton * ns);
   if (fix_fsi->shift_velocity[0]) costs.bytes += 8 * fix_fsi->dim;
   if (velocity_of_shifting()) costs.fluid_ghost += fix_fsi->dim;
   if (fix_fsi->sight) {
@@ -261,7 +287,8 @@ void PairFSIFluid::add_costs(Costs &costs) const
 
 void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
 {
-  if (shift_every > 1 && shifting == 0.0) nothing("Pair style fsi/fluid shift/every", "keyword shift is 0");
+  if (shift_every > 1 && shifting == 0.0)
+    nothing("Pair style fsi/fluid shift/every", "keyword shift is 0");
   if (all.fluids == 0) nothing("Pair style fsi/fluid" + named_effects(), "no particle is a fluid");
 }
 
@@ -285,7 +312,8 @@ void PairFSIFluid::find_reach()
 {
   const auto *const v = FixFSI::rows(atom->v);
   double most = 0.0;
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++) most = std::max(most, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+    most = std::max(most, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
   double speed = 2.0 * std::sqrt(most);
   for (const Wall &wall : fix_fsi->walls.wall) speed += 2.0 * std::fabs(wall.velocity[wall.axis]);
   reach = fix_fsi->largest_cut + update->dt * speed;
@@ -302,8 +330,10 @@ bool PairFSIFluid::add_rates(bool advance)
   if (fix_fsi->shifts && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
   const Phase phase(fix_fsi->profile, Profile::DENSITY);
   if (rate && advance) {
-    if (fix_fsi->dim == 2) add_density_rate<2>(update->dt);
-    else add_density_rate<3>(update->dt);
+    if (fix_fsi->dim == 2)
+      add_density_rate<2>(update->dt);
+    else
+      add_density_rate<3>(update->dt);
   }
   if (beyond) {
     if (nall) std::fill_n(beyond[0], nall * (fix_fsi->dim + 1), 0.0);
@@ -327,7 +357,8 @@ void PairFSIFluid::find_depths()
   const auto &wall = fix_fsi->walls.wall;
   const int *const type = atom->type, n = wall.size();
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
-  std::vector<double> mine(n * (atom->ntypes + 1), -INFINITY), all(mine.size()), speeds(mine.size());
+  std::vector<double> mine(n * (atom->ntypes + 1), -INFINITY), all(mine.size()),
+      speeds(mine.size());
   const auto for_near = [&](auto f) {
     const InnerBox inner(wall, neighbor->skin);
     for (int i = 0; i < atom->nlocal; i++) {
@@ -336,15 +367,22 @@ void PairFSIFluid::find_depths()
         if (!wall[k].finite) f(i, n * type[i] + k, wall[k]);
     }
   };
-  for_near([&](int i, int m, const Wall &w) { mine[m] = std::max(mine[m], -w.distance(x[i])); });
+  for_near([&](int i, int m, const Wall &w) {
+    mine[m] = std::max(mine[m], -w.distance(x[i]));
+  });
   MPI_Allreduce(mine.data(), all.data(), mine.size(), MPI_DOUBLE, MPI_MAX, world);
-  solids_pass = std::any_of(all.begin(), all.end(), [this](double depth) { return depth > -neighbor->skin; });
+  solids_pass = std::any_of(all.begin(), all.end(), [this](double depth) {
+    return depth > -neighbor->skin;
+  });
   depths.assign(all.size(), {0.0, 0.0});
-  cut = std::any_of(all.begin(), all.end(), [](double depth) { return depth > 0.0; });
+  cut = std::any_of(all.begin(), all.end(), [](double depth) {
+    return depth > 0.0;
+  });
   if (!cut) return;
   std::fill(mine.begin(), mine.end(), -INFINITY);
   for_near([&](int i, int m, const Wall &w) {
-    if (-w.distance(x[i]) == all[m]) mine[m] = std::max(mine[m], -w.side * (v[i][w.axis] - w.velocity[w.axis]));
+    if (-w.distance(x[i]) == all[m])
+      mine[m] = std::max(mine[m], -w.side * (v[i][w.axis] - w.velocity[w.axis]));
   });
   MPI_Allreduce(mine.data(), speeds.data(), mine.size(), MPI_DOUBLE, MPI_MAX, world);
   for (size_t m = 0; m < all.size(); m++)
@@ -393,8 +431,8 @@ void PairFSIFluid::look_past_thin_bodies()
 }
 
 /* ----------------------------------------------------------------------
-   continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; nobody is thinner than he would be alone (with diffusion in particles that
-   are shot out of a crowd)
+   continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; rho >= m W(0), the density of an
+   isolated particle: diffusion could make that of ejected spray negative
 ------------------------------------------------------------------------- */
 
 void PairFSIFluid::advance_density()
@@ -478,14 +516,16 @@ void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
   }
   for (const int t : fluid_types) {
     const char *hidden = hides.data();
-    rows[HIDDEN].add(i, neighbors, n, false, false,
-                     [&](int j) { return *hidden++ && type[j] == t; });
+    rows[HIDDEN].add(i, neighbors, n, false, false, [&](int j) {
+      return *hidden++ && type[j] == t;
+    });
   }
   beside.push_back({i, first, static_cast<int>(rows[HIDDEN].rows.size())});
 }
 
 /* ----------------------------------------------------------------------
-   the pairs of the neighbor list as rows of a fluid particle and neighbors of one type: those of one fluid alone are LAMMPS' own
+   the pairs of the neighbor list as rows of a fluid particle and neighbors of one type: those of
+   one fluid alone are LAMMPS' own
 ------------------------------------------------------------------------- */
 
 void PairFSIFluid::find_rows()
@@ -495,8 +535,10 @@ void PairFSIFluid::find_rows()
   double **const x = atom->x;
   std::vector<int> fluid_types, other_types;
   for (int t = 1; t <= atom->ntypes; t++)
-    if (state[t].species == FLUID) fluid_types.push_back(t);
-    else if (state[t].species != NONE) other_types.push_back(t);
+    if (state[t].species == FLUID)
+      fluid_types.push_back(t);
+    else if (state[t].species != NONE)
+      other_types.push_back(t);
   guards.clear();
   for (size_t t = 0; t < fix_fsi->state.size(); t++) guards.push_back(guard_of(t));
   for (auto &list_of : rows) list_of.clear();
@@ -504,7 +546,8 @@ void PairFSIFluid::find_rows()
   struct Pair {
     int i, j;
   };
-  std::vector<Pair> with_others;    // fluid particles and neighbors of other species, whichever of both has the other in its list
+  std::vector<Pair> with_others;    // fluid particles and neighbors of other species, whichever of
+                                    // both has the other in its list
   std::vector<char> is_fluid(atom->ntypes + 1, 0);
   for (const int t : fluid_types) is_fluid[t] = 1;
 
@@ -555,16 +598,19 @@ void PairFSIFluid::find_rows()
   for (int i = 0; i < nall; i++) {
     if (first[i] == first[i + 1]) continue;
     for (const int t : other_types)
-      rows[state[t].species == SOLID ? SOLIDS : WALLS].add(i, &other[first[i]], first[i + 1] - first[i], false, false,
-                                                           [=](int j) { return type[j] == t; });
+      rows[state[t].species == SOLID ? SOLIDS : WALLS].add(
+          i, &other[first[i]], first[i + 1] - first[i], false, false, [=](int j) {
+            return type[j] == t;
+          });
   }
   rows[WALLS].end();
   rows[SOLIDS].end();
 }
 
 /* ----------------------------------------------------------------------
-   rows of images, one list per reflection: of local fluid particles themselves, and of the neighbors that are near its walls, too, both
-   together not farther than the support; segments of walls reflect a pair only if the line between them passes
+   rows of images, one list per reflection: of local fluid particles themselves, and of the
+   neighbors that are near its walls, too, both together not farther than the support; segments of
+   walls reflect a pair only if the line between them passes
    through. position(i) says where particles are
 ------------------------------------------------------------------------- */
 
@@ -581,7 +627,9 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
     for (int d = 0; d < 3; d++) rsq += (xi[d] - xj[d]) * (xi[d] - xj[d]);
     bool found = false;
     walls.images(wmask[i] & wmask[j], rsq, xi.data(), xj.data(), cutsq,
-                 [&](const Walls::Reflection &s, double, const double *) { found = found || &s == &walls.reflections[k]; });
+                 [&](const Walls::Reflection &s, double, const double *) {
+                   found = found || &s == &walls.reflections[k];
+                 });
     return found;
   };
   visible_images.resize(n);
@@ -596,7 +644,8 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
       const double *const parts_of_row = part;
       if (kind == HIDDEN) part += row.n;
       if (!wmask[i]) continue;
-      const bool of_own_type = kind == FLUIDS && i < nlocal && (row.n == 0 || type[row.j[0]] == type[i]);
+      const bool of_own_type =
+          kind == FLUIDS && i < nlocal && (row.n == 0 || type[row.j[0]] == type[i]);
       for (int k = 0; k < n; k++) {
         const int mask = walls.reflections[k].mask;
         if ((wmask[i] & mask) != mask) continue;
@@ -611,9 +660,13 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
             return true;
           });
         } else if (finite)
-          lists[k].add(i, row.j, row.n, of_own_type && sees(i, i, k), false, [&](int j) { return (wmask[j] & mask) == mask && sees(i, j, k); });
+          lists[k].add(i, row.j, row.n, of_own_type && sees(i, i, k), false, [&](int j) {
+            return (wmask[j] & mask) == mask && sees(i, j, k);
+          });
         else
-          lists[k].add(i, row.j, row.n, of_own_type, false, [&](int j) { return (wmask[j] & mask) == mask && wall.distance(x[j]) < farthest; });
+          lists[k].add(i, row.j, row.n, of_own_type, false, [&](int j) {
+            return (wmask[j] & mask) == mask && wall.distance(x[j]) < farthest;
+          });
       }
     }
     for (auto &list_of : lists) list_of.end();
@@ -622,11 +675,12 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
 }
 
 /* ----------------------------------------------------------------------
-   calls loop(kind of rows, number of reflection, mirror) for all rows of images; without extent of walls they are the same in all of a
-   step's loops
+   calls loop(kind of rows, number of reflection, mirror) for all rows of images; without extent of
+   walls they are the same in all of a step's loops
 ------------------------------------------------------------------------- */
 
-template <class Position, class Loop> void PairFSIFluid::for_images(const Walls &walls, Position position, Loop loop)
+template <class Position, class Loop>
+void PairFSIFluid::for_images(const Walls &walls, Position position, Loop loop)
 {
   if (!fix_fsi->wmask || !walls.any()) return;
   if (images_step != update->ntimestep || walls.finite()) find_images(walls, position);
@@ -644,8 +698,15 @@ FluidParticles PairFSIFluid::particles_at(const double *points)
 {
   thin_bodies = {fill, fill_weight};
   cut_solids = {parts.data(), part_rates.data()};
-  return {points, atom->type, fix_fsi->state.data(), atom->nlocal, shares.data(), unequal, fill ? &thin_bodies : nullptr,
-          cut ? &cut_solids : nullptr, force->newton_pair != 0};
+  return {points,
+          atom->type,
+          fix_fsi->state.data(),
+          atom->nlocal,
+          shares.data(),
+          unequal,
+          fill ? &thin_bodies : nullptr,
+          cut ? &cut_solids : nullptr,
+          force->newton_pair != 0};
 }
 
 FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, int kind,
@@ -680,8 +741,8 @@ template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, C
 }
 
 /* ----------------------------------------------------------------------
-   Positions are those of time n, half a step before atom->x, where the velocities belong: the density leapfrogs from n-1/2 to
-   n+1/2, second order in time.
+   Positions are those of time n, half a step before atom->x, where the velocities belong: the
+   density leapfrogs from n-1/2 to n+1/2, second order in time.
 ------------------------------------------------------------------------- */
 
 template <int D> void PairFSIFluid::add_density_rate(double dt)
@@ -696,26 +757,32 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   const FluidParticles particles = gather<D>(-dth, [&](int i, Point<D> &p) {
     if (by_shifting)
       for (int d = 0; d < D; d++) p.v[d] += by_shifting[d][i];
-    // Diffusion smooths pressures, so both of a pair must have one. What has none, spray and surfaces, has the density that its few
-    // neighbours leave: their exchange would empty the spray, beyond zero, and take volume from the rest.
+    // Diffusion smooths pressures, so both of a pair must have one. What has none, spray and
+    // surfaces, has the density that its few neighbors leave: their exchange would empty the spray,
+    // beyond zero, and take volume from the rest.
     p.p = p.pv2 = 0.0;
     if (delta == 0.0) return;
     const State &s = fix_fsi->state[type[i]];
     p.p = s.pressure(p.rho) > s.floor ? 1.0 : 0.0;
-    p.pv2 = DensityDiffusion::hydrostatic(fix_fsi->body_forces.of_type[type[i]].data(), p.position(x[i]).data(), s.rho0 * s.inv_csq);
+    p.pv2 = DensityDiffusion::hydrostatic(fix_fsi->body_forces.of_type[type[i]].data(),
+                                          p.position(x[i]).data(), s.rho0 * s.inv_csq);
   });
-  // the density of walls is that of the pressures in the last step or setup, which a restart does not know
+  // the density of walls is that of the pressures in the last step or setup, which a restart does
+  // not know
   if (fix_fsi->shifts && !rows[WALLS].rows.empty()) {
     auto *const point = reinterpret_cast<Point<D> *>(points.data());
     for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-      if (fix_fsi->state[type[i]].species == RIGID) point[i].vol = atom->rmass[i] * fix_fsi->state[type[i]].inv_rho0;
+      if (fix_fsi->state[type[i]].species == RIGID)
+        point[i].vol = atom->rmass[i] * fix_fsi->state[type[i]].inv_rho0;
   }
   if (fix_fsi->ledger) {
     pressure_over_density.resize(atom->nmax);
-    for (int i = 0; i < atom->nlocal + atom->nghost; i++) pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
+    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+      pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fix_fsi->shifts && fills(), reach};
+  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx,
+                         fix_fsi->shifts && fills(), reach};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
@@ -726,7 +793,10 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind], visible, nullptr, near[kind]);
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(
-      walls, [&](int i) { return point[i].position(x[i]); },
+      walls,
+      [&](int i) {
+        return point[i].position(x[i]);
+      },
       [&](int kind, int k, const Mirror *mirror) {
         loop(kind, images[kind][k], visible_images[k], mirror, near_images[kind][k]);
       });
@@ -745,9 +815,12 @@ void PairFSIFluid::displacements(double dt)
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = fix_fsi->state[type[i]];
     if (s.species != FLUID) continue;
-    const double reach = std::min(shifting * s.c * dt, 0.5 * fix_fsi->h);    // lattices overshoot from 0.51 h on (theory.rst)
-    if (fix_fsi->dim == 2) Shift<2>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
-    else Shift<3>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
+    // lattices overshoot from 0.51 h on (theory.rst)
+    const double reach = std::min(shifting * s.c * dt, 0.5 * fix_fsi->h);
+    if (fix_fsi->dim == 2)
+      Shift<2>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
+    else
+      Shift<3>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
     if (velocity && dt > 0.0)
       for (int d = 0; d < fix_fsi->dim; d++) velocity[d][i] = sums[i][d] / dt;
   }
@@ -804,8 +877,10 @@ void PairFSIFluid::add_position_divergence(double *div)
 
 void PairFSIFluid::add_gradient_sum(double *s)
 {
-  if (fix_fsi->dim == 2) add_gradients<2>(s);
-  else add_gradients<3>(s);
+  if (fix_fsi->dim == 2)
+    add_gradients<2>(s);
+  else
+    add_gradients<3>(s);
 }
 
 // the plain sums of particle shifting, all volumes those of the lattice
@@ -814,7 +889,9 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
   constexpr int ROW = Shift<D>::ROW;
   const size_t nall = atom->nlocal + atom->nghost;
   const int *const type = atom->type;
-  const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) { p.vol = 1.0 / fix_fsi->resolution[type[i]].psi_bulk; });
+  const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
+    p.vol = 1.0 / fix_fsi->resolution[type[i]].psi_bulk;
+  });
   std::vector<double> sums(ROW * nall, 0.0);
   distance_sums(false, particles,
                 [&](const FluidLoops &of, PairKind kind, const std::vector<Row> &which, bool,
@@ -846,8 +923,8 @@ void PairFSIFluid::add_velocities_at_solids()
 }
 
 /* ----------------------------------------------------------------------
-   velocity of solids in viscous forces: where fluid would be inside the solid, that with which the face has the solid's,
-   2 v_s - sum v W/sum W, as for walls of particles
+   velocity of solids in viscous forces: where fluid would be inside the solid, that with which the
+   face has the solid's, 2 v_s - sum v W/sum W, as for walls of particles
 ------------------------------------------------------------------------- */
 
 void PairFSIFluid::extrapolate_velocities()
@@ -856,7 +933,8 @@ void PairFSIFluid::extrapolate_velocities()
   for (int i = 0; i < atom->nlocal; i++) {
     if (fix_fsi->state[atom->type[i]].species != SOLID) continue;
     const double *const s = beyond[i], *const v = atom->v[i];
-    for (int d = 0; d < dim; d++) fix_fsi->wall_velocity[i][d] = s[dim] > 0.0 ? 2.0 * v[d] - s[d] / s[dim] : v[d];
+    for (int d = 0; d < dim; d++)
+      fix_fsi->wall_velocity[i][d] = s[dim] > 0.0 ? 2.0 * v[d] - s[d] / s[dim] : v[d];
   }
 }
 
@@ -876,9 +954,10 @@ void PairFSIFluid::compute(int eflag, int vflag)
 }
 
 /* ----------------------------------------------------------------------
-   F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14), antisymmetric
-   between fluid and solid:
-     couple wall      both pressures are the fluid's: the solid is a moving wall to the fluid and takes the reaction
+   F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14),
+   antisymmetric between fluid and solid:
+     couple wall      both pressures are the fluid's: the solid is a moving wall to the fluid
+                      and takes the reaction
      couple pressure  pressures of both, no suction
      couple full      the whole stress of the solid crosses, as in the paper
 ------------------------------------------------------------------------- */
@@ -888,8 +967,8 @@ template <int D> void PairFSIFluid::compute_forces()
   constexpr int ROW = row_of_forces(D);
   double **x = atom->x;
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
-  // newton off, or a hybrid style with solids that need it, or images, which are no particles: like LAMMPS' own walls they do not count
-  // in the virial, and forces times positions would have them
+  // newton off, or a hybrid style with solids that need it, or images, which are no particles: like
+  // LAMMPS' own walls they do not count in the virial, and forces times positions would have them
   const bool tally_pairs = vflag_fdotr ? fix_fsi->walls.any() : evflag != 0;
   const bool own_pressure = surface_ratio > 0.0 || fix_fsi->wall_stiffness;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
@@ -898,10 +977,17 @@ template <int D> void PairFSIFluid::compute_forces()
   });
 
   if (fix_fsi->ledger) taken.assign((size_t) row_of_points(D) * nall, 0.0);
-  const ForceLaws laws = {alpha, beta, laminar, extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
-                    fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0, guards.data(), !sticks_to_solids(),
-                    FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v), fix_stress ? fix_stress->stress : nullptr,
-                    fix_fsi->body_forces.of_type.data(), fix_fsi->ledger ? taken.data() : nullptr};
+  const ForceLaws laws = {alpha,
+                          beta,
+                          laminar,
+                          extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
+                          fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0,
+                          guards.data(),
+                          !sticks_to_solids(),
+                          FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v),
+                          fix_stress ? fix_stress->stress : nullptr,
+                          fix_fsi->body_forces.of_type.data(),
+                          fix_fsi->ledger ? taken.data() : nullptr};
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   double guarding[NROWS] = {};
@@ -923,22 +1009,26 @@ template <int D> void PairFSIFluid::compute_forces()
   const Walls &walls = fix_fsi->walls;
   const auto &which = near_known && !walls.finite() ? near_images : images;
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
-  for_images(walls, [&](int i) { return point[i].position(x[i]); },
-             [&](int kind, int reflection, const Mirror *mirror) {
-               const auto &s = walls.reflections[reflection];
-               double total[D] = {};
-               loop(kind, nearest(kind, images[kind][reflection], which[kind][reflection]),
-                    visible_images[reflection], mirror, total);
-               for (int d = 0; d < D; d++) {
-                 int w = s.w[0];
-                 for (int k = 1; k < s.n; k++)
-                   if (walls.wall[s.w[k]].axis == d) w = s.w[k];
-                 fix_fsi->add_wall_force(w, d, total[d]);
-               }
-             });
+  for_images(
+      walls,
+      [&](int i) {
+        return point[i].position(x[i]);
+      },
+      [&](int kind, int reflection, const Mirror *mirror) {
+        const auto &s = walls.reflections[reflection];
+        double total[D] = {};
+        loop(kind, nearest(kind, images[kind][reflection], which[kind][reflection]),
+             visible_images[reflection], mirror, total);
+        for (int d = 0; d < D; d++) {
+          int w = s.w[0];
+          for (int k = 1; k < s.n; k++)
+            if (walls.wall[s.w[k]].axis == d) w = s.w[k];
+          fix_fsi->add_wall_force(w, d, total[d]);
+        }
+      });
 
   split_forces<D>(particles, laws);
-  near_known = false;    // who moves particles and asks again has no new rates
+  near_known = false;    // a second force evaluation at other positions must not use these lists
 
   // LAMMPS sends what ghosts have home even without newton_pair, if newton_bond is on
   auto *const f = FixFSI::rows(atom->f);
@@ -955,12 +1045,16 @@ template <int D> void PairFSIFluid::compute_forces()
 }
 
 /* ----------------------------------------------------------------------
-   for those who ask for them, forces of viscosity alone on solids and walls: the same loops without pressures, guard and stress
+   for those who ask for them, forces of viscosity alone on solids and walls: the same loops without
+   pressures, guard and stress
 ------------------------------------------------------------------------- */
 
 template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles, ForceLaws laws)
 {
-  if (std::none_of(force_computes.begin(), force_computes.end(), [](const auto *measure) { return measure->split; })) return;
+  if (std::none_of(force_computes.begin(), force_computes.end(), [](const auto *measure) {
+        return measure->split;
+      }))
+    return;
   constexpr int ROW = row_of_forces(D);
   const int nall = atom->nlocal + atom->nghost;
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
@@ -971,12 +1065,20 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   laws.taken = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
-  for (const int kind : {WALLS, SOLIDS}) force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws, viscous_forces.data(), nullptr, nullptr);
-  for_images(fix_fsi->walls, [&](int i) { return point[i].position(atom->x[i]); },
-             [&](int kind, int k, const Mirror *mirror) {
-               double unused[D] = {};
-               if (kind == SOLIDS) force_loops(kind).forces(kinds[kind], images[kind][k].rows, mirror, particles, laws, viscous_forces.data(), unused, nullptr);
-             });
+  for (const int kind : {WALLS, SOLIDS})
+    force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws,
+                             viscous_forces.data(), nullptr, nullptr);
+  for_images(
+      fix_fsi->walls,
+      [&](int i) {
+        return point[i].position(atom->x[i]);
+      },
+      [&](int kind, int k, const Mirror *mirror) {
+        double unused[D] = {};
+        if (kind == SOLIDS)
+          force_loops(kind).forces(kinds[kind], images[kind][k].rows, mirror, particles, laws,
+                                   viscous_forces.data(), unused, nullptr);
+      });
   for (auto *measure : force_computes)
     if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
 }
@@ -995,9 +1097,14 @@ bool PairFSIFluid::has_solids() const
 std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 {
   auto list = keywords.effects();
-  list.push_back({fmt::format("coupling of fluid and solid: {}{}", coupling_names[couple], extrapolate ? ", extrapolated" : ""), "couple", has_solids()});
-  if (shifting > 0.0 && shift_every > 1) list.push_back({fmt::format("shifted every {} steps", shift_every), "shift/every", true});
-  if (fix_fsi && fix_fsi->sight) list.push_back({"line of sight: thin bodies hide fluids from each other", "fix fsi thin", true});
+  list.push_back({fmt::format("coupling of fluid and solid: {}{}", coupling_names[couple],
+                              extrapolate ? ", extrapolated" : ""),
+                  "couple", has_solids()});
+  if (shifting > 0.0 && shift_every > 1)
+    list.push_back({fmt::format("shifted every {} steps", shift_every), "shift/every", true});
+  if (fix_fsi && fix_fsi->sight)
+    list.push_back(
+        {"line of sight: thin bodies hide fluids from each other", "fix fsi thin", true});
   list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});
   return list;
 }
@@ -1009,7 +1116,8 @@ double PairFSIFluid::memory_usage()
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
       pressure_over_density.capacity() + parts.capacity() + part_rates.capacity() +
       visible.capacity();
-  double bytes = fields.memory_usage() + (double) numbers * sizeof(double) + (double) beside.capacity() * sizeof(beside[0]);
+  double bytes = fields.memory_usage() + (double) numbers * sizeof(double) +
+      (double) beside.capacity() * sizeof(beside[0]);
   for (const auto *lists : {rows, near})
     for (int kind = 0; kind < NROWS; kind++) bytes += lists[kind].memory_usage();
   for (const auto *lists : {images, near_images})

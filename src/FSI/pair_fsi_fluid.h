@@ -32,7 +32,8 @@ PairStyle(fsi/fluid,PairFSIFluid);
 
 namespace LAMMPS_NS {
 
-// Fluid-fluid and fluid-solid pairs: pressure, viscosity, density rate and diffusion, mirror images.
+// Fluid-fluid and fluid-solid pairs: pressure, viscosity, density rate and diffusion, mirror
+// images.
 
 class PairFSIFluid : public PairFSI {
  public:
@@ -65,14 +66,20 @@ class PairFSIFluid : public PairFSI {
   void add_position_divergence(double *div);
   void add_gradient_sum(double *) override;
   // fluid particles and wall particles that may be within the support
-  const std::vector<FSI::Row> &rows_with_walls() const { return (near_known ? near : rows)[WALLS].rows; }
+  const std::vector<FSI::Row> &rows_with_walls() const
+  {
+    return (near_known ? near : rows)[WALLS].rows;
+  }
 
  protected:
   bool handles(int, int) const override;
-  // walls of held solid particles need no pair style of their own; wall particles act on fluids only
+  // walls of held solid particles need no pair style of their own; wall particles act on fluids
+  // only
   bool leaves_alone(int a, int b, bool alone) const override
   {
-    const auto rigid = [](int s) { return s == FSI::SOLID || s == FSI::RIGID; };
+    const auto rigid = [](int s) {
+      return s == FSI::SOLID || s == FSI::RIGID;
+    };
     return rigid(a) && rigid(b) && (alone || a == FSI::RIGID || b == FSI::RIGID);
   }
   bool defines(int species) const override { return species != FSI::NONE; }
@@ -80,17 +87,18 @@ class PairFSIFluid : public PairFSI {
 
  private:
   // settings
-  double sound, background, delta;    // sound: of fluids whose material has none; 0: there is no default
+  double sound, background, delta;    // sound: of fluids whose material has none; 0: there is no
+                                      // default
   double shifting;                    // coefficient C of particle shifting; 0 = off
   int shift_every;                    // steps from one displacement to the next
-  // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or the largest psi of all fluid
-  // particles); 0 = off
+  // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or
+  // the largest psi of all fluid particles); 0 = off
   double surface_ratio;
   int surface_max;
   // distance over the mean spacing from which on solids push fluid off; 0: they do not
   double solids_guard;
   int tait, laminar, couple, extrapolate, tension, solids_slip;
-  int surfaces;    // does the density follow surfaces (fsi_surface_room.h)?
+  int surfaces;                      // does the density follow surfaces (fsi_surface_room.h)?
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
@@ -111,29 +119,34 @@ class PairFSIFluid : public PairFSI {
   bigint images_step;
   template <class Position> void find_images(const FSI::Walls &, Position);
   template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
-  // of these, what the loop of rates finds within the support, for the next loop of forces: the lists have the skin's pairs, too
-  double reach;    // the support, and what a particle and another or its image may come nearer in a step
+  // of these, what the loop of rates finds within the support, for the next loop of forces: the
+  // lists have the skin's pairs, too
+  double reach;    // the support, and what a particle and another or its image may come nearer in a
+                   // step
   void find_reach();
   FSI::RowList near[NROWS];
   std::vector<FSI::RowList> near_images[NROWS];
   bool near_known;
 
-  bool cut, solids_pass;    // does a solid pass through a mirror wall, may one before the next neighbor lists?
-  std::vector<FSI::Walls::Depth> depths;     // per type and wall
-  std::vector<double> parts, part_rates;    // how much of solids is before the walls, local and ghost, and its rate
+  bool cut, solids_pass;    // does a solid pass through a mirror wall, may one before the next
+                            // neighbor lists?
+  std::vector<FSI::Walls::Depth> depths;    // per type and wall
+  std::vector<double> parts, part_rates;    // how much of solids is before the walls, local and
+                                            // ghost, and its rate
   void find_depths();
   void find_cut_solids();
 
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
-  std::vector<double> taken;    // by coupling and friction, if there is a ledger
+  std::vector<double> taken;         // by coupling and friction, if there is a ledger
   std::vector<FSI::Share> shares;    // per type: how its particles count at fluid particles
   bool unequal;                      // is any type of another spacing than the fluid, or thin?
-  double *fill, *fill_weight;        // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
+  double *fill, *fill_weight;    // per particle, by how much more thin bodies count (fsi_sight.h);
+                                 // null: there are none
   // fluid particles that may have a thin body beside them before lists are built again, and their
   // rows of pairs that it may hide
   struct Beside {
-    int i, first, last;
+    int i = 0, first = 0, last = 0;
   };
   std::vector<Beside> beside;
   std::vector<double> visible;    // of those pairs
@@ -152,20 +165,27 @@ class PairFSIFluid : public PairFSI {
   }
   FSI::Cut cut_solids;
   FSI::FluidParticles particles_at(const double *points);
-  template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);    // positions a time t later; what else a loop needs is up to complete(i, point)
-  // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions dt/2 ago, to which the velocities belong
+  // positions a time t later; what else a loop needs is up to complete(i, point)
+  template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);
+  // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions
+  // dt/2 ago, to which the velocities belong
   FSI::Fields fields;
-  double *rate;      // local after the reverse communication
+  double *rate;    // local after the reverse communication
   int nshift() const, shift_sums() const;
-  bool fills() const { return background > 0.0; }    // no free surfaces: with a background pressure they would blow up
+  bool fills() const
+  {
+    return background > 0.0;
+  }    // no free surfaces: with a background pressure they would blow up
   bool open_ends;
   double *const *velocity_of_shifting() const;
-  double **beyond;    // of solids that fluid sticks to: the sums of v W, and of W, of the fluid around
+  // of solids that fluid sticks to: the sums of v W, and of W, of the fluid around
+  double **beyond;
   void add_velocities_at_solids();
   void extrapolate_velocities();
   template <int D> void add_density_rate(double dt);
   void advance_density();
-  void displacements(double dt);    // turns the sums of particle shifting of local fluid atoms into displacements
+  void displacements(double dt);    // turns the sums of particle shifting of local fluid atoms into
+                                    // displacements
   template <int D> void add_gradients(double *);
   template <int D> void compute_forces();
   template <int D> void split_forces(const FSI::FluidParticles &, FSI::ForceLaws);

@@ -43,11 +43,16 @@ static constexpr double FAR = 2.0;
 /* ---------------------------------------------------------------------- */
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), fix_stress(nullptr), fields(lmp), grad(nullptr), any_gradient(false), packs(have_packs())
+    PairFSI(lmp, "fsi/solid"), fix_stress(nullptr), fields(lmp), grad(nullptr), any_gradient(false),
+    packs(have_packs())
 {
   artificial_row("solid");
-  keywords.key("artificial/stress").number(epsilon, 0.0, Range::from(0.0)).effect("artificial stress {}");
-  keywords.key("hourglass").number(xi, 0.0, Range::from(0.0)).effect("hourglass control of the solid {}");
+  keywords.key("artificial/stress")
+      .number(epsilon, 0.0, Range::from(0.0))
+      .effect("artificial stress {}");
+  keywords.key("hourglass")
+      .number(xi, 0.0, Range::from(0.0))
+      .effect("hourglass control of the solid {}");
   contact_row();
   keywords.key("gradient").choice(gradient, PLAIN, {"plain", "corrected", "quadratic"});
 }
@@ -76,15 +81,18 @@ void PairFSISolid::init_style()
   PairFSI::init_style();
   check_contact();
   fix_stress = FixFSIStress::find(lmp);
-  if (!fix_stress) error->all(FLERR, "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
+  if (!fix_stress)
+    error->all(
+        FLERR,
+        "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
   comm_forward = has_hourglass() ? fix_fsi->dim * fix_fsi->dim : 0;
   comm_reverse = has_hourglass() ? fix_fsi->dim : 0;
   bodies = several_bodies();
 }
 
 /* ----------------------------------------------------------------------
-   calls f(are pairs packed, kernel, terms of the gradient) with the types and constants that loops are compiled for: those of quadratic
-   gradients, and pairs one by one, for any kernel
+   calls f(are pairs packed, kernel, terms of the gradient) with the types and constants that loops
+   are compiled for: those of quadratic gradients, and pairs one by one, for any kernel
 ------------------------------------------------------------------------- */
 
 template <class F> void PairFSISolid::with_loops(F f) const
@@ -93,19 +101,29 @@ template <class F> void PairFSISolid::with_loops(F f) const
   const double h = fix_fsi->h;
   const auto plain_or_linear = [&](auto packed, const auto &kernel) {
     constexpr int D = std::decay_t<decltype(kernel)>::DIM;
-    if (gradient == PLAIN) f(packed, kernel, std::integral_constant<int, 0>());
-    else f(packed, kernel, std::integral_constant<int, D>());
+    if (gradient == PLAIN)
+      f(packed, kernel, std::integral_constant<int, 0>());
+    else
+      f(packed, kernel, std::integral_constant<int, D>());
   };
   const auto of_any_kernel = [&](const auto &kernel) {
     constexpr int D = std::decay_t<decltype(kernel)>::DIM;
     const std::integral_constant<int, Gradient<D>::NQUADRATIC> quadratic;
-    if (gradient != CORRECTED_QUADRATIC) plain_or_linear(std::false_type(), kernel);
-    else if (packs) f(std::true_type(), kernel, quadratic);
-    else f(std::false_type(), kernel, quadratic);
+    if (gradient != CORRECTED_QUADRATIC)
+      plain_or_linear(std::false_type(), kernel);
+    else if (packs)
+      f(std::true_type(), kernel, quadratic);
+    else
+      f(std::false_type(), kernel, quadratic);
   };
-  if (packs && gradient != CORRECTED_QUADRATIC) with_kernel(kind, dim, h, [&](const auto &kernel) { plain_or_linear(std::true_type(), kernel); });
-  else if (dim == 2) of_any_kernel(AnyKernel<2>(kind, h));
-  else of_any_kernel(AnyKernel<3>(kind, h));
+  if (packs && gradient != CORRECTED_QUADRATIC)
+    with_kernel(kind, dim, h, [&](const auto &kernel) {
+      plain_or_linear(std::true_type(), kernel);
+    });
+  else if (dim == 2)
+    of_any_kernel(AnyKernel<2>(kind, h));
+  else
+    of_any_kernel(AnyKernel<3>(kind, h));
 }
 
 template <bool PACKED> using Numbers = std::conditional_t<PACKED, Pack, double>;
@@ -165,7 +183,8 @@ void PairFSISolid::add_costs(Costs &costs) const
   costs.sums = true;
   costs.forward += hourglass;
   costs.back += newton * hourglass;
-  costs.solid_ghost += (dim == 2 ? 3 : 6) + dim * terms() + newton * ngrad() + hourglass * (dim * dim + newton * dim);
+  costs.solid_ghost += (dim == 2 ? 3 : 6) + dim * terms() + newton * ngrad() +
+      hourglass * (dim * dim + newton * dim);
 }
 
 void PairFSISolid::find_idle(const Census &all, const Idle &nothing) const
@@ -203,9 +222,13 @@ void PairFSISolid::find_rows()
     }
     unmasked.resize(n);
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
-    own.add(i, unmasked.data(), n, false, false, [=](int j) { return one(i, j); });
+    own.add(i, unmasked.data(), n, false, false, [=](int j) {
+      return one(i, j);
+    });
     if (bodies || self_contact)
-      others.add(i, unmasked.data(), n, false, false, [=](int j) { return !one(i, j); });
+      others.add(i, unmasked.data(), n, false, false, [=](int j) {
+        return !one(i, j);
+      });
   }
   if (whole) return;
   own.end();
@@ -231,9 +254,12 @@ void PairFSISolid::advance(bool advance)
   if (!any_gradient) return;
   const Phase phase(fix_fsi->profile, Profile::STRESS);
   const int dim = fix_fsi->dim;
-  if (terms() == 0) dim == 2 ? advance_stress<2, 0>(advance) : advance_stress<3, 0>(advance);
-  else if (terms() == dim) dim == 2 ? advance_stress<2, 2>(advance) : advance_stress<3, 3>(advance);
-  else dim == 2 ? advance_stress<2, 5>(advance) : advance_stress<3, 9>(advance);
+  if (terms() == 0)
+    dim == 2 ? advance_stress<2, 0>(advance) : advance_stress<3, 0>(advance);
+  else if (terms() == dim)
+    dim == 2 ? advance_stress<2, 2>(advance) : advance_stress<3, 3>(advance);
+  else
+    dim == 2 ? advance_stress<2, 5>(advance) : advance_stress<3, 9>(advance);
   if (advance && has_hourglass()) advance_hourglass(update->dt);
 }
 
@@ -254,9 +280,11 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
       // L = [sum_j w_ij (v_j - v_i)(x)phi_j] C^T
       double C[D * TERMS], force_C[D * TERMS], full[D * D] = {};
       const double *const moments = L + D * TERMS;
-      // hardly any neighbours: torn off, no strain, no stress to share
-      if (gradient_coefficients<D, TERMS>(moments, C) == Gradient<D>::DEFICIENT) std::fill_n(C, D * TERMS, 0.0);
-      if (gradient_coefficients<D, TERMS>(moments + packed_size(TERMS), force_C) == Gradient<D>::DEFICIENT)
+      // hardly any neighbors: torn off, no strain, no stress to share
+      if (gradient_coefficients<D, TERMS>(moments, C) == Gradient<D>::DEFICIENT)
+        std::fill_n(C, D * TERMS, 0.0);
+      if (gradient_coefficients<D, TERMS>(moments + packed_size(TERMS), force_C) ==
+          Gradient<D>::DEFICIENT)
         std::fill_n(force_C, D * TERMS, 0.0);
       for (int a = 0; a < D; a++)
         for (int b = 0; b < D; b++)
@@ -270,12 +298,12 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
     if (fix_fsi->density_solid == FixFSI::CONTINUITY) {
       double div = 0.0;
       for (int a = 0; a < D; a++) div += L[a * D + a];
-      // d rho/dt = -rho div v, centred: second order, and positive for any step
+      // d rho/dt = -rho div v, centered: second order, and positive for any step
       rho[i] *= (1.0 - 0.5 * dt * div) / (1.0 + 0.5 * dt * div);
     }
     if (fix_fsi->ledger) {
-      // what the strain stores; what the pair forces deliver, with the same stress and velocity, is taken off in
-      // force_pairs(): their difference is what the gradient's correction costs
+      // what the strain stores; what the pair forces deliver, with the same stress and velocity, is
+      // taken off in force_pairs(): their difference is what the gradient's correction costs
       auto sigma = Sym<D>::load(fix_stress->stress[i]);
       sigma += Sym<D>::identity(-s.pressure(rho[i]));
       double power = 0.0;
@@ -305,14 +333,17 @@ void PairFSISolid::go_back()
 
 void PairFSISolid::velocity_gradient(double dt)
 {
-  if (fix_fsi->dim == 2) fill_rate_records<2>(0.5 * dt);
-  else fill_rate_records<3>(0.5 * dt);
+  if (fix_fsi->dim == 2)
+    fill_rate_records<2>(0.5 * dt);
+  else
+    fill_rate_records<3>(0.5 * dt);
   if (own.rows.empty()) return;
   with_loops([&](auto packed, const auto &kernel, auto terms) {
     using K = std::decay_t<decltype(kernel)>;
     auto *const sums = reinterpret_cast<double(*)[GradientSums<K::DIM, terms()>::ROW]>(grad[0]);
-    run_loop<Numbers<packed()>>([&](auto number) __attribute__((always_inline)) {
-      gradient_rows<decltype(number), K, terms()>(own.rows.data(), own.rows.size(), kernel, rate_records.data(), 0.5 * dt, sums);
+    run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
+      gradient_rows<decltype(number), K, terms()>(own.rows.data(), own.rows.size(), kernel,
+                                                  rate_records.data(), 0.5 * dt, sums);
     });
   });
 }
@@ -322,7 +353,8 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
   using At = RateRecord<D>;
   const State *const state = fix_fsi->state.data();
   const int nall = atom->nlocal + atom->nghost;
-  if (rate_records.size() < (size_t) At::N * nall) rate_records.assign((size_t) At::N * atom->nmax, 0.0);
+  if (rate_records.size() < (size_t) At::N * nall)
+    rate_records.assign((size_t) At::N * atom->nmax, 0.0);
   for (int i = 0; i < nall; i++) {
     const State &s = state[atom->type[i]];
     if (s.species != SOLID) continue;
@@ -349,13 +381,17 @@ void PairFSISolid::advance_hourglass(double dt)
     with_loops([&](auto packed, const auto &kernel, auto terms) {
       using K = std::decay_t<decltype(kernel)>;
       auto *const rate = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(hourglass_rate.data());
-      run_loop<Numbers<packed()>>([&](auto number) __attribute__((always_inline)) {
-        hourglass_rows<decltype(number), K, GradientSums<K::DIM, terms()>::ROW>(own.rows.data(), own.rows.size(), kernel, rate_records.data(), grad[0], Hourglass{xi}, rate);
+      run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
+        hourglass_rows<decltype(number), K, GradientSums<K::DIM, terms()>::ROW>(
+            own.rows.data(), own.rows.size(), kernel, rate_records.data(), grad[0], Hourglass{xi},
+            rate);
       });
     });
   if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
-  if (dim == 2) rotate_hourglass<2>(dt);
-  else rotate_hourglass<3>(dt);
+  if (dim == 2)
+    rotate_hourglass<2>(dt);
+  else
+    rotate_hourglass<3>(dt);
 }
 
 template <int D> void PairFSISolid::rotate_hourglass(double dt)
@@ -363,7 +399,8 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
   for (int i = 0; i < atom->nlocal; i++) {
     if (material[atom->type[i]].species != SOLID) continue;
     double Q[D * D], half_turned[D], turned[D] = {};
-    double *const q = fix_stress->hourglass_force(i), *const rate = &hourglass_rate[(size_t) i * row_of_forces(D)];
+    double *const q = fix_stress->hourglass_force(i),
+                  *const rate = &hourglass_rate[(size_t) i * row_of_forces(D)];
     rotation<D>(grad[i], 0.5 * dt, Q);
     for (int a = 0; a < D; a++) {
       half_turned[a] = dt * rate[a];
@@ -378,7 +415,9 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
 int PairFSISolid::pack_forward_comm(int n, int *listed, double *buf, int, int *)
 {
   double *const first = buf;
-  for_solids(n, listed, 0, [&](int i) { buf = std::copy_n(grad[i], comm_forward, buf); });
+  for_solids(n, listed, 0, [&](int i) {
+    buf = std::copy_n(grad[i], comm_forward, buf);
+  });
   return buf - first;
 }
 
@@ -394,7 +433,8 @@ int PairFSISolid::pack_reverse_comm(int n, int first, double *buf)
 {
   int m = 0;
   for_solids(n, nullptr, first, [&](int i) {
-    for (int k = 0; k < comm_reverse; k++) buf[m++] = hourglass_rate[(size_t) i * row_of_forces(comm_reverse) + k];
+    for (int k = 0; k < comm_reverse; k++)
+      buf[m++] = hourglass_rate[(size_t) i * row_of_forces(comm_reverse) + k];
   });
   return m;
 }
@@ -402,7 +442,8 @@ int PairFSISolid::pack_reverse_comm(int n, int first, double *buf)
 void PairFSISolid::unpack_reverse_comm(int n, int *listed, double *buf)
 {
   for_solids(n, listed, 0, [&](int i) {
-    for (int k = 0; k < comm_reverse; k++) hourglass_rate[(size_t) i * row_of_forces(comm_reverse) + k] += *buf++;
+    for (int k = 0; k < comm_reverse; k++)
+      hourglass_rate[(size_t) i * row_of_forces(comm_reverse) + k] += *buf++;
   });
 }
 
@@ -435,7 +476,9 @@ void PairFSISolid::compute(int eflag, int vflag)
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
-  with_loops([&](auto packed, const auto &kernel, auto terms) { pair_forces<packed(), terms()>(kernel); });
+  with_loops([&](auto packed, const auto &kernel, auto terms) {
+    pair_forces<packed(), terms()>(kernel);
+  });
   if (has_hourglass()) {
     double **f = atom->f;
     for (int i = 0; i < atom->nlocal; i++) {
@@ -453,7 +496,8 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
   const State *const state = fix_fsi->state.data();
   const int nall = atom->nlocal + atom->nghost;
   const ArtificialStress artificial(epsilon, fix_fsi->wdx);
-  if (force_records.size() < (size_t) At::N * nall) force_records.assign((size_t) At::N * atom->nmax, 0.0);
+  if (force_records.size() < (size_t) At::N * nall)
+    force_records.assign((size_t) At::N * atom->nmax, 0.0);
   for (int i = 0; i < nall; i++) {
     const State &s = state[atom->type[i]];
     if (s.species != SOLID) continue;
@@ -492,21 +536,32 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
   forces.assign((size_t) ROW * nall, 0.0);
   auto *const of_rows = reinterpret_cast<double(*)[ROW]>(forces.data());
   SolidSums sums;
-  const SolidLaws laws = {ArtificialViscosity(alpha, beta, fix_fsi->h), ArtificialStress(epsilon, fix_fsi->wdx), Contact(D, fix_fsi->dx, contact_range),
-                          atom->type, fix_fsi->state.data(), atom->nlocal, newton, &sums};
+  const SolidLaws laws = {ArtificialViscosity(alpha, beta, fix_fsi->h),
+                          ArtificialStress(epsilon, fix_fsi->wdx),
+                          Contact(D, fix_fsi->dx, contact_range),
+                          atom->type,
+                          fix_fsi->state.data(),
+                          atom->nlocal,
+                          newton,
+                          &sums};
 
-  // sums and quadratic gradients come with viscosity, pairs one by one with all effects: what is off has coefficients of zero
+  // sums and quadratic gradients come with viscosity, pairs one by one with all effects: what is
+  // off has coefficients of zero
   const int sums_too = fix_fsi->ledger || tally_pairs ? SUMS : 0;
-  const int named = (epsilon > 0.0 ? STRESS : 0) | sums_too | (has_artificial() || sums_too || TERMS > D ? VISCOSITY : 0);
+  const int named = (epsilon > 0.0 ? STRESS : 0) | sums_too |
+      (has_artificial() || sums_too || TERMS > D ? VISCOSITY : 0);
   with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {
-    if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D) : flags() == ALL)
-      run_loop<Numbers<PACKED>>([&](auto number) __attribute__((always_inline)) {
-        force_rows<decltype(number), K, TERMS, flags()>(own.rows.data(), own.rows.size(), kernel, force_records.data(), laws, of_rows);
+    if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D)
+                         : flags() == ALL)
+      run_loop<Numbers<PACKED>>([&](auto number) FSI_INLINE_LAMBDA {
+        force_rows<decltype(number), K, TERMS, flags()>(own.rows.data(), own.rows.size(), kernel,
+                                                        force_records.data(), laws, of_rows);
       });
   });
   if (!others.rows.empty())
-    force_rows<double, AnyKernel<D>, TERMS, CONTACT | VISCOSITY | SUMS>(others.rows.data(), others.rows.size(), AnyKernel<D>(fix_fsi->kernel, fix_fsi->h),
-                                                                        force_records.data(), laws, of_rows);
+    force_rows<double, AnyKernel<D>, TERMS, CONTACT | VISCOSITY | SUMS>(
+        others.rows.data(), others.rows.size(), AnyKernel<D>(fix_fsi->kernel, fix_fsi->h),
+        force_records.data(), laws, of_rows);
 
   double **const f = atom->f;
   for (int i = 0; i < (newton ? nall : atom->nlocal); i++)
@@ -522,9 +577,12 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
 
 std::vector<PairFSI::Effect> PairFSISolid::effects() const
 {
-  static const char *const orders[] = {"plain", "exact for linear fields", "exact for quadratic fields"};
+  static const char *const orders[] = {"plain", "exact for linear fields",
+                                       "exact for quadratic fields"};
   auto list = keywords.effects();
-  list.insert(list.begin(), {fmt::format("updated-Lagrangian solid, gradients {}", orders[gradient]), "gradient", true});
+  list.insert(
+      list.begin(),
+      {fmt::format("updated-Lagrangian solid, gradients {}", orders[gradient]), "gradient", true});
   return list;
 }
 
@@ -533,5 +591,7 @@ std::vector<PairFSI::Effect> PairFSISolid::effects() const
 double PairFSISolid::memory_usage()
 {
   return fields.memory_usage() + own.memory_usage() + others.memory_usage() +
-      (double) (rate_records.capacity() + force_records.capacity() + forces.capacity() + hourglass_rate.capacity()) * sizeof(double);
+      (double) (rate_records.capacity() + force_records.capacity() + forces.capacity() +
+                hourglass_rate.capacity()) *
+      sizeof(double);
 }

@@ -28,8 +28,9 @@ PairStyle(fsi/solid,PairFSISolid);
 
 namespace LAMMPS_NS {
 
-// Solid-solid pairs, updated Lagrangian: full Cauchy stress, artificial viscosity, artificial stress; and the sums that
-// the velocity gradient is made of. Pairs of different bodies (molecule IDs) only push.
+// Solid-solid pairs, updated Lagrangian: full Cauchy stress, artificial viscosity, artificial
+// stress; and the sums that the velocity gradient is made of. Pairs of different bodies (molecule
+// IDs) only push.
 
 class PairFSISolid : public PairFSI {
  public:
@@ -55,8 +56,8 @@ class PairFSISolid : public PairFSI {
   void add_costs(Costs &) const override;
   void find_idle(const Census &, const Idle &) const override;
 
-  // gradients: 0 = plain, else the number of terms for which they are exact (fsi_gradient.h): dim linear ones (Bonet and
-  // Lok 1999), or the quadratic ones too
+  // gradients: 0 = plain, else the number of terms for which they are exact (fsi_gradient.h): dim
+  // linear ones (Bonet and Lok 1999), or the quadratic ones too
   int terms() const;
   bool has_hourglass() const { return xi > 0.0; }
 
@@ -68,16 +69,19 @@ class PairFSISolid : public PairFSI {
  private:
   class FixFSIStress *fix_stress;
   FSI::Fields fields;
-  // local and ghost: sums of the velocity gradient, afterwards L and the coefficients of its weights (fsi_gradient.h)
+  // local and ghost: sums of the velocity gradient, afterwards L and the coefficients of its
+  // weights (fsi_gradient.h)
   double **grad;
   int ngrad() const;
   bool any_gradient;    // in this step: coefficients are needed by forces, so in setup, too
-  // adds to grad, over the own body, at the positions dt/2 ago, to which the velocities belong: plain,
-  // sum_j V_j (v_j - v_i)(x)grad_i W_ij; else sum_j w (v_j - v_i)(x)phi and, packed, the moments sum_j w phi (x) phi, with
-  // grad_i W_ij = -w x_ij/V_j and the basis phi of x_ji/h; then these moments at the positions of now, for the forces
+  // adds to grad, over the own body, at the positions dt/2 ago, to which the velocities belong:
+  // plain, sum_j V_j (v_j - v_i)(x)grad_i W_ij; else sum_j w (v_j - v_i)(x)phi and, packed, the
+  // moments sum_j w phi (x) phi, with grad_i W_ij = -w x_ij/V_j and the basis phi of x_ji/h; then
+  // these moments at the positions of now, for the forces
   void velocity_gradient(double dt);
   template <int D, int TERMS> void advance_stress(bool advance);
-  // forces of hourglass control from half a step back to half a step ahead, with L of the time between
+  // forces of hourglass control from half a step back to half a step ahead, with L of the time
+  // between
   void advance_hourglass(double dt);
 
   enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };

@@ -99,11 +99,13 @@ void PairFSISolidTL::check_settings()
   }
   if (volumetric != SMOOTHED) return;
   if (plane_stress)
-    error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed is not for plane stress, "
-                      "which does not lock: expected auto or local");
+    error->all(FLERR,
+               "Pair style fsi/solid/tl volumetric smoothed is not for plane stress, which does "
+               "not lock: expected auto or local");
   if (damage > 0.0)
-    error->all(FLERR, "Pair style fsi/solid/tl volumetric smoothed does not go with damage, "
-                      "where it would make energy: expected auto or local");
+    error->all(FLERR,
+               "Pair style fsi/solid/tl volumetric smoothed does not go with damage, where it "
+               "would make energy: expected auto or local");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -136,7 +138,7 @@ void PairFSISolidTL::init_style()
   refuse_constraints();
   make_laws();
   Fix *fix = modify->get_fix_by_id(FixFSIReference::ID);
-  if (!fix) fix = modify->add_fix(fmt::format("{} all fsi/reference", FixFSIReference::ID));
+  if (!fix) fix = modify->add_fix(fmt::format("{} all FSI_REFERENCE", FixFSIReference::ID));
   reference = dynamic_cast<FixFSIReference *>(fix);
   reference->quadratic = !linear;
   reference->end_corrected = !plain;
@@ -160,7 +162,9 @@ void PairFSISolidTL::make_laws()
   smoothed = VolumetricStrain();
   for (const auto &m : material)
     smoothed.modulus.push_back(is_smoothed(m) ? VolumetricStrain::excess(m) : 0.0);
-  const auto none = [](double k) { return k == 0.0; };
+  const auto none = [](double k) {
+    return k == 0.0;
+  };
   if (std::all_of(smoothed.modulus.begin(), smoothed.modulus.end(), none)) smoothed.modulus.clear();
   laws.choose(law);
   laws.make(material, smoothed.modulus, plane_stress);
@@ -172,8 +176,8 @@ void PairFSISolidTL::make_laws()
   if (fix_stress->plane_stress == plane_stress) return;
   static const char *const planes[] = {"strain", "stress"};
   error->all(FLERR,
-             "Pair style fsi/solid/tl law {} has plane {} and fix fsi/stress plane {}: "
-             "expected the same in both",
+             "Pair style fsi/solid/tl law {} has plane {} and fix fsi/stress plane {}: expected "
+             "the same in both",
              laws.name(), planes[plane_stress], planes[fix_stress->plane_stress]);
 }
 
@@ -227,7 +231,9 @@ void PairFSISolidTL::refuse_rigid_parts() const
   for (auto &fix : modify->get_fix_list()) {
     if (!utils::strmatch(fix->style, "^rigid") && !utils::strmatch(fix->style, "^poems")) continue;
     for (const BondRow &row : rows) {
-      const auto elastic = [&](int i) { return atom->mask[i] & fix_fsi->groupbit; };
+      const auto elastic = [&](int i) {
+        return atom->mask[i] & fix_fsi->groupbit;
+      };
       if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int j) {
             return !elastic(j) && atom->mask[j] & fix->groupbit;
           }))
@@ -276,16 +282,20 @@ template <class Call> auto PairFSISolidTL::with_law(Call call) const
 
 void PairFSISolidTL::internal_forces()
 {
-  if (fix_fsi->dim == 2) gather_points<2>();
-  else gather_points<3>();
+  if (fix_fsi->dim == 2)
+    gather_points<2>();
+  else
+    gather_points<3>();
   const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
   with_law([&](const auto *law_of, auto dimension) {
     bond_forces<std::decay_t<decltype(*law_of)>, decltype(dimension)::value>(law_of);
   });
   strain_energy += volumetric_energy;
   if (list) {
-    if (fix_fsi->dim == 2) contact_forces<2>();
-    else contact_forces<3>();
+    if (fix_fsi->dim == 2)
+      contact_forces<2>();
+    else
+      contact_forces<3>();
   }
   if (!reference->near_itself.empty()) {
     if (fix_fsi->dim == 2)
@@ -352,12 +362,17 @@ template <int D> void PairFSISolidTL::gather_points()
   const int *const type = atom->type;
   const int *const mask = atom->mask, groupbit = fix_fsi->groupbit;
   smoothed.find_weights<D>(
-      rows, type, [=](int i) { return mask[i] & groupbit; },
+      rows, type,
+      [=](int i) {
+        return mask[i] & groupbit;
+      },
       [&](int i, int j) {
         const Material &a = material[type[i]], &b = material[type[j]];
         return a.young == b.young && a.poisson == b.poisson;
       },
-      [&](int t) { return fix_fsi->resolution[t].cut; });
+      [&](int t) {
+        return fix_fsi->resolution[t].cut;
+      });
 }
 
 /* ----------------------------------------------------------------------
@@ -383,18 +398,28 @@ double PairFSISolidTL::smooth_strains(bool of_all)
   with_law([&](const auto *law_of, auto dimension) {
     using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;
-    const auto find = [&](auto number) __attribute__((always_inline)) {
+    const auto find = [&](auto number) FSI_INLINE_LAMBDA {
       find_volumetric_strains<decltype(number), L, D>(rows, atom->type, points.data(), smoothed);
     };
-    const auto smooth = [&](auto number) __attribute__((always_inline)) {
+    const auto smooth = [&](auto number) FSI_INLINE_LAMBDA {
       energy = smooth_volumetric_strains<decltype(number), L>(rows, of_all, smoothed);
     };
     have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
-    exchange(profile, comm, this, false, [&]() { swaps.forward(this); }, swaps.skip_empty());
+    exchange(
+        profile, comm, this, false,
+        [&]() {
+          swaps.forward(this);
+        },
+        swaps.skip_empty());
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
     have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
-    exchange(profile, comm, this, true, [&]() { swaps.reverse(this); }, swaps.skip_empty());
+    exchange(
+        profile, comm, this, true,
+        [&]() {
+          swaps.reverse(this);
+        },
+        swaps.skip_empty());
   });
   comm_forward = forward;
   comm_reverse = reverse;
@@ -415,8 +440,8 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
   const int nrows = only_moving ? nmoving : (int) rows.size();
   BondSums sums;
   const double *const volumetric_forces = smoothed.on() ? smoothed.force.data() : nullptr;
-  const BondArguments in = {points.data(), type, state, history(), volumetric_forces,
-                            alpha, beta, one_material, &sums};
+  const BondArguments in = {points.data(), type, state,        history(), volumetric_forces,
+                            alpha,         beta, one_material, &sums};
   auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid ? fsolid[0] : nullptr);
   // with sums, or one by one, there is one loop for all effects: those that are off have
   // coefficients of zero
@@ -424,8 +449,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
   const int named = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
   with_flags<ALL>(fix_fsi->ledger || vflag_global || !packs ? ALL : named, [&](auto which) {
     if constexpr (!(which() & SUMS) || which() == ALL) {
-      const auto loop = [&](auto number) __attribute__((always_inline))
-      {
+      const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
         bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f);
       };
       if (packs) return run_loop<Pack>(loop);
@@ -501,7 +525,12 @@ void PairFSISolidTL::push(int i, int j, const double *xij, double rsq, const Con
     fsolid[i][d] += of_i * xij[d];
     if (share > 0.0) fsolid[j][d] -= of_i * xij[d];
   }
-  if (vflag_global) add_virial<D>([&](int a, int b) { return part * f * xij[a] * xij[b]; }, virial);
+  if (vflag_global)
+    add_virial<D>(
+        [&](int a, int b) {
+          return part * f * xij[a] * xij[b];
+        },
+        virial);
   strain_energy += part * contact.energy(rsq, Ki, Kj);
 }
 
@@ -527,8 +556,10 @@ void PairFSISolidTL::advance_stress(double dt)
   with_law([&](const auto *law_of, auto dimension) {
     using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;
-    if constexpr (L::BY_RATE) advance_rates<D>(dt);
-    else if constexpr (L::HISTORY != nullptr) advance_history<L, D>(law_of, dt);
+    if constexpr (L::BY_RATE)
+      advance_rates<D>(dt);
+    else if constexpr (L::HISTORY != nullptr)
+      advance_history<L, D>(law_of, dt);
   });
 }
 
@@ -538,8 +569,7 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
   for (int t = 0; t <= atom->ntypes; t++) factors.push_back(law_of[t].factors(dt));
   gather_points<D>();
   double dissipated = 0.0;
-  const auto loop = [&](auto number) __attribute__((always_inline))
-  {
+  const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
     using T = decltype(number);
     using Pass = BondPass<T, D, 0>;
     std::vector<double> kept;
@@ -551,8 +581,8 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
       double Fi[D * D];
       gather_row<T, D, 0>(row, points.data(), kept.data(), F, unused);
       for (int k = 0; k < D * D; k++) Fi[k] = Lanes<T>::sum(F[k]);
-      dissipated += row.volume *
-          law_of[t].template advance<D>(Fi, factors[t], fix_history->of[row.i]);
+      dissipated +=
+          row.volume * law_of[t].template advance<D>(Fi, factors[t], fix_history->of[row.i]);
     }
   };
   have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
@@ -600,7 +630,9 @@ void PairFSISolidTL::break_bonds()
 {
   if (damage <= 0.0) return;
   const Phase phase(fix_fsi->profile, Profile::STRESS);
-  reference->break_bonds(1.0 + damage, [this](int i) { return std::max(0.0, stored(i)); });
+  reference->break_bonds(1.0 + damage, [this](int i) {
+    return std::max(0.0, stored(i));
+  });
 }
 
 // elastic energy per reference volume; where stress comes by rates, and is no function of F, 0
@@ -638,8 +670,10 @@ void PairFSISolidTL::begin_stress()
 {
   forward_positions();    // ghosts still stand where they were in the middle of the step
   if (!smoothed.on()) return;
-  if (fix_fsi->dim == 2) gather_points<2>();
-  else gather_points<3>();
+  if (fix_fsi->dim == 2)
+    gather_points<2>();
+  else
+    gather_points<3>();
   smooth_strains(true);
 }
 
@@ -710,7 +744,9 @@ int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_f
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
   int m = 0;
   if (sends_strains) {
-    for_solids(n, listed, 0, [&](int i) { buf[m++] = smoothed.strain[i]; });
+    for_solids(n, listed, 0, [&](int i) {
+      buf[m++] = smoothed.strain[i];
+    });
     return m;
   }
   for_solids(n, listed, 0, [&](int i) {
@@ -726,7 +762,9 @@ void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
   const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
   if (sends_strains)
-    return for_solids(n, nullptr, first, [&](int i) { smoothed.strain[i] = *buf++; });
+    return for_solids(n, nullptr, first, [&](int i) {
+      smoothed.strain[i] = *buf++;
+    });
   for_solids(n, nullptr, first, [&](int i) {
     for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
     if (velocities)
@@ -738,7 +776,9 @@ int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 {
   int m = 0;
   if (sends_strains) {
-    for_solids(n, nullptr, first, [&](int i) { buf[m++] = smoothed.force[i]; });
+    for_solids(n, nullptr, first, [&](int i) {
+      buf[m++] = smoothed.force[i];
+    });
     return m;
   }
   for_solids(n, nullptr, first, [&](int i) {
@@ -750,7 +790,9 @@ int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
   if (sends_strains)
-    return for_solids(n, listed, 0, [&](int i) { smoothed.force[i] += *buf++; });
+    return for_solids(n, listed, 0, [&](int i) {
+      smoothed.force[i] += *buf++;
+    });
   for_solids(n, listed, 0, [&](int i) {
     for (int d = 0; d < fix_fsi->dim; d++) fsolid[i][d] += *buf++;
   });
@@ -776,8 +818,10 @@ void PairFSISolidTL::integrate_substeps()
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
   std::vector<int> moving, held;
   for (const int i : solids())
-    if (atom->mask[i] & fix_fsi->groupbit) moving.push_back(i);
-    else if (profile) held.push_back(i);
+    if (atom->mask[i] & fix_fsi->groupbit)
+      moving.push_back(i);
+    else if (profile)
+      held.push_back(i);
   const auto hold = [&](double t) {
     for (const int i : held)
       for (int d = 0; d < dim; d++) profile->impulse_held[d] += t * fs[i][d];
@@ -842,7 +886,8 @@ void PairFSISolidTL::add_costs(Costs &costs) const
   if (n > 1)
     costs.solids = fmt::format("; {} each way for solid sub-steps, where they carry solids",
                                n * (1 + strains));
-  else costs.solids = strains ? "; 1 forward and 2 back for solids" : "; 1 back for solid forces";
+  else
+    costs.solids = strains ? "; 1 forward and 2 back for solids" : "; 1 back for solid forces";
 }
 
 void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
@@ -852,8 +897,9 @@ void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
   else if (volumetric == SMOOTHED && !smoothed.on())
     nothing("Pair style fsi/solid/tl volumetric smoothed",
             fmt::format("no Poisson's ratio is above {}", VolumetricStrain::LOCAL));
-  const bool relaxes = std::any_of(material.begin(), material.end(),
-                                   [](const Material &m) { return m.nprony > 0; });
+  const bool relaxes = std::any_of(material.begin(), material.end(), [](const Material &m) {
+    return m.nprony > 0;
+  });
   if (relaxes != (laws.history() != nullptr))
     nothing(relaxes ? "Prony series of a material" : "Pair style fsi/solid/tl law viscoelastic",
             relaxes ? "pair_style fsi/solid/tl has another law" : "no material has a Prony series");
@@ -869,8 +915,8 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
                            laws.title(), linear ? "linear" : "quadratic"),
                "law", true});
   if (smoothed.on())
-    list.push_back({"smoothed volumetric strain of nearly incompressible solids",
-                    "volumetric", true});
+    list.push_back(
+        {"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});
   return list;
 }
 

@@ -11,7 +11,6 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-
 #ifdef PAIR_CLASS
 // clang-format off
 PairStyle(fsi/solid/tl,PairFSISolidTL);
@@ -33,7 +32,7 @@ namespace LAMMPS_NS {
 
 // Elastic solids in total-Lagrangian form. The deformation gradient of particle i is
 //   F_i = sum_j (x_j - x_i) (x) G_ij
-// over its bonds, the neighbours in the reference configuration, and the force is minus the
+// over its bonds, the neighbors in the reference configuration, and the force is minus the
 // derivative of the energy sum_i V_i psi(F_i): momentum, angular momentum and energy are kept to
 // round-off and time step. Particle i alone gives the forces -V_i P_i G_ij to its partners and the
 // opposite to itself, so neither F nor P crosses ranks. Particles of different bodies meet by
@@ -73,12 +72,12 @@ class PairFSISolidTL : public PairFSI {
   double strain_energy;
 
   struct Stress {
-    double sigma[6];    // Cauchy: xx yy zz xy xz yz
-    double J;           // det F
+    double sigma[6] = {};    // Cauchy: xx yy zz xy xz yz
+    double J = 0.0;          // det F
     double pressure() const { return -(sigma[0] + sigma[1] + sigma[2]) / 3.0; }
     double von_mises() const;
   };
-  void begin_stress();    // before stress(), on all ranks: what it needs of other particles
+  void begin_stress();           // before stress(), on all ranks: what it needs of other particles
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
   double volume_ratio(int i) const;    // det F, likewise
 
@@ -128,8 +127,7 @@ class PairFSISolidTL : public PairFSI {
   template <int D> void self_contact_forces();
   template <int D>
   void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
-  template <class L, int D>
-  void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
+  template <class L, int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
   template <int D> void deformation(int i, double *F) const;
   template <int D> void advance_rates(double dt);
   template <class L, int D> void advance_history(const L *law_of, double dt);

@@ -144,7 +144,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi/stream", &create_with_arguments<FixFSIStream>);
   two("fix", "fsi/report", &create_with_arguments<FixFSIReport>);
   two("fix", "fsi/stress", &create_with_arguments<FixFSIStress>);
-  two("fix", "fsi/reference", &create_with_arguments<FixFSIReference>);
+  two("fix", "FSI_REFERENCE", &create_with_arguments<FixFSIReference>);
   two("fix", "FSI_HISTORY", &create_with_arguments<FixFSIHistory>);
   two("fix", "fsi", &create_with_arguments<FixFSI>);
   one("command", "fsi/material", &create<FSIMaterial>);

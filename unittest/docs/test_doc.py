@@ -16,7 +16,7 @@ STYLES["atom_style_fsi"] = STYLES.pop("atom_fsi")
 STYLES.pop("command_fsi_set")  # its name of today and that of before
 STYLES.pop("command_fsi_material")
 STYLES |= {"fsi_set": "fsi/set", "fsi_material": "fsi/material"}
-STYLES.pop("fix_fsi_reference")  # internal
+STYLES.pop("fix_FSI_REFERENCE")  # internal
 STYLES.pop("fix_FSI_HISTORY")
 STYLES.pop("fix_fsi_outlet")  # on the page of fix fsi/inlet
 

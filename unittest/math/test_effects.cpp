@@ -21,7 +21,7 @@ using namespace LAMMPS_NS::FSI;
 
 namespace {
 
-// Sums f(x_ij, rsq, gradient factor) over the neighbours of the origin of a fine lattice (h = 3 dx: the sum is then
+// Sums f(x_ij, rsq, gradient factor) over the neighbors of the origin of a fine lattice (h = 3 dx: the sum is then
 // within 1e-3 of the integral), times V = dx^d.
 constexpr double SPACING = 0.01, H = 3 * SPACING;
 
@@ -96,7 +96,7 @@ TEST(LaminarViscosity, Value)
   EXPECT_NEAR(f[0] - 1.0, k * v[0], 1e-15);
   EXPECT_NEAR(f[1] - 2.0, k * v[1], 1e-15);
   EXPECT_LT(k, 0.0);    // opposes v_ij
-  // Monaghan (2005): 2(d+2) times the mean viscosity, along the line of centres; 0 where v is normal to it
+  // Monaghan (2005): 2(d+2) times the mean viscosity, along the line of centers; 0 where v is normal to it
   double c[2] = {0.0, 0.0};
   const double vx = 0.3 * 0.06 - 0.7 * 0.04, kc = vv * 4.0 * mu * vx * g / rsq;
   EXPECT_NEAR(central(g, rsq, mu, vv, x, v, c), -kc * vx, 1e-14 * std::fabs(kc * vx));

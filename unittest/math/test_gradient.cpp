@@ -7,7 +7,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Moving-least-squares gradients: fields that they must reproduce, and what they say where neighbours do not suffice.
+// Moving-least-squares gradients: fields that they must reproduce, and what they say where neighbors do not suffice.
 
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
@@ -21,10 +21,10 @@ namespace {
 
 constexpr double DX = 0.01, H = 1.5 * DX;
 
-// neighbours of the origin: lattice sites within lo[a] .. hi[a] spacings, shaken by up to jitter spacings
-template <int D> struct Neighbours {
+// neighbors of the origin: lattice sites within lo[a] .. hi[a] spacings, shaken by up to jitter spacings
+template <int D> struct Neighbors {
   std::vector<double> dX, w;
-  Neighbours(const int *lo, const int *hi, double jitter, unsigned seed = 1)
+  Neighbors(const int *lo, const int *hi, double jitter, unsigned seed = 1)
   {
     Random random(seed);
     const Wendland<D> kernel(H);
@@ -46,8 +46,8 @@ template <int D> struct Neighbours {
   int size() const { return w.size(); }
 };
 
-// largest error of the gradient of u = a.X + X.B.X/2, in units of the largest derivative over the neighbourhood
-template <int D> double error_of(const Neighbours<D> &n, const std::vector<double> &G, double curvature)
+// largest error of the gradient of u = a.X + X.B.X/2, in units of the largest derivative over the neighborhood
+template <int D> double error_of(const Neighbors<D> &n, const std::vector<double> &G, double curvature)
 {
   Random random(99);
   double a[D], B[D][D];
@@ -70,7 +70,7 @@ template <int D> double error_of(const Neighbours<D> &n, const std::vector<doubl
   return error;
 }
 
-template <int D> typename GradientWeights<D>::Order weigh(const Neighbours<D> &n, bool quadratic, std::vector<double> &G)
+template <int D> typename GradientWeights<D>::Order weigh(const Neighbors<D> &n, bool quadratic, std::vector<double> &G)
 {
   GradientWeights<D> weights;
   G.assign((size_t) n.size() * D, NAN);
@@ -93,7 +93,7 @@ TYPED_TEST(Weights, QuadraticFieldsAreExact)
   for (const auto &lo : lows)
     for (const double jitter : {0.0, 0.2})
       for (unsigned seed = 1; seed < 20; seed++) {
-        const Neighbours<D> n(lo, hi, jitter, seed);
+        const Neighbors<D> n(lo, hi, jitter, seed);
         std::vector<double> G;
         ASSERT_EQ(weigh(n, true, G), GradientWeights<D>::QUADRATIC) << lo[0] << lo[1] << lo[2];
         // sums of up to 100 terms with weights of up to 10/dx of both signs, from a matrix of condition number 1e3
@@ -110,7 +110,7 @@ TYPED_TEST(Weights, AtAFaceAllButTheSquareAlongTheNormal)
   Random random(8);
   for (int turn = 0; turn < 40; turn++) {
     const int faces = 1 + turn % D, lo[3] = {0, faces > 1 ? 0 : -3, faces > 2 ? 0 : -3};
-    Neighbours<D> n(lo, hi, 0.0);
+    Neighbors<D> n(lo, hi, 0.0);
     auto R = random_rotation<D>(random);
     if (turn == 0)
       for (int a = 0; a < D; a++)
@@ -146,7 +146,7 @@ TYPED_TEST(Weights, AtAFaceAllButTheSquareAlongTheNormal)
       for (int a = 0; a < D; a++) gsq += G[j * D + a] * G[j * D + a];
       largest = std::fmax(largest, std::sqrt(gsq));
     }
-    EXPECT_LT(largest * DX, 0.75) << turn;    // a difference of two neighbours has 1, quadratic terms along a normal 2
+    EXPECT_LT(largest * DX, 0.75) << turn;    // a difference of two neighbors has 1, quadratic terms along a normal 2
   }
 }
 
@@ -155,7 +155,7 @@ TYPED_TEST(Weights, LinearOrderOnRequest)
   constexpr int D = TypeParam::value;
   const int lo[3] = {0, -3, -3}, hi[3] = {3, 3, 3};
   for (unsigned seed = 1; seed < 20; seed++) {
-    const Neighbours<D> n(lo, hi, 0.2, seed);
+    const Neighbors<D> n(lo, hi, 0.2, seed);
     std::vector<double> G;
     ASSERT_EQ(weigh(n, false, G), GradientWeights<D>::LINEAR);
     EXPECT_LT(error_of(n, G, 0.0), 1e-12);
@@ -170,7 +170,7 @@ TYPED_TEST(Weights, LinearGradientAtAFaceIsThatOfAPlaceInside)
   constexpr int D = TypeParam::value;
   const int lo[3] = {0, -3, -3}, hi[3] = {3, 3, 3};
   const Wendland<D> kernel(H);
-  Neighbours<D> n(lo, hi, 0.0);
+  Neighbors<D> n(lo, hi, 0.0);
   std::vector<double> G;
   for (int j = 0; j < n.size(); j++) {
     double rsq = 0.0;
@@ -188,7 +188,7 @@ TYPED_TEST(Weights, ScalesWithLength)
 {
   constexpr int D = TypeParam::value;
   const int lo[3] = {-1, 0, -3}, hi[3] = {3, 3, 3};
-  Neighbours<D> n(lo, hi, 0.2);
+  Neighbors<D> n(lo, hi, 0.2);
   std::vector<double> G, big((size_t) n.size() * D);
   weigh(n, true, G);
   for (double &x : n.dX) x *= 1000.0;
@@ -207,14 +207,14 @@ TYPED_TEST(Weights, LineOrPlaneIsDeficient)
     for (const bool quadratic : {true, false}) {
       int lo[3] = {-3, -3, -3}, hi[3] = {3, 3, 3};
       lo[flat] = hi[flat] = 0;
-      EXPECT_EQ(weigh(Neighbours<D>(lo, hi, 0.2), quadratic, G), GradientWeights<D>::DEFICIENT) << flat;
+      EXPECT_EQ(weigh(Neighbors<D>(lo, hi, 0.2), quadratic, G), GradientWeights<D>::DEFICIENT) << flat;
       lo[flat] = 0;
       hi[flat] = 0;
       lo[(flat + 1) % D] = hi[(flat + 1) % D] = 0;
-      EXPECT_EQ(weigh(Neighbours<D>(lo, hi, 0.2), quadratic, G), GradientWeights<D>::DEFICIENT) << flat;
+      EXPECT_EQ(weigh(Neighbors<D>(lo, hi, 0.2), quadratic, G), GradientWeights<D>::DEFICIENT) << flat;
     }
   // a plane that no axis lies in
-  Neighbours<D> skew((const int[3]){-3, -3, 0}, (const int[3]){3, D == 2 ? 0 : 3, 0}, 0.0);
+  Neighbors<D> skew((const int[3]){-3, -3, 0}, (const int[3]){3, D == 2 ? 0 : 3, 0}, 0.0);
   Random random(5);
   const auto R = random_rotation<D>(random);
   for (int j = 0; j < skew.size(); j++) {
@@ -228,15 +228,15 @@ TYPED_TEST(Weights, LineOrPlaneIsDeficient)
   EXPECT_EQ(weigh(skew, true, G), GradientWeights<D>::DEFICIENT);
 }
 
-TYPED_TEST(Weights, TooFewNeighboursAreDeficient)
+TYPED_TEST(Weights, TooFewNeighborsAreDeficient)
 {
   constexpr int D = TypeParam::value;
   const int lo[3] = {0, 0, 0}, hi[3] = {1, 0, 0};
   std::vector<double> G;
-  const Neighbours<D> one(lo, hi, 0.0);
+  const Neighbors<D> one(lo, hi, 0.0);
   ASSERT_EQ(one.size(), 1);
   EXPECT_EQ(weigh(one, true, G), GradientWeights<D>::DEFICIENT);
-  Neighbours<D> none = one;
+  Neighbors<D> none = one;
   none.dX.clear();
   none.w.clear();
   EXPECT_EQ(weigh(none, true, G), GradientWeights<D>::DEFICIENT);
@@ -252,7 +252,7 @@ TYPED_TEST(Weights, TwoLayers)
       int lo[3] = {-3, -3, -3}, hi[3] = {3, 3, 3};
       lo[across] = 0;
       hi[across] = 1;
-      Neighbours<D> n(lo, hi, 0.0);
+      Neighbors<D> n(lo, hi, 0.0);
       Random random(3);
       for (int j = 0; j < n.size(); j++)    // along the layers
         for (int a = 0; a < D; a++)
@@ -266,7 +266,7 @@ TYPED_TEST(Weights, TwoLayers)
 TYPED_TEST(Weights, SimplexIsLinear)
 {
   constexpr int D = TypeParam::value;
-  Neighbours<D> n((const int[3]){0, 0, 0}, (const int[3]){1, 1, 1}, 0.0);
+  Neighbors<D> n((const int[3]){0, 0, 0}, (const int[3]){1, 1, 1}, 0.0);
   n.dX.assign(D * D, 0.0);
   n.w.assign(D, 1.0);
   for (int a = 0; a < D; a++) n.dX[a * D + a] = DX;

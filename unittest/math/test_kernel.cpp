@@ -136,7 +136,7 @@ TEST_P(KernelTest, GradientIsDerivative)
   });
 }
 
-// of neighbours on a finer lattice
+// of neighbors on a finer lattice
 TEST_P(KernelTest, SharperGradientIsDerivative)
 {
   const auto &c = GetParam();
@@ -244,7 +244,7 @@ struct Edge {
   const char *name;
   int kind;
   double ratio;
-  int neighbours;
+  int neighbors;
   double layer[3], corner;
 };
 void PrintTo(const Edge &e, std::ostream *os)
@@ -273,7 +273,7 @@ TEST_P(FreeEdge, NumberDensity)
     };
     const double bulk = lattice_number_density(k, SPACING);
     EXPECT_NEAR(sum(9, 9), bulk, 1e-12 * bulk);
-    EXPECT_EQ(count, e.neighbours);
+    EXPECT_EQ(count, e.neighbors);
     // three printed digits
     for (int n = 0; n < 3; n++) EXPECT_NEAR(sum(n, 9) / bulk, e.layer[n], 0.0005) << "layer " << n + 1;
     EXPECT_NEAR(sum(0, 0) / bulk, e.corner, 0.0005);

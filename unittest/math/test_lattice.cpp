@@ -159,7 +159,7 @@ TEST_P(Lattice, NoWaveIsSofterThanTheSoftest)
 
 TEST(LatticeFreeRatio, IsTheNearestZero)
 {
-  // between neighbours of the table above that differ in sign; the zeros that are nearer to Wendland 1.3, 1.16 and (3D) 1.23, are those
+  // between neighbors of the table above that differ in sign; the zeros that are nearer to Wendland 1.3, 1.16 and (3D) 1.23, are those
   // of lattices that shear by themselves
   for (const auto &[kind, dim, from, low, high] : {std::tuple(WENDLAND, 2, 1.5, 1.53, 1.54), {WENDLAND, 3, 1.5, 1.56, 1.57}, {WENDLAND, 2, 1.6, 1.53, 1.54}, {WENDLAND, 2, 1.3, 1.53, 1.54},
                                                    {WENDLAND, 3, 1.3, 1.56, 1.57}, {CUBIC, 2, 1.3, 1.34, 1.345}}) {

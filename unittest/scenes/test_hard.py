@@ -70,7 +70,7 @@ def test_a_run_that_is_stopped_is_a_result(monkeypatch, tmp_path, capsys):
     assert scene.run_cases("hard", tmp_path / "strict") != 0 and not (tmp_path / "strict" / "hard.json").exists()
 
 
-def test_pieces_and_neighbours():
+def test_pieces_and_neighbors():
     """Pairs and clusters against all pairs, of random points."""
     module = scene.analysis("hard")
     x = np.random.default_rng(1).uniform(0.0, 1.0, (200, 2))

@@ -12,7 +12,7 @@ def rings(request, tmp_path_factory):
 
 
 def test_rings_rebound_whole(rings):
-    # neighbours of the lattice stay neighbours (a fracture parts them by more than two spacings); the rebound takes from
+    # neighbors of the lattice stay neighbors (a fracture parts them by more than two spacings); the rebound takes from
     # the speed only what goes into the rings' own vibration
     _, figures = rings
     assert 0.5 < figures["rebound_speed"] < 1.0

@@ -79,7 +79,7 @@ def test_study_compares_resolutions(summary):
 
 
 def test_no_farther_than_the_nearest_code(summary):
-    # distances of the digitised curves of Khayyer et al., Yang et al. and Ng et al. to the experiment's points
+    # distances of the digitized curves of Khayyer et al., Yang et al. and Ng et al. to the experiment's points
     _, figures = summary
     assert figures["10MPa_rms_x"]["met"] and not figures["12MPa_rms_x"]["met"]
     assert figures["10MPa_rms_x"]["target"] == pytest.approx(8.28, abs=0.02)

@@ -4,7 +4,7 @@ from scenes import run_scene
 
 
 def test_patch_keeps_together(tmp_path):
-    # 25 particles across, one radian. The centre's pressure at the start is that of the Fourier series; the patch stays whole,
+    # 25 particles across, one radian. The center's pressure at the start is that of the Fourier series; the patch stays whole,
     # and its arms alike, only with shifting
     figures = run_scene(tmp_path / "shift", "rotating_square_patch", dx=0.04, tend=1.0, jitter=0.1)
     assert abs(figures["centre_pressure"] / -0.1473 - 1.0) < 0.05

@@ -63,7 +63,7 @@ def test_artificial_viscosity_of_a_shear_wave(dim):
                fluid=f"sound {c} tension yes artificial/visc {alpha} 0") as s:
         s.run()
         nu = decay_rate(s, lambda x: np.sin(k * x[:, 0]), 1, dt, 10, 50) / k**2
-        d = lattice([9] * dim, dx, centre=True)
+        d = lattice([9] * dim, dx, center=True)
         d = d[np.linalg.norm(d, axis=1) > 0]
         r2 = (d**2).sum(1)
         V = s.get("rmass")[0] / 1000

@@ -97,7 +97,7 @@ def advice(folder, changes=(), materials=None, ranks=1):
     return [re.sub(r" \([^()]*fsi_advice.cpp:\d+\)$", "", line) for line in output.splitlines() if line.startswith("WARNING: Fix fsi: ")]
 
 
-def test_sound_deck_is_not_criticised(tmp_path):
+def test_sound_deck_is_not_criticized(tmp_path):
     assert advice(tmp_path) == []
     # the bounds themselves: 7 sqrt(2gH), 0.4 h/c_l, three layers
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
@@ -180,7 +180,7 @@ def test_thin_sub_domains(tmp_path):
 
 
 @pytest.mark.parametrize("change", [("timestep 4e-5", "fix dt all fsi/dt 1"), ("timestep 4e-5", "fix dt all fsi/dt 1 substeps auto")])
-def test_chosen_time_step_is_not_criticised(tmp_path, change):
+def test_chosen_time_step_is_not_criticized(tmp_path, change):
     assert advice(tmp_path, [change]) == []
 
 

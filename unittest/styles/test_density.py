@@ -34,8 +34,8 @@ def test_summation(n, kernel):
 
 
 @BOTH
-def test_whose_neighbours_count(n):
-    """Fluids sum over all neighbours; solids over their own body, or over all in mode summation."""
+def test_whose_neighbors_count(n):
+    """Fluids sum over all neighbors; solids over their own body, or over all in mode summation."""
     x, _ = cloud(n, 0.1, seed=2)
     type_, mol = species(n, x)
     fluid = type_ == 1
@@ -74,7 +74,7 @@ def test_ratio(n):
 @pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("delta", [0.0, 0.1])
 def test_continuity_rate(n, kernel, delta):
-    """One step: rho += dt m_i sum_j v_ij.g_ij, over fluid and solid neighbours, plus diffusion within a fluid."""
+    """One step: rho += dt m_i sum_j v_ij.g_ij, over fluid and solid neighbors, plus diffusion within a fluid."""
     x, v = cloud(n, 0.1, seed=6, vmax=1.0)
     dim, dt, h = len(n), 2e-3, 0.12
     type_, mol = species(n, x)
@@ -131,7 +131,7 @@ def test_nobody_is_thinner_than_alone(n):
 
 
 def planes(kernel, dim, dx):
-    """(s, room) of the layers of a lattice below a plane surface, from the inside: what the planes of neighbours that are missing add up to."""
+    """(s, room) of the layers of a lattice below a plane surface, from the inside: what the planes of neighbors that are missing add up to."""
     reach = range(-6, 7)
     rows = [(0.0, 0.0)]
     for z in range(6, 0, -1):
@@ -144,7 +144,7 @@ def planes(kernel, dim, dx):
 
 @BOTH
 def test_density_follows_surfaces(n):
-    """Two blocks that meet lose the room that neighbours missed between them, and have it again when they part; nothing happens at rest, nor
+    """Two blocks that meet lose the room that neighbors missed between them, and have it again when they part; nothing happens at rest, nor
     between the steps that look: one in the time 5 h/c."""
     dim, dx = len(n), 0.1
     look = 5.001 * 1.5 * dx / 10    # of what is at rest, without pressure: as long a step as one likes

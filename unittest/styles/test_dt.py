@@ -100,7 +100,7 @@ def test_first_step(tmp_path):
 
 def patch(mode, material, dt, commands):
     """As in test_integrator.py: a free patch at rest, pressed together in the middle; every wave passes in the run."""
-    x = lattice([6, 6], 0.1, centre=True)
+    x = lattice([6, 6], 0.1, center=True)
     s = Scene(x, dx=0.1, dt=dt, materials=(material,), fluid="sound 10 tension yes", solid="gradient corrected",
               density=f"fluid {mode} solid {mode}", commands=commands)
     s.run()
@@ -419,7 +419,7 @@ BAD = [
     ("fix dt all fsi/dt 10 min 1 max 0.5", r"min 1 must be below max 0.5"),
     ("fix dt all fsi/dt 10 substeps 3", r"substeps 3: expected keep or auto"),
     ("fix dt all fsi/dt 10 check yes", r"check yes: expected no, warn or error"),
-    ("fix dt all fsi/dt 10 colour red", r"keyword colour"),
+    ("fix dt all fsi/dt 10 color red", r"keyword color"),
     ("fix dt all fsi/dt 10 substeps auto check warn", r"cannot be combined with check"),
     ("fix dt all fsi/dt 10\ntimestep 0", r"Fix fsi/dt: timestep 0 must be > 0"),
     ("fix dt all fsi/dt 10\ntimestep -1e-5", r"timestep -1e-05 must be >= 0"),

@@ -15,7 +15,7 @@ def get(scene, name="force"):
 
 
 def wrench(x, f, m):
-    """Force, and torque about the centre of mass."""
+    """Force, and torque about the center of mass."""
     r = x - m @ x / m.sum()
     return np.append(f.sum(axis=0), np.cross(r, f).sum(axis=0))
 
@@ -129,7 +129,7 @@ def test_archimedes(ratio, kernel, hdx):
                fluid="sound 60 extrapolate yes", commands=["run 0", *commands]) as s:
         force = get(s.run())
     weight = 1000 * G * solid.sum() * DX**2
-    vol, r = 1.0 / s.kernel.lattice_sum(DX, 2), lattice((9, 9), DX, centre=True)
+    vol, r = 1.0 / s.kernel.lattice_sum(DX, 2), lattice((9, 9), DX, center=True)
     r = r[np.linalg.norm(r, axis=1) > 0]
     passed = -(vol / DX)**2 * (r[:, 1]**2 * s.kernel.g(np.linalg.norm(r, axis=1))).sum()
     assert abs(force[1] / weight / passed - 1.0) < 0.0025

@@ -90,7 +90,7 @@ def test_groups():
 
 
 def test_part_of_a_fluid(tmp_path):
-    """What is hydrostatic between two neighbours has no meaning if gravity acts on one of them only: said, and left out."""
+    """What is hydrostatic between two neighbors has no meaning if gravity acts on one of them only: said, and left out."""
     with tank("group part id <= 40", "fix g part gravity 9.81 vector 0 -1 0") as s:
         s.lmp.command(f"log {tmp_path / 'part.log'}")
         s.run(1)

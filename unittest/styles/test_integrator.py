@@ -55,7 +55,7 @@ def test_whole_scheme(dim, mode):
 
 def patch(dim, material, dt, mode="continuity", **more):
     """A free patch at rest, pressed together in the middle."""
-    x = lattice([6 if dim == 2 else 4] * dim, 0.1, centre=True)
+    x = lattice([6 if dim == 2 else 4] * dim, 0.1, center=True)
     s = Scene(x, dim=dim, dx=0.1, dt=dt, materials=(material,), fluid="sound 10 tension yes",
               density=f"fluid {mode} solid {mode}", **more)
     s.run()
@@ -88,7 +88,7 @@ def test_start_in_motion(dim):
     for back in (False, True):
         end = []
         for n in (40, 80, 160):
-            x, dt = lattice([6 if dim == 2 else 4] * dim, 0.1, centre=True), 0.04 / n
+            x, dt = lattice([6 if dim == 2 else 4] * dim, 0.1, center=True), 0.04 / n
             v = -0.3 * x
             with Scene(x, v, dim=dim, dx=0.1, dt=dt, fluid="tension yes") as s:
                 s.run()
@@ -133,7 +133,7 @@ def test_reversible(dim, mode, material):
 
 
 @pytest.mark.parametrize("dim", (2, 3))
-def test_neighbours_in_space_are_neighbours_in_memory(dim):
+def test_neighbors_in_space_are_neighbors_in_memory(dim):
     """IDs that say nothing of places: in cells of dx the next particle is in the same cell or the next one, but where a row of
     cells ends. By ID it would be a third of the box away."""
     n = 24 if dim == 2 else 12
@@ -148,7 +148,7 @@ def test_neighbours_in_space_are_neighbours_in_memory(dim):
 
 @DIMS
 def test_forces_see_who_comes_near_in_the_half_step(dim):
-    """In a step the forces are over the pairs that the rates found half a step earlier; at the start of a run over the neighbour lists. With
+    """In a step the forces are over the pairs that the rates found half a step earlier; at the start of a run over the neighbor lists. With
     particles that cover a sixth of a spacing in half a step, toward each other, toward walls, and walls toward them, both are the same."""
     dx, dt, wall = 0.1, 0.01, 1.0
     x, v = cloud((9, 8) if dim == 2 else (6, 6, 5), dx, jitter=0.2, vmax=3.0, seed=4)

@@ -64,7 +64,7 @@ def test_bonds_break_beyond_the_damage_strain(dim):
 
 def torn(dim, steps, whole):
     """A spinning, drifting bar pulled apart until it tears; in one run, or in runs of one step, each of which looks at all bonds."""
-    x = lattice([14, 5] if dim == 2 else [10, 4, 4], 0.1, centre=True)
+    x = lattice([14, 5] if dim == 2 else [10, 4, 4], 0.1, center=True)
     v = np.zeros_like(x)
     v[:, 0] = 4.0 * x[:, 0] - 2.0 * x[:, 1] + 5.0
     v[:, 1] = 2.0 * x[:, 0]
@@ -94,7 +94,7 @@ def test_bonds_break_at_the_step_when_they_are_too_long(dim):
 @pytest.mark.parametrize("dim", [2, 3])
 def test_tearing_makes_no_energy(dim, law, gradient):
     """A bar that is pulled apart: what is left moves and is strained by what it was given, and less."""
-    x = lattice([14, 5] if dim == 2 else [10, 4, 4], 0.1, centre=True)
+    x = lattice([14, 5] if dim == 2 else [10, 4, 4], 0.1, center=True)
     v = np.zeros_like(x)
     v[:, 0] = 5.0 * x[:, 0]
     energies = []

@@ -8,7 +8,7 @@ import pytest
 
 from scenes import dam_gate, difference, differing, fluid_box, lammps, run, watch
 
-# Going on with other neighbour lists or another rank count changes the order of sums only: see TRAJECTORY in test_parallel.py;
+# Going on with other neighbor lists or another rank count changes the order of sums only: see TRAJECTORY in test_parallel.py;
 # 40 steps instead of 100.
 ROUND_OFF = 1e-11
 # Relative error of a number that LAMMPS writes with 16 digits and reads again.
@@ -394,7 +394,7 @@ def test_other_keywords(tmp_path, before, after):
     ("0.01 cubic 1.5", r"WARNING: Fix fsi: kernel was wendland when the restart file was written, and is cubic now"),
     ("0.01 wendland 1.3", r"WARNING: Fix fsi: smoothing length over spacing was 1\.5 when .*, and is 1\.3 now"),
     ("0.01 wendland 1.3 fluid summation", r"ERROR: Fix fsi: density mode summation must keep kernel and smoothing length")])
-def test_other_discretisation(tmp_path, sph, message):
+def test_other_discretization(tmp_path, sph, message):
     first_part(tmp_path, "0.01 wendland 1.5")
     done = second_part(tmp_path, sph, runner=lammps)
     assert re.search(message, done.output), done.output[-2000:]

@@ -45,7 +45,7 @@ def expected(x, volume, moves, kernel, dx, dim, walls, fills):
 
 
 def change_of_velocity(x, v, volume, fluid, kernel, dim, step):
-    """step.grad v of fluid neighbours, by least squares with the weights -V_j g_ij, and the determinant of its matrix."""
+    """step.grad v of fluid neighbors, by least squares with the weights -V_j g_ij, and the determinant of its matrix."""
     x, v, step = x[fluid, :dim], v[fluid, :dim], step[fluid]
     d, dv = x[None] - x[:, None], v[None] - v[:, None]
     r = np.linalg.norm(d, axis=2)
@@ -220,7 +220,7 @@ def test_bound_is_below_what_overshoots(kernel, hdx, dim):
     """Plane waves of displacements on a lattice: N C c dt = L turns their part along an eigenvector into 1 - L h lambda of it, which grows from
     L = 2/(h lambda) on. The bound, h/2, has to be less for all wave vectors, kernels as they are recommended, in 2D and 3D."""
     k = Kernel(kernel, dim, hdx)
-    x = lattice([9] * dim, 1.0, centre=True)[:, :dim]
+    x = lattice([9] * dim, 1.0, center=True)[:, :dim]
     r = np.linalg.norm(x, axis=1)
     x, r = x[(r > 0) & (r < k.cut)], r[(r > 0) & (r < k.cut)]
     pull = lambda s: k.g(s) * (1 + 0.2 * (k.W(s) / k.W(1.0))**4)

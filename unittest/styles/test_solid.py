@@ -24,7 +24,7 @@ def rotation(w, dt):
 
 def step(A, dt, plane, dim):
     """(p, S) after one step from a stress-free state with the velocity gradient A: DESIGN 3.7 with the strain turned by
-    half of the spin, and d rho/dt = -rho tr A, centred"""
+    half of the spin, and d rho/dt = -rho tr A, centered"""
     e, w = (A + A.T) / 2, (A - A.T) / 2
     identity = np.diag([1, 1, dim == 3]).astype(float)
     dev = 2 * G * dt * (e - np.trace(e) / (2 if plane == "stress" else 3) * identity)
@@ -82,7 +82,7 @@ def test_plain_gradient(dim, kernel):
             # pressure from the density: 1e-16 of rho over a change of 1e-4 of it
             close(inplane(s.run(1).sigma, dim), inplane(expected, dim), 1e-11)
         if jitter == 0.0:
-            inside = (np.abs(x - x.mean(0)) < 0.11).all(1)    # all neighbours are there
+            inside = (np.abs(x - x.mean(0)) < 0.11).all(1)    # all neighbors are there
             error = np.abs(L[inside] - A).max()
             print(f"plain gradient inside, {dim}D {kernel} 1.3: off by {error:.1e} of A")
             assert error < 0.04                               # the moment of the lattice differs from 1 by so much

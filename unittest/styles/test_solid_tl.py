@@ -72,7 +72,7 @@ class Reference:
         return min(parts, default=0.0), phi, axes
 
     def axes(self, X, w):
-        """Principal axes of the neighbours, and those of the lattice, as rows."""
+        """Principal axes of the neighbors, and those of the lattice, as rows."""
         prefer = 1e-4 * np.arange(self.dim)
         principal = np.linalg.eigh(X.T @ (w[:, None] * X) * (1 - np.diag(prefer)))[1].T[::-1]
         lattice = []
@@ -528,7 +528,7 @@ def test_bodies_on_one_lattice_do_not_push():
 
 
 def test_one_body_left_of_two():
-    """The list of neighbours that contact had is gone with the second body."""
+    """The list of neighbors that contact had is gone with the second body."""
     x = lattice([5, 6], DX)
     both = np.vstack([x, x + [5.5 * DX, 0, 0]])
     with solid(both, mol=np.repeat([1, 2], len(x))) as s:
@@ -1073,7 +1073,7 @@ def test_rigid_part_is_refused_before_the_first_step():
 
 @pytest.mark.parametrize("style, more", [("fsi/solid", ""), ("fsi/solid/tl", ""), ("fsi/solid/tl", "law hypo")])
 def test_velocity_of_what_nothing_moves_is_refused(style, more):
-    """It would strain its neighbours for ever; not if another fix moves it."""
+    """It would strain its neighbors for ever; not if another fix moves it."""
     x = lattice([8, 4], DX)
     held, v = x[:, 0] < 2 * DX, np.zeros_like(x)
     v[:, 1] = 0.2

@@ -42,7 +42,7 @@ def kernel_of_pairs(s, solid, j, r, ratio, dim):
 @pytest.mark.parametrize("fluid", ["", "artificial/visc 0.3 0.5 laminar/visc", "laminar/visc/central extrapolate yes"])
 def test_pair_law(dim, ratio, fluid):
     """Force of the body on each fluid particle, and the rate of its density, against numpy: volumes are each particle's own, the
-    number density counts a neighbour by its lattice's volume over the fluid's."""
+    number density counts a neighbor by its lattice's volume over the fluid's."""
     x, v, solid = beside(dim, ratio)
     with Scene(x, v, dim=dim, dx=0.1, type=1 + solid, mol=1 + solid, materials=(WATER + " viscosity 20", RUBBER), fluid=fluid, dt=1e-5,
                **finer(ratio), commands=["fix g all gravity 9.81 vector 0.6 -0.8 0", "compute psi all fsi/atom psi"]) as s:

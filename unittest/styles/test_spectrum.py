@@ -109,7 +109,7 @@ fix two all ave/time 2 1 2 c_two[2] c_two[1]
 
 
 def test_samples_of_several_runs(tmp_path):
-    """The last step of a run is the first of the next; `every` analyses in between, and thermo output sees it."""
+    """The last step of a run is the first of the next; `every` analyzes in between, and thermo output sees it."""
     text = EMPTY + tones((20.0, 2.0)) + "fix s all fsi/spectrum 1 v_s every 500 peaks 2\n"
     text += "thermo 499\nthermo_style custom step f_s f_s[1] f_s[1][2]\nrun 700\nrun 299\n" + REPORT
     result = run(tmp_path, text)

@@ -53,25 +53,50 @@ def test_fix_fsi_knows_no_style():
     assert len((SOURCES / "fix_fsi.cpp").read_text().splitlines()) < 450
 
 
+# lists that may only shrink: what is still too long, by file
+LONG_FUNCTIONS = {"fix_fsi_watch.cpp"}
+WIDE = {"fix_fsi.cpp", "fix_fsi.h", "fix_fsi_dt.cpp", "fix_fsi_dt.h", "fix_fsi_report.cpp", "fix_fsi_report.h", "fix_fsi_watch.cpp",
+        "fix_fsi_watch.h", "fsi_advice.cpp", "fsi_advice.h", "fsi_announce.cpp", "fsi_announce.h", "fsi_check.cpp", "fsi_check.h", "fsi_limits.cpp",
+        "fsi_limits.h", "fsi_part.h", "fsi_profile.cpp", "fsi_profile.h", "fsi_scene.cpp", "fsi_scene.h", "fsi_stop.cpp", "fsi_stop.h"}
+NO_CODE = re.compile(r'"(\\.|[^"\\\n])*"|\'(\\.|[^\'\\])\'|//[^\n]*|/\*.*?\*/', re.S)
+
+
 def long_functions(text, most):
-    """First lines of bodies of more lines than that: what stands between braces in the first column."""
-    begin, found = None, []
-    for number, line in enumerate(text.splitlines(), 1):
-        if line == "{":
-            begin = number
-        elif line == "}" and begin:
-            found += [begin] if number - begin - 1 > most else []
-            begin = None
-    return found
+    """First lines of bodies of more lines than that: of functions, members of classes and lambdas."""
+    text = NO_CODE.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
+    head, line, open_, found = "", 1, [], []
+    for c in text:
+        line += c == "\n"
+        if c == "{":
+            open_.append((line, head))
+        elif c == "}" and open_:
+            begin, of = open_.pop()
+            if line - begin - 1 > most and not re.search(r"\b(namespace|struct|class|enum)\b[^()]*$", of):
+                found.append(begin)
+        head = "" if c in "{};" else head + c
+    return sorted(found)
+
+
+def sources():
+    return [file for file in sorted(SOURCES.glob("*.*")) if file.suffix in (".h", ".cpp")]
 
 
 def test_functions_fit_on_a_page():
-    assert long_functions("{\n" + "\n" * 91 + "}\n", 90) == [1]
-    assert {file.name: found for file in SOURCES.glob("*.cpp") if (found := long_functions(file.read_text(), 90))} == {}
+    body = "\n" * 82
+    assert long_functions("void f()\n{" + body + "}\n", 80) == [2]
+    assert long_functions("struct A {\n  void f()\n  {" + body + "  }\n};\n", 80) == [3]
+    assert long_functions("auto f = [&](int i) {" + body + "};\n", 80) == [1]
+    assert long_functions("namespace A {" + body + "}\n", 80) == []
+    assert long_functions("void f()\n{\n  // {" + body[:-3] + "}\n", 80) == []
+    assert {file.name for file in sources() if long_functions(file.read_text(), 80)} == LONG_FUNCTIONS
+
+
+def test_lines_are_not_wide():
+    assert {file.name for file in sources() if any(len(line) > 100 for line in file.read_text().splitlines())} == WIDE
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_laws_are_without_lammps(law):
     """A law could be compiled for a device: it includes other laws and the C++ library alone."""
-    allowed = {f"fsi_{name}.h" for name in LAWS} | {"math_eigen.h"}  # of a matrix, templates without the rest of LAMMPS
+    allowed = {f"fsi_{name}.h" for name in LAWS} | {"math_const.h", "math_eigen.h"}  # without the rest of LAMMPS
     assert set(re.findall(r'#include "([^"]+)"', (SOURCES / f"fsi_{law}.h").read_text())) <= allowed

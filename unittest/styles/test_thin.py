@@ -42,8 +42,8 @@ def two_levels(kind, layers, ratio, dim=2, thin=True):
         load, p = [], []
         for _ in range(20):
             s.run(steps // 80)
-            f, centre = s.compute_vector("force"), s.get("x")[solid].mean(0)
-            load.append([f[0], -f[5] - (centre[0] - (width * dx + thick / 2)) * f[1] + centre[1] * f[0]])
+            f, center = s.compute_vector("force"), s.get("x")[solid].mean(0)
+            load.append([f[0], -f[5] - (center[0] - (width * dx + thick / 2)) * f[1] + center[1] * f[0]])
             p.append(s.compute_vector("p"))
         y = s.get("x")[:, 0]
         leaked = (y[:len(left)] > width * dx + thick).sum() + (y[len(left):][~solid[len(left):]] < width * dx).sum()
@@ -151,7 +151,7 @@ def test_a_free_edge_in_water_under_pressure(ratio):
     """Water on its lattice all around the end of a plate one spacing thick, under one pressure, is in balance: what is hidden is what the plate counts
     more. Forces of the lattices alone, which are smeared cell by cell, are below 1 % of p dx; with all of a side they would be 30 %. Bound: 3 %."""
     dx, ds, n = 0.1, 0.1 / ratio, 12
-    water = lattice([17, 20], dx, centre=True)
+    water = lattice([17, 20], dx, center=True)
     water = water[(np.abs(water[:, 0]) > 0.1 * dx) | (water[:, 1] > 0)]
     plate = lattice([ratio, n * ratio], ds, origin=np.array([-dx / 2, -n * dx]))
     x = np.concatenate([water, plate])
@@ -230,7 +230,7 @@ def test_thick_bodies_do_not_change(dim):
 def beside_plate(dim, ratio, near, **options):
     """A fluid particle at `near` of the mean spacing from one of a held plate, and two more behind"""
     dx, ds = 0.1, 0.1 / ratio
-    plate = lattice([4] + [4 * ratio] * (dim - 1), ds, centre=True)
+    plate = lattice([4] + [4 * ratio] * (dim - 1), ds, center=True)
     x = np.concatenate([[[plate[0, 0] - near * (dx + ds) / 2, ds / 2, 0]], plate])
     if dim == 3:
         x[0, 2] = ds / 2

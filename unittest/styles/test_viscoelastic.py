@@ -103,7 +103,7 @@ def test_lateral_stress_of_plane_strain_relaxes():
 
 def test_rotation_changes_no_stress():
     """A strained body that turns as a whole by 90 degrees keeps its history: stresses turn with it."""
-    x = lattice([6, 6], DX, centre=True)
+    x = lattice([6, 6], DX, center=True)
     with solid(x, held=np.ones(len(x), bool)) as s:
         s.run()
         F = np.array([[1.1, 0.2], [0.0, 0.95]])
@@ -128,7 +128,7 @@ def test_wave_is_damped_as_the_complex_modulus_says(dim, wave):
     x = lattice(n, DX)
     box = [m * DX for m in n] + [0.0] * (3 - dim)
     k, axis, terms = 2 * np.pi / box[0], 1 if wave == "shear" else 0, ((0.1, 0.05), (0.05, 0.3))
-    X = lattice([7] * dim, DX, centre=True)
+    X = lattice([7] * dim, DX, center=True)
     w = Kernel("wendland", dim, 1.5 * DX).W(np.linalg.norm(X, axis=1)) * X[:, 0]
     seen = w @ np.sin(k * X[:, 0]) / (w @ X[:, 0])
     assert 0.95 < seen / k < 1
@@ -193,7 +193,7 @@ def test_free_plate_swings_and_is_damped():
 def test_energy_that_is_lost_is_dissipated(dim, substeps):
     """A body that is thrown out of shape by large strains and comes to rest: kinetic and strain energy go to entry 12."""
     n = [10, 6] if dim == 2 else [8, 5, 4]
-    x = lattice(n, DX, centre=True)
+    x = lattice(n, DX, center=True)
     v = np.zeros_like(x)
     v[:, 0] = 6.0 * x[:, 0]
     v[:, 1] = -4.0 * x[:, 1] + 3.0 * x[:, 0]

@@ -129,7 +129,7 @@ def law(frame, acceleration, dim, slip, eta, dt, guard, linear):
 @pytest.mark.parametrize("slip", ["yes", "no"])
 @pytest.mark.parametrize("pressure", ["mean", "linear"])
 def test_law(tmp_path, dim, slip, pressure):
-    """Every term, with a wall that accelerates. Round-off of the sums over some 30 neighbours, 1e-12, times what a dump of the
+    """Every term, with a wall that accelerates. Round-off of the sums over some 30 neighbors, 1e-12, times what a dump of the
     fluid after the step loses when it is taken back."""
     random = np.random.default_rng(3)
     n = (8, 9) if dim == 2 else (5, 6, 5)
@@ -161,11 +161,11 @@ def test_pressure_linear(tmp_path):
     """On the surface of a disc in a fluid whose pressure has a gradient: as in the fluid. A mean has the pressure of a place 1.3 dx outside."""
     n, radius = 40, 6 * DX
     x = lattice((n, n), DX)
-    centre = 0.5 * n * DX
+    center = 0.5 * n * DX
     x += np.where(np.arange(3) < 2, np.random.default_rng(4).uniform(-0.15, 0.15, x.shape), 0) * DX
-    r = np.hypot(*(x[:, :2] - centre).T)
+    r = np.hypot(*(x[:, :2] - center).T)
     kind = np.where(r < radius, 2, 1)
-    exact = 2000.0 + 5000.0 * (x[:, 0] - centre) - 3000.0 * (x[:, 1] - centre)
+    exact = 2000.0 + 5000.0 * (x[:, 0] - center) - 3000.0 * (x[:, 1] - center)
     rho = np.where(kind == 1, 1000.0 + exact / C**2, 0.0)
 
     def errors(wall):

@@ -56,7 +56,7 @@ def ray_reaches(x, target, walls):
     return True
 
 def with_images(x, v, walls):
-    """x_i - x_j, v_ij, v_ij of viscous forces, j, i, for all pairs with neighbours and their images"""
+    """x_i - x_j, v_ij, v_ij of viscous forces, j, i, for all pairs with neighbors and their images"""
     n, sets = len(x), [()]
     for size in (1, 2, 3):
         sets += [s for s in combinations(walls, size) if len({w.axis for w in s}) == size]

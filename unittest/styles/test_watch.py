@@ -263,7 +263,7 @@ BAD = [
     ("fix watch all fsi/watch 10 energy 1", r"energy 1 must be > 1"),
     ("fix watch all fsi/watch 10 courant high", r"high"),
     ("fix watch all fsi/watch 10 action cry", r"action cry: expected stop or warn"),
-    ("fix watch all fsi/watch 10 colour red", r"keyword colour"),
+    ("fix watch all fsi/watch 10 color red", r"keyword color"),
     ("fix watch all fsi/watch 10 restart a.*", r"restart a\.\* must be the name of one file"),
     ("fix watch all fsi/watch 10\nfix watch2 all fsi/watch 10", r"would write the same file fsi_watch.restart"),
     ("unfix sph\nfix watch all fsi/watch 10", r"requires fix fsi"),

@@ -9,9 +9,9 @@ from scenes import run
 from fsi import cli, fill
 
 
-def circle(radius, n=400, centre=(0.0, 0.0)):
+def circle(radius, n=400, center=(0.0, 0.0)):
     angle = 2 * np.pi * np.arange(n) / n
-    return np.column_stack([np.cos(angle), np.sin(angle)]) * radius + centre
+    return np.column_stack([np.cos(angle), np.sin(angle)]) * radius + center
 
 
 def box(low, high):
@@ -56,9 +56,9 @@ def atoms(path):
 
 
 def test_circle_with_a_hole(tmp_path):
-    """Every particle is inside, every lattice point inside is one: the distance from the centre decides, but for the outline's own
+    """Every particle is inside, every lattice point inside is one: the distance from the center decides, but for the outline's own
     deviation from a circle, 3e-5."""
-    outline = write_outline(tmp_path / "ring.csv", circle(0.5, centre=(0.3, 0.1)), circle(0.2, centre=(0.3, 0.1)))
+    outline = write_outline(tmp_path / "ring.csv", circle(0.5, center=(0.3, 0.1)), circle(0.2, center=(0.3, 0.1)))
     fill.main([outline, "0.02", str(tmp_path / "ring.data"), "--type", "2", "--mol", "7"])
     rows = atoms(tmp_path / "ring.data")
     assert (rows[:, 1] == 7).all() and (rows[:, 2] == 2).all() and (rows[:, 3:5] == 0).all() and (rows[:, 7] == 0).all()
@@ -133,7 +133,7 @@ print "WATER $(count(water)) BOWL $(count(bowl))"
 def test_rings_of_a_cylinder(tmp_path, across):
     """Every particle is half a spacing, one and a half ... inside of the circle, evenly on its ring, and none is missing: the area of
     each is dx^2 but for what rounding each ring to whole particles does."""
-    outline = write_outline(tmp_path / "c.csv", circle(0.5, centre=(0.3, 0.1)))
+    outline = write_outline(tmp_path / "c.csv", circle(0.5, center=(0.3, 0.1)))
     dx = 1.0 / across
     cli.main(["fill", outline, str(dx), str(tmp_path / "c.data"), "--rings"])
     x = atoms(tmp_path / "c.data")[:, 5:7] - (0.3, 0.1)

@@ -65,7 +65,7 @@ def test_pictures_are_small_and_each_once():
 
 
 def test_a_picture_is_packed_without_a_visible_change(tmp_path):
-    """A smooth map of all colours, with a rare one: within 16 of 255 of the original, below the bound, and no larger than half the pixels ask for."""
+    """A smooth map of all colors, with a rare one: within 16 of 255 of the original, below the bound, and no larger than half the pixels ask for."""
     y, x = np.mgrid[0:200, 0:300]
     whole = np.stack([x * 255 // 299, y * 255 // 199, (x + y) * 255 // 498], -1).astype(np.uint8)
     whole[10:14, 10:14] = (255, 0, 255)

@@ -25,7 +25,7 @@ AWAY = "fix away all fsi/wall/mirror xlo -0.15 xhi 1.15 ylo -0.15 yhi 1.15"  # n
 
 
 def deck(name, **settings):
-    """A small scene in which nothing moves far enough for another neighbour list."""
+    """A small scene in which nothing moves far enough for another neighbor list."""
     text = effects.write_materials(DECKS[name](*SMALL, **settings))
     return re.sub(r"^timestep .*", "timestep 1e-7", text, flags=re.M)
 
@@ -136,7 +136,7 @@ def test_bare_scenes_send_only_their_own(sent, name, size):
 
 # ---- memory --------------------------------------------------------------------------------------------------------
 
-# three rows of particles along each side of the square are near a wall: a row of images each, of half their neighbours and themselves
+# three rows of particles along each side of the square are near a wall: a row of images each, of half their neighbors and themselves
 IMAGES = (1 - (119 / 125) ** 2) * (16 + 4 * (12 + 1))
 ARRAYS = {"nothing": (0, {}), "shifting": (96, {"style": "shift 0.1"}), "walls": (4 + IMAGES, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
           "surface at intervals": (8, {"style": "surface 0.9 bulk", "sph": "surface/every 10"}), "surfaces": (16, {"style": "density/surface yes"}),

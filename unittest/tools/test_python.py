@@ -169,7 +169,7 @@ def test_walls_are_what_stands_still():
 
 
 @pytest.mark.parametrize("low, high, start", [(0, 1000, 0), (-10, 1000, 0), (900, 1100, 900), (-500, 1000, -500), (-500, 0, -500)])
-def test_where_colours_begin(low, high, start):
+def test_where_colors_begin(low, high, start):
     frame = dump.Frame(0, 0.0, None, {"type": np.ones(1001, int), "p": np.linspace(low, high, 1001)})
     (*_, norm, scale, _), = plot._scales([frame], (1,), ())
     assert norm.vmin * scale == pytest.approx(start, abs=0.006 * (high - low)) and norm.vmax > norm.vmin

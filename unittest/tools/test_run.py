@@ -23,7 +23,7 @@ from fsi.summary import Summary
 def main(folder):
     summary = Summary(folder)
     if summary.log.values["dx"] > 1.0:
-        raise ValueError("too coarse to analyse")
+        raise ValueError("too coarse to analyze")
     summary.add("peak", 4.0 * summary.log.values["dx"], "mm", 4.0, "theory", target=0.05)
     summary.write()
 

@@ -21,7 +21,7 @@ from scenes import dam_gate, difference, fluid_box, run, watch  # noqa: E402
 
 # name: options of cmake, ranks that it can run on
 VARIANTS = {
-    # all of LAMMPS is compiled once more: not optimised in half the time
+    # all of LAMMPS is compiled once more: not optimized in half the time
     "bigbig-serial": ("-DLAMMPS_SIZES=bigbig -DBUILD_MPI=OFF -DCMAKE_CXX_FLAGS_RELEASE=-O0", (1,)),
     "sanitized": ("-DFSI_SANITIZE=address,undefined", (1, 2)),
 }
