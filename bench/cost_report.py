@@ -337,6 +337,6 @@ def page(summary, picture, table):
         cells = [cell(found["bounds"].get(f"{b:g}")) for b in BOUNDS]
         counted = (found["instructions"] or {}).get("per_particle_step")
         lines.append(f"| {method} | {_order(found)} | " + " | ".join(cells) + f" | {f'{counted:.0f}' if counted else '-'} |")
-    lines += ["", "All finer runs keep the bound, too. `<`: the coarsest run does. *Slanted*: extrapolated. -: no run does.",
+    lines += ["", "All finer runs keep the bound, too. `<`: the coarsest run does. *Slanted*: extrapolated. -: no run does, or the reference is not as certain.",
               "Order: of convergence, by least squares with its 95 % interval. None: the interval holds 0."]
     return "\n".join(lines) + "\n"

@@ -140,7 +140,7 @@ def cost_page():
              "| scene | error of | 10 % | 2 % | 1 % |", "|---|---|---|---|---|"]
     lines += [f"| [{title}]({name}.md) | {what} | {' | '.join(cells)} |" for title, name, what, *cells in cost_table()]
     lines += ["", "CPU seconds on one core that keep an error bound, with the cheapest method; in brackets its resolution. All finer runs keep the bound, too.",
-              "`<`: the coarsest run keeps it. None: no run does.", "",
+              "`<`: the coarsest run keeps it. None: no run does, or the reference is not as certain.", "",
               "What [each effect](effects.md) adds to a step. [LAMMPS' own styles](peers.md) in comparison. [Several ranks](scaling.md).",
               "[How to choose](../choosing.md) resolution and effects."]
     return "\n".join(lines) + "\n"
@@ -236,7 +236,7 @@ def page():
              "Blue is the recommended method, orange what is usual in SPH. The green band marks errors below 1 %.", "",
              ".. list-table:: CPU seconds on one core that keep an error bound", "   :header-rows: 1", "",
              *_rst(["scene", "error of", "10 %", "2 %", "1 %"], [[f":doc:`{title} <../cost/{name}>`", what, *cells] for title, name, what, *cells in cost_table()]), "",
-             "In brackets the resolution; ``<``: the coarsest run keeps the bound; none: no run does.", sentences()[-2],
+             "In brackets the resolution; ``<``: the coarsest run keeps the bound; none: no run does, or the reference is not as certain.", sentences()[-2],
              "The :doc:`page of all sweeps <../cost/README>` says how to read this, and how to get it for your own input script.", "",
              "Which hard cases stay stable", "----------------------------", "", ".. image:: ../hard/hard.png",
              "   :alt: Hard cases, here and with classic SPH", "   :target: ../hard/README.html", "",

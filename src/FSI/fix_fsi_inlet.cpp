@@ -63,8 +63,6 @@ static constexpr double SETTLE = 50.0;
 // Part of the dynamic pressure of inflow that a given pressure answers, as usual (Esmaily Moghadam
 // et al. 2011, Comput. Mech. 48, 277)
 static constexpr double STEADY = 0.2;
-// Part of the velocity against the mean that the buffer takes: where pressures are given counterflows feed each other
-static constexpr double COUNTER = 0.0;
 static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 // Spacing of what comes in: part of an error that a buffer's length of inflow mends; what a lattice
 // that is sheared or bent shows of one; and the range, where particles stay a fluid
@@ -1043,9 +1041,7 @@ void FixFSIInlet::advance(bool advance)
   } else
     has_before = false;
   wave *= std::exp(-rate * dt);
-  const bool backflow = mean[SPEED] <= 0.0;    // what comes in does so against the mean
-  const double drawn = mean[WEIGHT] > 0.0 && !backflow ? mean[DYNAMIC] / mean[WEIGHT] : 0.0,
-               steady = backflow ? 1.0 : STEADY;
+  const double drawn = mean[SPEED] > 0.0 ? mean[DYNAMIC] / mean[WEIGHT] : 0.0;
 
   if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
     error->warning(FLERR,
@@ -1065,7 +1061,8 @@ void FixFSIInlet::advance(bool advance)
     double values[2] = {0.0, 0.0};
     place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
     place.normal = values[0];
-    if (!wants_pressure && place.normal * side * mean[SPEED] < 0.0) place.normal *= COUNTER;
+    // a vortex that leaves would bring in more and more: nothing moves against the mean
+    if (!wants_pressure && place.normal * side * mean[SPEED] < 0.0) place.normal = 0.0;
     double p;
     if (wants_pressure)
       p = place.known ? values[wants_velocity] +
@@ -1075,7 +1072,7 @@ void FixFSIInlet::advance(bool advance)
       p = (background ? state.p0 : value(PRESSURE, i)) + gradient * place.inside +
           state.rho0 * state.c * wave;
     if (place.known && wants_velocity && !wants_pressure)
-      p += steady * (drawn - dynamic_pressure(state, place.normal));
+      p += STEADY * (drawn - dynamic_pressure(state, place.normal));
     const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
     atom->rho[i] = state.density(std::max(p, state.floor));
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);

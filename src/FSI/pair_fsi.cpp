@@ -323,7 +323,8 @@ State PairFSI::solid_state(const Material &m, bool plane_stress) const
 void PairFSI::check_tally()
 {
   if (vflag_atom)
-    error->all(FLERR, "Pair style {} has no per-atom virial: use compute fsi/atom for stress and pressure",
+    error->all(FLERR,
+               "Pair style {} has no per-atom virial: use compute fsi/atom for stress and pressure",
                style);
 }
 

@@ -281,6 +281,9 @@ class Reader:
     def tools_lammps_tree(self, command, _):
         self.execute(f"{command}/tree --changes --lammps {shlex.quote(str(paths.lammps_source()))}")
 
+    def tools_film(self, _, words):  # test_pictures.py looks at its scenes
+        assert not words and "film" in self.execute("tools/film --help")
+
     def tools_doc(self, _, words):
         assert len(words) <= 1  # test_doc.py does it
 
