@@ -843,8 +843,7 @@ int FixFSIInlet::place_nodes()
   return nodes;
 }
 
-// the row of a fit's inverse that gives its value at the node: terms 1, x, xx or 1, x, y, xx, xy,
-// yy
+// the row of a fit's inverse that gives its value at the node: terms 1, x, xx; 1, x, y, xx, xy, yy
 template <int TERMS> static void value_weights(const double *moment, double *row)
 {
   constexpr bool PLANE = TERMS == 6;
@@ -1136,8 +1135,8 @@ void FixFSIInlet::hold_shift(const Place &place)
    neighbors with which it went out when pressure was another: where flow reverses each time adds to
    their number, since it goes out when pressure is higher. And diffusion passes between fluid and
    buffer what has no volume. So mass is compared with density times room, 1/psi, of the fluid
-   before the plane and in the buffer. Particles at a free surface do not count; where there is one,
-   a lack says nothing.
+   before the plane. Particles at a free surface do not count; where there is one, a lack says
+   nothing.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::end_state(bool advance)
