@@ -63,6 +63,9 @@ static constexpr double SETTLE = 50.0;
 // Part of the dynamic pressure of inflow that a given pressure answers, as usual (Esmaily Moghadam
 // et al. 2011, Comput. Mech. 48, 277)
 static constexpr double STEADY = 0.2;
+// Part of the velocity against the mean that the buffer takes: with all of it a vortex that leaves
+// brings in more and more
+static constexpr double COUNTER = 0.2;
 static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 // Spacing of what comes in: part of an error that a buffer's length of inflow mends; what a lattice
 // that is sheared or bent shows of one; and the range, where particles stay a fluid
@@ -433,7 +436,7 @@ int FixFSIInlet::slice(double distance) const
 }
 
 // of a buffer that the script has filled: a hole would come in again and again
-void FixFSIInlet::check_slices(const std::vector<int> &mine) const
+void FixFSIInlet::check_slices(std::vector<int> &mine) const
 {
   std::vector<int> all(mine.size());
   MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_INT, MPI_SUM, world);
@@ -1060,8 +1063,7 @@ void FixFSIInlet::advance(bool advance)
     double values[2] = {0.0, 0.0};
     place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
     place.normal = values[0];
-    // a vortex that leaves would bring in more and more: nothing moves against the mean
-    if (!wants_pressure && place.normal * side * mean[SPEED] < 0.0) place.normal = 0.0;
+    if (!wants_pressure && place.normal * side * mean[SPEED] < 0.0) place.normal *= COUNTER;
     double p;
     if (wants_pressure)
       p = place.known ? values[wants_velocity] +

@@ -166,7 +166,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   Column along(const double *x) const { return {{x[axis == 0 ? 1 : 0], x[axis == 2 ? 1 : 2]}}; }
   void fill_buffer();
   int number_of_slices() const, slice(double distance) const, full_slices() const;
-  void check_slices(const std::vector<int> &mine) const;
+  void check_slices(std::vector<int> &mine) const;
   std::vector<Copy> go_on_behind() const;
   std::vector<Column> columns_at_plane() const;
   const FSI::State &softest() const;

@@ -22,6 +22,7 @@ using namespace FSI;
 
 static Facts facts_of(LAMMPS *lmp, const char *style)
 {
+  if (!lmp->force->pair) return Facts();
   const auto *const part = dynamic_cast<const Part *>(lmp->force->pair_match(style, 1));
   return part ? part->facts() : Facts();
 }

@@ -99,7 +99,8 @@ def test_thin_wall_carries_its_load(tmp_path):
 def test_flow_between_pressures_swings_as_theory_says(tmp_path):
     """Womersley's mean velocity between plates (J. Physiol. 127 (1955) 553 for tubes), for a channel
     that the outlet makes longer by c/K = L/20 of the box: to 10 %, since the boundary layer of 4 mm
-    is thinner than a spacing."""
+    is thinner than a spacing. The flow starts at rest: what the swing has at t = 0 is missing in
+    the mean, until friction has taken it in 20 s."""
     found = go(tmp_path, "in.pressures")
     t, omega, nu = found.column("Time"), 2 * np.pi, 0.0459 / 917
     half = np.sqrt(1j * omega / nu) * 0.05
@@ -107,7 +108,7 @@ def test_flow_between_pressures_swings_as_theory_says(tmp_path):
     theory = 50 / 917 / length / (1j * omega) * (1 - np.tanh(half) / half)
     waves = np.column_stack([np.cos(omega * t), np.sin(omega * t), np.ones_like(t)])
     (real, imaginary, mean), *_ = np.linalg.lstsq(waves, found.column("v_speed"), rcond=None)
-    assert not found.warnings and abs(mean) < 0.02 * abs(theory)
+    assert not found.warnings and abs(mean + theory.real) < 0.05 * abs(theory)
     assert abs(real - 1j * imaginary - theory) < 0.1 * abs(theory)
 
 

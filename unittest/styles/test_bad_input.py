@@ -359,8 +359,6 @@ CASES = [
     ("spectrum file elsewhere", *spectrum("10 v_x file nowhere/s.csv"), r"Cannot open fix fsi/spectrum file nowhere/s\.csv: No such file"),
     ("virial of atoms", RUN, "compute c all stress/atom NULL\ncompute m all reduce max c_c[1]\n"
      "thermo_style custom step c_m\nrun 0", r"no per-atom virial"),
-    ("energy of atoms", RUN, "compute c all pe/atom\ncompute m all reduce max c_c\nthermo_style custom step c_m\nrun 0",
-     r"no per-atom .*energy"),
     # particles
     ("data with negative density", "read_data scene.data", "read_data rho.data", r"density -1000"),
     ("data with negative mass", "read_data scene.data", "read_data mass.data", r"mass -1"),

@@ -630,7 +630,7 @@ def test_computes_between_runs(tmp_path, kind, when):
 def test_fixes_before_a_run(tmp_path):
     """Outputs of fixes that know nothing yet are 0, not a crash."""
     text = BEFORE_A_RUN + "fix 5 all fsi/dt 10\nfix 6 all fsi/report\nfix 7 all fsi/watch 10\nfix 8 all fsi/wall/mirror xlo 0\nfix 9 all fsi/wall/particle\n" \
-        'print "VALUES $(f_5) $(f_5[7]) $(f_6[1]) $(f_6[10]) $(f_7) $(f_8) $(f_8[1][1]) $(f_9) $(f_9[1])"\n'
+        'print "VALUES $(f_5) $(f_5[7]) $(f_6[1]) $(f_6[3]) $(f_7) $(f_8) $(f_8[1][1]) $(f_9) $(f_9[1])"\n'
     done = run(tmp_path, text, water_fsi=MATERIALS)
     values = list(map(float, re.search(r"^VALUES (.*)$", done.output, re.M)[1].split()))
     assert values[0] == 1e-5 and not any(values[1:])

@@ -1024,14 +1024,6 @@ def test_cantilever_tip_under_its_weight():
     assert -slope == pytest.approx(expected, rel=0.02)
 
 
-@pytest.mark.parametrize("line", ["viscous 1.0", "langevin 1.0 1.0 1.0 4711"])
-@pytest.mark.parametrize("substeps,warns", [(1, False), (4, True)])
-def test_drag_that_substeps_hold_is_warned_of(tmp_path, line, substeps, warns):
-    scene = dam_gate(2, solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0", sph=f"substeps {substeps}")
-    output = run(tmp_path, scene.text() + f"fix a all {line}\nrun 0\n", scene_data=scene.data()).output
-    assert (f"fix a (style {line.split()[0]}) acts on solids with sub-steps: its drag is held" in output) == warns
-
-
 CONSTRAINTS = ["setforce 0 NULL NULL", "aveforce 0.0 0.0 NULL", "lineforce 1 0 0", "planeforce 0 1 0"]
 
 
