@@ -212,7 +212,7 @@ void FixFSIInlet::init()
   if (given.of_atoms()) zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
   driven = false;
   for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
-    driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->words[0].empty();
+    driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->has_own_velocity();
   told = {};
   if (given.source(PRESSURE) == Values::NUMBER && is_far(given.number(PRESSURE))) {
     const State &soft = softest();
@@ -1074,10 +1074,16 @@ void FixFSIInlet::advance(bool advance)
           state.rho0 * state.c * wave;
     if (place.known && wants_velocity && !wants_pressure)
       p += STEADY * (drawn - dynamic_pressure(state, place.normal));
-    const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
-    atom->rho[i] = state.density(std::max(p, state.floor));
-    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
+    set_density(i, state.density(std::max(p, state.floor)));
   }
+}
+
+// the energy that it takes is in the balance
+void FixFSIInlet::set_density(int i, double rho)
+{
+  const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
+  atom->rho[i] = rho;
+  if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
 }
 
 /* ----------------------------------------------------------------------
@@ -1191,10 +1197,9 @@ void FixFSIInlet::warn_of_fill(bool full)
 void FixFSIInlet::keep_full()
 {
   const State &soft = softest();
-  if (soft.p0 <= 0.0) return;
+  if (soft.p0 <= 0.0 || fill == 0.0) return;
   const double dt = update->dt + fix_fsi->dt_offset;
   const double inflow = mean[WEIGHT] > 0.0 ? std::max(0.0, mean[SPEED] / mean[WEIGHT]) : 0.0;
-  if (fill == 0.0) return;
   const double excess = std::max(0.0, std::fabs(fill - 1.0) - DISORDER);
   column = std::clamp(column + std::copysign(MEND * excess * inflow * dt / length, fill - 1.0),
                       NARROW, WIDE);
@@ -1204,9 +1209,7 @@ void FixFSIInlet::keep_full()
     const int i = place.i;
     const double part = 1.0 - inside(atom->x[i]) / zone();
     if (part <= 0.0 || part >= 1.0) continue;
-    const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
-    atom->rho[i] *= 1.0 + part * rise;
-    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
+    set_density(i, atom->rho[i] * (1.0 + part * rise));
   }
 }
 

@@ -176,6 +176,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void check_supply();
   void warn_of_fill(bool full);
   void keep_full();
+  void set_density(int i, double rho);
   void make(std::vector<Copy> &, bool at_start);
   void forget_ghosts();
   void follow(int i, double s);

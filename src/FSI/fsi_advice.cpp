@@ -382,7 +382,7 @@ class Adviser : protected Pointers {
   {
     static constexpr double LITTLE = 1.0e-9;    // of what sound would do in a spacing
     static const char *const watching[] = {
-        "fsi/dt",    "fsi/watch", "fsi/report", "fsi/stress", "fsi/reference", "fsi/spectrum",
+        "fsi/dt",    "fsi/watch", "fsi/report", "fsi/stress", "fsi/spectrum",
         "fsi/wall/", "gravity",   "ave/",       "print",      "halt",          "vector",
         "balance",   "store/",    "STORE/",     "FSI_"};
     for (const auto &fix : modify->get_fix_list())

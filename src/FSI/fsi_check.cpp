@@ -142,7 +142,7 @@ void Check::materials()
 
 /* ----------------------------------------------------------------------
    Another material for particles that have a mass: it stays that of their lattice with the
-   density of before. (Fix fsi/reference looks at total-Lagrangian solids itself.)
+   density of before. (Fix FSI_REFERENCE looks at total-Lagrangian solids itself.)
 ------------------------------------------------------------------------- */
 
 void Check::compare_densities()
