@@ -54,19 +54,19 @@ FixFSIHistory::~FixFSIHistory()
 
 /* ---------------------------------------------------------------------- */
 
-FixFSIHistory *FixFSIHistory::keep(LAMMPS *lmp, const char *name, int columns)
+FixFSIHistory *FixFSIHistory::keep(LAMMPS *lmp, std::string_view name, int columns)
 {
   Modify *const modify = lmp->modify;
   auto *const old = dynamic_cast<FixFSIHistory *>(modify->get_fix_by_id(ID));
-  if (old && name && old->name == name && old->columns == columns) return old;
+  if (old && !name.empty() && old->name == name && old->columns == columns) return old;
   if (old) {
     if (lmp->comm->me == 0)
       lmp->error->warning(FLERR, "Pair style fsi/solid/tl: the {} of its bodies is forgotten",
                           old->name);
     modify->delete_fix(ID);
   }
-  if (!name) return nullptr;
-  std::string word = name;
+  if (name.empty()) return nullptr;
+  std::string word(name);
   std::replace(word.begin(), word.end(), ' ', '_');
   return dynamic_cast<FixFSIHistory *>(
       modify->add_fix(fmt::format("{} all FSI_HISTORY {} {}", ID, columns, word)));

@@ -23,6 +23,7 @@ FixStyle(FSI_HISTORY,FixFSIHistory);
 #include "fsi_fields.h"
 
 #include <string>
+#include <string_view>
 
 namespace LAMMPS_NS {
 
@@ -38,9 +39,9 @@ class FixFSIHistory : public FSI::FixFields {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  // that of this name (null: none) and so many numbers of each particle; what there was of another
+  // that of this name (empty: none) and so many numbers of each particle; what there was of another
   // is gone. All ranks together
-  static FixFSIHistory *keep(class LAMMPS *, const char *name, int columns);
+  static FixFSIHistory *keep(class LAMMPS *, std::string_view name, int columns);
   double **of;    // of local atoms
 
  private:

@@ -25,6 +25,7 @@
 #include "fsi_tensor.h"
 
 #include <cmath>
+#include <string_view>
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -38,7 +39,7 @@ namespace FSI {
   // What most laws declare of themselves (fsi_solid_laws.h): no plane stress, no rates, no history
   struct Hyperelastic {
     static constexpr bool PLANE_STRESS = false, BY_RATE = false;
-    static constexpr const char *HISTORY = nullptr;
+    static constexpr std::string_view HISTORY = "";
   };
 
   // m = ln J, dm/dF = F^-T

@@ -19,7 +19,7 @@
 //   PLANE_STRESS    whether it has a form for plane stress
 //   BY_RATE         its stress is that of fix fsi/stress, which velocity gradients change; else its
 //                   energy is a function of the deformation gradient and of its history
-//   HISTORY         what its history is called, null: none. It has columns(dim) numbers of each
+//   HISTORY         what its history is called, empty: none. It has columns(dim) numbers of each
 //                   particle, which begin with 0 (fix_fsi_history.h), and takes a step with
 //                   factors(dt), found once, and advance<D>(F, factors, history) of each particle,
 //                   which returns the dissipated energy per reference volume.
@@ -121,9 +121,9 @@ namespace FSI {
         return Of<decltype(law)>::BY_RATE;
       });
     }
-    const char *history() const
+    std::string_view history() const
     {
-      return (*this)([](auto *law) -> const char * {
+      return (*this)([](auto *law) {
         return Of<decltype(law)>::HISTORY;
       });
     }
@@ -132,7 +132,7 @@ namespace FSI {
       int most = 0;
       const auto find = [&](const auto &laws) {
         using L = typename std::decay_t<decltype(laws)>::value_type;
-        if constexpr (L::HISTORY != nullptr)
+        if constexpr (!L::HISTORY.empty())
           for (const L &law : laws) most = std::max(most, law.columns(dim));
       };
       std::visit(find, of_type);

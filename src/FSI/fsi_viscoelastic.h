@@ -42,7 +42,7 @@ namespace FSI {
 
   struct ViscoElastic : Hyperelastic, LogarithmOfVolume {
     static constexpr char NAME[] = "viscoelastic", TITLE[] = "viscoelastic (neo-Hookean, Prony)";
-    static constexpr char HISTORY[] = "viscoelastic stress";
+    static constexpr std::string_view HISTORY = "viscoelastic stress";
 
     struct Term {
       double g = 0.0, tau = 0.0;

@@ -558,7 +558,7 @@ void PairFSISolidTL::advance_stress(double dt)
     constexpr int D = decltype(dimension)::value;
     if constexpr (L::BY_RATE)
       advance_rates<D>(dt);
-    else if constexpr (L::HISTORY != nullptr)
+    else if constexpr (!L::HISTORY.empty())
       advance_history<L, D>(law_of, dt);
   });
 }
@@ -645,7 +645,7 @@ double PairFSISolidTL::stored(int i) const
     if constexpr (L::BY_RATE) return 0.0;
     double F[D * D];
     deformation<D>(i, F);
-    const double *const own = L::HISTORY != nullptr ? fix_history->of[i] : nullptr;
+    const double *const own = !L::HISTORY.empty() ? fix_history->of[i] : nullptr;
     return law_of[atom->type[i]].template operator()<D>(F, own).energy;
   });
 }
@@ -900,7 +900,7 @@ void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
   const bool relaxes = std::any_of(material.begin(), material.end(), [](const Material &m) {
     return m.nprony > 0;
   });
-  if (relaxes != (laws.history() != nullptr))
+  if (relaxes != !laws.history().empty())
     nothing(relaxes ? "Prony series of a material" : "Pair style fsi/solid/tl law viscoelastic",
             relaxes ? "pair_style fsi/solid/tl has another law" : "no material has a Prony series");
 }
