@@ -330,7 +330,7 @@ ROWS = {
     "hairpin": Row("hairpin whose arms clap together: one body", "hairpin", hairpin, {"gap": (">", 1.5), "energy_error": ("<", 0.01)}, "contact 2 self yes"),
     "empty": Row("box that empties on a rank", "empty", momentum, {"momentum_error": ("<", 1e-12)}, ""),
     "ends": Row("open ends with shifting: pressure that swings, flow that reverses", "ends_.*", between_ends, {"mass_error": ("<", 0.01)},
-                "shifting that fades at open ends, buffers that stretch"),
+                "shifting that fades at open ends, rows that follow the fluid"),
     "jump_water": Row("sudden steps, 10 times longer and shorter: still water", "jump_water", still, STILL, "continuity, density diffusion, Wendland kernel"),
     "jump_plate": Row("sudden steps: spinning plate", "jump_plate", solid, BODY, TL),
     "dt": Row("gate, 1 to 6 times the stable step, Courant check on and off", r"dt_(off_)?\d", honest, {"honest": ("==", 1)}, "fix fsi/watch", stops=True),
