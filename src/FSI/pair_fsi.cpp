@@ -201,7 +201,7 @@ void PairFSI::drop_reference() const
                    "There is no pair_style fsi/solid/tl any more: its bodies lose their reference, "
                    "and with it their strain");
   modify->delete_fix(FixFSIReference::ID);
-  FixFSIHistory::keep(lmp, nullptr, 0);
+  FixFSIHistory::keep(lmp, "", 0);
 }
 
 // a solid that has several styles has one material
