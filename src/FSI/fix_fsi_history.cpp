@@ -58,7 +58,7 @@ FixFSIHistory *FixFSIHistory::keep(LAMMPS *lmp, std::string_view name, int colum
 {
   Modify *const modify = lmp->modify;
   auto *const old = dynamic_cast<FixFSIHistory *>(modify->get_fix_by_id(ID));
-  if (old && !name.empty() && old->name == name && old->columns == columns) return old;
+  if (old && old->name == name && old->columns == columns) return old;
   if (old) {
     if (lmp->comm->me == 0)
       lmp->error->warning(FLERR, "Pair style fsi/solid/tl: the {} of its bodies is forgotten",

@@ -645,7 +645,7 @@ double PairFSISolidTL::stored(int i) const
     if constexpr (L::BY_RATE) return 0.0;
     double F[D * D];
     deformation<D>(i, F);
-    const double *const own = !L::HISTORY.empty() ? fix_history->of[i] : nullptr;
+    const double *const own = L::HISTORY.empty() ? nullptr : fix_history->of[i];
     return law_of[atom->type[i]].template operator()<D>(F, own).energy;
   });
 }
