@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from functools import partial
 
 import pytest
 
@@ -33,11 +34,30 @@ def seconds(scene, method, *at):
     return [float(found[x]["cpu_seconds"]) for x in at]
 
 
+def summary_of(scene):
+    return json.loads((ROOT / "doc/results/results.json").read_text(encoding="utf-8"))["scenes"][scene]["summary"]
+
+
 def figures(scene, *names):
     """[error in per cent, its size; of a figure that is an error itself the value] in doc/results."""
-    summary = json.loads((ROOT / "doc/results/results.json").read_text(encoding="utf-8"))["scenes"][scene]["summary"]
-    found = {f["name"]: f for f in summary["figures"]}
+    found = {f["name"]: f for f in summary_of(scene)["figures"]}
     return [100 * abs(found[n]["value"] / found[n]["reference"] - 1 if found[n]["reference"] else found[n]["value"]) for n in names]
+
+
+def sizes(scene, *names):
+    """[size of a figure, in its unit] in doc/results."""
+    found = {f["name"]: f for f in summary_of(scene)["figures"]}
+    return [abs(found[n]["value"]) for n in names]
+
+
+def minutes(scene, *names):
+    """[processor time of a case] in doc/results."""
+    return [summary_of(scene)["cases"][n]["cpu_seconds"] / 60 for n in names]
+
+
+def mixed(scene, *names):
+    """[size, error in per cent, size, error ...] of figures."""
+    return [x for n in names for x in sizes(scene, n) + figures(scene, n)]
 
 
 TL = r"TL quadratic, "    # with a column held
@@ -52,6 +72,7 @@ QUOTED = [
     ("doc/choosing.md", "{} %, {} % | 3, 4 |", lambda: curve("elastic_gate", "TL, water twice", 0.00166666667, 0.00125)),
     ("doc/choosing.md", "{} % of the amplitude", lambda: curve("turek_hron_fsi", "flag twice", 2)),
     ("doc/choosing.md", "{}, {}, {} % of the drag", lambda: figures("cylinder_channel", "drag_max_re_100_14", "drag_max_re_100_20", "drag_max_re_100_28")),
+    ("doc/choosing.md", "14, 20, 28 per diameter | {}, {}, {} min", lambda: minutes("cylinder_channel", "re_100_14", "re_100_20", "re_100_28")),
     ("doc/choosing.md", "{}, {} % of the speed", lambda: curve("taylor_green", "shifting, quintic", 0.04, 0.025)),
     ("doc/choosing.md", "{}, {} % of the period | 10, 20 rows", lambda: curve("standing_wave", "quintic 1.0", 0.05, 0.025)),
     ("doc/choosing.md", "{}, {} % of the pressure", lambda: curve("still_water", "quintic 0.94", 0.05, 0.025)),
@@ -69,6 +90,51 @@ QUOTED = [
     ("doc/src/pair_fsi_solid_tl.rst", "a solid alone takes {} times", lambda: [1 + effect("total", "hourglass control") / 100]),
     ("doc/src/pair_fsi_solid_tl.rst", "its water {} times", lambda: [1 + effect("gate", "hourglass control") / 100]),
 ]
+
+
+# The same of the scenes' own pages: scene, words, what the numbers are, the figures
+SCENES = [
+    ("bending_column", "displacement | {} m (+{} %) | {} m (+{} %)", mixed, ["peak_6", "peak_10"]),
+    ("bending_column", "zero | {} s (+{} %) | {} s (+{} %)", mixed, ["zero_crossing_6", "zero_crossing_10"]),
+    *((("cylinder_channel", f"| {n} | {{}} ({sign}{{}} %) | {{}} | {{}} | {{}} |",
+        lambda scene, drag, *more: mixed(scene, drag) + sizes(scene, *more),
+        [f"drag_{n}_across", f"drag_scatter_{n}_across", f"lift_{n}_across", f"lift_scatter_{n}_across"])) for n, sign in ((10, "+"), (14, ""), (20, "-"))),
+    *((("cylinder_channel", f"| {n} | {{}} (+{{}} %) | {{}} ({sign}{{}} %) | {{}} (-{{}} %) | {{}} min",
+        lambda scene, *names: mixed(scene, *names[:3]) + minutes(scene, names[3]),
+        [f"drag_max_re_100_{n}", f"lift_max_re_100_{n}", f"strouhal_re_100_{n}", f"re_100_{n}"])) for n, sign in ((14, "+"), (20, "+"), (28, "-"))),
+    ("cylinder_free", "Re = 100, 10 per diameter | mean drag | {} |", sizes, ["drag_10_across"]),
+    ("cylinder_free", "Re = 200, 10 per diameter | mean drag | {} |", sizes, ["drag_re_200"]),
+    ("dam_break_3d", "mean pressure at P1 | {} |", sizes, ["P1_steady"]),
+    ("dam_break_3d", "mean pressure at P3 | {} |", sizes, ["P3_steady"]),
+    ("dam_break_elastic", "full width: peak of the tip | {} mm", sizes, ["full_width_tip_x_peak"]),
+    ("dam_break_elastic", "full width: time of the peak | {} s", sizes, ["full_width_tip_x_peak_time"]),
+    ("dam_break_elastic", "peak of the tip | {} mm at {} s", sizes, ["tip_x_peak", "tip_x_peak_time"]),
+    ("dam_break_elastic", "two sides | {} % of the peak", figures, ["sides_differ_to_peak"]),
+    ("elastic_gate", "coarser [mm] | - | - | {} |", sizes, ["12MPa_water_2.5_times_coarser_tip_x_peak"]),
+    ("flexible_plate", "drag coefficient | {} +- {} |", sizes, ["drag", "drag_scatter"]),
+    ("flexible_plate", "along the stream | {} +- {} b", sizes, ["dx", "dx_scatter"]),
+    ("flexible_plate", "downward | {} +- {} b", sizes, ["dz", "dz_scatter"]),
+    ("open_channel", "drag | {} (+{} %) | {} (+{} %) | {} (+{} %)", mixed, ["drag_re_20", "drag_re_100", "drag_re_100_short"]),
+    ("open_channel", "lift amplitude | - | {} (-{} %) | {} (-{} %)", mixed, ["lift_amplitude_re_100", "lift_amplitude_re_100_short"]),
+    ("open_channel", "mass flow out | {} | {} | {} |", sizes, ["out_re_20", "out_re_100", "out_re_100_short"]),
+    ("plate_damping", "cubic, 1.5 | x 0.06 s | x 0.10 s | {} |", sizes, ["a5_a1_cubic_1.5_a0.05"]),
+    ("plate_damping", "no artificial stress | {} |", sizes, ["a5_a1_nostress_1.3_a0"]),
+    ("rolling_tank", "2 particles through the thickness | -{} mm at {} s", sizes, ["tip_left_baffle_2_across", "tip_left_time_baffle_2_across"]),
+    ("rolling_tank", "the same, 3 particles | -{} mm", sizes, ["tip_left_baffle"]),
+    ("rolling_tank", "the same, 4 particles | -{} mm", sizes, ["tip_left_baffle_4_across"]),
+    ("rolling_tank", "oil at 2 mm | -{} mm | -{} mm", sizes, ["tip_left_baffle_coarse_oil", "tip_left_baffle"]),
+    ("turek_hron_fsi", "(amplitude +{} %) | 1.34 +- {} [{}] (+{} %)",
+     lambda scene, coarse, fine, rate: figures(scene, coarse) + sizes(scene, fine, rate) + figures(scene, fine),
+     ["uy_amplitude_fsi2_2", "uy_amplitude_fsi2_4", "frequency_fsi2_4"]),
+    ("turek_hron_fsi", "(amplitude -{} %) | 2.03 +- {} [{}] (+{} %)",
+     lambda scene, coarse, fine, rate: figures(scene, coarse) + sizes(scene, fine, rate) + figures(scene, fine),
+     ["uy_amplitude_fsi3_2", "uy_amplitude_fsi3_4", "frequency_fsi3_4"]),
+    ("turek_hron_fsi", "(amplitude -{} %) | -2.6 +- {} (+{} %)",
+     lambda scene, coarse, fine: figures(scene, coarse) + mixed(scene, fine), ["lift_amplitude_fsi3_2", "lift_amplitude_fsi3_4"]),
+    ("twisting_column", "top | {} turns", sizes, ["largest_twist"]),
+    ("twisting_column", "over the first | {} |", sizes, ["twist_the_other_way"]),
+]
+QUOTED += [(f"examples/{scene}/README.md", words, partial(kind, scene, *names)) for scene, words, kind, names in SCENES]
 
 
 @pytest.mark.parametrize("page, words, numbers", QUOTED, ids=[f"{page}-{words[:40]}" for page, words, _ in QUOTED])
