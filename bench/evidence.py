@@ -217,8 +217,8 @@ def unstable():
             "A plate lighter than the water that it moves in a step: with sub-steps it shakes. Halve the Courant number of the water.",
             "Thin free edges: single water particles may pass an edge that is thinner than the kernel's support.",
             f"Two open ends with shifting, where the pressure swings or the flow reverses: mass drifts by up to {100 * drift:.1f} %.",
-            f"Updated-Lagrangian solids lock at Poisson's ratios near 1/2, and the plate stops with fewer than {coarsest:.0f} particles "
-            "through the thickness. Total-Lagrangian solids are the default."]
+            "Updated-Lagrangian solids lock near Poisson's ratio 1/2 and stop when coarse: the elastic plate with fewer than "
+            f"{coarsest:.0f} particles through the thickness."]
 
 
 def _curve(scene, method):
