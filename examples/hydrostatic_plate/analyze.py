@@ -34,10 +34,11 @@ def add(summary, plate, values, suffix=""):
     """Mean, scatter and drift of the deflection."""
     time, deflection = settled(plate, values)
     mean = deflection.mean()
-    summary.add(f"deflection{suffix}", mean, "um", REFERENCE, SOURCE, TARGETS.get(round(values["across"])))
+    target = TARGETS.get(round(values["across"])) if values["coarser"] == 1 else None
+    summary.add(f"deflection{suffix}", mean, "um", REFERENCE, SOURCE, target)
     summary.add(f"scatter{suffix}", deflection.std() / abs(mean), "of the mean")
     slope = np.polyfit(time, deflection, 1)[0]
-    summary.add(f"drift{suffix}", slope * np.ptp(time) / mean, "of the mean", target=0.01)
+    summary.add(f"drift{suffix}", slope * np.ptp(time) / mean, "of the mean", target=0.01 if target else None)
 
 
 def picture(path, runs):
@@ -84,13 +85,16 @@ def main(folder):
 
 
 def study(folder, cases):
-    """Deflection of all cases."""
+    """Deflection of all cases, and what the pressure is off in those with coarser water."""
     summary = Summary(folder)
     runs = []
-    for path in cases.values():
+    for name, path in cases.items():
         plate, values = read(path)
-        add(summary, plate, values, f"_{values['across']:.0f}")
-        runs.append((plate, f"{values['across']:.0f} particles across"))
+        add(summary, plate, values, f"_{name.removesuffix('_across')}")
+        if values["coarser"] == 1:
+            runs.append((plate, f"{values['across']:.0f} particles across"))
+        else:
+            summary.add(f"pressure_l2_{name}", next(f["value"] for f in summary.cases[name]["figures"] if f["name"] == "pressure_l2"))
     picture(Path(folder) / "deflection.png", runs)
     return summary.write()
 

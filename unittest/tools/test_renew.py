@@ -20,7 +20,7 @@ from tool import read_csv, write_csv  # noqa: E402
 
 DATA = [path for folder in ("cost", "hard") for end in ("csv", "json") for path in sorted((paths.ROOT / "doc" / folder).glob(f"*.{end}"))]
 PAGES = renew.texts()
-MEASURED = [path for path in PAGES if path.suffix == ".md" and path.parent != paths.ROOT]
+MEASURED = [path for path in PAGES if path.suffix == ".md" and path.is_relative_to(paths.ROOT / "doc")]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.relative_to(paths.ROOT).as_posix())
