@@ -74,6 +74,7 @@ class Adviser : protected Pointers {
     if (fluids.style) {
       idle_fluid();
       nothing_acts();
+      torn_streams();
       speeds();
     }
     weightless();
@@ -407,6 +408,25 @@ class Adviser : protected Pointers {
     if (!found.count && !moving)
       warn("nothing moves this scene: no gravity, no velocity, no moving wall, no force at the "
            "start. Is fix gravity missing?");
+  }
+
+  /* Flow behind a body draws. Where no weight keeps the pressure above 0, water that cannot bear
+   * tension opens holes there, and with shifting loses particles. */
+
+  void torn_streams() const
+  {
+    if (modify->get_fix_by_style("^fsi/[io][nu]t?let$").empty() &&
+        modify->get_fix_by_style("^fsi/stream$").empty())
+      return;
+    const auto found = find_particles(atom, world, [&](int i) {
+      const auto g = scene.body_forces.on(i);
+      return fluid(i) && scene.is_moved(i) && scene.state[atom->type[i]].floor == 0.0 &&
+          g[0] == 0.0 && g[1] == 0.0 && g[2] == 0.0;
+    });
+    if (found.count)
+      warn("a stream without tension opens holes where its pressure falls to 0, as behind a body: "
+           "unless it is a jet in air, give pair_style fsi/fluid background of about rho U^2, U "
+           "being its largest speed, and tension yes");
   }
 
   /* fix fsi/stress says so of itself; law svk and neohookean do without it */

@@ -77,6 +77,10 @@ CASES = {
              r"all 24 particles of elastic bodies, the first of them atom 41, are held, since none is in group water of fix sph: is this group meant"),
     "weightless body": ([("fix g all", "group water type 1\nfix g water")], None,
                         r"24 moving particles of elastic bodies, the first of them atom 41, are in the group of no fix gravity, while others are"),
+    # weight keeps a stream together, and so does tension: test_stream_that_cannot_tear
+    "torn stream": ([("fix g all", "region zone block 0 0.02 INF INF INF INF units box\nfix s all fsi/stream 0.1 0 NULL region zone rate 10\n#"),
+                     ("create_atoms 2 region plate", "")], None,
+                    r"a stream without tension opens holes .* background of about rho U\^2, U being its largest speed, and tension yes$"),
     "weightless fluid": ([("fix g all", "fix g plate")], None, r"40 moving particles of fluids, the first of them atom 1, are in the group of no fix gravity"),
     "nothing acts": ([("fix g all gravity 9.81 vector 0 -1 0\n", "")], None, r"nothing moves this scene: no gravity, no velocity"),
     "cut by a mirror": ([("xlo 0 ylo 0", "xlo 0 xhi 0.08 ylo 0")], None, r"body 1 ends at the mirror wall at x = 0.08, and its face there is free"),
@@ -187,6 +191,13 @@ def test_chosen_time_step_is_not_criticized(tmp_path, change):
 def test_flow_driven_along_a_period_has_no_height(tmp_path):
     changes = [("boundary f f p", "boundary f p p"), ("-0.05 0.15 -0.005", "0 0.08 -0.005"), (" ylo 0", ""), ("sound 12.53", "sound 2")]
     assert advice(tmp_path, changes) == []
+
+
+@pytest.mark.parametrize("change", [("fix walls", "fix g all gravity 1 vector 0 -1 0\nfix walls"), ("sound 12.53", "sound 12.53 background 10 tension yes")],
+                         ids=["weight", "tension"])
+def test_stream_that_cannot_tear(tmp_path, change):
+    torn, _, _ = CASES["torn stream"]
+    assert advice(tmp_path, [*torn, change]) == []
 
 
 def test_said_once(tmp_path):
