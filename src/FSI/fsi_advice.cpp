@@ -35,6 +35,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <utility>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -354,25 +355,29 @@ class Adviser : protected Pointers {
 
   void weightless() const
   {
+    int rigid = 0;
+    for (const auto &fix : modify->get_fix_by_style("^rigid")) rigid |= fix->groupbit;
     const auto weighs = [&](int i) {
       const auto g = scene.body_forces.on(i);
       return g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0;
     };
     const auto falls = [&](int i) {
-      return fluid(i) ? scene.is_moved(i) : moves(i);
+      return fluid(i) ? scene.is_moved(i) : solid(i) ? moves(i) : (atom->mask[i] & rigid) != 0;
     };
     if (!find_particles(atom, world, [&](int i) {
            return falls(i) && weighs(i);
          }).count)
       return;
-    for (const bool of_fluid : {true, false}) {
-      const auto found = find_particles(atom, world, [&](int i) {
-        return falls(i) && fluid(i) == of_fluid && !weighs(i);
+    const std::pair<Species, const char *> kinds[] = {
+        {FLUID, "fluids"}, {SOLID, "elastic bodies"}, {RIGID, "rigid bodies"}};
+    for (const auto &[species, what] : kinds) {
+      const auto found = find_particles(atom, world, [&, kind = species](int i) {
+        return falls(i) && scene.state[atom->type[i]].species == kind && !weighs(i);
       });
       if (found.count)
         warn(fmt::format("{} moving particles of {}, the first of them atom {}, are in the group "
                          "of no fix gravity, while others are: they weigh nothing",
-                         found.count, of_fluid ? "fluids" : "elastic bodies", found.first));
+                         found.count, what, found.first));
     }
   }
 

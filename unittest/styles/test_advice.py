@@ -193,6 +193,18 @@ def test_flow_driven_along_a_period_has_no_height(tmp_path):
     assert advice(tmp_path, changes) == []
 
 
+@pytest.mark.parametrize("group, weightless", [("all", False), ("water", True)])
+def test_float_without_weight(tmp_path, group, weightless):
+    """A rigid body of walls that fix rigid moves; one that nothing moves needs none."""
+    float_ = [("create_atoms 2 region plate", "create_atoms 2 region plate\ngroup water type 1"), ("set group plate mol 1\n", ""), ("hybrid fsi/fluid", "fsi/fluid"),
+              (" fsi/solid/tl\n", "\n"), ("pair_coeff * * fsi/fluid materials.fsi water_inviscid plate\n", "fsi/material buoy wall rho 500\npair_coeff * * materials.fsi water_inviscid buoy\n"),
+              ("pair_coeff * * fsi/solid/tl materials.fsi NULL plate\n", ""), ("fix sph all", "fix sph water"), ("fix g all", f"fix w plate fsi/wall/particle\nfix g {group}")]
+    rigid = [("run 0", "fix r plate rigid single force * on on off torque * off off on\nrun 0")]
+    found = [line for line in advice(tmp_path / "rigid", [*float_, *rigid]) if "weigh nothing" in line]
+    assert len(found) == weightless and all("24 moving particles of rigid bodies, the first of them atom 41" in line for line in found)
+    assert advice(tmp_path / "held", float_) == []
+
+
 @pytest.mark.parametrize("change", [("fix walls", "fix g all gravity 1 vector 0 -1 0\nfix walls"), ("sound 12.53", "sound 12.53 background 10 tension yes")],
                          ids=["weight", "tension"])
 def test_stream_that_cannot_tear(tmp_path, change):
