@@ -78,9 +78,8 @@ def main(folder):
     summary.add("particles_leaked", leaks.count(summary.log), target=0)
 
     picture(folder / "deflection.png", [(plate, f"{values['across']:.0f} particles across")])
-    depth = np.array([0.0, DEPTH])
-    plot.scatter_against_line(folder / "pressure.png", DEPTH - water["y"], 1e-3 * water["p"], depth, 9.81 * depth,
-                              (f"particles, t = {plate.time[-1]:.2f} s", "exact"), ("depth [m]", "pressure [kPa]"))
+    plot.deviations(folder / "pressure.png", DEPTH - water["y"], water["p"], exact, 9810.0 * DEPTH,
+                    "error of p, over p at the plate [%]", f"t = {plate.time[-1]:.2f} s")
     return summary.write()
 
 
