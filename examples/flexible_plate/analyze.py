@@ -92,8 +92,8 @@ def picture_plate(path, frame, values):
     water = frame["type"] == WATER
     plate = ~water & (points[:, 2] > 0.0)
     flat = points[:, [0, 2]] + points[:, 1:2] * (0.35, 0.28)    # y goes away from the eye
-    # two spacings deep, so that what stands behind shows where particles are apart
-    back = water & (points[:, 1] > 0.0) & (points[:, 1] < 2.01 * spacing)
+    # layers of some spacings, so that what stands behind shows where particles are apart
+    back = water & (points[:, 1] > 0.0) & (points[:, 1] < 3.01 * spacing)
     floor = water & (points[:, 2] < 2.01 * spacing) & (abs(points[:, 1]) < SHOWN)
     stress = 1e-3 * frame["vonmises"]
     norms = Normalize(0.0, 1.5), Normalize(0.0, max(np.percentile(stress[plate], 99.5), 1e-9) if plate.any() else 1.0)
