@@ -101,7 +101,7 @@ namespace FSI {
     double delta = 0.0;                               // of density diffusion; 0: none
     const double *pressure_over_density = nullptr;    // per particle, with sums
     double wdx = 0.0;                                 // W(dx), for shifting
-    bool slopes = false;                              // shifting changes velocities, too
+    bool fills = false;                               // shifting: the fluid has no surface
     double reach = 0.0;
   };
 
@@ -129,8 +129,9 @@ namespace FSI {
     virtual ~FluidLoops() = default;
 
     // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting to
-    // shift, rows of Shift<D>::ROW; mirror: the rows' neighbors are images in it; shift, sums: or
-    // null; near: the rows become those of what is within laws.reach
+    // shift, rows of Shift<D>::row(laws.fills), where rates of neighbors are behind the sums;
+    // mirror: the rows' neighbors are images in it; shift, sums: or null; near: the rows become
+    // those of what is within laws.reach
     virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror,
                        const FluidParticles &, const RateLaws &, double *rate, double *shift,
                        PairSums *sums, RowList &near) const = 0;
@@ -139,7 +140,7 @@ namespace FSI {
     virtual void forces(PairKind, const std::vector<Row> &, const Mirror *mirror,
                         const FluidParticles &, const ForceLaws &, double *force, double *total,
                         PairSums *sums) const = 0;
-    // adds the sums of particle shifting alone
+    // adds the sums of particle shifting alone, to rows of Shift<D>::row(false)
     virtual void shifts(PairKind, const std::vector<Row> &, const Mirror *mirror,
                         const FluidParticles &, double wdx, double *shift) const = 0;
     // adds W_ij, by the neighbors' share, to sum; of the neighbors only if both

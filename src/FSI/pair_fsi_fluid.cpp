@@ -236,13 +236,12 @@ double *const *PairFSIFluid::velocity_of_shifting() const
 
 int PairFSIFluid::nshift() const
 {
-  return fix_fsi->dim == 2 ? Shift<2>::ROW : Shift<3>::ROW;
+  return fix_fsi->dim == 2 ? Shift<2>::row(fills()) : Shift<3>::row(fills());
 }
 
 int PairFSIFluid::shift_sums() const
 {
-  if (fills()) return fix_fsi->dim == 2 ? Shift<2>::ALL : Shift<3>::ALL;
-  return fix_fsi->dim == 2 ? Shift<2>::N : Shift<3>::N;
+  return fix_fsi->dim == 2 ? Shift<2>::sums(fills()) : Shift<3>::sums(fills());
 }
 
 void PairFSIFluid::set_fields(Scene &scene)
@@ -781,8 +780,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
       pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx,
-                         fix_fsi->shifts && fills(), reach};
+  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fills(), reach};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
@@ -801,6 +799,9 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
         loop(kind, images[kind][k], visible_images[k], mirror, near_images[kind][k]);
       });
   near_known = true;
+  const int of_shift = nshift(), last = shift_sums();
+  for (int i = 0; shift && i < atom->nlocal + atom->nghost; i++)
+    rate[i] += shift[of_shift * i + last];
   fix_fsi->tally(FixFSI::DIFFUSION, sums.diffusion);
   fix_fsi->tally(FixFSI::WALLS, sums.walls);
 }
@@ -886,7 +887,7 @@ void PairFSIFluid::add_gradient_sum(double *s)
 // the plain sums of particle shifting, all volumes those of the lattice
 template <int D> void PairFSIFluid::add_gradients(double *s)
 {
-  constexpr int ROW = Shift<D>::ROW;
+  constexpr int ROW = Shift<D>::row(false);
   const size_t nall = atom->nlocal + atom->nghost;
   const int *const type = atom->type;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
