@@ -917,6 +917,8 @@ void PairFSISolidTL::add_costs(Costs &costs) const
                                n * (1 + strains));
   else
     costs.solids = strains ? "; 1 forward and 2 back for solids" : "; 1 back for solid forces";
+  if (reference->clamps.any())
+    costs.solids += fmt::format("; {} sums over all ranks for rigid parts of solids", n + 2);
 }
 
 void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
@@ -946,6 +948,8 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   if (smoothed.on())
     list.push_back(
         {"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});
+  if (reference && reference->clamps.any())
+    list.push_back({"sub-steps of rigid parts of solids, with fix rigid", "substeps", true});
   return list;
 }
 
