@@ -283,9 +283,21 @@ void Clamps::to_middle()
   find_members();
   for (Body &b : bodies) {
     drift(b, 0.5 * update->dt);
+    std::copy_n(b.x, 3, b.middle);
     store(b);
   }
   place(members);
+}
+
+// fix rigid may have moved a body by a period of the box since
+void Clamps::follow_boundary()
+{
+  for (Body &b : bodies)
+    for (int d = 0; d < 3; d++) {
+      const double now = (b.fix->*Rigid::center)[b.index][d];
+      b.x0[d] += now - b.middle[d];
+      b.middle[d] = now;
+    }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -304,11 +316,10 @@ void Clamps::begin_substeps(const std::vector<int> &solids)
   sum(members, atom->f);
   for (size_t k = 0; k < bodies.size(); k++) {
     Body &b = bodies[k];
-    // through a periodic boundary since
-    for (int d = 0; d < 3; d++) b.x0[d] += (b.fix->*Rigid::center)[b.index][d] - b.x[d];
     std::copy_n(&sums[6 * k], 6, b.outside);
     add_own(b, b.outside);
   }
+  follow_boundary();
   to_start();
 }
 
@@ -371,8 +382,7 @@ void Clamps::finish()
 void Clamps::go_back()
 {
   find_members();
-  for (Body &b : bodies)
-    for (int d = 0; d < 3; d++) b.x0[d] += (b.fix->*Rigid::center)[b.index][d] - b.x[d];
+  follow_boundary();
   to_start();
   for (Body &b : bodies) store(b);
   place(members);

