@@ -160,6 +160,27 @@ def test_steps_that_change():
     assert len(steps) == 10 and max(steps) > 5 * min(steps)
 
 
+def test_rigid_part_hits_an_elastic_body():
+    """Contact acts in the sub-steps, too: both momenta to round-off, energy but for what an impact costs a time step."""
+    one, two = lattice([14, 4], DX), lattice([4, 12], DX, origin=[15.6 * DX, -3.3 * DX])
+    x = np.vstack([one, two])
+    mol = np.repeat([1, 2], [len(one), len(two)])
+    v = np.zeros_like(x)
+    v[mol == 1, 0] = 1.0
+    with Scene(x, v, dx=DX, mol=mol, dt=2e-4, materials=(f"solid rho {RHO} young {E} poisson 0.3",), solid_style="fsi/solid/tl",
+               solid="artificial/visc 0 0", held=(mol == 1) & (x[:, 0] > 9 * DX), density="substeps 12",
+               commands=["fix tip held rigid single force * on on off torque * off off on", "compute e all fsi/energy"]) as s:
+        s.run()
+        start, energy = momenta(s), s.ledger().sum()
+        s.run(200)
+        now, pushed = momenta(s), (s.get("rmass") * s.get("v")[:, 0])[mol == 2].sum() / start[2]
+        print(f"impact: {pushed:.2f} of the momentum passed on, energy {s.ledger().sum() / energy - 1:+.1e}")
+        assert pushed > 0.3
+        assert np.abs(now[0] - start[0]).max() < 1e-12 * start[2]
+        assert np.abs(now[1] - start[1]).max() < 1e-12 * start[3]
+        assert abs(s.ledger().sum() / energy - 1) < 0.01
+
+
 def test_fix_rigid_sees_the_mean_force():
     """What the rigid part gains in momentum is the sum of its particles' forces times the step, and what fix rigid shows as its force."""
     s, tip = beam([20, 4], 5, 12, 2.4e-4, commands=["variable force equal f_tip[1][8]"])
