@@ -369,7 +369,6 @@ void Clamps::take_step()
 
 void Clamps::finish()
 {
-  place(members);
   sum(members, atom->f);
   for (size_t k = 0; k < bodies.size(); k++) {
     Body &b = bodies[k];
@@ -377,6 +376,7 @@ void Clamps::finish()
     kick(b, -0.5 * update->dt, &sums[6 * k]);
     store(b);
   }
+  place(members);
 }
 
 void Clamps::go_back()
