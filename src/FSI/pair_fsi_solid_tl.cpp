@@ -322,11 +322,17 @@ void PairFSISolidTL::find_rows()
 {
   const int *const type = atom->type, *const mask = atom->mask, groupbit = fix_fsi->groupbit;
   changes_seen = reference->changes;
+  // of partners, too: a border of ranks may part two materials
   one_material = true;
+  for (const auto *set : {&reference->solids, &reference->ghosts})
+    for (const int i : *set) {
+      if (reference->solids.empty()) break;
+      const State &s = fix_fsi->state[type[i]], &first = fix_fsi->state[type[reference->solids[0]]];
+      one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
+    }
   rows.clear();
   for (const int i : reference->solids) {
-    const State &s = fix_fsi->state[type[i]], &first = fix_fsi->state[type[reference->solids[0]]];
-    one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
+    const State &s = fix_fsi->state[type[i]];
     if (reference->count(i) == 0) continue;    // torn off by damage
     rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i),
                     reference->moments(i), atom->rmass[i] / s.rho0 * reference->weight(i),

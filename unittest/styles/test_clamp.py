@@ -264,11 +264,12 @@ read_data beams.data
 group one id 57:80
 group two id 81:100
 group stiff union one two
+set group stiff type 3
 group soft subtract all stiff
 velocity all set 4 2 0 units box
 velocity soft set 4.2 1.7 0 units box
 pair_style fsi/solid/tl artificial/visc 0.1 0
-pair_coeff * * rubber.fsi rubber rubber
+pair_coeff * * rubber.fsi rubber rubber foam
 neighbor 0.003 bin
 neigh_modify every 1 delay 0 check yes
 comm_modify cutoff 0.042
@@ -277,7 +278,7 @@ fix sph soft fsi 0.01 wendland 1.5 substeps 6
 fix tip stiff rigid group 2 one two force * on on off torque * off off on
 timestep 1e-4
 """
-RUBBER = "# DATE: 2026-01-01 UNITS: si CITATION: none\nrubber solid rho 1000 young 1e6 poisson 0.3\n"
+RUBBER = "# DATE: 2026-01-01 UNITS: si CITATION: none\nrubber solid rho 1000 young 1e6 poisson 0.3\nfoam solid rho 400 young 5e5 poisson 0.2\n"
 
 
 
@@ -285,7 +286,7 @@ def beams():
     """Type 1 along x, type 2 along y; IDs column by column of the first, row by row of the second, 4 of them in each."""
     one, two = lattice([20, 4], DX, origin=[0.055, 0.055]), lattice([4, 20], DX, origin=[0.305, 0.085])
     one, two = one[np.lexsort((one[:, 1], one[:, 0]))], two[np.lexsort((two[:, 0], two[:, 1]))]
-    lines = ["two beams", "", "160 atoms", "2 atom types", "", "0 0.4 xlo xhi", "0 0.3 ylo yhi", "-0.005 0.005 zlo zhi", "", "Atoms # fsi", ""]
+    lines = ["two beams", "", "160 atoms", "3 atom types", "", "0 0.4 xlo xhi", "0 0.3 ylo yhi", "-0.005 0.005 zlo zhi", "", "Atoms # fsi", ""]
     lines += [f"{k + 1} {1 + k // 80} {1 + k // 80} 0 0 {p[0]!r} {p[1]!r} 0" for k, p in enumerate(np.vstack([one, two]).tolist())]
     return "\n".join(lines) + "\n"
 
@@ -311,7 +312,8 @@ def apart(a, b):
 
 @pytest.mark.parametrize("ranks, grid, newton", [(1, "1 1 1", "off"), (2, "2 1 1", "on"), (2, "1 2 1", "off"), (4, "2 2 1", "on"), (4, "2 2 1", "off")])
 def test_ranks(tmp_path, one_rank, ranks, grid, newton):
-    """Two beams with rigid parts cross a periodic box more than once: as on one rank, to round-off that vibrations have grown from 1e-16."""
+    """Two beams with rigid parts of another material cross a periodic box more than once, and borders of ranks part the materials: as on one
+    rank, to round-off that vibrations have grown from 1e-16."""
     got = run(tmp_path, deck(newton, grid) + watch(every=500) + "run 1500", ranks, **FILES).frames()
     for a, b in zip(one_rank, got):
         x, v = apart(a, b)
