@@ -197,9 +197,10 @@ def test_fix_rigid_sees_the_mean_force():
 
 @pytest.mark.parametrize("part", ["solid", "root in walls"])
 def test_momenta_and_energy_in_water(part):
-    """A drop in a void around a beam with a rigid part, of the solid or of wall particles around its root, that flies and spins in it: linear momentum to round-off. The force of water acts where
-    bodies are in the middle of the step, and is held in the sub-steps: angular momentum to the second order of the step. So is energy, but its
-    balance takes powers with the velocities of the start of the step, and is of the first order, as with any sub-steps."""
+    """A drop in a void around a beam with a rigid part, of the solid or of wall particles around its root, that flies and spins in it: linear
+    momentum to round-off. The force of water acts where bodies are in the middle of the step, and is held in the sub-steps: angular momentum to
+    the second order of the step. So is energy, but its balance takes powers with the velocities of the start of the step, and is of the first
+    order, as with any sub-steps."""
     x = lattice([28, 24], DX)
     inner = (x[:, 0] > 7 * DX) & (x[:, 0] < 21 * DX) & (x[:, 1] > 10 * DX) & (x[:, 1] < 14 * DX)
     tip = inner & (x[:, 0] > 16 * DX)
