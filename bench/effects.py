@@ -105,7 +105,6 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "free-surface rule": {"style": "surface 0.9 bulk"},
         "free-surface rule, every 10 steps": {"style": "surface 0.9 bulk", "sph": "surface/every 10"},
         "density by summation": {"sph": "fluid summation"},
-        "density by ratio": {"sph": "fluid ratio"},
         "tension, Tait, background": {"style": "eos tait tension yes background 1"},
         "adaptive time step": {"commands": STEP},
         "monitor (fix fsi/watch)": {"commands": WATCH},

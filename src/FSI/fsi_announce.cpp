@@ -36,7 +36,7 @@ using namespace FSI;
 
 static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
 {
-  const auto &modes = Scene::density_names();
+  const auto modes = Scene::density_names(SOLID);
   static const char *const kernels[] = {"cubic spline", "quintic spline", "Wendland C2"};
   const bool fluid = facts_of_fluids(lmp).style;
   const auto solid = facts_of_solids(lmp).style;

@@ -33,9 +33,8 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // What a fluid particle meets, and by which rule: couple wall; the paper's rules, couple pressure
-  // and full.
-  enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_PRESSURE, WITH_SOLID_FULL };
+  // What a fluid particle meets, and by which rule: couple wall; couple full, the paper's
+  enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_FULL };
 
   // What a loop needs of a particle, side by side (in 2D a cache line).
   template <int D> struct Point {
@@ -152,7 +151,7 @@ namespace FSI {
                                      const double *vol, double *sum) const = 0;
   };
 
-  // packs: several pairs at a time, of all kinds but WITH_SOLID_PRESSURE and WITH_SOLID_FULL
+  // packs: several pairs at a time, of all kinds but WITH_SOLID_FULL
   std::shared_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h, bool packs);
   std::shared_ptr<FluidLoops> make_fluid_loops_any(int kernel, int dim, double h);
   std::shared_ptr<FluidLoops> make_fluid_loops_cubic(int dim, double h);

@@ -270,9 +270,7 @@ namespace FSI {
                                const double *extrapolate, double floor, double back, bool own)
   {
     const T both = pi.pv2 + back * pj.pv2;
-    if (KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL)
-      return CouplePaper::pressure(both, KIND == WITH_SOLID_FULL);
-    if (!own) return both;
+    if (KIND == WITH_SOLID_FULL || !own) return both;
     // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
     T p = pi.p;
     for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
@@ -431,8 +429,7 @@ namespace FSI {
   // Does a mirror wall cut off part of these neighbors' cells?
   constexpr bool is_cut(int kind, int flags)
   {
-    return kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL ||
-        (kind == WITH_SOLID && (flags & Flag::UNEQUAL));
+    return kind == WITH_SOLID_FULL || (kind == WITH_SOLID && (flags & Flag::UNEQUAL));
   }
 
   // A pair as its terms need it. weight: 0 in places that are left over; g = W'/r; pushing: that of
@@ -755,9 +752,7 @@ namespace FSI {
       PairSums unused;
       const int unequal_rows = kind == WITH_SOLID || kind == WITH_WALL ? unequal_or_cut(kind, in)
                                                                        : 0;
-      if (!sums &&
-          (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL || (image && unequal_rows)))
-        sums = &unused;
+      if (!sums && (kind == WITH_SOLID_FULL || (image && unequal_rows))) sums = &unused;
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror,
@@ -791,12 +786,9 @@ namespace FSI {
               if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
               if constexpr (!(flags() & IMAGES))    // walls of particles have no images
                 if (kind == WITH_WALL) loop(std::integral_constant<int, WITH_WALL>(), flags);
-              if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & UNEQUAL)) {
-                if (kind == WITH_SOLID_PRESSURE)
-                  loop(std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
+              if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & UNEQUAL))
                 if (kind == WITH_SOLID_FULL)
                   loop(std::integral_constant<int, WITH_SOLID_FULL>(), flags);
-              }
             }
           });
     }

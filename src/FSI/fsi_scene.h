@@ -45,7 +45,7 @@ namespace FSI {
 
     // discretisation
     enum Density { CONTINUITY, SUMMATION, RATIO };
-    static const std::vector<std::string> &density_names();    // of these
+    static std::vector<std::string> density_names(int species);    // of these
     int dim;
     int kernel;         // KernelKind
     double dx, h;       // spacing of the initial lattice, smoothing length

@@ -37,7 +37,7 @@ namespace LAMMPS_NS {
 
 class PairFSIFluid : public PairFSI {
  public:
-  enum Couple { WALL, PRESSURE, FULL };
+  enum Couple { WALL, FULL };
   enum Laminar { INVISCID, PLAIN, CENTRAL };
 
   PairFSIFluid(class LAMMPS *);

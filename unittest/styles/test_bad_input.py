@@ -202,8 +202,10 @@ CASES = [
     ("shift negative", "density/diffusion 0.1", "shift -0.1", r"shift -0\.1 must be between 0 and 1"),
     ("shift large", "density/diffusion 0.1", "shift 2", r"shift 2 must be between 0 and 1"),
     ("shift/every zero", "density/diffusion 0.1", "shift 0.1 shift/every 0", r"shift/every 0 must be >= 1"),
-    ("shift with ratio", re.compile("density/diffusion 0.1(.*)fluid continuity", re.S), r"shift 0.5\1fluid ratio",
+    ("shift with summation", re.compile("density/diffusion 0.1(.*)fluid continuity", re.S), r"shift 0.5\1fluid summation",
      r"shift requires .*fluid continuity"),
+    ("ratio of fluids", "fluid continuity", "fluid ratio", r"Unknown fix fsi fluid density ratio: expected continuity or summation"),
+    ("coupling by pressure", "density/diffusion 0.1", "couple pressure", r"Unknown pair_style fsi/fluid couple pressure: expected wall or full"),
     *[(f"{key} without value", "density/diffusion 0.1", key, rf"fsi/fluid {key.split()[0]} command: missing")
       for key in ("eos", "background", "tension", "artificial/visc 0.1", "couple", "extrapolate", "surface 0.9",
                   "shift")],

@@ -240,7 +240,7 @@ OTHER = {  # scene, name: other commands, each with what an error says if it is 
     ("updated", "pair"): {f"pair_style hybrid fsi/fluid sound 10 artificial/visc 0.05 0 {words} fsi/solid artificial/visc 0.1 0 {body}": "" for words, body in [
         ("", ""), ("", "gradient corrected"), ("couple full", "gradient plain artificial/stress 0.3"), ("shift 0.1", "hourglass 0.3 gradient quadratic"),
         ("density/surface yes", "hourglass 0.1 gradient quadratic")]},
-    ("updated", "fsi"): {"fix fsi moves fsi 0.01 wendland 1.5 fluid ratio solid ratio": "", "fix fsi moves fsi 0.01 wendland 1.5 fluid summation solid summation": "",
+    ("updated", "fsi"): {"fix fsi moves fsi 0.01 wendland 1.5 solid ratio": "", "fix fsi moves fsi 0.01 wendland 1.5 fluid summation solid summation": "",
                          "fix fsi moves fsi 0.01 cubic 1.3": OLD_KERNEL},
     ("updated", "stress"): {"fix stress all fsi/stress plastic": ""},
     ("open", "pair"): {f"pair_style fsi/fluid sound 10 background 500 tension yes {words}": "" for words in
