@@ -397,7 +397,7 @@ NUMBERS = [
     *[(word, RUN, f"fix dt all fsi/dt {keyword}\nrun 0") for word, keyword in (
         ("interval", "{}"), ("cfl", "10 cfl {}"), ("cfl/fluid", "10 cfl/fluid {}"), ("cfl/solid", "10 cfl/solid {}"), ("stop", "10 stop {}"), ("min", "10 min {}"), ("max", "10 max {}"), ("growth", "10 growth {}"))],
     *[(f"watch {word}", RUN, f"fix w all fsi/watch {keyword}\nunfix w\nrun 0") for word, keyword in (
-        ("interval", "{}"), *[(q, f"10 {q} {{}}") for q in ("mach", "distance", "density", "courant", "energy", "lost", "reflected")])],
+        ("interval", "{}"), *[(q, f"10 {q} {{}}") for q in ("distance", "density", "energy", "lost", "reflected")])],
     ("report every", RUN, "fix r all fsi/report every {}\nrun 0"),
     *[(word, *spectrum(keyword)) for word, keyword in (("Nevery", "{} v_x"), ("peaks", "10 v_x peaks {}"), ("every", "10 v_x every {}"))],
     *[(f"probe {keyword.split()[1]}", *probe(keyword)) for keyword in ("p point {} 0 0", "p patch 0 0 0 {} 1 0", "level line 0 0 0 0 {} 0")],

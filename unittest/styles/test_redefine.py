@@ -306,7 +306,7 @@ def test_another_after_some_steps(tmp_path, scene, name, text, refused, way):
 AGAIN = {  # scene, what comes between, what is said: an error, or a warning and it goes on
     "a compute that is gone": ("tank", "uncompute force\nrun 2 pre no", "ERROR: Run with pre no: fixes, computes, regions or pair styles are others"),
     "another compute of the same ID": ("tank", "uncompute force\ncompute force beam fsi/force\nrun 2 pre no", "ERROR: Run with pre no"),
-    "a fix that is new": ("tank", "fix more all fsi/watch 7 restart more.restart\nrun 2 pre no", "ERROR: Run with pre no"),
+    "a fix that is new": ("tank", "fix more all fsi/watch 7\nrun 2 pre no", "ERROR: Run with pre no"),
     "a type that is another": ("tank", "region w block 0 0.03 0 0.03 INF INF units box\nset region w type 2\n" + dump("x"), "ERROR: Compute fsi/atom needs a run before it"),
     "as many new atoms as old ones": ("tank", "group g region beam\ndelete_atoms group g compress no\ncreate_atoms 2 region beam\n" + dump("x"),
                                       "ERROR: Compute fsi/atom needs a run before it"),
