@@ -131,8 +131,7 @@ namespace FSI {
     void tally(Term term, double power) { energy_out[term] += tally_dt * power; }
     void set_tally(double dt) { tally_dt = ledger ? dt : 0.0; }    // time that powers act for
 
-    std::vector<std::string> effects_on;    // what is simulated, in words; from setup on
-    std::string announced;                  // the list of effects as last printed
+    std::string announced;    // the list of effects as last printed
 
     // Of a local or ghost atom
     // from its density (paper eq. 16), 0 at a free surface if that rule is on

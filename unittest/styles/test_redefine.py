@@ -233,7 +233,7 @@ OTHER = {  # scene, name: other commands, each with what an error says if it is 
     ("tank", "dt"): {"fix dt all fsi/dt 5 max 5e-5": "", "fix dt all fsi/dt 2 cfl 0.2 max 1e-4 substeps auto": "", "fix dt all fsi/dt 5 check warn": "",
                      "fix dt all fsi/dt 5 max 1e-4 stop 0.01": ""},
     ("tank", "watch"): {"fix watch all fsi/watch 3 distance 0.1 action warn": ""},
-    ("tank", "report"): {"fix report all fsi/report every 7": ""},
+    ("tank", "report"): {"fix report all fsi/report file other.txt": ""},
     ("tank", "spectrum"): {"fix spectrum all fsi/spectrum 2 f_particle[1]": ""},
     ("tank", "force"): {"compute force water fsi/force split yes": ""},
     ("tank", "probe"): {"compute probe water fsi/probe line 0.05 0 0 0.05 0.2 0 level": ""},
