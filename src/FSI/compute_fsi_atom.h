@@ -43,9 +43,14 @@ class ComputeFSIAtom : public Compute {
   int nmax;
   class FixFSI *fix_fsi;
   class FixFSIStress *fix_stress;    // null: no solid has one
+  class PairFSISolidTL *solid_tl;    // null: there is none
 
+  struct Properties {
+    double p = 0.0, rho = 0.0, volume = 0.0, mises = 0.0, sigma[6] = {};
+    bool has_stress = false;
+  };
   void grow();
-  double cauchy(int i, int component) const;
+  Properties properties(int i) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -36,6 +36,9 @@ namespace FSI {
   // What a fluid particle meets, and by which rule: couple wall; couple full, the paper's
   enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_FULL };
 
+  // The form of laminar viscosity
+  enum Laminar { NO_LAMINAR, PLAIN_LAMINAR, CENTRAL_LAMINAR };
+
   // What a loop needs of a particle, side by side (in 2D a cache line).
   template <int D> struct Point {
     double x[D], v[D], rho, vol;
@@ -106,7 +109,7 @@ namespace FSI {
 
   struct ForceLaws {
     double alpha = 0.0, beta = 0.0;    // artificial viscosity
-    int laminar = 0;                   // 0: none, 1: plain, 2: central
+    int laminar = NO_LAMINAR;
     // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
     const std::array<double, 3> *extrapolate = nullptr;
     // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0

@@ -541,7 +541,8 @@ namespace FSI {
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
-    const LaminarViscosity<D> viscous(kernel.h, (FLAGS & Flag::CENTRAL) && laws.laminar == 2);
+    const LaminarViscosity<D> viscous(kernel.h,
+                                      (FLAGS & Flag::CENTRAL) && laws.laminar == CENTRAL_LAMINAR);
     Powers<T> by;
     T on_all[D];
     for (T &w : on_all) w = 0.0;
@@ -762,7 +763,8 @@ namespace FSI {
       const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
       if (!sums && partly(in)) sums = &unused;
       const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | unequal_rows | partly(in);
-      const bool all = special || ONE_BY_ONE || laws.laminar == 2 || (artificial && laws.laminar);
+      const bool all = special || ONE_BY_ONE || laws.laminar == CENTRAL_LAMINAR ||
+          (artificial && laws.laminar);
       with_flags<EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY>(
           special |
               (all                ? EFFECTS

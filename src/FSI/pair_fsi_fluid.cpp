@@ -50,8 +50,8 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
   artificial_row("fluid");
-  keywords.key("laminar/visc").set(laminar, PLAIN).effect("laminar viscosity");
-  keywords.key("laminar/visc/central").set(laminar, CENTRAL);
+  keywords.key("laminar/visc").set(laminar, PLAIN_LAMINAR).effect("laminar viscosity");
+  keywords.key("laminar/visc/central").set(laminar, CENTRAL_LAMINAR);
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("solid/guard").number(solids_guard, 0.5, Range::between(0.0, 1.0));
   keywords.key("density/diffusion")

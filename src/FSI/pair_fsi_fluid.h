@@ -38,7 +38,6 @@ namespace LAMMPS_NS {
 class PairFSIFluid : public PairFSI {
  public:
   enum Couple { WALL, FULL };
-  enum Laminar { INVISCID, PLAIN, CENTRAL };
 
   PairFSIFluid(class LAMMPS *);
   ~PairFSIFluid() override;

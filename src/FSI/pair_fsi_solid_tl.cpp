@@ -705,13 +705,6 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
   return s;
 }
 
-double PairFSISolidTL::Stress::von_mises() const
-{
-  const double *s = sigma;
-  const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
-
 /* ----------------------------------------------------------------------
    ghosts: positions (and velocities) out, forces back; of solids only
 ------------------------------------------------------------------------- */
