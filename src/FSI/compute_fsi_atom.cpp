@@ -35,7 +35,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), nmax(0), fix_fsi(nullptr)
+    Compute(lmp, narg, arg), tensor(false), nmax(0), fix_fsi(nullptr)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "compute fsi/atom", error);
   static const std::vector<std::string> names = {"p",        "rho", "psi", "volume",
@@ -49,6 +49,7 @@ ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
                  "sxx, syy, szz, sxy, sxz, syz or plastic/strain",
                  arg[iarg]);
     quantity.push_back(it - names.begin());
+    tensor |= quantity.back() >= VONMISES && quantity.back() <= SYZ;
   }
   peratom_flag = 1;
   size_peratom_cols = quantity.size() == 1 ? 0 : quantity.size();
@@ -106,9 +107,10 @@ void ComputeFSIAtom::compute_peratom()
   if (solid_tl) solid_tl->begin_stress();
   fix_stress = FixFSIStress::find(lmp);
 
+  Properties of;
   for (int i = 0; i < atom->nlocal; i++) {
     const bool chosen = atom->mask[i] & groupbit;
-    const Properties of = chosen ? properties(i) : Properties();
+    if (chosen) find(i, of);
     for (int k = 0; k < n; k++) {
       double value = 0.0;
       if (chosen) switch (quantity[k]) {
@@ -146,36 +148,36 @@ void ComputeFSIAtom::compute_peratom()
    of plane stress 0
 ------------------------------------------------------------------------- */
 
-ComputeFSIAtom::Properties ComputeFSIAtom::properties(int i) const
+void ComputeFSIAtom::find(int i, Properties &of) const
 {
-  Properties of;
   const State &state = fix_fsi->state[atom->type[i]];
-  of.has_stress = state.form == UPDATED_LAGRANGIAN || fix_fsi->is_total_lagrangian(i);
-  if (fix_fsi->is_total_lagrangian(i)) {
+  const bool lagrangian = fix_fsi->is_total_lagrangian(i);
+  of.has_stress = lagrangian || state.form == UPDATED_LAGRANGIAN;
+  if (lagrangian) {
     const auto tl = solid_tl->stress(i);
     of.p = tl.pressure();
     of.rho = state.rho0 / tl.J;
     of.volume = atom->rmass[i] * tl.J / state.rho0;
     of.mises = von_mises(tl.sigma);
     std::copy_n(tl.sigma, 6, of.sigma);
-    return of;
+    return;
   }
   of.p = fix_fsi->pressure(i);
   of.rho = atom->rho[i];
   of.volume = atom->rmass[i] / of.rho;
+  if (!tensor) return;
+  std::fill_n(of.sigma, 6, 0.0);
   if (of.has_stress) {
     const double *const s = fix_stress->stress[i];
-    if (fix_fsi->dim == 3)
-      std::copy_n(s, 6, of.sigma);
-    else {
-      std::copy_n(s, 2, of.sigma);
+    const bool flat = fix_fsi->dim == 2;
+    std::copy_n(s, flat ? 2 : 6, of.sigma);
+    if (flat) {
       of.sigma[2] = fix_stress->plane_stress ? of.p : -(s[0] + s[1]);
       of.sigma[3] = s[2];
     }
-    of.mises = von_mises(of.sigma);    // a pressure changes nothing
   }
+  of.mises = von_mises(of.sigma);    // a pressure changes nothing
   for (int d = 0; d < 3; d++) of.sigma[d] -= of.p;
-  return of;
 }
 
 /* ---------------------------------------------------------------------- */

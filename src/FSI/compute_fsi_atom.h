@@ -39,6 +39,7 @@ class ComputeFSIAtom : public Compute {
  private:
   enum Quantity { PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ, PLASTIC };
   std::vector<int> quantity;
+  bool tensor;    // is one of them of the stress?
   std::vector<double> psi;
   int nmax;
   class FixFSI *fix_fsi;
@@ -46,11 +47,11 @@ class ComputeFSIAtom : public Compute {
   class PairFSISolidTL *solid_tl;    // null: there is none
 
   struct Properties {
-    double p = 0.0, rho = 0.0, volume = 0.0, mises = 0.0, sigma[6] = {};
-    bool has_stress = false;
+    double p, rho, volume, mises, sigma[6];
+    bool has_stress;
   };
   void grow();
-  Properties properties(int i) const;
+  void find(int i, Properties &) const;
 };
 
 }    // namespace LAMMPS_NS
