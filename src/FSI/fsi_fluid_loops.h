@@ -33,9 +33,11 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // What a fluid particle meets, and by which rule: couple wall; the paper's rules, couple pressure
-  // and full.
-  enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_PRESSURE, WITH_SOLID_FULL };
+  // What a fluid particle meets, and by which rule: couple wall; couple full, the paper's
+  enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_FULL };
+
+  // The form of laminar viscosity
+  enum Laminar { NO_LAMINAR, PLAIN_LAMINAR, CENTRAL_LAMINAR };
 
   // What a loop needs of a particle, side by side (in 2D a cache line).
   template <int D> struct Point {
@@ -107,7 +109,7 @@ namespace FSI {
 
   struct ForceLaws {
     double alpha = 0.0, beta = 0.0;    // artificial viscosity
-    int laminar = 0;                   // 0: none, 1: plain, 2: central
+    int laminar = NO_LAMINAR;
     // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
     const std::array<double, 3> *extrapolate = nullptr;
     // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0
@@ -153,7 +155,7 @@ namespace FSI {
                                      const double *vol, double *sum) const = 0;
   };
 
-  // packs: several pairs at a time, of all kinds but WITH_SOLID_PRESSURE and WITH_SOLID_FULL
+  // packs: several pairs at a time, of all kinds but WITH_SOLID_FULL
   std::shared_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h, bool packs);
   std::shared_ptr<FluidLoops> make_fluid_loops_any(int kernel, int dim, double h);
   std::shared_ptr<FluidLoops> make_fluid_loops_cubic(int dim, double h);

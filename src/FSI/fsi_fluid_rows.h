@@ -290,9 +290,7 @@ namespace FSI {
                                const double *extrapolate, double floor, double back, bool own)
   {
     const T both = pi.pv2 + back * pj.pv2;
-    if (KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL)
-      return CouplePaper::pressure(both, KIND == WITH_SOLID_FULL);
-    if (!own) return both;
+    if (KIND == WITH_SOLID_FULL || !own) return both;
     // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
     T p = pi.p;
     for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
@@ -451,8 +449,7 @@ namespace FSI {
   // Does a mirror wall cut off part of these neighbors' cells?
   constexpr bool is_cut(int kind, int flags)
   {
-    return kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL ||
-        (kind == WITH_SOLID && (flags & Flag::UNEQUAL));
+    return kind == WITH_SOLID_FULL || (kind == WITH_SOLID && (flags & Flag::UNEQUAL));
   }
 
   // A pair as its terms need it. weight: 0 in places that are left over; g = W'/r; pushing: that of
@@ -564,7 +561,8 @@ namespace FSI {
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
-    const LaminarViscosity<D> viscous(kernel.h, (FLAGS & Flag::CENTRAL) && laws.laminar == 2);
+    const LaminarViscosity<D> viscous(kernel.h,
+                                      (FLAGS & Flag::CENTRAL) && laws.laminar == CENTRAL_LAMINAR);
     Powers<T> by;
     T on_all[D];
     for (T &w : on_all) w = 0.0;
@@ -781,9 +779,7 @@ namespace FSI {
       PairSums unused;
       const int unequal_rows = kind == WITH_SOLID || kind == WITH_WALL ? unequal_or_cut(kind, in)
                                                                        : 0;
-      if (!sums &&
-          (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL || (image && unequal_rows)))
-        sums = &unused;
+      if (!sums && (kind == WITH_SOLID_FULL || (image && unequal_rows))) sums = &unused;
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror,
@@ -793,7 +789,8 @@ namespace FSI {
       const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
       if (!sums && partly(in)) sums = &unused;
       const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | unequal_rows | partly(in);
-      const bool all = special || ONE_BY_ONE || laws.laminar == 2 || (artificial && laws.laminar);
+      const bool all = special || ONE_BY_ONE || laws.laminar == CENTRAL_LAMINAR ||
+          (artificial && laws.laminar);
       with_flags<EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY>(
           special |
               (all                ? EFFECTS
@@ -817,12 +814,9 @@ namespace FSI {
               if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
               if constexpr (!(flags() & IMAGES))    // walls of particles have no images
                 if (kind == WITH_WALL) loop(std::integral_constant<int, WITH_WALL>(), flags);
-              if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & UNEQUAL)) {
-                if (kind == WITH_SOLID_PRESSURE)
-                  loop(std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
+              if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & UNEQUAL))
                 if (kind == WITH_SOLID_FULL)
                   loop(std::integral_constant<int, WITH_SOLID_FULL>(), flags);
-              }
             }
           });
     }

@@ -37,7 +37,7 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static const std::vector<std::string> coupling_names = {"wall", "pressure", "full"};    // Couple
+static const std::vector<std::string> coupling_names = {"wall", "full"};    // Couple
 
 /* ---------------------------------------------------------------------- */
 
@@ -50,8 +50,8 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
   artificial_row("fluid");
-  keywords.key("laminar/visc").set(laminar, PLAIN).effect("laminar viscosity");
-  keywords.key("laminar/visc/central").set(laminar, CENTRAL);
+  keywords.key("laminar/visc").set(laminar, PLAIN_LAMINAR).effect("laminar viscosity");
+  keywords.key("laminar/visc/central").set(laminar, CENTRAL_LAMINAR);
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("solid/guard").number(solids_guard, 0.5, Range::between(0.0, 1.0));
   keywords.key("density/diffusion")
@@ -202,13 +202,11 @@ void PairFSIFluid::init_style()
   // fluid's pairs supply; forces with corrected gradients are complete without them
   if (couple != WALL && of_solids.corrected_gradients)
     error->all(FLERR,
-               "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid "
-               "gradient plain: with corrected gradients use couple wall");
+               "Pair style fsi/fluid couple full requires pair_style fsi/solid gradient plain: "
+               "with corrected gradients use couple wall");
   open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);
-  kinds[SOLIDS] = couple == WALL ? WITH_SOLID
-      : couple == PRESSURE       ? WITH_SOLID_PRESSURE
-                                 : WITH_SOLID_FULL;
+  kinds[SOLIDS] = couple == WALL ? WITH_SOLID : WITH_SOLID_FULL;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -957,10 +955,9 @@ void PairFSIFluid::compute(int eflag, int vflag)
 /* ----------------------------------------------------------------------
    F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14),
    antisymmetric between fluid and solid:
-     couple wall      both pressures are the fluid's: the solid is a moving wall to the fluid
-                      and takes the reaction
-     couple pressure  pressures of both, no suction
-     couple full      the whole stress of the solid crosses, as in the paper
+     couple wall  both pressures are the fluid's: the solid is a moving wall to the fluid and
+                  takes the reaction
+     couple full  the whole stress of the solid crosses, as in the paper
 ------------------------------------------------------------------------- */
 
 template <int D> void PairFSIFluid::compute_forces()

@@ -308,12 +308,9 @@ void PairFSISolidTL::internal_forces()
     else
       self_contact_forces<3>();
   }
-  exchange(
-      fix_fsi->profile, comm, this, true,
-      [this]() {
-        reference->swaps.reverse(this);
-      },
-      reference->swaps.skip_empty());
+  exchange(fix_fsi->profile, comm, [this]() {
+    reference->swaps.reverse(this);
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -416,21 +413,15 @@ double PairFSISolidTL::smooth_strains(bool of_all)
       energy = smooth_volumetric_strains<decltype(number), L>(rows, of_all, smoothed);
     };
     have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
-    exchange(
-        profile, comm, this, false,
-        [&]() {
-          swaps.forward(this);
-        },
-        swaps.skip_empty());
+    exchange(profile, comm, [&]() {
+      swaps.forward(this);
+    });
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
     have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
-    exchange(
-        profile, comm, this, true,
-        [&]() {
-          swaps.reverse(this);
-        },
-        swaps.skip_empty());
+    exchange(profile, comm, [&]() {
+      swaps.reverse(this);
+    });
   });
   comm_forward = forward;
   comm_reverse = reverse;
@@ -725,25 +716,15 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
   return s;
 }
 
-double PairFSISolidTL::Stress::von_mises() const
-{
-  const double *s = sigma;
-  const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
-
 /* ----------------------------------------------------------------------
    ghosts: positions (and velocities) out, forces back; of solids only
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::forward_positions()
 {
-  exchange(
-      fix_fsi->profile, comm, this, false,
-      [this]() {
-        reference->swaps.forward(this);
-      },
-      reference->swaps.skip_empty());
+  exchange(fix_fsi->profile, comm, [this]() {
+    reference->swaps.forward(this);
+  });
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)

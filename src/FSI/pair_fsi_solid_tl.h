@@ -78,7 +78,6 @@ class PairFSISolidTL : public PairFSI {
     double sigma[6] = {};    // Cauchy: xx yy zz xy xz yz
     double J = 0.0;          // det F
     double pressure() const { return -(sigma[0] + sigma[1] + sigma[2]) / 3.0; }
-    double von_mises() const;
   };
   void begin_stress();           // before stress(), on all ranks: what it needs of other particles
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
