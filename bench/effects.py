@@ -91,7 +91,7 @@ def gate(n, _, without=(), water="", rubber="", commands=""):
 
 
 STEP = "fix dt all fsi/dt 10"
-WATCH = "fix watch all fsi/watch 10 mach off distance off density off courant off energy off restart off dump off"
+WATCH = "fix watch all fsi/watch 10 distance off density off energy off"
 LEDGER = "compute ledger all fsi/energy\nthermo_style custom step c_ledger[1]"
 SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
     "fluid": ("Water", fluid, {
@@ -105,7 +105,6 @@ SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
         "free-surface rule": {"style": "surface 0.9 bulk"},
         "free-surface rule, every 10 steps": {"style": "surface 0.9 bulk", "sph": "surface/every 10"},
         "density by summation": {"sph": "fluid summation"},
-        "density by ratio": {"sph": "fluid ratio"},
         "tension, Tait, background": {"style": "eos tait tension yes background 1"},
         "adaptive time step": {"commands": STEP},
         "monitor (fix fsi/watch)": {"commands": WATCH},

@@ -35,7 +35,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), nmax(0), fix_fsi(nullptr)
+    Compute(lmp, narg, arg), tensor(false), nmax(0), fix_fsi(nullptr)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "compute fsi/atom", error);
   static const std::vector<std::string> names = {"p",        "rho", "psi", "volume",
@@ -49,6 +49,7 @@ ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
                  "sxx, syy, szz, sxy, sxz, syz or plastic/strain",
                  arg[iarg]);
     quantity.push_back(it - names.begin());
+    tensor |= quantity.back() >= VONMISES && quantity.back() <= SYZ;
   }
   peratom_flag = 1;
   size_peratom_cols = quantity.size() == 1 ? 0 : quantity.size();
@@ -102,67 +103,38 @@ void ComputeFSIAtom::compute_peratom()
     comm->forward_comm();    // ghosts still stand where they were in the middle of the step
     fix_fsi->number_density.find(psi.data());
   }
-  auto *const solid_tl = PairFSISolidTL::find(lmp);
+  solid_tl = PairFSISolidTL::find(lmp);
   if (solid_tl) solid_tl->begin_stress();
   fix_stress = FixFSIStress::find(lmp);
-  const auto has_stress = [this](int i) {
-    return fix_fsi->state[atom->type[i]].form == UPDATED_LAGRANGIAN;
-  };
 
-  const int *const mask = atom->mask;
-  PairFSISolidTL::Stress tl;
+  Properties of;
   for (int i = 0; i < atom->nlocal; i++) {
-    const bool lagrangian = (mask[i] & groupbit) && fix_fsi->is_total_lagrangian(i);
-    if (lagrangian) tl = solid_tl->stress(i);
+    const bool chosen = atom->mask[i] & groupbit;
+    if (chosen) find(i, of);
     for (int k = 0; k < n; k++) {
       double value = 0.0;
-      if (lagrangian) {
-        switch (quantity[k]) {
+      if (chosen) switch (quantity[k]) {
           case PRESSURE:
-            value = tl.pressure();
+            value = of.p;
             break;
           case DENSITY:
-            value = fix_fsi->state[atom->type[i]].rho0 / tl.J;
+            value = of.rho;
             break;
           case PSI:
             value = psi[i];
             break;
           case VOLUME:
-            value = atom->rmass[i] * tl.J / fix_fsi->state[atom->type[i]].rho0;
+            value = of.volume;
             break;
           case VONMISES:
-            value = tl.von_mises();
+            value = of.mises;
             break;
           case PLASTIC:
-            value = fix_stress->plastic_strain(i);
+            if (of.has_stress) value = fix_stress->plastic_strain(i);
             break;
           default:
-            value = tl.sigma[quantity[k] - SXX];
+            value = of.sigma[quantity[k] - SXX];
         }
-      } else if (mask[i] & groupbit) {
-        switch (quantity[k]) {
-          case PRESSURE:
-            value = fix_fsi->pressure(i);
-            break;
-          case DENSITY:
-            value = atom->rho[i];
-            break;
-          case PSI:
-            value = psi[i];
-            break;
-          case VOLUME:
-            value = atom->rmass[i] / atom->rho[i];
-            break;
-          case VONMISES:
-            if (has_stress(i)) value = fix_stress->von_mises(i, fix_fsi->pressure(i));
-            break;
-          case PLASTIC:
-            if (has_stress(i)) value = fix_stress->plastic_strain(i);
-            break;
-          default:
-            value = cauchy(i, quantity[k]);
-        }
-      }
       if (n == 1)
         vector_atom[i] = value;
       else
@@ -172,30 +144,40 @@ void ComputeFSIAtom::compute_peratom()
 }
 
 /* ----------------------------------------------------------------------
-   component of the Cauchy stress sigma = -p I + S, tension positive
+   Cauchy stress sigma = -p I + S, tension positive; sigma_zz of plane strain is -p - (S_xx + S_yy),
+   of plane stress 0
 ------------------------------------------------------------------------- */
 
-double ComputeFSIAtom::cauchy(int i, int component) const
+void ComputeFSIAtom::find(int i, Properties &of) const
 {
-  const double p = fix_fsi->pressure(i);
-  const bool stress = fix_fsi->state[atom->type[i]].form == UPDATED_LAGRANGIAN;
-  const double *s = stress ? fix_stress->stress[i] : nullptr;
-  const bool flat = fix_fsi->dim == 2;
-  switch (component) {
-    case SXX:
-      return -p + (s ? s[0] : 0.0);
-    case SYY:
-      return -p + (s ? s[1] : 0.0);
-    case SZZ:
-      if (s && flat) return fix_stress->plane_stress ? 0.0 : -p - s[0] - s[1];
-      return -p + (s ? s[2] : 0.0);
-    case SXY:
-      return s ? s[flat ? 2 : 3] : 0.0;
-    case SXZ:
-      return (s && !flat) ? s[4] : 0.0;
-    default:
-      return (s && !flat) ? s[5] : 0.0;
+  const State &state = fix_fsi->state[atom->type[i]];
+  const bool lagrangian = fix_fsi->is_total_lagrangian(i);
+  of.has_stress = lagrangian || state.form == UPDATED_LAGRANGIAN;
+  if (lagrangian) {
+    const auto tl = solid_tl->stress(i);
+    of.p = tl.pressure();
+    of.rho = state.rho0 / tl.J;
+    of.volume = atom->rmass[i] * tl.J / state.rho0;
+    of.mises = von_mises(tl.sigma);
+    std::copy_n(tl.sigma, 6, of.sigma);
+    return;
   }
+  of.p = fix_fsi->pressure(i);
+  of.rho = atom->rho[i];
+  of.volume = atom->rmass[i] / of.rho;
+  if (!tensor) return;
+  std::fill_n(of.sigma, 6, 0.0);
+  if (of.has_stress) {
+    const double *const s = fix_stress->stress[i];
+    const bool flat = fix_fsi->dim == 2;
+    std::copy_n(s, flat ? 2 : 6, of.sigma);
+    if (flat) {
+      of.sigma[2] = fix_stress->plane_stress ? of.p : -(s[0] + s[1]);
+      of.sigma[3] = s[2];
+    }
+  }
+  of.mises = von_mises(of.sigma);    // a pressure changes nothing
+  for (int d = 0; d < 3; d++) of.sigma[d] -= of.p;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -39,13 +39,19 @@ class ComputeFSIAtom : public Compute {
  private:
   enum Quantity { PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ, PLASTIC };
   std::vector<int> quantity;
+  bool tensor;    // is one of them of the stress?
   std::vector<double> psi;
   int nmax;
   class FixFSI *fix_fsi;
   class FixFSIStress *fix_stress;    // null: no solid has one
+  class PairFSISolidTL *solid_tl;    // null: there is none
 
+  struct Properties {
+    double p, rho, volume, mises, sigma[6];
+    bool has_stress;
+  };
   void grow();
-  double cauchy(int i, int component) const;
+  void find(int i, Properties &) const;
 };
 
 }    // namespace LAMMPS_NS

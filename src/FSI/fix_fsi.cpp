@@ -60,9 +60,9 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   keywords.argument("particle spacing").number(dx, 0.0, positive).kept(kept);
   keywords.argument("kernel").choice(kernel, CUBIC, names).changes(of_kernel);
   keywords.argument("smoothing length over spacing").number(hdx, 0.0, ratios).changes(of_kernel);
-  const auto &modes = density_names();
-  keywords.key("fluid").choice(density_fluid, CONTINUITY, modes, "density").changes(of_mode);
-  keywords.key("solid").choice(density_solid, CONTINUITY, modes, "density").changes(of_mode);
+  const auto of_fluid = density_names(FLUID), of_solid = density_names(SOLID);
+  keywords.key("fluid").choice(density_fluid, CONTINUITY, of_fluid, "density").changes(of_mode);
+  keywords.key("solid").choice(density_solid, CONTINUITY, of_solid, "density").changes(of_mode);
   keywords.key("substeps").integer(given_substeps, 1, 1, 10000);
   keywords.key("surface/every").integer(surface_every, 1, 1);
   keywords.key("spacing").per_type(given_spacing, positive).kept(kept);

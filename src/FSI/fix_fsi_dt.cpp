@@ -278,13 +278,6 @@ void FixFSIDt::find_limits()
   std::copy_n(limits.sub, NLIMIT, sub);
 }
 
-/* ---------------------------------------------------------------------- */
-
-double FixFSIDt::largest_courant() const
-{
-  return std::max(of_fluid * Limits::safe[Limits::SOUND], of_solid * Limits::safe[Limits::ELASTIC]);
-}
-
 /* ----------------------------------------------------------------------
    the next time step, at most that much; with a given number of sub-steps the solid limits the
    step, else the step gives the number

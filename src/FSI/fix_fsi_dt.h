@@ -49,7 +49,6 @@ class FixFSIDt : public Fix, public FSI::Part {
   void find_idle(const Census &, const Idle &) const override;
   bool chooses() const { return check == NO_CHECK; }
   bool chooses_substeps() const { return automatic; }
-  double largest_courant() const;    // that it allows
 
  private:
   static constexpr int NLIMIT = FSI::Limits::NLIMIT;

@@ -51,8 +51,9 @@ static constexpr double WITHIN = 1.0 - 1.0e-9;
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2),
-    self_range(0.0), tears(false), changes(0), swaps(lmp), fix_fsi(nullptr), list(nullptr),
-    slot(nullptr), maxbond(0), keeps_places(false), apart(0.0), layer(nullptr), next_look(0)
+    self_range(0.0), tears(false), changes(0), swaps(lmp), clamps(lmp), fix_fsi(nullptr),
+    list(nullptr), slot(nullptr), maxbond(0), keeps_places(false), apart(0.0), layer(nullptr),
+    next_look(0)
 {
   has_record = resting = false;
   restart_peratom = restart_global = 1;
@@ -83,7 +84,13 @@ FixFSIReference::~FixFSIReference()
 
 int FixFSIReference::setmask()
 {
-  return POST_NEIGHBOR;
+  return POST_INTEGRATE | POST_NEIGHBOR;
+}
+
+// after fix rigid has moved its bodies
+void FixFSIReference::post_integrate()
+{
+  if (clamps.any()) clamps.to_middle();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -92,7 +99,7 @@ void FixFSIReference::init()
 {
   // has a script put in its place what is not of this package?
   resting = facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
-  if (resting) return;
+  if (resting) return clamps.clear();
   fix_fsi = FixFSI::find(lmp, "Fix FSI_REFERENCE");
   if (!any()) {
     made.clear();

@@ -23,6 +23,7 @@ FixStyle(FSI_REFERENCE,FixFSIReference);
 #include "domain.h"
 #include "fix.h"
 #include "fsi_bond_rows.h"
+#include "fsi_clamps.h"
 #include "fsi_swaps.h"
 
 #include <functional>
@@ -42,6 +43,7 @@ class FixFSIReference : public Fix {
   FixFSIReference(class LAMMPS *, int, char **);
   ~FixFSIReference() override;
   int setmask() override;
+  void post_integrate() override;
   void init() override;
   void init_list(int, class NeighList *) override;
   void setup_post_neighbor() override;
@@ -108,7 +110,8 @@ class FixFSIReference : public Fix {
   int changes;    // how often bonds, or where their partners are, have changed
   // local solid atoms, and ghosts of solid atoms
   std::vector<int> solids, ghosts;
-  FSI::Swaps swaps;    // those of solids
+  FSI::Swaps swaps;      // those of solids
+  FSI::Clamps clamps;    // rigid bodies that take sub-steps with them
 
  private:
   class FixFSI *fix_fsi;

@@ -14,7 +14,6 @@
 #include "fix_fsi_report.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "comm.h"
 #include "compute_fsi_energy.h"
 #include "error.h"
@@ -25,7 +24,6 @@
 #include "fsi_clock.h"
 #include "fsi_keywords.h"
 #include "group.h"
-#include "info.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "timer.h"
@@ -40,8 +38,6 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-static constexpr size_t WIDTH = 110;    // of the list of effects
-
 // "density of solids" -> density_of_solids
 static std::string word(const std::string &text)
 {
@@ -53,19 +49,19 @@ static std::string word(const std::string &text)
 /* ---------------------------------------------------------------------- */
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), every(100), fp(nullptr), first_step(0),
-    natoms(0), flowed(0), first_time(0.0), counted(0), ghost_bytes(0.0), ghost_messages(0.0),
-    any_held(false), listed(-1), momentum{}, by_gravity{}, by_walls{}, by_held{},
-    collected(-1), output{}
+    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), fp(nullptr), first_step(0), natoms(0),
+    first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{}, collected(-1), output{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/report requires atom_style fsi");
   if (igroup)
-    error->all(FLERR,
-               "Fix fsi/report must use group all: times, messages and energies have no group");
+    error->all(FLERR, "Fix fsi/report must use group all: times and energies have no group");
 
+  if (narg > 3 && !strcmp(arg[3], "every"))
+    error->all(
+        FLERR,
+        "Fix fsi/report every is for messages, which are not counted any more: leave it out");
   std::string file;
   Keywords keywords(lmp, "fix fsi/report");
-  keywords.key("every").integer(every, 100, 1);
   keywords.key("file").word(file, "");
   keywords.parse(narg - 3, arg + 3);
   if (!file.empty() && comm->me == 0) {
@@ -123,29 +119,29 @@ void FixFSIReport::begin()
 {
   first_step = update->ntimestep;
   first_time = Clock::now(update);
-  bigint mine = atom->nlocal;
-  MPI_Allreduce(&mine, &natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  flowed = through_open_ends();
-
-  counted = 0;
-  ghost_bytes = ghost_messages = 0.0;
-  by_gravity = by_walls = by_held = {};
+  natoms = particles();
+  for (auto &given : impulse) given = {};
   momentum = momentum_of_moving();
   fields.clear();
   for (const auto &field : fix_fsi->body_forces.all)
     if (field.mask) fields.push_back({field.g, group->mass(field.fix->igroup)});
-  int held = 0, any;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (!(atom->mask[i] & fix_fsi->groupbit)) held = 1;
-  MPI_Allreduce(&held, &any, 1, MPI_INT, MPI_MAX, world);
-  any_held = any;
+  any_held = group->count(0) > group->count(fix_fsi->igroup);
   listed = -1;
   if (energy) {
     energy->compute_vector();
     ledger.assign(energy->vector, energy->vector + energy->size_vector);
   }
   profile.clear();
-  profile.counting = true;    // of the first step
+}
+
+// that there are, less those that inlets and outlets have made
+bigint FixFSIReport::particles() const
+{
+  bigint mine = atom->nlocal, all;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  for (const auto *fix : modify->get_fix_list())
+    if (const auto *end = dynamic_cast<const FixFSIInlet *>(fix)) all -= end->net;
+  return all;
 }
 
 /* ----------------------------------------------------------------------
@@ -154,63 +150,37 @@ void FixFSIReport::begin()
 
 void FixFSIReport::end_of_step()
 {
+  const int dim = fix_fsi->dim;
   const double dtf = update->dt * force->ftm2v;
   for (const auto &field : fields)
-    for (int d = 0; d < 3; d++) by_gravity[d] += dtf * field.mass * field.g[d];
+    for (int d = 0; d < 3 && comm->me == 0; d++)
+      impulse[GRAVITY][d] += dtf * field.mass * field.g[d];
   for (const auto *mirror : modify->get_fix_by_style("^fsi/wall/mirror$"))
     for (const auto &f : dynamic_cast<const FixFSIWallMirror *>(mirror)->force_on)
-      for (int d = 0; d < 3; d++) by_walls[d] -= dtf * f[d];
-  if (any_held) {
-    if (listed != neighbor->lastcall) {
-      listed = neighbor->lastcall;
-      held.clear();
-      for (int i = 0; i < atom->nlocal; i++)
-        if (!(atom->mask[i] & fix_fsi->groupbit)) held.push_back(i);
-    }
-    double **f = atom->f;
-    double x = 0.0, y = 0.0, z = 0.0;
-    for (const int i : held) {
-      x += f[i][0];
-      y += f[i][1];
-      z += f[i][2];
-    }
-    const double sum[3] = {x, y, fix_fsi->dim == 3 ? z : 0.0};
-    for (int d = 0; d < 3; d++) by_held[d] -= dtf * sum[d];
+      for (int d = 0; d < 3; d++) impulse[WALLS][d] -= dtf * f[d];
+  if (!any_held) return;
+  if (listed != neighbor->lastcall) {
+    listed = neighbor->lastcall;
+    held.clear();
+    for (int i = 0; i < atom->nlocal; i++)
+      if (!(atom->mask[i] & fix_fsi->groupbit)) held.push_back(i);
   }
-
-  if (profile.counting && comm->nprocs > 1) {
-    const AtomVec *const avec = atom->avec;
-    const int forward = avec->size_forward + (comm->ghost_velocity ? avec->size_velocity : 0);
-    for (const bool back : {false, true}) {
-      if (back && !force->newton) continue;
-      for (const auto &m : Profile::messages_of(comm, back)) {
-        ghost_bytes += sizeof(double) * m.n * (back ? avec->size_reverse : forward);
-        ghost_messages += 1.0;
-      }
-    }
-  }
-  counted += profile.counting;
-  profile.counting = (update->ntimestep + 1) % every == 0;
+  Vector sum{};
+  for (const int i : held)
+    for (int d = 0; d < dim; d++) sum[d] += atom->f[i][d];
+  for (int d = 0; d < dim; d++) impulse[HELD][d] -= dtf * sum[d];
 }
 
 /* ---------------------------------------------------------------------- */
 
-FixFSIReport::Vector FixFSIReport::all_ranks(const Vector &mine) const
-{
-  Vector all, copy = mine;
-  MPI_Allreduce(copy.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, world);
-  return all;
-}
-
 FixFSIReport::Vector FixFSIReport::momentum_of_moving(double *scale) const
 {
-  double **v = atom->v;
   double mine[4] = {}, all[4];
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & fix_fsi->groupbit)) continue;
-    for (int d = 0; d < 3; d++) mine[d] += atom->rmass[i] * v[i][d];
-    mine[3] +=
-        atom->rmass[i] * std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+    const double m = atom->rmass[i], *const v = atom->v[i];
+    for (int d = 0; d < 3; d++) mine[d] += m * v[d];
+    mine[3] += m * std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   }
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
   if (scale) *scale = all[3];
@@ -225,19 +195,16 @@ FixFSIReport::Balance FixFSIReport::balance() const
 {
   Balance b;
   const Vector now = momentum_of_moving(&b.scale);
-  Vector walls = by_walls, held = by_held;
+  auto mine = impulse;
   for (int d = 0; d < 3; d++) {
-    walls[d] += profile.reflected[d];
-    held[d] -= force->ftm2v * profile.impulse_held[d];
+    mine[WALLS][d] += profile.reflected[d];
+    mine[HELD][d] -= force->ftm2v * profile.impulse_held[d];
   }
-  b.gravity = by_gravity;
-  b.walls = all_ranks(walls);
-  b.held = all_ranks(held);
+  MPI_Allreduce(mine.data(), b.from.data(), 3 * NGIVER, MPI_DOUBLE, MPI_SUM, world);
   for (int d = 0; d < 3; d++) {
     b.change[d] = now[d] - momentum[d];
-    b.rest[d] = b.change[d] - b.gravity[d] - b.walls[d] - b.held[d];
-    for (const double part : {b.gravity[d], b.walls[d], b.held[d]})
-      b.scale = std::max(b.scale, std::abs(part));
+    b.rest[d] = b.change[d] - b.from[GRAVITY][d] - b.from[WALLS][d] - b.from[HELD][d];
+    for (const auto &part : b.from) b.scale = std::max(b.scale, std::abs(part[d]));
   }
   return b;
 }
@@ -250,23 +217,9 @@ double FixFSIReport::compute_vector(int k)
 {
   // before the first run, or with a new fix fsi
   if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
-  if (collected != update->ntimestep) {
-    output = balance().rest;
-    collected = update->ntimestep;
-  }
+  if (collected != update->ntimestep) output = balance().rest;
+  collected = update->ntimestep;
   return output[k];
-}
-
-/* ----------------------------------------------------------------------
-   particles made by inlets and outlets, less those that they deleted
-------------------------------------------------------------------------- */
-
-bigint FixFSIReport::through_open_ends() const
-{
-  bigint sum = 0;
-  for (const auto *fix : modify->get_fix_list())
-    if (const auto *end = dynamic_cast<const FixFSIInlet *>(fix)) sum += end->net;
-  return sum;
 }
 
 /* ----------------------------------------------------------------------
@@ -287,49 +240,24 @@ void FixFSIReport::post_run()
   loop = sum / comm->nprocs;
   bigint mine = atom->nlocal, now;
   MPI_Allreduce(&mine, &now, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-
   const double time = Clock::now(update) - first_time;
+  const bigint lost = natoms - particles();
   lines.clear();
   enter_line("first_step", first_step);
   enter_line("last_step", update->ntimestep);
   enter_line("ranks", comm->nprocs);
   enter_line("particles", now);
-  const bigint came = through_open_ends() - flowed, missing = natoms + came - now;
-  std::string change;
-  if (came)
-    change = fmt::format("{} {} through open ends", std::abs(came), came > 0 ? "more" : "fewer");
-  if (missing) change += fmt::format("{}{} lost", came ? ", " : "", missing);
-  enter_line("lost", missing);
+  enter_line("lost", lost);
   enter_line("time", time);
   enter_line("loop_seconds", loop);
-  std::string text = fmt::format(
-      "\nFSI report: steps {} to {}, a time of {:.6g}; {} particles{} on {} rank{}, {:.4g} s\n",
-      first_step, update->ntimestep, time, now, change.empty() ? "" : fmt::format(" ({})", change),
-      comm->nprocs, comm->nprocs > 1 ? "s" : "", loop);
-  std::string line = "  on:", effects;
-  auto on = fix_fsi->effects_on;
-  if (fix_fsi->substeps > 1 && !modify->get_fix_by_style("^fsi/dt$").empty())
-    on.push_back(fmt::format("{} solid sub-steps at the end", fix_fsi->substeps));
-  for (const auto &e : on) {
-    if (line.size() + e.size() + 2 > WIDTH) {
-      text += line + "\n";
-      line = "     ";
-    }
-    line += " " + e + ";";
-    effects += (effects.empty() ? "" : "; ") + e;
-  }
-  line.back() = '\n';
-  text += line;
-  enter_line("effects", effects);
-
-  natoms = now;
-  flowed += came;
-  text += time_table(loop);
-  text += cost_table(loop);
-  text += momentum_table(missing != 0);
-  text += energy_table();
+  const auto text =
+      fmt::format(
+          "\nFSI report: steps {} to {}, a time of {:.6g}; {} particles{} on {} rank{}, {:.4g} s\n",
+          first_step, update->ntimestep, time, now, lost ? fmt::format(" ({} lost)", lost) : "",
+          comm->nprocs, comm->nprocs > 1 ? "s" : "", loop) +
+      time_table(loop) + momentum_table(lost != 0) + energy_table() + "\n";
   if (comm->me == 0) {
-    utils::logmesg(lmp, text + "\n");
+    utils::logmesg(lmp, text);
     FILE *const to = fp ? fp : logfile;
     if (to) {
       utils::print(to, lines);
@@ -394,41 +322,6 @@ std::string FixFSIReport::time_table(double loop)
 
 /* ---------------------------------------------------------------------- */
 
-std::string FixFSIReport::cost_table(double loop)
-{
-  const double n = natoms;
-  double meminfo[3];
-  Info(lmp).get_memory_info(meminfo);
-  double sum[5], most[5],
-      mine[5] = {1048576.0 * meminfo[0], neighbor->memory_usage(), profile.bytes / counted,
-                 ghost_bytes / counted, (profile.messages + ghost_messages) / counted};
-  MPI_Allreduce(mine, sum, 5, MPI_DOUBLE, MPI_SUM, world);
-  mine[0] = mine[2] + mine[3];
-  MPI_Allreduce(mine, most, 5, MPI_DOUBLE, MPI_MAX, world);
-
-  const double speed = loop > 0.0 ? n * (update->ntimestep - first_step) / loop : 0.0,
-               per = n > 0.0 ? 1.0 / n : 0.0;
-  const double sent = sum[2] + sum[3];
-  enter_line("particle_steps_per_second", speed);
-  enter_line("particle_steps_per_second_per_rank", speed / comm->nprocs);
-  enter_line("bytes_per_particle", sum[0] * per);
-  enter_line("bytes_per_particle_neighbor_lists", sum[1] * per);
-  enter_line("bytes_sent_per_step", sent);
-  enter_line("bytes_sent_per_step_of_the_package", sum[2]);
-  enter_line("bytes_sent_per_step_max", most[0]);
-  enter_line("messages_per_step", sum[4]);
-  enter_line("messages_per_step_max", most[4]);
-  enter_line("steps_counted", counted);
-  return fmt::format("  particle-steps per second {:.4g}, per rank {:.4g}\n"
-                     "  bytes per particle {:.0f}, {:.0f} of them for neighbor lists\n"
-                     "  sent per step, all ranks {:.0f} bytes ({:.0f} by the package) in {:g} "
-                     "messages; largest rank {:.0f} in {:g}\n",
-                     speed, speed / comm->nprocs, sum[0] * per, sum[1] * per, sent, sum[2], sum[4],
-                     most[0], most[4]);
-}
-
-/* ---------------------------------------------------------------------- */
-
 std::string FixFSIReport::momentum_table(bool lost)
 {
   const auto b = balance();
@@ -451,9 +344,9 @@ std::string FixFSIReport::momentum_table(bool lost)
     text += "\n";
   };
   row("change", "change", b.change, true);
-  row("gravity", "from gravity", b.gravity, !fields.empty());
-  row("walls", "from walls, reflections too", b.walls, fix_fsi->walls.any());
-  row("held", "from held particles", b.held, any_held);
+  row("gravity", "from gravity", b.from[GRAVITY], !fields.empty());
+  row("walls", "from walls, reflections too", b.from[WALLS], fix_fsi->walls.any());
+  row("held", "from held particles", b.from[HELD], any_held);
   row("rest",
       others.empty() ? "unaccounted for: error" : fmt::format("unaccounted for:{} error", others),
       b.rest, true);

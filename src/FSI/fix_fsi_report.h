@@ -21,7 +21,6 @@ FixStyle(fsi/report,FixFSIReport);
 #define LMP_FIX_FSI_REPORT_H
 
 #include "fix.h"
-#include "fsi_limits.h"
 #include "fsi_part.h"
 #include "fsi_profile.h"
 
@@ -50,36 +49,34 @@ class FixFSIReport : public Fix, public FSI::Part {
  private:
   class FixFSI *fix_fsi;
   class ComputeFSIEnergy *energy;
-  int every;
   FILE *fp;    // of rank 0; null: the log
 
-  bigint first_step, natoms,
-      flowed;    // flowed: natoms is with so many that came in through open ends
-  double first_time;
-  int counted;                           // steps whose messages were
-  double ghost_bytes, ghost_messages;    // of positions, velocities and forces, in those
-
   using Vector = std::array<double, 3>;
+  enum Giver { GRAVITY, WALLS, HELD, NGIVER };
+  using Impulses = std::array<Vector, NGIVER>;
+
+  bigint first_step, natoms;    // natoms: without what came in through open ends
+  double first_time;
   struct Gravity {
     const double *g;
     double mass;    // of its group, all ranks
   };
   std::vector<Gravity> fields;
   bool any_held;
-  std::vector<int> held;    // local atoms that fix fsi does not integrate, as of
-  bigint listed;            // this build of the neighbor lists
-  Vector momentum, by_gravity, by_walls,
-      by_held;                   // at the start, of all ranks; impulses, the last two of this rank
+  std::vector<int> held;         // local atoms that fix fsi does not integrate, as of
+  bigint listed;                 // this build of the neighbor lists
+  Vector momentum;               // at the start, of all ranks
+  Impulses impulse;              // of this rank
   std::vector<double> ledger;    // at the start
-
-  bigint collected;    // step of what follows
+  bigint collected;              // step of what follows
   Vector output;
 
   void begin();
+  bigint particles() const;
   Vector momentum_of_moving(double *scale = nullptr) const;
-  Vector all_ranks(const Vector &) const;
   struct Balance {
-    Vector change, gravity, walls, held, rest;
+    Vector change, rest;
+    Impulses from;
     double scale;
   };
   Balance balance() const;
@@ -87,8 +84,6 @@ class FixFSIReport : public Fix, public FSI::Part {
   std::string lines;    // FSI report name value
   template <class T> void enter_line(const std::string &name, const T &value);
   std::string time_table(double loop);
-  std::string cost_table(double loop);
-  bigint through_open_ends() const;
   std::string momentum_table(bool lost);
   std::string energy_table();
 };

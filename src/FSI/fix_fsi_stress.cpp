@@ -150,23 +150,6 @@ void FixFSIStress::unpack_forward_comm(int n, int first, double *buf)
     std::copy_n(buf, comm_forward, start[i]);
 }
 
-/* ----------------------------------------------------------------------
-   sigma_zz of plane strain is -p - (S_xx + S_yy), of plane stress 0
-------------------------------------------------------------------------- */
-
-double FixFSIStress::von_mises(int i, double p) const
-{
-  const double *s = stress[i];
-  if (ns == 6) return sqrt(1.5 * FSI::Sym<3>::load(s).squared());
-  double szz = -(s[0] + s[1]), mean = 0.0;
-  if (plane_stress) {
-    szz = p;    // deviator about the in-plane mean -p
-    mean = p / 3.0;
-  }
-  const double a = s[0] - mean, b = s[1] - mean, c = szz - mean;
-  return sqrt(1.5 * (a * a + b * b + c * c + 2.0 * s[2] * s[2]));
-}
-
 /* ---------------------------------------------------------------------- */
 
 // V S:S/(4G), with S_zz of plane strain

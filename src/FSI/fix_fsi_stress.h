@@ -76,7 +76,6 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   // equivalent plastic strain of atom i
   double plastic_strain(int i) const { return plastic ? strain[i] : 0.0; }
   // von Mises stress of atom i with pressure p
-  double von_mises(int i, double p) const;
   double shear_energy(int i, double shear) const;    // of atom i with this shear modulus
 
  private:

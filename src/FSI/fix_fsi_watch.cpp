@@ -15,10 +15,8 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "fix_fsi_dt.h"
 #include "force.h"
 #include "fsi_keywords.h"
 #include "group.h"
@@ -31,7 +29,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <map>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -43,12 +41,9 @@ struct Description {
   const char *key, *what;
 };
 // clang-format off
-static constexpr Description about[] = {
-    {"", ""},
-    {"mach", "Mach number"},
+static constexpr Description about[] = {    // from DISTANCE on
     {"distance", "distance over particle spacing"},
     {"density", "density error |rho/rho0-1|"},
-    {"courant", "Courant number"},
     {"energy", "growth of the kinetic energy"},
     {"lost", "number of lost particles"},
     {"reflected", "number of reflections at mirror walls"}};
@@ -61,40 +56,36 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
     reflected_before(-1.0), warned(0), violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
+  static const std::map<std::string, const char *> elsewhere = {
+      {"mach", "mach of fix fsi"},
+      {"courant", "check of fix fsi/dt"},
+      {"restart", "written to fsi_stop.restart"},
+      {"dump", "written to fsi_stop.dump"}};
+  for (int k = 4; k < narg; k++)
+    if (const auto it = elsewhere.find(arg[k]); it != elsewhere.end())
+      error->all(FLERR, "Fix fsi/watch {} is now {}", it->first, it->second);
   static constexpr double FOLLOWS = -1.0;    // the scene, see allowed()
   Keywords keywords(lmp, "fix fsi/watch");
   keywords.argument("interval").integer(interval, 1, 1);
   const auto row = [&](Trouble q, double start, const Range &range, double off = BIG) {
-    keywords.key(about[q].key).number(limit[q], start, range).or_word("off", off);
+    keywords.key(about[q - DISTANCE].key).number(limit[q], start, range).or_word("off", off);
   };
-  row(MACH, 0.5, Range::above(0.0));
   row(DISTANCE, 0.0, Range::inside(0.0, 1.0), FOLLOWS);
   row(DENSITY, 0.3, Range::above(0.0));
-  row(COURANT, FOLLOWS, Range::above(0.0));
   row(ENERGY, 10.0, Range::above(1.0));
   row(LOST, FOLLOWS, Range::from(0.0));
   row(REFLECTED, BIG, Range::from(0.0));
   keywords.key("action").choice(warn, 0, {"stop", "warn"});
-  const auto file = [lmp](const char *name) {
-    return Stop::of_partition(lmp, name);
-  };
-  keywords.key("restart").word(halt.restart_file, file("fsi_watch.restart")).or_word("off");
-  keywords.key("dump").word(halt.dump_file, file("fsi_watch.dump")).or_word("off");
   keywords.parse(narg - 3, arg + 3);
   distances = limit[DISTANCE] != FOLLOWS;
   if (!distances) limit[DISTANCE] = 0.0;
-  for (int q = 0; q < NTROUBLE; q++) given[q] = limit[q] != FOLLOWS;
-  if (!given[COURANT]) limit[COURANT] = 0.45;
-  if (!given[LOST]) limit[LOST] = 0.0;
-  limit[FINITE] = BIG;
-  if (halt.restart_file.find_first_of("*%") != std::string::npos)
-    error->all(FLERR, "Fix fsi/watch restart {} must be the name of one file, without * and %",
-               halt.restart_file);
+  loses = limit[LOST] != FOLLOWS;
+  if (!loses) limit[LOST] = 0.0;
 
   clear();
   for (double &s : seen) s = 0.0;
   scalar_flag = vector_flag = 1;
-  size_vector = NTROUBLE - 1;
+  size_vector = NTROUBLE - DISTANCE;
   extscalar = extvector = 0;
   global_freq = 1;
   dynamic_group_allow = 1;
@@ -112,15 +103,7 @@ int FixFSIWatch::setmask()
 void FixFSIWatch::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/watch");
-  auto dt = modify->get_fix_by_style("^fsi/dt$");
-  fix_dt = dt.empty() ? nullptr : dynamic_cast<FixFSIDt *>(dt[0]);
-  if (fix_dt && !fix_dt->chooses()) fix_dt = nullptr;
   solid_tl = PairFSISolidTL::find(lmp);
-  const auto &file = halt.restart_file;
-  for (auto &fix : modify->get_fix_by_style("^fsi/watch$"))
-    if (fix != this && static_cast<FixFSIWatch *>(fix)->halt.restart_file == file && !file.empty())
-      error->all(FLERR, "Two fixes fsi/watch ({} and {}) would write the same file {}", id, fix->id,
-                 file);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -150,18 +133,11 @@ void FixFSIWatch::post_force(int)
   if (update->ntimestep % interval == 0) look(Stop::MIDDLE);
 }
 
-/* ----------------------------------------------------------------------
-   Limits that the script did not set follow what it chose: the time step of fix fsi/dt with some
-   room for what changes until it looks again, none before its first choice; and particles that
-   are meant to leave.
-------------------------------------------------------------------------- */
+// particles may be meant to leave
 
 double FixFSIWatch::allowed(Trouble q) const
 {
-  if (given[q]) return limit[q];
-  if (q == COURANT && fix_dt) return std::max(limit[q], 1.5 * fix_dt->largest_courant());
-  if (q == LOST && output->thermo->lostflag == Thermo::IGNORE) return BIG;
-  return limit[q];
+  return q == LOST && !loses && output->thermo->lostflag == Thermo::IGNORE ? BIG : limit[q];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -190,41 +166,21 @@ void FixFSIWatch::look_at_particles(double &kinetic, double &little)
   double **v = atom->v;
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
-  const double dt = update->dt;
-
-  struct TypeState {
-    double csq, rho0, mass, fastest;    // of a type Mach and Courant number grow with the speed
-    int species;
-  };
-  std::vector<TypeState> all_of(atom->ntypes + 1, {0.0, 1.0, 0.0, -1.0, NONE});
-  for (int t = 1; t <= atom->ntypes; t++) {
-    const State &s = fix_fsi->state[t];
-    all_of[t] = {s.species == NONE ? 0.0 : s.wave_speed_sq(), s.rho0, 0.0, -1.0, s.species};
-  }
-  double furthest = -1.0;    // furthest from the density at rest
+  std::vector<double> mass(atom->ntypes + 1, 0.0);
+  double fastest = -1.0, furthest = -1.0;    // furthest from the density at rest
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    TypeState &of = all_of[type[i]];
-    if (of.species == RIGID) continue;    // neither compressed nor integrated
+    const State &s = fix_fsi->state[type[i]];
+    if (s.species == RIGID) continue;    // neither compressed nor integrated
     const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2];
     kinetic += 0.5 * rmass[i] * vsq;
-    of.mass += rmass[i];
-    if (vsq > of.fastest) {
-      of.fastest = vsq;
-      const double c = std::sqrt(of.csq), speed = std::sqrt(vsq);
-      enter(MACH, i, speed / c);
-      if (of.species == FLUID)
-        enter(COURANT, i, dt * (c + speed) / fix_fsi->h_of(type[i]));
-      else
-        enter(COURANT, i,
-              dt * c / (fix_fsi->is_total_lagrangian(i) ? fix_fsi->substeps : 1) /
-                  fix_fsi->h_of(type[i]));
+    mass[type[i]] += rmass[i];
+    if (vsq > fastest) {
+      fastest = vsq;
       enter(ENERGY, i, vsq);
     }
     // spray without tension loses density, which then means nothing
-    if (of.species == FLUID && rho[i] < of.rho0 &&
-        fix_fsi->pressure(i) == fix_fsi->state[type[i]].floor)
-      continue;
+    if (s.species == FLUID && rho[i] < s.rho0 && fix_fsi->pressure(i) == s.floor) continue;
     const double error = std::abs((fix_fsi->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i)
                                                                    : fix_fsi->density_ratio(i)) -
                                   1.0);
@@ -233,7 +189,8 @@ void FixFSIWatch::look_at_particles(double &kinetic, double &little)
       enter(DENSITY, i, error);
     }
   }
-  for (const TypeState &of : all_of) little += 0.5e-4 * of.mass * of.csq;
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (mass[t] > 0.0) little += 0.5e-4 * mass[t] * fix_fsi->state[t].wave_speed_sq();
 }
 
 // pairs whose neighbor lists are at hand: all but those inside one total-Lagrangian body
@@ -297,17 +254,16 @@ void FixFSIWatch::look(Stop::When when)
 
 void FixFSIWatch::judge(Stop::When when)
 {
-  for (int k = MACH; k < NTROUBLE; k++) {
+  for (int k = DISTANCE; k < NTROUBLE; k++) {
     const auto q = static_cast<Trouble>(k);
-    if (q == COURANT && when == Stop::START && fix_dt) continue;    // its first choice comes later
     if (q == DISTANCE ? seen[q] >= allowed(q) : seen[q] <= allowed(q)) continue;
     violations++;
     if (warned & 1 << k) continue;
     Finding all = halt.worst(worst[q], q == DISTANCE ? -worst[q].value : worst[q].value);
     all.trouble = q;
     all.value = seen[q];
-    const auto what = fmt::format("{} {:.4g} is {} the limit {:g}", about[q].what, all.value,
-                                  q == DISTANCE ? "below" : "above", allowed(q));
+    const auto what = fmt::format("{} {:.4g} is {} the limit {:g}", about[q - DISTANCE].what,
+                                  all.value, q == DISTANCE ? "below" : "above", allowed(q));
     const auto text = halt.describe(*fix_fsi, what, all, when);
     if (!warn) halt.stop(*fix_fsi, text, all, when);
     warned |= 1 << k;
@@ -325,11 +281,10 @@ double FixFSIWatch::compute_scalar()
 }
 
 /* ----------------------------------------------------------------------
-   of the last check: Mach number, distance, density error, Courant number, energy growth, lost,
-   reflected
+   of the last check: distance, density error, energy growth, lost, reflected
 ------------------------------------------------------------------------- */
 
 double FixFSIWatch::compute_vector(int k)
 {
-  return seen[k + 1];
+  return seen[DISTANCE + k];
 }

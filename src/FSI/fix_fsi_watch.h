@@ -28,7 +28,7 @@ FixStyle(fsi/watch,FixFSIWatch);
 
 namespace LAMMPS_NS {
 
-// Limits stricter than those of fix fsi itself (fsi_check.h): stops a run that goes wrong, or
+// Limits of what fix fsi itself (fsi_check.h) does not look at: stops a run that goes wrong, or
 // warns, and says what went wrong where.
 
 class FixFSIWatch : public Fix, public FSI::Part {
@@ -44,15 +44,14 @@ class FixFSIWatch : public Fix, public FSI::Part {
 
  private:
   class FixFSI *fix_fsi;
-  class FixFSIDt *fix_dt;    // that chooses the time step; null: none does
   class PairFSISolidTL *solid_tl;
   FSI::Stop halt;
 
   int interval;
   double limit[FSI::NTROUBLE];    // BIG, for DISTANCE 0, = off
-  bool given[FSI::NTROUBLE];      // by the script
   int warn;
   bool distances;    // found, whether there is a limit or not
+  bool loses;        // does the script say how many?
 
   FSI::Finding worst[FSI::NTROUBLE];    // on this rank
   double total[FSI::NTROUBLE];          // of all ranks: ENERGY, LOST, REFLECTED

@@ -98,6 +98,17 @@ class Adviser : protected Pointers {
   bool solid(int i) const { return scene.state[atom->type[i]].species == SOLID; }
   bool moves(int i) const { return solid(i) && atom->mask[i] & scene.mover->groupbit; }
 
+  bool weighs(int i) const
+  {
+    const auto g = scene.body_forces.on(i);
+    return g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0;
+  }
+  bool goes(int i) const
+  {
+    const double *const v = atom->v[i];
+    return v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0;
+  }
+
   void warn(const std::string &text) const
   {
     if (comm->me == 0) error->warning(FLERR, "Fix fsi: " + text);
@@ -108,19 +119,11 @@ class Adviser : protected Pointers {
   void units() const
   {
     const bool si = strcmp(update->unit_style, "si") == 0;
-    double water = 0.0;
-    if (si) water = 1000.0;
+    double water = si ? 1000.0 : 0.0;    // 0: units are not those of continua
     for (const char *style : {"cgs", "micro", "nano"})
       if (strcmp(update->unit_style, style) == 0) water = 1.0;
-    if (water == 0.0) {
-      if (strcmp(update->unit_style, "lj") != 0)
-        warn(fmt::format("units {} are made for atoms; for continua take si, cgs, micro, nano, or "
-                         "lj for numbers without units",
-                         update->unit_style));
-      return;
-    }
     for (int t = 1; t <= atom->ntypes; t++) {
-      if (!present[t]) continue;
+      if (!present[t] || water == 0.0) continue;
       const State &s = scene.state[t];
       if (s.rho0 < 1.0e-4 * water || s.rho0 > 30.0 * water)
         warn(fmt::format("the density {:g} of type {} is that of no material in units {}, in which "
@@ -224,15 +227,17 @@ class Adviser : protected Pointers {
   }
 
   /* Bodies that begin within each other's range of contact are pushed apart with its energy at
-     once: the pair that has most of it. */
+     once: that of all of them, and the nearest two. */
 
   void contact(const Cells &cells, double range) const
   {
     static constexpr double LITTLE = 0.02, OVERLAP = 0.8;    // of the range; spacings
-    struct Meeting {
-      double energy = 0.0, distance = BIG, range = 0.0, spacing = 0.0;
-    };
-    std::map<std::array<tagint, 2>, Meeting> mine;
+    struct {
+      double apart;
+      int rank;
+    } mine = {BIG, comm->me}, all;
+    double energy = 0.0, total;
+    tagint bodies[2] = {0, 0};
     for (int i = 0; i < atom->nlocal; i++) {
       if (!solid(i)) continue;
       cells.around(atom->x[i], [&](int j, double rsq) {
@@ -241,50 +246,28 @@ class Adviser : protected Pointers {
             !(moves(i) || moves(j)))
           return;
         const State &a = scene.state[atom->type[i]], &b = scene.state[atom->type[j]];
-        auto &m = mine[{std::min(atom->molecule[i], atom->molecule[j]),
-                        std::max(atom->molecule[i], atom->molecule[j])}];
-        m.energy += 0.5 *
+        energy += 0.5 *
             Contact(scene.dim, spacing, range)
                 .energy(rsq, a.csq * a.rho0, b.csq * b.rho0);    // each sees the other
-        if (rsq >= m.distance * m.distance) return;
-        m.distance = std::sqrt(rsq);
-        m.range = range * spacing;
-        m.spacing = spacing;
+        const double apart = std::sqrt(rsq) / spacing;
+        if (apart >= mine.apart) return;
+        mine.apart = apart;
+        bodies[0] = std::min(atom->molecule[i], atom->molecule[j]);
+        bodies[1] = std::max(atom->molecule[i], atom->molecule[j]);
       });
     }
-    std::vector<double> numbers;
-    for (const auto &m : mine)
-      numbers.insert(numbers.end(),
-                     {static_cast<double>(m.first[0]), static_cast<double>(m.first[1]),
-                      m.second.energy, m.second.distance, m.second.range, m.second.spacing});
-    std::map<std::array<tagint, 2>, Meeting> all;
-    numbers = gather(numbers, world);
-    for (auto n = numbers.begin(); n != numbers.end(); n += 6) {
-      auto &m = all[{static_cast<tagint>(n[0]), static_cast<tagint>(n[1])}];
-      m.energy += n[2];
-      if (n[3] < m.distance) {
-        m.distance = n[3];
-        m.range = n[4];
-        m.spacing = n[5];
-      }
-    }
-    const auto worst = std::max_element(all.begin(), all.end(), [](const auto &a, const auto &b) {
-      return a.second.energy < b.second.energy;
-    });
-    if (worst == all.end()) return;
-    const Meeting &m = worst->second;
-    const std::string others =
-        all.size() > 1 ? fmt::format(", and so do {} more pairs", all.size() - 1) : "";
-    const double apart = m.distance / m.spacing;
-    warn(fmt::format("bodies {} and {} {} {:.2g} spacings apart at the start, and contact reaches "
-                     "{:.3g}{}: contact energy {:.4g} at once. {}",
-                     worst->first[0], worst->first[1],
-                     apart < OVERLAP ? "overlap, with particles" : "begin", apart,
-                     m.range / m.spacing, others, m.energy,
-                     apart < OVERLAP || apart < 1.0 - 1.0e-6
-                         ? "Move them apart"
-                         : fmt::format("Move them apart, or contact {:.3g}",
-                                       std::floor(10.0 * apart + 1.0e-6) / 10.0)));
+    MPI_Allreduce(&energy, &total, 1, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+    MPI_Bcast(bodies, 2, MPI_LMP_TAGINT, all.rank, world);
+    if (all.apart == BIG) return;
+    warn(fmt::format(
+        "bodies {} and {} {} {:.2g} spacings apart at the start, and contact reaches "
+        "{:.3g}: contact energy {:.4g} at once. Move them apart{}",
+        bodies[0], bodies[1], all.apart < OVERLAP ? "overlap, with particles" : "begin", all.apart,
+        range, total,
+        all.apart < 1.0 - 1.0e-6
+            ? ""
+            : fmt::format(", or contact {:.3g}", std::floor(10.0 * all.apart + 1.0e-6) / 10.0)));
   }
 
   /* elastic bodies, none of which moves */
@@ -295,8 +278,7 @@ class Adviser : protected Pointers {
       return solid(i);
     });
     const auto moving = find_particles(atom, world, [&](int i) {
-      const double *const v = atom->v[i];
-      return solid(i) && (scene.is_moved(i) || v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0);
+      return solid(i) && (scene.is_moved(i) || goes(i));
     });
     if (all.count && !moving.count)
       warn(fmt::format("all {} particles of elastic bodies, the first of them atom {}, are held, "
@@ -310,45 +292,45 @@ class Adviser : protected Pointers {
 
   void cut_by_walls() const
   {
-    static constexpr int MOST = Walls::MAXWALL;
+    static constexpr double FAR = -0.75;
     const auto &walls = scene.walls.wall;
-    // least distances from walls over the spacing, with the sign changed
-    std::map<tagint, std::array<double, MOST>> bodies;
+    // body, wall: least distance over the spacing, with the sign changed, if it is near
+    std::map<std::array<tagint, 2>, double> mine, all;
     for (int i = 0; i < atom->nlocal; i++) {
-      if (!moves(i)) continue;
-      auto it = bodies.find(atom->molecule[i]);
-      if (it == bodies.end()) {
-        it = bodies.emplace(atom->molecule[i], std::array<double, MOST>()).first;
-        it->second.fill(-BIG);
-      }
+      if (!moves(i) || !weighs(i)) continue;
       const auto g = scene.body_forces.on(i);
-      for (size_t k = 0; k < walls.size(); k++)
-        if (!walls[k].noslip && walls[k].spans(atom->x[i], 0.0) && g[walls[k].axis] == 0.0 &&
-            g[0] * g[0] + g[1] * g[1] + g[2] * g[2] > 0.0)
-          it->second[k] = std::max(it->second[k], -walls[k].distance(atom->x[i]) / dx(i));
-    }
-    std::array<double, MOST> none;
-    none.fill(-BIG);
-    for_bodies(bodies, none, [&](tagint body, const std::array<double, MOST> &mine) {
-      std::array<double, MOST> all;
-      MPI_Allreduce(const_cast<double *>(mine.data()), all.data(), MOST, MPI_DOUBLE, MPI_MAX,
-                    world);
-      const auto ends_at = [&](size_t k) {
-        return all[k] > -0.75 && all[k] < 0.0;
-      };
       for (size_t k = 0; k < walls.size(); k++) {
-        bool both = false;
-        for (size_t m = 0; m < walls.size(); m++)
-          both |= walls[m].axis == walls[k].axis && walls[m].side != walls[k].side && ends_at(m);
-        if (!ends_at(k) || both) continue;
-        warn(fmt::format("body {} ends at the mirror wall at {} = {:g}, and its face there is "
-                         "free, since these walls act on fluid alone: a body cut by a "
-                         "plane of symmetry must be whole, or held there",
-                         body, "xyz"[walls[k].axis], walls[k].position));
-        return false;
+        const double at = -walls[k].distance(atom->x[i]) / dx(i);
+        if (walls[k].noslip || at <= FAR || g[walls[k].axis] != 0.0 ||
+            !walls[k].spans(atom->x[i], 0.0))
+          continue;
+        double &nearest =
+            mine.emplace(std::array<tagint, 2>{atom->molecule[i], (tagint) k}, at).first->second;
+        nearest = std::max(nearest, at);
       }
-      return true;
-    });
+    }
+    std::vector<double> numbers;
+    for (const auto &m : mine)
+      numbers.insert(numbers.end(), {(double) m.first[0], (double) m.first[1], m.second});
+    numbers = gather(numbers, world);
+    for (auto n = numbers.begin(); n != numbers.end(); n += 3) {
+      double &nearest =
+          all.emplace(std::array<tagint, 2>{(tagint) n[0], (tagint) n[1]}, n[2]).first->second;
+      nearest = std::max(nearest, n[2]);
+    }
+    for (const auto &[of, at] : all) {
+      const auto &wall = walls[of[1]];
+      bool both = false;
+      for (const auto &[other, there] : all)
+        both |= other[0] == of[0] && walls[other[1]].axis == wall.axis &&
+            walls[other[1]].side != wall.side && there < 0.0;
+      if (at >= 0.0 || both) continue;
+      warn(fmt::format("body {} ends at the mirror wall at {} = {:g}, and its face there is free, "
+                       "since these walls act on fluid alone: a body cut by a plane of symmetry "
+                       "must be whole, or held there",
+                       of[0], "xyz"[wall.axis], wall.position));
+      return;
+    }
   }
 
   /* what weighs nothing while other particles do */
@@ -357,10 +339,6 @@ class Adviser : protected Pointers {
   {
     int rigid = 0;
     for (const auto &fix : modify->get_fix_by_style("^rigid")) rigid |= fix->groupbit;
-    const auto weighs = [&](int i) {
-      const auto g = scene.body_forces.on(i);
-      return g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0;
-    };
     const auto falls = [&](int i) {
       return fluid(i) ? scene.is_moved(i) : solid(i) ? moves(i) : (atom->mask[i] & rigid) != 0;
     };
@@ -387,10 +365,10 @@ class Adviser : protected Pointers {
   void nothing_acts() const
   {
     static constexpr double LITTLE = 1.0e-9;    // of what sound would do in a spacing
-    static const char *const watching[] = {
-        "fsi/dt",    "fsi/watch", "fsi/report", "fsi/stress", "fsi/spectrum",
-        "fsi/wall/", "gravity",   "ave/",       "print",      "halt",          "vector",
-        "balance",   "store/",    "STORE/",     "FSI_"};
+    static const char *const watching[] = {"fsi/dt",       "fsi/watch", "fsi/report", "fsi/stress",
+                                           "fsi/spectrum", "fsi/wall/", "gravity",    "ave/",
+                                           "print",        "halt",      "vector",     "balance",
+                                           "store/",       "STORE/",    "FSI_"};
     for (const auto &fix : modify->get_fix_list())
       if (fix != scene.mover &&
           std::none_of(std::begin(watching), std::end(watching), [&](const char *s) {
@@ -398,14 +376,12 @@ class Adviser : protected Pointers {
           }))
         return;
     const auto found = find_particles(atom, world, [&](int i) {
-      const double *const v = atom->v[i], *const f = atom->f[i];
-      if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0) return true;
+      if (goes(i)) return true;
       if (!scene.is_moved(i)) return false;
+      const double *const f = atom->f[i];
       const double most =
           LITTLE * atom->rmass[i] * scene.state[atom->type[i]].wave_speed_sq() / dx(i);
-      const auto g = scene.body_forces.on(i);
-      return g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0 ||
-          std::fabs(f[0]) + std::fabs(f[1]) + std::fabs(f[2]) > most;
+      return weighs(i) || std::fabs(f[0]) + std::fabs(f[1]) + std::fabs(f[2]) > most;
     });
     bool moving = false;
     for (const auto &w : scene.walls.wall)
@@ -424,9 +400,7 @@ class Adviser : protected Pointers {
         modify->get_fix_by_style("^fsi/stream$").empty())
       return;
     const auto found = find_particles(atom, world, [&](int i) {
-      const auto g = scene.body_forces.on(i);
-      return fluid(i) && scene.is_moved(i) && scene.state[atom->type[i]].floor == 0.0 &&
-          g[0] == 0.0 && g[1] == 0.0 && g[2] == 0.0;
+      return fluid(i) && scene.is_moved(i) && scene.state[atom->type[i]].floor == 0.0 && !weighs(i);
     });
     if (found.count)
       warn("a stream without tension opens holes where its pressure falls to 0, as behind a body: "
@@ -445,23 +419,6 @@ class Adviser : protected Pointers {
                          "with law hypo of pair_style fsi/solid/tl, or with "
                          "pair_style fsi/solid, and fix fsi/stress ... plastic",
                          t));
-  }
-
-  /* calls f(body, its entry) for the bodies of all ranks, with `none` on ranks that have nothing of
-     it, until it says false. Bodies are few; their IDs need not be small. */
-
-  template <class T, class F>
-  void for_bodies(const std::map<tagint, T> &bodies, const T &none, F f) const
-  {
-    tagint mine = bodies.empty() ? MAXTAGINT : bodies.begin()->first, body;
-    for (;;) {
-      MPI_Allreduce(&mine, &body, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-      if (body == MAXTAGINT) return;
-      auto it = bodies.find(body);
-      if (!f(body, it == bodies.end() ? none : it->second)) return;
-      it = bodies.upper_bound(body);
-      mine = it == bodies.end() ? MAXTAGINT : it->first;
-    }
   }
 
   /* fluid that nobody moves */

@@ -36,7 +36,7 @@ using namespace FSI;
 
 static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
 {
-  const auto &modes = Scene::density_names();
+  const auto modes = Scene::density_names(SOLID);
   static const char *const kernels[] = {"cubic spline", "quintic spline", "Wendland C2"};
   const bool fluid = facts_of_fluids(lmp).style;
   const auto solid = facts_of_solids(lmp).style;
@@ -69,14 +69,11 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
   effects.push_back({"energy ledger", "compute fsi/energy", scene.ledger});
 
   std::string on, off;
-  scene.effects_on.clear();
-  for (const auto &e : effects) {
-    if (e.on) {
+  for (const auto &e : effects)
+    if (e.on)
       on += "\n    " + e.name;
-      scene.effects_on.push_back(e.name);
-    } else
+    else
       off += (off.empty() ? "" : ", ") + e.keyword;
-  }
   std::string finer;
   for (size_t t = 1; t < scene.resolution.size(); t++)
     if (scene.dx_of(t) != scene.dx)

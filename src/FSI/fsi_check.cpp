@@ -73,8 +73,6 @@ Check::Check(LAMMPS *lmp, const Scene &scene) :
     Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0),
     lightest(0.0), substepped(nullptr), densest{}, told_dense(false), found{}
 {
-  stop.restart_file = Stop::of_partition(lmp, "fsi_stop.restart");
-  stop.dump_file = Stop::of_partition(lmp, "fsi_stop.dump");
 }
 
 /* ---------------------------------------------------------------------- */

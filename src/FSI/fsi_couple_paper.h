@@ -11,10 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// The rules of pair_style fsi/fluid couple pressure and couple full, by which the source paper lets
-// a fluid and a solid share one equation of motion (eq. 14): the mean of both pressures, with
-// couple full the solid's stress, too. Kept to compare with; the recommended couple wall is in
-// fsi_fluid_rows.h.
+// The rule of pair_style fsi/fluid couple full, by which the source paper lets a fluid and a solid
+// share one equation of motion (eq. 14): the mean of both pressures, and the solid's stress. Kept
+// to compare with; the recommended couple wall is in fsi_fluid_rows.h.
 
 #ifndef LMP_FSI_COUPLE_PAPER_H
 #define LMP_FSI_COUPLE_PAPER_H
@@ -27,12 +26,6 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   namespace CouplePaper {
-    // of both = p_i V_i^2 + p_j V_j^2: couple full pulls, too; couple pressure does not
-    template <class T> FSI_INLINE T pressure(const T &both, bool full)
-    {
-      return full ? both : greater(both, T(0.0));
-    }
-
     // adds the stress of solid j to the force on fluid i and gives its power; it is that of the
     // particle, not of its image, so look from the solid
     template <bool IMAGE, int D>

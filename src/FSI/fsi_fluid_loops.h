@@ -33,9 +33,11 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  // What a fluid particle meets, and by which rule: couple wall; the paper's rules, couple pressure
-  // and full.
-  enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_PRESSURE, WITH_SOLID_FULL };
+  // What a fluid particle meets, and by which rule: couple wall; couple full, the paper's
+  enum PairKind { WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_SOLID_FULL };
+
+  // The form of laminar viscosity
+  enum Laminar { NO_LAMINAR, PLAIN_LAMINAR, CENTRAL_LAMINAR };
 
   // What a loop needs of a particle, side by side (in 2D a cache line).
   template <int D> struct Point {
@@ -101,13 +103,13 @@ namespace FSI {
     double delta = 0.0;                               // of density diffusion; 0: none
     const double *pressure_over_density = nullptr;    // per particle, with sums
     double wdx = 0.0;                                 // W(dx), for shifting
-    bool slopes = false;                              // shifting changes velocities, too
+    bool fills = false;                               // shifting: the fluid has no surface
     double reach = 0.0;
   };
 
   struct ForceLaws {
     double alpha = 0.0, beta = 0.0;    // artificial viscosity
-    int laminar = 0;                   // 0: none, 1: plain, 2: central
+    int laminar = NO_LAMINAR;
     // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
     const std::array<double, 3> *extrapolate = nullptr;
     // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0
@@ -129,8 +131,9 @@ namespace FSI {
     virtual ~FluidLoops() = default;
 
     // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting to
-    // shift, rows of Shift<D>::ROW; mirror: the rows' neighbors are images in it; shift, sums: or
-    // null; near: the rows become those of what is within laws.reach
+    // shift, rows of Shift<D>::row(laws.fills), where rates of neighbors are behind the sums;
+    // mirror: the rows' neighbors are images in it; shift, sums: or null; near: the rows become
+    // those of what is within laws.reach
     virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror,
                        const FluidParticles &, const RateLaws &, double *rate, double *shift,
                        PairSums *sums, RowList &near) const = 0;
@@ -139,7 +142,7 @@ namespace FSI {
     virtual void forces(PairKind, const std::vector<Row> &, const Mirror *mirror,
                         const FluidParticles &, const ForceLaws &, double *force, double *total,
                         PairSums *sums) const = 0;
-    // adds the sums of particle shifting alone
+    // adds the sums of particle shifting alone, to rows of Shift<D>::row(false)
     virtual void shifts(PairKind, const std::vector<Row> &, const Mirror *mirror,
                         const FluidParticles &, double wdx, double *shift) const = 0;
     // adds W_ij, by the neighbors' share, to sum; of the neighbors only if both
@@ -152,7 +155,7 @@ namespace FSI {
                                      const double *vol, double *sum) const = 0;
   };
 
-  // packs: several pairs at a time, of all kinds but WITH_SOLID_PRESSURE and WITH_SOLID_FULL
+  // packs: several pairs at a time, of all kinds but WITH_SOLID_FULL
   std::shared_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h, bool packs);
   std::shared_ptr<FluidLoops> make_fluid_loops_any(int kernel, int dim, double h);
   std::shared_ptr<FluidLoops> make_fluid_loops_cubic(int dim, double h);

@@ -38,8 +38,8 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   // what a loop is compiled for: effects; sums of powers; neighbors that are images; results for
-  // neighbors, too; neighbors of another spacing; shifting, and what it changes of velocities;
-  // pairs that thin bodies hide in part
+  // neighbors, too; neighbors of another spacing; shifting, with what tells surfaces or what it
+  // changes of velocities; pairs that thin bodies hide in part
   namespace Flag {
     enum {
       ARTIFICIAL = 1,
@@ -53,7 +53,8 @@ namespace FSI {
       SHIFT = 256,
       CENTRAL = 512,
       SLOPES = 1024,
-      PARTLY = 2048
+      PARTLY = 2048,
+      EDGES = 4096
     };
   }
 
@@ -132,24 +133,40 @@ namespace FSI {
     return in.visible->part[j - in.visible->first] * w;
   }
 
-  // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j.
-  // Solids and walls count, but are not shifted. v: difference of velocities, if ALL of the sums
-  // are wanted
-  template <class T, class K, bool BOTH, bool IMAGE, int D, int N>
-  FSI_INLINE void add_shift(const Shift<D> &law, const K &kernel, const Mirror &mirror, const T &r,
-                            const T &rsq, const T &g, const T &vol_i, const T &vol_j,
-                            const T (&x)[D], const T *v, const int *j, T (&sum)[N],
-                            double (*const shift)[Shift<D>::ROW])
+  // Sums of particle shifting that a row of neighbors adds to those of i
+  template <int D> constexpr int shift_sums(int flags)
   {
-    const T w = kernel.W(r);
-    law.add(sum, vol_j, g, w, rsq, x);
-    if (!BOTH) return;
-    T back[D], of_j[N];
-    for (int d = 0; d < D; d++) back[d] = IMAGE ? -mirror.sign[d] * x[d] : -x[d];
-    for (T &s : of_j) s = 0.0;
-    law.add(of_j, vol_i, g, w, rsq, back);
-    if constexpr (N == Shift<D>::ALL) law.add_slopes(sum, of_j, vol_i, vol_j, g, x, v);
-    Lanes<T>::add_rows(of_j, shift, j);
+    return (flags & Flag::SLOPES) ? Shift<D>::SLOPES : (flags & Flag::EDGES) ? Shift<D>::EDGES : D;
+  }
+  template <int D> constexpr int shift_row(int flags)
+  {
+    return Shift<D>::row(!(flags & Flag::EDGES));
+  }
+
+  // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j, with
+  // the rate of density of j where there are all of the sums. Solids and walls count, but are not
+  // shifted. v: difference of velocities
+  template <class T, bool BOTH, int FLAGS, int D, int N>
+  FSI_INLINE void add_shift(const Mirror &mirror, const T &weight, const T &rsq, const T &g,
+                            const T &vol_i, const T &vol_j, const T (&x)[D], const T *v,
+                            const T *rate_j, const int *j, T (&sum)[N],
+                            double (*const shift)[shift_row<D>(FLAGS)])
+  {
+    constexpr bool EDGES = FLAGS & Flag::EDGES, SLOPES = FLAGS & Flag::SLOPES;
+    T of_i[N], of_j[N + 1];
+    Shift<D>::template of_neighbor<EDGES>(of_i, vol_j, g, weight, rsq, x);
+    if (BOTH) {
+      T back[D];
+      for (int d = 0; d < D; d++) back[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * x[d] : -x[d];
+      Shift<D>::template of_neighbor<EDGES>(of_j, vol_i, g, weight, rsq, back);
+      if constexpr (SLOPES) Shift<D>::slopes_of_pair(of_i, of_j, vol_i, vol_j, g, x, v);
+      if constexpr (EDGES || SLOPES)
+        of_j[N] = *rate_j;
+      else
+        of_j[N] = 0.0;
+      Lanes<T>::add_rows(of_j, shift, j);
+    }
+    for (int m = 0; m < N; m++) sum[m] += of_i[m];
   }
 
   // sum_j W_ij d part_j/dt over solids that come out of walls. To rho_i they add m_i of it, and to
@@ -181,13 +198,14 @@ namespace FSI {
   template <class T, class K, int KIND, int FLAGS>
   FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror,
                             const K kernel, const FluidParticles in, const RateLaws laws,
-                            double *const rate, double (*const shift)[Shift<K::DIM>::ROW],
+                            double *const rate, double (*const shift)[shift_row<K::DIM>(FLAGS)],
                             PairSums *const sums, RowList &near)
   {
     constexpr int D = K::DIM;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES,
                    CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL);
-    constexpr int N = (FLAGS & Flag::SLOPES) ? Shift<D>::ALL : Shift<D>::N;
+    constexpr int N = shift_sums<D>(FLAGS);
+    constexpr bool TOGETHER = (FLAGS & Flag::SHIFT) && N > D;    // shifting takes the rate along
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
@@ -219,11 +237,13 @@ namespace FSI {
         if (IMAGE) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
-        if (FLAGS & Flag::SHIFT) {
+        const auto shift_pair = [&](const T &along, const T *rate_j) FSI_INLINE_LAMBDA {
           const T vol_j = (FLAGS & Flag::UNEQUAL) ? fill * pj.vol : pj.vol;
-          add_shift<T, K, KIND == WITH_FLUID, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol, vol_j,
-                                                     x, v, j, displacement, shift);
-        }
+          add_shift<T, KIND == WITH_FLUID, FLAGS>(mirror, law.weight(kernel.W(r)), rsq, along,
+                                                  pi.vol, vol_j, x, v, rate_j, j, displacement,
+                                                  shift);
+        };
+        if constexpr ((FLAGS & Flag::SHIFT) && KIND != WITH_FLUID) shift_pair(g, nullptr);
         if (FLAGS & Flag::UNEQUAL) {
           g = kernel.sharper_gradient(r, sharper);
           if (IMAGE) g = weight * g;
@@ -244,7 +264,8 @@ namespace FSI {
             by_diffusion -= share_of<T>(i, j, in.nlocal, in.newton) * k * pi.vol * pj.vol *
                 (T(laws.pressure_over_density[i]) - L::read(laws.pressure_over_density, j));
         }
-        L::add(rate_j, rate, j);
+        if constexpr (FLAGS & Flag::SHIFT) shift_pair(g, &rate_j);
+        if (!TOGETHER) L::add(rate_j, rate, j);
       });
       // i itself, in places left over
       if (picked >> (L::WIDTH - 1)) last -= -row.n & (L::WIDTH - 1);
@@ -255,8 +276,7 @@ namespace FSI {
         if (in.cut && sums && (in.newton || i < in.nlocal))
           sums->walls -= laws.pressure_over_density[i] * point[i].rho * volume * point[i].vol *
               point[i].vol * coming_out<T, K, IMAGE>(row, mirror, kernel, in, sharper);
-      if (FLAGS & Flag::SHIFT)
-        for (int m = 0; m < N; m++) shift[i][m] += L::sum(displacement[m]);
+      if constexpr (FLAGS & Flag::SHIFT) L::add_sums(displacement, shift[i]);
     }
     near.end();
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);
@@ -270,9 +290,7 @@ namespace FSI {
                                const double *extrapolate, double floor, double back, bool own)
   {
     const T both = pi.pv2 + back * pj.pv2;
-    if (KIND == WITH_SOLID_PRESSURE || KIND == WITH_SOLID_FULL)
-      return CouplePaper::pressure(both, KIND == WITH_SOLID_FULL);
-    if (!own) return both;
+    if (KIND == WITH_SOLID_FULL || !own) return both;
     // the solid is a moving wall to the fluid, under the fluid's pressure, and takes the reaction
     T p = pi.p;
     for (int d = 0; d < D; d++) p += pi.rho * extrapolate[d] * (x_j[d] - pi.x[d]);
@@ -431,8 +449,7 @@ namespace FSI {
   // Does a mirror wall cut off part of these neighbors' cells?
   constexpr bool is_cut(int kind, int flags)
   {
-    return kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL ||
-        (kind == WITH_SOLID && (flags & Flag::UNEQUAL));
+    return kind == WITH_SOLID_FULL || (kind == WITH_SOLID && (flags & Flag::UNEQUAL));
   }
 
   // A pair as its terms need it. weight: 0 in places that are left over; g = W'/r; pushing: that of
@@ -544,7 +561,8 @@ namespace FSI {
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
-    const LaminarViscosity<D> viscous(kernel.h, (FLAGS & Flag::CENTRAL) && laws.laminar == 2);
+    const LaminarViscosity<D> viscous(kernel.h,
+                                      (FLAGS & Flag::CENTRAL) && laws.laminar == CENTRAL_LAMINAR);
     Powers<T> by;
     T on_all[D];
     for (T &w : on_all) w = 0.0;
@@ -618,9 +636,9 @@ namespace FSI {
   template <class T, class K, int FLAGS>
   FSI_INLINE void shift_rows(const Row *const rows, const int nrows, const Mirror mirror,
                              const K kernel, const FluidParticles in, const double wdx,
-                             double (*const shift)[Shift<K::DIM>::ROW])
+                             double (*const shift)[shift_row<K::DIM>(Flag::EDGES)])
   {
-    constexpr int D = K::DIM, N = Shift<D>::N;
+    constexpr int D = K::DIM, N = Shift<D>::EDGES;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
@@ -644,10 +662,12 @@ namespace FSI {
         if (!(FLAGS & Flag::BOTH)) g = cut_off(in, j, g);
         if (IMAGE) g = weight * g;
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
-        add_shift<T, K, (FLAGS & Flag::BOTH) != 0, IMAGE>(law, kernel, mirror, r, rsq, g, pi.vol,
-                                                          fill * pj.vol, x, nullptr, j, sum, shift);
+        const T no_rate = 0.0;
+        add_shift<T, (FLAGS & Flag::BOTH) != 0, (FLAGS & Flag::IMAGES) | Flag::EDGES>(
+            mirror, law.weight(kernel.W(r)), rsq, g, pi.vol, fill * pj.vol, x, nullptr, &no_rate, j,
+            sum, shift);
       });
-      for (int m = 0; m < N; m++) shift[i][m] += L::sum(sum[m]);
+      L::add_sums(sum, shift[i]);
     }
   }
 
@@ -717,27 +737,31 @@ namespace FSI {
         run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
           rate_rows<decltype(number), K, kind_is(), flags()>(
               rows.data(), rows.size(), mirror, kernel, in, laws, rate,
-              reinterpret_cast<double(*)[Shift<D>::ROW]>(shift), sums, near);
+              reinterpret_cast<double(*)[shift_row<D>(flags())]>(shift), sums, near);
         });
       };
       // density diffusion, with a coefficient of zero where it is off, comes with what is rarely
       // without: images and slopes
       const bool fluid = kind == WITH_FLUID,
-                 diffuses = fluid && (laws.delta > 0.0 || laws.slopes || image);
-      const int named = (shift ? SHIFT : 0) | (fluid && !image && laws.slopes ? SLOPES : 0) |
-          (diffuses || partly(in) ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
-      with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY>(
+                 diffuses = fluid && (laws.delta > 0.0 || (shift && laws.fills) || image);
+      const int shifting = !shift ? 0
+          : !laws.fills           ? SHIFT | EDGES
+          : fluid && !image       ? SHIFT | SLOPES
+                                  : SHIFT;
+      const int named =
+          shifting | (diffuses || partly(in) ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
+      with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY | EDGES>(
           (image ? IMAGES : 0) | unequal_or_cut(kind, in) | partly(in) | named, [&](auto flags) {
-            constexpr int effects = flags() & (DIFFUSION | SUMS | SHIFT | SLOPES);
-            constexpr bool parts = flags() & PARTLY,
-                           compiled = !parts || (ONE_BY_ONE && (flags() & DIFFUSION));
-            if constexpr (!parts && (effects == 0 || effects == SHIFT))
+            constexpr int shifts = flags() & (SHIFT | SLOPES | EDGES);
+            constexpr bool parts = flags() & PARTLY, diffusing = flags() & DIFFUSION,
+                           alone = !(flags() & (DIFFUSION | SUMS)), plain = !(flags() & IMAGES);
+            if constexpr (!parts && alone &&
+                          (shifts == 0 || shifts == SHIFT || shifts == (SHIFT | EDGES)))
               if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
-            constexpr bool has_slopes = effects & SLOPES, diffusing = effects & DIFFUSION,
-                           plain = !(flags() & IMAGES);
-            if constexpr (compiled && !(flags() & UNEQUAL) &&
-                          (diffusing || (plain && (effects == 0 || effects == SHIFT))) &&
-                          (!has_slopes || (plain && (effects & SHIFT))))
+            if constexpr (!(flags() & UNEQUAL) && (!parts || (ONE_BY_ONE && diffusing)) &&
+                          (diffusing || (plain && alone)) &&
+                          (shifts == 0 || shifts == (SHIFT | EDGES) ||
+                           shifts == (plain ? SHIFT | SLOPES : SHIFT)))
               loop(std::integral_constant<int, WITH_FLUID>(), flags);
           });
     }
@@ -755,9 +779,7 @@ namespace FSI {
       PairSums unused;
       const int unequal_rows = kind == WITH_SOLID || kind == WITH_WALL ? unequal_or_cut(kind, in)
                                                                        : 0;
-      if (!sums &&
-          (kind == WITH_SOLID_PRESSURE || kind == WITH_SOLID_FULL || (image && unequal_rows)))
-        sums = &unused;
+      if (!sums && (kind == WITH_SOLID_FULL || (image && unequal_rows))) sums = &unused;
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror,
@@ -767,7 +789,8 @@ namespace FSI {
       const bool artificial = laws.alpha > 0.0 || laws.beta > 0.0;
       if (!sums && partly(in)) sums = &unused;
       const int special = (sums ? SUMS : 0) | (image ? IMAGES : 0) | unequal_rows | partly(in);
-      const bool all = special || ONE_BY_ONE || laws.laminar == 2 || (artificial && laws.laminar);
+      const bool all = special || ONE_BY_ONE || laws.laminar == CENTRAL_LAMINAR ||
+          (artificial && laws.laminar);
       with_flags<EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY>(
           special |
               (all                ? EFFECTS
@@ -791,12 +814,9 @@ namespace FSI {
               if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
               if constexpr (!(flags() & IMAGES))    // walls of particles have no images
                 if (kind == WITH_WALL) loop(std::integral_constant<int, WITH_WALL>(), flags);
-              if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & UNEQUAL)) {
-                if (kind == WITH_SOLID_PRESSURE)
-                  loop(std::integral_constant<int, WITH_SOLID_PRESSURE>(), flags);
+              if constexpr (ONE_BY_ONE && (flags() & SUMS) && !(flags() & UNEQUAL))
                 if (kind == WITH_SOLID_FULL)
                   loop(std::integral_constant<int, WITH_SOLID_FULL>(), flags);
-              }
             }
           });
     }
@@ -812,7 +832,7 @@ namespace FSI {
               run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
                 shift_rows<decltype(number), K, flags()>(
                     rows.data(), rows.size(), mirror, kernel, in, wdx,
-                    reinterpret_cast<double(*)[Shift<D>::ROW]>(shift));
+                    reinterpret_cast<double(*)[shift_row<D>(Flag::EDGES)]>(shift));
               });
           });
     }

@@ -215,15 +215,6 @@ namespace FSI {
     }
   };
 
-  // The kernel of this kind as a K, one of them or any.
-  template <class K> K make_kernel(int kind, double h)
-  {
-    if constexpr (std::is_constructible_v<K, double>)
-      return K(h);
-    else
-      return K(kind, h);
-  }
-
   // Calls f with the kernel object that kind and dim name: the one run-time choice between kernels.
   template <class F> void with_kernel(int kind, int dim, double h, F &&f)
   {

@@ -29,7 +29,6 @@
 
 #include "fsi_kernel.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -69,83 +68,6 @@ namespace FSI {
       s.shear += j.q * xsq * ysq + j.g * ysq;
     }
     return s;
-  }
-
-  // Smallest rho omega^2/(p k^2) of the waves that leave densities as they are, so that no sound
-  // holds them: the shear modulus over the pressure of the softest. The longest have that of shear
-  // along the axes and a quarter of that of stretching along diagonals, short ones their own. A
-  // lattice under pressure rests where it is not below 0. On lines of symmetry motions are known;
-  // waves off them are softer by a tenth at most.
-  template <class K> double lattice_softest_wave(const K &kernel, double dx)
-  {
-    static constexpr struct {
-      double corner[3], toward[3], motion[3];    // wave vectors corner + t toward, of pi/dx
-    } lines[] = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                 {{0, 0, 0}, {1, 1, 0}, {1, -1, 0}},
-                 {{1, 0, 0}, {0, 1, 0}, {1, 0, 0}},
-                 // 3D
-                 {{0, 0, 0}, {1, 1, 0}, {0, 0, 1}},
-                 {{0, 0, 0}, {1, 1, 1}, {1, -1, 0}},
-                 {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                 {{1, 0, 0}, {0, 1, 1}, {1, 0, 0}},
-                 {{1, 0, 0}, {0, 1, 1}, {0, 1, -1}},
-                 {{1, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
-    const auto neighbors = lattice_neighbors(kernel, dx);
-    const auto longest = lattice_stiffness(kernel, dx);
-    double softest = std::min(longest.shear, 0.25 * longest.stretch);
-    for (int l = 0; l < (K::DIM == 2 ? 3 : 9); l++)
-      for (double t = 0.0; t <= 1.0; t += 1.0 / 32) {
-        const double *const u = lines[l].motion;
-        double k[3], ksq = 0.0, stiffness = 0.0;
-        for (int d = 0; d < 3; d++) {
-          k[d] = MathConst::MY_PI / dx * (lines[l].corner[d] + t * lines[l].toward[d]);
-          ksq += k[d] * k[d];
-        }
-        if (ksq == 0.0) continue;
-        const double usq = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-        for (const auto &j : neighbors) {
-          const double ux = u[0] * j.x[0] + u[1] * j.x[1] + u[2] * j.x[2];
-          stiffness += 2.0 * (1.0 - std::cos(k[0] * j.x[0] + k[1] * j.x[1] + k[2] * j.x[2])) *
-              (j.g * usq + j.q * ux * ux);
-        }
-        softest = std::min(softest, stiffness / (ksq * usq));
-      }
-    return softest;
-  }
-
-  // h/dx nearest to a given one, with a support of 2.6 dx at least, at which stretching meets no
-  // stiffness and no wave is soft to speak of; 0: none
-  inline double lattice_free_ratio(int kind, int dim, double ratio)
-  {
-    constexpr double STEP = 0.01, HIGHEST = 2.5, SOFT = -0.02;
-    const double lowest = 2.6 / kernel_support(kind);
-    const auto stretch = [&](double r) {
-      double s = 0.0;
-      with_kernel(kind, dim, r, [&s](const auto &k) {
-        s = lattice_stiffness(k, 1.0).stretch;
-      });
-      return s;
-    };
-    double best = 0.0;
-    for (const double step : {-STEP, STEP}) {
-      double last = stretch(ratio);
-      for (double r = ratio + step; r > lowest && r < HIGHEST; r += step) {
-        const double next = stretch(r);
-        if (last * next <= 0.0 && last != next) {
-          const double found = r - step * next / (next - last);
-          double soft = 0.0;
-          with_kernel(kind, dim, found, [&soft](const auto &k) {
-            soft = lattice_softest_wave(k, 1.0);
-          });
-          if (soft > SOFT) {
-            if (best == 0.0 || std::fabs(found - ratio) < std::fabs(best - ratio)) best = found;
-            break;
-          }
-        }
-        last = next;
-      }
-    }
-    return best;
   }
 
 }    // namespace FSI

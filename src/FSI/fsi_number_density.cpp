@@ -45,8 +45,7 @@ void NumberDensity::set_fields(Fields &fields)
       scene.surface_every > 1 && of_fluid == Scene::CONTINUITY && of_solid == Scene::CONTINUITY;
   scene.need_psi = of_fluid != Scene::CONTINUITY || scene.surface_ratio > 0.0 ||
       (of_solid != Scene::CONTINUITY && facts_of_solids(lmp).style == Facts::OF_SOLIDS);
-  fields.set("reference of ratio", Fields::RESTART,
-             of_fluid == Scene::RATIO || of_solid == Scene::RATIO, ratio);
+  fields.set("reference of ratio", Fields::RESTART, of_solid == Scene::RATIO, ratio);
   fields.set("number density", scene.keep_psi ? Fields::RESTART : Fields::STEP,
              scene.keep_psi || scene.need_psi, scene.psi);
 }

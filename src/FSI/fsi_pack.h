@@ -127,6 +127,15 @@ namespace FSI {
       store(d, load(d) + row[3]);
     }
 
+    // adds sum() of each to the four doubles at a
+    FSI_INLINE static void add_sums(const Pack &x, const Pack &y, const Pack &z, const Pack &w,
+                                    double *a)
+    {
+      Pack row[WIDTH];
+      transpose(x, y, z, w, row);
+      store(a, load(a) + ((row[0] + row[1]) + (row[2] + row[3])));
+    }
+
     // likewise x, y to the two doubles at a, b, c, d
     FSI_INLINE static void add_rows(const Pack &x, const Pack &y, double *a, double *b, double *c,
                                     double *d)
@@ -267,6 +276,11 @@ namespace FSI {
     {
       for (int d = 0; d < n; d++) a[*j][d] += x[d];
     }
+    // adds the sum of each to the numbers at a
+    template <int n> FSI_INLINE static void add_sums(const double (&x)[n], double *a)
+    {
+      for (int d = 0; d < n; d++) a[d] += x[d];
+    }
   };
 #if FSI_PACKS
   template <> struct Lanes<Pack> {
@@ -328,6 +342,12 @@ namespace FSI {
       else
         add_fours<0>(x, a, j);
     }
+    template <int n> FSI_INLINE static void add_sums(const Pack (&x)[n], double *a)
+    {
+      constexpr int FOURS = n / 4 * 4;
+      for (int d = 0; d < FOURS; d += 4) Pack::add_sums(x[d], x[d + 1], x[d + 2], x[d + 3], a + d);
+      for (int d = FOURS; d < n; d++) a[d] += x[d].sum();
+    }
 
    private:
     // from number K on; what x lacks in its last four is zero
@@ -337,8 +357,11 @@ namespace FSI {
       const auto at = [&](int k) FSI_INLINE_LAMBDA {
         return k < n ? x[k < n ? k : 0] : Pack(0.0);
       };
-      Pack::add_rows(x[K], at(K + 1), at(K + 2), at(K + 3), a[j[0]] + K, a[j[1]] + K, a[j[2]] + K,
-                     a[j[3]] + K);
+      if constexpr (K + 2 == n)
+        Pack::add_rows(x[K], x[K + 1], a[j[0]] + K, a[j[1]] + K, a[j[2]] + K, a[j[3]] + K);
+      else
+        Pack::add_rows(x[K], at(K + 1), at(K + 2), at(K + 3), a[j[0]] + K, a[j[1]] + K, a[j[2]] + K,
+                       a[j[3]] + K);
       if constexpr (K + 4 < n) add_fours<K + 4>(x, a, j);
     }
   };

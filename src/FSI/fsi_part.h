@@ -91,7 +91,7 @@ namespace FSI {
 
     // from the middle of a step to its start: a run that stops leaves a state to go on from
     virtual void go_back() {}
-    virtual Profile *counters() { return nullptr; }    // where others enter times and messages
+    virtual Profile *counters() { return nullptr; }    // where others enter times
 
     // Before the first step: what is simulated, and with what it costs
     using Effect = Keywords::Effect;

@@ -11,15 +11,16 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Where the time of a run goes and what it sends: kept only while there is a fix fsi/report, which
-// owns it. Everyone else holds a pointer, null without that fix, and looks at it once per phase.
+// Where the time of a run goes: kept only while there is a fix fsi/report, which owns it. Everyone
+// else holds a pointer, null without that fix, and looks at it once per phase.
 
 #ifndef LMP_FSI_PROFILE_H
 #define LMP_FSI_PROFILE_H
 
 #include "comm.h"
+#include "platform.h"
 
-#include <vector>
+#include <algorithm>
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -29,28 +30,32 @@ namespace FSI {
     enum Section { DENSITY, STRESS, FLUID_FORCES, SOLID_FORCES, WALLS, MESSAGES, NPART };
     static constexpr int OUTSIDE = NPART;
     double seconds[NPART + 1];    // each without what is nested in it
-
-    bool counting;             // messages of this step
-    double bytes, messages;    // of the package, in the steps that were counted
     double impulse_held[3];    // of sub-steps on held solids, beyond the force at their end times
                                // the step
     double reflected[3];       // momentum that reflections at walls gave to the fluid
+    int current;               // section that is running
 
     Profile() { clear(); }
-    void clear();
-    int current;               // section that is running
-    int enter(int section);    // returns the one before
-    template <class T> void count(Comm *, T *who, bool back, bool skip_empty);
-
-    struct Message {
-      int n, *list, first;    // atoms of a forward one in list, of one back from first on
-    };
-    // what one exchange with ghosts sends to other ranks
-    static std::vector<Message> messages_of(const Comm *, bool back);
+    void clear()
+    {
+      std::fill_n(seconds, NPART + 1, 0.0);
+      std::fill_n(impulse_held, 3, 0.0);
+      std::fill_n(reflected, 3, 0.0);
+      current = OUTSIDE;
+      since = platform::walltime();
+    }
+    int enter(int section)    // returns the one before
+    {
+      const int before = current;
+      const double now = platform::walltime();
+      seconds[current] += now - since;
+      since = now;
+      current = section;
+      return before;
+    }
 
    private:
     double since;
-    std::vector<double> buffer;
   };
 
   // a phase of the step, to the end of the block. A look at the clock takes as long as a few pairs:
@@ -76,38 +81,23 @@ namespace FSI {
     int before;
   };
 
-  // sizes are known only when packed: pack once more
-  template <class T> void Profile::count(Comm *comm, T *who, bool back, bool skip_empty)
-  {
-    for (const auto &m : messages_of(comm, back)) {
-      const size_t most = (size_t) m.n * (back ? who->comm_reverse : who->comm_forward);
-      if (buffer.size() < most) buffer.resize(most);
-      const int n = back ? who->pack_reverse_comm(m.n, m.first, buffer.data())
-                         : who->pack_forward_comm(m.n, m.list, buffer.data(), 0, nullptr);
-      bytes += sizeof(double) * n;
-      if (n > 0 || !skip_empty) messages += 1.0;
-    }
-  }
-
   // communication of a fix or pair style of the package; nothing is kept of what happens outside a
   // step, in output
-  template <class T, class F>
-  void exchange(Profile *profile, Comm *comm, T *who, bool back, F &&send, bool skip_empty = false)
+  template <class F> void exchange(Profile *profile, const Comm *comm, F &&send)
   {
     const bool known = profile && profile->current != Profile::OUTSIDE && comm->nprocs > 1;
     const Phase phase(known ? profile : nullptr, Profile::MESSAGES);
-    if (known && profile->counting) profile->count(comm, who, back, skip_empty);
     send();
   }
   template <class T> void forward_comm(Profile *profile, Comm *comm, T *who)
   {
-    exchange(profile, comm, who, false, [&]() {
+    exchange(profile, comm, [&]() {
       comm->forward_comm(who);
     });
   }
   template <class T> void reverse_comm(Profile *profile, Comm *comm, T *who)
   {
-    exchange(profile, comm, who, true, [&]() {
+    exchange(profile, comm, [&]() {
       comm->reverse_comm(who);
     });
   }

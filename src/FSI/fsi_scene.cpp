@@ -93,10 +93,10 @@ void Scene::gather_walls()
 
 /* ---------------------------------------------------------------------- */
 
-const std::vector<std::string> &Scene::density_names()
+std::vector<std::string> Scene::density_names(int species)
 {
-  static const std::vector<std::string> names = {"continuity", "summation", "ratio"};
-  return names;
+  if (species == FLUID) return {"continuity", "summation"};
+  return {"continuity", "summation", "ratio"};
 }
 
 bool Scene::density_follows_shift() const

@@ -45,7 +45,7 @@ namespace FSI {
 
     // discretisation
     enum Density { CONTINUITY, SUMMATION, RATIO };
-    static const std::vector<std::string> &density_names();    // of these
+    static std::vector<std::string> density_names(int species);    // of these
     int dim;
     int kernel;         // KernelKind
     double dx, h;       // spacing of the initial lattice, smoothing length
@@ -131,8 +131,7 @@ namespace FSI {
     void tally(Term term, double power) { energy_out[term] += tally_dt * power; }
     void set_tally(double dt) { tally_dt = ledger ? dt : 0.0; }    // time that powers act for
 
-    std::vector<std::string> effects_on;    // what is simulated, in words; from setup on
-    std::string announced;                  // the list of effects as last printed
+    std::string announced;    // the list of effects as last printed
 
     // Of a local or ghost atom
     // from its density (paper eq. 16), 0 at a free surface if that rule is on

@@ -56,55 +56,63 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   template <int D> struct Shift {
-    static constexpr int N = 2 * D + 1;    // sums of a particle: weighted and plain sum of V_j
-                                           // grad_i W_ij, divergence
-    // with those of fluid neighbors' x (x) g and v (x) g
-    static constexpr int ALL = N + Sym<D>::N + D * D;
-    static constexpr int ROW = (ALL + 3) / 4 * 4;    // numbers from one particle to the next: fours
-                                                     // are added at once
-    double wdx;                                      // W(dx)
-    explicit Shift(double w) : wdx(w) {}
+    // Sums of a particle. Where the fluid may have a surface: the weighted and the plain sum of V_j
+    // grad_i W_ij, and the divergence. Where it fills its box: the weighted sum and, of fluid
+    // neighbors, those of x (x) g and v (x) g.
+    static constexpr int EDGES = 2 * D + 1, SLOPES = D + Sym<D>::N + D * D;
+    static constexpr int sums(bool fills) { return fills ? SLOPES : EDGES; }
+    // Numbers from one particle to the next: the sums, and the neighbors' rate of density, which
+    // saves them an addition of their own; fours are added at once
+    static constexpr int row(bool fills) { return (sums(fills) + 1 + 3) / 4 * 4; }
 
-    // adds neighbor j of volume V_j to the sums of i; g: grad_i W_ij = g x_ij, w = W_ij; T: double
-    // or Pack
-    template <class T>
-    FSI_INLINE void add(T *sum, const T &vol, const T &g, const T &w, const T &rsq,
-                        const T *x_ij) const
+    double inv_wdx;    // 1/W(dx)
+    explicit Shift(double wdx) : inv_wdx(1.0 / wdx) {}
+
+    // of W_ij: what grad_i W_ij is multiplied with
+    template <class T> FSI_INLINE T weight(const T &w) const
     {
-      const T q = w * (1.0 / wdx), qq = q * q, vg = vol * g,
-              weighted = vg * (1.0 + 0.2 * (qq * qq));
-      for (int d = 0; d < D; d++) {
-        sum[d] += weighted * x_ij[d];
-        sum[D + d] += vg * x_ij[d];
-      }
-      sum[2 * D] -= vg * rsq;
+      const T q = w * inv_wdx, qq = q * q;
+      return 1.0 + 0.2 * (qq * qq);
     }
 
-    // adds to the sums of two fluid particles what the gradient of the velocity comes of; v_ij: v_i
-    // - v_j
-    template <class T>
-    FSI_INLINE static void add_slopes(T *of_i, T *of_j, const T &vol_i, const T &vol_j, const T &g,
-                                      const T *x_ij, const T *v_ij)
+    // what neighbor j of volume V_j is in the first sums of i; g: grad_i W_ij = g x_ij; T: double
+    // or Pack
+    template <bool WITH_EDGES, class T>
+    FSI_INLINE static void of_neighbor(T *part, const T &vol, const T &g, const T &weight,
+                                       const T &rsq, const T *x_ij)
     {
-      const auto add = [&](int k, const T &product) FSI_INLINE_LAMBDA {
-        of_i[k] -= vol_j * product;
-        of_j[k] -= vol_i * product;
+      const T vg = vol * g, weighted = vg * weight;
+      for (int d = 0; d < D; d++) part[d] = weighted * x_ij[d];
+      if (!WITH_EDGES) return;
+      for (int d = 0; d < D; d++) part[D + d] = vg * x_ij[d];
+      part[2 * D] = -vg * rsq;
+    }
+
+    // what two fluid particles are in the sums that the gradient of the velocity comes of; v_ij:
+    // v_i - v_j
+    template <class T>
+    FSI_INLINE static void slopes_of_pair(T *of_i, T *of_j, const T &vol_i, const T &vol_j,
+                                          const T &g, const T *x_ij, const T *v_ij)
+    {
+      const auto put = [&](int k, const T &product) FSI_INLINE_LAMBDA {
+        of_i[k] = -vol_j * product;
+        of_j[k] = -vol_i * product;
       };
       for (int a = 0; a < D; a++) {
         const T gx = g * x_ij[a], gv = g * v_ij[a];
-        for (int b = a; b < D; b++) add(N + Sym<D>::id(a, b), gx * x_ij[b]);
-        for (int b = 0; b < D; b++) add(N + Sym<D>::N + a * D + b, gv * x_ij[b]);
+        for (int b = a; b < D; b++) put(D + Sym<D>::id(a, b), gx * x_ij[b]);
+        for (int b = 0; b < D; b++) put(D + Sym<D>::N + a * D + b, gv * x_ij[b]);
       }
     }
 
     // The sums become the displacement, in their first D places, and the change of velocity, in the
-    // next; fills: the fluid has no surface, and the sums are ALL; scale = C c h dt, most = C c
-    // dt/4
+    // next; fills: the fluid has no surface; scale = C c h dt, most = C c dt/4
     static void displacement(double *sum, bool fills, double scale, double most)
     {
-      if (fills)
+      if (fills) {
+        find_slopes(sum);
         for (int d = 0; d < D; d++) sum[d] *= -scale;
-      else
+      } else
         along_surface(sum, scale);
       const double size = std::sqrt(dot(sum, sum));
       if (size > most)
@@ -121,14 +129,24 @@ namespace FSI {
     }
 
    private:
+    static constexpr int GRADIENT = D + Sym<D>::N;    // the last D^2 sums: of the velocity
+
+    // the sums of v (x) g become the gradient of the velocity: none where neighbors do not span the
+    // space
+    static void find_slopes(double *sum)
+    {
+      const auto m = Sym<D>::load(sum + D);
+      for (int a = 0; a < D; a++) {
+        double *const row = sum + GRADIENT + a * D;
+        double slope[D];
+        const double share = solve(m, row, slope);
+        for (int b = 0; b < D; b++) row[b] = share > 0.0 ? share * slope[b] : 0.0;
+      }
+    }
+
     static void change_of_velocity(double *sum, bool fills)
     {
-      for (int d = 0; d < D; d++) sum[D + d] = 0.0;
-      if (!fills) return;
-      double step[D];
-      const double share = solve(Sym<D>::load(sum + N), sum, step);
-      const double *const slopes = sum + N + Sym<D>::N;
-      for (int a = 0; a < D; a++) sum[D + a] = share * dot(slopes + a * D, step);
+      for (int a = 0; a < D; a++) sum[D + a] = fills ? dot(sum + GRADIENT + a * D, sum) : 0.0;
     }
 
     static void along_surface(double *sum, double scale)

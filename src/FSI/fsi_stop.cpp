@@ -42,13 +42,16 @@ static constexpr double SUSPECT = 1.6;    // over the usual Courant number: may 
 
 /* ---------------------------------------------------------------------- */
 
-Stop::Stop(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(who) {}
-
 // as LAMMPS names the log files of partitions
-std::string Stop::of_partition(LAMMPS *lmp, const std::string &name)
+static std::string of_partition(const Universe *all, const std::string &name)
 {
-  const Universe *const all = lmp->universe;
   return all->nworlds > 1 ? fmt::format("{}.{}", name, all->iworld) : name;
+}
+
+Stop::Stop(LAMMPS *lmp, const std::string &who) :
+    Pointers(lmp), who(who), restart_file(of_partition(universe, "fsi_stop.restart")),
+    dump_file(of_partition(universe, "fsi_stop.dump"))
+{
 }
 
 /* ---------------------------------------------------------------------- */
@@ -276,9 +279,6 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when,
       if (!fluid) missing("hourglass", "hourglass");
       shorter();
       break;
-    case COURANT:
-      shorter();
-      break;
     case ENERGY:
       tips.emplace_back("a look at this, the fastest particle");
       missing("artificial/visc", fluid ? "artificial/visc 0.02 0" : "artificial/visc 0.1 0");
@@ -303,11 +303,11 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when,
 void Stop::stop(const Scene &scene, std::string text, const Finding &all, When when)
 {
   if (when == MIDDLE) go_back(scene);
-  if (when != BEFORE && all.tag && !dump_file.empty()) {
+  if (when != BEFORE && all.tag) {
     write_neighbours(scene, all);
     text += fmt::format(". Particles around it: {}", dump_file);
   }
-  if (when != BEFORE && !restart_file.empty()) text += write_state(scene);
+  if (when != BEFORE) text += write_state(scene);
   error->all(FLERR, text);
 }
 

@@ -26,7 +26,7 @@ namespace FSI {
   class Scene;
 
   // what can be wrong
-  enum Trouble { FINITE, MACH, DISTANCE, DENSITY, COURANT, ENERGY, LOST, REFLECTED, NTROUBLE };
+  enum Trouble { FINITE, MACH, DISTANCE, DENSITY, ENERGY, LOST, REFLECTED, NTROUBLE };
   constexpr double HUGE_SQUARE = 1.0e200;    // of a speed: nothing finite gets there
 
   // with whom
@@ -44,10 +44,6 @@ namespace FSI {
     enum When { BEFORE, START, MIDDLE };    // of all forces; of a step: where positions are
 
     Stop(class LAMMPS *, const std::string &who);
-    // a file of its own for each
-    static std::string of_partition(class LAMMPS *, const std::string &name);
-    std::string restart_file, dump_file;    // empty: none
-
     Finding finding(Trouble, int i, double value, int j = -1) const;
     // what of atom i is not finite? No tag if nothing is. With forces, if they are there
     Finding not_finite(int i, bool forces) const;
@@ -59,7 +55,7 @@ namespace FSI {
     void stop(const Scene &, std::string text, const Finding &, When);
 
    private:
-    std::string who;
+    const std::string who, restart_file, dump_file;
     // the particle of a solid or wall that a fluid particle is nearest to
     struct Neighbor {
       double distance, dx;

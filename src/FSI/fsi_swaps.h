@@ -31,7 +31,6 @@ namespace FSI {
    public:
     explicit Swaps(LAMMPS *lmp) : Pointers(lmp), chosen(false) {}
     void find(const std::function<bool(int)> &is_chosen);    // whenever ghosts are new
-    bool skip_empty() const { return chosen; }
     // the pair style packs and unpacks the chosen particles only
     void forward(Pair *);
     void reverse(Pair *);

@@ -37,7 +37,7 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-static const std::vector<std::string> coupling_names = {"wall", "pressure", "full"};    // Couple
+static const std::vector<std::string> coupling_names = {"wall", "full"};    // Couple
 
 /* ---------------------------------------------------------------------- */
 
@@ -50,8 +50,8 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
   artificial_row("fluid");
-  keywords.key("laminar/visc").set(laminar, PLAIN).effect("laminar viscosity");
-  keywords.key("laminar/visc/central").set(laminar, CENTRAL);
+  keywords.key("laminar/visc").set(laminar, PLAIN_LAMINAR).effect("laminar viscosity");
+  keywords.key("laminar/visc/central").set(laminar, CENTRAL_LAMINAR);
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("solid/guard").number(solids_guard, 0.5, Range::between(0.0, 1.0));
   keywords.key("density/diffusion")
@@ -202,13 +202,11 @@ void PairFSIFluid::init_style()
   // fluid's pairs supply; forces with corrected gradients are complete without them
   if (couple != WALL && of_solids.corrected_gradients)
     error->all(FLERR,
-               "Pair style fsi/fluid couple pressure and full require pair_style fsi/solid "
-               "gradient plain: with corrected gradients use couple wall");
+               "Pair style fsi/fluid couple full requires pair_style fsi/solid gradient plain: "
+               "with corrected gradients use couple wall");
   open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);
-  kinds[SOLIDS] = couple == WALL ? WITH_SOLID
-      : couple == PRESSURE       ? WITH_SOLID_PRESSURE
-                                 : WITH_SOLID_FULL;
+  kinds[SOLIDS] = couple == WALL ? WITH_SOLID : WITH_SOLID_FULL;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -236,13 +234,12 @@ double *const *PairFSIFluid::velocity_of_shifting() const
 
 int PairFSIFluid::nshift() const
 {
-  return fix_fsi->dim == 2 ? Shift<2>::ROW : Shift<3>::ROW;
+  return fix_fsi->dim == 2 ? Shift<2>::row(fills()) : Shift<3>::row(fills());
 }
 
 int PairFSIFluid::shift_sums() const
 {
-  if (fills()) return fix_fsi->dim == 2 ? Shift<2>::ALL : Shift<3>::ALL;
-  return fix_fsi->dim == 2 ? Shift<2>::N : Shift<3>::N;
+  return fix_fsi->dim == 2 ? Shift<2>::sums(fills()) : Shift<3>::sums(fills());
 }
 
 void PairFSIFluid::set_fields(Scene &scene)
@@ -781,8 +778,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
       pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx,
-                         fix_fsi->shifts && fills(), reach};
+  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fills(), reach};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
   const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
@@ -801,6 +797,9 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
         loop(kind, images[kind][k], visible_images[k], mirror, near_images[kind][k]);
       });
   near_known = true;
+  const int of_shift = nshift(), last = shift_sums();
+  for (int i = 0; shift && i < atom->nlocal + atom->nghost; i++)
+    rate[i] += shift[of_shift * i + last];
   fix_fsi->tally(FixFSI::DIFFUSION, sums.diffusion);
   fix_fsi->tally(FixFSI::WALLS, sums.walls);
 }
@@ -886,7 +885,7 @@ void PairFSIFluid::add_gradient_sum(double *s)
 // the plain sums of particle shifting, all volumes those of the lattice
 template <int D> void PairFSIFluid::add_gradients(double *s)
 {
-  constexpr int ROW = Shift<D>::ROW;
+  constexpr int ROW = Shift<D>::row(false);
   const size_t nall = atom->nlocal + atom->nghost;
   const int *const type = atom->type;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
@@ -956,10 +955,9 @@ void PairFSIFluid::compute(int eflag, int vflag)
 /* ----------------------------------------------------------------------
    F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14),
    antisymmetric between fluid and solid:
-     couple wall      both pressures are the fluid's: the solid is a moving wall to the fluid
-                      and takes the reaction
-     couple pressure  pressures of both, no suction
-     couple full      the whole stress of the solid crosses, as in the paper
+     couple wall  both pressures are the fluid's: the solid is a moving wall to the fluid and
+                  takes the reaction
+     couple full  the whole stress of the solid crosses, as in the paper
 ------------------------------------------------------------------------- */
 
 template <int D> void PairFSIFluid::compute_forces()

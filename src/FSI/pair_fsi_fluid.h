@@ -37,8 +37,7 @@ namespace LAMMPS_NS {
 
 class PairFSIFluid : public PairFSI {
  public:
-  enum Couple { WALL, PRESSURE, FULL };
-  enum Laminar { INVISCID, PLAIN, CENTRAL };
+  enum Couple { WALL, FULL };
 
   PairFSIFluid(class LAMMPS *);
   ~PairFSIFluid() override;

@@ -147,6 +147,9 @@ void PairFSISolidTL::init_style()
   comm_forward = has_artificial() || laws.by_rate() ? 2 * dim : dim;
   comm_reverse = dim;
 
+  reference->clamps.clear();
+  if (takes_substeps()) reference->clamps.find(*fix_fsi, fix_fsi);
+
   contacts.clear();
   for (const auto &a : fix_fsi->resolution)
     for (const auto &b : fix_fsi->resolution)
@@ -222,14 +225,15 @@ void PairFSISolidTL::refuse_constraints() const
 }
 
 /* ----------------------------------------------------------------------
-   A rigid part of an elastic body is kicked once in a step, by forces that the sub-steps do not
-   see: a beam with a rigid tip gains energy.
+   A rigid part of an elastic body that another style than fix rigid moves is kicked once in a step,
+   by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::refuse_rigid_parts() const
 {
   for (auto &fix : modify->get_fix_list()) {
     if (!utils::strmatch(fix->style, "^rigid") && !utils::strmatch(fix->style, "^poems")) continue;
+    if (reference->clamps.known(fix)) continue;
     for (const BondRow &row : rows) {
       const auto elastic = [&](int i) {
         return atom->mask[i] & fix_fsi->groupbit;
@@ -237,11 +241,12 @@ void PairFSISolidTL::refuse_rigid_parts() const
       if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int j) {
             return !elastic(j) && atom->mask[j] & fix->groupbit;
           }))
-        error->one(FLERR,
-                   "Fix {} (style {}) moves a part of the elastic body of atom {}, which takes "
-                   "sub-steps: the part would gain energy. Use substeps 1 in fix fsi, or fix "
-                   "fsi/move if its motion is known",
-                   fix->id, fix->style, atom->tag[row.i]);
+        error->one(
+            FLERR,
+            "Fix {} (style {}) moves a part of the elastic body of atom {}, which takes "
+            "sub-steps: the part would gain energy. Expected fix rigid, which takes them, too, "
+            "substeps 1 in fix fsi, or fix fsi/move if its motion is known",
+            fix->id, fix->style, atom->tag[row.i]);
     }
   }
 }
@@ -303,12 +308,9 @@ void PairFSISolidTL::internal_forces()
     else
       self_contact_forces<3>();
   }
-  exchange(
-      fix_fsi->profile, comm, this, true,
-      [this]() {
-        reference->swaps.reverse(this);
-      },
-      reference->swaps.skip_empty());
+  exchange(fix_fsi->profile, comm, [this]() {
+    reference->swaps.reverse(this);
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -317,11 +319,17 @@ void PairFSISolidTL::find_rows()
 {
   const int *const type = atom->type, *const mask = atom->mask, groupbit = fix_fsi->groupbit;
   changes_seen = reference->changes;
+  // of partners, too: a border of ranks may part two materials
   one_material = true;
+  for (const auto *set : {&reference->solids, &reference->ghosts})
+    for (const int i : *set) {
+      if (reference->solids.empty()) break;
+      const State &s = fix_fsi->state[type[i]], &first = fix_fsi->state[type[reference->solids[0]]];
+      one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
+    }
   rows.clear();
   for (const int i : reference->solids) {
-    const State &s = fix_fsi->state[type[i]], &first = fix_fsi->state[type[reference->solids[0]]];
-    one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
+    const State &s = fix_fsi->state[type[i]];
     if (reference->count(i) == 0) continue;    // torn off by damage
     rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i),
                     reference->moments(i), atom->rmass[i] / s.rho0 * reference->weight(i),
@@ -405,21 +413,15 @@ double PairFSISolidTL::smooth_strains(bool of_all)
       energy = smooth_volumetric_strains<decltype(number), L>(rows, of_all, smoothed);
     };
     have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
-    exchange(
-        profile, comm, this, false,
-        [&]() {
-          swaps.forward(this);
-        },
-        swaps.skip_empty());
+    exchange(profile, comm, [&]() {
+      swaps.forward(this);
+    });
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
     have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
-    exchange(
-        profile, comm, this, true,
-        [&]() {
-          swaps.reverse(this);
-        },
-        swaps.skip_empty());
+    exchange(profile, comm, [&]() {
+      swaps.reverse(this);
+    });
   });
   comm_forward = forward;
   comm_reverse = reverse;
@@ -714,25 +716,15 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
   return s;
 }
 
-double PairFSISolidTL::Stress::von_mises() const
-{
-  const double *s = sigma;
-  const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-  return std::sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
-
 /* ----------------------------------------------------------------------
    ghosts: positions (and velocities) out, forces back; of solids only
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::forward_positions()
 {
-  exchange(
-      fix_fsi->profile, comm, this, false,
-      [this]() {
-        reference->swaps.forward(this);
-      },
-      reference->swaps.skip_empty());
+  exchange(fix_fsi->profile, comm, [this]() {
+    reference->swaps.forward(this);
+  });
 }
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
@@ -817,10 +809,12 @@ void PairFSISolidTL::integrate_substeps()
   const double *const rmass = atom->rmass;
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
   std::vector<int> moving, held;
+  Clamps &clamps = reference->clamps;
+  if (clamps.any()) clamps.begin_substeps(solids());
   for (const int i : solids())
     if (atom->mask[i] & fix_fsi->groupbit)
       moving.push_back(i);
-    else if (profile)
+    else if (profile && !clamps.has(i))
       held.push_back(i);
   const auto hold = [&](double t) {
     for (const int i : held)
@@ -838,6 +832,7 @@ void PairFSISolidTL::integrate_substeps()
   for (int n = 0; n < substeps; n++) {
     if (n + 1 == substeps) only_moving = false;
     drift(dth);
+    if (clamps.any()) clamps.drift(dth);
     forward_positions();
     advance_stress(dt);
     std::fill_n(virial, 6, 0.0);
@@ -849,15 +844,36 @@ void PairFSISolidTL::integrate_substeps()
     }
     hold(dt);
     drift(dth);
+    if (!clamps.any()) continue;
+    clamps.kick(dt, fs);
+    clamps.drift(dth);
   }
   fix_fsi->check.after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
+  if (clamps.any()) clamps.average(substeps, fs);
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up
   // already
   if (force->pair != this)
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   for (const int i : solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
+  if (clamps.any()) clamps.finish();
+}
+
+// rigid bodies with elastic parts (fsi_clamps.h)
+void PairFSISolidTL::start_step()
+{
+  if (reference->clamps.any()) reference->clamps.begin();
+}
+
+void PairFSISolidTL::prescribe()
+{
+  if (fix_fsi->substeps == 1 && reference->clamps.any()) reference->clamps.take_step();
+}
+
+void PairFSISolidTL::go_back()
+{
+  if (reference->clamps.any()) reference->clamps.go_back();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -888,6 +904,8 @@ void PairFSISolidTL::add_costs(Costs &costs) const
                                n * (1 + strains));
   else
     costs.solids = strains ? "; 1 forward and 2 back for solids" : "; 1 back for solid forces";
+  if (reference->clamps.any())
+    costs.solids += fmt::format("; {} sums over all ranks for rigid parts of solids", n + 2);
 }
 
 void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
@@ -917,6 +935,8 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   if (smoothed.on())
     list.push_back(
         {"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});
+  if (reference && reference->clamps.any())
+    list.push_back({"sub-steps of rigid parts of solids, with fix rigid", "substeps", true});
   return list;
 }
 

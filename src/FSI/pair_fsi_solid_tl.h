@@ -51,6 +51,9 @@ class PairFSISolidTL : public PairFSI {
   void unpack_reverse_comm(int, int *, double *) override;
   FSI::Facts facts() const override;
   std::vector<Effect> effects() const override;
+  void start_step() override;
+  void prescribe() override;
+  void go_back() override;
   void advance(bool) override;
   // Stiff solids: after the kick of what acts from outside is known, with a step that many times
   // shorter
@@ -75,7 +78,6 @@ class PairFSISolidTL : public PairFSI {
     double sigma[6] = {};    // Cauchy: xx yy zz xy xz yz
     double J = 0.0;          // det F
     double pressure() const { return -(sigma[0] + sigma[1] + sigma[2]) / 3.0; }
-    double von_mises() const;
   };
   void begin_stress();           // before stress(), on all ranks: what it needs of other particles
   Stress stress(int i) const;    // of local atom i at the positions in atom->x

@@ -23,7 +23,7 @@ from fsi.geometry import min_pair_distance  # noqa: E402
 from fsi.leaks import Leaks  # noqa: E402
 from fsi.summary import RUN_FILE, Summary, number  # noqa: E402
 
-CAUSES = r"Fix fsi(?:/watch)?: .*(Mach number|distance over|density error|density \S+ is not above 0|Courant number|kinetic energy|not finite)"
+CAUSES = r"Fix fsi(?:/watch|/dt)?: .*(Mach number|distance over|density error|density \S+ is not above 0|the time step \S+ is above|kinetic energy|not finite)"
 LINK = 1.5  # [dx] farther apart, two particles do not hang together
 
 
@@ -333,7 +333,7 @@ ROWS = {
                 "shifting that fades at open ends, rows that follow the fluid"),
     "jump_water": Row("sudden steps, 10 times longer and shorter: still water", "jump_water", still, STILL, "continuity, density diffusion, Wendland kernel"),
     "jump_plate": Row("sudden steps: spinning plate", "jump_plate", solid, BODY, TL),
-    "dt": Row("gate, 1 to 6 times the stable step, Courant check on and off", r"dt_(off_)?\d", honest, {"honest": ("==", 1)}, "fix fsi/watch", stops=True),
+    "dt": Row("gate, 1 to 6 times the stable step, Courant check on and off", r"dt_(off_)?\d", honest, {"honest": ("==", 1)}, "checks of fix fsi and fix fsi/dt", stops=True),
 }
 RELATIONS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal, "==": np.equal}
 LABELS = {"distance": "nearest pair [dx]", "gap": "least gap [dx]", "neighbours_kept": "first neighbours kept", "ke_over_pe": "kinetic/potential energy",

@@ -81,10 +81,12 @@ class Maker:
 
     def take_away(self):
         names = [n for n in self.names() if n not in ("pair", "fsi")]
+        if not names:
+            return self.again()
         name = self.rng.choice(names)
         word = self.now[name].split()
         self.lines.append(f"un{word[0]} {word[1]}")
-        self.gone.append(name)
+        return self.gone.append(name)
 
     def bring_back(self):
         if not self.gone:

@@ -26,7 +26,7 @@ def immersed(dim, seed=1):
     return x, v, (np.abs(x[:, :dim] - 0.4) < 0.16).all(axis=1)
 
 
-@pytest.mark.parametrize("style", ("fsi/solid", "fsi/solid/tl", "couple full", "couple pressure"))
+@pytest.mark.parametrize("style", ("fsi/solid", "fsi/solid/tl", "couple full"))
 @pytest.mark.parametrize("dim", (2, 3))
 def test_third_law(dim, style):
     """No walls, no gravity: what the body gets the fluid loses, whatever acts inside of the body; at the start, and in the middle of
@@ -64,7 +64,7 @@ def test_held_particles(dim):
                 np.testing.assert_allclose(get(s, name), expected, rtol=1e-11, atol=1e-11 * np.abs(s.get("f")).sum())
 
 
-@pytest.mark.parametrize("couple", ("", "couple full", "couple pressure"))
+@pytest.mark.parametrize("couple", ("", "couple full"))
 @pytest.mark.parametrize("dim", (2, 3))
 def test_split(dim, couple):
     """What viscosity gives solids and wall particles is what they get less when the same scene has none; a group of both gets the sum."""

@@ -21,7 +21,7 @@ def angular(s):
     return (s.get("rmass")[:, None] * np.cross(x - x.mean(0), s.get("v"))).sum(0)
 
 
-@pytest.mark.parametrize("couple", ["wall", "pressure", "full"])
+@pytest.mark.parametrize("couple", ["wall", "full"])
 @pytest.mark.parametrize("dim", [2, 3])
 def test_kept(dim, couple):
     with build(dim, couple) as s:

@@ -233,14 +233,14 @@ OTHER = {  # scene, name: other commands, each with what an error says if it is 
     ("tank", "dt"): {"fix dt all fsi/dt 5 max 5e-5": "", "fix dt all fsi/dt 2 cfl 0.2 max 1e-4 substeps auto": "", "fix dt all fsi/dt 5 check warn": "",
                      "fix dt all fsi/dt 5 max 1e-4 stop 0.01": ""},
     ("tank", "watch"): {"fix watch all fsi/watch 3 distance 0.1 action warn": ""},
-    ("tank", "report"): {"fix report all fsi/report every 7": ""},
+    ("tank", "report"): {"fix report all fsi/report file other.txt": ""},
     ("tank", "spectrum"): {"fix spectrum all fsi/spectrum 2 f_particle[1]": ""},
     ("tank", "force"): {"compute force water fsi/force split yes": ""},
     ("tank", "probe"): {"compute probe water fsi/probe line 0.05 0 0 0.05 0.2 0 level": ""},
     ("updated", "pair"): {f"pair_style hybrid fsi/fluid sound 10 artificial/visc 0.05 0 {words} fsi/solid artificial/visc 0.1 0 {body}": "" for words, body in [
         ("", ""), ("", "gradient corrected"), ("couple full", "gradient plain artificial/stress 0.3"), ("shift 0.1", "hourglass 0.3 gradient quadratic"),
         ("density/surface yes", "hourglass 0.1 gradient quadratic")]},
-    ("updated", "fsi"): {"fix fsi moves fsi 0.01 wendland 1.5 fluid ratio solid ratio": "", "fix fsi moves fsi 0.01 wendland 1.5 fluid summation solid summation": "",
+    ("updated", "fsi"): {"fix fsi moves fsi 0.01 wendland 1.5 solid ratio": "", "fix fsi moves fsi 0.01 wendland 1.5 fluid summation solid summation": "",
                          "fix fsi moves fsi 0.01 cubic 1.3": OLD_KERNEL},
     ("updated", "stress"): {"fix stress all fsi/stress plastic": ""},
     ("open", "pair"): {f"pair_style fsi/fluid sound 10 background 500 tension yes {words}": "" for words in
@@ -306,7 +306,7 @@ def test_another_after_some_steps(tmp_path, scene, name, text, refused, way):
 AGAIN = {  # scene, what comes between, what is said: an error, or a warning and it goes on
     "a compute that is gone": ("tank", "uncompute force\nrun 2 pre no", "ERROR: Run with pre no: fixes, computes, regions or pair styles are others"),
     "another compute of the same ID": ("tank", "uncompute force\ncompute force beam fsi/force\nrun 2 pre no", "ERROR: Run with pre no"),
-    "a fix that is new": ("tank", "fix more all fsi/watch 7 restart more.restart\nrun 2 pre no", "ERROR: Run with pre no"),
+    "a fix that is new": ("tank", "fix more all fsi/watch 7\nrun 2 pre no", "ERROR: Run with pre no"),
     "a type that is another": ("tank", "region w block 0 0.03 0 0.03 INF INF units box\nset region w type 2\n" + dump("x"), "ERROR: Compute fsi/atom needs a run before it"),
     "as many new atoms as old ones": ("tank", "group g region beam\ndelete_atoms group g compress no\ncreate_atoms 2 region beam\n" + dump("x"),
                                       "ERROR: Compute fsi/atom needs a run before it"),

@@ -17,9 +17,8 @@ DIGITS = 1e-14
 MODES = {
     "dam 2D": lambda: dam_gate(2),
     "dam 3D": lambda: dam_gate(3),
-    "ratio": lambda: dam_gate(2, density="fluid ratio solid ratio",
+    "ratio": lambda: dam_gate(2, density="fluid summation solid ratio",
                               fluid="sound 10 artificial/visc 0.05 0 surface 0.9 bulk"),
-    "summation": lambda: dam_gate(2, density="fluid summation solid ratio", fluid="sound 10 artificial/visc 0.05 0"),
     "fluid": lambda: fluid_box(2),
     "shift": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5"),
     "shift every third step": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5 shift/every 3"),
@@ -363,7 +362,7 @@ def second_part(folder, sph, more="", steps=30, runner=run):
     return runner(folder, FLUID + f"read_restart r.{steps}\n" + PHYSICS.format(sph=sph, more=more) + f"run {steps}\n", water_fsi=MATERIALS)
 
 
-MODES_OF_FLUID = {"": "", "every": "surface/every 7", "thousand": "surface/every 1000", "ratio": "fluid ratio", "summation": "fluid summation"}
+MODES_OF_FLUID = {"": "", "every": "surface/every 7", "thousand": "surface/every 1000", "summation": "fluid summation"}
 
 
 @pytest.mark.parametrize("after", MODES_OF_FLUID)

@@ -109,6 +109,18 @@ def test_signs(dim):
         assert (turned[:, 0, 1] > 0).all()
 
 
+@PLANES
+def test_von_mises(dim, plane):
+    """sqrt(3/2 S:S) of the deviator of the whole stress, which has three components along the axes in 2D, too."""
+    with block(linear(dim), dim, 1e-3, plane=plane, commands=["compute vm all fsi/atom vonmises"]) as s:
+        sigma = s.run(1).sigma
+        deviator = sigma - np.trace(sigma, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
+        expected = np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2)))
+        assert expected.min() > 1e-4 * E and (plane == "strain" or not sigma[:, 2, 2].any())
+        # the pressure, 1e-3 K, is taken off: round-off of sums of that size
+        close(s.compute("vm", columns=False), expected, 1e-11)
+
+
 @DIMS
 def test_rigid_rotation(dim):
     """v = w x r: no stress, no change of density, by 0.3 rad in one step about a skew axis (3D)."""

@@ -1043,26 +1043,6 @@ def test_constraints_on_substepped_solids_are_refused(line, how, refused):
             s.run()
 
 
-@pytest.mark.parametrize("substeps, tip, refused", [(4, "rigid single", True), (1, "rigid single", False), (4, "fsi/move linear 0.1 0 0", False)])
-def test_rigid_part_of_a_substepped_body_is_refused(substeps, tip, refused):
-    """It is kicked once in a step by forces that the sub-steps do not see: its beam gained energy without end."""
-    x = lattice([12, 4], DX)
-    with solid(x, held=x[:, 0] > 8 * DX, density=f"substeps {substeps}", commands=[f"fix tip held {tip}"]) as s:
-        if refused:
-            with pytest.raises(Exception, match=r"Fix tip \(style rigid\) moves a part of the elastic body of atom \d+"):
-                s.run()
-        else:
-            s.run()
-
-
-def test_rigid_part_is_refused_before_the_first_step():
-    """Where fix fsi/dt may choose sub-steps: a run of no steps, as that of `fsi check`, says so."""
-    x = lattice([12, 4], DX)
-    with solid(x, held=x[:, 0] > 8 * DX, commands=["fix tip held rigid single", "fix d all fsi/dt 1 substeps auto"]) as s:
-        with pytest.raises(Exception, match=r"Fix tip \(style rigid\) moves a part of the elastic body of atom \d+"):
-            s.run()
-
-
 @pytest.mark.parametrize("style, more", [("fsi/solid", ""), ("fsi/solid/tl", ""), ("fsi/solid/tl", "law hypo")])
 def test_velocity_of_what_nothing_moves_is_refused(style, more):
     """It would strain its neighbors for ever; not if another fix moves it."""

@@ -140,7 +140,7 @@ def test_bare_scenes_send_only_their_own(sent, name, size):
 IMAGES = (1 - (119 / 125) ** 2) * (16 + 4 * (12 + 1))
 ARRAYS = {"nothing": (0, {}), "shifting": (96, {"style": "shift 0.1"}), "walls": (4 + IMAGES, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
           "surface at intervals": (8, {"style": "surface 0.9 bulk", "sph": "surface/every 10"}), "surfaces": (16, {"style": "density/surface yes"}),
-          "ratio": (8, {"sph": "fluid ratio"}), "summation": (0, {"sph": "fluid summation"}),
+          "summation": (0, {"sph": "fluid summation"}),
           "the rest": (0, {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1 eos tait tension yes background 1"})}
 SLOTS = 16384  # LAMMPS grows its arrays by so many atoms
 
@@ -193,7 +193,7 @@ VAIN = {
     "no-slip walls without viscosity": (world("fsi/fluid sound 10", 1, commands="fix walls all fsi/wall/mirror ylo 0 slip no"),
                                         ["Fix fsi/wall/mirror slip no has nothing to act on: pair_style fsi/fluid has no laminar/visc"]),
     "surface without its rule": (world("fsi/fluid sound 10", 1, "surface/every 10"), ["Fix fsi surface/every has nothing to act on: pair_style fsi/fluid"]),
-    "surface with a density that needs it always": (world("fsi/fluid sound 10 surface 0.9 bulk", 1, "fluid ratio surface/every 10"),
+    "surface with a density that needs it always": (world("fsi/fluid sound 10 surface 0.9 bulk", 1, "fluid summation surface/every 10"),
                                                     ["Fix fsi surface/every has nothing to act on: a density mode"]),
     "extrapolation without solid": (world("fsi/fluid sound 10 extrapolate yes", 1).replace("water plate", "water water"),
                                     ["extrapolate has nothing to act on: there is no solid"]),

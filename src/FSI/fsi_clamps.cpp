@@ -1,0 +1,408 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_clamps.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "fsi_scene.h"
+#include "math_extra.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+// there without package RIGID: then there is no fix rigid, and no body
+#if __has_include("fix_rigid.h")
+#include "fix_rigid.h"
+#define LMP_FSI_HAS_RIGID
+#endif
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+#ifdef LMP_FSI_HAS_RIGID
+
+// LAMMPS shows the state of its rigid bodies to classes derived from their fix only
+namespace {
+struct Rigid : public FixRigid {
+  static constexpr auto early = &Rigid::earlyflag, count = &Rigid::nbody;
+  static constexpr auto of_atom = &Rigid::body;
+  static constexpr auto images = &Rigid::xcmimage;
+  static constexpr auto mass = &Rigid::masstotal;
+  static constexpr auto place = &Rigid::displace, center = &Rigid::xcm, velocity = &Rigid::vcm,
+                        moments = &Rigid::inertia, momentum = &Rigid::angmom, spin = &Rigid::omega,
+                        turned = &Rigid::quat, axis_x = &Rigid::ex_space, axis_y = &Rigid::ey_space,
+                        axis_z = &Rigid::ez_space, free_force = &Rigid::fflag,
+                        free_torque = &Rigid::tflag, langevin = &Rigid::langextra;
+  static constexpr auto gravity = &Rigid::id_gravity;
+  static constexpr auto field = &Rigid::gvec;
+};
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+// what moves its bodies in another way is left to its own: pair_style fsi/solid/tl refuses it
+void Clamps::find(const Scene &scene, const Fix *fix_fsi)
+{
+  bodies.clear();
+  mover = fix_fsi;
+  for (auto &fix : modify->get_fix_by_style("^rigid$")) {
+    auto *const rigid = static_cast<FixRigid *>(fix);
+    const int n = rigid->*Rigid::count;
+    std::vector<int> mine(n, 0), any(n, 0);
+    for (int i = 0; i < atom->nlocal; i++) {
+      const int b = (rigid->*Rigid::of_atom)[i];
+      if (b >= 0 && scene.is_total_lagrangian(i) && !(atom->mask[i] & mover->groupbit)) mine[b] = 1;
+    }
+    MPI_Allreduce(mine.data(), any.data(), n, MPI_INT, MPI_MAX, world);
+    for (int b = 0; b < n; b++)
+      if (any[b]) {
+        Body body = {};
+        body.fix = rigid;
+        body.index = b;
+        bodies.push_back(body);
+      }
+    if (known(fix)) refuse(fix);
+  }
+  sums.resize(6 * bodies.size());
+}
+
+bool Clamps::known(const Fix *fix) const
+{
+  return std::any_of(bodies.begin(), bodies.end(), [=](const Body &b) {
+    return static_cast<const Fix *>(b.fix) == fix;
+  });
+}
+
+void Clamps::refuse(const Fix *fix) const
+{
+  const auto &all = modify->get_fix_list();
+  if (std::find(all.begin(), all.end(), fix) < std::find(all.begin(), all.end(), mover))
+    error->all(FLERR,
+               "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected after "
+               "fix {}, whose sub-steps find the forces on them",
+               fix->id, fix->style, mover->id);
+  if (static_cast<const FixRigid *>(fix)->*Rigid::early)
+    error->all(FLERR,
+               "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected "
+               "bodyforces late in fix_modify, since fix {} finds the forces on them later",
+               fix->id, fix->style, mover->id);
+}
+
+void Clamps::find_members()
+{
+  members.clear();
+  for (size_t first = 0; first < bodies.size();) {
+    FixRigid *const fix = bodies[first].fix;
+    std::vector<int> entry(fix->*Rigid::count, -1);
+    for (; first < bodies.size() && bodies[first].fix == fix; first++)
+      entry[bodies[first].index] = first;
+    const int *const of_atom = fix->*Rigid::of_atom;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (of_atom[i] >= 0 && entry[of_atom[i]] >= 0) members.push_back({i, entry[of_atom[i]]});
+  }
+}
+
+/* ----------------------------------------------------------------------
+   state of a body here and there
+------------------------------------------------------------------------- */
+
+void Clamps::load(Body &b) const
+{
+  std::copy_n((b.fix->*Rigid::center)[b.index], 3, b.x);
+  std::copy_n((b.fix->*Rigid::velocity)[b.index], 3, b.v);
+  std::copy_n((b.fix->*Rigid::turned)[b.index], 4, b.q);
+  std::copy_n((b.fix->*Rigid::momentum)[b.index], 3, b.L);
+}
+
+void Clamps::store(Body &b) const
+{
+  std::copy_n(b.x, 3, (b.fix->*Rigid::center)[b.index]);
+  std::copy_n(b.v, 3, (b.fix->*Rigid::velocity)[b.index]);
+  std::copy_n(b.q, 4, (b.fix->*Rigid::turned)[b.index]);
+  std::copy_n(b.L, 3, (b.fix->*Rigid::momentum)[b.index]);
+  std::copy_n(b.omega, 3, (b.fix->*Rigid::spin)[b.index]);
+  std::copy_n(b.ex, 3, (b.fix->*Rigid::axis_x)[b.index]);
+  std::copy_n(b.ey, 3, (b.fix->*Rigid::axis_y)[b.index]);
+  std::copy_n(b.ez, 3, (b.fix->*Rigid::axis_z)[b.index]);
+}
+
+void Clamps::follow(Body &b) const
+{
+  MathExtra::q_to_exyz(b.q, b.ex, b.ey, b.ez);
+  MathExtra::angmom_to_omega(b.L, b.ex, b.ey, b.ez, (b.fix->*Rigid::moments)[b.index], b.omega);
+}
+
+/* ----------------------------------------------------------------------
+   free flight: turned about the angular velocity of half the time, exact in 2D and else of second
+   order
+------------------------------------------------------------------------- */
+
+void Clamps::drift(Body &b, double t) const
+{
+  const auto turn = [](double *q, const double *omega, double time) {
+    const double rate = std::sqrt(omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2]);
+    if (rate == 0.0) return;
+    const double axis[3] = {omega[0] / rate, omega[1] / rate, omega[2] / rate};
+    double by[4], turned[4];
+    MathExtra::axisangle_to_quat(axis, rate * time, by);
+    MathExtra::quatquat(by, q, turned);
+    std::copy_n(turned, 4, q);
+    MathExtra::qnormalize(q);
+  };
+  double start[4];
+  std::copy_n(b.q, 4, start);
+  turn(b.q, b.omega, 0.5 * t);
+  follow(b);
+  std::copy_n(start, 4, b.q);
+  turn(b.q, b.omega, t);
+  follow(b);
+  for (int d = 0; d < 3; d++) b.x[d] += t * b.v[d];
+}
+
+void Clamps::kick(Body &b, double t, const double *force_and_torque) const
+{
+  const double tf = t * force->ftm2v, tm = tf / (b.fix->*Rigid::mass)[b.index];
+  for (int d = 0; d < 3; d++) {
+    b.v[d] += tm * force_and_torque[d] * (b.fix->*Rigid::free_force)[b.index][d];
+    b.L[d] += tf * force_and_torque[3 + d] * (b.fix->*Rigid::free_torque)[b.index][d];
+  }
+  follow(b);
+}
+
+/* ----------------------------------------------------------------------
+   particles of bodies
+------------------------------------------------------------------------- */
+
+// from the center of its body
+void Clamps::arm(const Member &m, double *r) const
+{
+  const Body &b = bodies[m.body];
+  MathExtra::matvec(b.ex, b.ey, b.ez, (b.fix->*Rigid::place)[m.i], r);
+  if (domain->dimension == 2) r[2] = 0.0;
+}
+
+void Clamps::place(const std::vector<Member> &list) const
+{
+  for (const Member &m : list) {
+    const Body &b = bodies[m.body];
+    const imageint image = (b.fix->*Rigid::images)[m.i];
+    const int box[3] = {int(image & IMGMASK) - IMGMAX, int(image >> IMGBITS & IMGMASK) - IMGMAX,
+                        int(image >> IMG2BITS) - IMGMAX};
+    double r[3], around[3];
+    arm(m, r);
+    MathExtra::cross3(b.omega, r, around);
+    for (int d = 0; d < domain->dimension; d++) {
+      atom->x[m.i][d] = b.x[d] + r[d] - box[d] * domain->prd[d];
+      atom->v[m.i][d] = b.v[d] + around[d];
+    }
+  }
+}
+
+// force and torque of each body, of all ranks
+void Clamps::sum(const std::vector<Member> &list, const double *const *f)
+{
+  std::vector<double> mine(sums.size(), 0.0);
+  for (const Member &m : list) {
+    double r[3], one[3] = {}, torque[3];
+    for (int d = 0; d < domain->dimension; d++) one[d] = f[m.i][d];
+    arm(m, r);
+    MathExtra::cross3(r, one, torque);
+    for (int d = 0; d < 3; d++) {
+      mine[6 * m.body + d] += one[d];
+      mine[6 * m.body + 3 + d] += torque[d];
+    }
+  }
+  if (comm->nprocs == 1)
+    sums = mine;
+  else
+    MPI_Allreduce(mine.data(), sums.data(), mine.size(), MPI_DOUBLE, MPI_SUM, world);
+}
+
+// what fix rigid itself adds to the sums: keywords langevin and gravity
+void Clamps::add_own(Body &b, double *force_and_torque) const
+{
+  for (int d = 0; d < 3; d++) {
+    const double *const langevin = (b.fix->*Rigid::langevin)[b.index];
+    force_and_torque[d] += (b.fix->*Rigid::free_force)[b.index][d] * langevin[d];
+    force_and_torque[3 + d] += (b.fix->*Rigid::free_torque)[b.index][d] * langevin[3 + d];
+    if (b.fix->*Rigid::gravity)
+      force_and_torque[d] += (b.fix->*Rigid::field)[d] * (b.fix->*Rigid::mass)[b.index];
+  }
+  if (domain->dimension == 2) force_and_torque[2] = force_and_torque[3] = force_and_torque[4] = 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Clamps::begin()
+{
+  for (Body &b : bodies) {
+    load(b);
+    std::copy_n(b.x, 3, b.x0);
+    std::copy_n(b.v, 3, b.v0);
+    std::copy_n(b.q, 4, b.q0);
+    std::copy_n(b.L, 3, b.L0);
+  }
+}
+
+void Clamps::to_start()
+{
+  for (Body &b : bodies) {
+    std::copy_n(b.x0, 3, b.x);
+    std::copy_n(b.v0, 3, b.v);
+    std::copy_n(b.q0, 4, b.q);
+    std::copy_n(b.L0, 3, b.L);
+    follow(b);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Fix rigid has taken half a kick and a whole drift, as velocity Verlet does. Here the velocities
+   are already those of the start of the step, and forces are those of its middle.
+------------------------------------------------------------------------- */
+
+void Clamps::to_middle()
+{
+  to_start();
+  find_members();
+  for (Body &b : bodies) {
+    drift(b, 0.5 * update->dt);
+    std::copy_n(b.x, 3, b.middle);
+    store(b);
+  }
+  place(members);
+}
+
+// fix rigid may have moved a body by a period of the box since
+void Clamps::follow_boundary()
+{
+  for (Body &b : bodies)
+    for (int d = 0; d < 3; d++) {
+      const double now = (b.fix->*Rigid::center)[b.index][d];
+      b.x0[d] += now - b.middle[d];
+      b.middle[d] = now;
+    }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Clamps::begin_substeps(const std::vector<int> &solids)
+{
+  find_members();
+  clamp.assign(atom->nlocal, 0);
+  for (const int i : solids) clamp[i] = !(atom->mask[i] & mover->groupbit);
+  clamps.clear();
+  for (const Member &m : members)
+    if (clamp[m.i]) clamps.push_back(m);
+  clamp.assign(atom->nlocal, 0);
+  for (const Member &m : clamps) clamp[m.i] = 1;
+  impulse.assign(3 * clamps.size(), 0.0);
+  sum(members, atom->f);
+  for (size_t k = 0; k < bodies.size(); k++) {
+    Body &b = bodies[k];
+    std::copy_n(&sums[6 * k], 6, b.outside);
+    add_own(b, b.outside);
+  }
+  follow_boundary();
+  to_start();
+}
+
+void Clamps::drift(double t)
+{
+  for (Body &b : bodies) drift(b, t);
+  place(clamps);
+}
+
+void Clamps::kick(double t, const double *const *f)
+{
+  double *to = impulse.data();
+  for (const Member &m : clamps)
+    for (int d = 0; d < 3; d++) *to++ += d < domain->dimension ? f[m.i][d] : 0.0;
+  sum(clamps, f);
+  for (size_t k = 0; k < bodies.size(); k++) {
+    for (int d = 0; d < 6; d++) sums[6 * k + d] += bodies[k].outside[d];
+    kick(bodies[k], t, &sums[6 * k]);
+  }
+}
+
+void Clamps::average(int substeps, double **f) const
+{
+  const double *from = impulse.data();
+  for (const Member &m : clamps) {
+    for (int d = 0; d < domain->dimension; d++) f[m.i][d] = from[d] / substeps;
+    from += 3;
+  }
+}
+
+void Clamps::take_step()
+{
+  begin_substeps({});
+  for (Body &b : bodies) {
+    drift(b, 0.5 * update->dt);
+    kick(b, update->dt, b.outside);
+    drift(b, 0.5 * update->dt);
+  }
+  finish();
+}
+
+/* ----------------------------------------------------------------------
+   Fix rigid takes half a kick more, by which its velocities are those at the end of the step. Its
+   angular momentum is that of the sub-steps, not that of the mean force where a particle is in
+   the end.
+------------------------------------------------------------------------- */
+
+void Clamps::finish()
+{
+  sum(members, atom->f);
+  for (size_t k = 0; k < bodies.size(); k++) {
+    Body &b = bodies[k];
+    add_own(b, &sums[6 * k]);
+    kick(b, -0.5 * update->dt, &sums[6 * k]);
+    store(b);
+  }
+  place(members);
+}
+
+void Clamps::go_back()
+{
+  find_members();
+  follow_boundary();
+  to_start();
+  for (Body &b : bodies) store(b);
+  place(members);
+}
+
+#else
+
+void Clamps::find(const Scene &, const Fix *) {}
+bool Clamps::known(const Fix *) const
+{
+  return false;
+}
+void Clamps::begin() {}
+void Clamps::to_middle() {}
+void Clamps::begin_substeps(const std::vector<int> &) {}
+void Clamps::drift(double) {}
+void Clamps::kick(double, const double *const *) {}
+void Clamps::average(int, double **) const {}
+void Clamps::take_step() {}
+void Clamps::finish() {}
+void Clamps::go_back() {}
+
+#endif
