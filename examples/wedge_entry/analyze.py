@@ -102,8 +102,9 @@ def picture_water(folder, values):
     end = frames[-1].time
     shown = dump.nearest(frames, (0.3 * end, 0.65 * end, end), end)
     size = 1.0 if values["body"] == "free" else 0.45
-    plot.snapshots(folder / "snapshots.png", shown, values["dx"], (WATER,), (), limits=((0.0, size), (-0.5 * size, 0.4 * size)),
-                   wall=(RIGHT,))
+    # the colors are those of the water that is shown
+    shown = [frame.select((frame["x"] < size) & (frame["y"] > -0.5 * size)) for frame in shown]
+    plot.snapshots(folder / "snapshots.png", shown, values["dx"], (WATER,), limits=((0.0, size), (-0.5 * size, 0.4 * size)), wall=(RIGHT,))
 
 
 def main(folder):
@@ -142,7 +143,7 @@ def draw(axes, cases):
         axes[1].plot(middle[1:], profile(path, v)[1:], color=colors[v["dx"]], label=label)
     for beta, (value, pressure, height) in THEORY.items():
         axes[0].axhline(value, color="black", linestyle="--", linewidth=1.0, label="theory" if beta == 30 else None)
-        axes[0].text(99, value + 0.7, f"{beta} degrees", ha="right")
+        axes[0].text(98, value + 2.6, f"{beta} degrees", ha="right", fontsize=8, bbox={"color": "white", "alpha": 0.8, "pad": 1})
         axes[1].plot(height, pressure, "o", markersize=6, markerfacecolor="white", markeredgecolor="black", label="theory, peak" if beta == 30 else None)
     axes[0].set(xlabel="depth of the keel [mm]", ylabel="force / (rho V^3 t)", ylim=(0, 30), xlim=(0, 100))
     axes[1].set(xlabel="height / (V t)", ylabel="pressure / (rho V^2 / 2)", ylim=(0, None), xlim=(-1, 1))

@@ -7,11 +7,11 @@ from scenes import run_scene
 @pytest.mark.parametrize("beta, force, peak", [(30, 14.139, 6.927), (40, 5.477, 3.266)])
 def test_force_and_pressure_at_constant_speed(tmp_path, beta, force, peak):
     # Similarity solution of Zhao and Faltinsen (1993). At the end the keel is 16 particles deep, on average 12: the peak, some 0.1 of the
-    # wetted width wide, is as wide as two or three. Measured -2 to -3 % of the force, -17 % of the peak at 30 degrees.
+    # wetted width wide, is as wide as two or three. Measured: force -4.1 and -0.6 %, peak -20 and +14 %, scatter 16 and 20 %.
     figures = run_scene(tmp_path, "wedge_entry", beta=beta, dx=0.00625, frames=2)
     assert figures["force"] == pytest.approx(force, rel=0.06)
     assert figures["peak_pressure"] == pytest.approx(peak, rel=0.25)
-    assert figures["force_scatter"] < 0.3  # rows cut from the lattice: more, see the scene's page
+    assert figures["force_scatter"] < 0.25  # rows cut from the lattice: 30 %
 
 
 def test_free_wedge_slows_down_as_measured(tmp_path):
