@@ -19,7 +19,7 @@ LONG = {"gate_static": 60, "rolling_tank": 57, "turek_hron_fsi": 56}
 # no if, jump, label, next, print, quit, shell
 PLAIN_COMMANDS = {
     "atom_style", "boundary", "comm_modify", "compute", "create_atoms", "create_box",
-    "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/set", "group",
+    "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/material", "fsi/set", "group",
     "include", "lattice", "neigh_modify", "neighbor", "pair_coeff", "pair_style", "region", "run",
     "set", "thermo", "thermo_modify", "thermo_style", "timestep", "unfix", "units", "variable",
     "velocity"}
