@@ -86,8 +86,9 @@ def study(folder, cases):
     folder = Path(folder)
     summary = Summary(folder)
     found, curves = {}, []
+    finest = {round(read(path)[0]["reduced"]): name for name, path in cases.items()}  # they are in the order of resolution
     for name, path in cases.items():
-        values, time, place = add(summary, path, f"_{name}")
+        values, time, place = add(summary, path, f"_{name}", name in finest.values())
         found.setdefault(values["across"], []).append((values["reduced"], 0.5 * np.ptp(place[time >= time[-1] - LATE])))
         curves.append((name, time, place))
     with plot.picture(folder / "amplitude.png", 9.0, 3.6) as figure:
