@@ -95,13 +95,13 @@ def study(folder, cases):
         left, right = figure.subplots(1, 2)
         for k, (label, mark) in enumerate((("Ahn & Kallinderis 2006", "s"), ("Borazjani et al. 2008", "o"))):
             left.plot(list(CODES), [pair[k] for pair in CODES.values()], mark, markersize=6, markerfacecolor="white", color="black", label=label)
-        for (across, points), color in zip(sorted(found.items()), (plot.BLUE, plot.ORANGE)):
-            left.plot(*np.array(sorted(points)).T, "-o", markersize=4, color=color, label=f"{across:g} particles per diameter")
+        for (across, points), color, line in zip(sorted(found.items()), (plot.BLUE, plot.ORANGE), "-:"):
+            left.plot(*np.array(sorted(points)).T, line, marker="o", markersize=4, color=color, label=f"{across:g} particles per diameter")
         left.axhline(EDGE, color=plot.GREY, linestyle="--", linewidth=1.0)
         left.set(xlabel="reduced velocity", ylabel="amplitude / D", ylim=(0, 0.7))
-        for (name, time, place), color in zip([c for c in curves if c[0].startswith(("4", "8"))], (plot.BLUE, plot.ORANGE, plot.GREY)):
+        for (name, time, place), color in zip([c for c in curves if c[0] in ("4_8", "8_8")], (plot.BLUE, plot.ORANGE)):
             right.plot(time, place, color=color, linewidth=0.9, label=f"reduced velocity {name.split('_')[0]}")
-        right.set(xlabel="t U/D", ylabel="place y/D")
+        right.set(xlabel="t U/D", ylabel="place y/D", ylim=(-0.6, 0.8))
         for axes in (left, right):
             axes.legend(fontsize=7)
         figure.tight_layout()
