@@ -19,10 +19,10 @@ LONG = {"gate_static": 60, "rolling_tank": 57, "turek_hron_fsi": 56}
 # no if, jump, label, next, print, quit, shell
 PLAIN_COMMANDS = {
     "atom_style", "boundary", "comm_modify", "compute", "create_atoms", "create_box",
-    "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/set", "group",
-    "include", "lattice", "neigh_modify", "neighbor", "pair_coeff", "pair_style", "region", "run",
-    "set", "thermo", "thermo_modify", "thermo_style", "timestep", "unfix", "units", "variable",
-    "velocity"}
+    "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/material",
+    "fsi/set", "group", "include", "lattice", "neigh_modify", "neighbor", "pair_coeff",
+    "pair_style", "region", "run", "set", "thermo", "thermo_modify", "thermo_style", "timestep",
+    "unfix", "units", "variable", "velocity"}
 DEFAULTS = ("newton on", "comm_modify mode single", "neigh_modify every 1 delay 0 check yes")
 ORDER = ("units", "atom_style", "create_box", "lattice", "create_atoms", "pair_style", "pair_coeff",
          "fix 1 ", "thermo_style", "dump 1 ", "run")
