@@ -60,12 +60,6 @@ static constexpr double EXCESS = 0.02;       // of the mass near the plane that 
 // Time in h/c in which particles and room come together before the plane; steps between two looks,
 // and of how many looks the mean is that is told
 static constexpr double SETTLE = 50.0;
-// Part of the dynamic pressure of inflow that a given pressure answers, as usual (Esmaily Moghadam
-// et al. 2011, Comput. Mech. 48, 277)
-static constexpr double STEADY = 0.2;
-// Part of the velocity against the mean that the buffer takes: with all of it a vortex that leaves
-// brings in more and more
-static constexpr double COUNTER = 0.2;
 static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 // Spacing of what comes in: part of an error that a buffer's length of inflow mends; what a lattice
 // that is sheared or bent shows of one; and the range, where particles stay a fluid
@@ -797,6 +791,11 @@ void FixFSIInlet::find_places()
    one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the
    pressure, too.) The nodes are the same on all ranks. Terms that the fluid there cannot tell from
    lower ones are left out.
+   Where pressure is given the profile of the velocity is that of all the fluid in the zone before
+   the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi 2010,
+   Comput. Fluids 39, 553), and only its mean is that at the plane. A profile taken at the plane
+   keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes the
+   particle before it follows what it pushes.
 ------------------------------------------------------------------------- */
 
 template <class Visit> void FixFSIInlet::at_nodes(const double *x, double reach, Visit visit) const
@@ -883,6 +882,20 @@ void FixFSIInlet::fit_nodes(int nodes, int nmoment, int nfit, int nfields)
 
 /* ---------------------------------------------------------------------- */
 
+// f[0] times monomials of y: 1, x, xx, ...; 1, x, y, xx, xy, yy, ...; up to the fourth degree
+static void times_monomials(bool plane, const double *y, double *f)
+{
+  for (int degree = 1, k = 1, before = 0; degree <= 4; degree++) {
+    const int from = k;
+    for (; k - from < (plane ? degree : 1); k++) f[k] = f[before + k - from] * y[0];
+    if (plane) {
+      f[k] = f[from - 1] * y[1];
+      k++;
+    }
+    before = from;
+  }
+}
+
 void FixFSIInlet::measure()
 {
   const int dim = fix_fsi->dim, nodes = place_nodes();
@@ -923,28 +936,23 @@ void FixFSIInlet::measure()
         total[SECOND] += m * s * s;
         total[SLOPE] += m * q * s;
       }
-      if (s >= fix_fsi->cut) continue;
-      const double w = m * (1.0 - s / fix_fsi->cut);
+      const double near = std::max(0.0, 1.0 - s / fix_fsi->cut), w = m * near * near,
+                   in_zone = std::max(0.0, 1.0 - std::fabs(2.0 * s / zone() - 1.0));
       p -= atom->rho[i] * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * s;
       total[WEIGHT] += w;
       total[SPEED] += w * side * u;
-      total[DYNAMIC] += w * dynamic_pressure(state, u);
       total[MEAN_PRESSURE] += w * p;
       total[OVER_IMPEDANCE] += w * p / (state.rho0 * state.c);
-      at_nodes(x, std::sqrt(kernel.cutsq - s * s), [&](int node, const double *d) {
-        const double W =
-            kernel.W(std::sqrt(std::min(s * s + d[0] * d[0] + d[1] * d[1], kernel.cutsq)));
+      total[ZONE_WEIGHT] += m * in_zone;
+      total[ZONE_SPEED] += m * in_zone * side * u;
+      const double away = wants_pressure ? s : 0.0, share = wants_pressure ? 1.0 : in_zone;
+      if (away >= fix_fsi->cut || share == 0.0) continue;
+      at_nodes(x, std::sqrt(kernel.cutsq - away * away), [&](int node, const double *d) {
+        const double r = std::sqrt(std::min(away * away + d[0] * d[0] + d[1] * d[1], kernel.cutsq)),
+                     W = share * kernel.W(r);
         const double y[] = {d[0] / fix_fsi->dx, d[1] / fix_fsi->dx};
         double f[15] = {W};
-        for (int degree = 1, k = 1, before = 0; degree <= 4; degree++) {
-          const int from = k;
-          for (; k - from < (plane ? degree : 1); k++) f[k] = f[before + k - from] * y[0];
-          if (plane) {
-            f[k] = f[from - 1] * y[1];
-            k++;
-          }
-          before = from;
-        }
+        times_monomials(plane, y, f);
         if (wants_velocity && std::fabs(y[0]) <= NEXT && std::fabs(y[1]) <= NEXT) {
           bounds[2 * node] = std::max(bounds[2 * node], u);
           bounds[2 * node + 1] = std::max(bounds[2 * node + 1], -u);
@@ -1009,9 +1017,6 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
    plane: vortices that pass do not change it. A pressure that is given is that of the plane; along
    the buffer it goes on as the mean of the fluid does, or the fluid would be pushed by less than
    its gradient for as long as it sees the buffer. What is slower than sound through the box counts.
-   What is drawn in by a pressure has one total pressure all over the plane (no vorticity, by
-   Crocco's theorem), and the given one in the mean: with one static pressure each jet would keep
-   its shape, and bring more momentum than what it mixes to takes out.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::advance(bool advance)
@@ -1043,7 +1048,10 @@ void FixFSIInlet::advance(bool advance)
   } else
     has_before = false;
   wave *= std::exp(-rate * dt);
-  const double drawn = mean[SPEED] > 0.0 ? mean[DYNAMIC] / mean[WEIGHT] : 0.0;
+  const bool has_fluid = mean[WEIGHT] > 0.0;
+  const double lead = has_fluid && wants_velocity && !wants_pressure
+      ? mean[SPEED] / mean[WEIGHT] - mean[ZONE_SPEED] / mean[ZONE_WEIGHT]
+      : 0.0;    // of the plane's mean velocity over that of the zone
 
   if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
     error->warning(FLERR,
@@ -1061,9 +1069,8 @@ void FixFSIInlet::advance(bool advance)
     follow(i, place.inside);
     const State &state = fix_fsi->state[atom->type[i]];
     double values[2] = {0.0, 0.0};
-    place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
-    place.normal = values[0];
-    if (!wants_pressure && place.normal * side * mean[SPEED] < 0.0) place.normal *= COUNTER;
+    place.known = has_fluid && (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
+    place.normal = values[0] + side * lead;
     double p;
     if (wants_pressure)
       p = place.known ? values[wants_velocity] +
@@ -1072,8 +1079,6 @@ void FixFSIInlet::advance(bool advance)
     else
       p = (background ? state.p0 : value(PRESSURE, i)) + gradient * place.inside +
           state.rho0 * state.c * wave;
-    if (place.known && wants_velocity && !wants_pressure)
-      p += STEADY * (drawn - dynamic_pressure(state, place.normal));
     set_density(i, state.density(std::max(p, state.floor)));
   }
 }
