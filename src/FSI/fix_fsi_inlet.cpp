@@ -791,11 +791,11 @@ void FixFSIInlet::find_places()
    one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the
    pressure, too.) The nodes are the same on all ranks. Terms that the fluid there cannot tell from
    lower ones are left out.
-   Where pressure is given the profile of the velocity is that of all the fluid in the zone before
+   Where pressure is given the profile of the velocity is that of the fluid a buffer's length before
    the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi 2010,
    Comput. Fluids 39, 553), and only its mean is that at the plane. A profile taken at the plane
    keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes the
-   particle before it follows what it pushes.
+   particle before it follows what it pushes. (Half as far away some of it was left.)
 ------------------------------------------------------------------------- */
 
 template <class Visit> void FixFSIInlet::at_nodes(const double *x, double reach, Visit visit) const
@@ -937,19 +937,20 @@ void FixFSIInlet::measure()
         total[SLOPE] += m * q * s;
       }
       const double near = std::max(0.0, 1.0 - s / fix_fsi->cut), w = m * near * near,
-                   in_zone = std::max(0.0, 1.0 - std::fabs(2.0 * s / zone() - 1.0));
+                   from_inner = std::fabs(s - length),
+                   inner = m * std::max(0.0, 1.0 - from_inner / fix_fsi->cut);
       p -= atom->rho[i] * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * s;
       total[WEIGHT] += w;
       total[SPEED] += w * side * u;
       total[MEAN_PRESSURE] += w * p;
       total[OVER_IMPEDANCE] += w * p / (state.rho0 * state.c);
-      total[ZONE_WEIGHT] += m * in_zone;
-      total[ZONE_SPEED] += m * in_zone * side * u;
-      const double away = wants_pressure ? s : 0.0, share = wants_pressure ? 1.0 : in_zone;
-      if (away >= fix_fsi->cut || share == 0.0) continue;
+      total[INNER_WEIGHT] += inner;
+      total[INNER_SPEED] += inner * side * u;
+      const double away = wants_pressure ? s : from_inner;
+      if (away >= fix_fsi->cut) continue;
       at_nodes(x, std::sqrt(kernel.cutsq - away * away), [&](int node, const double *d) {
         const double r = std::sqrt(std::min(away * away + d[0] * d[0] + d[1] * d[1], kernel.cutsq)),
-                     W = share * kernel.W(r);
+                     W = kernel.W(r);
         const double y[] = {d[0] / fix_fsi->dx, d[1] / fix_fsi->dx};
         double f[15] = {W};
         times_monomials(plane, y, f);
@@ -1048,10 +1049,10 @@ void FixFSIInlet::advance(bool advance)
   } else
     has_before = false;
   wave *= std::exp(-rate * dt);
-  const bool has_fluid = mean[WEIGHT] > 0.0;
-  const double lead = has_fluid && wants_velocity && !wants_pressure
-      ? mean[SPEED] / mean[WEIGHT] - mean[ZONE_SPEED] / mean[ZONE_WEIGHT]
-      : 0.0;    // of the plane's mean velocity over that of the zone
+  const bool mapped = wants_velocity && !wants_pressure && mean[WEIGHT] > 0.0;
+  const double speed = mapped ? side * mean[SPEED] / mean[WEIGHT] : 0.0,
+               inner = mean[INNER_WEIGHT] > 0.0 ? side * mean[INNER_SPEED] / mean[INNER_WEIGHT]
+                                                : 0.0;
 
   if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
     error->warning(FLERR,
@@ -1069,8 +1070,12 @@ void FixFSIInlet::advance(bool advance)
     follow(i, place.inside);
     const State &state = fix_fsi->state[atom->type[i]];
     double values[2] = {0.0, 0.0};
-    place.known = has_fluid && (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
-    place.normal = values[0] + side * lead;
+    place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
+    place.normal = values[0];
+    if (mapped) {
+      place.normal += place.known ? speed - inner : speed;
+      place.known = true;
+    }
     double p;
     if (wants_pressure)
       p = place.known ? values[wants_velocity] +
@@ -1209,7 +1214,8 @@ void FixFSIInlet::keep_full()
   column = std::clamp(column + std::copysign(MEND * excess * inflow * dt / length, fill - 1.0),
                       NARROW, WIDE);
   const double rise = (fill - 1.0) * soft.c * dt / (SETTLE * fix_fsi->h);
-  if (rise == 0.0) return;
+  // what is dense where a pressure draws in would press the fluid on, and draw in more of itself
+  if (rise == 0.0 || (inflow > 0.0 && has_own_velocity() && !has_own_pressure())) return;
   for (const auto &place : places) {
     const int i = place.i;
     const double part = 1.0 - inside(atom->x[i]) / zone();

@@ -77,8 +77,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   enum {
     WEIGHT,
     SPEED,
-    ZONE_WEIGHT,
-    ZONE_SPEED,
+    INNER_WEIGHT,
+    INNER_SPEED,
     MEAN_PRESSURE,
     OVER_IMPEDANCE,
     MASS_FLOW,
