@@ -392,6 +392,24 @@ def test_fluid_that_has_no_room_is_told(tmp_path, density, said):
     assert (out.count(f"{said} than the fluid's density has room for") == 2) if said else "room for" not in out
 
 
+@pytest.mark.parametrize("U", [0.1, -0.1])
+def test_what_is_too_dense_is_not_pressed_in(U):
+    """A stream between two pressures with 3 % too much mass: within two buffer lengths, 10 dx, before the end where it leaves, densities
+    rise by (1 - s/10 dx) 0.03 c dt/50 h in a step, those before the other end do not: the pressure would draw in more."""
+    dx, c, dt = 0.1, 10.0, 1e-3
+    m = 1.03 * 1000 / Kernel("wendland", 2, 1.5 * dx).lattice_sum(dx, 2)
+    with open_box((30, 6), dx, 0, f"set group all mass {m}", "fix i all fsi/inlet xlo 0 pressure 6000", "fix o all fsi/outlet xhi 3 absorb 0",
+                  fluid="density/diffusion 0.1 background 6000", v=(U, 0, 0), dt=dt) as s:
+        go_on(s, 1)    # knows the velocity from now on
+        before = s.get("rho")
+        go_on(s, 1)
+        x, rise = s.get("x")[:, 0], s.get("rho") / before - 1
+        away = 3 - x if U > 0 else x
+        expected = np.clip(1 - away / (10 * dx), 0, 1) * 0.03 * c * dt / (50 * 1.5 * dx)
+        inside = (x > 3 * dx) & (x < 3 - 3 * dx)    # those that do not see a buffer, which the step before has left behind
+        assert np.abs(rise - expected)[inside].max() < 0.01 * expected[inside].max()
+
+
 # ---- the first fill of a buffer -------------------------------------------------------------------------------------
 
 STREAM = """pair_style fsi/fluid sound 10 tension yes background 500 density/diffusion 0.1
