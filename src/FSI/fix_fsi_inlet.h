@@ -77,7 +77,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   enum {
     WEIGHT,
     SPEED,
-    DYNAMIC,
+    INNER_WEIGHT,
+    INNER_SPEED,
     MEAN_PRESSURE,
     OVER_IMPEDANCE,
     MASS_FLOW,
@@ -155,11 +156,6 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   std::vector<int> find_occupied(std::vector<Copy> &copies, bool at_start);
   void fit_nodes(int nodes, int nmoment, int nfit, int nfields);
   double energy(int i) const;
-  double dynamic_pressure(const FSI::State &state, double u) const    // of what comes in
-  {
-    const double in = std::max(0.0, side * u);
-    return 0.5 * state.rho0 * in * in;
-  }
   struct Column {
     double at[2] = {};    // along the plane
   };
