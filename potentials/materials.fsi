@@ -87,3 +87,6 @@ foam             solid rho 678.0 young 4.87805e5 poisson 0.4
 # Ring in a fluid-filled annulus: solids4foam, test ringAddedMass; fluids of 14, 140 and 1400 kg/m^3 make an added mass of about 0.1, 1 and 10 times the ring's
 annulus_ring     solid rho 1000.0 young 1.0e6 poisson 0.3
 annulus_140      fluid rho 140.0
+
+# Folded strip (scene folded_strip): a soft rubber
+strip            solid rho 1000.0 young 1.0e6 poisson 0.3
