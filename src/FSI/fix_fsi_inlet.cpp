@@ -69,20 +69,19 @@ static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style),
-    outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
-    given(lmp, std::string("fix ") + style, NVALUES), background(false), length(0.0),
-    region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{}, filled(false),
-    wave(0.0), gradient(0.0), before(0.0), served(0.0), has_before(false), passed_in(0.0),
-    passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0),
-    last_buffer(-1.0), told{}, push_sum{}
+    outlet(who == "Fix fsi/outlet"), keywords(lmp, keywords_name()),
+    given(lmp, keywords_name(), NVALUES), background(false), length(0.0), region(nullptr),
+    fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{}, filled(false), wave(0.0),
+    gradient(0.0), before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0),
+    mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
-  if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
+  if (narg < 5) utils::missing_cmd_args(FLERR, keywords_name(), error);
   const std::string face = arg[3];
   if (face.size() != 3 || face[0] < 'x' || face[0] > 'z' ||
       (face.substr(1) != "lo" && face.substr(1) != "hi"))
     error->all(FLERR, "Unknown {} face {}: expected xlo, xhi, ylo, yhi, zlo or zhi",
-               std::string("fix ") + style, face);
+               keywords_name(), face);
   axis = face[0] - 'x';
   side = face[1] == 'l' ? 1.0 : -1.0;
   if (axis >= domain->dimension)
@@ -1024,11 +1023,11 @@ void FixFSIInlet::advance(bool advance)
 {
   if (neighbor->ago == 0) find_places();
   if (!advance) return;
-  keep_full();
   const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
   if (!given.name(PRESSURE).empty()) given.evaluate(zone_group, PRESSURE, 1);
   measure();
+  keep_full();    // knows the flow of now, after a restart, too
 
   double c = 0.0;
   for (const auto &s : fix_fsi->state)
@@ -1049,10 +1048,7 @@ void FixFSIInlet::advance(bool advance)
   } else
     has_before = false;
   wave *= std::exp(-rate * dt);
-  const bool mapped = wants_velocity && !wants_pressure && mean[WEIGHT] > 0.0;
-  const double speed = mapped ? side * mean[SPEED] / mean[WEIGHT] : 0.0,
-               inner = mean[INNER_WEIGHT] > 0.0 ? side * mean[INNER_SPEED] / mean[INNER_WEIGHT]
-                                                : 0.0;
+  const double speed = side * average(SPEED), inner = side * average(INNER_SPEED, INNER_WEIGHT);
 
   if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
     error->warning(FLERR,
@@ -1070,11 +1066,11 @@ void FixFSIInlet::advance(bool advance)
     follow(i, place.inside);
     const State &state = fix_fsi->state[atom->type[i]];
     double values[2] = {0.0, 0.0};
-    place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
+    place.known = at_plane(atom->x[i], values);
     place.normal = values[0];
-    if (mapped) {
+    if (!wants_pressure) {
       place.normal += place.known ? speed - inner : speed;
-      place.known = true;
+      place.known = mean[WEIGHT] > 0.0;
     }
     double p;
     if (wants_pressure)
@@ -1109,7 +1105,6 @@ void FixFSIInlet::check_supply()
   last_buffer = mean[BUFFER];
   if (has_own_velocity() || mean[BUFFER] >= STARVED * served) return;
   std::string why;
-  const double speed = mean[WEIGHT] > 0.0 ? mean[SPEED] / mean[WEIGHT] : 0.0;
   if (taken > 0.1 * served)
     why = fmt::format("{} were deleted, or have left group {}, between the runs", taken,
                       group->names[igroup]);
@@ -1120,7 +1115,7 @@ void FixFSIInlet::check_supply()
     why = fmt::format("The fluid does not follow the velocity that is given: within the kernel's "
                       "support it comes in with {:g} in the mean, so there is too little of it, or "
                       "what is given goes out where none is",
-                      speed);
+                      average(SPEED));
   error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. {}", who,
              id, served, "xyz"[axis], position, mean[BUFFER], why);
 }
@@ -1209,13 +1204,13 @@ void FixFSIInlet::keep_full()
   const State &soft = softest();
   if (soft.p0 <= 0.0 || fill == 0.0) return;
   const double dt = update->dt + fix_fsi->dt_offset;
-  const double inflow = mean[WEIGHT] > 0.0 ? std::max(0.0, mean[SPEED] / mean[WEIGHT]) : 0.0;
+  const double inflow = std::max(0.0, average(SPEED));
   const double excess = std::max(0.0, std::fabs(fill - 1.0) - DISORDER);
   column = std::clamp(column + std::copysign(MEND * excess * inflow * dt / length, fill - 1.0),
                       NARROW, WIDE);
   const double rise = (fill - 1.0) * soft.c * dt / (SETTLE * fix_fsi->h);
   // what is dense where a pressure draws in would press the fluid on, and draw in more of itself
-  if (rise == 0.0 || (inflow > 0.0 && has_own_velocity() && !has_own_pressure())) return;
+  if (rise == 0.0 || (inflow > 0.0 && !has_own_pressure())) return;
   for (const auto &place : places) {
     const int i = place.i;
     const double part = 1.0 - inside(atom->x[i]) / zone();
@@ -1277,7 +1272,7 @@ double FixFSIInlet::compute_vector(int n)
     case 4:
       return mean[VOLUME_FLOW];
     case 5:
-      return mean[WEIGHT] > 0.0 ? mean[MEAN_PRESSURE] / mean[WEIGHT] : 0.0;
+      return average(MEAN_PRESSURE);
     case 10:
       return mean_fill;
     case 0:

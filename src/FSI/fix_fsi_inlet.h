@@ -142,6 +142,10 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   } told;                // warnings of this run
   double push_sum[4];    // force on the buffer and its power, this rank's part
 
+  double average(int sum, int weight = WEIGHT) const    // at the plane; 0 where there is no fluid
+  {
+    return mean[weight] > 0.0 ? mean[sum] / mean[weight] : 0.0;
+  }
   double inside(const double *x) const { return side * (x[axis] - position); }
   // before the plane: where slope and room are looked at
   double zone() const { return 2.0 * length; }

@@ -159,13 +159,14 @@ def deck(start=ATOMS, ends="f f", newton="on", moving="all", materials="oil oil"
 OPEN = pytest.mark.parametrize("background", ["", " background 100"], ids=["", "density follows shifting"])
 
 
-@OPEN
-def test_restart_goes_on_bit_for_bit(tmp_path, background):
+@pytest.mark.parametrize("background, inlet", [("", INLET), (" background 100", INLET), (" background 100", "fix i all fsi/inlet xlo 0 pressure 3700")],
+                         ids=["", "density follows shifting", "drawn by a pressure"])
+def test_restart_goes_on_bit_for_bit(tmp_path, background, inlet):
     """And so do IDs, counts and the memory of what absorbs sound."""
     printed = "\nfix p all print 400 '$(f_i:%.17g) $(f_o:%.17g) $(f_o[2]) $(f_o[3]) $(f_o[6]:%.17g) $(f_i[6]:%.17g)' file {}.txt screen no\n"
     more = "compute e all fsi/energy"
-    whole = run(tmp_path, deck(more=more, background=background) + watch(every=400) + printed.format("whole") + "restart 200 mid.*\nrun 400\n", **FILES).frames()[-1]
-    rest = run(tmp_path, deck("read_restart mid.200", more=more, background=background) + watch("rest.dump", 400) + printed.format("rest") + "restart 200 other.*\nrun 200\n",
+    whole = run(tmp_path, deck(more=more, background=background, inlet=inlet) + watch(every=400) + printed.format("whole") + "restart 200 mid.*\nrun 400\n", **FILES).frames()[-1]
+    rest = run(tmp_path, deck("read_restart mid.200", more=more, background=background, inlet=inlet) + watch("rest.dump", 400) + printed.format("rest") + "restart 200 other.*\nrun 200\n",
                **FILES).frames("rest.dump")[-1]
     assert whole["id"].max() > 420    # some came in
     assert differing(whole, rest) == []
