@@ -83,3 +83,10 @@ copper           solid rho 8930.0 young 117.0e9 poisson 0.35 yield 400.0e6 harde
 # Foam of Luhar and Nepf, Limnol. Oceanogr. 56 (2011) 2003, as Tian, Dai, Luo, Doyle and Rousseau, J. Comput. Phys. 258 (2014) 451, have it:
 # E/(rho U^2) = 19054.9 with U = 0.16 m/s, which makes their Re 1600 with a width of 1 cm
 foam             solid rho 678.0 young 4.87805e5 poisson 0.4
+
+# Ring in a fluid-filled annulus: solids4foam, test ringAddedMass; fluids of 14, 140 and 1400 kg/m^3 make an added mass of about 0.1, 1 and 10 times the ring's
+annulus_ring     solid rho 1000.0 young 1.0e6 poisson 0.3
+annulus_140      fluid rho 140.0
+
+# Folded strip (scene folded_strip): a soft rubber
+strip            solid rho 1000.0 young 1.0e6 poisson 0.3

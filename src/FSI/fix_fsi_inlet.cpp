@@ -60,12 +60,6 @@ static constexpr double EXCESS = 0.02;       // of the mass near the plane that 
 // Time in h/c in which particles and room come together before the plane; steps between two looks,
 // and of how many looks the mean is that is told
 static constexpr double SETTLE = 50.0;
-// Part of the dynamic pressure of inflow that a given pressure answers, as usual (Esmaily Moghadam
-// et al. 2011, Comput. Mech. 48, 277)
-static constexpr double STEADY = 0.2;
-// Part of the velocity against the mean that the buffer takes: with all of it a vortex that leaves
-// brings in more and more
-static constexpr double COUNTER = 0.2;
 static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 // Spacing of what comes in: part of an error that a buffer's length of inflow mends; what a lattice
 // that is sheared or bent shows of one; and the range, where particles stay a fluid
@@ -75,20 +69,19 @@ static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style),
-    outlet(who == "Fix fsi/outlet"), keywords(lmp, std::string("fix ") + style),
-    given(lmp, std::string("fix ") + style, NVALUES), background(false), length(0.0),
-    region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{}, filled(false),
-    wave(0.0), gradient(0.0), before(0.0), served(0.0), has_before(false), passed_in(0.0),
-    passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0),
-    last_buffer(-1.0), told{}, push_sum{}
+    outlet(who == "Fix fsi/outlet"), keywords(lmp, keywords_name()),
+    given(lmp, keywords_name(), NVALUES), background(false), length(0.0), region(nullptr),
+    fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{}, filled(false), wave(0.0),
+    gradient(0.0), before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0),
+    mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
-  if (narg < 5) utils::missing_cmd_args(FLERR, std::string("fix ") + style, error);
+  if (narg < 5) utils::missing_cmd_args(FLERR, keywords_name(), error);
   const std::string face = arg[3];
   if (face.size() != 3 || face[0] < 'x' || face[0] > 'z' ||
       (face.substr(1) != "lo" && face.substr(1) != "hi"))
     error->all(FLERR, "Unknown {} face {}: expected xlo, xhi, ylo, yhi, zlo or zhi",
-               std::string("fix ") + style, face);
+               keywords_name(), face);
   axis = face[0] - 'x';
   side = face[1] == 'l' ? 1.0 : -1.0;
   if (axis >= domain->dimension)
@@ -797,6 +790,11 @@ void FixFSIInlet::find_places()
    one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the
    pressure, too.) The nodes are the same on all ranks. Terms that the fluid there cannot tell from
    lower ones are left out.
+   Where pressure is given the profile of the velocity is that of the fluid a buffer's length before
+   the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi 2010,
+   Comput. Fluids 39, 553), and only its mean is that at the plane. A profile taken at the plane
+   keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes the
+   particle before it follows what it pushes. (Half as far away some of it was left.)
 ------------------------------------------------------------------------- */
 
 template <class Visit> void FixFSIInlet::at_nodes(const double *x, double reach, Visit visit) const
@@ -883,6 +881,20 @@ void FixFSIInlet::fit_nodes(int nodes, int nmoment, int nfit, int nfields)
 
 /* ---------------------------------------------------------------------- */
 
+// f[0] times monomials of y: 1, x, xx, ...; 1, x, y, xx, xy, yy, ...; up to the fourth degree
+static void times_monomials(bool plane, const double *y, double *f)
+{
+  for (int degree = 1, k = 1, before = 0; degree <= 4; degree++) {
+    const int from = k;
+    for (; k - from < (plane ? degree : 1); k++) f[k] = f[before + k - from] * y[0];
+    if (plane) {
+      f[k] = f[from - 1] * y[1];
+      k++;
+    }
+    before = from;
+  }
+}
+
 void FixFSIInlet::measure()
 {
   const int dim = fix_fsi->dim, nodes = place_nodes();
@@ -923,28 +935,24 @@ void FixFSIInlet::measure()
         total[SECOND] += m * s * s;
         total[SLOPE] += m * q * s;
       }
-      if (s >= fix_fsi->cut) continue;
-      const double w = m * (1.0 - s / fix_fsi->cut);
+      const double near = std::max(0.0, 1.0 - s / fix_fsi->cut), w = m * near * near,
+                   from_inner = std::fabs(s - length),
+                   inner = m * std::max(0.0, 1.0 - from_inner / fix_fsi->cut);
       p -= atom->rho[i] * fix_fsi->body_forces.of_type[atom->type[i]][axis] * side * s;
       total[WEIGHT] += w;
       total[SPEED] += w * side * u;
-      total[DYNAMIC] += w * dynamic_pressure(state, u);
       total[MEAN_PRESSURE] += w * p;
       total[OVER_IMPEDANCE] += w * p / (state.rho0 * state.c);
-      at_nodes(x, std::sqrt(kernel.cutsq - s * s), [&](int node, const double *d) {
-        const double W =
-            kernel.W(std::sqrt(std::min(s * s + d[0] * d[0] + d[1] * d[1], kernel.cutsq)));
+      total[INNER_WEIGHT] += inner;
+      total[INNER_SPEED] += inner * side * u;
+      const double away = wants_pressure ? s : from_inner;
+      if (away >= fix_fsi->cut) continue;
+      at_nodes(x, std::sqrt(kernel.cutsq - away * away), [&](int node, const double *d) {
+        const double r = std::sqrt(std::min(away * away + d[0] * d[0] + d[1] * d[1], kernel.cutsq)),
+                     W = kernel.W(r);
         const double y[] = {d[0] / fix_fsi->dx, d[1] / fix_fsi->dx};
         double f[15] = {W};
-        for (int degree = 1, k = 1, before = 0; degree <= 4; degree++) {
-          const int from = k;
-          for (; k - from < (plane ? degree : 1); k++) f[k] = f[before + k - from] * y[0];
-          if (plane) {
-            f[k] = f[from - 1] * y[1];
-            k++;
-          }
-          before = from;
-        }
+        times_monomials(plane, y, f);
         if (wants_velocity && std::fabs(y[0]) <= NEXT && std::fabs(y[1]) <= NEXT) {
           bounds[2 * node] = std::max(bounds[2 * node], u);
           bounds[2 * node + 1] = std::max(bounds[2 * node + 1], -u);
@@ -1009,20 +1017,17 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
    plane: vortices that pass do not change it. A pressure that is given is that of the plane; along
    the buffer it goes on as the mean of the fluid does, or the fluid would be pushed by less than
    its gradient for as long as it sees the buffer. What is slower than sound through the box counts.
-   What is drawn in by a pressure has one total pressure all over the plane (no vorticity, by
-   Crocco's theorem), and the given one in the mean: with one static pressure each jet would keep
-   its shape, and bring more momentum than what it mixes to takes out.
 ------------------------------------------------------------------------- */
 
 void FixFSIInlet::advance(bool advance)
 {
   if (neighbor->ago == 0) find_places();
   if (!advance) return;
-  keep_full();
   const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
   if (!given.name(PRESSURE).empty()) given.evaluate(zone_group, PRESSURE, 1);
   measure();
+  keep_full();    // knows the flow of now, after a restart, too
 
   double c = 0.0;
   for (const auto &s : fix_fsi->state)
@@ -1043,7 +1048,7 @@ void FixFSIInlet::advance(bool advance)
   } else
     has_before = false;
   wave *= std::exp(-rate * dt);
-  const double drawn = mean[SPEED] > 0.0 ? mean[DYNAMIC] / mean[WEIGHT] : 0.0;
+  const double speed = side * average(SPEED), inner = side * average(INNER_SPEED, INNER_WEIGHT);
 
   if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
     error->warning(FLERR,
@@ -1061,9 +1066,12 @@ void FixFSIInlet::advance(bool advance)
     follow(i, place.inside);
     const State &state = fix_fsi->state[atom->type[i]];
     double values[2] = {0.0, 0.0};
-    place.known = (wants_velocity || wants_pressure) && at_plane(atom->x[i], values);
+    place.known = at_plane(atom->x[i], values);
     place.normal = values[0];
-    if (!wants_pressure && place.normal * side * mean[SPEED] < 0.0) place.normal *= COUNTER;
+    if (!wants_pressure) {
+      place.normal += place.known ? speed - inner : speed;
+      place.known = mean[WEIGHT] > 0.0;
+    }
     double p;
     if (wants_pressure)
       p = place.known ? values[wants_velocity] +
@@ -1072,8 +1080,6 @@ void FixFSIInlet::advance(bool advance)
     else
       p = (background ? state.p0 : value(PRESSURE, i)) + gradient * place.inside +
           state.rho0 * state.c * wave;
-    if (place.known && wants_velocity && !wants_pressure)
-      p += STEADY * (drawn - dynamic_pressure(state, place.normal));
     set_density(i, state.density(std::max(p, state.floor)));
   }
 }
@@ -1099,7 +1105,6 @@ void FixFSIInlet::check_supply()
   last_buffer = mean[BUFFER];
   if (has_own_velocity() || mean[BUFFER] >= STARVED * served) return;
   std::string why;
-  const double speed = mean[WEIGHT] > 0.0 ? mean[SPEED] / mean[WEIGHT] : 0.0;
   if (taken > 0.1 * served)
     why = fmt::format("{} were deleted, or have left group {}, between the runs", taken,
                       group->names[igroup]);
@@ -1110,7 +1115,7 @@ void FixFSIInlet::check_supply()
     why = fmt::format("The fluid does not follow the velocity that is given: within the kernel's "
                       "support it comes in with {:g} in the mean, so there is too little of it, or "
                       "what is given goes out where none is",
-                      speed);
+                      average(SPEED));
   error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. {}", who,
              id, served, "xyz"[axis], position, mean[BUFFER], why);
 }
@@ -1199,12 +1204,13 @@ void FixFSIInlet::keep_full()
   const State &soft = softest();
   if (soft.p0 <= 0.0 || fill == 0.0) return;
   const double dt = update->dt + fix_fsi->dt_offset;
-  const double inflow = mean[WEIGHT] > 0.0 ? std::max(0.0, mean[SPEED] / mean[WEIGHT]) : 0.0;
+  const double inflow = std::max(0.0, average(SPEED));
   const double excess = std::max(0.0, std::fabs(fill - 1.0) - DISORDER);
   column = std::clamp(column + std::copysign(MEND * excess * inflow * dt / length, fill - 1.0),
                       NARROW, WIDE);
   const double rise = (fill - 1.0) * soft.c * dt / (SETTLE * fix_fsi->h);
-  if (rise == 0.0) return;
+  // what is dense where a pressure draws in would press the fluid on, and draw in more of itself
+  if (rise == 0.0 || (inflow > 0.0 && !has_own_pressure())) return;
   for (const auto &place : places) {
     const int i = place.i;
     const double part = 1.0 - inside(atom->x[i]) / zone();
@@ -1266,7 +1272,7 @@ double FixFSIInlet::compute_vector(int n)
     case 4:
       return mean[VOLUME_FLOW];
     case 5:
-      return mean[WEIGHT] > 0.0 ? mean[MEAN_PRESSURE] / mean[WEIGHT] : 0.0;
+      return average(MEAN_PRESSURE);
     case 10:
       return mean_fill;
     case 0:

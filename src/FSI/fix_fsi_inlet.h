@@ -77,7 +77,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   enum {
     WEIGHT,
     SPEED,
-    DYNAMIC,
+    INNER_WEIGHT,
+    INNER_SPEED,
     MEAN_PRESSURE,
     OVER_IMPEDANCE,
     MASS_FLOW,
@@ -141,6 +142,10 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   } told;                // warnings of this run
   double push_sum[4];    // force on the buffer and its power, this rank's part
 
+  double average(int sum, int weight = WEIGHT) const    // at the plane; 0 where there is no fluid
+  {
+    return mean[weight] > 0.0 ? mean[sum] / mean[weight] : 0.0;
+  }
   double inside(const double *x) const { return side * (x[axis] - position); }
   // before the plane: where slope and room are looked at
   double zone() const { return 2.0 * length; }
@@ -155,11 +160,6 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   std::vector<int> find_occupied(std::vector<Copy> &copies, bool at_start);
   void fit_nodes(int nodes, int nmoment, int nfit, int nfields);
   double energy(int i) const;
-  double dynamic_pressure(const FSI::State &state, double u) const    // of what comes in
-  {
-    const double in = std::max(0.0, side * u);
-    return 0.5 * state.rho0 * in * in;
-  }
   struct Column {
     double at[2] = {};    // along the plane
   };

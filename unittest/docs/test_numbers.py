@@ -133,6 +133,21 @@ SCENES = [
      lambda scene, coarse, fine: figures(scene, coarse) + mixed(scene, fine), ["lift_amplitude_fsi3_2", "lift_amplitude_fsi3_4"]),
     ("twisting_column", "top | {} turns", sizes, ["largest_twist"]),
     ("twisting_column", "over the first | {} |", sizes, ["twist_the_other_way"]),
+    *((("vortex_induced", f"| {u} | {{}} (-{{}} %) | {{}} (-{{}} %) |", mixed, [f"amplitude_{u}_8", f"amplitude_{u}_12"])) for u in (4, 6)),
+    *((("vortex_induced", f"| {u} | {{}} (-{{}} %) | - |", mixed, [f"amplitude_{u}_8"])) for u in (5, 7)),
+    *((("vortex_induced", f"| {u} | {{}} (", sizes, [f"amplitude_{u}_8"])) for u in (3, 8)),
+    ("vortex_induced", "{} D and {} D in the last two spans", sizes, ["amplitude_8_8", "amplitude_before_8_8"]),
+    *((("wedge_entry", f"{beta} degrees | force / (rho V^3 t) | {{}} | {{}} | {{}} (-{{}} %)",
+        lambda scene, *names: sizes(scene, *names[:2]) + mixed(scene, names[2]), [f"force_{beta}_{n}" for n in (16, 25, 50)])) for beta in (30, 40)),
+    *((("wedge_entry", f"| {{}} | {{}} | {{}} (-{{}} %) | {reference} |",
+        lambda scene, *names: sizes(scene, *names[:2]) + mixed(scene, names[2]), [f"peak_pressure_{beta}_{n}" for n in (16, 25, 50)]))
+      for beta, reference in ((30, "6.927"), (40, "3.266"))),
+    ("wedge_entry", "standard deviation) | {} % | {} % | {} %", figures, [f"force_scatter_30_{n}" for n in (16, 25, 50)]),
+    ("wedge_entry", "as above | -{} % | {} %", figures, ["force_30_25", "force_scatter_30_25"]),
+    ("wedge_entry", "water's lattice | +{} % | {} %", figures, ["force_30_25_lattice", "force_scatter_30_25_lattice"]),
+    ("wedge_entry", "the default | -{} % | {} %", figures, ["force_30_25_guard_0.9", "force_scatter_30_25_guard_0.9"]),
+    ("wedge_entry", "viscosity 0.02 | -{} % | {} %", figures, ["force_30_25_alpha_0.02", "force_scatter_30_25_alpha_0.02"]),
+    ("wedge_entry", "120 particles over half of the width | {} % | {} %", figures, ["velocity_error_experiment_free_120", "velocity_error_code_free_120"]),
 ]
 QUOTED += [(f"examples/{scene}/README.md", words, partial(kind, scene, *names)) for scene, words, kind, names in SCENES]
 

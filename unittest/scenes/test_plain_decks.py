@@ -19,10 +19,10 @@ LONG = {"gate_static": 60, "rolling_tank": 57, "turek_hron_fsi": 56}
 # no if, jump, label, next, print, quit, shell
 PLAIN_COMMANDS = {
     "atom_style", "boundary", "comm_modify", "compute", "create_atoms", "create_box",
-    "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/set", "group",
-    "include", "lattice", "neigh_modify", "neighbor", "pair_coeff", "pair_style", "region", "run",
-    "set", "thermo", "thermo_modify", "thermo_style", "timestep", "unfix", "units", "variable",
-    "velocity"}
+    "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/material",
+    "fsi/set", "group", "include", "lattice", "neigh_modify", "neighbor", "pair_coeff",
+    "pair_style", "region", "run", "set", "thermo", "thermo_modify", "thermo_style", "timestep",
+    "unfix", "units", "variable", "velocity"}
 DEFAULTS = ("newton on", "comm_modify mode single", "neigh_modify every 1 delay 0 check yes")
 ORDER = ("units", "atom_style", "create_box", "lattice", "create_atoms", "pair_style", "pair_coeff",
          "fix 1 ", "thermo_style", "dump 1 ", "run")
@@ -40,9 +40,9 @@ GIVEN = {
 # of those with many particles; else 100
 STEPS = {"cylinder_channel": 50, "cylinder_free": 10, "dam_break": 30, "dam_break_3d": 10,
          "dam_break_elastic": 3, "elastic_gate": 30, "flexible_plate": 3, "hydrostatic_plate": 10,
-         "open_channel": 50, "rolling_tank": 10, "taylor_bar": 30, "turek_hron_fsi": 50}
+         "open_channel": 50, "ring_annulus": 10, "rolling_tank": 10, "taylor_bar": 30, "turek_hron_fsi": 50}
 # what fix fsi warns of, in these decks alone
-ADVICE = {"flexible_plate": "2 particles across", "submerged_plate": "see each other"}
+ADVICE = {"flexible_plate": "2 particles across", "ring_annulus": "speed of sound 20", "submerged_plate": "see each other"}
 STATE = "id xu yu zu vx vy vz modify format float %.17g"
 
 
