@@ -147,10 +147,15 @@ def own_deck(path, vary, measure, given):
             methods[f"{name} {choice}"] = {**first, name: choice}
     words = "".join(f" --vary {n}={','.join(map(str, v))}" for n, v in vary.items())
     return {
-        "title": path.stem if path.stem != "in" else path.name, "figure": measure, "label": f"error of {measure}",
+        "title": path.name, "figure": measure, "label": f"error of {measure}",
         "reference": None, "resolution": {"variable": variable, "finer": "up" if whole else "down", "text": variable},
         "common": given, "methods": {n: {"settings": s, "at": values} for n, s in methods.items()},
         "command": f"tools/cost {path.name}{words} --measure {measure}" + "".join(f" {k}={v}" for k, v in given.items())}
+
+
+def name_of(deck):
+    """Its name without what says that it is a deck: in.flap and flap.in are flap."""
+    return deck.name.removeprefix("in.") if deck.name.startswith("in.") else deck.stem
 
 
 def parse(arguments):
@@ -195,7 +200,7 @@ def main(arguments):
         if not vary or not measure:
             raise Refusal("a deck of your own needs --vary NAME=V1,V2,V3 (the resolution first) and --measure NAME")
         definition = own_deck(deck_path, vary, measure, given)
-        name, measure = deck_path.stem if deck_path.suffix else deck_path.name.removeprefix("in."), printed(measure)
+        name, measure = name_of(deck_path), printed(measure)
         beside = deck_path.resolve().parent.iterdir()
         files = [p for p in beside if p.is_file() and p.name not in ("log.lammps", deck_path.name)]
     folder = Path(options["out"]).resolve() if "out" in options else paths.RESULTS / "cost" / name

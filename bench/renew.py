@@ -109,6 +109,8 @@ def texts():
               evidence.HARD / "README.md": hard_pages.hard_page(), evidence.HARD / "robustness.md": hard_pages.robustness_page(),
               paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page()}
     readme = paths.ROOT / "README.md"
+    ran = {paths.EXAMPLES / name / "README.md": found["scenes"].get(name, {}).get("summary") for name in paths.examples()}
+    pages |= {path: results.run_times(path.read_text(), path.parent.name, summary) for path, summary in ran.items() if summary}
     return pages | {readme: results.readme(readme.read_text(), found)}
 
 

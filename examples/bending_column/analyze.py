@@ -37,20 +37,8 @@ def add(summary, column, suffix=""):
 def picture_column(path, frames, spacing):
     """The column from the side, coloured by von Mises stress."""
     top = 1e-6 * np.percentile(np.concatenate([frame["vonmises"] for frame in frames]), 99.5)
-    low, high = (-3.2, 4.2), (-0.7, 6.6)
-    with plot.picture(path, 8.6, 2.4) as figure:
-        axes = figure.subplots(1, len(frames), sharey=True, squeeze=False).ravel()
-        figure.subplots_adjust(left=0.06, right=0.9, bottom=0.18, top=0.9, wspace=0.08)
-        side = 1.25 * spacing / (high[1] - low[0]) * 8.6 * 0.84 / len(frames) * 72.0
-        for panel, frame in zip(axes, frames):
-            order = np.argsort(frame["z"])
-            drawn = panel.scatter(frame["x"][order], frame["y"][order], s=side**2, c=1e-6 * frame["vonmises"][order], marker="s",
-                                  linewidths=0, cmap=plot.SOLID_COLOURS, vmin=0.0, vmax=max(top, 1e-9))
-            panel.set(xlim=low, ylim=high, aspect="equal", xlabel="x [m]")
-            panel.set_title(f"t = {frame.time:.2f} s", loc="left", pad=3)
-            panel.grid(False)
-        axes[0].set_ylabel("y [m]")
-        figure.colorbar(drawn, cax=figure.add_axes((0.915, 0.18, 0.013, 0.72)), label="von Mises [MPa]", extend="max")
+    plot.clouds(path, [(f"t = {f.time:.2f} s", f["x"], f["y"], 1e-6 * f["vonmises"], f["z"]) for f in frames], spacing,
+                ((-3.2, 4.2), (-0.7, 6.6)), "von Mises stress [MPa]", (0.0, max(top, 1e-9)), panel_width=1.7, colours=plot.SOLID_COLOURS)
 
 
 def picture_top(path, runs):

@@ -79,23 +79,8 @@ def main(folder):
 def picture_rings(path, frames, spacing):
     """The rings, coloured by von Mises stress. Times are too short for the titles of plot.snapshots."""
     top = 1e-6 * np.percentile(np.concatenate([frame["vonmises"] for frame in frames]), 99.5)
-    limits = ((-0.125, 0.125), (-0.062, 0.062))
-    with plot.picture(path, 7.4, 4.2) as figure:
-        axes = figure.subplots(2, 2, sharex=True, sharey=True, squeeze=False).ravel()
-        figure.subplots_adjust(left=0.09, right=0.86, bottom=0.11, top=0.95, hspace=0.18, wspace=0.06)
-        side = 1.25 * spacing / 0.25 * 0.36 * 7.4 * 72.0
-        for panel, frame in zip(axes, frames):
-            drawn = panel.scatter(1e2 * frame["x"], 1e2 * frame["y"], s=side**2, c=1e-6 * frame["vonmises"], marker="s", linewidths=0,
-                                  cmap=plot.SOLID_COLOURS, vmin=0.0, vmax=max(top, 1e-9))
-            panel.set(xlim=1e2 * np.array(limits[0]), ylim=1e2 * np.array(limits[1]), aspect="equal")
-            panel.set_title(f"t = {1e3 * frame.time:.1f} ms", loc="left", pad=3)
-            panel.grid(False)
-        for panel in axes[2:]:
-            panel.set_xlabel("x [cm]")
-        for panel in axes[::2]:
-            panel.set_ylabel("y [cm]")
-        bar = figure.add_axes((0.885, 0.11, 0.02, 0.84))
-        figure.colorbar(drawn, cax=bar, label="von Mises stress [MPa]", extend="max")
+    plot.clouds(path, [(f"t = {1e3 * f.time:.1f} ms", 1e2 * f["x"], 1e2 * f["y"], 1e-6 * f["vonmises"]) for f in frames], 1e2 * spacing,
+                ((-12.5, 12.5), (-6.2, 6.2)), "von Mises stress [MPa]", (0.0, max(top, 1e-9)), ("x [cm]", "y [cm]"), 3.0, plot.SOLID_COLOURS, columns=2)
 
 
 def study(folder, cases):

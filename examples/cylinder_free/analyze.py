@@ -72,8 +72,8 @@ def main(folder):
     last = dump.read(folder / "particles.dump")[-1].of_types(1)
     spin = geometry.vorticity(*(last[name] for name in ("x", "y", "vx", "vy")), 2.5 * values["dx"]) * DIAMETER / values["velocity"]
     x, y = last["x"] / DIAMETER, last["y"] / DIAMETER
-    plot.clouds(folder / "vorticity.png", [(f"t U/D = {last.time * values['velocity'] / DIAMETER:.0f}", x, y, np.clip(spin, -3, 3))],
-                values["dx"] / DIAMETER, ((x.min(), x.max()), (-4, 4)), "vorticity D/U", axis_labels=("x/D", "y/D"), panel_width=7.0, colours="RdBu_r")
+    plot.clouds(folder / "vorticity.png", [(f"t U/D = {last.time * values['velocity'] / DIAMETER:.0f}", x, y, spin)],
+                values["dx"] / DIAMETER, ((x.min(), x.max()), (-4, 4)), "vorticity D/U", (-3.0, 3.0), axis_labels=("x/D", "y/D"), panel_width=7.0, colours="RdBu_r")
     return summary.write()
 
 

@@ -54,45 +54,35 @@ def count_leaks(frames, tank, log):
     return leaks.count(log)
 
 
-def project(points):
-    """Points (n, 3) in the plane of the picture: parallel projection, seen from above the near side wall."""
-    return points[:, 0] + SLANT[0] * points[:, 1], points[:, 2] + SLANT[1] * points[:, 1]
+def box(tank):
+    """(points, brightness) of the box's front, top and near side."""
+    step = 0.4 * tank["dx"]
+    a, b, s, h = (tank[k] for k in ("face", "back", "side", "top"))
+    x, y, z = (np.arange(low + 0.5 * step, high, step) for low, high in ((a, b), (-s, s), (0.0, h)))
+    faces = [(np.meshgrid([a], y, z), 0.55), (np.meshgrid(x, y, [h]), 0.82), (np.meshgrid(x, [-s], z), 0.68)]
+    return np.concatenate([np.column_stack([c.ravel() for c in face]) for face, _ in faces]), np.repeat([light for _, light in faces], [face[0].size for face, _ in faces])
 
 
 def picture(path, frames, tank):
-    """The whole tank at several times, both halves; water coloured by its speed, the box grey."""
-    columns, rows = 3, -(-len(frames) // 3)
+    """The whole tank at several times, both halves, in parallel projection from above the near side wall; water coloured by its speed, the box gray."""
+    columns, rows = min(3, len(frames)), -(-len(frames) // 3)
     speeds = [np.linalg.norm(f.vector(("vx", "vy", "vz")), axis=1) for f in frames]
     norm = Normalize(0.0, float(np.percentile(np.concatenate(speeds), 99.5)))
-    a, b, s, h = (tank[k] for k in ("face", "back", "side", "top"))
-    faces = [(((a, -s, 0), (a, s, 0), (a, s, h), (a, -s, h)), "#8c8c8c"),
-             (((a, -s, h), (b, -s, h), (b, s, h), (a, s, h)), "#cfcfcf"),
-             (((a, -s, 0), (b, -s, 0), (b, -s, h), (a, -s, h)), "#adadad")]
-    w, length = tank["half"], tank["length"]
-    floor = np.array([(0, -w, 0), (length, -w, 0), (length, w, 0), (0, w, 0), (0, -w, 0)])
-    side = 1.2 * tank["dx"] * 3.0 * 72.0 / 4.0  # points: the panels are 3 inch and 4 m wide
-    with plot.picture(path, 9.9, 0.55 + 1.3 * rows) as figure:
-        axes = np.atleast_1d(figure.subplots(rows, columns)).ravel()
-        for k, panel in enumerate(axes):
-            panel.axis("off")
-            panel.set(xlim=(-0.25, length + 0.25), ylim=(-0.2, 1.0), aspect="equal")
-            if k >= len(frames):
-                continue
-            frame, speed = frames[k], speeds[k]
-            points = np.concatenate([frame.vector(), frame.vector() * (1, -1, 1)])
-            speed = np.concatenate([speed, speed])
-            order = np.argsort(-points[:, 1] + 1e-3 * points[:, 2], kind="stable")  # from the far side to the near one
-            points, speed = points[order], speed[order]
-            behind = (points[:, 1] > s) | ((points[:, 0] > b) & (points[:, 1] > -s))
-            panel.plot(*project(floor), color="#999999", linewidth=0.7, zorder=0)
-            for which, level in ((behind, 1), (~behind, 3)):
-                panel.scatter(*project(points[which]), s=side**2, c=speed[which], marker="s", linewidths=0, cmap="viridis",
-                              norm=norm, zorder=level, rasterized=True)
-            for corners, colour in faces:
-                panel.fill(*project(np.array(corners)), color=colour, zorder=2)
-            panel.set_title(f"t = {frame.time:.2f} s", loc="left", pad=-2)
-        figure.subplots_adjust(left=0.01, right=0.91, bottom=0.01, top=0.93, wspace=0.02, hspace=0.12)
-        bar = figure.add_axes((0.925, 0.15, 0.013, 0.7))
+    block, light = box(tank)
+    limits = (-0.25, tank["length"] + 0.25), (-0.3, 1.0)
+    width, height = 3.0, 3.0 * 1.3 / (tank["length"] + 0.5)
+    whole = columns * width + 0.9, rows * (height + 0.2)
+    with plot.picture(path, *whole) as figure:
+        for k, (frame, speed) in enumerate(zip(frames, speeds)):
+            row, column = divmod(k, columns)
+            axes = figure.add_axes((column * width / whole[0], (rows - 1 - row) * (height + 0.2) / whole[1], width / whole[0], height / whole[1]))
+            points = np.concatenate([frame.vector(), frame.vector() * (1, -1, 1), block])
+            colours = np.concatenate([*2 * [plot.matplotlib.colormaps["viridis"](norm(speed))], np.repeat(light[:, None], 3, 1) @ np.eye(3, 4) + (0, 0, 0, 1)])
+            size = np.repeat([tank["dx"], 0.5 * tank["dx"]], [2 * len(speed), len(light)])
+            plot.field(axes, points[:, 0] + SLANT[0] * points[:, 1], points[:, 2] + SLANT[1] * points[:, 1], size, colours, limits, -points[:, 1])
+            axes.axis("off")
+            axes.set_title(f"t = {frame.time:.2f} s", loc="left", pad=-2)
+        bar = figure.add_axes((columns * width / whole[0] + 0.01, 0.15, 0.013, 0.7))
         figure.colorbar(ScalarMappable(norm, "viridis"), cax=bar, label="speed [m/s]", extend="max")
 
 
@@ -105,7 +95,7 @@ def main(folder):
     measured = series.read(HERE / "experiment.csv")
     times = history.time * np.sqrt(tank["g"] / tank["H"])
 
-    curves, points = [], []
+    panels = []
     for gauge, colour in GAUGES.items():
         mine = history[f"P{gauge}"]
         of_gauge = measured["gauge"] == gauge
@@ -113,10 +103,9 @@ def main(folder):
         summary.add(f"P{gauge}_arrival", first_above(times, mine, 0.3), "sqrt(H/g)", first_above(when, pressure, 0.3), EXPERIMENT)
         summary.add(f"P{gauge}_peak", float(mine.max()), "rho g H", float(pressure.max()), EXPERIMENT)
         summary.add(f"P{gauge}_steady", mean(times, mine, STEADY), "rho g H", mean(when, pressure, STEADY), EXPERIMENT)
-        curves.append((times, mine, f"P{gauge}, this run", colour))
-        points.append((when, pressure, f"P{gauge}, experiment", colour))
-    plot.lines(folder / "gauges.png", "t sqrt(g/H)", "p/(rho g H) on the box", curves,
-               [(when[when <= times[-1]], p[when <= times[-1]], label, colour) for when, p, label, colour in points])
+        shown = when <= times[-1]
+        panels.append((f"p/(rho g H) at P{gauge}", [(times, mine, "computed", colour)], [(when[shown], pressure[shown], "experiment", plot.GREY)], ()))
+    plot.noisy(folder / "gauges.png", "t sqrt(g/H)", panels, 0.2)
 
     frames = dump.read(folder / "particles.dump")
     summary.add("particles_leaked", count_leaks(frames, tank, summary.log))

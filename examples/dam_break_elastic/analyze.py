@@ -202,6 +202,9 @@ def study(folder, runs):
     if "plate" in found:
         add_motion(summary, *found["plate"])
         shutil.copyfile(Path(runs["plate"]) / "snapshots.png", folder / "snapshots.png")
+    if "plate" in found and "plate_coarse_water" in found:
+        coarse, fine = (1e3 * found[case][0].peak("tip_x")[0] for case in ("plate_coarse_water", "plate"))
+        summary.add("coarse_water_tip_x_peak", coarse, "mm", fine, "our own run with one spacing")
     if "full_width" in found and "section" in found:
         full, section = found["full_width"][0], found["section"][0]
         for name, unit, factor in (("peak", "mm", 1e3), ("peak_time", "s", 1.0)):

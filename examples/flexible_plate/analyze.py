@@ -86,28 +86,30 @@ def add(summary, folder, suffix="", target=None):
 
 
 def picture_plate(path, frame, values):
-    """The plate with its von Mises stress, and the water's speed in the plane of its middle and near the floor behind it: parallel projection."""
+    """The plate with its von Mises stress, and the water's speed in a layer behind its middle and near the floor: parallel projection."""
     b, speed = values["breadth"], np.linalg.norm(frame.vector(("vx", "vy", "vz")), axis=1) / values["velocity"]
     points, spacing = frame.vector("xyz") / b, values["dx"]
     water = frame["type"] == WATER
     plate = ~water & (points[:, 2] > 0.0)
-    across = np.array([0.35, 0.28])    # of y, in the picture: it goes away from the eye
-    flat = points[:, [0, 2]] + points[:, 1:2] * across
-    back = water & (points[:, 1] > 0.0) & (points[:, 1] < 1.01 * spacing)    # the plane behind the plate's middle
-    floor = water & (points[:, 2] < 1.01 * spacing) & (abs(points[:, 1]) < SHOWN)
-    norms = Normalize(0.0, 1.5), Normalize(0.0, 1e-3 * max(np.percentile(frame["vonmises"][plate], 99.5), 1e-9) if plate.any() else 1.0)
-    with plot.picture(path, 7.2, 4.6) as figure:
-        axes = figure.add_axes((0.01, 0.01, 0.78, 0.93))
-        width, dots = points[:, 0].max() - points[:, 0].min() + 2 * across[0] * SHOWN, 7.2 * 0.78 * 72.0
-        for which, size, value, norm, colours in ((floor, spacing, speed, norms[0], plot.FLUID_COLOURS), (back, spacing, speed, norms[0], plot.FLUID_COLOURS),
-                                                  (plate, 0.2 / values["across"], 1e-3 * frame["vonmises"], norms[1], plot.SOLID_COLOURS)):
-            order = np.flatnonzero(which)[np.argsort(-points[which, 1], kind="stable")]
-            axes.scatter(*flat[order].T, s=(1.15 * size * dots / width)**2, c=value[order], marker="s", linewidths=0, cmap=colours, norm=norm, rasterized=True)
-        axes.set(aspect="equal")
+    flat = points[:, [0, 2]] + points[:, 1:2] * (0.35, 0.28)    # y goes away from the eye
+    # layers of some spacings, so that what stands behind shows where particles are apart
+    back = water & (points[:, 1] > 0.0) & (points[:, 1] < 3.01 * spacing)
+    floor = water & (points[:, 2] < 2.01 * spacing) & (abs(points[:, 1]) < SHOWN)
+    stress = 1e-3 * frame["vonmises"]
+    norms = Normalize(0.0, 1.5), Normalize(0.0, max(np.percentile(stress[plate], 99.5), 1e-9) if plate.any() else 1.0)
+    colours = [plot.matplotlib.colormaps[name] for name in (plot.FLUID_COLOURS, plot.SOLID_COLOURS)]
+    shown = back | floor | plate
+    rgba = np.where(plate[shown, None], colours[1](norms[1](stress[shown])), colours[0](norms[0](speed[shown])))
+    limits = [(flat[shown, k].min() - spacing, flat[shown, k].max() + spacing) for k in (0, 1)]
+    width = 5.6
+    height = width * np.ptp(limits[1]) / np.ptp(limits[0])
+    with plot.picture(path, width + 1.5, height + 0.3) as figure:
+        axes = figure.add_axes((0.01, 0.01, width / (width + 1.5), height / (height + 0.3)))
+        plot.field(axes, *flat[shown].T, np.where(plate, 0.2 / values["across"], spacing)[shown], rgba, limits, -points[shown, 1])
         axes.axis("off")
         axes.set_title(f"t U/b = {frame.time * values['velocity'] / b:.1f}", loc="left", pad=3)
-        for norm, colours, bottom, label in ((norms[0], plot.FLUID_COLOURS, 0.54, "speed of the water, over U"), (norms[1], plot.SOLID_COLOURS, 0.06, "von Mises stress [kPa]")):
-            figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_axes((0.83, bottom, 0.02, 0.38)), label=label)
+        for norm, colour, bottom, label in ((norms[0], colours[0], 0.54, "speed/U"), (norms[1], colours[1], 0.06, "stress [kPa]")):
+            figure.colorbar(ScalarMappable(norm, colour), cax=figure.add_axes((0.83, bottom, 0.02, 0.38)), label=label)
 
 
 def picture_deflection(path, runs):

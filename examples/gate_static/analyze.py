@@ -11,8 +11,6 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 import numpy as np  # noqa: E402
-from matplotlib.cm import ScalarMappable  # noqa: E402
-from matplotlib.colors import Normalize  # noqa: E402
 
 from fsi import dump, log, plot, series  # noqa: E402
 from fsi.summary import LOG_FILE, Summary  # noqa: E402
@@ -22,8 +20,7 @@ REFERENCE = {"tip_x": 34.81, "tip_y": 9.50}
 SOURCE = "finite elements, 9-node quadrilaterals, 12 MPa"
 TARGET = 0.03  # of the displacement, with total-Lagrangian rubber 5 particles across
 JUDGED = ("tl", 5)  # solid and particles across to which the target applies
-SOLIDS = {  # value of `solid` in the deck -> label, marker
-    "tl": ("total Lagrangian", "o"), "ul": ("updated Lagrangian", "s"), "paper": ("updated, plain gradients", "^")}
+SOLIDS = {"tl": "total Lagrangian", "ul": "updated Lagrangian", "paper": "classic SPH"}  # by `solid` in the deck
 AT_REST = 1e-3  # largest share of the displacement that the last tenth of a run may add
 CLAMP = 1.0  # spacings from the last free row's cell to where the held rows act as a clamp (deck; doc/src/theory.rst)
 FREE_END = (0.1025, 0.0)  # [m] where its middle is before
@@ -46,39 +43,16 @@ def still_moving(tip):
 def picture_bent(path, frame, spacing, rubber):
     """The bent gate, coloured by von Mises stress, its free end by finite elements."""
     stress = 1e-3 * frame["vonmises"]
-    norm = Normalize(0.0, float(np.percentile(stress, 99.5)))
-    with plot.picture(path, 4.8, 4.4) as figure:
-        axes = figure.add_subplot()
-        axes.set(xlim=(0.095, 0.145 if frame["x"].max() < 0.143 else 0.165), ylim=(-0.004, 0.088), aspect="equal",
-                 xlabel="x [m]", ylabel="y [m]")
-        figure.tight_layout()
-        figure.colorbar(ScalarMappable(norm, plot.SOLID_COLOURS), ax=axes, label="von Mises stress [kPa]", extend="max")
-        figure.canvas.draw()
-        width = axes.get_window_extent().width / figure.dpi * 72.0
-        side = 1.15 * spacing / np.ptp(axes.get_xlim()) * width
-        axes.scatter(frame["x"], frame["y"], s=side**2, c=stress, marker="s", linewidths=0, cmap=plot.SOLID_COLOURS,
-                     norm=norm)
-        if rubber == "gate_12MPa":
-            axes.plot(FREE_END[0] + 1e-3 * REFERENCE["tip_x"], FREE_END[1] + 1e-3 * REFERENCE["tip_y"], "+", color=plot.BLUE,
-                      markersize=12, markeredgewidth=1.8, label="free end, finite elements")
-            axes.legend(loc="lower left")
+    end = (FREE_END[0] + 1e-3 * REFERENCE["tip_x"], FREE_END[1] + 1e-3 * REFERENCE["tip_y"], "free end, finite elements")
+    plot.clouds(path, [("", frame["x"], frame["y"], stress)], spacing, ((0.095, 0.145 if frame["x"].max() < 0.143 else 0.165), (-0.004, 0.088)),
+                "von Mises stress [kPa]", (0.0, float(np.percentile(stress, 99.5))), colours=plot.SOLID_COLOURS, marks=[end] if rubber == "gate_12MPa" else ())
 
 
 def picture_convergence(path, found):
-    """Displacement of the free end against the spacing over the thickness. found: {solid: [(tip, values)]}."""
-    with plot.picture(path, 5.6, 4.2) as figure:
-        axes = figure.add_subplot()
-        for name, label, colour in (("tip_x", "horizontal", plot.BLUE), ("tip_y", "vertical", plot.ORANGE)):
-            for solid, runs in found.items():
-                axes.plot([1.0 / values["across"] for _, values in runs], [1e3 * tip[name][-1] for tip, _ in runs],
-                          SOLIDS[solid][1] + "-", color=colour, markersize=5, label=f"{label}, {SOLIDS[solid][0]}")
-            axes.axhline(REFERENCE[name], color=colour, linestyle="--", linewidth=1.0, label=f"{label}, finite elements")
-        across = sorted({values["across"] for runs in found.values() for _, values in runs})
-        axes.set_xticks([1.0 / n for n in across], [f"1/{n:.0f}" for n in across])
-        axes.set(xlim=(0.0, None), ylim=(0.0, None), xlabel="spacing over thickness",
-                 ylabel="displacement of the free end [mm]")
-        axes.legend(fontsize=7, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.14))
-        figure.tight_layout()
+    """What the free end is off against the spacing over the thickness. found: {solid: [(tip, values)]}."""
+    plot.errors(path, "particles through the thickness", "error of the free end's displacement [%]", [
+        ([values["across"] for _, values in runs], [1e5 * tip[name][-1] / REFERENCE[name] - 100.0 for tip, _ in runs], f"{label}, {SOLIDS[solid]}", colour)
+        for name, label, colour in (("tip_x", "horizontal", plot.BLUE), ("tip_y", "vertical", plot.ORANGE)) for solid, runs in found.items()])
 
 
 def read(folder):

@@ -65,8 +65,8 @@ def main(folder):
     last = last.of_types(1)
     dx = float(summary.log.values["dx"])
     spin = geometry.vorticity(*(last[name] for name in ("x", "y", "vx", "vy")), 2.5 * dx)
-    plot.clouds(folder / "vorticity.png", [(f"t = {last.time:.2f} s", last["x"], last["y"], np.clip(spin, -40, 40))],
-                dx, ((last["x"].min(), last["x"].max()), (0, 0.41)), "vorticity [1/s]", panel_width=8.0)
+    plot.clouds(folder / "vorticity.png", [(f"t = {last.time:.2f} s", last["x"], last["y"], spin)],
+                dx, ((last["x"].min(), last["x"].max()), (0, 0.41)), "vorticity [1/s]", (-40.0, 40.0), panel_width=8.0, colours="RdBu_r")
     return summary.write()
 
 

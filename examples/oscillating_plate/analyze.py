@@ -205,7 +205,7 @@ def order(n, error):
     return float(-np.polyfit(np.log(n), np.log(np.abs(error)), 1)[0]) if len(n) > 1 and np.all(error) else None
 
 
-SERIES = {"tl": "total Lagrangian", "ul": "updated, quadratic", "corrected": "updated, linear", "paper": "the paper's recipe"}
+SERIES = {"tl": "total Lagrangian", "ul": "updated, quadratic", "corrected": "updated, linear", "paper": "classic SPH"}
 COLOURS = {"tl": plot.BLUE, "ul": plot.ORANGE, "corrected": "#2a8c57", "paper": plot.GREY}
 TARGETS = {"period_5": 0.02, "period_10": 0.01, "period_10_ul": 0.04}
 
@@ -257,19 +257,8 @@ def study(folder, cases):
 
 def picture_convergence(path, table):
     """Error of the period against the number of particles across."""
-    with plot.picture(path, 4.6, 3.6) as figure:
-        axes = figure.add_subplot()
-        for (kind, rows), mark in zip(table.items(), "os^v"):
-            n = np.array([n for n, _ in rows], float)
-            axes.loglog(n, [100.0 * (v["period"] / PERIOD - 1.0) for _, v in rows], mark + "-", color=COLOURS[kind], label=SERIES[kind])
-        axes.set(xlabel="particles across", ylabel="error of the period [%]")
-        ticks = sorted({n for rows in table.values() for n, _ in rows})
-        axes.set_xticks(ticks, [str(t) for t in ticks])
-        axes.minorticks_off()
-        ticks = [t for t in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50) if axes.get_ylim()[0] <= t <= axes.get_ylim()[1]]
-        axes.set_yticks(ticks, [str(t) for t in ticks])
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.22), ncols=2)
-        figure.tight_layout()
+    plot.errors(path, "particles through the thickness", "error of the period [%]", [
+        ([n for n, _ in rows], [100.0 * (v["period"] / PERIOD - 1.0) for _, v in rows], SERIES[kind], COLOURS[kind]) for kind, rows in table.items()])
 
 
 if __name__ == "__main__":

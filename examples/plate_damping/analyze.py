@@ -20,7 +20,7 @@ COLOURS = {"cubic_1.2": "#5aa0d8", "cubic_1.3": "#1b5e96", "cubic_1.5": "#0b2c47
            "quintic_1.3": "#efa36b", "corrected_1.3": "#2a8c57", "nostress_1.3": "#8a4fa0",
            "coarse_1.3": "#c98bd8", "tl_1.5": plot.GREY}
 RECIPE = [kind for kind in COLOURS if kind.startswith(("cubic", "quintic"))]
-OTHER = {"cubic_1.3": "the paper's recipe", "corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress",
+OTHER = {"cubic_1.3": "classic, cubic, 1.3", "corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress",
          "coarse_1.3": "the same, 5 across", "tl_1.5": "total Lagrangian"}
 COLUMNS = ("a5_a1", "period", "stopped_at", "fractured_at", "disorder", "neighbour_distance_deviation", "stress_zigzag",
            "mechanical_energy", "taken_by_viscosity", "taken_by_stress")
@@ -75,7 +75,7 @@ def picture_damping(path, table):
     with plot.picture(path, 8.0, 4.3) as figure:
         panels = figure.subplots(1, 2, sharey=True)
         for axes, kinds, labels, title in (
-                (panels[0], RECIPE, {}, "the paper's recipe"),
+                (panels[0], RECIPE, {}, "classic SPH"),
                 (panels[1], OTHER, OTHER, "other gradients and solids")):
             _curves(axes, table, kinds, "a5_a1", labels)
             for k, kind in enumerate(kinds):

@@ -74,11 +74,8 @@ def main(folder):
     summary.add("min_pair_distance", min_pair_distance(last.vector(), spacing) / spacing, "dx")
     summary.add("particles_leaked", leaks.count(summary.log), target=0)
 
-    depth = np.array([0.0, tank["depth"]])
-    plot.scatter_against_line(
-        folder / "pressure.png", tank["depth"] - last["y"], 1e-3 * last["p"], depth,
-        1e-3 * hydrostatic(tank["depth"] - depth, tank), (f"particles, t = {last.time:.2f} s", "exact"),
-        ("depth [m]", "pressure [kPa]"))
+    plot.deviations(folder / "pressure.png", tank["depth"] - last["y"], last["p"], hydrostatic(last["y"], tank), hydrostatic(0.0, tank),
+                    "error of p, over p at the floor [%]", f"t = {last.time:.0f} s")
     if (folder / "series.csv").exists():
         history = series.read(folder / "series.csv")
         if "ke" in history:

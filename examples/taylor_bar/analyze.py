@@ -76,21 +76,9 @@ def main(folder):
 
 def picture(path, frames, spacing):
     """The slice that goes through the axis at the start, coloured by von Mises stress, which beyond 400 MPa is 100 MPa times the plastic strain higher."""
-    limits = (-8.0, 8.0), (-1.0, 34.0)
-    with plot.picture(path, 8.0, 4.0) as figure:
-        axes = figure.subplots(1, len(frames), sharey=True, squeeze=False).ravel()
-        figure.subplots_adjust(left=0.065, right=0.89, bottom=0.13, top=0.92, wspace=0.06)
-        side = 1e3 * spacing / 35.0 * 0.79 * 4.0 * 72.0
-        cut = np.abs(frames[0]["y"]) < 1e-3 * spacing
-        for panel, frame in zip(axes, frames):
-            drawn = panel.scatter(1e3 * frame["x"][cut], 1e3 * frame["z"][cut], s=(0.9 * side)**2, c=1e-6 * frame["vonmises"][cut], linewidths=0,
-                                  cmap=plot.SOLID_COLOURS, vmin=0.0, vmax=700.0)
-            panel.axhline(0.0, color="black", linewidth=0.8)
-            panel.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel="x [mm]")
-            panel.set_title(f"{1e6 * frame.time:.0f} us", loc="left", pad=3)
-            panel.grid(False)
-        axes[0].set_ylabel("z [mm]")
-        figure.colorbar(drawn, cax=figure.add_axes((0.905, 0.13, 0.016, 0.79)), label="von Mises stress [MPa]", extend="max")
+    cut = np.abs(frames[0]["y"]) < 1e-3 * spacing
+    plot.clouds(path, [(f"{1e6 * f.time:.0f} us", 1e3 * f["x"][cut], 1e3 * f["z"][cut], 1e-6 * f["vonmises"][cut]) for f in frames], 1e3 * spacing,
+                ((-8.0, 8.0), (-1.0, 34.0)), "von Mises stress [MPa]", (0.0, 700.0), ("x [mm]", "z [mm]"), 1.4, plot.SOLID_COLOURS)
 
 
 def study(folder, cases):
@@ -102,7 +90,7 @@ def study(folder, cases):
             if figure["name"] in ("final_length", "foot_radius", "outermost_particle", "energy_to_viscosity", "energy_error", "asymmetry"):
                 summary.add(f"{figure['name']}_{name}", figure["value"], figure["unit"], figure["reference"], figure["source"], figure["target"])
         bar = series.read(Path(path) / "bar.csv")
-        curves.append((1e6 * bar.time, 1e3 * bar["length"], name, colour))
+        curves.append((1e6 * bar.time, 1e3 * bar["length"], name.replace("_", " "), colour))
     plot.lines(Path(folder) / "length.png", "time [us]", "length of the bar [mm]", curves,
                [([80.0], [LENGTH_FEM], "code: converged finite elements", plot.GREY)])
     return summary.write()

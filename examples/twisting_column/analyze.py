@@ -51,20 +51,8 @@ def main(folder):
 def picture(path, frames, spacing):
     """The column from the side, front particles over those behind, coloured by von Mises stress."""
     top = 1e-6 * np.percentile(np.concatenate([frame["vonmises"] for frame in frames]), 99.5)
-    width, height = 1.8, 7.4
-    with plot.picture(path, 7.6, 3.9) as figure:
-        axes = figure.subplots(1, len(frames), sharey=True, squeeze=False).ravel()
-        figure.subplots_adjust(left=0.08, right=0.88, bottom=0.13, top=0.93, wspace=0.08)
-        side = 1.15 * spacing / height * 0.8 * 3.9 * 72.0
-        for panel, frame in zip(axes, frames):
-            order = np.argsort(frame["z"])
-            drawn = panel.scatter(frame["x"][order], frame["y"][order], s=side**2, c=1e-6 * frame["vonmises"][order], marker="o",
-                                  linewidths=0.2, edgecolors="black", cmap=plot.SOLID_COLOURS, vmin=0.0, vmax=max(top, 1e-9))
-            panel.set(xticks=(-0.5, 0.5), xlim=(-0.5 * width, 0.5 * width), ylim=(-0.9, height - 0.9), aspect="equal", xlabel="x [m]")
-            panel.set_title(f"{1e3 * frame.time:.0f} ms", loc="left", pad=3)
-            panel.grid(False)
-        axes[0].set_ylabel("y [m]")
-        figure.colorbar(drawn, cax=figure.add_axes((0.9, 0.13, 0.017, 0.8)), label="von Mises stress [MPa]", extend="max")
+    plot.clouds(path, [(f"{1e3 * f.time:.0f} ms", f["x"], f["y"], 1e-6 * f["vonmises"], f["z"]) for f in frames], spacing,
+                ((-0.9, 0.9), (-0.9, 6.5)), "von Mises stress [MPa]", (0.0, max(top, 1e-9)), panel_width=1.0, colours=plot.SOLID_COLOURS)
 
 
 if __name__ == "__main__":

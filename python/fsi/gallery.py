@@ -37,9 +37,9 @@ def date(version):
 
 
 def scrubbed(text):
-    """A log without the places of this machine."""
+    """A log without the places of this machine; a / after a number, a variable or a bracket divides."""
     text = text.replace(f"{paths.ROOT}/", "").replace(str(paths.ROOT), ".")
-    return re.sub(r"(?<![\w.])/(?:[\w.+-]+/)+", "", text)
+    return re.sub(r"(?<![\w.)}\]])/(?:[\w.+-]+/)+", "", text)
 
 
 def reference_logs(name):

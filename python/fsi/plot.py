@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
-from . import paint
+from . import paint, series
 
 BLUE, ORANGE, GREY, GREEN, RED = "#1b5e96", "#d1611a", "#555555", "#3a923a", "#c23b3b"
 FLUID_COLOURS, SOLID_COLOURS, WALL_COLOUR = "viridis", "inferno", "#a8a8a8"
@@ -77,10 +77,7 @@ def lines(path, time_label, value_label, curves, points=(), log_scale=False, lev
         axes = figure.add_subplot()
         for x, y, label, colour in curves:
             axes.plot(x, y, color=colour, label=label)
-        for x, y, label, colour in points:
-            axes.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgewidth=1.3, color=colour, label=label)
-        for y, label in levels:
-            axes.axhline(y, color=GREY, linestyle="--", linewidth=1.0, label=label or None)
+        _beside(axes, points, levels)
         if log_scale:
             axes.set_yscale("log")
         if log_scale == "xy":
@@ -95,15 +92,62 @@ def lines(path, time_label, value_label, curves, points=(), log_scale=False, lev
         figure.tight_layout()
 
 
-def scatter_against_line(path, x, y, line_x, line_y, labels, axis_labels):
-    """One value per particle against the line where it should be. labels: (particles, line)."""
-    with picture(path, 5.2, 4.2) as figure:
+def _beside(axes, points, levels):
+    """What curves are compared with, as for lines()."""
+    for x, y, label, colour in points:
+        axes.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgewidth=1.3, color=colour, label=label)
+    for y, label in levels:
+        axes.axhline(y, color=GREY, linestyle="--", linewidth=1.0, label=label or None)
+
+
+def noisy(path, time_label, panels, window):
+    """Curves over time one below the other: light as they are, dark their running means over `window`, which the label of the time tells.
+
+    panels: list of (label of the values, curves, points, levels), these as for lines(); times at equal steps.
+    """
+    with picture(path, 7.4, 0.5 + 1.9 * len(panels)) as figure:
+        for axes, (value_label, curves, points, levels) in zip(np.ravel(figure.subplots(len(panels), 1, sharex=True)), panels):
+            for x, y, _, colour in curves:
+                axes.plot(x, y, color=colour, linewidth=0.5, alpha=0.25)
+            for x, y, label, colour in curves:
+                axes.plot(x, series.smooth(x, y, window), color=colour, label=label, linewidth=1.4)
+            _beside(axes, points, levels)
+            axes.set_ylabel(value_label)
+            if len(curves) + len(points) + sum(bool(label) for _, label in levels) > 1:
+                axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.98), ncols=4, fontsize="small")
+        axes.set_xlabel(f"{time_label}; dark: running means over {window:.2g}, light: as computed")
+        figure.align_ylabels()
+        figure.tight_layout()
+
+
+def errors(path, resolution, label, curves):
+    """Sizes of errors over a number of particles, both logarithmic; a filled mark is an error above 0. curves: list of (n, error, label, colour)."""
+    with picture(path, 6.4, 3.6) as figure:
         axes = figure.add_subplot()
-        axes.plot(x, y, ".", markersize=2.5, color=BLUE, label=labels[0], rasterized=True)
-        axes.plot(line_x, line_y, color=ORANGE, label=labels[1])
-        axes.set_xlabel(axis_labels[0])
-        axes.set_ylabel(axis_labels[1])
-        axes.legend(markerscale=4)
+        for (n, error, name, colour), mark in zip(curves, "os^vDP"):
+            n, error = np.array(n, float), np.array(error, float)
+            axes.plot(n, np.abs(error), "-", color=colour, linewidth=1.2)
+            for above, fill in ((True, colour), (False, "white")):
+                which = (error > 0.0) == above
+                axes.plot(n[which], np.abs(error[which]), mark, color=colour, markerfacecolor=fill)
+            axes.plot([], [], mark + "-", color=colour, label=name)
+        axes.set(xscale="log", yscale="log", xlabel=resolution, ylabel=f"{label}, size;\nhollow: below 0")
+        ticks = sorted({n for curve in curves for n in curve[0]})
+        axes.set_xticks(ticks, [f"{n:g}" for n in ticks])
+        axes.yaxis.set_major_formatter("{x:g}")
+        axes.minorticks_off()
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
+        figure.tight_layout()
+
+
+def deviations(path, depth, value, exact, scale, label, title):
+    """One value per particle against depth: what it is off, in per cent of `scale`."""
+    with picture(path, 5.2, 3.4) as figure:
+        axes = figure.add_subplot()
+        axes.plot(depth, 100.0 * (value - exact) / scale, ".", markersize=2.5, color=BLUE, rasterized=True)
+        axes.axhline(0.0, color=GREY, linestyle="--", linewidth=1.0)
+        axes.set(xlabel="depth [m]", ylabel=label)
+        axes.set_title(title, loc="left")
         figure.tight_layout()
 
 
@@ -278,27 +322,38 @@ def _scales(frames, fluid, solid, colour=None, night=False):
     return scales
 
 
-def clouds(path, panels, spacing, limits, label, extent=None, axis_labels=("x [m]", "y [m]"), panel_width=2.6, colours=FLUID_COLOURS):
+def clouds(path, panels, spacing, limits, label, extent=None, axis_labels=("x [m]", "y [m]"), panel_width=2.6, colours=FLUID_COLOURS, columns=None,
+           marks=()):
     """Particles side by side, coloured by any value: panels lists (title, x, y, value), limits as for snapshots.
 
-    extent (lowest, highest): the range of colours, by default that of the values. Particles are discs that touch, `spacing` apart.
+    A fifth entry of a panel is the depth, which grows towards the eye: particles are spheres then, otherwise discs that touch, `spacing` apart.
+    extent (lowest, highest): the range of colours, by default that of the values; marks: crosses in all panels, (x, y, label).
     """
     (xlo, xhi), (ylo, yhi) = limits
-    low, high = extent or (min(p[3].min() for p in panels), max(p[3].max() for p in panels))
+    found = min(p[3].min() for p in panels), max(p[3].max() for p in panels)
+    low, high = extent or found
     norm = Normalize(low, high)
-    left, bottom, gap, title, bar = 0.62, 0.44, 0.16, 0.26, 1.05
+    left, bottom, gap, title, bar = 0.74, 0.44, 0.16, 0.26, 1.05
+    columns = min(columns or len(panels), len(panels))
+    rows = -(-len(panels) // columns)
     panel_height = panel_width * (yhi - ylo) / (xhi - xlo)
-    width, height = left + len(panels) * (panel_width + gap) + bar, bottom + panel_height + title
+    width, height = left + columns * (panel_width + gap) + bar, bottom + rows * (panel_height + title)
     with picture(path, width, height) as figure:
-        for k, (name, x, y, value) in enumerate(panels):
-            axes = _axes(figure, left + k * (panel_width + gap), bottom, panel_width, panel_height)
-            field(axes, x, y, spacing, matplotlib.colormaps.get_cmap(colours)(norm(value)), limits)
-            axes.set_xlabel(axis_labels[0])
+        for k, (name, x, y, value, *depth) in enumerate(panels):
+            row, column = divmod(k, columns)
+            axes = _axes(figure, left + column * (panel_width + gap), bottom + (rows - 1 - row) * (panel_height + title), panel_width, panel_height)
+            field(axes, x, y, spacing, matplotlib.colormaps.get_cmap(colours)(norm(value)), limits, *depth)
             axes.set_title(name, loc="left", pad=3)
             axes.xaxis.set_major_locator(MaxNLocator(4, prune="upper"))
             axes.yaxis.set_major_locator(MaxNLocator(4))
-            axes.tick_params(labelleft=k == 0)
-            if k == 0:
+            axes.tick_params(labelleft=column == 0, labelbottom=row == rows - 1)
+            for across, up, text in marks:
+                axes.plot(across, up, "+", color=BLUE, markersize=12, markeredgewidth=1.8, label=text)
+                axes.legend(loc="lower left")
+            if row == rows - 1:
+                axes.set_xlabel(axis_labels[0])
+            if column == 0:
                 axes.set_ylabel(axis_labels[1])
-        axes = _axes(figure, left + len(panels) * (panel_width + gap), bottom, 0.12, panel_height)
-        figure.colorbar(ScalarMappable(norm, colours), cax=axes, label=label)
+        axes = _axes(figure, left + columns * (panel_width + gap), bottom, 0.12, height - bottom - title)
+        beyond = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[found[0] < low, found[1] > high]
+        figure.colorbar(ScalarMappable(norm, colours), cax=axes, label=label, extend=beyond)

@@ -171,6 +171,21 @@ def duration(seconds):
     return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
 
 
+def run_times(text, name, summary):
+    """A scene's README with the times of its commands made anew: of a case, of all, on one core unless the line says otherwise."""
+    def timed(line):
+        case, cores = line["case"], line["cores"] or ""
+        ran = summary.get("cases", {}).get(case) if case else summary
+        if ran is None:  # a case that has not been run for the page
+            return line[0]
+        seconds = core_seconds(ran)
+        if match := re.search(r"on (\d+) cores", cores):
+            seconds /= int(match[1])
+        return f"{line['head']}{duration(max(1.0, seconds))}{cores}"
+
+    return re.sub(rf"^(?P<head>tools/run {name}(?: case=(?P<case>\S+))?\s+#.*?)\b[\d.]+ (?:s|min)(?P<cores> on .*)?$", timed, text, flags=re.M)
+
+
 def draw(found, path):
     """Size of the error over the target, a line for each scene."""
     scenes = {name: entry for name, entry in found["scenes"].items() if entry["summary"] and judged(entry)}

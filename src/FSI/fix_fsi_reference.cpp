@@ -390,8 +390,11 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<in
                  tag[i], tag[j], molecule[i], fix_fsi->dx_of(type[i]), fix_fsi->dx_of(type[j]),
                  type[i], type[j]);
     if (rsq == 0.0)
-      error->one(FLERR, "Solid atoms {} and {} of body {} are at the same place", tag[i], tag[j],
-                 molecule[i]);
+      error->one(
+          FLERR,
+          "Solid atoms {} and {} of body {} are at the same place: regions overlap, or share "
+          "an edge that particles lie on; delete_atoms overlap",
+          tag[i], tag[j], molecule[i]);
     if (halfway || domain->closest_image(i, j) != j)
       error->one(FLERR,
                  "Solid atoms {} and {} are neighbors through more than one image: a periodic box "

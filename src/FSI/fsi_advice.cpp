@@ -35,6 +35,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <utility>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -74,6 +75,7 @@ class Adviser : protected Pointers {
     if (fluids.style) {
       idle_fluid();
       nothing_acts();
+      torn_streams();
       speeds();
     }
     weightless();
@@ -335,21 +337,25 @@ class Adviser : protected Pointers {
 
   void weightless() const
   {
+    int rigid = 0;
+    for (const auto &fix : modify->get_fix_by_style("^rigid")) rigid |= fix->groupbit;
     const auto falls = [&](int i) {
-      return fluid(i) ? scene.is_moved(i) : moves(i);
+      return fluid(i) ? scene.is_moved(i) : solid(i) ? moves(i) : (atom->mask[i] & rigid) != 0;
     };
     if (!find_particles(atom, world, [&](int i) {
            return falls(i) && weighs(i);
          }).count)
       return;
-    for (const bool of_fluid : {true, false}) {
-      const auto found = find_particles(atom, world, [&](int i) {
-        return falls(i) && fluid(i) == of_fluid && !weighs(i);
+    const std::pair<Species, const char *> kinds[] = {
+        {FLUID, "fluids"}, {SOLID, "elastic bodies"}, {RIGID, "rigid bodies"}};
+    for (const auto &[species, what] : kinds) {
+      const auto found = find_particles(atom, world, [&, kind = species](int i) {
+        return falls(i) && scene.state[atom->type[i]].species == kind && !weighs(i);
       });
       if (found.count)
         warn(fmt::format("{} moving particles of {}, the first of them atom {}, are in the group "
                          "of no fix gravity, while others are: they weigh nothing",
-                         found.count, of_fluid ? "fluids" : "elastic bodies", found.first));
+                         found.count, what, found.first));
     }
   }
 
@@ -383,6 +389,23 @@ class Adviser : protected Pointers {
     if (!found.count && !moving)
       warn("nothing moves this scene: no gravity, no velocity, no moving wall, no force at the "
            "start. Is fix gravity missing?");
+  }
+
+  /* Flow behind a body draws. Where no weight keeps the pressure above 0, water that cannot bear
+   * tension opens holes there, and with shifting loses particles. */
+
+  void torn_streams() const
+  {
+    if (modify->get_fix_by_style("^fsi/[io][nu]t?let$").empty() &&
+        modify->get_fix_by_style("^fsi/stream$").empty())
+      return;
+    const auto found = find_particles(atom, world, [&](int i) {
+      return fluid(i) && scene.is_moved(i) && scene.state[atom->type[i]].floor == 0.0 && !weighs(i);
+    });
+    if (found.count)
+      warn("a stream without tension opens holes where its pressure falls to 0, as behind a body: "
+           "unless it is a jet in air, give pair_style fsi/fluid background of about rho U^2, U "
+           "being its largest speed, and tension yes");
   }
 
   /* fix fsi/stress says so of itself; law svk and neohookean do without it */

@@ -77,6 +77,10 @@ CASES = {
              r"all 24 particles of elastic bodies, the first of them atom 41, are held, since none is in group water of fix sph: is this group meant"),
     "weightless body": ([("fix g all", "group water type 1\nfix g water")], None,
                         r"24 moving particles of elastic bodies, the first of them atom 41, are in the group of no fix gravity, while others are"),
+    # weight keeps a stream together, and so does tension: test_stream_that_cannot_tear
+    "torn stream": ([("fix g all", "region zone block 0 0.02 INF INF INF INF units box\nfix s all fsi/stream 0.1 0 NULL region zone rate 10\n#"),
+                     ("create_atoms 2 region plate", "")], None,
+                    r"a stream without tension opens holes .* background of about rho U\^2, U being its largest speed, and tension yes$"),
     "weightless fluid": ([("fix g all", "fix g plate")], None, r"40 moving particles of fluids, the first of them atom 1, are in the group of no fix gravity"),
     "nothing acts": ([("fix g all gravity 9.81 vector 0 -1 0\n", "")], None, r"nothing moves this scene: no gravity, no velocity"),
     "cut by a mirror": ([("xlo 0 ylo 0", "xlo 0 xhi 0.08 ylo 0")], None, r"body 1 ends at the mirror wall at x = 0.08, and its face there is free"),
@@ -187,6 +191,25 @@ def test_chosen_time_step_is_not_criticized(tmp_path, change):
 def test_flow_driven_along_a_period_has_no_height(tmp_path):
     changes = [("boundary f f p", "boundary f p p"), ("-0.05 0.15 -0.005", "0 0.08 -0.005"), (" ylo 0", ""), ("sound 12.53", "sound 2")]
     assert advice(tmp_path, changes) == []
+
+
+@pytest.mark.parametrize("group, weightless", [("all", False), ("water", True)])
+def test_float_without_weight(tmp_path, group, weightless):
+    """A rigid body of walls that fix rigid moves; one that nothing moves needs none."""
+    float_ = [("create_atoms 2 region plate", "create_atoms 2 region plate\ngroup water type 1"), ("set group plate mol 1\n", ""), ("hybrid fsi/fluid", "fsi/fluid"),
+              (" fsi/solid/tl\n", "\n"), ("pair_coeff * * fsi/fluid materials.fsi water_inviscid plate\n", "fsi/material buoy wall rho 500\npair_coeff * * materials.fsi water_inviscid buoy\n"),
+              ("pair_coeff * * fsi/solid/tl materials.fsi NULL plate\n", ""), ("fix sph all", "fix sph water"), ("fix g all", f"fix w plate fsi/wall/particle\nfix g {group}")]
+    rigid = [("run 0", "fix r plate rigid single force * on on off torque * off off on\nrun 0")]
+    found = [line for line in advice(tmp_path / "rigid", [*float_, *rigid]) if "weigh nothing" in line]
+    assert len(found) == weightless and all("24 moving particles of rigid bodies, the first of them atom 41" in line for line in found)
+    assert advice(tmp_path / "held", float_) == []
+
+
+@pytest.mark.parametrize("change", [("fix walls", "fix g all gravity 1 vector 0 -1 0\nfix walls"), ("sound 12.53", "sound 12.53 background 10 tension yes")],
+                         ids=["weight", "tension"])
+def test_stream_that_cannot_tear(tmp_path, change):
+    torn, _, _ = CASES["torn stream"]
+    assert advice(tmp_path, [*torn, change]) == []
 
 
 def test_said_once(tmp_path):

@@ -285,6 +285,11 @@ def test_deck_of_ones_own_that_has_not_swung(tmp_path, monkeypatch, capsys):
     assert "warning" not in capsys.readouterr().out and "Warning" not in (tmp_path / "long" / "page.md").read_text()
 
 
+def test_decks_have_a_folder_each():
+    """Those of this manual are called in.NAME."""
+    assert [accuracy_cost.name_of(accuracy_cost.Path(deck)) for deck in ("a/in.flap", "in.flap.fine", "flap.in", "flap")] == ["flap", "flap.fine", "flap", "flap"]
+
+
 def test_what_still_moves():
     time = np.linspace(0.0, 1.0, 101)
     assert series.still_moving(time, time) == pytest.approx(0.1)  # a straight rise: a tenth in the last tenth

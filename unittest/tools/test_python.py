@@ -1,6 +1,7 @@
 """The Python package by itself: installed by pip, its command line, its readers and converters; what ParaView would read is decoded anew."""
 
 import base64
+import contextlib
 import os
 import re
 import shutil
@@ -288,6 +289,36 @@ def test_pictures_in_three_dimensions(tmp_path, capsys):
                            (["frames=0"], "whole number")):
         with pytest.raises(SystemExit, match=message):
             cli.main(["dump", str(path), f"plot={tmp_path / 'a.png'}", *words])
+
+
+def test_errors_below_zero_are_drawn(tmp_path, monkeypatch):
+    """By their size, hollow; a logarithmic axis would leave them out."""
+    drawn = []
+    whole = plot.picture
+
+    @contextlib.contextmanager
+    def kept(*a):
+        with whole(*a) as figure:
+            yield figure
+            drawn.append(figure)
+
+    monkeypatch.setattr(plot, "picture", kept)
+    plot.errors(tmp_path / "a.png", "n", "error", [([3, 5, 10], [-0.9, 0.3, -0.05], "one", plot.BLUE)])
+    line, above, below, _ = drawn[0].axes[0].lines
+    np.testing.assert_allclose(line.get_ydata(), [0.9, 0.3, 0.05])
+    assert list(above.get_ydata()) == [0.3] and list(below.get_ydata()) == [0.9, 0.05] and below.get_markerfacecolor() == "white"
+
+
+def test_noisy_curves_have_their_means(tmp_path, monkeypatch):
+    """A sine of the window's period is gone, a constant stays; the axis says which is which."""
+    drawn = []
+    monkeypatch.setattr(plot, "packed", lambda file: b"")
+    monkeypatch.setattr(plot, "Figure", lambda *a, figure=plot.Figure, **k: drawn.append(figure(*a, **k)) or drawn[-1])
+    x = np.arange(0.0, 2.0, 0.01)
+    plot.noisy(tmp_path / "a.png", "t [s]", [("drag", [(x, 3.0 + np.sin(20 * np.pi * x), "computed", plot.BLUE)], (), [(3.0, "exact")])], 0.1)
+    raw, smooth, _ = drawn[0].axes[0].lines
+    assert np.ptp(raw.get_ydata()) > 1.8 and np.abs(smooth.get_ydata()[10:-10] - 3.0).max() < 1e-12
+    assert "running means over 0.1" in drawn[0].axes[0].get_xlabel()
 
 
 def test_depth_decides_who_is_seen():
