@@ -144,8 +144,10 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
   for (const auto *p : fix_fsi->parts) mine |= !p->is_set_up();
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
   if (any)
-    lmp->error->all(FLERR, "{} needs a run before it, if only run 0, and after atoms are made, "
-                    "deleted or changed, or a pair style is given", who);
+    lmp->error->all(FLERR,
+                    "{} needs a run before it, if only run 0, and after atoms are made, "
+                    "deleted or changed, or a pair style is given",
+                    who);
   return fix_fsi;
 }
 
@@ -398,7 +400,8 @@ void FixFSI::set_arrays(int i)
   changes.forget();
   give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
-    error->one(FLERR, "Fluid atom {} was made during a run and is not in group {} of fix {}: it "
+    error->one(FLERR,
+               "Fluid atom {} was made during a run and is not in group {} of fix {}: it "
                "would hang in the air. Give the fix that makes it that group",
                atom->tag[i], group->names[igroup], id);
 }
@@ -430,7 +433,8 @@ bool FixFSI::goes_on(const Record &record, const std::string &when)
   const bool other_h = keywords.differs(record, "smoothing length over spacing");
   const bool other_kernel = other_h || keywords.differs(record, "kernel");
   if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))
-    error->all(FLERR, "Fix fsi: density mode summation must keep kernel and smoothing length, for "
+    error->all(FLERR,
+               "Fix fsi: density mode summation must keep kernel and smoothing length, for "
                "which the masses of its particles were made");
   return !other_kernel;
 }

@@ -237,7 +237,7 @@ void FixFSIInlet::check_plane()
     error->all(FLERR,
                "{} {}: its buffer, {} = {:g} to {:g}, and half the neighbor skin, {:g}, must be "
                "inside the box, from {} to {}",
-               who, id, "xyz"[axis], position, end, 0.5 * neighbor->skin, lo, hi);
+               who, id, "xyz"[axis], position, end, 0.5 * neighbor -> skin, lo, hi);
 }
 
 /* ----------------------------------------------------------------------

@@ -231,7 +231,7 @@ void FixFSIMove::refuse_free_walls(const FixFSI *fix_fsi) const
             FLERR,
             "Fix fsi/move {} leaves {} of atom {} free, which is of a wall: forces would take each "
             "wall particle its own way. Write 0 instead of NULL to hold that component{}",
-            id, "xyz"[k], atom->tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
+            id, "xyz"[k], atom -> tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
   }
 }
 

@@ -107,7 +107,7 @@ void FixFSIStream::init()
     error->all(FLERR,
                "Region {} of fix fsi/stream, from {} to {} along {}, must be inside the box, from "
                "{} to {}",
-               region_id, low, high, "xyz"[along], domain->boxlo[along], domain->boxhi[along]);
+               region_id, low, high, "xyz"[along], domain -> boxlo[along], domain -> boxhi[along]);
 
   velocity.find();
   zone_group = igroup;
@@ -240,7 +240,7 @@ void FixFSIStream::post_force(int)
       const double u = velocity(d, i);
       if (!std::isfinite(u))
         error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u,
-                   "xyz"[d], atom->tag[i], velocity.see(d));
+                   "xyz"[d], atom -> tag[i], velocity.see(d));
       const double push = m * part * (u - v[d]) / (dt * force->ftm2v);
       f[d] += push;
       given[d] += push;
