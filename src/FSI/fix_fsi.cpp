@@ -156,8 +156,6 @@ int FixFSI::setmask()
   return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSI::init()
 {
   check.before_init();
@@ -237,8 +235,6 @@ bool FixFSI::fresh_start() const
   const bigint before = update->ntimestep - 1;
   return before == update->firststep || (output->restart_flag && before == output->last_restart);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSI::pre_exchange()
 {

@@ -372,7 +372,7 @@ NUMBERS = [
     ("particle spacing", "fsi 0.01", "fsi {}"),
     ("smoothing length over spacing", "wendland 1.5", "wendland {}"),
     ("fsi substeps", *tl("", more="fix more all fsi 0.01 wendland 1.5 substeps {}\nunfix more\n")),
-    ("surface/every", SPH, SPH + " surface/every {}"),
+    *[(word, SPH, f"{SPH} {word} {{}}") for word in ("surface/every", "mach")],
     *[(word, *fluid("", f"sound {keyword} ".replace("sound sound", "sound"))) for word, keyword in (
         ("sound", "sound {}"), ("background", "10 background {}"), ("artificial/visc alpha", "10 artificial/visc {} 0"),
         ("artificial/visc beta", "10 artificial/visc 0 {}"), ("density/diffusion", "10 density/diffusion {}"), ("shift", "10 shift {}"),

@@ -57,7 +57,7 @@ def patch(dim, material, dt, mode="continuity", **more):
     """A free patch at rest, pressed together in the middle."""
     x = lattice([6 if dim == 2 else 4] * dim, 0.1, center=True)
     s = Scene(x, dim=dim, dx=0.1, dt=dt, materials=(material,), fluid="sound 10 tension yes",
-              density=f"fluid {mode} solid {mode}", **more)
+              density=f"solid {mode}" + ("" if mode == "ratio" else f" fluid {mode}"), **more)    # no fluid has mode ratio
     s.run()
     if mode == "continuity":
         s.put("rho", 1000 + 40 * np.exp(-(x**2).sum(1) / 0.04))
