@@ -138,7 +138,7 @@ def test_bare_scenes_send_only_their_own(sent, name, size):
 
 # three rows of particles along each side of the square are near a wall: a row of images each, of half their neighbors and themselves
 IMAGES = (1 - (119 / 125) ** 2) * (16 + 4 * (12 + 1))
-ARRAYS = {"nothing": (0, {}), "shifting": (96, {"style": "shift 0.1"}), "walls": (4 + IMAGES, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
+ARRAYS = {"nothing": (0, {}), "shifting": (64, {"style": "shift 0.1"}), "walls": (4 + IMAGES, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
           "surface at intervals": (8, {"style": "surface 0.9 bulk", "sph": "surface/every 10"}), "surfaces": (16, {"style": "density/surface yes"}),
           "summation": (0, {"sph": "fluid summation"}),
           "the rest": (0, {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1 eos tait tension yes background 1"})}
