@@ -90,3 +90,7 @@ annulus_140      fluid rho 140.0
 
 # Folded strip (scene folded_strip): a soft rubber
 strip            solid rho 1000.0 young 1.0e6 poisson 0.3
+
+# Valve (scene valve): two leaflets of a soft gel in water ten times as viscous as at 20 C
+valve_water      fluid rho 1000.0 viscosity 0.01
+leaflet          solid rho 1100.0 young 0.6e6 poisson 0.49
