@@ -222,7 +222,7 @@ def test_sentences_have_the_numbers_of_the_data():
 
 
 def test_what_is_not_accurate_has_the_numbers_of_the_data():
-    """Against the tables, read anew: the gate of two particles, open ends, and the coarsest updated-Lagrangian plate that ends."""
+    """Against the tables, read anew: the gate of two particles, and the coarsest updated-Lagrangian plate that ends."""
     error, ended = ({(name, r["group"], r["x"]): r[key] for name in ("elastic_gate", "oscillating_plate") for r in read_csv(evidence.PAGE / f"{name}.csv")
                      if r["role"] == "curve"} for key in ("error", "status"))
     said = evidence.unstable()
@@ -230,8 +230,6 @@ def test_what_is_not_accurate_has_the_numbers_of_the_data():
     plate = {x: status for (name, method, x), status in ended.items() if (name, method) == ("oscillating_plate", "UL quadratic, hourglass, clamp at the face")}
     fewest = re.search(r"the elastic plate with fewer than (\d+) particles", said[4])[1]
     assert {status for x, status in plate.items() if x < int(fewest)} == {"failed"} and plate[int(fewest)] == "ok"
-    drift = max(r["value"] for r in read_csv(evidence.HARD / "hard.csv") if (r["row"], r["recipe"]) == ("ends", "best"))
-    assert f"mass drifts by up to {100 * drift:.1f} %" in said[3]
 
 
 def test_evidence_answers_each_question_once():
