@@ -232,12 +232,12 @@ void FixFSIInlet::check_plane()
     error->all(FLERR, "{} {}: its plane at {} = {} is outside the box, from {} to {}", who, id,
                "xyz"[axis], position, lo, hi);
   // what has passed the end of the buffer is deleted with the next list
-  const double last = end - side * 0.5 * neighbor->skin;
+  const double half_skin = 0.5 * neighbor->skin, last = end - side * half_skin;
   if (domain->boundary[axis][side < 0.0] == 1 && (last < lo - little || last > hi + little))
     error->all(FLERR,
                "{} {}: its buffer, {} = {:g} to {:g}, and half the neighbor skin, {:g}, must be "
                "inside the box, from {} to {}",
-               who, id, "xyz"[axis], position, end, 0.5 * neighbor -> skin, lo, hi);
+               who, id, "xyz"[axis], position, end, half_skin, lo, hi);
 }
 
 /* ----------------------------------------------------------------------

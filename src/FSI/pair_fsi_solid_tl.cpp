@@ -321,12 +321,14 @@ void PairFSISolidTL::find_rows()
   changes_seen = reference->changes;
   // of partners, too: a border of ranks may part two materials
   one_material = true;
-  for (const auto *set : {&reference->solids, &reference->ghosts})
-    for (const int i : *set) {
-      if (reference->solids.empty()) break;
-      const State &s = fix_fsi->state[type[i]], &first = fix_fsi->state[type[reference->solids[0]]];
-      one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
-    }
+  if (!reference->solids.empty()) {
+    const State &first = fix_fsi->state[type[reference->solids[0]]];
+    for (const auto *set : {&reference->solids, &reference->ghosts})
+      for (const int i : *set) {
+        const State &s = fix_fsi->state[type[i]];
+        one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
+      }
+  }
   rows.clear();
   for (const int i : reference->solids) {
     const State &s = fix_fsi->state[type[i]];
