@@ -44,7 +44,7 @@ using namespace FSI;
 // clang-format off
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp),
-    check(lmp, *this), changes(lmp),
+    check(lmp, *this), changes(lmp), population(lmp, *this),
     number_density(lmp, *this, [this](double *n) { add_ghosts(n); }),
     surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
     ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
@@ -89,9 +89,16 @@ FixFSI::~FixFSI()
 {
   if (parts.empty()) return;
   auto &kept = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
-  kept = std::make_unique<Record>(lmp, "fix fsi");
-  keywords.write(*kept);
-  check.write(*kept);
+  kept = std::make_unique<Record>(record());
+}
+
+Record FixFSI::record() const
+{
+  Record record(lmp, "fix fsi");
+  keywords.write(record);
+  check.write(record);
+  population.write(record);
+  return record;
 }
 
 /* ----------------------------------------------------------------------
@@ -218,11 +225,6 @@ void FixFSI::find_parts()
   parts.push_back(&surface_room);
 }
 
-void FixFSI::setup_pre_force(int)
-{
-  update_state(false);
-}
-
 /* ----------------------------------------------------------------------
    A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must
    keep their order, which is that of atoms and neighbour lists. So the first step of a run, and
@@ -273,11 +275,6 @@ template <int D> void FixFSI::drift()
   for (int i = 0; i < atom->nlocal; i++)
     if (mask[i] & groupbit)
       for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
-}
-
-void FixFSI::pre_force(int)
-{
-  update_state(true);
 }
 
 /* ----------------------------------------------------------------------
@@ -411,11 +408,9 @@ void FixFSI::write_restart(FILE *fp)
 {
   double all[NTERM];
   MPI_Allreduce(energy_out, all, NTERM, MPI_DOUBLE, MPI_SUM, world);
-  Record record(lmp, "fix fsi");
-  keywords.write(record);
+  Record record = this->record();
   clock.write(record);
   if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
-  check.write(record);
   surface_room.write(record);
   fields.write(record);
   record.write(fp);
@@ -426,6 +421,7 @@ bool FixFSI::goes_on(const Record &record, const std::string &when)
 {
   keywords.compare(record, when);
   check.read(record);
+  population.read(record);
   const bool other_h = keywords.differs(record, "smoothing length over spacing");
   const bool other_kernel = other_h || keywords.differs(record, "kernel");
   if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))

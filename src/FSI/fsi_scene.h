@@ -125,6 +125,7 @@ namespace FSI {
     // clang-format on
     bool ledger;
     double energy_out[NTERM];
+    double *account(Term term) { return ledger ? &energy_out[term] : nullptr; }    // of one term
     double guarding[2];    // energy that pairs held off by walls of particles and by solids have,
                            // if there is a ledger
     // adds a power of the pair loops, which counts only in steps, not in setup
