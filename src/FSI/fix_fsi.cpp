@@ -321,7 +321,7 @@ void FixFSI::update_state(bool advance)
   fields.grow();
   changes.in_step();
   inverted = -1;
-  tally_dt = (ledger && advance) ? update->dt : 0.0;
+  set_tally(advance ? update->dt : 0.0);
   body_forces.evaluate();
   if (ledger && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);
