@@ -223,6 +223,9 @@ void FixFSI::find_parts()
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
   parts.push_back(&surface_room);
+  std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
+    return a->rank() < b->rank();
+  });
 }
 
 /* ----------------------------------------------------------------------

@@ -45,6 +45,7 @@ class PairFSI : public Pair, public FSI::Part {
   FSI::Facts facts() const override;
   std::vector<Effect> effects() const override = 0;
   bool is_set_up() const override { return fix_fsi != nullptr; }
+  Rank rank() const override { return PAIRS; }
 
  protected:
   const std::string style;                // for messages
