@@ -66,7 +66,7 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
   if (scene.surface_ratio > 0.0)
     effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every),
                        "fix fsi surface/every", scene.keep_psi});
-  effects.push_back({"energy ledger", "compute fsi/energy", scene.ledger});
+  effects.push_back({"energy balance", "compute fsi/energy", scene.ledger});
 
   std::string on, off;
   for (const auto &e : effects)
