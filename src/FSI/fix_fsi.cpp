@@ -47,7 +47,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     check(lmp, *this), changes(lmp), population(lmp, *this),
     number_density(lmp, *this, [this](double *n) { add_ghosts(n); }),
     surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
-    ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
+    ids_checked(false), others(lmp, *this), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -78,6 +78,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this, thin);
 
   time_integrate = force_reneighbor = create_attribute = restart_global = 1;
+  pre_exchange_migrate = 1;
   set_fields();
   register_fields();
   comm_reverse = 1;    // more with solids, see init()
@@ -119,7 +120,7 @@ void FixFSI::set_fields()
              wall_stiffness);
 
   forward.clear();
-  forward.add(atom->rho, {NONE, FLUID, SOLID, RIGID});
+  forward.add(atom->rho, {FLUID, SOLID, RIGID});
   number_density.add_messages(forward);
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
@@ -189,8 +190,9 @@ void FixFSI::init()
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
+  others.init();
   check.materials();
-  for (int i = 0; i < atom->nlocal; i++) give_defaults(i);
+  for (int i = 0; i < atom->nlocal; i++) others.give_defaults(i);
   body_forces.find(state);
   check.init();
 }
@@ -203,22 +205,10 @@ void FixFSI::setup(int)
   changes.set_up();
 }
 
-/* ----------------------------------------------------------------------
-   an atom that was never given a mass or a density gets those of the stress-free lattice
-------------------------------------------------------------------------- */
-
-void FixFSI::give_defaults(int i)
-{
-  const State &s = state[atom->type[i]];
-  if (s.species == NONE) return;    // before init()
-  if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / resolution[atom->type[i]].psi_bulk;
-  if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
-}
-
 void FixFSI::find_parts()
 {
   parts.clear();
-  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"})
+  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl", "fsi/grain"})
     if (auto *p = dynamic_cast<Part *>(force->pair_match(style, 1))) parts.push_back(p);
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
@@ -311,6 +301,7 @@ template <int D> void FixFSI::kick()
     if (shifts && state[type[i]].species == FLUID)
       for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
   }
+  others.turn(dt);
 }
 
 /* ----------------------------------------------------------------------
@@ -394,7 +385,7 @@ void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   changes.forget();
-  give_defaults(i);
+  others.give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
     error->one(FLERR,
                "Fluid atom {} was made during a run and is not in group {} of fix {}: it "

@@ -27,6 +27,7 @@ FixStyle(fsi,FixFSI);
 #include "fsi_fields.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
+#include "fsi_others.h"
 #include "fsi_population.h"
 #include "fsi_record.h"
 #include "fsi_scene.h"
@@ -89,12 +90,12 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
 
  private:
   void set_fields();
-  void give_defaults(int);
   int given_substeps;
   double hdx;                           // h over dx
   std::vector<double> given_spacing;    // per type; 0: dx
   bool ids_checked;
 
+  FSI::Others others;    // of no material; masses and densities of new ones
   void find_parts();
   FSI::Record record() const;    // of the command, for the next one
   bool goes_on(const FSI::Record &, const std::string &when);

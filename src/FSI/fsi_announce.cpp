@@ -136,7 +136,7 @@ static void warn_idle(LAMMPS *lmp, const Scene &scene)
   bigint mine[2] = {0, 0}, all[2];    // fluid and solid particles
   for (int i = 0; i < lmp->atom->nlocal; i++) {
     const int species = scene.state[lmp->atom->type[i]].species;
-    if (species != RIGID) mine[species == SOLID]++;
+    if (species == FLUID || species == SOLID) mine[species == SOLID]++;
   }
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
 
