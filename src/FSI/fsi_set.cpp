@@ -101,9 +101,8 @@ void FSISet::command(int narg, char **arg)
       count++;
       continue;
     }
-    // a wall has its pressure from the fluid, and its mass
-    if (s.species == NONE || s.species == RIGID) continue;
-    if (s.form == TOTAL_LAGRANGIAN) continue;    // density from its strain
+    // a wall has its pressure from the fluid, and its mass; density from strain
+    if (s.species == NONE || s.species == RIGID || s.form == TOTAL_LAGRANGIAN) continue;
     double rho = value;
     if (hydrostatic) {
       const auto g = fix_fsi->body_forces.on(i);
