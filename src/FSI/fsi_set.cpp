@@ -101,8 +101,8 @@ void FSISet::command(int narg, char **arg)
       count++;
       continue;
     }
-    // a wall has its pressure from the fluid, and its mass; density from strain
-    if (s.species == NONE || s.species == RIGID || s.form == TOTAL_LAGRANGIAN) continue;
+    if (s.species == NONE || s.species == RIGID) continue;    // walls: from the fluid
+    if (s.form == TOTAL_LAGRANGIAN) continue;    // density from its strain
     double rho = value;
     if (hydrostatic) {
       const auto g = fix_fsi->body_forces.on(i);
