@@ -44,7 +44,7 @@ using namespace FSI;
 // clang-format off
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp),
-    check(lmp, *this), changes(lmp),
+    check(lmp, *this), changes(lmp), population(lmp, *this),
     number_density(lmp, *this, [this](double *n) { add_ghosts(n); }),
     surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
     ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
@@ -89,9 +89,16 @@ FixFSI::~FixFSI()
 {
   if (parts.empty()) return;
   auto &kept = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
-  kept = std::make_unique<Record>(lmp, "fix fsi");
-  keywords.write(*kept);
-  check.write(*kept);
+  kept = std::make_unique<Record>(record());
+}
+
+Record FixFSI::record() const
+{
+  Record record(lmp, "fix fsi");
+  keywords.write(record);
+  check.write(record);
+  population.write(record);
+  return record;
 }
 
 /* ----------------------------------------------------------------------
@@ -216,11 +223,9 @@ void FixFSI::find_parts()
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
   parts.push_back(&surface_room);
-}
-
-void FixFSI::setup_pre_force(int)
-{
-  update_state(false);
+  std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
+    return a->rank() < b->rank();
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -275,11 +280,6 @@ template <int D> void FixFSI::drift()
       for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
 }
 
-void FixFSI::pre_force(int)
-{
-  update_state(true);
-}
-
 /* ----------------------------------------------------------------------
    paper eqs. 17 and 18: kick, and drift to the end of the step
 ------------------------------------------------------------------------- */
@@ -324,7 +324,7 @@ void FixFSI::update_state(bool advance)
   fields.grow();
   changes.in_step();
   inverted = -1;
-  tally_dt = (ledger && advance) ? update->dt : 0.0;
+  set_tally(advance ? update->dt : 0.0);
   body_forces.evaluate();
   if (ledger && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);
@@ -411,11 +411,9 @@ void FixFSI::write_restart(FILE *fp)
 {
   double all[NTERM];
   MPI_Allreduce(energy_out, all, NTERM, MPI_DOUBLE, MPI_SUM, world);
-  Record record(lmp, "fix fsi");
-  keywords.write(record);
+  Record record = this->record();
   clock.write(record);
   if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
-  check.write(record);
   surface_room.write(record);
   fields.write(record);
   record.write(fp);
@@ -426,6 +424,7 @@ bool FixFSI::goes_on(const Record &record, const std::string &when)
 {
   keywords.compare(record, when);
   check.read(record);
+  population.read(record);
   const bool other_h = keywords.differs(record, "smoothing length over spacing");
   const bool other_kernel = other_h || keywords.differs(record, "kernel");
   if (other_kernel && (density_fluid == SUMMATION || density_solid == SUMMATION))

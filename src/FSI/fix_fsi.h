@@ -27,6 +27,7 @@ FixStyle(fsi,FixFSI);
 #include "fsi_fields.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
+#include "fsi_population.h"
 #include "fsi_record.h"
 #include "fsi_scene.h"
 #include "fsi_surface_room.h"
@@ -61,10 +62,10 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   int setmask() override;
   void init() override;
   void setup(int) override;
-  void setup_pre_force(int) override;
+  void setup_pre_force(int) override { update_state(false); }
   void initial_integrate(int) override;
   void pre_exchange() override;
-  void pre_force(int) override;
+  void pre_force(int) override { update_state(true); }
   void final_integrate() override;
   void post_run() override { changes.end_run(); }
   int pack_forward_comm(int, int *, double *, int, int *) override;
@@ -79,6 +80,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::Clock clock;
   FSI::Check check;        // stops a run that has lost its meaning
   FSI::Changes changes;    // since the last run
+  FSI::Population population;
 
   FSI::NumberDensity number_density;
   FSI::SurfaceRoom surface_room;
@@ -94,6 +96,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   bool ids_checked;
 
   void find_parts();
+  FSI::Record record() const;    // of the command, for the next one
   bool goes_on(const FSI::Record &, const std::string &when);
 
   FSI::Message forward, back;    // to ghosts, and sums from them

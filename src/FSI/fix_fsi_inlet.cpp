@@ -13,7 +13,6 @@
 #include "fix_fsi_inlet.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -68,12 +67,12 @@ static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15
 /* ---------------------------------------------------------------------- */
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style),
-    outlet(who == "Fix fsi/outlet"), keywords(lmp, keywords_name()),
-    given(lmp, keywords_name(), NVALUES), background(false), length(0.0), region(nullptr),
-    fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{}, filled(false), wave(0.0),
-    gradient(0.0), before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0),
-    mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{}
+    FixFields(lmp, narg, arg), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"),
+    keywords(lmp, keywords_name()), given(lmp, keywords_name(), NVALUES), background(false),
+    length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{},
+    filled(false), wave(0.0), gradient(0.0), before(0.0), served(0.0), has_before(false),
+    passed_in(0.0), passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0),
+    last_buffer(-1.0), told{}, push_sum{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, keywords_name(), error);
@@ -216,7 +215,7 @@ void FixFSIInlet::init()
                who, id, given.number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
                update->unit_style, std::sqrt(away / (FAR * soft.rho0)));
   }
-  leave_an_id_free();
+  fix_fsi->population.leave_an_id_free();
 }
 
 /* ----------------------------------------------------------------------
@@ -284,28 +283,6 @@ bool FixFSIInlet::is_far(double p) const
   return soft.species == FLUID && std::fabs(p - soft.p0) > FAR * soft.rho0 * soft.csq;
 }
 
-/* ----------------------------------------------------------------------
-   Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps
-   that sort), before the buffers are filled, and as many may come as leave: so one is left free,
-   below the largest of a fluid.
-------------------------------------------------------------------------- */
-
-void FixFSIInlet::leave_an_id_free()
-{
-  if (!atom->tag_consecutive()) return;
-  tagint mine = 0, largest;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (fix_fsi->state[atom->type[i]].species == FLUID) mine = std::max(mine, atom->tag[i]);
-  MPI_Allreduce(&mine, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (largest == 0 || atom->natoms >= MAXTAGINT) return;
-  forget_ghosts();    // and the map of the old IDs
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->tag[i] == largest) atom->tag[i] = static_cast<tagint>(atom->natoms) + 1;
-  if (atom->map_style == Atom::MAP_NONE) return;
-  atom->map_init();
-  atom->map_set();
-}
-
 /* ---------------------------------------------------------------------- */
 
 bool FixFSIInlet::is_fluid(int i) const
@@ -327,21 +304,6 @@ bool FixFSIInlet::holds(const double *x) const
 {
   const double s = inside(x);
   return s <= 0.0 && s > -2.0 * length && in_patch(x);
-}
-
-double FixFSIInlet::energy(int i) const
-{
-  const double *const v = atom->v[i];
-  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + fix_fsi->potential(i) +
-      fix_fsi->stored(i);
-}
-
-// as Comm::exchange() does, which comes next: new atoms take their places
-void FixFSIInlet::forget_ghosts()
-{
-  if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
-  atom->nghost = 0;
-  atom->avec->clear_bonus();
 }
 
 /* ----------------------------------------------------------------------
@@ -402,9 +364,10 @@ void FixFSIInlet::fill_buffer()
                    who, id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
   if (all[BEHIND] > 0) check_slices(slices);
   if (all[BEHIND] == 0 && all[AHEAD] > 0) {
-    auto copies = go_on_behind();
-    forget_ghosts();
+    const auto copies = go_on_behind();
+    fix_fsi->population.begin();
     make(copies, true);
+    fix_fsi->population.end();
   }
   find_places();    // of which variables are asked
   given.evaluate(zone_group, 0, 3);
@@ -452,7 +415,7 @@ void FixFSIInlet::check_slices(std::vector<int> &mine) const
    in the way of the fluid at the plane.
 ------------------------------------------------------------------------- */
 
-std::vector<FixFSIInlet::Copy> FixFSIInlet::go_on_behind() const
+std::vector<Particle> FixFSIInlet::go_on_behind() const
 {
   const int most = number_of_slices(), full = full_slices();
   if (full == 0 && !outlet)
@@ -461,14 +424,13 @@ std::vector<FixFSIInlet::Copy> FixFSIInlet::go_on_behind() const
                "spacing of it: fill what is between, or the buffer, to {} = {:g}",
                who, id, group->names[igroup], "xyz"[axis], position, "xyz"[axis],
                position - side * length);
-  std::vector<Copy> copies;
+  std::vector<Particle> copies;
   if (full == 0) return copies;
   const double period = fix_fsi->dx * full;
   for (int i = 0; i < atom->nlocal; i++) {
-    const double *const x = atom->x[i], *const v = atom->v[i], s = inside(x);
+    const double *const x = atom->x[i], s = inside(x);
     if (s <= 0.0 || s >= length || !is_fluid(i) || !in_patch(x) || slice(s) >= full) continue;
-    Copy c = {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i],  atom->rmass[i],
-              atom->tag[i],       atom->molecule[i],  atom->type[i], atom->mask[i]};
+    Particle c = fix_fsi->population.copy_of(i);
     for (int k = 1; slice(k * period - s) < most; k++) {
       c.x[axis] = x[axis] - side * k * period;
       copies.push_back(c);
@@ -538,7 +500,7 @@ int FixFSIInlet::full_slices() const
    sorts copies along the plane; is there somebody already where they will be?
 ------------------------------------------------------------------------- */
 
-std::vector<int> FixFSIInlet::find_occupied(std::vector<Copy> &copies, bool at_start)
+std::vector<int> FixFSIInlet::find_occupied(std::vector<Particle> &copies, bool at_start)
 {
   double low = inside(copies[0].x), high = low;
   for (auto &c : copies) {
@@ -550,7 +512,7 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Copy> &copies, bool at_s
   // along the lateral axis, then the distance
   const int a = axis == 0 ? 1 : 0;
   const double reach = OCCUPIED * fix_fsi->dx;
-  std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) {
+  std::sort(copies.begin(), copies.end(), [&](const Particle &b, const Particle &c) {
     return b.x[a] < c.x[a] || (b.x[a] == c.x[a] && b.parent < c.parent);
   });
   std::vector<int> is_occupied(copies.size(), 0), occupied(copies.size());
@@ -561,9 +523,10 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Copy> &copies, bool at_s
     if (species != FLUID && !at_start) continue;    // as near as its parent is in front
     for (int image = -domain->periodicity[a]; image <= domain->periodicity[a]; image++) {
       const double from = atom->x[i][a] + image * domain->prd[a] - reach;
-      auto c = std::lower_bound(copies.begin(), copies.end(), from, [&](const Copy &b, double x) {
-        return b.x[a] < x;
-      });
+      auto c =
+          std::lower_bound(copies.begin(), copies.end(), from, [&](const Particle &b, double x) {
+            return b.x[a] < x;
+          });
       for (; c != copies.end() && c->x[a] < from + 2.0 * reach; c++) {
         double d[3] = {c->x[0] - atom->x[i][0], c->x[1] - atom->x[i][1], c->x[2] - atom->x[i][2]};
         domain->minimum_image(d);
@@ -583,62 +546,24 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Copy> &copies, bool at_s
 }
 
 /* ----------------------------------------------------------------------
-   Makes copies: IDs go on from the largest that there ever was, in the order of those of the
-   parents, whatever rank has them. Fluid that is in the place keeps it.
+   Makes copies: IDs in the order of those of the parents, whatever rank has them. Fluid that is in
+   the place keeps it.
 ------------------------------------------------------------------------- */
 
-void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
+void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
 {
-  std::vector<Copy> copies = gather(own, world);
-  if (copies.empty()) return;
-  const std::vector<int> occupied = find_occupied(copies, at_start);
-  tagint largest = last_id, id_now;
-  for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
-    largest = std::max(largest, dynamic_cast<FixFSIInlet *>(fix)->last_id);
-  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
-  MPI_Allreduce(&largest, &id_now, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  for (size_t k = 0; k < copies.size(); k++)
-    if (occupied[k]) copies[k].parent = 0;
-  std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) {
+  std::vector<Particle> all = gather(own, world), copies;
+  if (all.empty()) return;
+  const std::vector<int> occupied = find_occupied(all, at_start);
+  for (size_t k = 0; k < all.size(); k++)
+    if (!occupied[k]) copies.push_back(all[k]);
+  std::sort(copies.begin(), copies.end(), [&](const Particle &b, const Particle &c) {
     return b.parent < c.parent || (b.parent == c.parent && inside(b.x) > inside(c.x));
   });
-
   const int first = atom->nlocal;
-  bigint wanted = 0, made, mine;
-  for (auto &c : copies) {
-    if (c.parent == 0) continue;
-    if (id_now >= MAXTAGINT)
-      error->all(FLERR, "{} {}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them",
-                 who, id);
-    id_now++;
-    wanted++;
-    if (!domain->ownatom(id_now, c.x, nullptr, 1)) continue;
-    atom->avec->create_atom(c.type, c.x);
-    const int i = atom->nlocal - 1;
-    atom->tag[i] = id_now;
-    atom->mask[i] = c.mask;
-    atom->molecule[i] = c.molecule;
-    atom->rho[i] = c.rho;
-    atom->rmass[i] = c.rmass;
-    std::copy_n(c.v, 3, atom->v[i]);
-  }
-  last_id = id_now;
-  atom->data_fix_compute_variable(first, atom->nlocal);
-  for (int i = first; i < atom->nlocal; i++) {
-    of_buffer[i] = MEMBER;
-    if (fix_fsi->ledger && !at_start) fix_fsi->energy_out[FixFSI::FIELDS] -= energy(i);
-  }
-  mine = atom->nlocal - first;
-  MPI_Allreduce(&mine, &made, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (made != wanted)
-    error->all(FLERR, "{} {}: {} of {} new particles are outside the box", who, id, wanted - made,
-               wanted);
-  atom->natoms += made;
-  net += made;
-  if (atom->map_style != Atom::MAP_NONE) {
-    atom->map_init();
-    atom->map_set();
-  }
+  fix_fsi->population.make(copies, fmt::format("{} {}", who, id),
+                           at_start ? nullptr : fix_fsi->account(FixFSI::FIELDS));
+  for (int i = first; i < atom->nlocal; i++) of_buffer[i] = MEMBER;
 }
 
 /* ----------------------------------------------------------------------
@@ -649,10 +574,9 @@ void FixFSIInlet::pre_exchange()
 {
   if (region) region->prematch();
   const auto others = modify->get_fix_by_style("^fsi/[io][nu]t?let$");
-  std::vector<Copy> copies;
+  std::vector<Particle> copies;
   std::vector<int> gone;
   double own[5] = {}, all[5];    // in, out, net mass, made, deleted
-  const int *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], s = inside(x);
     if (s > 0.0 && !of_buffer[i]) continue;
@@ -661,15 +585,8 @@ void FixFSIInlet::pre_exchange()
       continue;
     }
     if (of_buffer[i] == FOLLOWED) {
-      const double *const v = atom->v[i], *const y = behind[i];
-      copies.push_back({{y[0], y[1], y[2]},
-                        {v[0], v[1], v[2]},
-                        atom->rho[i],
-                        atom->rmass[i],
-                        atom->tag[i],
-                        atom->molecule[i],
-                        type[i],
-                        atom->mask[i]});
+      copies.push_back(fix_fsi->population.copy_of(i));
+      std::copy_n(behind[i], 3, copies.back().x);
       of_buffer[i] = MEMBER;
     }
     if (of_buffer[i] && s > 0.0) {
@@ -700,22 +617,11 @@ void FixFSIInlet::pre_exchange()
   mass_in += all[2];
   if (all[3] == 0.0 && all[4] == 0.0) return;
 
-  forget_ghosts();
-  for (auto i = gone.rbegin(); i != gone.rend(); i++) {
-    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += energy(*i);
-    last_id = std::max(last_id, atom->tag[*i]);
-    atom->avec->copy(atom->nlocal - 1, *i, 1);
-    atom->nlocal--;
-  }
-  atom->natoms -= static_cast<bigint>(all[4]);
-  net -= static_cast<bigint>(all[4]);
-  tagint largest = last_id;
-  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (atom->map_style != Atom::MAP_NONE) {
-    atom->map_init();
-    atom->map_set();
-  }
+  auto &population = fix_fsi->population;
+  population.begin();
+  population.remove(gone, fix_fsi->account(FixFSI::FIELDS));
   if (all[3] > 0.0) make(copies, false);
+  population.end();
 }
 
 /* ----------------------------------------------------------------------
@@ -1296,7 +1202,6 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("gradient", std::vector<double>{gradient});
   record.add("fill", std::vector<double>{fill, mean_fill, column});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
-  record.add("last ID", std::to_string(last_id));
   fields.write(record);
   record.write(fp);
 }
@@ -1323,7 +1228,6 @@ void FixFSIInlet::restart(char *buf)
   passed_in = numbers[0];
   passed_out = numbers[1];
   mass_in = numbers[2];
-  last_id = std::stoll(record.value("last ID"));
   fields.read(record);
 }
 

@@ -24,6 +24,7 @@ FixStyle(fsi/outlet,FixFSIInlet);
 #include "fsi_fields.h"
 #include "fsi_keywords.h"
 #include "fsi_part.h"
+#include "fsi_population.h"
 #include "fsi_value.h"
 
 #include <algorithm>
@@ -41,8 +42,6 @@ namespace LAMMPS_NS {
 
 class FixFSIInlet : public FSI::FixFields, public FSI::Part {
  public:
-  bigint net = 0;    // particles made less those deleted, since this fix is there
-
   FixFSIInlet(class LAMMPS *, int, char **);
   int setmask() override;
   void init() override;
@@ -54,12 +53,12 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void restart(char *) override;
   double memory_usage() override;
 
+  Rank rank() const override { return OPEN_ENDS; }
   void advance(bool) override;      // density of the buffer, when the fluid has its own
   void end_state(bool) override;    // is there as much fluid as there is room?
   void prescribe() override;        // velocity of the buffer
 
   bool holds(const double *x) const;    // is a place in the buffer?
-  tagint last_id;                       // largest that it has given
 
  private:
   struct Place {    // of a particle near the plane
@@ -67,11 +66,6 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     double inside = 0.0;    // distance from the plane into the fluid
     double normal = 0.0;    // velocity of the fluid at the plane, along the axis
     bool known = false;     // is there fluid at the plane?
-  };
-  struct Copy {
-    double x[3] = {}, v[3] = {}, rho = 0.0, rmass = 0.0;
-    tagint parent = 0, molecule = 0;
-    int type = 0, mask = 0;
   };
   // sums over the fluid at the plane
   enum {
@@ -157,9 +151,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double value(int k, int i) const;    // which is a number
   void check_plane();
   void find_region();
-  std::vector<int> find_occupied(std::vector<Copy> &copies, bool at_start);
+  std::vector<int> find_occupied(std::vector<FSI::Particle> &copies, bool at_start);
   void fit_nodes(int nodes, int nmoment, int nfit, int nfields);
-  double energy(int i) const;
   struct Column {
     double at[2] = {};    // along the plane
   };
@@ -167,18 +160,16 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void fill_buffer();
   int number_of_slices() const, slice(double distance) const, full_slices() const;
   void check_slices(std::vector<int> &mine) const;
-  std::vector<Copy> go_on_behind() const;
+  std::vector<FSI::Particle> go_on_behind() const;
   std::vector<Column> columns_at_plane() const;
   const FSI::State &softest() const;
   bool is_far(double p) const;
-  void leave_an_id_free();
   void stranger(int i);
   void check_supply();
   void warn_of_fill(bool full);
   void keep_full();
   void set_density(int i, double rho);
-  void make(std::vector<Copy> &, bool at_start);
-  void forget_ghosts();
+  void make(const std::vector<FSI::Particle> &, bool at_start);
   void follow(int i, double s);
   void find_places();
   template <class Visit> void at_nodes(const double *x, double reach, Visit) const;

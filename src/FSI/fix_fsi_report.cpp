@@ -18,7 +18,6 @@
 #include "compute_fsi_energy.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "fix_fsi_inlet.h"
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
 #include "fsi_clock.h"
@@ -139,9 +138,7 @@ bigint FixFSIReport::particles() const
 {
   bigint mine = atom->nlocal, all;
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  for (const auto *fix : modify->get_fix_list())
-    if (const auto *end = dynamic_cast<const FixFSIInlet *>(fix)) all -= end->net;
-  return all;
+  return all - fix_fsi->population.net;
 }
 
 /* ----------------------------------------------------------------------
