@@ -27,6 +27,7 @@
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "pair_hybrid.h"
 #include "update.h"
 
 #include <algorithm>
@@ -44,9 +45,9 @@ static const std::vector<std::string> coupling_names = {"wall", "full"};    // C
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_FLUID},
     images_step(-1), near_known(false), sorts(true), margin(0.0), reach(INFINITY), cut(false),
-    solids_pass(false),
-    fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{},
-    rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    solids_pass(false), fields(lmp), fill(nullptr),
+    fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, rate(nullptr), beyond(nullptr),
+    hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -138,7 +139,9 @@ double PairFSIFluid::sound_of(const Material &m) const
 
 void PairFSIFluid::init_style()
 {
+  NeighList *const lists = list;    // LAMMPS makes no others where all is asked for as before
   PairFSI::init_style();
+  list = lists;
   if (delta > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR,
                "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
@@ -220,6 +223,7 @@ Facts PairFSIFluid::facts() const
   facts.couples_stress = couple != WALL;
   facts.density_at_surfaces = surfaces;
   facts.density_follows_shift = shifting > 0.0 && fills();
+  facts.shift_every = shifting > 0.0 ? shift_every : 0;
   return facts;
 }
 
@@ -243,8 +247,24 @@ int PairFSIFluid::shift_sums() const
   return fix_fsi->dim == 2 ? Shift<2>::sums(fills()) : Shift<3>::sums(fills());
 }
 
+// Is this one of several styles of a hybrid one that leaves it all its pairs? Then it takes LAMMPS'
+// list of all pairs: the hybrid style would have its own copied from that.
+bool PairFSIFluid::has_all_pairs() const
+{
+  auto *const all = dynamic_cast<PairHybrid *>(force->pair);
+  if (!all) return false;
+  char name[] = "fsi/fluid";
+  for (int a = 1; a <= atom->ntypes; a++)
+    for (int b = a; b <= atom->ntypes; b++)
+      if (setflag[a][b] && handles(material[a].species, material[b].species) &&
+          !all->check_ijtype(a, b, name))
+        return false;
+  return true;
+}
+
 void PairFSIFluid::set_fields(Scene &scene)
 {
+  if (has_all_pairs()) neighbor->add_request(this);    // after init_style()
   fields.set("density rate", Fields::STEP, scene.density_fluid == FixFSI::CONTINUITY, rate);
   fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
   fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
@@ -816,8 +836,8 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   const auto loop = [&](int kind, const std::vector<Row> &which,
                         const std::vector<double> &parts_of, const Mirror *mirror,
                         std::vector<Row> *found) {
-    loops_of(kind).rates(kinds[kind], which, mirror, of_rows(particles, kind, which, parts_of), laws,
-                         rate, shift, fix_fsi->ledger ? &sums : nullptr, found);
+    loops_of(kind).rates(kinds[kind], which, mirror, of_rows(particles, kind, which, parts_of),
+                         laws, rate, shift, fix_fsi->ledger ? &sums : nullptr, found);
   };
   // of what thin bodies may hide the order says which part belongs to which pair
   for (int kind = 0; kind < NROWS; kind++)
@@ -1031,9 +1051,8 @@ template <int D> void PairFSIFluid::compute_forces()
   const auto loop = [&](int kind, const std::vector<Row> &which,
                         const std::vector<double> &parts_of, const Mirror *mirror, double *total) {
     const double before = sums.guard;
-    force_loops(kind).forces(kinds[kind], which, mirror,
-                             of_rows(particles, kind, which, parts_of), laws, forces.data(), total,
-                             of_pairs);
+    force_loops(kind).forces(kinds[kind], which, mirror, of_rows(particles, kind, which, parts_of),
+                             laws, forces.data(), total, of_pairs);
     guarding[kind] += sums.guard - before;
   };
   for (int kind = 0; kind < NROWS; kind++)
@@ -1146,8 +1165,8 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 double PairFSIFluid::memory_usage()
 {
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
-      pressure_over_density.capacity() + sorted_at.capacity() + parts.capacity() + part_rates.capacity() +
-      visible.capacity();
+      pressure_over_density.capacity() + sorted_at.capacity() + parts.capacity() +
+      part_rates.capacity() + visible.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double) +
       (double) beside.capacity() * sizeof(beside[0]);
   for (int kind = 0; kind < NROWS; kind++) {

@@ -72,6 +72,7 @@ class PairFSIFluid : public PairFSI {
 
  protected:
   bool handles(int, int) const override;
+  bool needs_neighbors() override { return !has_all_pairs(); }
   // walls of held solid particles need no pair style of their own; wall particles act on fluids
   // only
   bool leaves_alone(int a, int b, bool alone) const override
@@ -113,6 +114,7 @@ class PairFSIFluid : public PairFSI {
   FSI::RowList rows[NROWS];
   FSI::PairKind kinds[NROWS];
   void find_rows();
+  bool has_all_pairs() const;
   // rows of images by reflection; walls of particles have none
   std::vector<FSI::RowList> images[NROWS];
   bigint images_step;
@@ -157,8 +159,8 @@ class PairFSIFluid : public PairFSI {
   FSI::Thin thin_bodies;
   FSI::Visible seen_pairs;
   // particles as the loop over these rows sees them, and that loop
-  FSI::FluidParticles of_rows(const FSI::FluidParticles &, int kind,
-                              const std::vector<FSI::Row> &, const std::vector<double> &visible);
+  FSI::FluidParticles of_rows(const FSI::FluidParticles &, int kind, const std::vector<FSI::Row> &,
+                              const std::vector<double> &visible);
   const FSI::FluidLoops &loops_of(int kind) const
   {
     return kind == HIDDEN ? *single_loops : *loops;
