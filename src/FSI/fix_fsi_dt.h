@@ -21,7 +21,6 @@ FixStyle(fsi/dt,FixFSIDt);
 #define LMP_FIX_FSI_DT_H
 
 #include "fix.h"
-#include "fsi_keywords.h"
 #include "fsi_limits.h"
 #include "fsi_part.h"
 

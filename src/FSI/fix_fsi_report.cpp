@@ -22,6 +22,8 @@
 #include "force.h"
 #include "fsi_clock.h"
 #include "fsi_keywords.h"
+#include "fsi_population.h"
+#include "fsi_profile.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -48,8 +50,9 @@ static std::string word(const std::string &text)
 /* ---------------------------------------------------------------------- */
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), fp(nullptr), first_step(0), natoms(0),
-    first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{}, collected(-1), output{}
+    Fix(lmp, narg, arg), profile(new Profile()), fix_fsi(nullptr), energy(nullptr), fp(nullptr),
+    first_step(0), natoms(0), first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{},
+    collected(-1), output{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/report requires atom_style fsi");
   if (igroup)
@@ -130,7 +133,7 @@ void FixFSIReport::begin()
     energy->compute_vector();
     ledger.assign(energy->vector, energy->vector + energy->size_vector);
   }
-  profile.clear();
+  profile->clear();
 }
 
 // that there are, less those that inlets and outlets have made
@@ -194,8 +197,8 @@ FixFSIReport::Balance FixFSIReport::balance() const
   const Vector now = momentum_of_moving(&b.scale);
   auto mine = impulse;
   for (int d = 0; d < 3; d++) {
-    mine[WALLS][d] += profile.reflected[d];
-    mine[HELD][d] -= force->ftm2v * profile.impulse_held[d];
+    mine[WALLS][d] += profile->reflected[d];
+    mine[HELD][d] -= force->ftm2v * profile->impulse_held[d];
   }
   MPI_Allreduce(mine.data(), b.from.data(), 3 * NGIVER, MPI_DOUBLE, MPI_SUM, world);
   for (int d = 0; d < 3; d++) {
@@ -229,9 +232,9 @@ void FixFSIReport::post_run()
 
   double loop = timer->get_wall(Timer::TOTAL), sum;
   if (!timer->has_loop()) {
-    profile.enter(Profile::OUTSIDE);
+    profile->enter(Profile::OUTSIDE);
     loop = 0.0;
-    for (const double s : profile.seconds) loop += s;
+    for (const double s : profile->seconds) loop += s;
   }
   MPI_Allreduce(&loop, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
   loop = sum / comm->nprocs;
@@ -290,7 +293,7 @@ std::string FixFSIReport::time_table(double loop)
       {"output", "thermo, dumps, restarts, computes they need"},
       {"rest", "drift and kick, other fixes, their computes, LAMMPS"}};
   double mine[NROW], sum[NROW], most[NROW];
-  std::copy_n(profile.seconds, (int) Profile::NPART, mine);
+  std::copy_n(profile->seconds, (int) Profile::NPART, mine);
   const bool known = timer->has_normal();
   mine[Profile::MESSAGES] += known ? timer->get_wall(Timer::COMM) : 0.0;
   mine[NEIGH] = known ? timer->get_wall(Timer::NEIGH) : 0.0;

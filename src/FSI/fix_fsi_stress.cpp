@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_changes.h"
 #include "fsi_record.h"
 #include "modify.h"
 #include "pair.h"

@@ -22,8 +22,6 @@ FixStyle(fsi/stress,FixFSIStress);
 
 #include "fsi_fields.h"
 #include "fsi_jaumann.h"
-#include "fsi_keywords.h"
-#include "fsi_material.h"
 #include "fsi_part.h"
 #include "fsi_plasticity.h"
 

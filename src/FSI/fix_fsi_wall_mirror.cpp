@@ -23,6 +23,7 @@
 #include "fsi_keywords.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
+#include "fsi_walls.h"
 #include "pair.h"
 #include "update.h"
 

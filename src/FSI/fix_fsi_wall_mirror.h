@@ -22,7 +22,6 @@ FixStyle(fsi/wall/mirror,FixFSIWallMirror);
 
 #include "fix.h"
 #include "fsi_part.h"
-#include "fsi_walls.h"
 
 #include <array>
 #include <string>

@@ -21,6 +21,7 @@
 #include "fix_store_atom.h"
 #include "force.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_tensor.h"

@@ -21,7 +21,6 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 #define LMP_FIX_FSI_WALL_PARTICLE_H
 
 #include "fix.h"
-#include "fsi_keywords.h"
 #include "fsi_part.h"
 
 #include <string>

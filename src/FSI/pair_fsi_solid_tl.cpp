@@ -23,6 +23,7 @@
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_check.h"
 #include "fsi_contact.h"
 #include "fsi_gather.h"
 #include "fsi_profile.h"
