@@ -83,13 +83,6 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIDt::setmask()
-{
-  return END_OF_STEP | POST_RUN;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSIDt::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/dt");

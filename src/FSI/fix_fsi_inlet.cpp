@@ -137,13 +137,6 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIInlet::setmask()
-{
-  return PRE_EXCHANGE;
-}
-
-/* ---------------------------------------------------------------------- */
-
 FixFSIInlet::~FixFSIInlet() = default;
 
 bool FixFSIInlet::has_own_velocity() const
@@ -1173,13 +1166,6 @@ void FixFSIInlet::prescribe()
     }
   }
   fix_fsi->tally(FixFSI::FIELDS, -push_sum[3]);
-}
-
-/* ---------------------------------------------------------------------- */
-
-double FixFSIInlet::compute_scalar()
-{
-  return mass_in;
 }
 
 double FixFSIInlet::compute_vector(int n)

@@ -46,11 +46,11 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIInlet(class LAMMPS *, int, char **);
   ~FixFSIInlet() override;
-  int setmask() override;
+  int setmask() override { return FixConst::PRE_EXCHANGE; }
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override;
-  double compute_scalar() override;
+  double compute_scalar() override { return mass_in; }
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;

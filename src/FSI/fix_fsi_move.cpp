@@ -202,13 +202,6 @@ bool FixFSIMove::of_atom(int k) const
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIMove::setmask()
-{
-  return INITIAL_INTEGRATE | PRE_EXCHANGE | FINAL_INTEGRATE;
-}
-
-/* ---------------------------------------------------------------------- */
-
 double FixFSIMove::now() const
 {
   return FSI::Clock::now(update);
@@ -270,11 +263,6 @@ void FixFSIMove::initial_integrate(int)
   given->evaluate(igroup, 0, 2 * VELOCITY, false);
   evaluated = update->ntimestep;
   compare_velocities(before);
-}
-
-void FixFSIMove::final_integrate()
-{
-  move(END);
 }
 
 /* ----------------------------------------------------------------------

@@ -37,12 +37,15 @@ class FixFSIMove : public FSI::FixFields {
  public:
   FixFSIMove(class LAMMPS *, int, char **);
   ~FixFSIMove() override;
-  int setmask() override;
+  int setmask() override
+  {
+    return FixConst::INITIAL_INTEGRATE | FixConst::PRE_EXCHANGE | FixConst::FINAL_INTEGRATE;
+  }
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override {}
   void initial_integrate(int) override;
-  void final_integrate() override;
+  void final_integrate() override { move(END); }
   void reset_dt() override {}
   // velocity of a particle of the group at the end of the step that is going on; false: not known
   // before it is there

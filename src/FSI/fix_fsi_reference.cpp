@@ -82,13 +82,6 @@ FixFSIReference::~FixFSIReference()
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
 }
 
-/* ---------------------------------------------------------------------- */
-
-int FixFSIReference::setmask()
-{
-  return POST_INTEGRATE | POST_NEIGHBOR;
-}
-
 // after fix rigid has moved its bodies
 void FixFSIReference::post_integrate()
 {
@@ -127,11 +120,6 @@ bool FixFSIReference::any() const
       all;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
   return all;
-}
-
-void FixFSIReference::init_list(int, NeighList *ptr)
-{
-  list = ptr;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -836,11 +824,6 @@ void FixFSIReference::copy_arrays(int i, int j, int delflag)
   slot[j] = slot[i];
 }
 
-void FixFSIReference::set_arrays(int i)
-{
-  slot[i] = NO_BONDS;
-}
-
 /* ----------------------------------------------------------------------
    number of bonds, then partner and values of each
 ------------------------------------------------------------------------- */
@@ -943,11 +926,6 @@ void FixFSIReference::unpack_restart(int i, int nth)
 int FixFSIReference::size_restart(int i)
 {
   return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + 1) + nplace();
-}
-
-int FixFSIReference::maxsize_restart()
-{
-  return 3 + maxbond * (nvalue + 1) + nplace();
 }
 
 /* ---------------------------------------------------------------------- */

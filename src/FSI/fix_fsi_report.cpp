@@ -33,7 +33,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -58,10 +57,6 @@ FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
   if (igroup)
     error->all(FLERR, "Fix fsi/report must use group all: times and energies have no group");
 
-  if (narg > 3 && !strcmp(arg[3], "every"))
-    error->all(
-        FLERR,
-        "Fix fsi/report every is for messages, which are not counted any more: leave it out");
   std::string file;
   Keywords keywords(lmp, "fix fsi/report");
   keywords.key("file").word(file, "");
@@ -90,13 +85,6 @@ FixFSIReport::~FixFSIReport()
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIReport::setmask()
-{
-  return END_OF_STEP;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSIReport::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
@@ -104,13 +92,6 @@ void FixFSIReport::init()
     error->all(FLERR, "There can be only one fix fsi/report");
   auto computes = modify->get_compute_by_style("^fsi/energy$");
   energy = computes.empty() ? nullptr : dynamic_cast<ComputeFSIEnergy *>(computes[0]);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSIReport::setup(int)
-{
-  begin();
 }
 
 /* ----------------------------------------------------------------------

@@ -36,9 +36,9 @@ class FixFSIReport : public Fix, public FSI::Part {
  public:
   FixFSIReport(class LAMMPS *, int, char **);
   ~FixFSIReport() override;
-  int setmask() override;
+  int setmask() override { return FixConst::END_OF_STEP; }
   void init() override;
-  void setup(int) override;
+  void setup(int) override { begin(); }
   void end_of_step() override;
   void post_run() override;
   double compute_vector(int) override;

@@ -78,13 +78,6 @@ FixFSIStream::~FixFSIStream() = default;
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIStream::setmask()
-{
-  return POST_FORCE;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSIStream::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/stream");

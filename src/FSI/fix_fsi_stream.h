@@ -39,7 +39,7 @@ class FixFSIStream : public Fix, public FSI::Part {
  public:
   FixFSIStream(class LAMMPS *, int, char **);
   ~FixFSIStream() override;
-  int setmask() override;
+  int setmask() override { return FixConst::POST_FORCE; }
   void init() override;
   void setup(int) override;
   void post_force(int) override;

@@ -166,13 +166,6 @@ void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIWallMirror::setmask()
-{
-  return POST_INTEGRATE | END_OF_STEP;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWallMirror::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");

@@ -67,13 +67,6 @@ FixFSIWallParticle::~FixFSIWallParticle()
   memory->destroy(sum);
 }
 
-/* ---------------------------------------------------------------------- */
-
-int FixFSIWallParticle::setmask()
-{
-  return PRE_REVERSE;
-}
-
 /* ----------------------------------------------------------------------
    velocities of the last step, which migrate with the atoms and go into restart files
 ------------------------------------------------------------------------- */
@@ -315,11 +308,6 @@ void FixFSIWallParticle::end_state(bool advance)
 /* ----------------------------------------------------------------------
    force of the fluid: only pairs have added to f so far
 ------------------------------------------------------------------------- */
-
-void FixFSIWallParticle::setup_pre_reverse(int eflag, int vflag)
-{
-  pre_reverse(eflag, vflag);
-}
 
 void FixFSIWallParticle::pre_reverse(int, int)
 {

@@ -111,13 +111,6 @@ void PairFSISolidTL::check_settings()
 
 /* ---------------------------------------------------------------------- */
 
-bool PairFSISolidTL::handles(int a, int b) const
-{
-  return a == SOLID && b == SOLID;
-}
-
-/* ---------------------------------------------------------------------- */
-
 State PairFSISolidTL::make_state(const Material &m) const
 {
   State s = solid_state(m, plane_stress);
