@@ -342,8 +342,8 @@ template <int D> void FixFSI::kick()
 }
 
 /* ----------------------------------------------------------------------
-   bring density and stress of local and ghost atoms to the time of the positions; not to advance, in
-   setup: a function of the state only
+   bring density and stress of local and ghost atoms to the time of the positions; not to advance,
+   in setup: a function of the state only
 ------------------------------------------------------------------------- */
 
 void FixFSI::update_state(bool advance)
@@ -365,10 +365,12 @@ void FixFSI::update_state(bool advance)
   phase.next(Profile::DENSITY);
   bool sums = false;
   for (auto *p : parts) sums = p->add_rates(advance) || sums;
+  sent = &back;
   if (sums && force->newton_pair) reverse_comm(profile, comm, this);
   for (auto *p : parts) p->advance(advance);
   number_density.renew(advance);
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
+  sent = &forward;
   forward_comm(profile, comm, this);
   for (auto *p : parts) p->end_state(advance);
 }
@@ -376,15 +378,15 @@ void FixFSI::update_state(bool advance)
 void FixFSI::add_ghosts(double *n)
 {
   carried = n;
+  sent = &scalar;
   if (force->newton_pair) reverse_comm(profile, comm, this);
-  carried = nullptr;
 }
 
 void FixFSI::send_to_ghosts(double *n)
 {
   carried = n;
+  sent = &scalar;
   forward_comm(profile, comm, this);
-  carried = nullptr;
 }
 
 void FixFSI::set_arrays(int i)

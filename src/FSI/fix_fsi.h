@@ -69,22 +69,6 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void pre_force(int) override { update_state(true); }
   void final_integrate() override;
   void post_run() override;
-  int pack_forward_comm(int n, int *list, double *buf, int, int *) override
-  {
-    return (carried ? scalar : forward).pack(n, list, buf);
-  }
-  void unpack_forward_comm(int n, int first, double *buf) override
-  {
-    (carried ? scalar : forward).unpack(n, first, buf);
-  }
-  int pack_reverse_comm(int n, int first, double *buf) override
-  {
-    return (carried ? scalar : back).pack_back(n, first, buf);
-  }
-  void unpack_reverse_comm(int n, int *list, double *buf) override
-  {
-    (carried ? scalar : back).add_up(n, list, buf);
-  }
   void set_arrays(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -114,7 +98,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   // sums that pairs left on them
   FSI::Message forward, back;
   FSI::Message scalar;    // of one array of numbers per atom, both ways
-  double *carried;        // that array; null: the others
+  double *carried;        // that array
   bool fresh_start() const;
   template <int D> void drift();
   template <int D> void kick();
