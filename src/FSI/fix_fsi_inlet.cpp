@@ -21,8 +21,12 @@
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
+#include "fsi_number_density.h"
+#include "fsi_population.h"
 #include "fsi_record.h"
 #include "fsi_shift.h"
+#include "fsi_value.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -68,11 +72,12 @@ static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"),
-    keywords(lmp, keywords_name()), given(lmp, keywords_name(), NVALUES), background(false),
-    length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), nodes(lmp),
-    nbounds(0), mean{}, filled(false), wave(0.0), gradient(0.0), before(0.0), served(0.0),
-    has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0),
-    column(1.0), last_buffer(-1.0), told{}, push_sum{}, ends(MPI_COMM_NULL)
+    keywords(lmp, keywords_name()), given(new Values(lmp, keywords_name(), NVALUES)),
+    background(false), length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr),
+    behind(nullptr), nodes(lmp), nbounds(0), mean{}, filled(false), wave(0.0), gradient(0.0),
+    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0),
+    fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{},
+    ends(MPI_COMM_NULL)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, keywords_name(), error);
@@ -105,11 +110,11 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "{} {} requires keyword velocity or pressure", who, face);
   if (words[0].empty()) {
     background = p.empty();
-    if (!background && p != "free") given.read(PRESSURE, p, "pressure", "v_name or free");
+    if (!background && p != "free") given->read(PRESSURE, p, "pressure", "v_name or free");
   } else {
     for (int d = 0; d < 3; d++) {
-      given.read(d, words[d], "velocity");
-      if (d >= domain->dimension && (given.source(d) != Values::NUMBER || given.number(d) != 0.0))
+      given->read(d, words[d], "velocity");
+      if (d >= domain->dimension && (given->source(d) != Values::NUMBER || given->number(d) != 0.0))
         error->all(FLERR, "{} velocity along z must be 0 in 2D, not {}", who, words[d]);
     }
   }
@@ -138,20 +143,23 @@ FixFSIInlet::~FixFSIInlet()
   forget_ends();
 }
 
-int FixFSIInlet::setmask()
+bool FixFSIInlet::has_own_velocity() const
 {
-  return PRE_EXCHANGE;
+  return !given->given(0);
 }
 
-/* ---------------------------------------------------------------------- */
+bool FixFSIInlet::has_own_pressure() const
+{
+  return !given->given(PRESSURE) && !background;
+}
 
 double FixFSIInlet::value(int k, int i) const
 {
-  const double x = given(k, i);
+  const double x = (*given)(k, i);
   if (!std::isfinite(x))
     error->one(FLERR, "{} {}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", who, id,
                k == PRESSURE ? "pressure" : fmt::format("velocity along {}", "xyz"[k]), x,
-               atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given.see(k));
+               atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given->see(k));
   return x;
 }
 
@@ -204,20 +212,21 @@ void FixFSIInlet::init()
                who, id, made[0], made[1], position, length);
   check_plane();
   find_region();
-  given.find();
+  given->find();
   zone_group = igroup;
-  if (given.of_atoms()) zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
+  if (given->of_atoms())
+    zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
   driven = false;
   for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
     driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->has_own_velocity();
   told = {};
-  if (given.source(PRESSURE) == Values::NUMBER && is_far(given.number(PRESSURE))) {
+  if (given->source(PRESSURE) == Values::NUMBER && is_far(given->number(PRESSURE))) {
     const State &soft = softest();
-    const double away = std::fabs(given.number(PRESSURE) - soft.p0);
+    const double away = std::fabs(given->number(PRESSURE) - soft.p0);
     error->all(FLERR,
                "{} {}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
                "most. Is it in units {}? Else take sound {:.3g} or more in pair_style fsi/fluid",
-               who, id, given.number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
+               who, id, given->number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
                update->unit_style, std::sqrt(away / (FAR * soft.rho0)));
   }
   fix_fsi->population.leave_an_id_free();
@@ -379,11 +388,11 @@ void FixFSIInlet::fill_buffer()
     fix_fsi->population.end();
   }
   find_places();    // of which variables are asked
-  given.evaluate(zone_group, 0, 3);
+  given->evaluate(zone_group, 0, 3);
   for (int i = 0; i < atom->nlocal; i++)
     if (of_buffer[i])
       for (int d = 0; d < fix_fsi->dim; d++)
-        if (given.given(d)) atom->v[i][d] = value(d, i);
+        if (given->given(d)) atom->v[i][d] = value(d, i);
 }
 
 /* ----------------------------------------------------------------------
@@ -816,7 +825,7 @@ void FixFSIInlet::measure()
   nbounds = nmoment + nfit * (wants_velocity + wants_pressure);
   nodes.begin(nbounds, wants_velocity ? 2 : 0);
   double total[NMEAN] = {};
-  const bool pressure_varies = !told.far && !given.name(PRESSURE).empty();
+  const bool pressure_varies = !told.far && !given->name(PRESSURE).empty();
 
   with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
     for (auto &place : places) {
@@ -831,12 +840,12 @@ void FixFSIInlet::measure()
       total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
       if (s <= 0.0) {
         if (s > -fix_fsi->cut) total[BUFFER]++;
-        if (pressure_varies && is_far(given(PRESSURE, i))) total[TOO_FAR]++;
+        if (pressure_varies && is_far((*given)(PRESSURE, i))) total[TOO_FAR]++;
         continue;
       }
       double p = state.pressure(atom->rho[i]);
       // a variable need not know a value before the plane
-      const double q = wants_pressure ? NAN : p - (background ? state.p0 : given(PRESSURE, i));
+      const double q = wants_pressure ? NAN : p - (background ? state.p0 : (*given)(PRESSURE, i));
       if (std::isfinite(q) && s < zone()) {
         total[MASS] += m;
         total[BEYOND] += m * q;
@@ -931,7 +940,7 @@ void FixFSIInlet::advance(bool advance)
   if (!advance) return;
   const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
-  if (!given.name(PRESSURE).empty()) given.evaluate(zone_group, PRESSURE, 1);
+  if (!given->name(PRESSURE).empty()) given->evaluate(zone_group, PRESSURE, 1);
   measure();
   keep_full();    // knows the flow of now, after a restart, too
 
@@ -961,7 +970,7 @@ void FixFSIInlet::advance(bool advance)
                    "{} {}: pressure of variable {} is more than {} rho c^2 from the background: "
                    "the fluid is no longer hardly compressed. Is it in units {}? Else a higher "
                    "sound in pair_style fsi/fluid",
-                   who, id, given.name(PRESSURE), FAR, update->unit_style);
+                   who, id, given->name(PRESSURE), FAR, update->unit_style);
   told.far = told.far || mean[TOO_FAR] > 0.0;
   check_supply();
 
@@ -1136,7 +1145,7 @@ void FixFSIInlet::prescribe()
   const double dt = update->dt;
   if (dt == 0.0) return;
   const bool wants_velocity = has_own_velocity();
-  if (!wants_velocity) given.evaluate(zone_group, 0, 3);
+  if (!wants_velocity) given->evaluate(zone_group, 0, 3);
   for (const auto &place : places) {
     const int i = place.i;
     if (place.inside > 0.0) continue;
@@ -1156,13 +1165,6 @@ void FixFSIInlet::prescribe()
     }
   }
   fix_fsi->tally(FixFSI::FIELDS, -push_sum[3]);
-}
-
-/* ---------------------------------------------------------------------- */
-
-double FixFSIInlet::compute_scalar()
-{
-  return mass_in;
 }
 
 double FixFSIInlet::compute_vector(int n)
@@ -1235,6 +1237,6 @@ void FixFSIInlet::restart(char *buf)
 
 double FixFSIInlet::memory_usage()
 {
-  return FixFields::memory_usage() + given.memory_usage() + nodes.memory_usage() +
+  return FixFields::memory_usage() + given->memory_usage() + nodes.memory_usage() +
       (double) places.capacity() * sizeof(Place);
 }

@@ -20,11 +20,13 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_cells.h"
+#include "fsi_changes.h"
 #include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
+#include "fsi_part.h"
 #include "fsi_record.h"
 #include "memory.h"
 #include "modify.h"
@@ -77,13 +79,6 @@ FixFSIReference::~FixFSIReference()
   }
   memory->destroy(slot);
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIReference::setmask()
-{
-  return POST_INTEGRATE | POST_NEIGHBOR;
 }
 
 // after fix rigid has moved its bodies
@@ -940,11 +935,6 @@ void FixFSIReference::copy_arrays(int i, int j, int delflag)
   slot[j] = slot[i];
 }
 
-void FixFSIReference::set_arrays(int i)
-{
-  slot[i] = NO_BONDS;
-}
-
 /* ----------------------------------------------------------------------
    number of bonds, then partner and values of each
 ------------------------------------------------------------------------- */
@@ -1055,11 +1045,6 @@ void FixFSIReference::unpack_restart(int i, int nth)
 int FixFSIReference::size_restart(int i)
 {
   return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + nwhole()) + nplace();
-}
-
-int FixFSIReference::maxsize_restart()
-{
-  return 3 + maxbond * (nvalue + nwhole()) + nplace();
 }
 
 /* ---------------------------------------------------------------------- */

@@ -46,14 +46,14 @@ class FixFSIReference : public Fix {
   static constexpr char ID[] = "FSI_REFERENCE";
   FixFSIReference(class LAMMPS *, int, char **);
   ~FixFSIReference() override;
-  int setmask() override;
+  int setmask() override { return FixConst::POST_INTEGRATE | FixConst::POST_NEIGHBOR; }
   void post_integrate() override;
   void init() override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
+  void set_arrays(int i) override { slot[i] = NO_BONDS; }
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
@@ -63,7 +63,7 @@ class FixFSIReference : public Fix {
   void write_restart(FILE *) override;
   void restart(char *) override;
   int size_restart(int) override;
-  int maxsize_restart() override;
+  int maxsize_restart() override { return 3 + maxbond * (nvalue + nwhole()) + nplace(); }
   double memory_usage() override;
 
   bool any() const;    // bonds, on any rank: all ask together

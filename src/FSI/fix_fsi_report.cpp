@@ -23,6 +23,8 @@
 #include "fsi_clock.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_population.h"
+#include "fsi_profile.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -33,7 +35,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -50,17 +51,14 @@ static std::string word(const std::string &text)
 /* ---------------------------------------------------------------------- */
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), fp(nullptr), first_step(0), natoms(0),
-    first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{}, collected(-1), output{}
+    Fix(lmp, narg, arg), profile(new Profile()), fix_fsi(nullptr), energy(nullptr), fp(nullptr),
+    first_step(0), natoms(0), first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{},
+    collected(-1), output{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/report requires atom_style fsi");
   if (igroup)
     error->all(FLERR, "Fix fsi/report must use group all: times and energies have no group");
 
-  if (narg > 3 && !strcmp(arg[3], "every"))
-    error->all(
-        FLERR,
-        "Fix fsi/report every is for messages, which are not counted any more: leave it out");
   std::string file;
   Keywords keywords(lmp, "fix fsi/report");
   keywords.key("file").word(file, "");
@@ -89,13 +87,6 @@ FixFSIReport::~FixFSIReport()
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIReport::setmask()
-{
-  return END_OF_STEP;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSIReport::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
@@ -103,13 +94,6 @@ void FixFSIReport::init()
     error->all(FLERR, "There can be only one fix fsi/report");
   auto computes = modify->get_compute_by_style("^fsi/energy$");
   energy = computes.empty() ? nullptr : dynamic_cast<ComputeFSIEnergy *>(computes[0]);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSIReport::setup(int)
-{
-  begin();
 }
 
 /* ----------------------------------------------------------------------
@@ -132,7 +116,7 @@ void FixFSIReport::begin()
     energy->compute_vector();
     ledger.assign(energy->vector, energy->vector + energy->size_vector);
   }
-  profile.clear();
+  profile->clear();
 }
 
 // that there are, less those that inlets and outlets have made
@@ -196,8 +180,8 @@ FixFSIReport::Balance FixFSIReport::balance() const
   const Vector now = momentum_of_moving(&b.scale);
   auto mine = impulse;
   for (int d = 0; d < 3; d++) {
-    mine[WALLS][d] += profile.reflected[d];
-    mine[HELD][d] -= force->ftm2v * profile.impulse_held[d];
+    mine[WALLS][d] += profile->reflected[d];
+    mine[HELD][d] -= force->ftm2v * profile->impulse_held[d];
   }
   MPI_Allreduce(mine.data(), b.from.data(), 3 * NGIVER, MPI_DOUBLE, MPI_SUM, world);
   for (int d = 0; d < 3; d++) {
@@ -231,9 +215,9 @@ void FixFSIReport::post_run()
 
   double loop = timer->get_wall(Timer::TOTAL), sum;
   if (!timer->has_loop()) {
-    profile.enter(Profile::OUTSIDE);
+    profile->enter(Profile::OUTSIDE);
     loop = 0.0;
-    for (const double s : profile.seconds) loop += s;
+    for (const double s : profile->seconds) loop += s;
   }
   MPI_Allreduce(&loop, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
   loop = sum / comm->nprocs;
@@ -293,7 +277,7 @@ std::string FixFSIReport::time_table(double loop)
       {"output", "thermo, dumps, restarts, computes they need"},
       {"rest", "drift and kick, other fixes, their computes, LAMMPS"}};
   double mine[NROW], sum[NROW], most[NROW], busiest;
-  std::copy_n(profile.seconds, (int) Profile::NPART, mine);
+  std::copy_n(profile->seconds, (int) Profile::NPART, mine);
   const bool known = timer->has_normal();
   mine[Profile::MESSAGES] += known ? timer->get_wall(Timer::COMM) : 0.0;
   mine[NEIGH] = known ? timer->get_wall(Timer::NEIGH) : 0.0;
