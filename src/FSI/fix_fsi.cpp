@@ -47,7 +47,8 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     check(lmp, *this), changes(lmp), population(lmp, *this),
     number_density(lmp, *this, [this](double *n) { add_ghosts(n); }),
     surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
-    ids_checked(false), others(lmp, *this), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
+    ids_checked(false), others(lmp, *this), forward(lmp, state), back(lmp, state),
+    scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 

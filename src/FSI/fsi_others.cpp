@@ -68,7 +68,7 @@ void Others::give_density(int i) const
 // atom_style sphere gives all new particles one, whatever they are
 bool Others::has_mass_of_new_sphere(int i) const
 {
-  return atom->radius_flag && atom->radius[i] == 0.5 &&
+  return atom->radius_flag &&
       atom->rmass[i] == 4.0 * MY_PI / 3.0 * 0.5 * 0.5 * 0.5;    // as AtomVecSphere writes it
 }
 

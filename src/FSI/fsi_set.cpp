@@ -101,8 +101,7 @@ void FSISet::command(int narg, char **arg)
       count++;
       continue;
     }
-    // a wall has its pressure from the fluid, and its mass
-    if (s.species == NONE || s.species == RIGID) continue;
+    if (s.species == NONE || s.species == RIGID) continue;    // walls: from the fluid
     if (s.form == TOTAL_LAGRANGIAN) continue;    // density from its strain
     double rho = value;
     if (hydrostatic) {

@@ -54,7 +54,7 @@ class Grains:
         types = [1] * self.n + [2] * len(grains)
         self.lmp.create_atoms(len(points), list(range(1, len(points) + 1)), types, points.ravel().tolist(), velocities.ravel().tolist())
         assert self.lmp.get_natoms() == len(points)
-        self.do(f"set type 2 diameter {d}\nset type 2 density{'/disc' if dim == 2 else ''} 2500")
+        self.do(f"set type 1 diameter {DX}\nset type 2 diameter {d}\nset type 2 density{'/disc' if dim == 2 else ''} 2500")
         self.do(tail)
         self.do(commands)
 
