@@ -27,6 +27,7 @@
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
 #include "fsi_order.h"
+#include "fsi_others.h"
 #include "fsi_part.h"
 #include "fsi_population.h"
 #include "fsi_profile.h"
@@ -57,10 +58,12 @@ struct FixFSI::Members {
   Population population;
   NumberDensity number_density;
   SurfaceRoom surface_room;
+  Others others;
 
   Members(LAMMPS *lmp, FixFSI &fix, const std::function<void(double *)> &add_ghosts) :
       keywords(lmp, "fix fsi"), clock(lmp), check(lmp, fix), changes(lmp), population(lmp, fix),
-      number_density(lmp, fix, add_ghosts), surface_room(lmp, fix, number_density, add_ghosts)
+      number_density(lmp, fix, add_ghosts), surface_room(lmp, fix, number_density, add_ghosts),
+      others(lmp, fix)
   {
   }
 };
@@ -72,7 +75,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     keywords(members->keywords), clock(members->clock), check(members->check),
     changes(members->changes), population(members->population),
     number_density(members->number_density), surface_room(members->surface_room),
-    forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
+    others(members->others), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -103,6 +106,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this, thin);
 
   time_integrate = force_reneighbor = create_attribute = restart_global = 1;
+  pre_exchange_migrate = 1;
   set_fields();
   register_fields();
 }
@@ -142,7 +146,7 @@ void FixFSI::set_fields()
              wall_stiffness);
 
   forward.clear();
-  forward.add(atom->rho, {NONE, FLUID, SOLID, RIGID});
+  forward.add(atom->rho, {FLUID, SOLID, RIGID});
   number_density.add_messages(forward);
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
@@ -217,8 +221,9 @@ void FixFSI::init()
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
+  others.init();
   check.materials();
-  for (int i = 0; i < atom->nlocal; i++) give_defaults(i);
+  for (int i = 0; i < atom->nlocal; i++) others.give_defaults(i);
   body_forces.find(state);
   check.init();
 }
@@ -231,22 +236,10 @@ void FixFSI::setup(int)
   changes.set_up();
 }
 
-/* ----------------------------------------------------------------------
-   an atom that was never given a mass or a density gets those of the stress-free lattice
-------------------------------------------------------------------------- */
-
-void FixFSI::give_defaults(int i)
-{
-  const State &s = state[atom->type[i]];
-  if (s.species == NONE) return;    // before init()
-  if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / resolution[atom->type[i]].psi_bulk;
-  if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
-}
-
 void FixFSI::find_parts()
 {
   parts.clear();
-  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"})
+  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl", "fsi/grain"})
     if (auto *p = dynamic_cast<Part *>(force->pair_match(style, 1))) parts.push_back(p);
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
@@ -339,6 +332,7 @@ template <int D> void FixFSI::kick()
     if (shifts && state[type[i]].species == FLUID)
       for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
   }
+  others.turn(dt);
 }
 
 /* ----------------------------------------------------------------------
@@ -393,7 +387,7 @@ void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   changes.forget();
-  give_defaults(i);
+  others.give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
     error->one(FLERR,
                "Fluid atom {} was made during a run and is not in group {} of fix {}: it "

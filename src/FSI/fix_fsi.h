@@ -34,6 +34,7 @@ namespace FSI {
   class Clock;
   class Keywords;
   class NumberDensity;
+  class Others;
   class Population;
   class Record;
   class SurfaceRoom;
@@ -85,11 +86,11 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
 
  private:
   void set_fields();
-  void give_defaults(int);
   int given_substeps;
   double hdx;                           // h over dx
   std::vector<double> given_spacing;    // per type; 0: dx
 
+  FSI::Others &others;    // of no material; masses and densities of new ones
   void find_parts();
   FSI::Record record() const;    // of the command, for the next one
   bool goes_on(const FSI::Record &, const std::string &when);

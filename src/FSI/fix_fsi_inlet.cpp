@@ -651,6 +651,7 @@ void FixFSIInlet::stranger(int i)
       "{} {}: atom {} of type {}, {},", who, id, atom->tag[i], atom->type[i],
       species == FLUID       ? fmt::format("a fluid that is not of group {}", group->names[igroup])
           : species == SOLID ? "of a solid"
+                             : species == NONE ? "without a material"
                              : "of a wall or rigid body");
   const bool out = side > 0.0 ? x[axis] < domain->boxlo[axis] : x[axis] >= domain->boxhi[axis];
   if (out && domain->boundary[axis][side < 0.0] == 1 && output->thermo->lostflag == Thermo::ERROR)

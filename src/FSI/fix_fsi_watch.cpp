@@ -155,7 +155,8 @@ void FixFSIWatch::look_at_particles(double &kinetic, double &little)
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
     const State &s = fix_fsi->state[type[i]];
-    if (s.species == RIGID) continue;    // neither compressed nor integrated
+    // a wall is neither compressed nor integrated
+    if (s.species == NONE || s.species == RIGID) continue;
     const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2];
     kinetic += 0.5 * rmass[i] * vsq;
     mass[type[i]] += rmass[i];

@@ -62,11 +62,14 @@ class Adviser : protected Pointers {
   {
     units();
     box();
-    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest());
+    const auto ours = [this](int i) {
+      return has_material(i);
+    };
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest(), ours);
     if (spacing(cells) && solids.style) {
       const double reach = solids.contact;
       const Cells wide(atom->x, atom->nlocal + atom->nghost, scene.dim,
-                       std::max(2.5, reach) * coarsest());
+                       std::max(2.5, reach) * coarsest(), ours);
       if (update->ntimestep == 0) contact(wide, reach);
       held_bodies();
       cut_by_walls();
@@ -94,6 +97,7 @@ class Adviser : protected Pointers {
     for (size_t t = 1; t < scene.resolution.size(); t++) most = std::max(most, scene.dx_of(t));
     return most;
   }
+  bool has_material(int i) const { return scene.state[atom->type[i]].species != NONE; }
   bool fluid(int i) const { return scene.state[atom->type[i]].species == FLUID; }
   bool solid(int i) const { return scene.state[atom->type[i]].species == SOLID; }
   bool moves(int i) const { return solid(i) && atom->mask[i] & scene.mover->groupbit; }
@@ -175,6 +179,7 @@ class Adviser : protected Pointers {
     } closest = {BIG, comm->me}, least;
     tagint pair[2] = {0, 0};
     for (int i = 0; i < atom->nlocal; i++) {
+      if (!has_material(i)) continue;
       double nearest = 1.25 * 1.25;    // over the spacing between the two lattices
       int who = -1;
       cells.around(atom->x[i], [&](int j, double rsq) {
@@ -301,8 +306,8 @@ class Adviser : protected Pointers {
       const auto g = scene.body_forces.on(i);
       for (size_t k = 0; k < walls.size(); k++) {
         const double at = -walls[k].distance(atom->x[i]) / dx(i);
-        if (walls[k].noslip || at <= FAR || g[walls[k].axis] != 0.0 ||
-            !walls[k].spans(atom->x[i], 0.0))
+        if (walls[k].noslip || atom->mask[i] & walls[k].joins || at <= FAR ||
+            g[walls[k].axis] != 0.0 || !walls[k].spans(atom->x[i], 0.0))
           continue;
         double &nearest =
             mine.emplace(std::array<tagint, 2>{atom->molecule[i], (tagint) k}, at).first->second;
@@ -327,7 +332,7 @@ class Adviser : protected Pointers {
       if (at >= 0.0 || both) continue;
       warn(fmt::format("body {} ends at the mirror wall at {} = {:g}, and its face there is free, "
                        "since these walls act on fluid alone: a body cut by a plane of symmetry "
-                       "must be whole, or held there",
+                       "needs symmetry yes, or must be held there",
                        of[0], "xyz"[wall.axis], wall.position));
       return;
     }

@@ -101,8 +101,8 @@ void FSISet::command(int narg, char **arg)
       count++;
       continue;
     }
-    if (s.species == RIGID) continue;            // has its pressure from the fluid, and its mass
-    if (s.form == TOTAL_LAGRANGIAN) continue;    // has its density from its strain
+    if (s.species == NONE || s.species == RIGID) continue;    // walls: from the fluid
+    if (s.form == TOTAL_LAGRANGIAN) continue;    // density from its strain
     double rho = value;
     if (hydrostatic) {
       const auto g = fix_fsi->body_forces.on(i);
