@@ -75,7 +75,8 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     keywords(members->keywords), clock(members->clock), check(members->check),
     changes(members->changes), population(members->population),
     number_density(members->number_density), surface_room(members->surface_room),
-    others(members->others), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
+    others(members->others), forward(lmp, state), back(lmp, state), scalar(lmp, state),
+    carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
