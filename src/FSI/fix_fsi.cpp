@@ -29,6 +29,7 @@
 #include "fsi_order.h"
 #include "fsi_others.h"
 #include "fsi_part.h"
+#include "fsi_others.h"
 #include "fsi_population.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"

@@ -22,6 +22,7 @@ FixStyle(fsi/outlet,FixFSIInlet);
 #define LMP_FIX_FSI_INLET_H
 
 #include "fsi_fields.h"
+#include "fsi_nodes.h"
 #include "fsi_part.h"
 
 #include <algorithm>
@@ -112,11 +113,10 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   std::vector<Place> places;
   int zone_group;    // that of the places
 
-  // sums over the fluid at the nodes of a lattice in the plane, then values there
-  int nlateral, lateral[2], first[2], count[2], ncolumns;
-  double node_distance[2];
-  std::vector<double> mine, sums;
-  std::vector<double> bounds;    // largest and negative least velocity at a node
+  // sums over the fluid at the nodes of a lattice in the plane, then values there; then the largest
+  // and the negative least velocity
+  FSI::Nodes nodes;
+  int nbounds;
   double mean[NMEAN];
 
   // what is kept
@@ -154,7 +154,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void check_plane();
   void find_region();
   std::vector<int> find_occupied(std::vector<FSI::Particle> &copies, bool at_start);
-  void fit_nodes(int nodes, int nmoment, int nfit, int nfields);
+  void fit_nodes(int nmoment, int nfit, int nfields);
   struct Column {
     double at[2] = {};    // along the plane
   };
@@ -174,8 +174,10 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void make(const std::vector<FSI::Particle> &, bool at_start);
   void follow(int i, double s);
   void find_places();
-  template <class Visit> void at_nodes(const double *x, double reach, Visit) const;
-  int place_nodes();    // how many there are
+  MPI_Comm ends;    // of the ranks that this end is a matter of; null on others
+  void renew_ends(bool has_some);
+  void forget_ends();
+  double reach_of_nodes() const { return 2.0 * std::max(nodes.distance[0], nodes.distance[1]); }
   void measure();
   void hold_shift(const Place &);
   bool at_plane(const double *x, double *values) const;

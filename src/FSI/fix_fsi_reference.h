@@ -32,6 +32,9 @@ FixStyle(FSI_REFERENCE,FixFSIReference);
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Cells;
+}
 
 // The reference configuration of total-Lagrangian solids: for every particle its bonds to the
 // neighbors of its own body, with the gradient's weights. Made by pair_style fsi/solid/tl; taken
@@ -46,7 +49,6 @@ class FixFSIReference : public Fix {
   int setmask() override { return FixConst::POST_INTEGRATE | FixConst::POST_NEIGHBOR; }
   void post_integrate() override;
   void init() override;
-  void init_list(int, NeighList *ptr) override { list = ptr; }
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void grow_arrays(int) override;
@@ -121,8 +123,7 @@ class FixFSIReference : public Fix {
   std::string as_now() const;
   bool has_record;
   bool resting;    // no pair_style fsi/solid/tl
-  class NeighList *list;
-  int *slot;    // per local atom: where its bonds are, or NO_BONDS or FOREIGN
+  int *slot;       // per local atom: where its bonds are, or NO_BONDS or FOREIGN
   enum { NO_BONDS = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began
   int maxbond;
   std::vector<int> nbond, local, unused;
@@ -147,8 +148,8 @@ class FixFSIReference : public Fix {
   void take();
   template <int D> void take_reference(const std::vector<int> &);
   template <int D, class Kernel>
-  void find_neighbors(int i, const Kernel &, std::vector<int> &, std::vector<double> &,
-                      std::vector<double> &) const;
+  void find_neighbors(int i, const Kernel &, const FSI::Cells &solids, std::vector<int> &,
+                      std::vector<double> &, std::vector<double> &) const;
   template <int D, class Kernel>
   void find_images(int i, const Kernel &, std::vector<int> &near, std::vector<double> &dX,
                    std::vector<double> &w, std::vector<int> &bits) const;

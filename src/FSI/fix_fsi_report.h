@@ -84,6 +84,7 @@ class FixFSIReport : public Fix, public FSI::Part {
   std::string lines;    // FSI report name value
   template <class T> void enter_line(const std::string &name, const T &value);
   std::string time_table(double loop);
+  std::string what_to_change(double loop, const double *mean, double busiest);
   std::string momentum_table(bool lost);
   std::string energy_table();
 };
