@@ -105,7 +105,7 @@ def study(folder, cases):
         summary.add("energy_error", energy, "of the kick's", target=ENERGY)
     if "kick_short_no_substeps" in runs:
         slow = runs["kick_short_no_substeps"][1]
-        seconds = {name: log.read(Path(path) / "log.lammps").cpu_seconds for name, path in cases.items()}
+        seconds = {name: sum(run.cpu_seconds for run in log.read(Path(path) / "log.lammps").runs) for name, path in cases.items()}
         for name in ("kick_short", "kick_short_half"):
             for which in ("heave", "pitch", "tip"):
                 summary.add(f"apart_{which}_{name}", apart(runs[name][1], slow, which), "of the swing", target=SAME)
