@@ -298,8 +298,8 @@ namespace FSI {
     template <class F> FSI_INLINE static Pack make(F f) { return {f(0), f(1), f(2), f(3)}; }
     FSI_INLINE static int pick(const Pack::Mask &far, const int *j, int *&last)
     {
-#if defined(__x86_64__)
-      // by bits: the places of those that are set
+#if defined(__x86_64__) && !defined(__clang__)
+      // by bits, those that are set; clang takes such operands in functions of this target alone
       // clang-format off
       static constexpr int order[16][WIDTH] = {
           {0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3},
