@@ -24,6 +24,7 @@ FixStyle(FSI_REFERENCE,FixFSIReference);
 #include "fix.h"
 #include "fsi_bond_rows.h"
 #include "fsi_clamps.h"
+#include "fsi_images.h"
 #include "fsi_swaps.h"
 
 #include <functional>
@@ -72,7 +73,7 @@ class FixFSIReference : public Fix {
   int nvalue;
   // bonds of local atom i; what fills up its last block has zeros for numbers
   int count(int i) const { return slot[i] < 0 ? 0 : nbond[slot[i]]; }    // 0: a solid only since
-  // indices of local and ghost atoms
+  // indices of local and ghost atoms, and of images
   const int *partners(int i) const { return &local[(size_t) slot[i] * maxbond]; }
   // where they are: number_of_bond()
   const double *numbers(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }
@@ -112,6 +113,7 @@ class FixFSIReference : public Fix {
   std::vector<int> solids, ghosts;
   FSI::Swaps swaps;      // those of solids
   FSI::Clamps clamps;    // rigid bodies that take sub-steps with them
+  FSI::Images images;    // partners across planes of symmetry
 
  private:
   class FixFSI *fix_fsi;
@@ -126,6 +128,8 @@ class FixFSIReference : public Fix {
   std::vector<int> nbond, local, unused;
   // owner: ID of the slot's atom when its bonds were last looked at
   std::vector<tagint> partner, owner;
+  bool keeps_images;           // bodies are bonded across planes
+  std::vector<int> through;    // per bond, bits of the planes that its partner is an image in
   std::vector<double> data, moment, quadrature;
   bool keeps_places;            // for contact of a body with itself
   std::vector<double> place;    // D numbers per slot: positions in the reference
@@ -146,8 +150,13 @@ class FixFSIReference : public Fix {
   void find_neighbors(int i, const Kernel &, std::vector<int> &, std::vector<double> &,
                       std::vector<double> &) const;
   template <int D, class Kernel>
+  void find_images(int i, const Kernel &, std::vector<int> &near, std::vector<double> &dX,
+                   std::vector<double> &w, std::vector<int> &bits) const;
+  void find_planes();
+  void check_planes(const std::vector<int> &bare) const;
+  template <int D, class Kernel>
   void enter_bonds(int i, const Kernel &, const std::vector<int> &, const std::vector<double> &,
-                   const std::vector<double> &);
+                   const std::vector<double> &, const std::vector<int> &bits);
   double volume(int i) const;
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
@@ -166,6 +175,7 @@ class FixFSIReference : public Fix {
   int nplace() const { return keeps_places ? domain->dimension : 0; }    // numbers of one
   void reserve(int n);
   int new_slot(int n);
+  int nwhole() const { return keeps_images ? 2 : 1; }    // numbers of a bond beside its doubles
   int pack(int, double *) const;
   int unpack(int, const double *);
 };

@@ -57,7 +57,9 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
  private:
   std::vector<double> start;    // positions in the command
   std::string settings(int) const;
+  void add_wall(const std::string &key);
   void parse_range(char **arg);
+  void check_symmetry() const;
   void warn_of_slip(const std::vector<bool> &slip_said) const;
   double guard;    // smallest distance to a wall, in spacings
   bigint reflected;

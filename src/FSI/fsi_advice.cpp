@@ -306,8 +306,8 @@ class Adviser : protected Pointers {
       const auto g = scene.body_forces.on(i);
       for (size_t k = 0; k < walls.size(); k++) {
         const double at = -walls[k].distance(atom->x[i]) / dx(i);
-        if (walls[k].noslip || at <= FAR || g[walls[k].axis] != 0.0 ||
-            !walls[k].spans(atom->x[i], 0.0))
+        if (walls[k].noslip || atom->mask[i] & walls[k].joins || at <= FAR ||
+            g[walls[k].axis] != 0.0 || !walls[k].spans(atom->x[i], 0.0))
           continue;
         double &nearest =
             mine.emplace(std::array<tagint, 2>{atom->molecule[i], (tagint) k}, at).first->second;
@@ -332,7 +332,7 @@ class Adviser : protected Pointers {
       if (at >= 0.0 || both) continue;
       warn(fmt::format("body {} ends at the mirror wall at {} = {:g}, and its face there is free, "
                        "since these walls act on fluid alone: a body cut by a plane of symmetry "
-                       "must be whole, or held there",
+                       "needs symmetry yes, or must be held there",
                        of[0], "xyz"[wall.axis], wall.position));
       return;
     }

@@ -128,6 +128,12 @@ class PairFSISolidTL : public PairFSI {
   std::vector<FSI::Contact> contacts;    // by both types
   template <int D> void contact_forces();
   template <int D> void self_contact_forces();
+  template <int D> void fold_images(double part);
+  template <int D>
+  void push_image(int i, int j, const FSI::Walls::Reflection &, double rsq, const double *xij,
+                  double part);
+  std::vector<int> types_with_images;
+  const int *types() const;
   template <int D>
   void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
   template <class L, int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;
