@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_number_density.h"
 #include "fsi_tensor.h"
 #include "memory.h"
 #include "modify.h"

@@ -20,12 +20,21 @@
 #include "error.h"
 #include "force.h"
 #include "fsi_announce.h"
+#include "fsi_changes.h"
+#include "fsi_check.h"
+#include "fsi_clock.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
+#include "fsi_number_density.h"
 #include "fsi_order.h"
+#include "fsi_others.h"
 #include "fsi_part.h"
+#include "fsi_others.h"
+#include "fsi_population.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_sight.h"
+#include "fsi_surface_room.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -34,6 +43,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <functional>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -41,14 +51,33 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
+struct FixFSI::Members {
+  Keywords keywords;
+  Clock clock;
+  Check check;
+  Changes changes;
+  Population population;
+  NumberDensity number_density;
+  SurfaceRoom surface_room;
+  Others others;
+
+  Members(LAMMPS *lmp, FixFSI &fix, const std::function<void(double *)> &add_ghosts) :
+      keywords(lmp, "fix fsi"), clock(lmp), check(lmp, fix), changes(lmp), population(lmp, fix),
+      number_density(lmp, fix, add_ghosts), surface_room(lmp, fix, number_density, add_ghosts),
+      others(lmp, fix)
+  {
+  }
+};
+
 // clang-format off
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp),
-    check(lmp, *this), changes(lmp), population(lmp, *this),
-    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }),
-    surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
-    ids_checked(false), others(lmp, *this), forward(lmp, state), back(lmp, state),
-    scalar(lmp, state), carried(nullptr)
+    FixFields(lmp, narg, arg), Scene(lmp, this),
+    members(new Members(lmp, *this, [this](double *n) { add_ghosts(n); })),
+    keywords(members->keywords), clock(members->clock), check(members->check),
+    changes(members->changes), population(members->population),
+    number_density(members->number_density), surface_room(members->surface_room),
+    others(members->others), forward(lmp, state), back(lmp, state), scalar(lmp, state),
+    carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -82,16 +111,14 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   pre_exchange_migrate = 1;
   set_fields();
   register_fields();
-  comm_reverse = 1;    // more with solids, see init()
 }
 // clang-format on
 
 // what the next one has to keep, if particles have masses since
 FixFSI::~FixFSI()
 {
-  if (parts.empty()) return;
   auto &kept = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
-  kept = std::make_unique<Record>(record());
+  if (!parts.empty()) kept = std::make_unique<Record>(record());
 }
 
 Record FixFSI::record() const
@@ -163,6 +190,11 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
 int FixFSI::setmask()
 {
   return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;
+}
+
+void FixFSI::post_run()
+{
+  changes.end_run();
 }
 
 void FixFSI::init()
@@ -306,13 +338,12 @@ template <int D> void FixFSI::kick()
 }
 
 /* ----------------------------------------------------------------------
-   bring density and stress to the time of the positions, on local and ghost atoms
-   advance = false in setup: a function of the state only, nothing evolves
+   bring density and stress of local and ghost atoms to the time of the positions; not to advance,
+   in setup: a function of the state only
 ------------------------------------------------------------------------- */
 
 void FixFSI::update_state(bool advance)
 {
-  const int nall = atom->nlocal + atom->nghost;
   fields.grow();
   changes.in_step();
   inverted = -1;
@@ -324,22 +355,18 @@ void FixFSI::update_state(bool advance)
   if (walls.any()) {
     phase.next(Profile::WALLS);
     gather_walls();
-    const Row *const x = rows(atom->x);
-    // walls of particles go on behind a mirror themselves
-    const InnerBox inner(walls.wall, cut);
-    for (int i = 0; i < nall; i++) {
-      const bool none = inner.contains(x[i]) || state[atom->type[i]].species == RIGID;
-      wmask[i] = none ? 0 : walls.near(x[i], cut);
-    }
+    find_near_walls();
   }
 
   phase.next(Profile::DENSITY);
   bool sums = false;
   for (auto *p : parts) sums = p->add_rates(advance) || sums;
+  sent = &back;
   if (sums && force->newton_pair) reverse_comm(profile, comm, this);
   for (auto *p : parts) p->advance(advance);
   number_density.renew(advance);
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
+  sent = &forward;
   forward_comm(profile, comm, this);
   for (auto *p : parts) p->end_state(advance);
 }
@@ -347,39 +374,15 @@ void FixFSI::update_state(bool advance)
 void FixFSI::add_ghosts(double *n)
 {
   carried = n;
+  sent = &scalar;
   if (force->newton_pair) reverse_comm(profile, comm, this);
-  carried = nullptr;
 }
+
 void FixFSI::send_to_ghosts(double *n)
 {
   carried = n;
+  sent = &scalar;
   forward_comm(profile, comm, this);
-  carried = nullptr;
-}
-
-/* ----------------------------------------------------------------------
-   ghosts get density, number density where in use, stress and the gradient's coefficients where
-   they are solid; back come the sums that pairs left on them
-------------------------------------------------------------------------- */
-
-int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
-{
-  return (carried ? scalar : forward).pack(n, list, buf);
-}
-
-void FixFSI::unpack_forward_comm(int n, int first, double *buf)
-{
-  (carried ? scalar : forward).unpack(n, first, buf);
-}
-
-int FixFSI::pack_reverse_comm(int n, int first, double *buf)
-{
-  return (carried ? scalar : back).pack_back(n, first, buf);
-}
-
-void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  (carried ? scalar : back).add_up(n, list, buf);
 }
 
 void FixFSI::set_arrays(int i)

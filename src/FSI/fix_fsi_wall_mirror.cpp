@@ -23,6 +23,7 @@
 #include "fsi_keywords.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
+#include "fsi_walls.h"
 #include "pair.h"
 #include "update.h"
 
@@ -192,13 +193,6 @@ void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
                        "Fix fsi/wall/mirror {}: slip no is of wall {} alone, wall {} slips: slip "
                        "belongs to the wall that it follows",
                        id, face(walls[a]), face(walls[b]));
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIWallMirror::setmask()
-{
-  return POST_INTEGRATE | END_OF_STEP;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -98,14 +98,14 @@ void Population::remove(const std::vector<int> &gone, double *account)
 
 void Population::make(const std::vector<Particle> &all, const std::string &who, double *account)
 {
-  tagint largest = last_id;
-  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
-  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  tagint mine[2] = {last_id, static_cast<tagint>(all.size())}, most[2];
+  for (int i = 0; i < atom->nlocal; i++) mine[0] = std::max(mine[0], atom->tag[i]);
+  MPI_Allreduce(mine, most, 2, MPI_LMP_TAGINT, MPI_MAX, world);
+  last_id = most[0];
+  if (last_id > MAXTAGINT - most[1])
+    error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
   const int first = atom->nlocal;
   for (const auto &p : all) {
-    if (last_id >= MAXTAGINT)
-      error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them",
-                 who);
     last_id++;
     double x[3] = {p.x[0], p.x[1], p.x[2]};
     if (!domain->ownatom(last_id, x, nullptr, 1)) continue;
@@ -118,10 +118,11 @@ void Population::make(const std::vector<Particle> &all, const std::string &who, 
     atom->rmass[i] = p.rmass;
     std::copy_n(p.v, 3, atom->v[i]);
   }
+  last_id = most[0] + most[1];
   atom->data_fix_compute_variable(first, atom->nlocal);
   for (int i = first; account && i < atom->nlocal; i++) *account -= energy(i);
   made += atom->nlocal - first;
-  wanted += all.size();
+  wanted += most[1];
   maker = who;
 }
 

@@ -162,6 +162,7 @@ namespace FSI {
 
    protected:
     void gather_walls();            // one list from all fixes fsi/wall/mirror
+    void find_near_walls();         // wmask
     bool states_entered = false;    // in this init()
 
    private:

@@ -128,8 +128,3 @@ void FSISet::command(int narg, char **arg)
   if (comm->me == 0)
     utils::logmesg(lmp, "  fsi/set: {} of {} particles\n", volume ? "mass" : "density", all);
 }
-
-void FSISetRenamed::command(int, char **)
-{
-  error->all(FLERR, "Command fsi_set is called fsi/set");
-}

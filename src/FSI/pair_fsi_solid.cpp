@@ -59,13 +59,6 @@ PairFSISolid::PairFSISolid(LAMMPS *lmp) :
 
 /* ---------------------------------------------------------------------- */
 
-bool PairFSISolid::handles(int a, int b) const
-{
-  return a == SOLID && b == SOLID;
-}
-
-/* ---------------------------------------------------------------------- */
-
 State PairFSISolid::make_state(const Material &m) const
 {
   const auto *const stress = FixFSIStress::find(lmp);

@@ -23,6 +23,7 @@
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_check.h"
 #include "fsi_contact.h"
 #include "fsi_gather.h"
 #include "fsi_profile.h"
@@ -106,13 +107,6 @@ void PairFSISolidTL::check_settings()
     error->all(FLERR,
                "Pair style fsi/solid/tl volumetric smoothed does not go with damage, where it "
                "would make energy: expected auto or local");
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool PairFSISolidTL::handles(int a, int b) const
-{
-  return a == SOLID && b == SOLID;
 }
 
 /* ---------------------------------------------------------------------- */

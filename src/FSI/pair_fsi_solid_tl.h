@@ -86,7 +86,7 @@ class PairFSISolidTL : public PairFSI {
 
  protected:
   void check_settings() override;
-  bool handles(int, int) const override;
+  bool handles(int a, int b) const override { return a == FSI::SOLID && b == FSI::SOLID; }
   bool defines(int species) const override { return species == FSI::SOLID; }
   bool needs_neighbors() override { return several_bodies(); }
   FSI::State make_state(const FSI::Material &) const override;

@@ -151,5 +151,4 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi", &create_with_arguments<FixFSI>);
   one("command", "fsi/material", &create<FSIMaterial>);
   one("command", "fsi/set", &create<FSISet>);
-  one("command", "fsi_set", &create<FSISetRenamed>);
 }

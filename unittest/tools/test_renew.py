@@ -31,10 +31,9 @@ def test_page_is_what_the_data_make_of_it(page):
 
 @pytest.mark.parametrize("page", MEASURED, ids=lambda path: path.relative_to(paths.ROOT).as_posix())
 def test_page_has_one_picture_and_one_table(page):
-    """Several ranks have no picture: there are two of them."""
     text = PAGES[page]
     pictures = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text)
-    assert len(pictures) == (page.stem != "scaling") and all((page.parent / name).is_file() for name in pictures)
+    assert len(pictures) == 1 and all((page.parent / name).is_file() for name in pictures)
     assert len(re.findall(r"^\|(?: ?---?-?:? ?\|)+$|^\|[-: |]+\|$", text, re.M)) == 1
     assert len(text.splitlines()) <= (250 if page.parent.name == "results" else 80)
 
