@@ -107,7 +107,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   class FixFSI *fix_fsi;
 
   // LAST of a row; FOLLOWED by one that the next list has
-  enum Membership { NOT, MEMBER, LAST, FOLLOWED };
+  static constexpr double NOT = 0.0, MEMBER = 1.0, LAST = 2.0, FOLLOWED = 3.0;
   double *of_buffer;    // per atom
   double **behind;      // of one that is followed: where who follows would be now
   std::vector<Place> places;

@@ -45,9 +45,9 @@ static const std::vector<std::string> coupling_names = {"wall", "full"};    // C
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_FLUID},
     images_step(-1), near_known(false), sorts(true), margin(0.0), reach(INFINITY), cut(false),
-    solids_pass(false), fields(lmp), fill(nullptr),
-    fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, rate(nullptr), beyond(nullptr),
-    hybrid(nullptr), no_fdotr_before(0)
+    solids_pass(false), fill(nullptr),
+    fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, fields(lmp), rate(nullptr),
+    beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
