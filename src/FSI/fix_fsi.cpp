@@ -27,6 +27,7 @@
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
 #include "fsi_order.h"
+#include "fsi_others.h"
 #include "fsi_part.h"
 #include "fsi_others.h"
 #include "fsi_population.h"

@@ -74,8 +74,8 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"),
     keywords(lmp, keywords_name()), given(new Values(lmp, keywords_name(), NVALUES)),
     background(false), length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr),
-    behind(nullptr), nodes(lmp), nbounds(0), mean{}, filled(false), wave(0.0), gradient(0.0),
-    before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0),
+    behind(nullptr), nodes(lmp), nbounds(0), mean{}, filled(false), wave(0.0), before(0.0),
+    gradient(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0),
     fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{},
     ends(MPI_COMM_NULL)
 {

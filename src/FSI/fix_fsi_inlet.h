@@ -37,11 +37,10 @@ namespace FSI {
 }    // namespace FSI
 
 // An open end of the fluid: a plane, and behind it a buffer of particles whose velocity or pressure
-// is prescribed, and the other one that of
-// the fluid at the plane. One that passes the plane inwards is fluid from then on; the last of a
-// row that has come a spacing from
-// the buffer's end is followed by another; fluid that passes it outwards is of the buffer, and
-// deleted at its end. Inlets and outlets are the same but for defaults.
+// is prescribed, and the other one that of the fluid at the plane. One that passes the plane inward
+// is fluid from then on; the last of a row that has come a spacing from the buffer's end is
+// followed by another; fluid that passes it outward is of the buffer, and deleted at its end.
+// Inlets and outlets are the same but for defaults.
 
 class FixFSIInlet : public FSI::FixFields, public FSI::Part {
  public:
@@ -108,7 +107,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   class FixFSI *fix_fsi;
 
   // LAST of a row; FOLLOWED by one that the next list has
-  enum Membership { NOT, MEMBER, LAST, FOLLOWED };
+  static constexpr double NOT = 0.0, MEMBER = 1.0, LAST = 2.0, FOLLOWED = 3.0;
   double *of_buffer;    // per atom
   double **behind;      // of one that is followed: where who follows would be now
   std::vector<Place> places;

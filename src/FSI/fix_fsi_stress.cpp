@@ -34,8 +34,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), start(nullptr),
-    keywords(lmp, "fix fsi/stress"), ns(domain->dimension == 2 ? 3 : 6), strain(nullptr)
+    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
+    ns(domain->dimension == 2 ? 3 : 6), start(nullptr), strain(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 

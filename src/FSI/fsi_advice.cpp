@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_advice.h"
+#include "fsi_announce.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -444,9 +444,7 @@ class Adviser : protected Pointers {
 
   void torn_streams() const
   {
-    if (modify->get_fix_by_style("^fsi/[io][nu]t?let$").empty() &&
-        modify->get_fix_by_style("^fsi/stream$").empty())
-      return;
+    if (!scene.has_open_ends() && modify->get_fix_by_style("^fsi/stream$").empty()) return;
     const auto found = find_particles(atom, world, [&](int i) {
       return fluid(i) && scene.is_moved(i) && scene.state[atom->type[i]].floor == 0.0 && !weighs(i);
     });

@@ -18,7 +18,6 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
-#include "fsi_advice.h"
 #include "fsi_kernel.h"
 #include "fsi_lattice.h"
 #include "fsi_part.h"

@@ -291,8 +291,8 @@ namespace FSI {
     template <class F> FSI_INLINE static Pack make(F f) { return {f(0), f(1), f(2), f(3)}; }
     FSI_INLINE static int bits(const Pack::Mask &mask)
     {
-      int bits = 0;
-#if defined(__x86_64__)
+      int bits = 0;    // clang takes such operands in functions of this target alone
+#if defined(__x86_64__) && !defined(__clang__)
       asm("vmovmskpd %1, %0" : "=r"(bits) : "x"(mask.m));
 #else
       for (int k = 0; k < WIDTH; k++) bits |= (mask.m[k] ? 1 : 0) << k;

@@ -128,8 +128,8 @@ void Population::make(const std::vector<Particle> &all, const std::string &who, 
 
 void Population::end()
 {
-  const bigint own[] = {made, removed};
-  const tagint largest = last_id;
+  bigint own[] = {made, removed};    // not const: LAMMPS' MPI for one process takes no other
+  tagint largest = last_id;
   bigint all[2];
   MPI_Allreduce(own, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);

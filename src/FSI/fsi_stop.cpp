@@ -320,7 +320,7 @@ void Stop::stop(const Scene &scene, std::string text, const Finding &all, When w
 
 void Stop::go_back(const Scene &scene)
 {
-  const double back = -0.5 * update->dt, dt = update->dt + scene.dt_offset;
+  const double back = -0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & scene.mover->groupbit)
       for (int d = 0; d < scene.dim; d++) atom->x[i][d] += back * atom->v[i][d];

@@ -741,6 +741,11 @@ double PairFSISolidTL::stored(int i) const
   });
 }
 
+int PairFSISolidTL::bonds(int i) const
+{
+  return reference->count(i);
+}
+
 double PairFSISolidTL::volume_ratio(int i) const
 {
   if (reference->count(i) == 0) return 1.0;

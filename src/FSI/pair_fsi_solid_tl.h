@@ -82,6 +82,7 @@ class PairFSISolidTL : public PairFSI {
   void begin_stress();           // before stress(), on all ranks: what it needs of other particles
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
   double volume_ratio(int i) const;    // det F, likewise
+  int bonds(int i) const;              // that local atom i has left
 
  protected:
   void check_settings() override;

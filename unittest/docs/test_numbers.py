@@ -173,7 +173,7 @@ ASIDE = re.compile(r"reference|source|bound|published|experiment|code|et al\.|\b
 NUMBER = re.compile(r"(?<![\w.])(\d[\d,]*(?:\.\d+)?(?:e-?\d+)?)(?!\w)")
 SCALES = (1e-3, 1.0, 1e2, 1e3, 1e6)  # a page may give another prefix of the unit, or per cent
 # {scene: {how a row begins: the case that makes it, which the data do not have yet}}
-AWAITED = {"dam_break_elastic": {"| water twice as coarse": "plate_coarse_water"}, "turek_hron_fsi": {"| CFD3:": "cfd3_4"}}
+AWAITED = {"turek_hron_fsi": {"| CFD3:": "cfd3_4"}}
 
 
 def spread(text):

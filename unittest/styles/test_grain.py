@@ -311,6 +311,23 @@ def test_restart(tmp_path):
     assert np.abs(omega).max() > 0.1  # grains roll
 
 
+def test_data_file(tmp_path):
+    """write_data and read_data keep masses and diameters of grains, and masses and densities of the water."""
+    state = "write_dump all custom {}.dump id type mass radius x vx modify sort id format float %.15g\n"
+    run(tmp_path, flood(2) + "run 20\nwrite_data end.data\n" + state.format("a"), 2, test_fsi=FILE)
+    head = deck(2).split("region box")[0]
+    run(tmp_path, head + "read_data end.data\n" + state.format("b"), test_fsi=FILE)
+    a, b = (np.loadtxt(tmp_path / f"{name}.dump", skiprows=9) for name in "ab")
+    assert len(a) > 150 and np.abs(a - b).max() < 1e-12 and len(set(a[:, 2].round(9))) == 2
+
+
+def test_order(tmp_path):
+    """The history of contacts would be lost if fix fsi sorted particles before it is stored: LAMMPS asks for the other order."""
+    text, fix = flood(2), "fix sph all fsi 0.01 wendland 1.5\n"
+    done = lammps(tmp_path, text.replace(fix, "").replace("pair_style hybrid", fix + "pair_style hybrid") + "run 0\n", test_fsi=FILE)
+    assert done.status and "must be defined before fix sph" in done.errors[0]
+
+
 def test_rolling(tmp_path):
     """A grain on an incline of gravity rolls without sliding: a = 5/7 g sin(angle) of a solid sphere, moved and turned by fix fsi."""
     text = deck(2, atoms=f"create_atoms 1 single 0.01 0.15 0\ncreate_atoms 2 single 0.05 {0.01 - 6.67e-6} 0\nset type 2 diameter 0.02\n"
