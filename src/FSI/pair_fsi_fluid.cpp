@@ -713,7 +713,7 @@ void PairFSIFluid::find_rows()
   std::vector<char> hides;
   Sight *const sight = fix_fsi->sight.get();
   beside.clear();
-  const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
+  const bool own = atom->ntypes == 1 && fluid_types.size() == 1 && !atom->molecular;
   const auto alone = [&](int i, const int *j, int n) {
     return std::all_of(j, j + n, [=](int k) {
       return type[k] == type[i];
