@@ -118,10 +118,12 @@ def draw(folder, runs):
     """Heave and pitch over time, and over the period with theory."""
     with plot.picture(folder / "waves.png", 9.0, 3.4) as figure:
         left, right = figure.subplots(1, 2)
-        for name, color in (("box_20", plot.GREY), ("flap_20", plot.BLUE)):
-            if name in runs:
+        for kind, color in (("box", plot.GREY), ("flap", plot.BLUE)):
+            finest = [name for name in (f"{kind}_20", f"{kind}_10") if name in runs][:1]
+            for name in finest:
                 s = runs[name][1]
-                left.plot(s.time, 1e3 * s["heave"], color=color, linewidth=1.0, label=f"heave [mm], {'float alone' if 'box' in name else 'with its flap'}")
+                left.plot(s.time, 1e3 * s["heave"], color=color, linewidth=1.0,
+                          label=f"heave [mm], {'float alone' if 'box' in name else 'with its flap'}")
                 left.plot(s.time, np.degrees(s["pitch"]), color=color, linewidth=0.8, linestyle="--", label="pitch [degrees]")
         left.set(xlabel="t [s]")
         periods = np.linspace(0.75, 2.0, 26)
