@@ -13,7 +13,6 @@
 #include "fix_fsi_inlet.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -22,8 +21,12 @@
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
+#include "fsi_number_density.h"
+#include "fsi_population.h"
 #include "fsi_record.h"
 #include "fsi_shift.h"
+#include "fsi_value.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -68,12 +71,13 @@ static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15
 /* ---------------------------------------------------------------------- */
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), last_id(0), who(std::string("Fix ") + style),
-    outlet(who == "Fix fsi/outlet"), keywords(lmp, keywords_name()),
-    given(lmp, keywords_name(), NVALUES), background(false), length(0.0), region(nullptr),
-    fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{}, filled(false), wave(0.0),
-    gradient(0.0), before(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0),
-    mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{}
+    FixFields(lmp, narg, arg), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"),
+    keywords(lmp, keywords_name()), given(new Values(lmp, keywords_name(), NVALUES)),
+    background(false), length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr),
+    behind(nullptr), nodes(lmp), nbounds(0), mean{}, filled(false), wave(0.0), before(0.0),
+    gradient(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0),
+    fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{},
+    ends(MPI_COMM_NULL)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, keywords_name(), error);
@@ -106,11 +110,11 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "{} {} requires keyword velocity or pressure", who, face);
   if (words[0].empty()) {
     background = p.empty();
-    if (!background && p != "free") given.read(PRESSURE, p, "pressure", "v_name or free");
+    if (!background && p != "free") given->read(PRESSURE, p, "pressure", "v_name or free");
   } else {
     for (int d = 0; d < 3; d++) {
-      given.read(d, words[d], "velocity");
-      if (d >= domain->dimension && (given.source(d) != Values::NUMBER || given.number(d) != 0.0))
+      given->read(d, words[d], "velocity");
+      if (d >= domain->dimension && (given->source(d) != Values::NUMBER || given->number(d) != 0.0))
         error->all(FLERR, "{} velocity along z must be 0 in 2D, not {}", who, words[d]);
     }
   }
@@ -134,20 +138,28 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIInlet::setmask()
+FixFSIInlet::~FixFSIInlet()
 {
-  return PRE_EXCHANGE;
+  forget_ends();
 }
 
-/* ---------------------------------------------------------------------- */
+bool FixFSIInlet::has_own_velocity() const
+{
+  return !given->given(0);
+}
+
+bool FixFSIInlet::has_own_pressure() const
+{
+  return !given->given(PRESSURE) && !background;
+}
 
 double FixFSIInlet::value(int k, int i) const
 {
-  const double x = given(k, i);
+  const double x = (*given)(k, i);
   if (!std::isfinite(x))
     error->one(FLERR, "{} {}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", who, id,
                k == PRESSURE ? "pressure" : fmt::format("velocity along {}", "xyz"[k]), x,
-               atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given.see(k));
+               atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given->see(k));
   return x;
 }
 
@@ -200,23 +212,25 @@ void FixFSIInlet::init()
                who, id, made[0], made[1], position, length);
   check_plane();
   find_region();
-  given.find();
+  given->find();
   zone_group = igroup;
-  if (given.of_atoms()) zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
+  if (given->of_atoms())
+    zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
   driven = false;
   for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
     driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->has_own_velocity();
   told = {};
-  if (given.source(PRESSURE) == Values::NUMBER && is_far(given.number(PRESSURE))) {
+  if (given->source(PRESSURE) == Values::NUMBER && is_far(given->number(PRESSURE))) {
     const State &soft = softest();
-    const double away = std::fabs(given.number(PRESSURE) - soft.p0);
+    const double away = std::fabs(given->number(PRESSURE) - soft.p0);
     error->all(FLERR,
                "{} {}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
                "most. Is it in units {}? Else take sound {:.3g} or more in pair_style fsi/fluid",
-               who, id, given.number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
+               who, id, given->number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
                update->unit_style, std::sqrt(away / (FAR * soft.rho0)));
   }
-  leave_an_id_free();
+  fix_fsi->population.leave_an_id_free();
+  forget_ends();
 }
 
 /* ----------------------------------------------------------------------
@@ -284,28 +298,6 @@ bool FixFSIInlet::is_far(double p) const
   return soft.species == FLUID && std::fabs(p - soft.p0) > FAR * soft.rho0 * soft.csq;
 }
 
-/* ----------------------------------------------------------------------
-   Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps
-   that sort), before the buffers are filled, and as many may come as leave: so one is left free,
-   below the largest of a fluid.
-------------------------------------------------------------------------- */
-
-void FixFSIInlet::leave_an_id_free()
-{
-  if (!atom->tag_consecutive()) return;
-  tagint mine = 0, largest;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (fix_fsi->state[atom->type[i]].species == FLUID) mine = std::max(mine, atom->tag[i]);
-  MPI_Allreduce(&mine, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (largest == 0 || atom->natoms >= MAXTAGINT) return;
-  forget_ghosts();    // and the map of the old IDs
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->tag[i] == largest) atom->tag[i] = static_cast<tagint>(atom->natoms) + 1;
-  if (atom->map_style == Atom::MAP_NONE) return;
-  atom->map_init();
-  atom->map_set();
-}
-
 /* ---------------------------------------------------------------------- */
 
 bool FixFSIInlet::is_fluid(int i) const
@@ -327,21 +319,6 @@ bool FixFSIInlet::holds(const double *x) const
 {
   const double s = inside(x);
   return s <= 0.0 && s > -2.0 * length && in_patch(x);
-}
-
-double FixFSIInlet::energy(int i) const
-{
-  const double *const v = atom->v[i];
-  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + fix_fsi->potential(i) +
-      fix_fsi->stored(i);
-}
-
-// as Comm::exchange() does, which comes next: new atoms take their places
-void FixFSIInlet::forget_ghosts()
-{
-  if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
-  atom->nghost = 0;
-  atom->avec->clear_bonus();
 }
 
 /* ----------------------------------------------------------------------
@@ -366,10 +343,12 @@ void FixFSIInlet::fill_buffer()
 {
   enum { BEHIND, AHEAD, BEYOND, WALLS_BEHIND, WALLS_AHEAD, NCOUNT };
   bigint own[NCOUNT] = {}, all[NCOUNT];
+  bool has_some = false;
   std::vector<int> slices(number_of_slices(), 0);
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (s <= -2.0 * length || s >= length) continue;
+    has_some = true;
     if (fix_fsi->state[atom->type[i]].species == RIGID && s > -length)
       own[s > 0.0 ? WALLS_AHEAD : WALLS_BEHIND]++;
     if (!is_fluid(i) || !in_patch(atom->x[i])) continue;
@@ -400,18 +379,20 @@ void FixFSIInlet::fill_buffer()
                    "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls "
                    "should go on along the buffer, to {} = {:g}",
                    who, id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
+  renew_ends(has_some);
   if (all[BEHIND] > 0) check_slices(slices);
   if (all[BEHIND] == 0 && all[AHEAD] > 0) {
-    auto copies = go_on_behind();
-    forget_ghosts();
+    const auto copies = go_on_behind();
+    fix_fsi->population.begin();
     make(copies, true);
+    fix_fsi->population.end();
   }
   find_places();    // of which variables are asked
-  given.evaluate(zone_group, 0, 3);
+  given->evaluate(zone_group, 0, 3);
   for (int i = 0; i < atom->nlocal; i++)
     if (of_buffer[i])
       for (int d = 0; d < fix_fsi->dim; d++)
-        if (given.given(d)) atom->v[i][d] = value(d, i);
+        if (given->given(d)) atom->v[i][d] = value(d, i);
 }
 
 /* ----------------------------------------------------------------------
@@ -452,7 +433,7 @@ void FixFSIInlet::check_slices(std::vector<int> &mine) const
    in the way of the fluid at the plane.
 ------------------------------------------------------------------------- */
 
-std::vector<FixFSIInlet::Copy> FixFSIInlet::go_on_behind() const
+std::vector<Particle> FixFSIInlet::go_on_behind() const
 {
   const int most = number_of_slices(), full = full_slices();
   if (full == 0 && !outlet)
@@ -461,14 +442,13 @@ std::vector<FixFSIInlet::Copy> FixFSIInlet::go_on_behind() const
                "spacing of it: fill what is between, or the buffer, to {} = {:g}",
                who, id, group->names[igroup], "xyz"[axis], position, "xyz"[axis],
                position - side * length);
-  std::vector<Copy> copies;
+  std::vector<Particle> copies;
   if (full == 0) return copies;
   const double period = fix_fsi->dx * full;
   for (int i = 0; i < atom->nlocal; i++) {
-    const double *const x = atom->x[i], *const v = atom->v[i], s = inside(x);
+    const double *const x = atom->x[i], s = inside(x);
     if (s <= 0.0 || s >= length || !is_fluid(i) || !in_patch(x) || slice(s) >= full) continue;
-    Copy c = {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i],  atom->rmass[i],
-              atom->tag[i],       atom->molecule[i],  atom->type[i], atom->mask[i]};
+    Particle c = fix_fsi->population.copy_of(i);
     for (int k = 1; slice(k * period - s) < most; k++) {
       c.x[axis] = x[axis] - side * k * period;
       copies.push_back(c);
@@ -485,7 +465,8 @@ std::vector<FixFSIInlet::Column> FixFSIInlet::columns_at_plane() const
     const double *const x = atom->x[i], s = inside(x);
     if (s > 0.0 && slice(s) == 0 && is_fluid(i) && in_patch(x)) own.push_back(along(x));
   }
-  auto columns = gather(own, world);
+  std::vector<Column> columns;
+  if (ends != MPI_COMM_NULL) columns = gather(own, ends);
   std::sort(columns.begin(), columns.end(), [](const Column &a, const Column &b) {
     return a.at[0] < b.at[0];
   });
@@ -538,7 +519,7 @@ int FixFSIInlet::full_slices() const
    sorts copies along the plane; is there somebody already where they will be?
 ------------------------------------------------------------------------- */
 
-std::vector<int> FixFSIInlet::find_occupied(std::vector<Copy> &copies, bool at_start)
+std::vector<int> FixFSIInlet::find_occupied(std::vector<Particle> &copies, bool at_start)
 {
   double low = inside(copies[0].x), high = low;
   for (auto &c : copies) {
@@ -550,7 +531,7 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Copy> &copies, bool at_s
   // along the lateral axis, then the distance
   const int a = axis == 0 ? 1 : 0;
   const double reach = OCCUPIED * fix_fsi->dx;
-  std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) {
+  std::sort(copies.begin(), copies.end(), [&](const Particle &b, const Particle &c) {
     return b.x[a] < c.x[a] || (b.x[a] == c.x[a] && b.parent < c.parent);
   });
   std::vector<int> is_occupied(copies.size(), 0), occupied(copies.size());
@@ -561,9 +542,10 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Copy> &copies, bool at_s
     if (species != FLUID && !at_start) continue;    // as near as its parent is in front
     for (int image = -domain->periodicity[a]; image <= domain->periodicity[a]; image++) {
       const double from = atom->x[i][a] + image * domain->prd[a] - reach;
-      auto c = std::lower_bound(copies.begin(), copies.end(), from, [&](const Copy &b, double x) {
-        return b.x[a] < x;
-      });
+      auto c =
+          std::lower_bound(copies.begin(), copies.end(), from, [&](const Particle &b, double x) {
+            return b.x[a] < x;
+          });
       for (; c != copies.end() && c->x[a] < from + 2.0 * reach; c++) {
         double d[3] = {c->x[0] - atom->x[i][0], c->x[1] - atom->x[i][1], c->x[2] - atom->x[i][2]};
         domain->minimum_image(d);
@@ -578,67 +560,30 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Copy> &copies, bool at_s
       }
     }
   }
-  MPI_Allreduce(is_occupied.data(), occupied.data(), occupied.size(), MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(is_occupied.data(), occupied.data(), occupied.size(), MPI_INT, MPI_MAX, ends);
   return occupied;
 }
 
 /* ----------------------------------------------------------------------
-   Makes copies: IDs go on from the largest that there ever was, in the order of those of the
-   parents, whatever rank has them. Fluid that is in the place keeps it.
+   Makes copies: IDs in the order of those of the parents, whatever rank has them. Fluid that is in
+   the place keeps it.
 ------------------------------------------------------------------------- */
 
-void FixFSIInlet::make(std::vector<Copy> &own, bool at_start)
+void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
 {
-  std::vector<Copy> copies = gather(own, world);
-  if (copies.empty()) return;
-  const std::vector<int> occupied = find_occupied(copies, at_start);
-  tagint largest = last_id, id_now;
-  for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
-    largest = std::max(largest, dynamic_cast<FixFSIInlet *>(fix)->last_id);
-  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
-  MPI_Allreduce(&largest, &id_now, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  for (size_t k = 0; k < copies.size(); k++)
-    if (occupied[k]) copies[k].parent = 0;
-  std::sort(copies.begin(), copies.end(), [&](const Copy &b, const Copy &c) {
+  std::vector<Particle> all, copies;
+  std::vector<int> occupied;
+  if (ends != MPI_COMM_NULL) all = gather(own, ends);
+  if (!all.empty()) occupied = find_occupied(all, at_start);
+  for (size_t k = 0; k < all.size(); k++)
+    if (!occupied[k]) copies.push_back(all[k]);
+  std::sort(copies.begin(), copies.end(), [&](const Particle &b, const Particle &c) {
     return b.parent < c.parent || (b.parent == c.parent && inside(b.x) > inside(c.x));
   });
-
   const int first = atom->nlocal;
-  bigint wanted = 0, made, mine;
-  for (auto &c : copies) {
-    if (c.parent == 0) continue;
-    if (id_now >= MAXTAGINT)
-      error->all(FLERR, "{} {}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them",
-                 who, id);
-    id_now++;
-    wanted++;
-    if (!domain->ownatom(id_now, c.x, nullptr, 1)) continue;
-    atom->avec->create_atom(c.type, c.x);
-    const int i = atom->nlocal - 1;
-    atom->tag[i] = id_now;
-    atom->mask[i] = c.mask;
-    atom->molecule[i] = c.molecule;
-    atom->rho[i] = c.rho;
-    atom->rmass[i] = c.rmass;
-    std::copy_n(c.v, 3, atom->v[i]);
-  }
-  last_id = id_now;
-  atom->data_fix_compute_variable(first, atom->nlocal);
-  for (int i = first; i < atom->nlocal; i++) {
-    of_buffer[i] = MEMBER;
-    if (fix_fsi->ledger && !at_start) fix_fsi->energy_out[FixFSI::FIELDS] -= energy(i);
-  }
-  mine = atom->nlocal - first;
-  MPI_Allreduce(&mine, &made, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (made != wanted)
-    error->all(FLERR, "{} {}: {} of {} new particles are outside the box", who, id, wanted - made,
-               wanted);
-  atom->natoms += made;
-  net += made;
-  if (atom->map_style != Atom::MAP_NONE) {
-    atom->map_init();
-    atom->map_set();
-  }
+  fix_fsi->population.make(copies, fmt::format("{} {}", who, id),
+                           at_start ? nullptr : fix_fsi->account(FixFSI::FIELDS));
+  for (int i = first; i < atom->nlocal; i++) of_buffer[i] = MEMBER;
 }
 
 /* ----------------------------------------------------------------------
@@ -649,27 +594,21 @@ void FixFSIInlet::pre_exchange()
 {
   if (region) region->prematch();
   const auto others = modify->get_fix_by_style("^fsi/[io][nu]t?let$");
-  std::vector<Copy> copies;
+  std::vector<Particle> copies;
   std::vector<int> gone;
   double own[5] = {}, all[5];    // in, out, net mass, made, deleted
-  const int *const type = atom->type;
+  bool has_some = false;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], s = inside(x);
     if (s > 0.0 && !of_buffer[i]) continue;
+    has_some = true;
     if (!is_fluid(i)) {
       stranger(i);
       continue;
     }
     if (of_buffer[i] == FOLLOWED) {
-      const double *const v = atom->v[i], *const y = behind[i];
-      copies.push_back({{y[0], y[1], y[2]},
-                        {v[0], v[1], v[2]},
-                        atom->rho[i],
-                        atom->rmass[i],
-                        atom->tag[i],
-                        atom->molecule[i],
-                        type[i],
-                        atom->mask[i]});
+      copies.push_back(fix_fsi->population.copy_of(i));
+      std::copy_n(behind[i], 3, copies.back().x);
       of_buffer[i] = MEMBER;
     }
     if (of_buffer[i] && s > 0.0) {
@@ -700,22 +639,14 @@ void FixFSIInlet::pre_exchange()
   mass_in += all[2];
   if (all[3] == 0.0 && all[4] == 0.0) return;
 
-  forget_ghosts();
-  for (auto i = gone.rbegin(); i != gone.rend(); i++) {
-    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += energy(*i);
-    last_id = std::max(last_id, atom->tag[*i]);
-    atom->avec->copy(atom->nlocal - 1, *i, 1);
-    atom->nlocal--;
+  auto &population = fix_fsi->population;
+  population.begin();
+  population.remove(gone, fix_fsi->account(FixFSI::FIELDS));
+  if (all[3] > 0.0) {
+    renew_ends(has_some);
+    make(copies, false);
   }
-  atom->natoms -= static_cast<bigint>(all[4]);
-  net -= static_cast<bigint>(all[4]);
-  tagint largest = last_id;
-  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (atom->map_style != Atom::MAP_NONE) {
-    atom->map_init();
-    atom->map_set();
-  }
-  if (all[3] > 0.0) make(copies, false);
+  population.end();
 }
 
 /* ----------------------------------------------------------------------
@@ -735,6 +666,7 @@ void FixFSIInlet::stranger(int i)
       "{} {}: atom {} of type {}, {},", who, id, atom->tag[i], atom->type[i],
       species == FLUID       ? fmt::format("a fluid that is not of group {}", group->names[igroup])
           : species == SOLID ? "of a solid"
+                             : species == NONE ? "without a material"
                              : "of a wall or rigid body");
   const bool out = side > 0.0 ? x[axis] < domain->boxlo[axis] : x[axis] >= domain->boxhi[axis];
   if (out && domain->boundary[axis][side < 0.0] == 1 && output->thermo->lostflag == Thermo::ERROR)
@@ -782,13 +714,48 @@ void FixFSIInlet::find_places()
     places.push_back({i, 0.0, 0.0, false});
     atom->mask[i] |= group->bitmask[zone_group];
   }
+
+  renew_ends(!places.empty());
+  if (ends == MPI_COMM_NULL) return;
+  nodes.place(axis, fix_fsi->dx);
+  // until the next lists particles move by half a skin, and a little
+  const double moved = 0.5 * neighbor->skin + fix_fsi->dx;
+  std::vector<const double *> before, behind_plane;
+  for (const auto &place : places) {
+    const double *const x = atom->x[place.i];
+    if (inside(x) > -moved) before.push_back(x);
+    if (inside(x) < moved) behind_plane.push_back(x);
+  }
+  nodes.share(before, fix_fsi->cut + moved, behind_plane, reach_of_nodes() + moved, ends);
+}
+
+// The ranks whose part of the box the zone of this end reaches, or who have particles there: these
+// make particles and know the plane. Those that were among them stay so until the next run.
+void FixFSIInlet::renew_ends(bool has_some)
+{
+  const double low = inside(domain->sublo), high = inside(domain->subhi);
+  const bool there = has_some || domain->triclinic ||
+      (std::max(low, high) > -2.0 * length - neighbor->skin &&
+       std::min(low, high) < zone() + 2.0 * neighbor->skin);
+  int mine = there && ends == MPI_COMM_NULL, any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
+  const int color = there || ends != MPI_COMM_NULL ? 0 : MPI_UNDEFINED;
+  forget_ends();
+  MPI_Comm_split(world, color, comm->me, &ends);
+}
+
+void FixFSIInlet::forget_ends()
+{
+  if (ends != MPI_COMM_NULL) MPI_Comm_free(&ends);
+  ends = MPI_COMM_NULL;
 }
 
 /* ----------------------------------------------------------------------
    Pressure or normal velocity of the fluid at the nodes of a lattice in the plane: a fit, quadratic
    along the plane, of the fluid within the kernel's support, which is on one side only. (A linear
    one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the
-   pressure, too.) The nodes are the same on all ranks. Terms that the fluid there cannot tell from
+   pressure, too.) Terms that the fluid there cannot tell from
    lower ones are left out.
    Where pressure is given the profile of the velocity is that of the fluid a buffer's length before
    the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi 2010,
@@ -796,53 +763,6 @@ void FixFSIInlet::find_places()
    keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes the
    particle before it follows what it pushes. (Half as far away some of it was left.)
 ------------------------------------------------------------------------- */
-
-template <class Visit> void FixFSIInlet::at_nodes(const double *x, double reach, Visit visit) const
-{
-  int low[2] = {0, 0}, high[2] = {0, 0};
-  for (int k = 0; k < nlateral; k++) {
-    low[k] = static_cast<int>(std::ceil((x[lateral[k]] - reach) / node_distance[k]));
-    high[k] = static_cast<int>(std::floor((x[lateral[k]] + reach) / node_distance[k]));
-  }
-  for (int b = low[1]; b <= high[1]; b++)
-    for (int a = low[0]; a <= high[0]; a++) {
-      const int at[] = {a, b};
-      int node = 0;
-      double d[2] = {0.0, 0.0};
-      bool exists = true;
-      for (int k = nlateral - 1; k >= 0; k--) {
-        int m = at[k] - first[k];
-        if (domain->periodicity[lateral[k]]) m = (m % count[k] + count[k]) % count[k];
-        exists = exists && m >= 0 && m < count[k];
-        node = node * count[k] + m;
-        d[k] = x[lateral[k]] - at[k] * node_distance[k];
-      }
-      if (exists) visit(node, d);
-    }
-}
-
-int FixFSIInlet::place_nodes()
-{
-  nlateral = 0;
-  int nodes = 1;
-  for (int d = 0; d < fix_fsi->dim; d++) {
-    if (d == axis) continue;
-    const int k = nlateral++;
-    const double lo = domain->boxlo[d], hi = domain->boxhi[d];
-    lateral[k] = d;
-    if (domain->periodicity[d]) {
-      count[k] = std::max(1, static_cast<int>(std::round(domain->prd[d] / fix_fsi->dx)));
-      node_distance[k] = domain->prd[d] / count[k];
-      first[k] = 0;
-    } else {
-      node_distance[k] = fix_fsi->dx;
-      first[k] = static_cast<int>(std::floor(lo / fix_fsi->dx)) - 1;
-      count[k] = static_cast<int>(std::ceil(hi / fix_fsi->dx)) + 2 - first[k];
-    }
-    nodes *= count[k];
-  }
-  return nodes;
-}
 
 // the row of a fit's inverse that gives its value at the node: terms 1, x, xx; 1, x, y, xx, xy, yy
 template <int TERMS> static void value_weights(const double *moment, double *row)
@@ -860,15 +780,15 @@ template <int TERMS> static void value_weights(const double *moment, double *row
 }
 
 // the fields at the nodes, from the sums there; first whether there is fluid at all
-void FixFSIInlet::fit_nodes(int nodes, int nmoment, int nfit, int nfields)
+void FixFSIInlet::fit_nodes(int nmoment, int nfit, int nfields)
 {
-  for (int node = 0; node < nodes; node++) {
-    double *const c = &sums[node * ncolumns], *const moment = c, row[6];
+  for (int node = 0; node < nodes.taken.size(); node++) {
+    double *const c = &nodes.sums[(size_t) node * nodes.row()], *const moment = c, row[6];
     if (moment[0] <= LITTLE * fix_fsi->psi_bulk) {
       c[0] = 0.0;
       continue;
     }
-    nlateral == 2 ? value_weights<6>(moment, row) : value_weights<3>(moment, row);
+    nodes.nlateral == 2 ? value_weights<6>(moment, row) : value_weights<3>(moment, row);
     for (int field = 0; field < nfields; field++) {
       const double *const F = c + nmoment + field * nfit;
       double result = 0.0;
@@ -897,17 +817,15 @@ static void times_monomials(bool plane, const double *y, double *f)
 
 void FixFSIInlet::measure()
 {
-  const int dim = fix_fsi->dim, nodes = place_nodes();
+  const int dim = fix_fsi->dim;
   const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
   // monomials of the offset over dx, by their degree: those of the fit, and all that its matrix has
-  const bool plane = nlateral == 2;
+  const bool plane = nodes.nlateral == 2;
   const int nfit = plane ? 6 : 3, nmoment = plane ? 15 : 5;
-  ncolumns = nmoment + nfit * (wants_velocity + wants_pressure);
-  mine.assign(nodes * ncolumns + NMEAN, 0.0);
-  sums.resize(mine.size());
-  bounds.assign(wants_velocity ? 2 * nodes : 0, -HUGE_VAL);
-  double *const total = mine.data() + nodes * ncolumns;
-  const bool pressure_varies = !told.far && !given.name(PRESSURE).empty();
+  nbounds = nmoment + nfit * (wants_velocity + wants_pressure);
+  nodes.begin(nbounds, wants_velocity ? 2 : 0);
+  double total[NMEAN] = {};
+  const bool pressure_varies = !told.far && !given->name(PRESSURE).empty();
 
   with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
     for (auto &place : places) {
@@ -922,12 +840,12 @@ void FixFSIInlet::measure()
       total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
       if (s <= 0.0) {
         if (s > -fix_fsi->cut) total[BUFFER]++;
-        if (pressure_varies && is_far(given(PRESSURE, i))) total[TOO_FAR]++;
+        if (pressure_varies && is_far((*given)(PRESSURE, i))) total[TOO_FAR]++;
         continue;
       }
       double p = state.pressure(atom->rho[i]);
       // a variable need not know a value before the plane
-      const double q = wants_pressure ? NAN : p - (background ? state.p0 : given(PRESSURE, i));
+      const double q = wants_pressure ? NAN : p - (background ? state.p0 : (*given)(PRESSURE, i));
       if (std::isfinite(q) && s < zone()) {
         total[MASS] += m;
         total[BEYOND] += m * q;
@@ -947,31 +865,29 @@ void FixFSIInlet::measure()
       total[INNER_SPEED] += inner * side * u;
       const double away = wants_pressure ? s : from_inner;
       if (away >= fix_fsi->cut) continue;
-      at_nodes(x, std::sqrt(kernel.cutsq - away * away), [&](int node, const double *d) {
+      const auto add_to = [&](int node, const double *d) {
         const double r = std::sqrt(std::min(away * away + d[0] * d[0] + d[1] * d[1], kernel.cutsq)),
                      W = kernel.W(r);
         const double y[] = {d[0] / fix_fsi->dx, d[1] / fix_fsi->dx};
         double f[15] = {W};
         times_monomials(plane, y, f);
+        double *c = &nodes.sums_given[(size_t) node * nodes.row()];
         if (wants_velocity && std::fabs(y[0]) <= NEXT && std::fabs(y[1]) <= NEXT) {
-          bounds[2 * node] = std::max(bounds[2 * node], u);
-          bounds[2 * node + 1] = std::max(bounds[2 * node + 1], -u);
+          c[nbounds] = std::max(c[nbounds], u);
+          c[nbounds + 1] = std::max(c[nbounds + 1], -u);
         }
-        double *c = &mine[node * ncolumns];
         for (int a = 0; a < nmoment; a++) *c++ += f[a];
         if (wants_velocity)
           for (int a = 0; a < nfit; a++) *c++ += f[a] * u;
         if (wants_pressure)
           for (int a = 0; a < nfit; a++) *c++ += f[a] * p;
-      });
+      };
+      nodes.at(nodes.given, x, std::sqrt(kernel.cutsq - away * away), add_to);
     }
   });
-  MPI_Allreduce(mine.data(), sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, world);
-  std::copy_n(sums.data() + nodes * ncolumns, NMEAN, mean);
-  if (wants_velocity)
-    MPI_Allreduce(MPI_IN_PLACE, bounds.data(), bounds.size(), MPI_DOUBLE, MPI_MAX, world);
-
-  fit_nodes(nodes, nmoment, nfit, wants_velocity + wants_pressure);
+  MPI_Allreduce(total, mean, NMEAN, MPI_DOUBLE, MPI_SUM, world);
+  nodes.add_up();
+  fit_nodes(nmoment, nfit, wants_velocity + wants_pressure);
 }
 
 // exact for quadratics (Keys 1981, IEEE Trans. Acoust. Speech Signal Process. 29, 1153, eq. 15);
@@ -990,19 +906,18 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
   const int n = has_own_velocity() + has_own_pressure();
   double weight = 0.0, most = -HUGE_VAL, least = HUGE_VAL;
   std::fill_n(values, n, 0.0);
-  at_nodes(x, 2.0 * *std::max_element(node_distance, node_distance + nlateral),
-           [&](int node, const double *d) {
-             const double *const c = &sums[node * ncolumns];
-             if (c[0] == 0.0) return;
-             double w = 1.0;
-             for (int k = 0; k < nlateral; k++)
-               w *= cubic_convolution(std::fabs(d[k]) / node_distance[k]);
-             weight += w;
-             for (int k = 0; k < n; k++) values[k] += w * c[1 + k];
-             if (bounds.empty()) return;
-             most = std::max(most, bounds[2 * node]);
-             least = std::min(least, -bounds[2 * node + 1]);
-           });
+  nodes.at(nodes.taken, x, reach_of_nodes(), [&](int node, const double *d) {
+    const double *const c = &nodes.sums[(size_t) node * nodes.row()];
+    if (c[0] == 0.0) return;
+    double w = 1.0;
+    for (int k = 0; k < nodes.nlateral; k++)
+      w *= cubic_convolution(std::fabs(d[k]) / nodes.distance[k]);
+    weight += w;
+    for (int k = 0; k < n; k++) values[k] += w * c[1 + k];
+    if (!has_own_velocity()) return;
+    most = std::max(most, c[nbounds]);
+    least = std::min(least, -c[nbounds + 1]);
+  });
   if (weight < 0.5) return false;    // no fluid near
   for (int k = 0; k < n; k++) values[k] /= weight;
   if (least <= most) values[0] = std::clamp(values[0], least, most);
@@ -1025,7 +940,7 @@ void FixFSIInlet::advance(bool advance)
   if (!advance) return;
   const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
-  if (!given.name(PRESSURE).empty()) given.evaluate(zone_group, PRESSURE, 1);
+  if (!given->name(PRESSURE).empty()) given->evaluate(zone_group, PRESSURE, 1);
   measure();
   keep_full();    // knows the flow of now, after a restart, too
 
@@ -1055,7 +970,7 @@ void FixFSIInlet::advance(bool advance)
                    "{} {}: pressure of variable {} is more than {} rho c^2 from the background: "
                    "the fluid is no longer hardly compressed. Is it in units {}? Else a higher "
                    "sound in pair_style fsi/fluid",
-                   who, id, given.name(PRESSURE), FAR, update->unit_style);
+                   who, id, given->name(PRESSURE), FAR, update->unit_style);
   told.far = told.far || mean[TOO_FAR] > 0.0;
   check_supply();
 
@@ -1230,7 +1145,7 @@ void FixFSIInlet::prescribe()
   const double dt = update->dt;
   if (dt == 0.0) return;
   const bool wants_velocity = has_own_velocity();
-  if (!wants_velocity) given.evaluate(zone_group, 0, 3);
+  if (!wants_velocity) given->evaluate(zone_group, 0, 3);
   for (const auto &place : places) {
     const int i = place.i;
     if (place.inside > 0.0) continue;
@@ -1250,13 +1165,6 @@ void FixFSIInlet::prescribe()
     }
   }
   fix_fsi->tally(FixFSI::FIELDS, -push_sum[3]);
-}
-
-/* ---------------------------------------------------------------------- */
-
-double FixFSIInlet::compute_scalar()
-{
-  return mass_in;
 }
 
 double FixFSIInlet::compute_vector(int n)
@@ -1296,7 +1204,6 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("gradient", std::vector<double>{gradient});
   record.add("fill", std::vector<double>{fill, mean_fill, column});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
-  record.add("last ID", std::to_string(last_id));
   fields.write(record);
   record.write(fp);
 }
@@ -1323,7 +1230,6 @@ void FixFSIInlet::restart(char *buf)
   passed_in = numbers[0];
   passed_out = numbers[1];
   mass_in = numbers[2];
-  last_id = std::stoll(record.value("last ID"));
   fields.read(record);
 }
 
@@ -1331,7 +1237,6 @@ void FixFSIInlet::restart(char *buf)
 
 double FixFSIInlet::memory_usage()
 {
-  return FixFields::memory_usage() + given.memory_usage() +
-      (double) (mine.capacity() + sums.capacity()) * sizeof(double) +
+  return FixFields::memory_usage() + given->memory_usage() + nodes.memory_usage() +
       (double) places.capacity() * sizeof(Place);
 }

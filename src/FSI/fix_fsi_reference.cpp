@@ -20,15 +20,16 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_cells.h"
+#include "fsi_changes.h"
 #include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
+#include "fsi_part.h"
 #include "fsi_record.h"
 #include "memory.h"
 #include "modify.h"
-#include "neigh_list.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -52,8 +53,8 @@ static constexpr double WITHIN = 1.0 - 1.0e-9;
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2),
     self_range(0.0), tears(false), changes(0), swaps(lmp), clamps(lmp), fix_fsi(nullptr),
-    list(nullptr), slot(nullptr), maxbond(0), keeps_images(false), keeps_places(false), apart(0.0),
-    layer(nullptr), next_look(0)
+    slot(nullptr), maxbond(0), keeps_images(false), keeps_places(false), apart(0.0), layer(nullptr),
+    next_look(0)
 {
   has_record = resting = false;
   restart_peratom = restart_global = 1;
@@ -78,13 +79,6 @@ FixFSIReference::~FixFSIReference()
   }
   memory->destroy(slot);
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIReference::setmask()
-{
-  return POST_INTEGRATE | POST_NEIGHBOR;
 }
 
 // after fix rigid has moved its bodies
@@ -117,7 +111,6 @@ void FixFSIReference::init()
         FLERR,
         "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept only if "
         "it is on when the reference is taken: give it before the first run of the bodies");
-  neighbor->add_request(this, NeighConst::REQ_FULL | NeighConst::REQ_OCCASIONAL);
 }
 
 void FixFSIReference::find_planes()
@@ -153,11 +146,6 @@ bool FixFSIReference::any() const
       all;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
   return all;
-}
-
-void FixFSIReference::init_list(int, NeighList *ptr)
-{
-  list = ptr;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -310,7 +298,6 @@ void FixFSIReference::take()
   made = as_now();
   // from now on its strain says what it is
   for (const int i : bare) atom->rho[i] = fix_fsi->state[atom->type[i]].rho0;
-  neighbor->build_one(list);
   if (images.planes.any()) check_planes(bare);
   if (domain->dimension == 2)
     take_reference<2>(bare);
@@ -395,8 +382,9 @@ void FixFSIReference::unpack_forward_comm(int n, int first, double *buf)
 
 // the neighbors of i of its own body, their separations, and weights V_j W
 template <int D, class Kernel>
-void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<int> &near,
-                                     std::vector<double> &dX, std::vector<double> &w) const
+void FixFSIReference::find_neighbors(int i, const Kernel &kernel, const Cells &solids,
+                                     std::vector<int> &near, std::vector<double> &dX,
+                                     std::vector<double> &w) const
 {
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
@@ -404,9 +392,11 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<in
   near.clear();
   dX.clear();
   w.clear();
-  for (int jj = 0; jj < list->numneigh[i]; jj++) {
-    const int j = list->firstneigh[i][jj] & NEIGHMASK;
-    if (molecule[j] != molecule[i] || !is_solid(j)) continue;
+  solids.around(x[i], [&](int j, double rsq) {
+    if (j != i && molecule[j] == molecule[i] && rsq < WITHIN * kernel.cutsq) near.push_back(j);
+  });
+  std::sort(near.begin(), near.end());
+  for (const int j : near) {
     double rsq = 0.0, d[D];
     bool halfway = false;    // round the box: the image on the other side is as near
     for (int a = 0; a < D; a++) {
@@ -415,7 +405,6 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<in
       halfway = halfway ||
           (domain->periodicity[a] && 2.0 * std::fabs(d[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
     }
-    if (rsq >= WITHIN * kernel.cutsq) continue;
     if (fix_fsi->h_of(type[j]) != fix_fsi->h_of(type[i]))
       error->one(FLERR,
                  "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types {} and "
@@ -433,7 +422,6 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<in
                  "Solid atoms {} and {} are neighbors through more than one image: a periodic box "
                  "must be wider than two supports, {}, of the kernel",
                  tag[i], tag[j], 2.0 * kernel.cut);
-    near.push_back(j);
     dX.insert(dX.end(), d, d + D);
     w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
   }
@@ -541,6 +529,11 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
   for (const int i : bare)
     if (std::find(all_h.begin(), all_h.end(), fix_fsi->h_of(type[i])) == all_h.end())
       all_h.push_back(fix_fsi->h_of(type[i]));
+  // LAMMPS' list would be of all particles, and stay
+  const double widest = fix_fsi->largest_cut;
+  const Cells solids(atom->x, atom->nlocal + atom->nghost, D, widest, [this](int i) {
+    return is_solid(i);
+  });
   GradientWeights<D> weights;
   std::vector<int> near, bits;
   std::vector<double> dX, w, G;
@@ -551,7 +544,7 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
       if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
         for (const int i : bare) {
           if (fix_fsi->h_of(type[i]) != h) continue;
-          find_neighbors<D>(i, kernel, near, dX, w);
+          find_neighbors<D>(i, kernel, solids, near, dX, w);
           if (images.planes.any()) find_images<D>(i, kernel, near, dX, w, bits);
           const int n = near.size();
           G.resize((size_t) n * D);
@@ -942,11 +935,6 @@ void FixFSIReference::copy_arrays(int i, int j, int delflag)
   slot[j] = slot[i];
 }
 
-void FixFSIReference::set_arrays(int i)
-{
-  slot[i] = NO_BONDS;
-}
-
 /* ----------------------------------------------------------------------
    number of bonds, then partner and values of each
 ------------------------------------------------------------------------- */
@@ -1057,11 +1045,6 @@ void FixFSIReference::unpack_restart(int i, int nth)
 int FixFSIReference::size_restart(int i)
 {
   return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + nwhole()) + nplace();
-}
-
-int FixFSIReference::maxsize_restart()
-{
-  return 3 + maxbond * (nvalue + nwhole()) + nplace();
 }
 
 /* ---------------------------------------------------------------------- */

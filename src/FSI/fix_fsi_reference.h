@@ -32,6 +32,9 @@ FixStyle(FSI_REFERENCE,FixFSIReference);
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Cells;
+}
 
 // The reference configuration of total-Lagrangian solids: for every particle its bonds to the
 // neighbors of its own body, with the gradient's weights. Made by pair_style fsi/solid/tl; taken
@@ -43,15 +46,14 @@ class FixFSIReference : public Fix {
   static constexpr char ID[] = "FSI_REFERENCE";
   FixFSIReference(class LAMMPS *, int, char **);
   ~FixFSIReference() override;
-  int setmask() override;
+  int setmask() override { return FixConst::POST_INTEGRATE | FixConst::POST_NEIGHBOR; }
   void post_integrate() override;
   void init() override;
-  void init_list(int, class NeighList *) override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
+  void set_arrays(int i) override { slot[i] = NO_BONDS; }
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
@@ -61,7 +63,7 @@ class FixFSIReference : public Fix {
   void write_restart(FILE *) override;
   void restart(char *) override;
   int size_restart(int) override;
-  int maxsize_restart() override;
+  int maxsize_restart() override { return 3 + maxbond * (nvalue + nwhole()) + nplace(); }
   double memory_usage() override;
 
   bool any() const;    // bonds, on any rank: all ask together
@@ -121,8 +123,7 @@ class FixFSIReference : public Fix {
   std::string as_now() const;
   bool has_record;
   bool resting;    // no pair_style fsi/solid/tl
-  class NeighList *list;
-  int *slot;    // per local atom: where its bonds are, or NO_BONDS or FOREIGN
+  int *slot;       // per local atom: where its bonds are, or NO_BONDS or FOREIGN
   enum { NO_BONDS = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began
   int maxbond;
   std::vector<int> nbond, local, unused;
@@ -147,8 +148,8 @@ class FixFSIReference : public Fix {
   void take();
   template <int D> void take_reference(const std::vector<int> &);
   template <int D, class Kernel>
-  void find_neighbors(int i, const Kernel &, std::vector<int> &, std::vector<double> &,
-                      std::vector<double> &) const;
+  void find_neighbors(int i, const Kernel &, const FSI::Cells &solids, std::vector<int> &,
+                      std::vector<double> &, std::vector<double> &) const;
   template <int D, class Kernel>
   void find_images(int i, const Kernel &, std::vector<int> &near, std::vector<double> &dX,
                    std::vector<double> &w, std::vector<int> &bits) const;

@@ -18,7 +18,6 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
-#include "fsi_advice.h"
 #include "fsi_kernel.h"
 #include "fsi_lattice.h"
 #include "fsi_part.h"
@@ -70,7 +69,7 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
   if (scene.surface_ratio > 0.0)
     effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every),
                        "fix fsi surface/every", scene.keep_psi});
-  effects.push_back({"energy ledger", "compute fsi/energy", scene.ledger});
+  effects.push_back({"energy balance", "compute fsi/energy", scene.ledger});
 
   std::string on, off;
   for (const auto &e : effects)
@@ -136,7 +135,7 @@ static void warn_idle(LAMMPS *lmp, const Scene &scene)
   bigint mine[2] = {0, 0}, all[2];    // fluid and solid particles
   for (int i = 0; i < lmp->atom->nlocal; i++) {
     const int species = scene.state[lmp->atom->type[i]].species;
-    if (species != RIGID) mine[species == SOLID]++;
+    if (species == FLUID || species == SOLID) mine[species == SOLID]++;
   }
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
 

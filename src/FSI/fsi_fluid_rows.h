@@ -199,7 +199,7 @@ namespace FSI {
   FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror,
                             const K kernel, const FluidParticles in, const RateLaws laws,
                             double *const rate, double (*const shift)[shift_row<K::DIM>(FLAGS)],
-                            PairSums *const sums, RowList &near)
+                            PairSums *const sums, std::vector<Row> *const near)
   {
     constexpr int D = K::DIM;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES,
@@ -211,7 +211,8 @@ namespace FSI {
     const Shift<D> law(laws.wdx);
     const T reachsq = laws.reach * laws.reach;
     T by_diffusion = 0.0;
-    near.clear();
+    if (near) near->clear();
+    Sieve<T, !IMAGE> sieve;
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
       if (row.n == 0) continue;
@@ -223,16 +224,15 @@ namespace FSI {
                    fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0;
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
-      int *last = near.room(row.n);
-      int picked = 0;
-      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
+      if (near) sieve.open(row);
+      // returns the square of the distance
+      const auto pair = [&](const int *j, const T &weight) FSI_INLINE_LAMBDA -> T {
         Particle<T, D> pj(point, j);
         if (IMAGE) pj.reflect(mirror);
         T x[D], v[D];
         difference(pi.x, pj.x, x);
         difference(pi.v, pj.v, v);
         const T rsq = product(x, x), r = root(rsq);
-        picked = L::pick(reachsq < rsq, j, last);
         T g = kernel.gradient(r);
         if (IMAGE) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
@@ -253,7 +253,8 @@ namespace FSI {
         // of a place left over, i itself, it is 0
         if (CUT && in.cut) s += kernel.sharper(r, sharper) * L::read(in.cut->rate, j);
         sum += s;
-        if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
+        // the density of a solid or a wall is not of these rates
+        if (KIND != WITH_FLUID) return rsq;
         T rate_j = pj.rho * pj.vol * s;
         if (FLAGS & Flag::DIFFUSION) {
           const T k = lesser(pi.p, pj.p) * diffusion(pi.rho, pj.rho, pi.pv2 - pj.pv2, g);
@@ -266,10 +267,13 @@ namespace FSI {
         }
         if constexpr (FLAGS & Flag::SHIFT) shift_pair(g, &rate_j);
         if (!TOGETHER) L::add(rate_j, rate, j);
+        return rsq;
+      };
+      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
+        const T rsq = pair(j, weight);
+        if (near) sieve.take(reachsq < rsq, j);
       });
-      // i itself, in places left over
-      if (picked >> (L::WIDTH - 1)) last -= -row.n & (L::WIDTH - 1);
-      near.close(i, last);
+      if (near) near->push_back(sieve.close(row));
       const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if constexpr (CUT)
@@ -278,7 +282,6 @@ namespace FSI {
               point[i].vol * coming_out<T, K, IMAGE>(row, mirror, kernel, in, sharper);
       if constexpr (FLAGS & Flag::SHIFT) L::add_sums(displacement, shift[i]);
     }
-    near.end();
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);
   }
 
@@ -729,7 +732,7 @@ namespace FSI {
 
     void rates(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
                const FluidParticles &in, const RateLaws &laws, double *rate, double *shift,
-               PairSums *sums, RowList &near) const override
+               PairSums *sums, std::vector<Row> *near) const override
     {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();

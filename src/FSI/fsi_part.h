@@ -43,6 +43,7 @@ namespace FSI {
     bool couples_stress = false;           // solids act with a pressure or stress of their own
     bool density_at_surfaces = false;      // density/surface
     bool density_follows_shift = false;    // where there are open ends
+    int shift_every = 0;                   // steps from one shift to the next; 0: none
     // of solids
     double contact = 0.0;    // range over dx
     bool self_contact = false;
@@ -61,6 +62,11 @@ namespace FSI {
   class Part {
    public:
     virtual Facts facts() const { return {}; }
+
+    // The order of calls, whatever that of the script is. In advance() several write densities: the
+    // fluid's rates first, then what holds them in a stream, then what gives those of a buffer.
+    enum Rank { PAIRS, STATES, STREAMS, OPEN_ENDS, SURFACES };
+    virtual Rank rank() const { return STATES; }
 
     // Between runs: is it as it was when the last one was set up, or has a command given it anew?
     virtual bool is_set_up() const { return true; }

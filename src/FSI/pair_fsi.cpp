@@ -170,7 +170,8 @@ void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
   fix_fsi = FixFSI::find(lmp, "Pair style " + style);
-  fix_fsi->check_restart_ids();
+  if (!fix_fsi->ids_checked) check_ids(lmp);
+  fix_fsi->ids_checked = true;
   if (force->pair_match(style, 1, 1) != force->pair_match(style, 1, 2))
     error->all(
         FLERR,
@@ -316,6 +317,13 @@ State PairFSI::solid_state(const Material &m, bool plane_stress) const
   s.yield = m.yield;
   s.hardening = m.hardening;
   return s;
+}
+
+bool PairFSI::any_relaxes() const
+{
+  return std::any_of(material.begin(), material.end(), [](const Material &m) {
+    return m.nprony > 0;
+  });
 }
 
 /* ---------------------------------------------------------------------- */

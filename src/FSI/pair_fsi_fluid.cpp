@@ -27,6 +27,7 @@
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "pair_hybrid.h"
 #include "update.h"
 
 #include <algorithm>
@@ -43,9 +44,10 @@ static const std::vector<std::string> coupling_names = {"wall", "full"};    // C
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_FLUID},
-    images_step(-1), reach(INFINITY), near_known(false), cut(false), solids_pass(false),
-    fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{},
-    rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    images_step(-1), near_known(false), sorts(true), margin(0.0), reach(INFINITY), cut(false),
+    solids_pass(false), fill(nullptr),
+    fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, fields(lmp), rate(nullptr),
+    beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -137,7 +139,9 @@ double PairFSIFluid::sound_of(const Material &m) const
 
 void PairFSIFluid::init_style()
 {
+  NeighList *const lists = list;    // LAMMPS makes no others where all is asked for as before
   PairFSI::init_style();
+  list = lists;
   if (delta > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR,
                "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
@@ -219,6 +223,7 @@ Facts PairFSIFluid::facts() const
   facts.couples_stress = couple != WALL;
   facts.density_at_surfaces = surfaces;
   facts.density_follows_shift = shifting > 0.0 && fills();
+  facts.shift_every = shifting > 0.0 ? shift_every : 0;
   return facts;
 }
 
@@ -242,8 +247,24 @@ int PairFSIFluid::shift_sums() const
   return fix_fsi->dim == 2 ? Shift<2>::sums(fills()) : Shift<3>::sums(fills());
 }
 
+// Is this one of several styles of a hybrid one that leaves it all its pairs? Then it takes LAMMPS'
+// list of all pairs: the hybrid style would have its own copied from that.
+bool PairFSIFluid::has_all_pairs() const
+{
+  auto *const all = dynamic_cast<PairHybrid *>(force->pair);
+  if (!all) return false;
+  char name[] = "fsi/fluid";
+  for (int a = 1; a <= atom->ntypes; a++)
+    for (int b = a; b <= atom->ntypes; b++)
+      if (setflag[a][b] && handles(material[a].species, material[b].species) &&
+          !all->check_ijtype(a, b, name))
+        return false;
+  return true;
+}
+
 void PairFSIFluid::set_fields(Scene &scene)
 {
+  if (has_all_pairs()) neighbor->add_request(this);    // after init_style()
   fields.set("density rate", Fields::STEP, scene.density_fluid == FixFSI::CONTINUITY, rate);
   fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
   fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
@@ -266,7 +287,7 @@ void PairFSIFluid::add_costs(Costs &costs) const
 {
   const int newton = force->newton_pair, continuity = fix_fsi->density_fluid == FixFSI::CONTINUITY,
             ns = shifting > 0.0 ? shift_sums() : 0;
-  costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
+  costs.bytes += 8 * ((2 + continuity) * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + (shift_every == 1 ? ns : 0));
   if (ns && shift_every > 1)
@@ -305,15 +326,35 @@ void PairFSIFluid::begin_state(bool advance)
   std::fill_n(fill_weight, atom->nlocal + atom->nghost, 1.0);
 }
 
-void PairFSIFluid::find_reach()
+// Loops are at atom->x and half a step before it. Where lists have just been built, sorted_at is of
+// other atoms.
+template <int D> void PairFSIFluid::find_reach()
 {
-  const auto *const v = FixFSI::rows(atom->v);
-  double most = 0.0;
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-    most = std::max(most, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
-  double speed = 2.0 * std::sqrt(most);
-  for (const Wall &wall : fix_fsi->walls.wall) speed += 2.0 * std::fabs(wall.velocity[wall.axis]);
-  reach = fix_fsi->largest_cut + update->dt * speed;
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const int nall = atom->nlocal + atom->nghost;
+  const size_t size = rate ? (size_t) D * atom->nmax : 0;
+  if (sorted_at.size() < size) sorted_at.resize(size);
+  const auto *const old = reinterpret_cast<const double(*)[D]>(sorted_at.data());
+  double fastest = 0.0, farthest = 0.0;
+  for (int i = 0; i < nall; i++) {
+    double vsq = 0.0, rsq = 0.0;
+    for (int d = 0; d < D; d++) vsq += v[i][d] * v[i][d];
+    for (int d = 0; rate && d < D; d++) rsq += (x[i][d] - old[i][d]) * (x[i][d] - old[i][d]);
+    fastest = std::max(fastest, vsq);
+    farthest = std::max(farthest, rsq);
+  }
+  // what a pair comes nearer in a step
+  const double nearer = 2.0 * update->dt * std::sqrt(fastest);
+  double walls = 0.0;
+  for (const Wall &wall : fix_fsi->walls.wall) walls += 2.0 * std::fabs(wall.velocity[wall.axis]);
+  reach = fix_fsi->largest_cut + nearer + update->dt * walls;
+  sorts = neighbor->ago == 0 || 2.0 * std::sqrt(farthest) + 0.5 * nearer > margin;
+  if (!sorts || !rate) return;
+  // to sort again costs less than a third of the skin's pairs in each loop
+  const double steps = std::floor(0.35 * neighbor->skin / std::max(nearer, 0.04 * neighbor->skin));
+  margin = 1.05 * (std::max(steps, 1.0) - 0.5) * nearer;
+  for (int i = 0; i < nall; i++)
+    for (int d = 0; d < D; d++) sorted_at[D * i + d] = x[i][d] - 0.5 * update->dt * v[i][d];
 }
 
 bool PairFSIFluid::add_rates(bool advance)
@@ -321,7 +362,7 @@ bool PairFSIFluid::add_rates(bool advance)
   fields.grow();
   if (fill) look_past_thin_bodies();
   find_cut_solids();
-  if (rate || fix_fsi->walls.any()) find_reach();
+  if (rate || fix_fsi->walls.any()) fix_fsi->dim == 2 ? find_reach<2>() : find_reach<3>();
   const size_t nall = atom->nlocal + atom->nghost;
   if (rate) std::fill_n(rate, nall, 0.0);
   if (fix_fsi->shifts && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
@@ -553,6 +594,11 @@ void PairFSIFluid::find_rows()
   Sight *const sight = fix_fsi->sight.get();
   beside.clear();
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
+  const auto alone = [&](int i, const int *j, int n) {
+    return std::all_of(j, j + n, [=](int k) {
+      return type[k] == type[i];
+    });
+  };
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], *neighbors = list->firstneigh[i];
     const int n = list->numneigh[i];
@@ -571,6 +617,10 @@ void PairFSIFluid::find_rows()
       continue;
     }
     const bool looks = sight && sight->near(x[i]);
+    if (!looks && !atom->molecular && alone(i, neighbors, n)) {
+      rows[FLUIDS].rows.push_back({i, n, neighbors});
+      continue;
+    }
     if (looks) find_hidden(i, neighbors, n, fluid_types, hides);
     // that of its own type stays if it is empty, for its own images
     for (const int t : fluid_types) {
@@ -667,13 +717,13 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
       }
     }
     for (auto &list_of : lists) list_of.end();
-    near_images[kind].resize(n);
   }
 }
 
 /* ----------------------------------------------------------------------
    calls loop(kind of rows, number of reflection, mirror) for all rows of images; without extent of
-   walls they are the same in all of a step's loops
+   walls they are the same in all of a step's loops, but that of rates leaves only what is within
+   reach
 ------------------------------------------------------------------------- */
 
 template <class Position, class Loop>
@@ -707,11 +757,12 @@ FluidParticles PairFSIFluid::particles_at(const double *points)
 }
 
 FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, int kind,
-                                     const RowList &list_of, const std::vector<double> &parts_of)
+                                     const std::vector<Row> &list_of,
+                                     const std::vector<double> &parts_of)
 {
   FluidParticles in = particles;
   if (kind != HIDDEN) return in;
-  seen_pairs = {parts_of.data(), list_of.rows.empty() ? nullptr : list_of.rows[0].j};
+  seen_pairs = {parts_of.data(), list_of.empty() ? nullptr : list_of[0].j};
   in.visible = &seen_pairs;
   return in;
 }
@@ -778,15 +829,21 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
       pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
   }
 
-  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fills(), reach};
+  RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fills(),
+                   fix_fsi->largest_cut + margin};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
-  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
-                        const Mirror *mirror, RowList &found) {
-    loops_of(kind).rates(kinds[kind], which.rows, mirror, of_rows(particles, kind, which, parts_of),
+  const auto loop = [&](int kind, const std::vector<Row> &which,
+                        const std::vector<double> &parts_of, const Mirror *mirror,
+                        std::vector<Row> *found) {
+    loops_of(kind).rates(kinds[kind], which, mirror, of_rows(particles, kind, which, parts_of),
                          laws, rate, shift, fix_fsi->ledger ? &sums : nullptr, found);
   };
-  for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind], visible, nullptr, near[kind]);
+  // of what thin bodies may hide the order says which part belongs to which pair
+  for (int kind = 0; kind < NROWS; kind++)
+    loop(kind, sorts || kind == HIDDEN ? rows[kind].rows : near[kind], visible, nullptr,
+         sorts && kind != HIDDEN ? &near[kind] : nullptr);
+  laws.reach = reach;
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(
       walls,
@@ -794,7 +851,9 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
         return point[i].position(x[i]);
       },
       [&](int kind, int k, const Mirror *mirror) {
-        loop(kind, images[kind][k], visible_images[k], mirror, near_images[kind][k]);
+        loop(kind, images[kind][k].rows, visible_images[k], mirror,
+             kind == HIDDEN ? nullptr : &near_images);
+        if (kind != HIDDEN) images[kind][k].rows.swap(near_images);
       });
   near_known = true;
   const int of_shift = nshift(), last = shift_sums();
@@ -836,7 +895,7 @@ void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particle
                        const Mirror *mirror) {
     const bool both = kinds[kind] == WITH_FLUID || others_too;
     sum(loops_of(kind), kinds[kind], which.rows, both, mirror,
-        of_rows(particles, kind, which, parts_of));
+        of_rows(particles, kind, which.rows, parts_of));
   };
   for (int kind = 0; kind < NROWS; kind++) one(kind, rows[kind], visible, nullptr);
   double **x = atom->x;
@@ -989,23 +1048,18 @@ template <int D> void PairFSIFluid::compute_forces()
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   double guarding[NROWS] = {};
-  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
-                        const Mirror *mirror, double *total) {
+  const auto loop = [&](int kind, const std::vector<Row> &which,
+                        const std::vector<double> &parts_of, const Mirror *mirror, double *total) {
     const double before = sums.guard;
-    force_loops(kind).forces(kinds[kind], which.rows, mirror,
-                             of_rows(particles, kind, which, parts_of), laws, forces.data(), total,
-                             of_pairs);
+    force_loops(kind).forces(kinds[kind], which, mirror, of_rows(particles, kind, which, parts_of),
+                             laws, forces.data(), total, of_pairs);
     guarding[kind] += sums.guard - before;
   };
-  const auto nearest = [&](int kind, const RowList &all, const RowList &known) -> const RowList & {
-    return kind == HIDDEN ? all : known;
-  };
   for (int kind = 0; kind < NROWS; kind++)
-    loop(kind, nearest(kind, rows[kind], (near_known ? near : rows)[kind]), visible, nullptr,
+    loop(kind, near_known && kind != HIDDEN ? near[kind] : rows[kind].rows, visible, nullptr,
          nullptr);
 
   const Walls &walls = fix_fsi->walls;
-  const auto &which = near_known && !walls.finite() ? near_images : images;
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(
       walls,
@@ -1015,8 +1069,7 @@ template <int D> void PairFSIFluid::compute_forces()
       [&](int kind, int reflection, const Mirror *mirror) {
         const auto &s = walls.reflections[reflection];
         double total[D] = {};
-        loop(kind, nearest(kind, images[kind][reflection], which[kind][reflection]),
-             visible_images[reflection], mirror, total);
+        loop(kind, images[kind][reflection].rows, visible_images[reflection], mirror, total);
         for (int d = 0; d < D; d++) {
           int w = s.w[0];
           for (int k = 1; k < s.n; k++)
@@ -1112,14 +1165,13 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 double PairFSIFluid::memory_usage()
 {
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
-      pressure_over_density.capacity() + parts.capacity() + part_rates.capacity() +
-      visible.capacity();
+      pressure_over_density.capacity() + sorted_at.capacity() + parts.capacity() +
+      part_rates.capacity() + visible.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double) +
       (double) beside.capacity() * sizeof(beside[0]);
-  for (const auto *lists : {rows, near})
-    for (int kind = 0; kind < NROWS; kind++) bytes += lists[kind].memory_usage();
-  for (const auto *lists : {images, near_images})
-    for (int kind = 0; kind < NROWS; kind++)
-      for (const auto &list_of : lists[kind]) bytes += list_of.memory_usage();
+  for (int kind = 0; kind < NROWS; kind++) {
+    bytes += rows[kind].memory_usage() + (double) near[kind].capacity() * sizeof(Row);
+    for (const auto &list_of : images[kind]) bytes += list_of.memory_usage();
+  }
   return bytes;
 }

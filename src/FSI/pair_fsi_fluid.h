@@ -67,11 +67,12 @@ class PairFSIFluid : public PairFSI {
   // fluid particles and wall particles that may be within the support
   const std::vector<FSI::Row> &rows_with_walls() const
   {
-    return (near_known ? near : rows)[WALLS].rows;
+    return near_known ? near[WALLS] : rows[WALLS].rows;
   }
 
  protected:
   bool handles(int, int) const override;
+  bool needs_neighbors() override { return !has_all_pairs(); }
   // walls of held solid particles need no pair style of their own; wall particles act on fluids
   // only
   bool leaves_alone(int a, int b, bool alone) const override
@@ -113,19 +114,21 @@ class PairFSIFluid : public PairFSI {
   FSI::RowList rows[NROWS];
   FSI::PairKind kinds[NROWS];
   void find_rows();
+  bool has_all_pairs() const;
   // rows of images by reflection; walls of particles have none
   std::vector<FSI::RowList> images[NROWS];
   bigint images_step;
   template <class Position> void find_images(const FSI::Walls &, Position);
   template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
-  // of these, what the loop of rates finds within the support, for the next loop of forces: the
-  // lists have the skin's pairs, too
-  double reach;    // the support, and what a particle and another or its image may come nearer in a
-                   // step
-  void find_reach();
-  FSI::RowList near[NROWS];
-  std::vector<FSI::RowList> near_images[NROWS];
-  bool near_known;
+  // Of these, what is within the support and a margin: the lists have the skin's pairs, too. The
+  // loop of rates sorts them out when particles may have moved by the margin since it last did.
+  // Before the lists are used by a second force evaluation at other positions they are not known.
+  std::vector<FSI::Row> near[NROWS];
+  bool near_known, sorts;
+  double margin, reach;    // reach: of images, the support and what a pair comes nearer in a step
+  std::vector<double> sorted_at;    // positions
+  template <int D> void find_reach();
+  std::vector<FSI::Row> near_images;
 
   bool cut, solids_pass;    // does a solid pass through a mirror wall, may one before the next
                             // neighbor lists?
@@ -156,7 +159,7 @@ class PairFSIFluid : public PairFSI {
   FSI::Thin thin_bodies;
   FSI::Visible seen_pairs;
   // particles as the loop over these rows sees them, and that loop
-  FSI::FluidParticles of_rows(const FSI::FluidParticles &, int kind, const FSI::RowList &,
+  FSI::FluidParticles of_rows(const FSI::FluidParticles &, int kind, const std::vector<FSI::Row> &,
                               const std::vector<double> &visible);
   const FSI::FluidLoops &loops_of(int kind) const
   {

@@ -63,7 +63,7 @@ class PairFSISolid : public PairFSI {
   bool has_hourglass() const { return xi > 0.0; }
 
  protected:
-  bool handles(int, int) const override;
+  bool handles(int a, int b) const override { return a == FSI::SOLID && b == FSI::SOLID; }
   bool defines(int species) const override { return species == FSI::SOLID; }
   FSI::State make_state(const FSI::Material &) const override;
 

@@ -23,6 +23,7 @@
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_check.h"
 #include "fsi_contact.h"
 #include "fsi_gather.h"
 #include "fsi_profile.h"
@@ -106,13 +107,6 @@ void PairFSISolidTL::check_settings()
     error->all(FLERR,
                "Pair style fsi/solid/tl volumetric smoothed does not go with damage, where it "
                "would make energy: expected auto or local");
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool PairFSISolidTL::handles(int a, int b) const
-{
-  return a == SOLID && b == SOLID;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -747,6 +741,11 @@ double PairFSISolidTL::stored(int i) const
   });
 }
 
+int PairFSISolidTL::bonds(int i) const
+{
+  return reference->count(i);
+}
+
 double PairFSISolidTL::volume_ratio(int i) const
 {
   if (reference->count(i) == 0) return 1.0;
@@ -1011,9 +1010,7 @@ void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
   else if (volumetric == SMOOTHED && !smoothed.on())
     nothing("Pair style fsi/solid/tl volumetric smoothed",
             fmt::format("no Poisson's ratio is above {}", VolumetricStrain::LOCAL));
-  const bool relaxes = std::any_of(material.begin(), material.end(), [](const Material &m) {
-    return m.nprony > 0;
-  });
+  const bool relaxes = any_relaxes();
   if (relaxes != !laws.history().empty())
     nothing(relaxes ? "Prony series of a material" : "Pair style fsi/solid/tl law viscoelastic",
             relaxes ? "pair_style fsi/solid/tl has another law" : "no material has a Prony series");

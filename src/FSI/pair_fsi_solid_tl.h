@@ -82,10 +82,11 @@ class PairFSISolidTL : public PairFSI {
   void begin_stress();           // before stress(), on all ranks: what it needs of other particles
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
   double volume_ratio(int i) const;    // det F, likewise
+  int bonds(int i) const;              // that local atom i has left
 
  protected:
   void check_settings() override;
-  bool handles(int, int) const override;
+  bool handles(int a, int b) const override { return a == FSI::SOLID && b == FSI::SOLID; }
   bool defines(int species) const override { return species == FSI::SOLID; }
   bool needs_neighbors() override { return several_bodies(); }
   FSI::State make_state(const FSI::Material &) const override;

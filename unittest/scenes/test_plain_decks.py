@@ -10,7 +10,7 @@ import pytest
 
 from fsi import launch, paths, scene
 
-STARTERS = ("beam", "column", "droplet")  # one deck each, which tools/run takes, too
+STARTERS = ("beam", "column", "droplet", "grains")  # one deck each, which tools/run takes, too
 DECKS = {path.name.removeprefix("in."): path for path in sorted(paths.EXAMPLES.glob("*/in.*"))}
 STUDIED = [name for name in DECKS if name not in STARTERS]
 LINES, COLUMNS = 45, 132

@@ -497,6 +497,25 @@ def test_dumps_sort_what_comes_and_goes(tmp_path, filled, map_style):
     assert len({len(f) for f in frames}) < 3 and frames[-1]["id"].max() > 440    # as many came as left
 
 
+@pytest.mark.parametrize("again", ["restart", "fix fsi", "fix fsi/outlet"])
+def test_ids_of_the_deleted_are_not_given_again(tmp_path, again):
+    """The buffer, whose IDs are the largest, leaves; what comes in afterwards has larger ones."""
+    text = lambda start, v: deck(start=start, inlet="", outlet=OUTLET + f" velocity {v} 0 0", more=f"velocity all set {v} 0 0 units box\n" + watch(f"{v}.dump", 10)).replace("laminar/visc ", "")
+    out = run(tmp_path, text(ATOMS, 1) + "run 120\nwrite_restart end\n", **FILES)
+    before = {i for frame in out.frames("1.dump") for i in frame["id"]}
+    left = set(out.frames("1.dump")[-1]["id"])
+    assert max(before) > max(left)    # the largest is gone
+    if again == "restart":
+        after = run(tmp_path, text("read_restart end", -1) + "run 120\n", **FILES)
+    else:
+        command = "fix sph all fsi" if again == "fix fsi" else "fix o all fsi/outlet"
+        more = next(line for line in text(ATOMS, -1).splitlines() if line.startswith(command))
+        after = run(tmp_path, text(ATOMS, 1) + f"run 120\nunfix {command.split()[1]}\n{more}\nundump atoms\nuncompute atoms\nvelocity all set -1 0 0 units box\n"
+                    + (f"unfix o\n{OUTLET} velocity -1 0 0\n" if again == "fix fsi" else "") + watch("-1.dump", 10) + "run 120\n", **FILES)
+    new = {i for frame in after.frames("-1.dump") for i in frame["id"]} - left
+    assert len(new) > 20 and min(new) > max(before)
+
+
 @pytest.mark.parametrize("pressure", ["equal 3e4", "atom 3e4+0*y"])
 def test_pressure_of_a_variable_out_of_range(tmp_path, pressure):
     """Told once by the fix that is given it, in words of its own, and once by fix fsi of the fluid that it compresses."""

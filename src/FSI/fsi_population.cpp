@@ -1,0 +1,155 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_population.h"
+
+#include "atom.h"
+#include "atom_vec.h"
+#include "domain.h"
+#include "error.h"
+#include "fsi_record.h"
+#include "fsi_scene.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+Population::Population(LAMMPS *lmp, const Scene &scene) :
+    Pointers(lmp), net(0), scene(scene), last_id(0), made(0), removed(0), wanted(0)
+{
+}
+
+Particle Population::copy_of(int i) const
+{
+  const double *const x = atom->x[i], *const v = atom->v[i];
+  return {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, atom->rho[i],  atom->rmass[i],
+          atom->tag[i],       atom->molecule[i],  atom->type[i], atom->mask[i]};
+}
+
+double Population::energy(int i) const
+{
+  const double *const v = atom->v[i];
+  return 0.5 * atom->rmass[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + scene.potential(i) +
+      scene.stored(i);
+}
+
+/* ----------------------------------------------------------------------
+   Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps
+   that sort), before any is made, and as many may come as leave: so one is left free, below the
+   largest of a fluid.
+------------------------------------------------------------------------- */
+
+void Population::leave_an_id_free()
+{
+  if (!atom->tag_consecutive()) return;
+  tagint mine = 0, largest;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (scene.state[atom->type[i]].species == FLUID) mine = std::max(mine, atom->tag[i]);
+  MPI_Allreduce(&mine, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (largest == 0 || atom->natoms >= MAXTAGINT) return;
+  begin();    // the map is of the old IDs
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->tag[i] == largest) atom->tag[i] = static_cast<tagint>(atom->natoms) + 1;
+  renew_map();
+}
+
+void Population::renew_map()
+{
+  if (atom->map_style == Atom::MAP_NONE) return;
+  atom->map_init();
+  atom->map_set();
+}
+
+/* ----------------------------------------------------------------------
+   Ghosts go, as in Comm::exchange(), which comes next: new atoms take their places
+------------------------------------------------------------------------- */
+
+void Population::begin()
+{
+  if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
+  atom->nghost = 0;
+  atom->avec->clear_bonus();
+  made = removed = wanted = 0;
+}
+
+void Population::remove(const std::vector<int> &gone, double *account)
+{
+  for (auto i = gone.rbegin(); i != gone.rend(); i++) {
+    if (account) *account += energy(*i);
+    last_id = std::max(last_id, atom->tag[*i]);
+    atom->avec->copy(atom->nlocal - 1, *i, 1);
+    atom->nlocal--;
+  }
+  removed += gone.size();
+}
+
+void Population::make(const std::vector<Particle> &all, const std::string &who, double *account)
+{
+  tagint mine[2] = {last_id, static_cast<tagint>(all.size())}, most[2];
+  for (int i = 0; i < atom->nlocal; i++) mine[0] = std::max(mine[0], atom->tag[i]);
+  MPI_Allreduce(mine, most, 2, MPI_LMP_TAGINT, MPI_MAX, world);
+  last_id = most[0];
+  if (last_id > MAXTAGINT - most[1])
+    error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
+  const int first = atom->nlocal;
+  for (const auto &p : all) {
+    last_id++;
+    double x[3] = {p.x[0], p.x[1], p.x[2]};
+    if (!domain->ownatom(last_id, x, nullptr, 1)) continue;
+    atom->avec->create_atom(p.type, x);
+    const int i = atom->nlocal - 1;
+    atom->tag[i] = last_id;
+    atom->mask[i] = p.mask;
+    atom->molecule[i] = p.molecule;
+    atom->rho[i] = p.rho;
+    atom->rmass[i] = p.rmass;
+    std::copy_n(p.v, 3, atom->v[i]);
+  }
+  last_id = most[0] + most[1];
+  atom->data_fix_compute_variable(first, atom->nlocal);
+  for (int i = first; account && i < atom->nlocal; i++) *account -= energy(i);
+  made += atom->nlocal - first;
+  wanted += most[1];
+  maker = who;
+}
+
+void Population::end()
+{
+  bigint own[] = {made, removed};    // not const: LAMMPS' MPI for one process takes no other
+  tagint largest = last_id;
+  bigint all[2];
+  MPI_Allreduce(own, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (all[0] != wanted)
+    error->all(FLERR, "{}: {} of {} new particles are outside the box", maker, wanted - all[0],
+               wanted);
+  atom->natoms += all[0] - all[1];
+  net += all[0] - all[1];
+  renew_map();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Population::write(Record &record) const
+{
+  if (last_id > 0) record.add("last ID", std::to_string(last_id));
+}
+
+void Population::read(const Record &record)
+{
+  if (record.has("last ID"))
+    last_id = std::max(last_id, static_cast<tagint>(std::stoll(record.value("last ID"))));
+}
