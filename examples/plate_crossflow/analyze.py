@@ -15,7 +15,7 @@ from fsi import dump, log, plot, series  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
 # point A at 8 s: displacement along the stream and upward, twice that across
-REFERENCE = {"ux": (14.63, 0.03), "uy": (5.0, 0.05), "uz_twice": (-0.447, None)}  # mm, target
+REFERENCE = {"ux": (14.63, 0.03), "uy": (5.0, None), "uz_twice": (-0.447, None)}  # mm, target
 SOURCE = "code, Tukovic et al. 2018"
 MEAN = 1.0  # [s] at the end, over which figures are taken
 COLORS = {2: plot.GREY, 4: plot.ORANGE, 6: plot.BLUE}
