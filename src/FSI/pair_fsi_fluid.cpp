@@ -350,9 +350,10 @@ template <int D> void PairFSIFluid::find_reach()
   reach = fix_fsi->largest_cut + nearer + update->dt * walls;
   sorts = neighbor->ago == 0 || 2.0 * std::sqrt(farthest) + 0.5 * nearer > margin;
   if (!sorts || !rate) return;
-  // to sort again costs less than a third of the skin's pairs in each loop
-  const double steps = std::floor(0.35 * neighbor->skin / std::max(nearer, 0.04 * neighbor->skin));
-  margin = 1.05 * (std::max(steps, 1.0) - 0.5) * nearer;
+  // for as many steps as a third of the skin lasts: more pairs cost more than to sort again
+  const double skin = neighbor->skin,
+               steps = std::floor(0.35 * skin / std::max(nearer, 0.04 * skin) + 0.5);
+  margin = 1.15 * (std::max(steps, 1.0) - 0.5) * nearer;
   for (int i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) sorted_at[D * i + d] = x[i][d] - 0.5 * update->dt * v[i][d];
 }
