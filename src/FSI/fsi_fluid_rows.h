@@ -211,7 +211,6 @@ namespace FSI {
     const Shift<D> law(laws.wdx);
     const T reachsq = laws.reach * laws.reach;
     T by_diffusion = 0.0;
-    if (near) near->clear();
     Sieve<T, !IMAGE> sieve;
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
@@ -225,7 +224,6 @@ namespace FSI {
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
       if (near) sieve.open(row);
-      // returns the square of the distance
       const auto pair = [&](const int *j, const T &weight) FSI_INLINE_LAMBDA -> T {
         Particle<T, D> pj(point, j);
         if (IMAGE) pj.reflect(mirror);
@@ -253,8 +251,8 @@ namespace FSI {
         // of a place left over, i itself, it is 0
         if (CUT && in.cut) s += kernel.sharper(r, sharper) * L::read(in.cut->rate, j);
         sum += s;
-        // the density of a solid or a wall is not of these rates
-        if (KIND != WITH_FLUID) return rsq;
+        if (KIND != WITH_FLUID)
+          return rsq;    // densities of solids and walls are not of these rates
         T rate_j = pj.rho * pj.vol * s;
         if (FLAGS & Flag::DIFFUSION) {
           const T k = lesser(pi.p, pj.p) * diffusion(pi.rho, pj.rho, pi.pv2 - pj.pv2, g);
@@ -735,6 +733,7 @@ namespace FSI {
                PairSums *sums, std::vector<Row> *near) const override
     {
       using namespace Flag;
+      if (near) near->clear();
       const Mirror mirror = image ? *image : Mirror();
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {

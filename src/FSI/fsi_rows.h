@@ -129,8 +129,8 @@ namespace FSI {
   }
 
   // Puts the neighbors of a row that are near in front of the others, in place, while a loop goes
-  // over them: take() when it is done with these places j. Without KEEP the others are gone. What is
-  // not a number is not far: it is to be seen.
+  // over them: take() when it is done with these places j. Without KEEP the others are gone. What
+  // is not a number is not far: it is to be seen.
   template <class T, bool KEEP> class Sieve {
     static constexpr int W = Lanes<T>::WIDTH;
     int *last = nullptr, *end_of_far = nullptr, left = 0;
@@ -158,6 +158,7 @@ namespace FSI {
         end_of_far += KEEP ? W : 0;
         return;
       }
+      if (n == W) return Lanes<T>::split(bits, j, last, KEEP ? &end_of_far : nullptr);
       for (int k = 0; k < n; k++) {
         const int neighbor = j[k], out = bits >> k & 1;
         *last = neighbor;

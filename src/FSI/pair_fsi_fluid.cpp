@@ -562,6 +562,13 @@ void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
   beside.push_back({i, first, static_cast<int>(rows[HIDDEN].rows.size())});
 }
 
+static bool all_of_type(int t, const int *type, const int *j, int n)
+{
+  return std::all_of(j, j + n, [=](int k) {
+    return type[k] == t;
+  });
+}
+
 /* ----------------------------------------------------------------------
    the pairs of the neighbor list as rows of a fluid particle and neighbors of one type: those of
    one fluid alone are LAMMPS' own
@@ -595,11 +602,6 @@ void PairFSIFluid::find_rows()
   Sight *const sight = fix_fsi->sight.get();
   beside.clear();
   const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
-  const auto alone = [&](int i, const int *j, int n) {
-    return std::all_of(j, j + n, [=](int k) {
-      return type[k] == type[i];
-    });
-  };
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], *neighbors = list->firstneigh[i];
     const int n = list->numneigh[i];
@@ -618,7 +620,7 @@ void PairFSIFluid::find_rows()
       continue;
     }
     const bool looks = sight && sight->near(x[i]);
-    if (!looks && !atom->molecular && alone(i, neighbors, n)) {
+    if (!looks && !atom->molecular && all_of_type(type[i], type, neighbors, n)) {
       rows[FLUIDS].rows.push_back({i, n, neighbors});
       continue;
     }
