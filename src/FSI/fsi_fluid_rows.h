@@ -232,7 +232,6 @@ namespace FSI {
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
     T reachsq = laws.reach * laws.reach, by_diffusion = 0.0;
-    if (near) near->clear();
     Sieve<T, !IMAGE> sieve;
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
@@ -246,7 +245,6 @@ namespace FSI {
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
       if (near) sieve.open(row);
-      // returns the square of the distance
       const auto pair = [&](const int *j, const T &weight) FSI_INLINE_LAMBDA -> T {
         Particle<T, D> pj(point, j);
         if (IMAGE) pj.reflect(mirror);
@@ -757,6 +755,7 @@ namespace FSI {
                PairSums *sums, std::vector<Row> *near) const override
     {
       using namespace Flag;
+      if (near) near->clear();
       const Mirror mirror = image ? *image : Mirror();
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {

@@ -12,7 +12,7 @@
 ------------------------------------------------------------------------- */
 
 // Sums at the nodes of a lattice in a plane across an axis. A rank has only the nodes that its
-// particles give to and those that they take from; ranks whose nodes overlap send each other
+// particles give to and those that they take from. Ranks whose nodes overlap send each other
 // theirs, which each adds in the order of the ranks.
 
 #ifndef LMP_FSI_NODES_H

@@ -25,6 +25,7 @@
 #ifndef LMP_FSI_PACK_H
 #define LMP_FSI_PACK_H
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -259,6 +260,15 @@ namespace FSI {
     FSI_INLINE static double sum(double x) { return x; }
     // which places a mask has, the first place's lowest
     FSI_INLINE static int bits(bool mask) { return mask; }
+    // appends places without a bit to what ends at `last`, with one to what ends at `others`: room
+    // for WIDTH is at both
+    FSI_INLINE static void split(int bits, const int *j, int *&last, int **others)
+    {
+      if (bits == 0)
+        *last++ = *j;
+      else if (others)
+        *(*others)++ = *j;
+    }
     // f(k) for place k
     template <class F> FSI_INLINE static double make(F f) { return f(0); }
     // 1 in the first n places, else 0
@@ -298,6 +308,35 @@ namespace FSI {
       for (int k = 0; k < WIDTH; k++) bits |= (mask.m[k] ? 1 : 0) << k;
 #endif
       return bits;
+    }
+    FSI_INLINE static void split(int bits, const int *j, int *&last, int **others)
+    {
+#if defined(__x86_64__)
+      // by bits: the places of those that are not set, then the others
+      // clang-format off
+      static constexpr int order[16][WIDTH] = {
+          {0, 1, 2, 3}, {1, 2, 3, 0}, {0, 2, 3, 1}, {2, 3, 0, 1},
+          {0, 1, 3, 2}, {1, 3, 0, 2}, {0, 3, 1, 2}, {3, 0, 1, 2},
+          {0, 1, 2, 3}, {1, 2, 0, 3}, {0, 2, 1, 3}, {2, 0, 1, 3},
+          {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}};
+      // clang-format on
+      typedef int Places __attribute__((vector_size(WIDTH * sizeof(int))));
+      const int out = __builtin_popcount(bits);
+      Places all, sorted;
+      __builtin_memcpy(&all, j, sizeof(all));
+      asm("vpermilps %2, %1, %0" : "=x"(sorted) : "x"(all), "m"(order[bits]));
+      __builtin_memcpy(last, &sorted, sizeof(sorted));
+      last += WIDTH - out;
+      if (!others) return;
+      asm("vpermilps %2, %1, %0" : "=x"(sorted) : "x"(all), "m"(order[bits ^ ((1 << WIDTH) - 1)]));
+      __builtin_memcpy(*others, &sorted, sizeof(sorted));
+      *others += out;
+#else
+      int near[WIDTH], far[WIDTH], n = 0, m = 0;
+      for (int k = 0; k < WIDTH; k++) (bits >> k & 1 ? far[m++] : near[n++]) = j[k];
+      last = std::copy(near, near + n, last);
+      if (others) *others = std::copy(far, far + m, *others);
+#endif
     }
     FSI_INLINE static Pack first(int n)
     {

@@ -20,6 +20,7 @@
 #include "fsi_pack.h"
 
 #include <algorithm>
+#include <cstring>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -140,17 +141,24 @@ namespace FSI {
     {
       last = const_cast<int *>(row.j);
       left = row.n;
-      if (KEEP && far.size() <= (size_t) row.n) far.resize(2 * row.n + 1);
+      if (KEEP && far.size() < (size_t) row.n + W) far.resize(2 * row.n + W);
       end_of_far = far.data();
     }
     template <class Mask> FSI_INLINE void take(const Mask &is_far, const int *j)
     {
       const int bits = Lanes<T>::bits(is_far), n = left < W ? left : W;
       left -= W;
-      if (bits == 0 && n == W && j == last) {    // as most are that were sorted before
+      if (n == W && bits == 0) {    // as most are in a row that was sorted before
+        if (j != last) std::memmove(last, j, W * sizeof(int));
         last += W;
         return;
       }
+      if (n == W && bits == (1 << W) - 1) {
+        if (KEEP) std::memcpy(end_of_far, j, W * sizeof(int));
+        end_of_far += KEEP ? W : 0;
+        return;
+      }
+      if (n == W) return Lanes<T>::split(bits, j, last, KEEP ? &end_of_far : nullptr);
       for (int k = 0; k < n; k++) {
         const int neighbor = j[k], out = bits >> k & 1;
         *last = neighbor;

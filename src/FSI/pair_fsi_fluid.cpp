@@ -408,9 +408,10 @@ template <int D> void PairFSIFluid::find_reach()
   for (auto &m : meetings) m.reach = within(m) + nearer + update->dt * walls;
   sorts = neighbor->ago == 0 || 2.0 * std::sqrt(farthest) + 0.5 * nearer > margin;
   if (!sorts || !rate) return;
-  // to sort again costs less than a third of the skin's pairs in each loop
-  const double steps = std::floor(0.35 * neighbor->skin / std::max(nearer, 0.04 * neighbor->skin));
-  margin = 1.05 * (std::max(steps, 1.0) - 0.5) * nearer;
+  // for as many steps as a third of the skin lasts: more pairs cost more than to sort again
+  const double skin = neighbor->skin,
+               steps = std::floor(0.35 * skin / std::max(nearer, 0.04 * skin) + 0.5);
+  margin = 1.15 * (std::max(steps, 1.0) - 0.5) * nearer;
   for (int i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) sorted_at[D * i + d] = x[i][d] - 0.5 * update->dt * v[i][d];
 }
@@ -685,6 +686,13 @@ void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
   beside.push_back({i, first, static_cast<int>(hidden_rows.rows.size())});
 }
 
+static bool all_of_type(int t, const int *type, const int *j, int n)
+{
+  return std::all_of(j, j + n, [=](int k) {
+    return type[k] == t;
+  });
+}
+
 /* ----------------------------------------------------------------------
    the pairs of the neighbor list as rows of a fluid particle and neighbors of one type: those of
    one fluid alone are LAMMPS' own
@@ -717,11 +725,6 @@ void PairFSIFluid::find_rows()
   Sight *const sight = fix_fsi->sight.get();
   beside.clear();
   const bool own = atom->ntypes == 1 && fluid_types.size() == 1 && !atom->molecular;
-  const auto alone = [&](int i, const int *j, int n) {
-    return std::all_of(j, j + n, [=](int k) {
-      return type[k] == type[i];
-    });
-  };
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], *neighbors = list->firstneigh[i];
     const int n = list->numneigh[i];
@@ -740,7 +743,7 @@ void PairFSIFluid::find_rows()
       continue;
     }
     const bool looks = sight && sight->near(x[i]);
-    if (!looks && !atom->molecular && alone(i, neighbors, n)) {
+    if (!looks && !atom->molecular && all_of_type(type[i], type, neighbors, n)) {
       rows_of[(ntypes + 1) * type[i]]->rows.push_back({i, n, neighbors});
       continue;
     }
