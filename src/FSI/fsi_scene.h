@@ -120,7 +120,8 @@ namespace FSI {
     // fsi was defined, this rank's part; kept only while such a compute exists
     // clang-format off
     enum Term {
-      ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS, NTERM
+      ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS,
+      LEVELS, NTERM
     };
     // clang-format on
     bool ledger;
