@@ -46,7 +46,8 @@ static constexpr double REACH = 1.2, FAR_REACH = 1.7, FAR = 3.0;
 // distances are near, since the two see their distance with different round-off
 static constexpr double PER_SPACING = 8.0, OFF_LATTICE = 0.37;
 static constexpr int ROUNDS = 3;          // of choosing partners
-static constexpr double CROWDED = 2.0;    // spacings: who is as near makes a place less empty
+static constexpr double CROWDED = 2.5;    // spacings: who is as near makes a place less empty
+static constexpr int SWEEPS = 12;         // of choosing a direction again
 static constexpr size_t MAX_LEVELS = 12;
 static constexpr double SAME = 1.0e-12;      // what comes from one material
 static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of a body it meets
@@ -237,9 +238,6 @@ double FixFSIRefine::least_shell(int k) const
 void FixFSIRefine::setup_pre_exchange()
 {
   const bool due = update->ntimestep % every == 0 && last_event != update->ntimestep;
-  domain->pbc();
-  domain->reset_box();
-  comm->setup();
   for (int k = 0; k < (due ? finest() : 1); k++) event(due, false);
 }
 
@@ -247,11 +245,6 @@ void FixFSIRefine::pre_exchange()
 {
   if (update->ntimestep % every) return;
   next_reneighbor = update->ntimestep + every;
-  domain->pbc();
-  if (domain->box_change) {
-    domain->reset_box();
-    comm->setup();
-  }
   event(true, true);
 }
 
@@ -261,11 +254,16 @@ void FixFSIRefine::pre_exchange()
 
 void FixFSIRefine::event(bool may_split, bool may_merge)
 {
+  const bool first = update->ntimestep == update->firststep;
+  domain->pbc();
+  if (domain->box_change || first) {
+    domain->reset_box();
+    comm->setup();
+  }
   comm->exchange();
   comm->borders();
   std::fill_n(mine, NTOTAL, 0.0);
   look(may_split, may_merge);
-  const bool first = update->ntimestep == update->firststep;
   if (moving || first) check_zones();
   if (first) warn_of_bodies();
 
@@ -461,6 +459,14 @@ void FixFSIRefine::warn_of_bodies()
                  who, all[0].fluid, all[0].dx, all[0].body, all[0].own);
 }
 
+static uint64_t hash_of(tagint a, tagint b)
+{
+  uint64_t hash = 14695981039346656037ULL;
+  for (const auto tag : {std::min(a, b), std::max(a, b)})
+    for (int k = 0; k < 64; k += 8) hash = (hash ^ ((uint64_t) tag >> k & 255)) * 1099511628211ULL;
+  return hash;
+}
+
 /* ----------------------------------------------------------------------
    Splitting. Halves must not come nearer to a mirror wall than particles of their spacing are, and
    not leave the box
@@ -485,14 +491,21 @@ double FixFSIRefine::crowd_of_walls(const double *x, double dx) const
 
 // velocity and density at the halves' places are those of linear fields through the neighbors;
 // a density that is the largest or smallest around stays
-template <int D> void FixFSIRefine::slopes(int i, const std::vector<int> &near, Division &two) const
+template <int D> void FixFSIRefine::slopes(Division &two, const Cells &cells) const
 {
   double *const *const x = atom->x, *const *const v = atom->v, *const rho = atom->rho;
+  const int i = two.i;
   const double dx = fix_fsi->dx_of(atom->type[i]), cut = fix_fsi->resolution[atom->type[i]].cut;
+  std::vector<int> near;    // the same sums in whatever order particles are
+  cells.around(x[i], [&](int j, double rsq) {
+    if (j != i && rsq < cut * cut && level(j) >= 0) near.push_back(j);
+  });
+  std::sort(near.begin(), near.end(), [&](int a, int b) {
+    return atom->tag[a] != atom->tag[b] ? atom->tag[a] < atom->tag[b] : a < b;
+  });
   Slopes<D, D + 1> fit;
   double low = rho[i], high = rho[i];
   for (const int j : near) {
-    if (level(j) < 0) continue;
     double away[D], difference[D + 1], rsq = 0.0;
     for (int d = 0; d < D; d++) {
       away[d] = (x[j][d] - x[i][d]) / dx;
@@ -500,7 +513,6 @@ template <int D> void FixFSIRefine::slopes(int i, const std::vector<int> &near, 
       difference[d] = v[j][d] - v[i][d];
     }
     const double q = 1.0 - rsq * dx * dx / (cut * cut);
-    if (q <= 0.0) continue;
     difference[D] = rho[j] - rho[i];
     low = std::min(low, rho[j]);
     high = std::max(high, rho[j]);
@@ -516,34 +528,53 @@ template <int D> void FixFSIRefine::slopes(int i, const std::vector<int> &near, 
   two.drho = std::clamp(drho, -most, most);
 }
 
-FixFSIRefine::Division FixFSIRefine::plan_division(int i, const Cells &cells) const
+int FixFSIRefine::choose_direction(int i, const Cells &cells) const
 {
   const double *const x = atom->x[i];
-  const double dx = fix_fsi->dx_of(atom->type[i]), distance = split_distance(fix_fsi->dim) * dx;
-  std::vector<int> near;
-  cells.around(x, [&](int j, double) {
-    if (j != i) near.push_back(j);
-  });
-  std::sort(near.begin(), near.end(), [&](int a, int b) {
-    return atom->tag[a] != atom->tag[b] ? atom->tag[a] < atom->tag[b] : a < b;
-  });
+  const int dim = fix_fsi->dim;
+  const double dx = fix_fsi->dx_of(atom->type[i]), finer = split_spacing(dim),
+               distance = split_distance(dim) * dx, reach = CROWDED * dx;
   std::vector<SplitNeighbor> crowd;
-  for (const int j : near) {
+  cells.around(x, [&](int j, double rsq) {
+    if (j == i || rsq > reach * reach) return;
     SplitNeighbor n;
     MathExtra::sub3(atom->x[j], x, n.x);
-    n.spacing = 0.5 * (dx + fix_fsi->dx_of(atom->type[j]));
-    const double reach = CROWDED * n.spacing;
-    if (MathExtra::lensq3(n.x) < reach * reach) crowd.push_back(n);
-  }
-  const auto e = split_direction(directions, crowd, distance, [&](const double *offset) {
+    const double of_j = fix_fsi->dx_of(atom->type[j]);
+    if (heading[j] == 0) {
+      n.spacing = 0.5 * (finer * dx + of_j);
+      crowd.push_back(n);
+      return;
+    }
+    n.spacing = 0.5 * finer * (dx + of_j);
+    const auto &e = directions[heading[j] - 1];
+    const double to = split_distance(dim) * of_j;
+    for (int d = 0; d < 3; d++) n.x[d] += to * e[d];
+    crowd.push_back(n);
+    for (int d = 0; d < 3; d++) n.x[d] -= 2.0 * to * e[d];
+    crowd.push_back(n);
+  });
+  return split_direction(directions, crowd, distance, [&](const double *offset) {
     const double at[3] = {x[0] + offset[0], x[1] + offset[1], x[2] + offset[2]};
     return crowd_of_walls(at, dx);
   });
-  Division two;
-  two.i = i;
-  for (int d = 0; d < 3; d++) two.dx[d] = distance * e[d];
-  fix_fsi->dim == 2 ? slopes<2>(i, near, two) : slopes<3>(i, near, two);
-  return two;
+}
+
+/* ----------------------------------------------------------------------
+   Many may split at once, next to each other: they choose again when they know what their
+   neighbors have chosen, half of them at a time, lest two step aside into each other's way
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells &cells)
+{
+  heading.assign(atom->nlocal + atom->nghost, 0);
+  for (int sweep = 0; sweep <= SWEEPS; sweep++) {
+    std::vector<tagint> next(heading.begin(), heading.begin() + atom->nlocal);
+    for (const int i : which)
+      if (sweep == 0 || (hash_of(atom->tag[i], sweep) >> 20 & 1))
+        next[i] = 1 + choose_direction(i, cells);
+    std::copy(next.begin(), next.end(), heading.begin());
+    send(heading);
+  }
 }
 
 std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
@@ -552,16 +583,23 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
   std::vector<int> which;
   for (int i = 0; i < atom->nlocal; i++)
     if (carried[i] & SPLIT) which.push_back(i);
-  if (which.empty()) return list;
+  int own = which.size(), any;
+  MPI_Allreduce(&own, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return list;
   std::sort(which.begin(), which.end(), [&](int a, int b) {
     return atom->tag[a] < atom->tag[b];
   });
   const Cells cells(atom->x, atom->nlocal + atom->nghost, fix_fsi->dim, fix_fsi->cut, [&](int j) {
     return fix_fsi->state[atom->type[j]].species != NONE;
   });
+  choose_directions(which, cells);
   for (const int i : which) {
-    list.push_back(plan_division(i, cells));
-    const Division &two = list.back();
+    Division two;
+    two.i = i;
+    const double distance = split_distance(fix_fsi->dim) * fix_fsi->dx_of(atom->type[i]);
+    for (int d = 0; d < 3; d++) two.dx[d] = distance * directions[heading[i] - 1][d];
+    fix_fsi->dim == 2 ? slopes<2>(two, cells) : slopes<3>(two, cells);
+    list.push_back(two);
     const double m = atom->rmass[i];
     double spin[3];
     MathExtra::cross3(two.dx, two.dv, spin);
@@ -576,14 +614,6 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
    IDs, which knows no direction; then among those that are left. Whole numbers, the same on all
    ranks.
 ------------------------------------------------------------------------- */
-
-static uint64_t hash_of(tagint a, tagint b)
-{
-  uint64_t hash = 14695981039346656037ULL;
-  for (const auto tag : {std::min(a, b), std::max(a, b)})
-    for (int k = 0; k < 64; k += 8) hash = (hash ^ ((uint64_t) tag >> k & 255)) * 1099511628211ULL;
-  return hash;
-}
 
 void FixFSIRefine::choose_partners()
 {

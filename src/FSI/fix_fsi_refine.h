@@ -80,9 +80,10 @@ class FixFSIRefine : public Fix {
   bool moving, told;
 
   // of one event
-  std::vector<tagint> carried, partner;    // per particle, local and ghost: see Wish; names
-  std::vector<int> chosen;                 // per local one: index of its partner
-  std::vector<double> away;                // per local one: from the body
+  // per particle, local and ghost: see Wish; name; direction, from 1 on, 0: it does not split
+  std::vector<tagint> carried, partner, heading;
+  std::vector<int> chosen;     // per local one: index of its partner
+  std::vector<double> away;    // per local one: from the body
   std::vector<tagint> *message;
   double mine[NTOTAL];
 
@@ -102,8 +103,9 @@ class FixFSIRefine : public Fix {
   void check_zones() const;
   void warn_of_bodies();
   double crowd_of_walls(const double *x, double dx) const;
-  Division plan_division(int i, const FSI::Cells &) const;
-  template <int D> void slopes(int i, const std::vector<int> &near, Division &) const;
+  int choose_direction(int i, const FSI::Cells &) const;
+  void choose_directions(const std::vector<int> &which, const FSI::Cells &);
+  template <int D> void slopes(Division &, const FSI::Cells &) const;
   std::vector<Division> plan_divisions();
   void choose_partners();
   std::vector<Union> plan_unions(std::vector<int> &gone);

@@ -64,7 +64,12 @@ namespace FSI {
     return 0.25 * std::sqrt(dim);
   }
 
-  // a particle beside the one that splits: its place from there, mean spacing of both
+  inline double split_spacing(int dim)    // of the next level, likewise
+  {
+    return std::pow(2.0, -1.0 / dim);
+  }
+
+  // what is beside the one that splits: its place from there, mean spacing of it and a half
   struct SplitNeighbor {
     double x[3] = {}, spacing = 0.0;
   };
@@ -82,28 +87,28 @@ namespace FSI {
     return sum;
   }
 
-  // of the directions the one whose two ends are least crowded; extra(offset): what else crowds an
-  // end, walls. In units in which round-off does not decide between equals
+  // Which of the directions has the least crowded ends; extra(offset): what else crowds one, walls.
+  // In units in which round-off does not decide between equals
   template <class Extra>
-  std::array<double, 3> split_direction(const std::vector<std::array<double, 3>> &directions,
-                                        const std::vector<SplitNeighbor> &around, double distance,
-                                        Extra extra)
+  int split_direction(const std::vector<std::array<double, 3>> &directions,
+                      const std::vector<SplitNeighbor> &around, double distance, Extra extra)
   {
     constexpr double FINE = 1.0e6, MOST = 1.0e9;
     long long least = 0;
-    const std::array<double, 3> *best = nullptr;
-    for (const auto &e : directions) {
+    int best = -1;
+    for (size_t k = 0; k < directions.size(); k++) {
+      const auto &e = directions[k];
       double sum = 0.0;
       for (const double to : {distance, -distance}) {
         const double offset[3] = {to * e[0], to * e[1], to * e[2]};
         sum += crowding(around, offset) + extra(offset);
       }
       const long long score = std::llround(FINE * std::min(sum, MOST));
-      if (best && score >= least) continue;
+      if (best >= 0 && score >= least) continue;
       least = score;
-      best = &e;
+      best = (int) k;
     }
-    return *best;
+    return best;
   }
 
   // Slopes of fields, exact for linear ones, from weighted sums over neighbors; where those are in
