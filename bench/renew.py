@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import sys
+import tempfile
 from pathlib import Path
 
 import accuracy_cost
@@ -67,9 +68,51 @@ def collect():
     for path, target in wanted.items():
         shutil.copyfile(path, target)
     for name in paths.examples():
-        for _, file in gallery.pictures(name):
-            if found := picture(name, file):
-                shutil.copyfile(found, paths.EXAMPLES / name / file)
+        take_pictures(name)
+
+
+def take_pictures(name):
+    for _, file in gallery.pictures(name):
+        if found := picture(name, file):
+            shutil.copyfile(found, paths.EXAMPLES / name / file)
+
+
+def take(wanted):
+    """Takes to doc what results have of these scenes, SCENE or SCENE/CASE, each of one commit; all other data stay as they are."""
+    page = paths.PAGE / "results.json"
+    found = json.loads(page.read_text())
+    for what in wanted:
+        name, _, case = what.partition("/")
+        path = paths.RESULTS / what / "summary.json"
+        if name not in paths.scenes() or not path.exists():
+            raise Refusal(f"{path.relative_to(paths.ROOT)}: not there; tools/run makes it")
+        if not stamp(path):
+            raise Refusal(f"{path.relative_to(paths.ROOT)}: of no commit without changes")
+        summary = json.loads(path.read_text())
+        if case:
+            add_case(found["scenes"][name]["summary"], name, case, summary)
+        else:
+            found["scenes"][name] = {"summary": summary}
+            take_pictures(name)
+    page.write_text(json.dumps(found, indent=1) + "\n")
+
+
+def add_case(data, name, case, summary):
+    """Puts one case in the data of a scene whose others were run before. Its figures are judged if those of this name were."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / case).symlink_to(paths.RESULTS / name / case)
+        scene.analysis(name).study(Path(folder), {case: Path(folder) / case})
+        new = [f for f in json.loads((Path(folder) / "summary.json").read_text())["figures"] if f["name"] not in results.COST]
+    old = {f["name"]: f for f in data["figures"]}
+    for figure in new:
+        if (old.get(figure["name"]) or {"target": None})["target"] is None:
+            figure |= {"target": None, "met": None}
+    names = [f["name"] for f in new]
+    data["figures"] = [f for f in data["figures"] if f["name"] not in names]
+    at = next(k for k, f in enumerate(data["figures"]) if f["name"] in results.COST)
+    data["figures"][at:at] = new
+    ran = {key: summary[key] for key in ("given", "particles", "steps", "ranks", "cpu_seconds", "commit", "date")}
+    data["cases"] = {k: {**data["cases"], case: ran}[k] for k in scene.cases(name) if k in data["cases"] or k == case}
 
 
 def stamp(path):
@@ -129,10 +172,13 @@ def draw():
 
 def main(arguments):
     """tools/renew"""
-    if len(arguments) > 1 or any(word not in WORDS for word in arguments):
-        raise Refusal(f"'{' '.join(arguments)}' is not one of {', '.join(WORDS)}")
+    only = arguments[1:] if arguments[:1] == ["--only"] else []
+    if not only and (len(arguments) > 1 or any(word not in WORDS for word in arguments)):
+        raise Refusal(f"'{' '.join(arguments)}' is not one of {', '.join(WORDS)}, --only SCENE[/CASE] ...")
     failed = [] if arguments else run()
-    if "--pages-only" not in arguments:
+    if only:
+        take(only)
+    elif "--pages-only" not in arguments:
         collect()
     draw()
     for path, text in texts().items():

@@ -71,7 +71,7 @@ def study(folder, cases):
     for path in cases.values():
         column, values = read(path)
         add(summary, column, f"_{values['across']:.0f}")
-        runs.append((column, f"{values['across']:.0f} particles across"))
+        runs.append((column, f"{values['across']:.0f} particles through the thickness"))
     picture_top(Path(folder) / "top.png", runs)
     return summary.write()
 

@@ -79,7 +79,7 @@ def add(summary, folder, suffix="", finest=False):
 
 def draw(folder, cases):
     """lift.png of flows with vortices."""
-    curves = [(*curve(path), label.replace("_", " ")) for label, path in cases.items() if not is_steady(path)]
+    curves = [(*curve(path), f"{label.rpartition('_')[2]} particles per diameter" if "_" in label else label) for label, path in cases.items() if not is_steady(path)]
     if curves:
         plot.lines(folder / "lift.png", "t U/D", "lift coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves, COLOURS)],
                    levels=[(LIFT_MAX, "largest of the benchmark"), (-LIFT_MAX, "")])

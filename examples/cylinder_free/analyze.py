@@ -86,7 +86,7 @@ def study(folder, cases):
     for (name, path), colour in zip(cases.items(), COLOURS):
         time, found = add(summary, path, f"_{name}", name in finest.values())
         shown = time > START
-        curves.append((time[shown], found["lift"][shown], name.replace("_", " "), colour))
+        curves.append((time[shown], found["lift"][shown], f"Re = {read(path)[0]['reynolds']:.0f}, {DIAMETER / read(path)[0]['dx']:.0f} particles per diameter", colour))
     plot.lines(folder / "lift.png", "t U/D", "lift coefficient, means of 0.5 D/U", curves)
     return summary.write()
 

@@ -77,7 +77,7 @@ def main(folder):
     summary.add("pressure_l2", float(np.linalg.norm(water["p"] - exact) / np.linalg.norm(exact)))
     summary.add("particles_leaked", leaks.count(summary.log), target=0)
 
-    picture(folder / "deflection.png", [(plate, f"{values['across']:.0f} particles across")])
+    picture(folder / "deflection.png", [(plate, f"{values['across']:.0f} particles through the thickness")])
     plot.deviations(folder / "pressure.png", DEPTH - water["y"], water["p"], exact, 9810.0 * DEPTH,
                     "error of p, over p at the plate [%]", f"t = {plate.time[-1]:.2f} s")
     return summary.write()
@@ -91,7 +91,7 @@ def study(folder, cases):
         plate, values = read(path)
         add(summary, plate, values, f"_{name.removesuffix('_across')}")
         if values["coarser"] == 1:
-            runs.append((plate, f"{values['across']:.0f} particles across"))
+            runs.append((plate, f"{values['across']:.0f} particles through the thickness"))
         else:
             summary.add(f"pressure_l2_{name}", next(f["value"] for f in summary.cases[name]["figures"] if f["name"] == "pressure_l2"))
     picture(Path(folder) / "deflection.png", runs)

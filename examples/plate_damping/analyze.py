@@ -21,7 +21,7 @@ COLOURS = {"cubic_1.2": "#5aa0d8", "cubic_1.3": "#1b5e96", "cubic_1.5": "#0b2c47
            "coarse_1.3": "#c98bd8", "tl_1.5": plot.GREY}
 RECIPE = [kind for kind in COLOURS if kind.startswith(("cubic", "quintic"))]
 OTHER = {"cubic_1.3": "classic, cubic, 1.3", "corrected_1.3": "corrected gradient", "nostress_1.3": "no artificial stress",
-         "coarse_1.3": "the same, 5 across", "tl_1.5": "total Lagrangian"}
+         "coarse_1.3": "the same, 5 particles thick", "tl_1.5": "total Lagrangian"}
 COLUMNS = ("a5_a1", "period", "stopped_at", "fractured_at", "disorder", "neighbour_distance_deviation", "stress_zigzag",
            "mechanical_energy", "taken_by_viscosity", "taken_by_stress")
 
@@ -94,7 +94,7 @@ def picture_reason(path, table):
     """How disordered the particles are, and what viscosity takes."""
     labels = {"cubic_1.2": "h/Δx = 1.2", "cubic_1.3": "h/Δx = 1.3", "cubic_1.5": "h/Δx = 1.5",
               "corrected_1.3": "1.3, corrected gradient", "nostress_1.3": "1.3, no artificial stress",
-              "coarse_1.3": "the same, 5 across"}
+              "coarse_1.3": "the same, 5 particles thick"}
     with plot.picture(path, 8.0, 3.6) as figure:
         panels = figure.subplots(1, 2)
         for axes, name, title in ((panels[0], "disorder", "zigzag of positions over Δx after four periods"),

@@ -81,6 +81,11 @@ def picture(path, frames, spacing):
                 ((-8.0, 8.0), (-1.0, 34.0)), "von Mises stress [MPa]", (0.0, 700.0), ("x [mm]", "z [mm]"), 1.4, plot.SOLID_COLOURS)
 
 
+def _label(name):
+    rows, _, ul = name.partition("_across")
+    return f"{rows} particles over the diameter{', updated Lagrangian' if ul else ''}"
+
+
 def study(folder, cases):
     """Lengths in all cases; the figures of each with the case's name."""
     summary = Summary(folder)
@@ -90,7 +95,7 @@ def study(folder, cases):
             if figure["name"] in ("final_length", "foot_radius", "outermost_particle", "energy_to_viscosity", "energy_error", "asymmetry"):
                 summary.add(f"{figure['name']}_{name}", figure["value"], figure["unit"], figure["reference"], figure["source"], figure["target"])
         bar = series.read(Path(path) / "bar.csv")
-        curves.append((1e6 * bar.time, 1e3 * bar["length"], name.replace("_", " "), colour))
+        curves.append((1e6 * bar.time, 1e3 * bar["length"], _label(name), colour))
     plot.lines(Path(folder) / "length.png", "time [us]", "length of the bar [mm]", curves,
                [([80.0], [LENGTH_FEM], "code: converged finite elements", plot.GREY)])
     return summary.write()

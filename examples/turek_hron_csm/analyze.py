@@ -102,7 +102,7 @@ def study(folder, cases):
             add_rest(summary, tip, suffix)
         else:
             add_swing(summary, tip, suffix)
-            swings.append((tip, f"{values['across']:.0f} particles across"))
+            swings.append((tip, f"{values['across']:.0f} particles through the thickness"))
     picture_tip(Path(folder) / "tip.png", swings)
     return summary.write()
 

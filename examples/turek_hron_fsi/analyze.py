@@ -117,7 +117,7 @@ def main(folder):
     add(summary, folder)
     case, values, s = read(folder)
     moves = case.startswith("fsi")
-    picture(folder / "forces.png", [(s, f"{case.upper()}, {values['across']:.0f} particles across the flag")], case,
+    picture(folder / "forces.png", [(s, f"{case.upper()}, {values['across']:.0f} particles through the flag")], case,
             ("uy", "drag", "lift") if moves else ("drag", "lift"))
     picture_speed(folder / "speed.png", dump.read(folder / "particles.dump")[-1], case, values["dx"])
     return summary.write()
@@ -133,7 +133,7 @@ def study(folder, cases):
         add(summary, path, f"_{name}", name in finest.values())
         case, values, s = read(path)
         if case == "fsi3":
-            runs.append((s, f"{case.upper()}, {values['across']:.0f} particles across the flag"))
+            runs.append((s, f"{case.upper()}, {values['across']:.0f} particles through the flag"))
     if runs:
         picture(folder / "forces_fsi3.png", runs, "fsi3")
     return summary.write()

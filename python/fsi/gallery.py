@@ -72,10 +72,9 @@ def pictures(name):
 
 
 def page():
-    """The text of doc/src/gallery.rst, from READMEs, pictures and reference logs; starters first."""
+    """The text of doc/src/gallery.rst, from READMEs and pictures; starters first."""
     lines = [".. Written by tools/renew; edits are lost.", "", "Gallery", "=======", "",
-             "Each scene runs with ``tools/run NAME``. Its folder ``examples/NAME`` holds the input script, a page with what to expect, and reference logs.",
-             "The command below a picture runs the short form that the logs are of. The :doc:`results <../results/README>` of all scenes are on one page.", "",
+             "Each scene runs with ``tools/run NAME``, with the name in brackets. Its page says what to expect.", "",
              ".. container:: cards", ""]
     names = sorted(paths.examples(), key=lambda name: ("starter" not in description(name), name))
     for name in names:
@@ -84,11 +83,8 @@ def page():
         if shown:
             lines += [f"      .. image:: ../../examples/{name}/{shown[0][1]}", f"         :alt: {shown[0][0]}",
                       f"         :target: ../../examples/{name}/README.html", ""]
-        runs = [log.read(path).finished[-1] for path in sorted((paths.EXAMPLES / name).glob(f"log.*.{name}.1"))]
-        settings = "".join(f" {k}={v}" for k, v in short().get(name, {}).items()) if runs else ""
-        size = f": {runs[0].atoms:,} particles, {runs[0].steps:,} steps" if runs else ""
-        lines += [*textwrap.wrap(f":doc:`{title(name)} <../../examples/{name}/README>`. {_rst(description(name))}", 140, initial_indent=6 * " ",
-                                 subsequent_indent=6 * " ", break_long_words=False, break_on_hyphens=False), "", f"      ``tools/run {name}{settings}``{size}.", ""]
+        lines += [*textwrap.wrap(f":doc:`{title(name)} <../../examples/{name}/README>` (``{name}``). {_rst(description(name))}", 140, initial_indent=6 * " ",
+                                 subsequent_indent=6 * " ", break_long_words=False, break_on_hyphens=False), ""]
     return "\n".join([*lines, ".. toctree::", "   :hidden:", "", *(f"   ../../examples/{name}/README" for name in names)]) + "\n"
 
 

@@ -223,6 +223,9 @@ void FixFSI::find_parts()
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
   parts.push_back(&surface_room);
+  std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
+    return a->rank() < b->rank();
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -321,7 +324,7 @@ void FixFSI::update_state(bool advance)
   fields.grow();
   changes.in_step();
   inverted = -1;
-  tally_dt = (ledger && advance) ? update->dt : 0.0;
+  set_tally(advance ? update->dt : 0.0);
   body_forces.evaluate();
   if (ledger && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);

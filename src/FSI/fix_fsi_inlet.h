@@ -53,6 +53,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void restart(char *) override;
   double memory_usage() override;
 
+  Rank rank() const override { return OPEN_ENDS; }
   void advance(bool) override;      // density of the buffer, when the fluid has its own
   void end_state(bool) override;    // is there as much fluid as there is room?
   void prescribe() override;        // velocity of the buffer

@@ -46,6 +46,7 @@ class FixFSIStream : public Fix, public FSI::Part {
   void restart(char *) override;
   double memory_usage() override;
 
+  Rank rank() const override { return STREAMS; }
   void advance(bool) override;    // density, after that of the fluid
 
  private:

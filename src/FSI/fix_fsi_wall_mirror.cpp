@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
@@ -28,6 +29,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -209,6 +211,7 @@ void FixFSIWallMirror::post_integrate()
   const double dth = 0.5 * update->dt, near = guard * fix_fsi->dx;
 
   for (auto &w : walls) w.position += dth * w.velocity[w.axis];
+  turns.clear();
 
   const InnerBox inner(walls, near);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -232,6 +235,7 @@ void FixFSIWallMirror::post_integrate()
         if (fix_fsi->profile) fix_fsi->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
       }
       reflected++;
+      turns.push_back({atom->tag[i], static_cast<int>(&w - walls.data()), vn * w.side < 0.0});
     }
   }
 }
@@ -262,8 +266,29 @@ void FixFSIWallMirror::begin_state(bool)
   for (auto &f : force_on) f = {0.0, 0.0, 0.0};
 }
 
+/* ----------------------------------------------------------------------
+   Particles that this step has reflected, on whatever rank they are now, are back in front of it
+   with their own velocity: they have been moved back by half a step with the reflected one.
+------------------------------------------------------------------------- */
+
 void FixFSIWallMirror::go_back()
 {
+  reflected -= turns.size();
+  const auto all = gather(turns, world);
+  std::map<tagint, int> place;
+  for (const Turn &t : all) place[t.tag] = -1;
+  for (int i = 0; i < atom->nlocal && !place.empty(); i++)
+    if (const auto it = place.find(atom->tag[i]); it != place.end()) it->second = i;
+  for (auto t = all.rbegin(); t != all.rend(); ++t) {
+    const int i = place[t->tag];
+    if (i < 0) continue;
+    const Wall &w = walls[t->wall];
+    double &x = atom->x[i][w.axis], &v = atom->v[i][w.axis];
+    const double dth = atom->mask[i] & fix_fsi->groupbit ? 0.5 * update->dt : 0.0;
+    x = 2.0 * (w.position + w.side * guard * fix_fsi->dx) - (x + dth * v);
+    if (t->turned) v = 2.0 * w.velocity[w.axis] - v;
+    x -= dth * v;
+  }
   for (auto &w : walls) w.position -= 0.5 * update->dt * w.velocity[w.axis];
 }
 

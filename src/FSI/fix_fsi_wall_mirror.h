@@ -61,6 +61,12 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
   void warn_of_slip(const std::vector<bool> &slip_said) const;
   double guard;    // smallest distance to a wall, in spacings
   bigint reflected;
+  struct Turn {    // a reflection of this step
+    tagint tag;
+    int wall;
+    bool turned;    // the velocity, too
+  };
+  std::vector<Turn> turns;
   class FixFSI *fix_fsi;
 };
 

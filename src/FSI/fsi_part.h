@@ -62,6 +62,11 @@ namespace FSI {
    public:
     virtual Facts facts() const { return {}; }
 
+    // The order of calls, whatever that of the script is. In advance() several write densities: the
+    // fluid's rates first, then what holds them in a stream, then what gives those of a buffer.
+    enum Rank { PAIRS, STATES, STREAMS, OPEN_ENDS, SURFACES };
+    virtual Rank rank() const { return STATES; }
+
     // Between runs: is it as it was when the last one was set up, or has a command given it anew?
     virtual bool is_set_up() const { return true; }
 

@@ -29,18 +29,14 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
-Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) :
-    mover(fix_fsi), state(lmp->atom->ntypes + 1), substeps(1), body_forces(lmp), profile(nullptr),
-    dt_offset(0.0), psi(nullptr), shift(nullptr), shifts(false), shift_velocity{}, wmask(nullptr),
-    wall_velocity(nullptr), wall_stiffness(nullptr), noslip_walls(false), surface_ratio(0.0),
-    surface_max(false), need_psi(false), keep_psi(false), ledger(false), energy_out{},
-    tally_dt(0.0), states_entered(false), instance(lmp)
+Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) : mover(fix_fsi), body_forces(lmp), instance(lmp)
 {
+  state.resize(lmp->atom->ntypes + 1);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void Scene::resolve(double hdx, const std::vector<double> &spacing)
+void Discretization::resolve(double hdx, const std::vector<double> &spacing)
 {
   const auto resolution_of = [&](double own) {
     Resolution r;
@@ -93,7 +89,7 @@ void Scene::gather_walls()
 
 /* ---------------------------------------------------------------------- */
 
-std::vector<std::string> Scene::density_names(int species)
+std::vector<std::string> Discretization::density_names(int species)
 {
   if (species == FLUID) return {"continuity", "summation"};
   return {"continuity", "summation", "ratio"};
@@ -115,7 +111,7 @@ bool Scene::has_open_ends() const
 
 /* ---------------------------------------------------------------------- */
 
-bool Scene::several_stiffnesses() const
+bool Discretization::several_stiffnesses() const
 {
   double first = 0.0;
   for (const auto &s : state) {

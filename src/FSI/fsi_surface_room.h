@@ -61,6 +61,7 @@ namespace FSI {
     void set_array(Fields &);
     void write(Record &) const;
     void read(const Record &);
+    Rank rank() const override { return SURFACES; }
     bool add_rates(bool) override;
     void advance(bool) override;    // after the density
     void go_back() override;

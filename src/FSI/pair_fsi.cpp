@@ -318,6 +318,13 @@ State PairFSI::solid_state(const Material &m, bool plane_stress) const
   return s;
 }
 
+bool PairFSI::any_relaxes() const
+{
+  return std::any_of(material.begin(), material.end(), [](const Material &m) {
+    return m.nprony > 0;
+  });
+}
+
 /* ---------------------------------------------------------------------- */
 
 void PairFSI::check_tally()

@@ -45,6 +45,7 @@ class PairFSI : public Pair, public FSI::Part {
   FSI::Facts facts() const override;
   std::vector<Effect> effects() const override = 0;
   bool is_set_up() const override { return fix_fsi != nullptr; }
+  Rank rank() const override { return PAIRS; }
 
  protected:
   const std::string style;                // for messages
@@ -69,6 +70,7 @@ class PairFSI : public Pair, public FSI::Part {
   void check_pair_coeff(int, char **) const;
   FSI::State solid_state(const FSI::Material &, bool plane_stress) const;
   bool several_bodies() const;
+  bool any_relaxes() const;    // has a material a Prony series?
   virtual void check_settings() {}    // what a row of keywords cannot say
   void artificial_row(const std::string &of);
   void contact_row();

@@ -190,6 +190,10 @@ void PairFSISolid::add_costs(Costs &costs) const
 void PairFSISolid::find_idle(const Census &all, const Idle &nothing) const
 {
   if (all.solids == 0) nothing("Pair style fsi/solid" + named_effects(), "no particle is a solid");
+  if (any_relaxes())
+    nothing("Prony series of a material",
+            "pair_style fsi/solid is elastic or plastic; pair_style fsi/solid/tl law viscoelastic "
+            "relaxes");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -917,9 +917,7 @@ void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
   else if (volumetric == SMOOTHED && !smoothed.on())
     nothing("Pair style fsi/solid/tl volumetric smoothed",
             fmt::format("no Poisson's ratio is above {}", VolumetricStrain::LOCAL));
-  const bool relaxes = std::any_of(material.begin(), material.end(), [](const Material &m) {
-    return m.nprony > 0;
-  });
+  const bool relaxes = any_relaxes();
   if (relaxes != !laws.history().empty())
     nothing(relaxes ? "Prony series of a material" : "Pair style fsi/solid/tl law viscoelastic",
             relaxes ? "pair_style fsi/solid/tl has another law" : "no material has a Prony series");

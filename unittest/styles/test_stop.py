@@ -117,6 +117,27 @@ def test_what_else_the_step_did_to_densities_goes_back(tmp_path, what):
             assert difference(whole[37 + frame], rest[frame], quantity) < 1e-13, quantity
 
 
+@pytest.mark.parametrize("ranks", (1, 2))
+def test_a_reflection_goes_back(tmp_path, ranks):
+    """Of the step in which it stops, at the wall that moves and at the one that stands, whatever rank has the particle."""
+    scene = fluid_box(2, fluid="sound 10 artificial/visc 0.05 0")
+    top = np.flatnonzero(scene.x[:, 1] > 13 * DX)
+    for i, speed in ((top[0], -3.0), (top[-1], 3.0)):
+        scene.x[i, 1] += DX
+        scene.v[i] = [speed, 0.0, 0.0]
+    whole = run(tmp_path / "whole", scene.text() + watch(every=1) + "run 30\n", ranks, scene_data=scene.data()).frames()
+    for i in (top[0], top[-1]):
+        v = np.array([frame["vx"][i] for frame in whole])
+        step = np.flatnonzero(v[1:] * v[:-1] < 0)[0]    # the state before it is turned back
+        done = lammps(tmp_path, scene.text() + watch(every=1) + f"run {step}\ngroup one id 58\nfix push one addforce 0.0 1e6 0.0\nrun 5\n", ranks,
+                      scene_data=scene.data())
+        assert f"State of step {step}: fsi_stop.restart" in error(done)
+        rest = run(tmp_path, resume(scene) + watch("rest.dump", 1) + "run 5\n", ranks).frames("rest.dump")
+        for frame in (0, 5):
+            for quantity in ("x", "v", "rho"):
+                assert difference(whole[step + frame], rest[frame], quantity) < 1e-13, quantity
+
+
 def test_the_limit_is_a_keyword(tmp_path):
     scene = fluid_box(2, sph="mach 2")
     scene.v[279] = [0.0, 15.0, 0.0]  # one of the surface

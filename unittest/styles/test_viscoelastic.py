@@ -274,6 +274,12 @@ def test_two_laws_after_each_other(tmp_path):
     assert "Prony series of a material has nothing to act on: pair_style fsi/solid/tl has another law" in output
 
 
+def test_style_that_does_not_relax(tmp_path):
+    plain = (DECK + STYLE + FIXES).replace("fsi/solid/tl law viscoelastic", "fsi/solid").replace(" substeps 2", "")
+    output = run(tmp_path, plain + "fix s all fsi/stress\nrun 0\n", rubber_fsi=FILE).output
+    assert "Prony series of a material has nothing to act on: pair_style fsi/solid is elastic or plastic" in output
+
+
 @pytest.mark.parametrize("prony, message", [
     ("prony 0.6 1 0.4 2", r"prony: the sum of all g is 1, expected below 1"),
     ("prony 0.5 0", r"prony tau 0 must be > 0"), ("prony 0.5 -1", r"prony tau -1 must be > 0"), ("prony 1 1", r"prony g 1 must be > 0 and < 1"),

@@ -41,7 +41,7 @@ def test_reference_logs(name):
 def test_page_has_every_scene_and_its_picture():
     text = (paths.ROOT / "doc/src/gallery.rst").read_text()
     for name in SCENES:
-        assert f"tools/run {name}" in text and not re.search(r"[\d.]+ s on \d", text)
+        assert f"(``{name}``)" in text and not re.search(r"[\d.]+ s on \d", text)
         assert list((paths.EXAMPLES / name).glob("*.png")) and f"examples/{name}/" in text
     for picture in re.findall(r"image:: \.\./\.\./(\S+)", text):
         assert (paths.ROOT / picture).exists()

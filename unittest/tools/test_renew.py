@@ -121,6 +121,45 @@ def test_what_is_not_whole_is_refused(runs, spoil, says):
     assert not list(runs.glob("doc/*/*"))
 
 
+def test_takes_one_scene_and_one_case(runs, monkeypatch):
+    """A scene is replaced. A case joins those of before, in the order of cases.json, with its own commit; a figure keeps its target, a new one has none."""
+    renew.collect()
+    before = results.scenes_of(paths.PAGE)
+    path = paths.RESULTS / "beam/summary.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), "commit": "abcdef0123", "steps": 7}))
+    name, case = "cylinder_channel", "14_across"
+    ran = {"given": {}, "particles": 1, "steps": 2, "ranks": 1, "cpu_seconds": 3.0, "commit": "abcdef0123", "date": "2026-11-25"}
+    (paths.RESULTS / name / case).mkdir()
+    (paths.RESULTS / name / case / "summary.json").write_text(json.dumps(ran))
+    figures = [{"name": f"{kind}_{case}", "value": 1.0, "target": 0.1, "met": False} for kind in ("drag", "new")] + [{"name": "drag_20_across", "value": 5.0, "target": 0.02, "met": False}]
+
+    class Analysis:
+        def study(self, folder, cases):
+            assert [(case, path.resolve()) for case, path in cases.items()] == [(case, paths.RESULTS / name / case)]
+            (folder / "summary.json").write_text(json.dumps({"figures": [*figures, {"name": "cpu_seconds", "value": 3.0}]}))
+
+    monkeypatch.setattr(scene, "analysis", lambda _: Analysis())
+    monkeypatch.setattr(scene, "cases", lambda _: ["10_across", case, "20_across", "re_100_14"])
+    renew.take(["beam", f"{name}/{case}"])
+    after = results.scenes_of(paths.PAGE)
+    assert after["beam"]["summary"] == {**before["beam"]["summary"], "commit": "abcdef0123", "steps": 7}
+    summary = after[name]["summary"]
+    assert list(summary["cases"]) == ["10_across", case, "20_across", "re_100_14"] and summary["cases"][case] == ran
+    assert {f["name"]: (f["value"], f["target"]) for f in summary["figures"] if f["name"] in {g["name"] for g in figures}} == {
+        "drag_14_across": (1.0, None), "new_14_across": (1.0, None), "drag_20_across": (5.0, 0.02)}
+    assert [f["name"] for f in summary["figures"]][-3:] == list(results.COST) and len(summary["figures"]) == len(before[name]["summary"]["figures"]) + 1
+    assert {k: v for k, v in after.items() if k not in ("beam", name)} == {k: v for k, v in before.items() if k not in ("beam", name)}
+
+
+@pytest.mark.parametrize("wanted, says", [("beam/none", "not there"), ("nonsense", "not there"), ("droplet", "of no commit")])
+def test_what_cannot_be_taken_is_refused(runs, wanted, says):
+    renew.collect()
+    path = paths.RESULTS / "droplet/summary.json"
+    path.write_text(path.read_text().replace("0123456789", "0123456789+"))
+    with pytest.raises(Refusal, match=says):
+        renew.take([wanted])
+
+
 def test_changes_are_refused_before_a_run(monkeypatch):
     monkeypatch.setattr(scene, "main", lambda _: pytest.fail("ran"))
     for commit in ("0123456789+", None):
@@ -149,7 +188,7 @@ def test_runs_are_all_and_a_failure_is_told(monkeypatch, capsys):
     assert renew.main(["--pages-only"]) == 0 and done == ["collect", "draw", "draw"]
 
 
-@pytest.mark.parametrize("words", [["nonsense"], ["--no-runs", "--pages-only"], ["x=1"]])
+@pytest.mark.parametrize("words", [["nonsense"], ["--no-runs", "--pages-only"], ["x=1"], ["--only"]])
 def test_nonsense_is_refused(words, monkeypatch):
     monkeypatch.setattr(renew, "draw", lambda: pytest.fail("drew"))
     with pytest.raises(Refusal, match="is not one of"):
