@@ -124,6 +124,7 @@ ComputeFSIProbe::~ComputeFSIProbe()
 void ComputeFSIProbe::init()
 {
   fix_fsi = FixFSI::find(lmp, "Compute fsi/probe");
+  const double dx = fix_fsi->levels.back().dx;    // the finest fluid's
   listed = -1;
   points.clear();
   nsums = places[0].line ? 2 : 1 + quantity.size();
@@ -138,15 +139,13 @@ void ComputeFSIProbe::init()
       if (place.line) continue;
       // the tolerance: 0.1/0.005 is not 21 cells
       place.n[d] = std::max(
-          1,
-          static_cast<int>(std::min(std::ceil(2.0 * extent / fix_fsi->dx - 1.0e-6), MOST + 1.0)));
+          1, static_cast<int>(std::min(std::ceil(2.0 * extent / dx - 1.0e-6), MOST + 1.0)));
       place.step[d][d] = extent / place.n[d];
       place.origin[d] += 0.5 * place.step[d][d];
     }
     if (place.line) {
-      place.n[0] = 1 +
-          static_cast<int>(
-                       std::min(std::ceil(4.0 * std::sqrt(length) / fix_fsi->dx - 1.0e-6), MOST));
+      place.n[0] =
+          1 + static_cast<int>(std::min(std::ceil(4.0 * std::sqrt(length) / dx - 1.0e-6), MOST));
       for (int d = 0; d < 3; d++)
         place.step[0][d] = (place.to[d] - place.from[d]) / (place.n[0] - 1);
     }
@@ -187,7 +186,7 @@ void ComputeFSIProbe::find_near()
   for (int d = 0; d < 3; d++) images[d] = d < fix_fsi->dim && domain->periodicity[d];
 
   for (auto &place : places) {
-    place.near.clear();
+    place.near.assign(fix_fsi->levels.size(), {});
     for (int i = 0; i < atom->nlocal; i++) {
       const int species = fix_fsi->state[atom->type[i]].species;
       if (species == FLUID ? !(atom->mask[i] & groupbit) : !place.line) continue;
@@ -206,7 +205,8 @@ void ComputeFSIProbe::find_near()
               for (int d = 0; d < 3; d++) apart[d] -= t * place.step[k][d];
             }
             for (int d = 0; d < fix_fsi->dim; d++) rsq += apart[d] * apart[d];
-            if (rsq < reach * reach) place.near.push_back(p);
+            const int level = fix_fsi->level_of[atom->type[i]];
+            if (rsq < reach * reach) place.near[level].push_back(p);
           }
     }
   }
@@ -259,6 +259,79 @@ double ComputeFSIProbe::volume_at(const double *x, int i, const Walls &walls) co
 }
 
 /* ----------------------------------------------------------------------
+   adds particles with this kernel near each place to its sums; at: points; mask: walls near them
+------------------------------------------------------------------------- */
+
+template <class K>
+void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &walls,
+                                const std::vector<double> &at, const std::vector<int> &mask)
+{
+  double *const *const v = atom->v;
+  Sight *const sight = fix_fsi->sight.get();
+  for (const auto &place : places)
+    for (const auto &p : place.near[level]) {
+      const int i = p.i;
+      double x[3];
+      for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
+      const State &state = fix_fsi->state[atom->type[i]];
+      const auto &g = fix_fsi->body_forces.of_type[atom->type[i]];
+      const bool fluid = state.species == FLUID;
+      const double rho = atom->rho[i], pressure = fluid ? fix_fsi->pressure(i) : 0.0;
+      const double vol = volume_at(x, i, walls);
+      if (vol == 0.0) continue;
+      const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, fix_fsi->cut) : 0;
+      const bool may_hide = sight && fluid && sight->near(atom->x[i]);
+      if (may_hide) sight->look_from(atom->x[i]);
+      int lo[3], hi[3];
+      place.range(x, kernel.cut, lo, hi);
+      for (int a = lo[0]; a <= hi[0]; a++)
+        for (int b = lo[1]; b <= hi[1]; b++)
+          for (int c = lo[2]; c <= hi[2]; c++) {
+            const int k = place.first + (a * place.n[1] + b) * place.n[2] + c;
+            const double *const xk = &at[3 * k];
+            double *const sum = &sums[(size_t) k * nsums];
+            double rsq = 0.0, head = 0.0;
+            for (int d = 0; d < fix_fsi->dim; d++) {
+              rsq += (xk[d] - x[d]) * (xk[d] - x[d]);
+              head += rho * g[d] * (xk[d] - x[d]);
+            }
+            if (rsq >= kernel.cutsq) continue;
+            double part = vol;
+            if (may_hide) {
+              double seen[3];
+              for (int d = 0; d < 3; d++) seen[d] = xk[d] - p.shift[d];
+              part *= sight->visible(seen);
+            }
+            const auto add = [&](double w, const double *velocity) {
+              w *= part;
+              if (place.line) {
+                sum[fluid ? 0 : 1] += w;
+                return;
+              }
+              sum[0] += w;
+              for (size_t q = 0; q < quantity.size(); q++) {
+                if (quantity[q] == P)
+                  sum[q + 1] +=
+                      w * (extrapolate ? std::max(pressure + head, state.floor) : pressure);
+                else if (quantity[q] == RHO)
+                  sum[q + 1] += w * rho;
+                else if (quantity[q] != FILL)
+                  sum[q + 1] += w * velocity[quantity[q] - VX];
+              }
+            };
+            add(kernel.W(std::sqrt(rsq)), v[i]);
+            if (mask_i & mask[k])
+              walls.images(mask_i & mask[k], rsq, xk, x, kernel.cutsq,
+                           [&](const Walls::Reflection &s, double rsq_image, const double *) {
+                             double image[3];
+                             walls.reflect_velocity(s, v[i], image);
+                             add(kernel.W(std::sqrt(rsq_image)), image);
+                           });
+          }
+    }
+}
+
+/* ----------------------------------------------------------------------
    sums of V W and of V W times each quantity over fluid particles and their images in mirror walls;
    along lines of V W over fluids and over solids
 ------------------------------------------------------------------------- */
@@ -278,71 +351,10 @@ void ComputeFSIProbe::sum_up()
   std::vector<double> at(points);
   const std::vector<int> mask = walls_near(walls, at);
 
-  double *const *const v = atom->v;
-  Sight *const sight = fix_fsi->sight.get();
-  with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, [&](const auto &kernel) {
-    for (const auto &place : places)
-      for (const auto &p : place.near) {
-        const int i = p.i;
-        double x[3];
-        for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
-        const State &state = fix_fsi->state[atom->type[i]];
-        const auto &g = fix_fsi->body_forces.of_type[atom->type[i]];
-        const bool fluid = state.species == FLUID;
-        const double rho = atom->rho[i], pressure = fluid ? fix_fsi->pressure(i) : 0.0;
-        const double vol = volume_at(x, i, walls);
-        if (vol == 0.0) continue;
-        const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, fix_fsi->cut) : 0;
-        const bool may_hide = sight && fluid && sight->near(atom->x[i]);
-        if (may_hide) sight->look_from(atom->x[i]);
-        int lo[3], hi[3];
-        place.range(x, kernel.cut, lo, hi);
-        for (int a = lo[0]; a <= hi[0]; a++)
-          for (int b = lo[1]; b <= hi[1]; b++)
-            for (int c = lo[2]; c <= hi[2]; c++) {
-              const int k = place.first + (a * place.n[1] + b) * place.n[2] + c;
-              const double *const xk = &at[3 * k];
-              double *const sum = &sums[(size_t) k * nsums];
-              double rsq = 0.0, head = 0.0;
-              for (int d = 0; d < fix_fsi->dim; d++) {
-                rsq += (xk[d] - x[d]) * (xk[d] - x[d]);
-                head += rho * g[d] * (xk[d] - x[d]);
-              }
-              if (rsq >= kernel.cutsq) continue;
-              double part = vol;
-              if (may_hide) {
-                double seen[3];
-                for (int d = 0; d < 3; d++) seen[d] = xk[d] - p.shift[d];
-                part *= sight->visible(seen);
-              }
-              const auto add = [&](double w, const double *velocity) {
-                w *= part;
-                if (place.line) {
-                  sum[fluid ? 0 : 1] += w;
-                  return;
-                }
-                sum[0] += w;
-                for (size_t q = 0; q < quantity.size(); q++) {
-                  if (quantity[q] == P)
-                    sum[q + 1] +=
-                        w * (extrapolate ? std::max(pressure + head, state.floor) : pressure);
-                  else if (quantity[q] == RHO)
-                    sum[q + 1] += w * rho;
-                  else if (quantity[q] != FILL)
-                    sum[q + 1] += w * velocity[quantity[q] - VX];
-                }
-              };
-              add(kernel.W(std::sqrt(rsq)), v[i]);
-              if (mask_i & mask[k])
-                walls.images(mask_i & mask[k], rsq, xk, x, kernel.cutsq,
-                             [&](const Walls::Reflection &s, double rsq_image, const double *) {
-                               double image[3];
-                               walls.reflect_velocity(s, v[i], image);
-                               add(kernel.W(std::sqrt(rsq_image)), image);
-                             });
-            }
-      }
-  });
+  for (size_t level = 0; level < fix_fsi->levels.size(); level++)
+    with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->levels[level].h, [&](const auto &kernel) {
+      add_level(level, kernel, walls, at, mask);
+    });
   MPI_Allreduce(sums.data(), all.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, world);
 }
 
@@ -431,6 +443,7 @@ void ComputeFSIProbe::compute_array()
 double ComputeFSIProbe::memory_usage()
 {
   double bytes = (double) (points.capacity() + sums.capacity() + all.capacity()) * sizeof(double);
-  for (const auto &place : places) bytes += (double) place.near.capacity() * sizeof(Particle);
+  for (const auto &place : places)
+    for (const auto &near : place.near) bytes += (double) near.capacity() * sizeof(Particle);
   return bytes;
 }

@@ -58,7 +58,7 @@ class ComputeFSIProbe : public Compute {
     double from[3] = {}, to[3] = {};
     int n[3] = {}, first = 0;    // first: index of its first point among all
     double origin[3] = {}, step[3][3] = {};
-    std::vector<Particle> near;
+    std::vector<std::vector<Particle>> near;    // by level of the scene
 
     int size() const { return n[0] * n[1] * n[2]; }
     double along(int d, const double *x) const;    // where x is on grid axis d, in steps
@@ -74,6 +74,9 @@ class ComputeFSIProbe : public Compute {
   void find_near();
   double volume_at(const double *x, int i, const FSI::Walls &) const;
   std::vector<int> walls_near(const FSI::Walls &, std::vector<double> &at) const;
+  template <class K>
+  void add_level(size_t level, const K &, const FSI::Walls &, const std::vector<double> &at,
+                 const std::vector<int> &mask);
   void sum_up();
   void evaluate(double *result);
   double field(const Place &, int k) const;

@@ -319,9 +319,24 @@ void FixFSIInlet::setup_pre_exchange()
                  w.side > 0.0 ? "lo" : "hi", w.position);
   }
   if (region) region->prematch();
+  check_levels();
   if (filled) return;
   filled = true;
   fill_buffer();
+}
+
+// its slices are those of dx, the coarsest fluid's spacing
+void FixFSIInlet::check_levels() const
+{
+  const auto finer = find_particles(atom, world, [this](int i) {
+    return is_fluid(i) && fix_fsi->level_of[atom->type[i]] > 0 && in_patch(atom->x[i]) &&
+        std::fabs(inside(atom->x[i])) < length;
+  });
+  if (finer.count)
+    error->all(FLERR,
+               "{} {}: {} particles of fluid finer than dx, {:g}, the first of them atom {}, are "
+               "within {:g} of its plane: the fluid that comes and goes is the coarsest",
+               who, id, finer.count, fix_fsi->dx, finer.first, length);
 }
 
 void FixFSIInlet::fill_buffer()

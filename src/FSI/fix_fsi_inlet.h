@@ -157,6 +157,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     double at[2] = {};    // along the plane
   };
   Column along(const double *x) const { return {{x[axis == 0 ? 1 : 0], x[axis == 2 ? 1 : 2]}}; }
+  void check_levels() const;
   void fill_buffer();
   int number_of_slices() const, slice(double distance) const, full_slices() const;
   void check_slices(std::vector<int> &mine) const;

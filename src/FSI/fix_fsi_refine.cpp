@@ -697,7 +697,6 @@ void FixFSIRefine::unite(const std::vector<Union> &unions)
     atom->rho[i] = one.rho;
     atom->rmass[i] = one.rmass;
     atom->type[i] = types[level(i) - 1];
-    if (fix_fsi->keep_psi) fix_fsi->psi[i] *= 0.5;
     if (account) *account += one.energy - fix_fsi->population.energy(i);
   }
 }
@@ -716,7 +715,6 @@ void FixFSIRefine::divide(const std::vector<Division> &divisions)
     if (account) *account += population.energy(i);
     atom->type[i] = types[level(i) + 1];
     atom->rmass[i] *= 0.5;
-    if (fix_fsi->keep_psi) fix_fsi->psi[i] *= 2.0;
     const auto nth = std::lower_bound(all.begin(), all.end(), atom->tag[i]) - all.begin();
     const int j = population.copy(i, ids[nth]);
     const auto move = [&](int k, double to) {

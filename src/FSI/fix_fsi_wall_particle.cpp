@@ -20,7 +20,7 @@
 #include "fix_fsi_move.h"
 #include "fix_store_atom.h"
 #include "force.h"
-#include "fsi_kernel.h"
+#include "fsi_levels.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_tensor.h"
@@ -154,11 +154,11 @@ void FixFSIWallParticle::add_costs(Costs &costs) const
 
 /* ---------------------------------------------------------------------- */
 
-template <class F> void FixFSIWallParticle::for_pairs(F f) const
+template <class F> void FixFSIWallParticle::for_pairs(size_t level, F f) const
 {
   const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
   if (!fluid) return;    // a script has put another style in its place since the last run
-  for (const Row &row : fluid->rows_with_walls()) {
+  for (const Row &row : fluid->rows_with_walls(level)) {
     if (!(atom->mask[row.j[0]] & groupbit)) continue;    // a type is in one such fix
     for (int k = 0; k < row.n; k++) f(row.j[k], row.i);
   }
@@ -216,8 +216,8 @@ void FixFSIWallParticle::sum_up()
   }
   for (const int i : members) std::fill_n(sum[i], nsum, 0.0);
 
-  with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
-    for_pairs([&](int w, int j) {
+  for_levels(*fix_fsi, [&](size_t level, const auto &kernel) {
+    for_pairs(level, [&](int w, int j) {
       double d[3], rsq = 0.0;
       for (int k = 0; k < dim; k++) {
         d[k] = x[w][k] - x[j][k];
@@ -347,15 +347,18 @@ double FixFSIWallParticle::compute_scalar()
   // before the first run, or with a new fix fsi
   if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
   double counted = 0.0, all;
-  for_pairs([&](int w, int j) {
-    double rsq = 0.0;
-    for (int k = 0; k < fix_fsi->dim; k++)
-      rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
-    const double limit = fix_fsi->state[atom->type[w]].guard;
-    // without newton a pair across ranks is in the lists of both
-    if (rsq < limit * limit)
-      counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
-  });
+  for (size_t level = 0; level < fix_fsi->levels.size(); level++)
+    for_pairs(level, [&](int w, int j) {
+      double rsq = 0.0;
+      for (int k = 0; k < fix_fsi->dim; k++)
+        rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
+      const double own = fix_fsi->dx_of(atom->type[w]),
+                   limit = fix_fsi->state[atom->type[w]].guard *
+          ((fix_fsi->levels[level].dx + own) / (fix_fsi->dx + own));
+      // without newton a pair across ranks is in the lists of both
+      if (rsq < limit * limit)
+        counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
+    });
   MPI_Allreduce(&counted, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }

@@ -70,8 +70,8 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   class FixFSI *fix_fsi;
   std::vector<int> members;    // the group's particles, local and ghost
   template <class F>
-  void for_pairs(F f) const;    // f(wall particle, fluid particle) of those that
-                                // may be within the kernel's support
+  void for_pairs(size_t level, F f) const;    // f(wall particle, fluid particle) of those that
+                                              // may be within the kernel's support
   void sum_up();
   double **sum;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d
                    // W, d d W, p d W, d = x_wall - x

@@ -77,6 +77,7 @@ class Adviser : protected Pointers {
       nothing_acts();
       torn_streams();
       speeds();
+      if (scene.has_levels()) levels();
     }
     weightless();
     if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
@@ -268,6 +269,48 @@ class Adviser : protected Pointers {
         all.apart < 1.0 - 1.0e-6
             ? ""
             : fmt::format(", or contact {:.3g}", std::floor(10.0 * all.apart + 1.0e-6) / 10.0)));
+  }
+
+  /* Fluids of several spacings: where those that meet differ by much, or see each other through a
+     band, pressure is noisy. What bodies and walls may differ by is as in Check. */
+
+  void levels() const
+  {
+    static constexpr double JUMP = 1.45, COARSEST = 2.0, FINEST = 4.0, ROUND = 1.0 + 1.0e-6;
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, scene.cut);
+    // does meets(j) hold for any of its neighbors?
+    const auto any = [&](int i, auto meets) {
+      bool found = false;
+      const double own = scene.resolution[atom->type[i]].cut;
+      cells.around(atom->x[i], [&](int j, double rsq) {
+        const double cut = fluid(j) ? 0.5 * (own + scene.resolution[atom->type[j]].cut) : own;
+        found = found || (rsq < cut * cut && meets(j));
+      });
+      return found;
+    };
+    const auto bad = find_particles(atom, world, [&](int i) {
+      return fluid(i) && any(i, [&](int j) {
+               return scene.state[atom->type[j]].species != NONE && !fluid(j) &&
+                   (dx(j) > ROUND * COARSEST * dx(i) || ROUND * FINEST * dx(j) < dx(i));
+             });
+    });
+    if (bad.count)
+      error->all(FLERR,
+                 "Fix fsi: {} fluid particles, the first of them atom {}, meet a body or wall that "
+                 "is more than {:g} times coarser or {:g} times finer: put fluid of another "
+                 "spacing there",
+                 bad.count, bad.first, COARSEST, FINEST);
+    if (update->ntimestep > 0) return;
+    const auto jumps = find_particles(atom, world, [&](int i) {
+      return fluid(i) && any(i, [&](int j) {
+               return fluid(j) && dx(i) > JUMP * dx(j);
+             });
+    });
+    if (jumps.count)
+      warn(fmt::format("{} fluid particles, the first of them atom {}, meet fluid more than {:g} "
+                       "times finer: pressure is noisy there. Put a band of a spacing between "
+                       "them, wider than the kernel's support",
+                       jumps.count, jumps.first, JUMP));
   }
 
   /* elastic bodies, none of which moves */

@@ -220,9 +220,9 @@ void Check::integrators() const
 }
 
 /* ----------------------------------------------------------------------
-   The fluid's spacing is dx. Bodies and walls meet it with the fluid's kernel: they may be
-   coarser as long as its support holds so many of their spacings. With fewer it tells their
-   particles one by one (theory.rst).
+   The coarsest fluid's spacing is dx. Bodies and walls meet fluids with the fluid's kernel: they
+   may be coarser as long as its support holds so many of their spacings. With fewer it tells their
+   particles one by one (theory.rst). Which of several fluids they meet is seen at the start.
 ------------------------------------------------------------------------- */
 
 void Check::spacings() const
@@ -230,12 +230,16 @@ void Check::spacings() const
   constexpr double FINEST = 4.0, COARSEST = 2.0, HELD = 1.5, ROUND = 1.0 + 1.0e-6;
   const Facts fluid = facts_of_fluids(lmp);
   for (int t = 1; t <= atom->ntypes; t++) {
-    const double own = scene.dx_of(t), dx = scene.dx;
+    const double own = scene.dx_of(t), dx = scene.dx, finest = scene.levels.back().dx;
     const State &s = scene.state[t];
     if (own == dx || s.species == NONE) continue;
     const auto what = fmt::format("Fix fsi spacing {:g} of type {}", own, t);
-    if (s.species == FLUID)
-      error->all(FLERR, "{}, a fluid: fluids have the spacing dx, {:g}", what, dx);
+    if (s.species == FLUID) {
+      if (own > dx)
+        error->all(FLERR, "{}, a fluid: dx, {:g}, is to be that of the coarsest fluid", what, dx);
+      fluid_spacings(what);
+      continue;
+    }
     if (s.form == UPDATED_LAGRANGIAN)
       error->all(FLERR,
                  "{}: the sums of pair_style fsi/solid are over whatever is near, with one kernel. "
@@ -253,15 +257,35 @@ void Check::spacings() const
                  "the kernel's support, {:g}, to be {:g} of its "
                  "spacings",
                  what, own / dx, dx, COARSEST, scene.cut, HELD);
-    if (ROUND * FINEST * own < dx)
+    if (ROUND * FINEST * own < finest)
       error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most",
-                 what, dx / own, dx, FINEST);
+                 what, finest / own, finest, FINEST);
     if (fluid.couples_stress)
       error->all(FLERR,
                  "{} requires couple wall in pair_style fsi/fluid: a pressure of the body's own is "
                  "that of its own volumes",
                  what);
   }
+}
+
+/* ----------------------------------------------------------------------
+   what one lattice alone has a number density for
+------------------------------------------------------------------------- */
+
+void Check::fluid_spacings(const std::string &what) const
+{
+  const Facts fluid = facts_of_fluids(lmp);
+  const auto require = [&](bool met, const char *setting, const char *reason) {
+    if (!met) error->all(FLERR, "{}, a fluid, requires {}: {}", what, setting, reason);
+  };
+  const char *const jump = "number densities are not smooth where two lattices meet";
+  require(scene.density_fluid == Scene::CONTINUITY, "fix fsi fluid continuity", jump);
+  require(scene.density_solid != Scene::SUMMATION, "another mode than fix fsi solid summation",
+          jump);
+  require(!fluid.density_at_surfaces, "pair_style fsi/fluid density/surface no", jump);
+  require(!fluid.couples_stress, "couple wall in pair_style fsi/fluid",
+          "a pressure of the body's own is that of its own volumes");
+  require(!scene.sight, "fix fsi without thin", "what a thin body hides is found for one spacing");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -20,6 +20,7 @@
 
 #include "fsi_stop.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -58,6 +59,7 @@ namespace FSI {
     Finding found;    // the first thing that is not finite, or the worst of this rank
 
     void spacings() const;
+    void fluid_spacings(const std::string &what) const;
     void compare_densities();
     void held_parts() const;
     void integrators() const;

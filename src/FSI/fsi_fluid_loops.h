@@ -61,7 +61,7 @@ namespace FSI {
 
   // How particles of a type count at a fluid particle, if their spacing is another (theory.rst)
   struct Share {
-    double volume = 1.0;     // of a particle of the lattice over that of a fluid particle
+    double volume = 1.0;     // of a particle of the lattice over that of the fluid particle
     double sharper = 0.0;    // e of Kernel::sharper_gradient(): negative where it is coarser
     bool thin = false;    // the body counts as if it went on behind, and under the pressure of the
                           // side that meets it
@@ -97,6 +97,17 @@ namespace FSI {
     bool newton = false;
     // of pairs of fluids, in loops pair by pair; null: all of each
     const Visible *visible = nullptr;
+    // Of fluids of several spacings: are these rows of two of them, whose kernel is that of the
+    // mean spacing? In steps of shifting rows of one spacing are taken for such, too.
+    bool unlike = false;
+    // per particle: what is left of shifting's weight where it sees fluid of another spacing
+    const double *fade = nullptr;
+    // types of different spacing that are one fluid
+    bool is_one_fluid(int a, int b) const
+    {
+      return share[b].volume != 1.0 && state[a].rho0 == state[b].rho0 &&
+          state[a].csq == state[b].csq;
+    }
   };
 
   struct RateLaws {

@@ -39,7 +39,8 @@ namespace FSI {
 
   // what a loop is compiled for: effects; sums of powers; neighbors that are images; results for
   // neighbors, too; neighbors of another spacing; shifting, with what tells surfaces or what it
-  // changes of velocities; pairs that thin bodies hide in part
+  // changes of velocities; pairs that thin bodies hide in part; shifting beside fluid of another
+  // spacing
   namespace Flag {
     enum {
       ARTIFICIAL = 1,
@@ -54,7 +55,8 @@ namespace FSI {
       CENTRAL = 512,
       SLOPES = 1024,
       PARTLY = 2048,
-      EDGES = 4096
+      EDGES = 4096,
+      FADES = 8192
     };
   }
 
@@ -143,22 +145,33 @@ namespace FSI {
     return Shift<D>::row(!(flags & Flag::EDGES));
   }
 
+  // Shifting's weights of a pair for i and for j, less the more they see of another spacing
+  template <int FLAGS, class T>
+  FSI_INLINE void weigh(const T &weight, const FluidParticles &in, int i, const int *j, T &of_i,
+                        T &of_j)
+  {
+    of_i = of_j = weight;
+    if (!(FLAGS & Flag::FADES)) return;
+    of_i = 1.0 + in.fade[i] * (weight - 1.0);
+    of_j = 1.0 + Lanes<T>::read(in.fade, j) * (weight - 1.0);
+  }
+
   // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j, with
   // the rate of density of j where there are all of the sums. Solids and walls count, but are not
   // shifted. v: difference of velocities
   template <class T, bool BOTH, int FLAGS, int D, int N>
-  FSI_INLINE void add_shift(const Mirror &mirror, const T &weight, const T &rsq, const T &g,
-                            const T &vol_i, const T &vol_j, const T (&x)[D], const T *v,
-                            const T *rate_j, const int *j, T (&sum)[N],
+  FSI_INLINE void add_shift(const Mirror &mirror, const T &weight_i, const T &weight_j,
+                            const T &rsq, const T &g, const T &vol_i, const T &vol_j,
+                            const T (&x)[D], const T *v, const T *rate_j, const int *j, T (&sum)[N],
                             double (*const shift)[shift_row<D>(FLAGS)])
   {
     constexpr bool EDGES = FLAGS & Flag::EDGES, SLOPES = FLAGS & Flag::SLOPES;
     T of_i[N], of_j[N + 1];
-    Shift<D>::template of_neighbor<EDGES>(of_i, vol_j, g, weight, rsq, x);
+    Shift<D>::template of_neighbor<EDGES>(of_i, vol_j, g, weight_i, rsq, x);
     if (BOTH) {
       T back[D];
       for (int d = 0; d < D; d++) back[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * x[d] : -x[d];
-      Shift<D>::template of_neighbor<EDGES>(of_j, vol_i, g, weight, rsq, back);
+      Shift<D>::template of_neighbor<EDGES>(of_j, vol_i, g, weight_j, rsq, back);
       if constexpr (SLOPES) Shift<D>::slopes_of_pair(of_i, of_j, vol_i, vol_j, g, x, v);
       if constexpr (EDGES || SLOPES)
         of_j[N] = *rate_j;
@@ -203,28 +216,28 @@ namespace FSI {
   {
     constexpr int D = K::DIM;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES,
-                   CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL);
+                   CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL),
+                   UNLIKE = KIND == WITH_FLUID && (FLAGS & Flag::UNEQUAL);
     constexpr int N = shift_sums<D>(FLAGS);
     constexpr bool TOGETHER = (FLAGS & Flag::SHIFT) && N > D;    // shifting takes the rate along
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
-    const T reachsq = laws.reach * laws.reach;
-    T by_diffusion = 0.0;
+    T reachsq = laws.reach * laws.reach, by_diffusion = 0.0;
     near.clear();
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
       const Particle<T, D> pi(point[i]);
-      const DensityDiffusion diffusion(type_i == type_j ? laws.delta : 0.0, kernel.h,
-                                       in.state[type_i].c);
+      const bool one = type_i == type_j || (UNLIKE && in.is_one_fluid(type_i, type_j));
+      const DensityDiffusion diffusion(one ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
       const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0,
-                   fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0;
+                   fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0,
+                   back = UNLIKE ? 1.0 / in.share[type_j].volume : 1.0;
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
-      int *last = near.room(row.n);
-      int picked = 0;
+      int *last = near.room(row.n), picked = 0;
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
         Particle<T, D> pj(point, j);
         if (IMAGE) pj.reflect(mirror);
@@ -239,12 +252,13 @@ namespace FSI {
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         const auto shift_pair = [&](const T &along, const T *rate_j) FSI_INLINE_LAMBDA {
           const T vol_j = (FLAGS & Flag::UNEQUAL) ? fill * pj.vol : pj.vol;
-          add_shift<T, KIND == WITH_FLUID, FLAGS>(mirror, law.weight(kernel.W(r)), rsq, along,
-                                                  pi.vol, vol_j, x, v, rate_j, j, displacement,
-                                                  shift);
+          T of_i, of_j;
+          weigh<FLAGS>(law.weight(kernel.W(r)), in, i, j, of_i, of_j);
+          add_shift<T, KIND == WITH_FLUID, FLAGS>(mirror, of_i, of_j, rsq, along, pi.vol, vol_j, x,
+                                                  v, rate_j, j, displacement, shift);
         };
         if constexpr ((FLAGS & Flag::SHIFT) && KIND != WITH_FLUID) shift_pair(g, nullptr);
-        if (FLAGS & Flag::UNEQUAL) {
+        if ((FLAGS & Flag::UNEQUAL) && !UNLIKE) {
           g = kernel.sharper_gradient(r, sharper);
           if (IMAGE) g = weight * g;
           if (CUT) g = cut_off(in, j, g);
@@ -254,7 +268,7 @@ namespace FSI {
         if (CUT && in.cut) s += kernel.sharper(r, sharper) * L::read(in.cut->rate, j);
         sum += s;
         if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
-        T rate_j = pj.rho * pj.vol * s;
+        T rate_j = UNLIKE ? back * (pj.rho * pj.vol * s) : pj.rho * pj.vol * s;
         if (FLAGS & Flag::DIFFUSION) {
           const T k = lesser(pi.p, pj.p) * diffusion(pi.rho, pj.rho, pi.pv2 - pj.pv2, g);
           flux += k * pj.vol;
@@ -463,7 +477,7 @@ namespace FSI {
                          const int i, const Particle<T, D> &pi, const Particle<T, D> &pj,
                          const int *j, const T &weight, Between<T, D> &m)
   {
-    constexpr bool CUT = is_cut(KIND, FLAGS);
+    constexpr bool CUT = is_cut(KIND, FLAGS), UNLIKE = KIND == WITH_FLUID;
     difference(pi.x, pj.x, m.x);
     difference(pi.v, pj.v, m.v);
     m.weight = weight;
@@ -474,7 +488,7 @@ namespace FSI {
     if (CUT) m.g = cut_off(in, j, m.g);
     if constexpr (FLAGS & Flag::PARTLY) m.g = as_visible(in, j, m.g);
     m.pushing = m.g;
-    if (FLAGS & Flag::UNEQUAL) {
+    if ((FLAGS & Flag::UNEQUAL) && !UNLIKE) {
       m.pushing = kernel.sharper_gradient(root(m.rsq), constant.sharper);
       if (FLAGS & Flag::IMAGES) m.pushing = weight * m.pushing;
       if (CUT) m.pushing = cut_off(in, j, m.pushing);
@@ -663,9 +677,10 @@ namespace FSI {
         if (IMAGE) g = weight * g;
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         const T no_rate = 0.0;
+        const T of_both = law.weight(kernel.W(r));
         add_shift<T, (FLAGS & Flag::BOTH) != 0, (FLAGS & Flag::IMAGES) | Flag::EDGES>(
-            mirror, law.weight(kernel.W(r)), rsq, g, pi.vol, fill * pj.vol, x, nullptr, &no_rate, j,
-            sum, shift);
+            mirror, of_both, of_both, rsq, g, pi.vol, fill * pj.vol, x, nullptr, &no_rate, j, sum,
+            shift);
       });
       L::add_sums(sum, shift[i]);
     }
@@ -687,7 +702,8 @@ namespace FSI {
       double volume = (FLAGS & Flag::UNEQUAL) ? in.share[in.type[row.j[0]]].volume : 1.0;
       if (in.thin)
         volume *= ((FLAGS & Flag::DIVERGENCE) ? fill_of : fill_weight_of)(in, i, in.type[row.j[0]]);
-      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[in.type[row.j[0]]].sharper : 0.0;
+      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[in.type[row.j[0]]].sharper : 0.0,
+                   back = (FLAGS & Flag::UNEQUAL) && in.unlike ? 1.0 / volume : 1.0;
       T of_i = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(
           row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
@@ -711,7 +727,7 @@ namespace FSI {
               if (FLAGS & Flag::UNEQUAL) w = cut_off(in, j, w);
               if constexpr (FLAGS & Flag::PARTLY) w = as_visible(in, j, w);
               of_i += w;
-              if (FLAGS & Flag::BOTH) L::add(w, sum, j);
+              if (FLAGS & Flag::BOTH) L::add((FLAGS & Flag::UNEQUAL) ? back * w : w, sum, j);
             }
           });
       sum[i] += volume * L::sum(of_i);
@@ -742,24 +758,32 @@ namespace FSI {
       };
       // density diffusion, with a coefficient of zero where it is off, comes with what is rarely
       // without: images and slopes
-      const bool fluid = kind == WITH_FLUID,
-                 diffuses = fluid && (laws.delta > 0.0 || (shift && laws.fills) || image);
+      const bool fluid = kind == WITH_FLUID, unlike = in.unlike,
+                 diffuses = fluid && (laws.delta > 0.0 || (shift && laws.fills) || image || unlike);
+      PairSums unused;
+      if (unlike && !sums) sums = &unused;
       const int shifting = !shift ? 0
           : !laws.fills           ? SHIFT | EDGES
           : fluid && !image       ? SHIFT | SLOPES
                                   : SHIFT;
-      const int named =
-          shifting | (diffuses || partly(in) ? sums ? DIFFUSION | SUMS : DIFFUSION : 0);
-      with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY | EDGES>(
+      const int named = shifting |
+          (diffuses || partly(in) ? sums ? DIFFUSION | SUMS : DIFFUSION : 0) |
+          (shift && in.fade ? FADES : 0);
+      with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY | EDGES | FADES>(
           (image ? IMAGES : 0) | unequal_or_cut(kind, in) | partly(in) | named, [&](auto flags) {
             constexpr int shifts = flags() & (SHIFT | SLOPES | EDGES);
             constexpr bool parts = flags() & PARTLY, diffusing = flags() & DIFFUSION,
-                           alone = !(flags() & (DIFFUSION | SUMS)), plain = !(flags() & IMAGES);
-            if constexpr (!parts && alone &&
+                           alone = !(flags() & (DIFFUSION | SUMS)), plain = !(flags() & IMAGES),
+                           unequal_rows = flags() & UNEQUAL, fades = flags() & FADES;
+            // where shifting fades all rows are in the loops of unequal ones
+            if constexpr (!parts && alone && (!fades || (unequal_rows && shifts != 0)) &&
                           (shifts == 0 || shifts == SHIFT || shifts == (SHIFT | EDGES)))
               if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
-            if constexpr (!(flags() & UNEQUAL) && (!parts || (ONE_BY_ONE && diffusing)) &&
-                          (diffusing || (plain && alone)) &&
+            constexpr bool likes = !unequal_rows && !fades &&
+                (!parts || (ONE_BY_ONE && diffusing)) && (diffusing || (plain && alone));
+            constexpr bool unlikes =
+                unequal_rows && !parts && diffusing && (flags() & SUMS) && fades == (shifts != 0);
+            if constexpr ((likes || unlikes) &&
                           (shifts == 0 || shifts == (SHIFT | EDGES) ||
                            shifts == (plain ? SHIFT | SLOPES : SHIFT)))
               loop(std::integral_constant<int, WITH_FLUID>(), flags);
@@ -777,9 +801,9 @@ namespace FSI {
       // by pair there is one loop for all effects: those that are off have coefficients of zero
       constexpr int EFFECTS = ARTIFICIAL | LAMINAR | CENTRAL;
       PairSums unused;
-      const int unequal_rows = kind == WITH_SOLID || kind == WITH_WALL ? unequal_or_cut(kind, in)
-                                                                       : 0;
-      if (!sums && (kind == WITH_SOLID_FULL || (image && unequal_rows))) sums = &unused;
+      const int unequal_rows = kind == WITH_SOLID_FULL ? 0 : unequal_or_cut(kind, in);
+      if (!sums && (kind == WITH_SOLID_FULL || (image && unequal_rows) || in.unlike))
+        sums = &unused;
       const auto loop = [&](auto kind_is, auto flags) {
         run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror,
@@ -809,7 +833,7 @@ namespace FSI {
                             !(flags() & UNEQUAL))
                 loop(std::integral_constant<int, WITH_FLUID>(), flags);
             } else if constexpr ((effects == EFFECTS && counted) || (alone && !ONE_BY_ONE)) {
-              if constexpr (!(flags() & UNEQUAL))
+              if constexpr (!(flags() & UNEQUAL) || (flags() & SUMS))
                 if (kind == WITH_FLUID) loop(std::integral_constant<int, WITH_FLUID>(), flags);
               if (kind == WITH_SOLID) loop(std::integral_constant<int, WITH_SOLID>(), flags);
               if constexpr (!(flags() & IMAGES))    // walls of particles have no images
@@ -851,11 +875,12 @@ namespace FSI {
     }
 
    private:
-    // Rows of solids and walls of another spacing than the fluid's; those that have it, among them,
-    // have shares that change nothing.
+    // Rows of fluids of two spacings, and of solids and walls of another spacing than the fluid's;
+    // those that have it, among them, have shares that change nothing.
     static int unequal(PairKind kind, const FluidParticles &in)
     {
-      return in.unequal && (kind == WITH_SOLID || kind == WITH_WALL) ? Flag::UNEQUAL : 0;
+      const bool solids = kind == WITH_SOLID || kind == WITH_WALL;
+      return in.unlike || (in.unequal && solids) ? Flag::UNEQUAL : 0;
     }
     static int partly(const FluidParticles &in) { return in.visible ? Flag::PARTLY : 0; }
     // Those that mirror walls cut are in the same loops.

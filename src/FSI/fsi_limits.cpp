@@ -45,9 +45,9 @@ void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_flu
   double **f = atom->f;
   const double *const rmass = atom->rmass, *const rho = atom->rho;
 
-  double *const mine[2] = {step, sub}, fastest = 0.0;
-  std::vector<double> asq_max(atom->ntypes + 1, 0.0);
-  std::vector<tagint> pushed(atom->ntypes + 1, 0);
+  double *const mine[2] = {step, sub};
+  std::vector<double> fastest(atom->ntypes + 1, 0.0), asq_max(fastest);
+  std::vector<tagint> fast(atom->ntypes + 1, 0), pushed(fast);
   for (auto &row : culprit) row[0] = row[1] = 0;
   std::vector<char> present(atom->ntypes + 1, 0);
   for (int i = 0; i < atom->nlocal; i++) {
@@ -59,9 +59,9 @@ void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_flu
       double c = s.c;
       if (s.tait) c *= std::max(1.0, std::pow(rho[i] / s.rho0, 3));
       c += std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
-      if (c > fastest) {
-        fastest = c;
-        culprit[0][0] = atom->tag[i];
+      if (c > fastest[type[i]]) {
+        fastest[type[i]] = c;
+        fast[type[i]] = atom->tag[i];
       }
     }
     // what is held does not follow its force
@@ -76,13 +76,17 @@ void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_flu
 
   const Facts of_fluids = facts_of_fluids(lmp), of_solids = facts_of_solids(lmp);
   for (double *row : mine) std::fill_n(row, NLIMIT, UNLIMITED);
-  if (fastest > 0.0) mine[0][SOUND] = of_fluid * safe[SOUND] * scene.h / fastest;
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!present[t]) continue;
     const State &s = scene.state[t];
     const bool fluid = s.species == FLUID;
     const int in_sub = substeps && !fluid;
     double *const m = mine[in_sub], own = fluid ? of_fluid : of_solid, h = scene.h_of(t);
+    const double by_sound = fastest[t] > 0.0 ? of_fluid * safe[SOUND] * h / fastest[t] : UNLIMITED;
+    if (by_sound < mine[0][SOUND]) {
+      mine[0][SOUND] = by_sound;
+      culprit[0][0] = fast[t];
+    }
     const double pushing = asq_max[t] > 0.0
         ? own * safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[t]))
         : UNLIMITED;

@@ -64,9 +64,10 @@ namespace FSI {
     int form = 0;
     int tait = 0;
     double rho0 = 0.0, inv_rho0 = 0.0, c = 0.0, csq = 0.0, inv_csq = 0.0, p0 = 0.0;
-    double floor = -1.0e300;    // lowest pressure; 0 where the material carries no tension
-    double shear = 0.0;         // shear modulus G
-    double viscosity = 0.0;     // dynamic viscosity
+    double floor = -1.0e300;     // lowest pressure; 0 where the material carries no tension
+    double shear = 0.0;          // shear modulus G
+    double viscosity = 0.0;      // dynamic viscosity
+    double h = 0.0, w0 = 0.0;    // smoothing length, W(0)
     double yield = 0.0, hardening = 0.0;
     // wall, entered by its fix fsi/wall/particle
     bool kept = false, noslip = false;

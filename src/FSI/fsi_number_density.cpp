@@ -95,15 +95,26 @@ bool NumberDensity::is_due(bool advance) const
 
 /* ----------------------------------------------------------------------
    psi_i = sum_j W_ij, self included (paper eq. 8): over all neighbors for a fluid; for a solid over
-   its own body, and over all neighbors in density mode summation, the paper's
+   its own body, and over all neighbors in density mode summation, the paper's. Of finer fluids it
+   is what it would be on the coarsest's lattice.
 ------------------------------------------------------------------------- */
 
 void NumberDensity::find(double *n) const
 {
   memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
   for (int i = 0; i < atom->nlocal; i++) n[i] = scene.w0;
+  const auto for_finer = [&](auto f) {
+    for (int i = 0; scene.has_levels() && i < atom->nlocal; i++)
+      if (scene.level_of[atom->type[i]]) f(n[i], scene.resolution[atom->type[i]]);
+  };
+  for_finer([](double &psi, const Resolution &own) {
+    psi = own.w0;
+  });
   for (auto *p : scene.parts) p->add_number_density(n, scene.density_solid == Scene::SUMMATION);
   add_ghosts(n);
+  for_finer([this](double &psi, const Resolution &own) {
+    psi *= scene.psi_bulk / own.psi_bulk;
+  });
 }
 
 /* ----------------------------------------------------------------------

@@ -12,8 +12,8 @@
 ------------------------------------------------------------------------- */
 
 // How finely an atom type is resolved: the spacing of its lattice, and what follows from it. The
-// smoothing length over the spacing is the same for all types. Particles of different types meet
-// with the larger of their two kernels, each with its own volume.
+// smoothing length over the spacing is the same for all types. Fluids of two spacings meet with
+// the kernel of their mean, fluids and others with the fluid's, each with its own volume.
 
 #ifndef LMP_FSI_RESOLUTION_H
 #define LMP_FSI_RESOLUTION_H
@@ -22,10 +22,11 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   struct Resolution {
-    double dx = 0.0, h = 0.0;    // spacing, smoothing length
-    double cut = 0.0;            // support radius of the kernel
-    double psi_bulk = 0.0;       // number density inside the lattice: the volume of a particle is
-                                 // 1/psi_bulk
+    double dx = 0.0, h = 0.0;      // spacing, smoothing length
+    double cut = 0.0;              // support radius of the kernel
+    double psi_bulk = 0.0;         // number density inside the lattice: the volume of a particle is
+                                   // 1/psi_bulk
+    double wdx = 0.0, w0 = 0.0;    // W(dx), W(0)
   };
 
   // distance of neighbors of two lattices that face each other, cell by cell

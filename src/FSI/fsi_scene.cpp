@@ -45,6 +45,8 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
     with_kernel(kernel, dim, r.h, [&](const auto &k) {
       r.cut = k.cut;
       r.psi_bulk = lattice_number_density(k, own);
+      r.wdx = k.W(own);
+      r.w0 = k.W(0.0);
     });
     return r;
   };
@@ -52,10 +54,10 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
   h = fluid.h;
   cut = largest_cut = fluid.cut;
   psi_bulk = fluid.psi_bulk;
-  with_kernel(kernel, dim, h, [&](const auto &k) {
-    wdx = k.W(dx);
-    w0 = k.W(0.0);
-  });
+  wdx = fluid.wdx;
+  w0 = fluid.w0;
+  levels = {fluid};
+  level_of.assign(spacing.size(), 0);
   resolution.clear();
   for (const double own : spacing) {
     resolution.push_back(own > 0.0 ? resolution_of(own) : fluid);
@@ -72,6 +74,28 @@ void Scene::enter_state(int type, const State &s)
   // that of a solid is of the style that moves it, in whatever order a hybrid style has them
   if (state[type].form && !s.form) return;
   state[type] = s;
+  state[type].h = resolution[type].h;
+  state[type].w0 = resolution[type].w0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Discretization::find_levels()
+{
+  levels.resize(1);
+  for (size_t t = 1; t < state.size(); t++)
+    if (state[t].species == FLUID && dx_of(t) < dx) levels.push_back(resolution[t]);
+  std::sort(levels.begin() + 1, levels.end(), [](const Resolution &a, const Resolution &b) {
+    return a.dx > b.dx;
+  });
+  const auto same = [](const Resolution &a, const Resolution &b) {
+    return a.dx == b.dx;
+  };
+  levels.erase(std::unique(levels.begin(), levels.end(), same), levels.end());
+  level_of.assign(state.size(), 0);
+  for (size_t t = 1; t < state.size(); t++)
+    for (size_t l = 0; l < levels.size(); l++)
+      if (state[t].species == FLUID && dx_of(t) == levels[l].dx) level_of[t] = l;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -47,14 +47,19 @@ namespace FSI {
     double cut;         // support radius of the kernel
     double psi_bulk;    // number density inside the lattice: the volume of a particle is 1/psi_bulk
     double wdx, w0;     // W(dx), W(0)
-    std::vector<Resolution> resolution;    // per atom type; that of fluids is the above
+    std::vector<Resolution> resolution;    // per atom type
     double largest_cut;                    // support of the coarsest
     double dx_of(int type) const { return resolution[type].dx; }
     double h_of(int type) const { return resolution[type].h; }
-    // e of Kernel::sharper() for fluids beside particles of this type
-    double sharper_of(int type) const
+    // The spacings of fluids, from the above on, the coarsest; which of them a fluid type has
+    std::vector<Resolution> levels;
+    std::vector<int> level_of;
+    bool has_levels() const { return levels.size() > 1; }
+    void find_levels();    // from the states
+    // e of Kernel::sharper() for fluids of this spacing beside particles of this type
+    double sharper_of(int type, double spacing) const
     {
-      const double ratio = dx_of(type) / dx, per_h = dx / h;
+      const double ratio = dx_of(type) / spacing, per_h = dx / h;
       return (1.0 - ratio * ratio) / 24.0 * per_h * per_h;
     }
     // h over dx; spacings that differ from dx, by type, or 0

@@ -41,7 +41,7 @@ Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) 
 {
   for (size_t t = 1; t < types.size(); t++) {
     if (types[t] == 0.0) continue;
-    const double dx = scene.dx_of(t), sharper = scene.sharper_of(t);
+    const double dx = scene.dx_of(t), sharper = scene.sharper_of(t, scene.dx);
     with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &kernel) {
       constexpr int D = std::decay_t<decltype(kernel)>::DIM, STEPS = 200;
       const double step = kernel.cut / STEPS;

@@ -268,9 +268,10 @@ bool PairFSI::several_bodies() const
 double PairFSI::init_one(int i, int j)
 {
   if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set: types {} and {}", i, j);
-  return handles(material[i].species, material[j].species)
-      ? std::max(fix_fsi->resolution[i].cut, fix_fsi->resolution[j].cut)
-      : 0.0;
+  const double own = fix_fsi->resolution[i].cut, other = fix_fsi->resolution[j].cut;
+  if (!handles(material[i].species, material[j].species)) return 0.0;
+  const bool fluids = material[i].species == FLUID && material[j].species == FLUID;
+  return fluids ? 0.5 * (own + other) : std::max(own, other);
 }
 
 /* ----------------------------------------------------------------------

@@ -22,6 +22,7 @@
 #include "force.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_kernel.h"
+#include "fsi_levels.h"
 #include "fsi_profile.h"
 #include "fsi_shift.h"
 #include "modify.h"
@@ -42,10 +43,9 @@ static const std::vector<std::string> coupling_names = {"wall", "full"};    // C
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), kinds{WITH_FLUID, WITH_WALL, WITH_SOLID, WITH_FLUID},
-    images_step(-1), reach(INFINITY), near_known(false), cut(false), solids_pass(false),
-    fields(lmp), fill(nullptr), fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{},
-    rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    PairFSI(lmp, "fsi/fluid"), images_step(-1), near_known(false), cut(false), solids_pass(false),
+    fade(nullptr), fill(nullptr), fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{},
+    fields(lmp), rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -168,23 +168,10 @@ void PairFSIFluid::init_style()
   if (solids_slip && (!laminar || !has_solids()) && comm->me == 0)
     error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
                    has_solids() ? "there is no laminar/visc" : "there is no solid");
-  const auto make_loops = [this](bool packs) {
-    return make_fluid_loops(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, packs);
-  };
-  loops = make_loops(have_packs());
-  solid_loops = couple == WALL ? loops : make_loops(false);
-  single_loops = fix_fsi->sight ? make_loops(false) : loops;
+  fix_fsi->find_levels();
+  find_meetings();
+  find_shares();
   beside.clear();
-  shares.assign(atom->ntypes + 1, Share());
-  unequal = false;
-  for (int t = 1; t <= atom->ntypes; t++) {
-    const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx;
-    const bool thin = fix_fsi->thin[t] != 0.0;
-    if (ratio == 1.0 && !thin) continue;
-    unequal = true;
-    shares[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio, fix_fsi->sharper_of(t),
-                 thin};
-  }
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count
   // their own
   give_back_virial();
@@ -206,7 +193,67 @@ void PairFSIFluid::init_style()
                "with corrected gradients use couple wall");
   open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);
-  kinds[SOLIDS] = couple == WALL ? WITH_SOLID : WITH_SOLID_FULL;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairFSIFluid::find_meetings()
+{
+  const auto &levels = fix_fsi->levels;
+  const size_t n = levels.size();
+  meetings.clear();
+  of_two_levels.assign(n * n, 0);
+  const auto make_loops = [this](double h, bool packs) {
+    return make_fluid_loops(fix_fsi->kernel, fix_fsi->dim, h, packs);
+  };
+  for (size_t l = 0; l < n; l++) {
+    Meeting m;
+    m.level = l;
+    m.cut = levels[l].cut;
+    m.wdx = levels[l].wdx;
+    const auto loops = make_loops(levels[l].h, have_packs());
+    of_two_levels[n * l + l] = meetings.size();
+    for (m.what = FLUIDS; m.what < NKINDS; m.what++) {
+      m.loops = m.what == HIDDEN && fix_fsi->sight ? make_loops(levels[l].h, false) : loops;
+      m.of_forces = m.what == SOLIDS && couple != WALL ? make_loops(levels[l].h, false) : m.loops;
+      m.kind = m.what == WALLS ? WITH_WALL
+          : m.what != SOLIDS   ? WITH_FLUID
+          : couple == WALL     ? WITH_SOLID
+                               : WITH_SOLID_FULL;
+      meetings.push_back(m);
+    }
+  }
+  for (size_t a = 0; a < n; a++)
+    for (size_t b = 0; b < n; b++) {
+      if (a == b) continue;
+      Meeting m;
+      m.level = a;
+      m.unlike = true;
+      const double h = 0.5 * (levels[a].h + levels[b].h), dx = 0.5 * (levels[a].dx + levels[b].dx);
+      with_kernel(fix_fsi->kernel, fix_fsi->dim, h, [&](const auto &kernel) {
+        m.cut = kernel.cut;
+        m.wdx = kernel.W(dx);
+      });
+      m.loops = m.of_forces = make_loops(h, have_packs());
+      of_two_levels[n * a + b] = meetings.size();
+      meetings.push_back(m);
+    }
+}
+
+void PairFSIFluid::find_shares()
+{
+  shares.assign(fix_fsi->levels.size(), Shares());
+  for (size_t l = 0; l < shares.size(); l++) {
+    shares[l].of_type.assign(atom->ntypes + 1, Share());
+    for (int t = 1; t <= atom->ntypes; t++) {
+      const bool fluid = material[t].species == FLUID, thin = fix_fsi->thin[t] != 0.0;
+      const double dx = fix_fsi->levels[l].dx, ratio = fix_fsi->dx_of(t) / dx;
+      if (ratio == 1.0 && !thin) continue;
+      if (!fluid) shares[l].unequal = true;
+      shares[l].of_type[t] = {fix_fsi->dim == 3 ? ratio * ratio * ratio : ratio * ratio,
+                              fluid ? 0.0 : fix_fsi->sharper_of(t, dx), thin};
+    }
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -246,6 +293,7 @@ void PairFSIFluid::set_fields(Scene &scene)
 {
   fields.set("density rate", Fields::STEP, scene.density_fluid == FixFSI::CONTINUITY, rate);
   fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
+  fields.set("fade of shifting", Fields::STEP, shifting > 0.0 && scene.has_levels(), fade);
   fields.set("velocity beyond solids", Fields::STEP, sticks_to_solids(), beyond, scene.dim + 1);
   fields.set("room behind thin bodies", Fields::STEP, scene.sight != nullptr, fill);
   fields.set("weight behind thin bodies", Fields::STEP, scene.sight != nullptr, fill_weight);
@@ -313,7 +361,8 @@ void PairFSIFluid::find_reach()
     most = std::max(most, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
   double speed = 2.0 * std::sqrt(most);
   for (const Wall &wall : fix_fsi->walls.wall) speed += 2.0 * std::fabs(wall.velocity[wall.axis]);
-  reach = fix_fsi->largest_cut + update->dt * speed;
+  for (auto &m : meetings)
+    m.reach = (fix_fsi->has_levels() ? m.cut : fix_fsi->largest_cut) + update->dt * speed;
 }
 
 bool PairFSIFluid::add_rates(bool advance)
@@ -326,6 +375,7 @@ bool PairFSIFluid::add_rates(bool advance)
   if (rate) std::fill_n(rate, nall, 0.0);
   if (fix_fsi->shifts && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
   const Phase phase(fix_fsi->profile, Profile::DENSITY);
+  if (fix_fsi->shifts && fade) find_fades();
   if (rate && advance) {
     if (fix_fsi->dim == 2)
       add_density_rate<2>(update->dt);
@@ -346,6 +396,31 @@ void PairFSIFluid::advance(bool advance)
   if (!rate || !advance) return;
   advance_density();
   if (fix_fsi->shifts) displacements(update->dt * shift_every);
+}
+
+/* ----------------------------------------------------------------------
+   Shifting's factor 1 + 0.2 (W_ij/W(dx))^4 gives it another state of rest than the force of
+   pressure has. On one lattice both are at rest; where two meet they would work against each other
+   without end. There the plain sum is left, within the support of what a particle sees of another
+   level (theory.rst).
+------------------------------------------------------------------------- */
+
+void PairFSIFluid::find_fades()
+{
+  static constexpr double NONE_LEFT = 0.01;    // part of the number density
+  const int nlocal = atom->nlocal, *const type = atom->type;
+  std::fill_n(fade, nlocal + atom->nghost, 0.0);
+  distance_sums(false, particles_at(nullptr),
+                [&](const Meeting &m, const std::vector<Row> &which, bool both,
+                    const Mirror *mirror, const FluidParticles &particles) {
+                  if (m.unlike)
+                    m.loops->number_density(m.kind, which, both, mirror, particles,
+                                            FixFSI::rows(atom->x), fade);
+                });
+  fix_fsi->add_ghosts(fade);
+  for (int i = 0; i < nlocal; i++)
+    fade[i] = std::max(0.0, 1.0 - fade[i] / (NONE_LEFT * fix_fsi->resolution[type[i]].psi_bulk));
+  fix_fsi->send_to_ghosts(fade);
 }
 
 // solids that pass through mirror walls, or may before the next neighbor lists
@@ -412,7 +487,7 @@ void PairFSIFluid::look_past_thin_bodies()
   Sight &sight = *fix_fsi->sight;
   sight.follow_bodies();
   const auto *const x = FixFSI::rows(atom->x);
-  const auto &hidden = rows[HIDDEN].rows;
+  const auto &hidden = meetings[HIDDEN].rows.rows;
   double *part = visible.data();
   for (const auto &there : beside) {
     sight.look_from(x[there.i], neighbor->skin);
@@ -439,7 +514,7 @@ void PairFSIFluid::advance_density()
   const double dt = update->dt + fix_fsi->dt_offset;
   for (int i = 0; i < atom->nlocal; i++) {
     if (fix_fsi->state[type[i]].species != FLUID) continue;
-    const double next = rho[i] + dt * rate[i], alone = atom->rmass[i] * fix_fsi->w0;
+    const double next = rho[i] + dt * rate[i], alone = atom->rmass[i] * fix_fsi->state[type[i]].w0;
     if (next < alone) rate[i] = (alone - rho[i]) / dt;    // what go_back() takes
     rho[i] = std::max(next, alone);
   }
@@ -486,15 +561,37 @@ void PairFSIFluid::go_back()
    d^(D-2) its face is as stiff, and a pair swings slower than the step of sound allows.
 ------------------------------------------------------------------------- */
 
-Contact PairFSIFluid::guard_of(int t) const
+Contact PairFSIFluid::guard_of(int t, double dx) const
 {
   const State &s = fix_fsi->state[t];
-  if (s.species != SOLID) return Contact(fix_fsi->dim, s.guard);
-  const double ratio = fix_fsi->dx_of(t) / fix_fsi->dx;
-  Contact guard(fix_fsi->dim,
-                couple == WALL ? solids_guard * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t)) : 0.0);
-  guard.scale = fix_fsi->dim == 3 ? fix_fsi->dx * ratio * ratio : ratio;
+  if (s.species != SOLID)
+    return Contact(fix_fsi->dim,
+                   s.guard * ((dx + fix_fsi->dx_of(t)) / (fix_fsi->dx + fix_fsi->dx_of(t))));
+  const double ratio = fix_fsi->dx_of(t) / dx;
+  Contact guard(fix_fsi->dim, couple == WALL ? solids_guard * 0.5 * (dx + fix_fsi->dx_of(t)) : 0.0);
+  guard.scale = fix_fsi->dim == 3 ? dx * ratio * ratio : ratio;
   return guard;
+}
+
+void PairFSIFluid::find_guards()
+{
+  for (size_t l = 0; l < shares.size(); l++) {
+    shares[l].guards.clear();
+    for (size_t t = 0; t < fix_fsi->state.size(); t++)
+      shares[l].guards.push_back(guard_of(t, fix_fsi->levels[l].dx));
+  }
+}
+
+// rows of two fluid types, side by side
+std::vector<RowList *> PairFSIFluid::rows_of_fluids()
+{
+  const auto &level = fix_fsi->level_of;
+  const size_t n = level.size(), nlevels = fix_fsi->levels.size();
+  std::vector<RowList *> rows_of(n * n);
+  for (size_t a = 0; a < n; a++)
+    for (size_t b = 0; b < n; b++)
+      rows_of[n * a + b] = &meetings[of_two_levels[nlevels * level[a] + level[b]]].rows;
+  return rows_of;
 }
 
 // rows of those fluid neighbors of i that thin bodies may hide before lists are built again: marks
@@ -504,7 +601,8 @@ void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
 {
   Sight &sight = *fix_fsi->sight;
   const double skin = neighbor->skin;
-  const int *const type = atom->type, first = rows[HIDDEN].rows.size();
+  RowList &hidden_rows = meetings[HIDDEN].rows;
+  const int *const type = atom->type, first = hidden_rows.rows.size();
   sight.look_from(atom->x[i], skin);
   hides.resize(n);
   for (int jj = 0; jj < n; jj++) {
@@ -513,11 +611,11 @@ void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
   }
   for (const int t : fluid_types) {
     const char *hidden = hides.data();
-    rows[HIDDEN].add(i, neighbors, n, false, false, [&](int j) {
+    hidden_rows.add(i, neighbors, n, false, false, [&](int j) {
       return *hidden++ && type[j] == t;
     });
   }
-  beside.push_back({i, first, static_cast<int>(rows[HIDDEN].rows.size())});
+  beside.push_back({i, first, static_cast<int>(hidden_rows.rows.size())});
 }
 
 /* ----------------------------------------------------------------------
@@ -536,9 +634,8 @@ void PairFSIFluid::find_rows()
       fluid_types.push_back(t);
     else if (state[t].species != NONE)
       other_types.push_back(t);
-  guards.clear();
-  for (size_t t = 0; t < fix_fsi->state.size(); t++) guards.push_back(guard_of(t));
-  for (auto &list_of : rows) list_of.clear();
+  find_guards();
+  for (auto &m : meetings) m.rows.clear();
 
   struct Pair {
     int i, j;
@@ -547,6 +644,9 @@ void PairFSIFluid::find_rows()
                                     // both has the other in its list
   std::vector<char> is_fluid(atom->ntypes + 1, 0);
   for (const int t : fluid_types) is_fluid[t] = 1;
+
+  const size_t ntypes = atom->ntypes + 1;
+  std::vector<RowList *> rows_of = rows_of_fluids();
 
   std::vector<int> unmasked;
   std::vector<char> hides;
@@ -557,7 +657,7 @@ void PairFSIFluid::find_rows()
     const int i = list->ilist[ii], *neighbors = list->firstneigh[i];
     const int n = list->numneigh[i];
     if (own && is_fluid[type[i]]) {
-      rows[FLUIDS].rows.push_back({i, n, neighbors});
+      meetings[FLUIDS].rows.rows.push_back({i, n, neighbors});
       continue;
     }
     if (atom->molecular) {
@@ -573,9 +673,10 @@ void PairFSIFluid::find_rows()
     const bool looks = sight && sight->near(x[i]);
     if (looks) find_hidden(i, neighbors, n, fluid_types, hides);
     // that of its own type stays if it is empty, for its own images
+    RowList **const to = &rows_of[ntypes * type[i]];
     for (const int t : fluid_types) {
       const char *hidden = hides.data();
-      rows[FLUIDS].add(i, neighbors, n, false, t == type[i], [&](int j) {
+      to[t]->add(i, neighbors, n, false, t == type[i], [&](int j) {
         if (looks && *hidden++) return false;
         if (type[j] == t) return true;
         if (t == fluid_types[0] && !is_fluid[type[j]]) with_others.push_back({i, j});
@@ -583,10 +684,11 @@ void PairFSIFluid::find_rows()
       });
     }
   }
-  rows[HIDDEN].end();
+  meetings[HIDDEN].rows.end();
   visible.clear();
-  for (const Row &row : rows[HIDDEN].rows) visible.resize(visible.size() + row.n);
-  if (!own) rows[FLUIDS].end();
+  for (const Row &row : meetings[HIDDEN].rows.rows) visible.resize(visible.size() + row.n);
+  for (auto &m : meetings)
+    if (!own && m.what == FLUIDS) m.rows.end();
   if (other_types.empty()) return;
   std::vector<int> first(nall + 2, 0), other(with_others.size());
   for (const auto &pair : with_others) first[pair.i + 2]++;
@@ -594,14 +696,15 @@ void PairFSIFluid::find_rows()
   for (const auto &pair : with_others) other[first[pair.i + 1]++] = pair.j;
   for (int i = 0; i < nall; i++) {
     if (first[i] == first[i + 1]) continue;
+    Meeting *const of_level = &meetings[NKINDS * fix_fsi->level_of[type[i]]];
     for (const int t : other_types)
-      rows[state[t].species == SOLID ? SOLIDS : WALLS].add(
+      of_level[state[t].species == SOLID ? SOLIDS : WALLS].rows.add(
           i, &other[first[i]], first[i + 1] - first[i], false, false, [=](int j) {
             return type[j] == t;
           });
   }
-  rows[WALLS].end();
-  rows[SOLIDS].end();
+  for (auto &m : meetings)
+    if (m.what == WALLS || m.what == SOLIDS) m.rows.end();
 }
 
 /* ----------------------------------------------------------------------
@@ -615,7 +718,7 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
 {
   const int *const wmask = fix_fsi->wmask, *const type = atom->type, nlocal = atom->nlocal;
   const auto *const x = FixFSI::rows(atom->x);
-  const double cutsq = fix_fsi->cut * fix_fsi->cut, within = reach;
+  const double cutsq = fix_fsi->cut * fix_fsi->cut;
   const int n = walls.reflections.size();
   const bool finite = walls.finite();
   const auto sees = [&](int i, int j, int k) {
@@ -631,12 +734,15 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
   };
   visible_images.resize(n);
   for (auto &parts_of : visible_images) parts_of.clear();
-  for (const int kind : {FLUIDS, SOLIDS, HIDDEN}) {
-    auto &lists = images[kind];
+  for (auto &meeting : meetings) {
+    if (meeting.what == WALLS) continue;
+    auto &lists = meeting.images;
+    const double within = meeting.reach;
+    const int kind = meeting.what;
     const double *part = visible.data();    // of a pair and its images it is the same
     lists.resize(n);
     for (auto &list_of : lists) list_of.clear();
-    for (const Row &row : rows[kind].rows) {
+    for (const Row &row : meeting.rows.rows) {
       const int i = row.i;
       const double *const parts_of_row = part;
       if (kind == HIDDEN) part += row.n;
@@ -667,12 +773,12 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
       }
     }
     for (auto &list_of : lists) list_of.end();
-    near_images[kind].resize(n);
+    meeting.near_images.resize(n);
   }
 }
 
 /* ----------------------------------------------------------------------
-   calls loop(kind of rows, number of reflection, mirror) for all rows of images; without extent of
+   calls loop(meeting, number of reflection, mirror) for all rows of images; without extent of
    walls they are the same in all of a step's loops
 ------------------------------------------------------------------------- */
 
@@ -684,8 +790,8 @@ void PairFSIFluid::for_images(const Walls &walls, Position position, Loop loop)
   images_step = update->ntimestep;
   for (size_t k = 0; k < walls.reflections.size(); k++) {
     const Mirror mirror(walls, walls.reflections[k]);
-    for (const int kind : {FLUIDS, SOLIDS, HIDDEN})
-      if (!images[kind][k].rows.empty()) loop(kind, k, &mirror);
+    for (auto &m : meetings)
+      if (m.what != WALLS && !m.images[k].rows.empty()) loop(m, k, &mirror);
   }
 }
 
@@ -699,18 +805,21 @@ FluidParticles PairFSIFluid::particles_at(const double *points)
           atom->type,
           fix_fsi->state.data(),
           atom->nlocal,
-          shares.data(),
-          unequal,
+          nullptr,
+          false,
           fill ? &thin_bodies : nullptr,
           cut ? &cut_solids : nullptr,
           force->newton_pair != 0};
 }
 
-FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, int kind,
+FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, const Meeting &meeting,
                                      const RowList &list_of, const std::vector<double> &parts_of)
 {
   FluidParticles in = particles;
-  if (kind != HIDDEN) return in;
+  in.share = shares[meeting.level].of_type.data();
+  in.unequal = shares[meeting.level].unequal;
+  in.unlike = meeting.unlike;
+  if (meeting.what != HIDDEN) return in;
   seen_pairs = {parts_of.data(), list_of.rows.empty() ? nullptr : list_of.rows[0].j};
   in.visible = &seen_pairs;
   return in;
@@ -766,35 +875,41 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   });
   // the density of walls is that of the pressures in the last step or setup, which a restart does
   // not know
-  if (fix_fsi->shifts && !rows[WALLS].rows.empty()) {
+  if (fix_fsi->shifts && has_rows_with_walls()) {
     auto *const point = reinterpret_cast<Point<D> *>(points.data());
     for (int i = 0; i < atom->nlocal + atom->nghost; i++)
       if (fix_fsi->state[type[i]].species == RIGID)
         point[i].vol = atom->rmass[i] * fix_fsi->state[type[i]].inv_rho0;
   }
-  if (fix_fsi->ledger) {
-    pressure_over_density.resize(atom->nmax);
+  if (fix_fsi->ledger || fix_fsi->has_levels()) pressure_over_density.resize(atom->nmax);
+  if (fix_fsi->ledger)
     for (int i = 0; i < atom->nlocal + atom->nghost; i++)
       pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
-  }
 
-  const RateLaws laws = {delta, pressure_over_density.data(), fix_fsi->wdx, fills(), reach};
+  RateLaws laws = {delta, pressure_over_density.data(), 0.0, fills(), 0.0};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
-  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
+  const auto loop = [&](const Meeting &m, const RowList &which, const std::vector<double> &parts_of,
                         const Mirror *mirror, RowList &found) {
-    loops_of(kind).rates(kinds[kind], which.rows, mirror, of_rows(particles, kind, which, parts_of),
-                         laws, rate, shift, fix_fsi->ledger ? &sums : nullptr, found);
+    FluidParticles in = of_rows(particles, m, which, parts_of);
+    if (shift && fade) {
+      in.fade = fade;
+      in.unlike = true;
+    }
+    laws.wdx = m.wdx;
+    laws.reach = m.reach;
+    m.loops->rates(m.kind, which.rows, mirror, in, laws, rate, shift,
+                   fix_fsi->ledger ? &sums : nullptr, found);
   };
-  for (int kind = 0; kind < NROWS; kind++) loop(kind, rows[kind], visible, nullptr, near[kind]);
+  for (auto &m : meetings) loop(m, m.rows, visible, nullptr, m.near);
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(
       walls,
       [&](int i) {
         return point[i].position(x[i]);
       },
-      [&](int kind, int k, const Mirror *mirror) {
-        loop(kind, images[kind][k], visible_images[k], mirror, near_images[kind][k]);
+      [&](Meeting &m, int k, const Mirror *mirror) {
+        loop(m, m.images[k], visible_images[k], mirror, m.near_images[k]);
       });
   near_known = true;
   const int of_shift = nshift(), last = shift_sums();
@@ -815,11 +930,11 @@ void PairFSIFluid::displacements(double dt)
     const State &s = fix_fsi->state[type[i]];
     if (s.species != FLUID) continue;
     // lattices overshoot from 0.51 h on (theory.rst)
-    const double reach = std::min(shifting * s.c * dt, 0.5 * fix_fsi->h);
+    const double most = std::min(shifting * s.c * dt, 0.5 * s.h);
     if (fix_fsi->dim == 2)
-      Shift<2>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
+      Shift<2>::displacement(sums[i], fills(), most * s.h, 0.25 * most);
     else
-      Shift<3>::displacement(sums[i], fills(), reach * fix_fsi->h, 0.25 * reach);
+      Shift<3>::displacement(sums[i], fills(), most * s.h, 0.25 * most);
     if (velocity && dt > 0.0)
       for (int d = 0; d < fix_fsi->dim; d++) velocity[d][i] = sums[i][d] / dt;
   }
@@ -827,36 +942,35 @@ void PairFSIFluid::displacements(double dt)
 
 /* ---------------------------------------------------------------------- */
 
-// sums of what depends on the distance of a pair, walls' images included: sum(loops, kind, rows,
-// both, mirror, particles), of neighbors only if both
+// sums of what depends on the distance of a pair, walls' images included: sum(meeting, rows, both,
+// mirror, particles), of neighbors only if both
 template <class Sum>
 void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particles, Sum sum)
 {
-  const auto one = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
+  const auto one = [&](const Meeting &m, const RowList &which, const std::vector<double> &parts_of,
                        const Mirror *mirror) {
-    const bool both = kinds[kind] == WITH_FLUID || others_too;
-    sum(loops_of(kind), kinds[kind], which.rows, both, mirror,
-        of_rows(particles, kind, which, parts_of));
+    const bool both = m.kind == WITH_FLUID || others_too;
+    sum(m, which.rows, both, mirror, of_rows(particles, m, which, parts_of));
   };
-  for (int kind = 0; kind < NROWS; kind++) one(kind, rows[kind], visible, nullptr);
+  for (const auto &m : meetings) one(m, m.rows, visible, nullptr);
   double **x = atom->x;
   for_images(
       fix_fsi->walls,
       [x](int i) {
         return std::array<double, 3>{x[i][0], x[i][1], x[i][2]};
       },
-      [&](int kind, int k, const Mirror *mirror) {
-        one(kind, images[kind][k], visible_images[k], mirror);
+      [&](const Meeting &m, int k, const Mirror *mirror) {
+        one(m, m.images[k], visible_images[k], mirror);
       });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
 {
   distance_sums(solids_too, particles_at(nullptr),
-                [&](const FluidLoops &of, PairKind kind, const std::vector<Row> &which, bool both,
+                [&](const Meeting &m, const std::vector<Row> &which, bool both,
                     const Mirror *mirror, const FluidParticles &particles) {
-                  of.number_density(kind, which, both, mirror, particles, FixFSI::rows(atom->x),
-                                    psi);
+                  m.loops->number_density(m.kind, which, both, mirror, particles,
+                                          FixFSI::rows(atom->x), psi);
                 });
 }
 
@@ -865,10 +979,10 @@ void PairFSIFluid::add_position_divergence(double *div)
   std::vector<double> volume(atom->nlocal + atom->nghost);
   for (size_t i = 0; i < volume.size(); i++) volume[i] = atom->rmass[i] / atom->rho[i];
   distance_sums(false, particles_at(nullptr),
-                [&](const FluidLoops &of, PairKind, const std::vector<Row> &which, bool both,
+                [&](const Meeting &m, const std::vector<Row> &which, bool both,
                     const Mirror *mirror, const FluidParticles &particles) {
-                  of.position_divergence(which, both, mirror, particles, FixFSI::rows(atom->x),
-                                         volume.data(), div);
+                  m.loops->position_divergence(which, both, mirror, particles,
+                                               FixFSI::rows(atom->x), volume.data(), div);
                 });
 }
 
@@ -893,9 +1007,9 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
   });
   std::vector<double> sums(ROW * nall, 0.0);
   distance_sums(false, particles,
-                [&](const FluidLoops &of, PairKind kind, const std::vector<Row> &which, bool,
-                    const Mirror *mirror, const FluidParticles &in) {
-                  of.shifts(kind, which, mirror, in, fix_fsi->wdx, sums.data());
+                [&](const Meeting &m, const std::vector<Row> &which, bool, const Mirror *mirror,
+                    const FluidParticles &in) {
+                  m.loops->shifts(m.kind, which, mirror, in, m.wdx, sums.data());
                 });
   for (size_t i = 0; i < nall; i++)
     for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d];
@@ -907,8 +1021,8 @@ void PairFSIFluid::add_velocities_at_solids()
 {
   const int dim = fix_fsi->dim;
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
-  with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
-    for (const Row &row : rows[SOLIDS].rows)
+  for_levels(*fix_fsi, [&](size_t level, const auto &kernel) {
+    for (const Row &row : meetings[NKINDS * level + SOLIDS].rows.rows)
       for (int k = 0; k < row.n; k++) {
         const int i = row.i, j = row.j[k];
         double rsq = 0.0;
@@ -975,47 +1089,43 @@ template <int D> void PairFSIFluid::compute_forces()
   });
 
   if (fix_fsi->ledger) taken.assign((size_t) row_of_points(D) * nall, 0.0);
-  const ForceLaws laws = {alpha,
-                          beta,
-                          laminar,
-                          extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
-                          fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0,
-                          guards.data(),
-                          !sticks_to_solids(),
-                          FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v),
-                          fix_stress ? fix_stress->stress : nullptr,
-                          fix_fsi->body_forces.of_type.data(),
-                          fix_fsi->ledger ? taken.data() : nullptr};
+  ForceLaws laws = {alpha,
+                    beta,
+                    laminar,
+                    extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
+                    fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0,
+                    nullptr,
+                    !sticks_to_solids(),
+                    FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v),
+                    fix_stress ? fix_stress->stress : nullptr,
+                    fix_fsi->body_forces.of_type.data(),
+                    fix_fsi->ledger ? taken.data() : nullptr};
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
-  double guarding[NROWS] = {};
-  const auto loop = [&](int kind, const RowList &which, const std::vector<double> &parts_of,
+  double guarding[NKINDS] = {};
+  const auto loop = [&](const Meeting &m, const RowList &which, const std::vector<double> &parts_of,
                         const Mirror *mirror, double *total) {
     const double before = sums.guard;
-    force_loops(kind).forces(kinds[kind], which.rows, mirror,
-                             of_rows(particles, kind, which, parts_of), laws, forces.data(), total,
-                             of_pairs);
-    guarding[kind] += sums.guard - before;
+    laws.guard = shares[m.level].guards.data();
+    m.of_forces->forces(m.kind, which.rows, mirror, of_rows(particles, m, which, parts_of), laws,
+                        forces.data(), total, of_pairs);
+    guarding[m.what] += sums.guard - before;
   };
-  const auto nearest = [&](int kind, const RowList &all, const RowList &known) -> const RowList & {
-    return kind == HIDDEN ? all : known;
-  };
-  for (int kind = 0; kind < NROWS; kind++)
-    loop(kind, nearest(kind, rows[kind], (near_known ? near : rows)[kind]), visible, nullptr,
-         nullptr);
+  for (const auto &m : meetings)
+    loop(m, near_known && m.what != HIDDEN ? m.near : m.rows, visible, nullptr, nullptr);
 
   const Walls &walls = fix_fsi->walls;
-  const auto &which = near_known && !walls.finite() ? near_images : images;
+  const bool images_known = near_known && !walls.finite();
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(
       walls,
       [&](int i) {
         return point[i].position(x[i]);
       },
-      [&](int kind, int reflection, const Mirror *mirror) {
+      [&](const Meeting &m, int reflection, const Mirror *mirror) {
         const auto &s = walls.reflections[reflection];
         double total[D] = {};
-        loop(kind, nearest(kind, images[kind][reflection], which[kind][reflection]),
+        loop(m, (images_known && m.what != HIDDEN ? m.near_images : m.images)[reflection],
              visible_images[reflection], mirror, total);
         for (int d = 0; d < D; d++) {
           int w = s.w[0];
@@ -1057,25 +1167,27 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   const int nall = atom->nlocal + atom->nghost;
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
   for (int i = 0; i < nall; i++) point[i].p = point[i].pv2 = 0.0;
-  const std::vector<Contact> no_guards(guards.size(), Contact(D, 0.0));
+  const std::vector<Contact> no_guards(atom->ntypes + 1, Contact(D, 0.0));
   laws.guard = no_guards.data();
   laws.extrapolate = laws.gravity = nullptr;
   laws.taken = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
-  for (const int kind : {WALLS, SOLIDS})
-    force_loops(kind).forces(kinds[kind], rows[kind].rows, nullptr, particles, laws,
-                             viscous_forces.data(), nullptr, nullptr);
+  for (const auto &m : meetings)
+    if (m.what == WALLS || m.what == SOLIDS)
+      m.of_forces->forces(m.kind, m.rows.rows, nullptr, of_rows(particles, m, m.rows, visible),
+                          laws, viscous_forces.data(), nullptr, nullptr);
   for_images(
       fix_fsi->walls,
       [&](int i) {
         return point[i].position(atom->x[i]);
       },
-      [&](int kind, int k, const Mirror *mirror) {
+      [&](const Meeting &m, int k, const Mirror *mirror) {
         double unused[D] = {};
-        if (kind == SOLIDS)
-          force_loops(kind).forces(kinds[kind], images[kind][k].rows, mirror, particles, laws,
-                                   viscous_forces.data(), unused, nullptr);
+        if (m.what == SOLIDS)
+          m.of_forces->forces(m.kind, m.images[k].rows, mirror,
+                              of_rows(particles, m, m.rows, visible), laws, viscous_forces.data(),
+                              unused, nullptr);
       });
   for (auto *measure : force_computes)
     if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
@@ -1116,10 +1228,10 @@ double PairFSIFluid::memory_usage()
       visible.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double) +
       (double) beside.capacity() * sizeof(beside[0]);
-  for (const auto *lists : {rows, near})
-    for (int kind = 0; kind < NROWS; kind++) bytes += lists[kind].memory_usage();
-  for (const auto *lists : {images, near_images})
-    for (int kind = 0; kind < NROWS; kind++)
-      for (const auto &list_of : lists[kind]) bytes += list_of.memory_usage();
+  for (const auto &m : meetings) {
+    bytes += m.rows.memory_usage() + m.near.memory_usage();
+    for (const auto &list_of : m.images) bytes += list_of.memory_usage();
+    for (const auto &list_of : m.near_images) bytes += list_of.memory_usage();
+  }
   return bytes;
 }

@@ -27,6 +27,7 @@ PairStyle(fsi/fluid,PairFSIFluid);
 #include "fsi_walls.h"
 #include "pair_fsi.h"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -64,10 +65,13 @@ class PairFSIFluid : public PairFSI {
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
   void add_position_divergence(double *div);
   void add_gradient_sum(double *) override;
-  // fluid particles and wall particles that may be within the support
-  const std::vector<FSI::Row> &rows_with_walls() const
+  // fluid particles of a level of the scene and wall particles that may be within the support
+  const std::vector<FSI::Row> &rows_with_walls(size_t level) const
   {
-    return (near_known ? near : rows)[WALLS].rows;
+    static const std::vector<FSI::Row> none;
+    if (meetings.empty()) return none;    // not set up yet
+    const Meeting &m = meetings[NKINDS * level + WALLS];
+    return (near_known ? m.near : m.rows).rows;
   }
 
  protected:
@@ -101,30 +105,43 @@ class PairFSIFluid : public PairFSI {
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
-  // all; those of forces with solids; pair by pair, where thin bodies are
-  std::shared_ptr<FSI::FluidLoops> loops, solid_loops, single_loops;
-  const FSI::FluidLoops &force_loops(int kind) const
-  {
-    return kind == SOLIDS ? *solid_loops : loops_of(kind);
-  }
-  // rows of the neighbor list by what fluids meet: fluids, walls, solids, fluids that thin bodies
-  // may hide
-  enum { FLUIDS, WALLS, SOLIDS, HIDDEN, NROWS };
-  FSI::RowList rows[NROWS];
-  FSI::PairKind kinds[NROWS];
+  // What fluids meet: fluids, walls, solids, fluids that thin bodies may hide
+  enum { FLUIDS, WALLS, SOLIDS, HIDDEN, NKINDS };
+  // Pairs of one kernel: what fluid particles of one level of the scene meet, and pairs of two
+  // levels
+  struct Meeting {
+    int what = FLUIDS;
+    FSI::PairKind kind = FSI::WITH_FLUID;
+    size_t level = 0;    // of the fluid particles
+    bool unlike = false;
+    double cut = 0.0, wdx = 0.0;                          // of the kernel: support, W(mean spacing)
+    std::shared_ptr<FSI::FluidLoops> loops, of_forces;    // all; those of forces
+    FSI::RowList rows;                                    // of the neighbor list
+    std::vector<FSI::RowList> images;    // by reflection; walls of particles have none
+    // the support, and what a particle and another or its image may come nearer in a step
+    double reach = INFINITY;
+    // of these, what the loop of rates finds within the support, for the next loop of forces: the
+    // lists have the skin's pairs, too
+    FSI::RowList near;
+    std::vector<FSI::RowList> near_images;
+  };
+  std::vector<Meeting> meetings;        // NKINDS of each level, pairs of levels
+  std::vector<size_t> of_two_levels;    // the meeting of two fluids
+  void find_meetings();
+  void find_shares();
+  void find_guards();
+  std::vector<FSI::RowList *> rows_of_fluids();
   void find_rows();
-  // rows of images by reflection; walls of particles have none
-  std::vector<FSI::RowList> images[NROWS];
+  bool has_rows_with_walls() const
+  {
+    return std::any_of(meetings.begin(), meetings.end(), [](const Meeting &m) {
+      return m.what == WALLS && !m.rows.rows.empty();
+    });
+  }
   bigint images_step;
   template <class Position> void find_images(const FSI::Walls &, Position);
   template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
-  // of these, what the loop of rates finds within the support, for the next loop of forces: the
-  // lists have the skin's pairs, too
-  double reach;    // the support, and what a particle and another or its image may come nearer in a
-                   // step
   void find_reach();
-  FSI::RowList near[NROWS];
-  std::vector<FSI::RowList> near_images[NROWS];
   bool near_known;
 
   bool cut, solids_pass;    // does a solid pass through a mirror wall, may one before the next
@@ -137,9 +154,16 @@ class PairFSIFluid : public PairFSI {
 
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
-  std::vector<double> taken;         // by coupling and friction, if there is a ledger
-  std::vector<FSI::Share> shares;    // per type: how its particles count at fluid particles
-  bool unequal;                      // is any type of another spacing than the fluid, or thin?
+  std::vector<double> taken;    // by coupling and friction, if there is a ledger
+  // Of fluid particles of a level, per type: how its particles count, where it pushes fluid off
+  struct Shares {
+    std::vector<FSI::Share> of_type;
+    bool unequal = false;    // is any solid or wall of another spacing than the fluid, or thin?
+    std::vector<FSI::Contact> guards;
+  };
+  std::vector<Shares> shares;    // per level
+  double *fade;    // what is left of shifting's factor where a particle sees another level; or null
+  void find_fades();
   double *fill, *fill_weight;    // per particle, by how much more thin bodies count (fsi_sight.h);
                                  // null: there are none
   // fluid particles that may have a thin body beside them before lists are built again, and their
@@ -156,12 +180,8 @@ class PairFSIFluid : public PairFSI {
   FSI::Thin thin_bodies;
   FSI::Visible seen_pairs;
   // particles as the loop over these rows sees them, and that loop
-  FSI::FluidParticles of_rows(const FSI::FluidParticles &, int kind, const FSI::RowList &,
+  FSI::FluidParticles of_rows(const FSI::FluidParticles &, const Meeting &, const FSI::RowList &,
                               const std::vector<double> &visible);
-  const FSI::FluidLoops &loops_of(int kind) const
-  {
-    return kind == HIDDEN ? *single_loops : *loops;
-  }
   FSI::Cut cut_solids;
   FSI::FluidParticles particles_at(const double *points);
   // positions a time t later; what else a loop needs is up to complete(i, point)
@@ -191,8 +211,7 @@ class PairFSIFluid : public PairFSI {
   Pair *hybrid;    // the hybrid style that this one makes sum its virial pair by pair; null: none
   int no_fdotr_before;
   void give_back_virial();
-  std::vector<FSI::Contact> guards;    // per type
-  FSI::Contact guard_of(int type) const;
+  FSI::Contact guard_of(int type, double spacing) const;
   template <class Sum> void distance_sums(bool others_too, const FSI::FluidParticles &, Sum);
 };
 

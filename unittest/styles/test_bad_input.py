@@ -274,7 +274,7 @@ CASES = [
     ("substeps without tl", SPH, SPH + " substeps 4", r"substeps requires pair_style fsi/solid/tl"),
     ("substeps zero", SPH, SPH + " substeps 0", r"substeps 0 must be between 1 and 10000"),
     ("surface/every zero", SPH, SPH + " surface/every 0", r"surface/every 0 must be >= 1"),
-    ("spacing of a fluid", SPH, SPH + " spacing 1 0.005", r"spacing 0\.005 of type 1, a fluid: fluids have the spacing dx, 0\.01"),
+    ("fluid coarser than dx", SPH, SPH + " spacing 1 0.02", r"spacing 0\.02 of type 1, a fluid: dx, 0\.01, is to be that of the coarsest fluid"),
     ("spacing of fsi/solid", SPH, SPH + " spacing 2 0.005", r"spacing 0\.005 of type 2: .*Use pair_style fsi/solid/tl"),
     ("spacing without value", SPH, SPH + " spacing 2", r"fix fsi spacing command: missing"),
     ("spacing no type", SPH, SPH + " spacing 0.005 2", r"0\.005"),

@@ -1,0 +1,212 @@
+"""Fluid of several spacings (fix fsi spacing of fluid types)."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scenes import DX, RUBBER, WATER, Deck, Kernel, Scene, close, cloud, difference, differing, lammps, lattice, pairs, run, sum_over, watch
+from test_restart import resume
+
+JUMP = 1.4
+
+
+def beside(dim, ratio=JUMP, n=6, jitter=0.2, vmax=0.5, dx=0.1):
+    """A shaken cloud in x < 0 and one `ratio` times finer in x > 0, cells face to face: x, v, which are fine"""
+    coarse = cloud([n] * dim, dx, jitter=jitter, vmax=vmax)
+    fine = cloud([round(ratio * n)] * dim, dx / ratio, seed=2, jitter=jitter, vmax=vmax)
+    fine[0][:, 0] += n * dx
+    x, v = (np.concatenate(both) for both in zip(coarse, fine))
+    return x, v, np.arange(len(x)) >= len(coarse[0])
+
+
+def levels(ratio=JUMP, dx=0.1, **options):
+    return dict(dx=dx, density=f"spacing 2 {dx / ratio!r}", **{"materials": (WATER, WATER), **options})
+
+
+def near(s, x, fine, ratio=JUMP):
+    """Ordered pairs with the kernel of the mean spacing, and the volume of j's lattice over i's"""
+    h = np.where(fine, s.kernel.h / ratio, s.kernel.h)
+    i, j, d, r = pairs(x, s.kernel.cut)
+    kernel = Kernel(s.kernel.name, s.dim, 0.5 * (h[i] + h[j]))
+    omega = (h[j] / h[i])**s.dim
+    return i, j, d, r, kernel, omega
+
+
+def images(s, x, fine, floor, ratio=JUMP):
+    """The same of pairs with images in a mirror at y = floor, the own one included"""
+    h = np.where(fine, s.kernel.h / ratio, s.kernel.h)
+    image = x * [1, -1, 1] + [0, 2 * floor, 0]
+    d = x[:, None] - image[None]
+    i, j = np.nonzero(np.linalg.norm(d, axis=2) < s.kernel.cut)
+    return i, j, d[i, j], np.linalg.norm(d[i, j], axis=1), Kernel(s.kernel.name, s.dim, 0.5 * (h[i] + h[j])), (h[j] / h[i])**s.dim
+
+
+@pytest.mark.parametrize("kernel", ["wendland", "quintic"])
+@pytest.mark.parametrize("dim, ratio", [(2, JUMP), (2, 3), (3, JUMP)])
+@pytest.mark.parametrize("fluid", ["", "artificial/visc 0.3 0.5 laminar/visc", "laminar/visc/central"])
+def test_pair_law(dim, ratio, fluid, kernel):
+    """Masses, forces and number densities against numpy: every pair has the kernel of the mean of both spacings, volumes are each particle's
+    own, and pressures count by the volumes of the lattices, omega p_i V_i^2 + p_j V_j^2/omega. A floor mirrors both fluids."""
+    x, v, fine = beside(dim, ratio, n=6 if dim == 2 else 4)
+    floor = x[:, 1].min() - 0.03
+    with Scene(x, v, dim=dim, type=1 + fine, fluid=fluid, dt=1e-5, kernel=kernel, hdx=1.2, **levels(ratio, materials=(WATER + " viscosity 20",) * 2),
+               commands=["compute psi all fsi/atom psi", f"fix w all fsi/wall/mirror ylo {floor!r} guard 0"]) as s:
+        s.run()
+        m = s.get("rmass")
+        assert np.allclose(m[fine] * ratio**dim, m[0], rtol=1e-12)
+        rho = np.random.default_rng(9).uniform(1000, 1050, len(x))
+        s.put("rho", rho)
+        s.run()
+        V, p = m / rho, s.p
+        force, psi = np.zeros((s.n, 3)), np.zeros(s.n)
+        for image, (i, j, d, r, k, omega) in enumerate((near(s, x, fine, ratio), images(s, x, fine, floor, ratio))):
+            vj, g = (v[j] * [1, -1, 1] if image else v[j]), k.g(r)
+            w = v[i] - vj
+            pair = -((omega * p[i] * V[i]**2 + p[j] * V[j]**2 / omega) * g)[:, None] * d
+            if "artificial" in fluid:
+                mu = np.minimum((w * d).sum(1), 0) * k.h / (r**2 + 0.01 * k.h**2)
+                pair -= ((rho[i] + rho[j]) / 2 * V[i] * V[j] * (-0.3 * 10 * mu + 0.5 * mu**2) * g)[:, None] * d
+            if "laminar" in fluid:
+                q = (V[i] * V[j] * 2 * 20 / r**2 * g)[:, None]
+                pair += q * ((dim + 2) * (w * d).sum(1)[:, None] * d if "central" in fluid else r[:, None]**2 * w)
+            force += sum_over(i, pair, s.n)
+            psi += sum_over(i, omega * k.W(r), s.n)
+        close(s.get("f"), force, 1e-12)
+        # of finer fluid it is what it would be on the coarse lattice
+        psi = (psi + np.where(fine, Kernel(kernel, dim, s.kernel.h / ratio).W(0), s.kernel.W(0))) * np.where(fine, ratio**-dim, 1.0)
+        close(s.compute("psi", columns=False), psi, 1e-12)
+
+
+@pytest.mark.parametrize("same", [True, False])
+@pytest.mark.parametrize("delta", [0.0, 0.1])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_density_rate(dim, delta, same):
+    """d rho_i/dt = m_i sum omega v_ij.grad W and, in one fluid, diffusion with V_j, h and W of the pair: the change over one step"""
+    x, v, fine = beside(dim, n=6 if dim == 2 else 4)
+    dt, g = 2e-4, 9.81 * np.array([1, 2, 0]) / np.sqrt(5)
+    rho0 = np.where(fine, 1000.0 if same else 900.0, 1000.0)
+    rho = rho0 * np.random.default_rng(7).uniform(0.99, 1.01, len(x))
+    with Scene(x, v, dim=dim, type=1 + fine, dt=dt, fluid=f"tension yes density/diffusion {delta}", **levels(materials=(WATER, f"fluid rho {rho0[-1]}")),
+               commands=["fix g all gravity 9.81 vector 1 2 0"]) as s:
+        s.run()
+        s.put("rho", rho)
+        m = s.get("rmass")
+        i, j, d, r, k, omega = near(s, x, fine)
+        grad = k.g(r)
+        rate = sum_over(i, m[i] * omega * grad * ((v[i] - v[j]) * d).sum(1), len(x))
+        one = same | (fine[i] == fine[j])
+        rate += sum_over(i, one * 2 * delta * k.h * 10 * (m / rho)[j] * (rho[j] - rho[i] + rho0[i] / 100 * (d @ g)) * -grad, len(x))
+        got = (s.run(1).get("rho") - rho) / dt
+    close(got, rate, 1e-11)    # as in test_density.py, with a step ten times shorter
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_momentum(dim):
+    x, v, fine = beside(dim, jitter=0.1, n=6 if dim == 2 else 4)
+    with Scene(x, v, dim=dim, type=1 + fine, dt=2e-4, fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1 shift 0.2 shift/every 4",
+               **levels(materials=(WATER + " viscosity 1",) * 2)) as s:
+        s.run()
+        before, size = s.momentum(), (s.get("rmass")[:, None] * np.abs(s.get("v"))).sum()
+        s.run(100)
+        assert np.abs(s.momentum() - before).max() < 1e-14 * size
+        assert np.abs(s.get("v") - v).max() > 0.01
+
+
+def test_ledger_closes():
+    """Energies and what terms took: the error of a column whose lower half is finer is of the time step's order"""
+    error = []
+    for dt in (4e-5, 2e-5, 1e-5):
+        x, v, fine = beside(2, n=8, jitter=0.05, vmax=0.3, dx=0.01)
+        with Scene(x, v, type=1 + fine, dt=dt, fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1 tension yes",
+                   **levels(dx=0.01, materials=(WATER + " viscosity 1",) * 2),
+                   commands=["fix g all gravity 9.81 vector -1 0 0", "compute e all fsi/energy", "fix w all fsi/wall/mirror xlo 0"]) as s:
+            s.run()
+            before = s.ledger()
+            s.run(round(0.004 / dt))
+            after = s.ledger()
+            error.append(abs((after - before).sum()) / np.abs(after - before).max())
+    print("imbalance over the largest entry", error)
+    assert error[-1] < 5e-3 and error[2] < 0.6 * error[1] < 0.36 * error[0]
+
+
+class Levels(Deck):
+    """Coarse water (type 1), fine water (2) between mirror walls, and a plate of the fine spacing (3)"""
+
+    def data(self):
+        return super().data().replace("2 atom types", "3 atom types")
+
+    def physics(self, coeff=True):
+        return super().physics(coeff).replace("water plate", "water water plate").replace("NULL plate", "NULL NULL plate")
+
+
+def gate(dim, ratio=JUMP, **options):
+    n, dx = (10, 10) if dim == 2 else (5, 5, 5), DX / ratio
+    parts = [lattice(n, DX), lattice([10, *[round(ratio * k) for k in n[1:]]], dx), lattice([4, *[round(ratio * k) for k in n[1:]]], dx)]
+    parts[1][:, 0] += n[0] * DX
+    parts[2][:, 0] += n[0] * DX + 10 * dx
+    x = np.concatenate(parts)
+    type_ = np.repeat([1, 2, 3], [len(p) for p in parts])
+    random = np.random.default_rng(3)
+    shift, v = random.uniform(-0.05, 0.05, x.shape) * dx, random.uniform(-0.1, 0.1, x.shape)
+    if dim == 2:
+        shift[:, 2] = v[:, 2] = 0.0
+    rho = 1000.0 * (1 + random.uniform(-0.005, 0.005, len(x)))
+    box = np.stack([x.min(axis=0) - 2.5 * DX, x.max(axis=0) + 2.5 * DX], axis=1)
+    if dim == 2:
+        box[2] = -0.5 * DX, 0.5 * DX
+    walls = [(0, 1, 0.0, "velocity 0.1 0 0"), (1, 1, 0.0, "slip no"), *([(2, 1, 0.0, ""), (2, -1, n[2] * DX, "")] if dim == 3 else [])]
+    return Levels(dim, x + shift, v, type_, rho, box, walls,
+                  **{"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.1 0.1 hourglass 0.1", "sph": f"spacing 2 {dx!r} spacing 3 {dx!r} substeps 3",
+                     "fluid": "sound 10 couple wall artificial/visc 0.05 0.1 laminar/visc density/diffusion 0.1 shift 0.2 shift/every 2", **options})
+
+
+GRIDS = [(1, "1 1 1", "off"), (2, "2 1 1", "on"), (2, "1 2 1", "off"), (4, "2 2 1", "on")]
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_ranks_and_newton(tmp_path, dim):
+    # Tolerances as in test_spacing.py
+    end, scene = watch(every=30) + "run 30\n", gate(dim)
+    one = run(tmp_path / "one", scene.text() + end, scene_data=scene.data()).frames()
+    for ranks, grid, newton in GRIDS:
+        many = run(tmp_path / f"{ranks}{newton}", replace(scene, newton=newton).text(grid) + end, ranks, scene_data=scene.data()).frames()
+        assert difference(one[0], many[0], "f") < 2e-10
+        for quantity in ("x", "v", "rho", "stress"):
+            assert difference(one[-1], many[-1], quantity) < 1e-9, (ranks, grid, newton, quantity)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
+    scene = gate(2)
+    whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks, scene_data=scene.data()).frames()[-1]
+    rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n", ranks).frames("rest.dump")[-1]
+    assert whole.step == rest.step == 80 and differing(whole, rest) == []
+
+
+@pytest.mark.parametrize("edit, message", [
+    (("density", "fluid summation solid continuity"), r"spacing 0\.\d+ of type 2, a fluid, requires fix fsi fluid continuity: number densities are not smooth"),
+    (("fluid", "sound 10 density/surface yes"), r"a fluid, requires pair_style fsi/fluid density/surface no"),
+    (("sph", "thin 3"), r"a fluid, requires fix fsi without thin"),
+    (("sph", "spacing 3 0.018"), r"\d+ fluid particles, the first of them atom \d+, meet a body or wall that is more than 2 times coarser"),
+], ids=["summation", "surface", "thin", "coarse body"])
+def test_refused(tmp_path, edit, message):
+    key, value = edit
+    scene = gate(2, fluid="sound 10 couple wall")
+    scene = replace(scene, **{key: f"{scene.sph} {value}" if key == "sph" else value})
+    result = lammps(tmp_path, scene.text() + "run 0\n", scene_data=scene.data())
+    assert result.status and any(re.search(message, line) for line in result.errors), result.output[-1000:]
+
+
+def test_inlet_is_for_the_coarsest(tmp_path):
+    x, v, fine = beside(2, jitter=0.0, vmax=0.0)
+    with Scene(x, v, type=1 + fine, fluid="tension yes background 5", **levels(), commands=[f"fix i all fsi/inlet xhi {x[:, 0].max() + 0.036!r} velocity 0 0 0"]) as s:
+        with pytest.raises(Exception, match=r"particles of fluid finer than dx, 0\.1, the first of them atom \d+, are wi"):
+            s.run()
+
+
+@pytest.mark.parametrize("ratio, warned", [(1.4, False), (2, True)])
+def test_jump_is_named(tmp_path, ratio, warned):
+    scene = gate(2, ratio)
+    result = run(tmp_path, scene.text() + "run 0\n", scene_data=scene.data())
+    assert bool(re.search(r"WARNING.*fluid particles, the first of them atom \d+, meet fluid more than 1\.45 times finer: pressure is noisy", result.output)) == warned
