@@ -327,9 +327,9 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
     int wish = 0;
     for (int k = 1; k <= finest(); k++)
       if (in_zone(k, i, 0.0)) wish |= 1 << k;
-    for (const auto *end : open_ends) check_open_end(i, wish, *end);
+    const bool leaves = in_open_end(i, wish);
     if (may_split && own < finest() && (wish & 1 << (own + 1))) wish |= SPLIT;
-    if (may_merge && own > 0 && !(wish & 1 << own)) {
+    if (may_merge && own > 0 && !leaves && !(wish & 1 << own)) {
       const double margin = fix_fsi->dx_of(types[own - 1]);
       if (!in_zone(own, i, margin)) wish |= in_zone(own, i, FAR * margin) ? MERGE : MERGE | EAGER;
     }
@@ -344,15 +344,20 @@ int FixFSIRefine::level(int i) const
   return (atom->mask[i] & groupbit) ? level_of[atom->type[i]] : -1;
 }
 
-void FixFSIRefine::check_open_end(int i, int wish, const FixFSIInlet &end) const
+// who is in a buffer is left to that, also one that has found no partner on its way
+bool FixFSIRefine::in_open_end(int i, int wish) const
 {
-  if (!end.holds(atom->x[i]) || (level(i) == 0 && wish == 0)) return;
   const double *const x = atom->x[i];
-  error->one(FLERR,
-             "Atom {} of type {} at {:g} {:g} {:g} is in the buffer of fix {}, and {}: keep open "
-             "ends in the coarsest level, away from what fix {} refines",
-             atom->tag[i], atom->type[i], x[0], x[1], x[2], end.id,
-             wish ? "in the zone of a finer level" : "of a finer level", id);
+  for (const auto *end : open_ends) {
+    if (!end->holds(x)) continue;
+    if (wish)
+      error->one(FLERR,
+                 "Atom {} at {:g} {:g} {:g} is in the buffer of fix {}, and in the zone of a finer "
+                 "level: keep open ends in the coarsest level, away from what fix {} refines",
+                 atom->tag[i], x[0], x[1], x[2], end->id, id);
+    return true;
+  }
+  return false;
 }
 
 /* ----------------------------------------------------------------------

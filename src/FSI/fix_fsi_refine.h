@@ -99,7 +99,7 @@ class FixFSIRefine : public Fix {
   void measure_distances();
   bool in_zone(int k, int i, double grown) const;
   void look(bool may_split, bool may_merge);
-  void check_open_end(int i, int wish, const class FixFSIInlet &) const;
+  bool in_open_end(int i, int wish) const;
   void check_zones() const;
   void warn_of_bodies();
   double crowd_of_walls(const double *x, double dx) const;

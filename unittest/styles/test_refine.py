@@ -16,9 +16,10 @@ def box_scene(x, v=0.0, type=1, *, levels=2, refine="region zone", every=10, siz
     """Fluid of levels 1, 2, ... in a box, periodic by default, with a zone."""
     dim = options.pop("dim", 2)
     size = size or [1.2] * dim + [0] * (3 - dim)
+    low = [-options.pop("room", 0.0), 0, 0]
     spacing = " ".join(f"spacing {k + 1} {DX * FINER[dim]**k!r}" for k in range(1, levels))
     types = " ".join(str(k + 1) for k in range(levels))
-    return Scene(x, np.zeros_like(x) + v, dim=dim, dx=DX, type=type, box=([0, 0, 0], size), boundary=boundary, materials=(WATER,) * levels, density=spacing,
+    return Scene(x, np.zeros_like(x) + v, dim=dim, dx=DX, type=type, box=(low, size), boundary=boundary, materials=(WATER,) * levels, density=spacing,
                  fluid=f"sound 15 tension yes {fluid}", dt=options.pop("dt", 1e-3),
                  commands=(*before, f"region zone {zone} units box", *commands, f"fix ref {group} fsi/refine {every} types {types} {refine}", "compute e all fsi/energy"), **options)
 
@@ -167,9 +168,9 @@ def test_zone_that_moves():
 
 
 def test_distance_from_a_body():
-    """Three levels around a particle that moves across the periodic edge of the box: by its distance, which knows images."""
+    """Three levels around a particle beside the periodic edge of the box: by its distance, which knows images."""
     x = lattice((32, 32), DX)
-    body = 17 * 32 + 1     # in the first column
+    body = 17    # in the first column
     with box_scene(x, levels=3, size=[1.6, 1.6, 0], refine="distance body 0.45 0.15", every=1, dt=1e-9, group="rest",
                    commands=(f"group body id {body + 1}", "group rest subtract all body")) as s:
         go(s, 0)
@@ -233,7 +234,7 @@ MATERIALS = "# DATE: 2026-01-01 UNITS: si CITATION: none\nwater fluid rho 1000\n
 
 def flow(dim):
     """A shaken periodic box with a shear flow, as a data file"""
-    n = (40, 32) if dim == 2 else (22, 12, 12)
+    n = (40, 32) if dim == 2 else (22, 8, 8)
     x, v = cloud(n, DX, vmax=0.1)
     size = np.array([k * DX for k in n] + [0.05] * (3 - dim))
     v[:, 0] += 2 + 0.5 * np.sin(2 * np.pi * x[:, 1] / size[1])
@@ -254,17 +255,17 @@ def thermo(result, step):
     return [line for line in result.output.splitlines() if re.match(rf" *{step} ", line)]
 
 
-@pytest.mark.parametrize("dim, steps", [(2, 200), (3, 60)])
+@pytest.mark.parametrize("dim, steps", [(2, 200), (3, 30)])
 def test_ranks(tmp_path, dim, steps):
     """The same particles with the same IDs on any number of ranks, with newton off, too, to round-off."""
     runs = {}
-    for name, ranks, newton, grid in (("one", 1, "on", "* * *"), ("two", 2, "on", "2 1 1"), ("four", 4, "on", "2 2 1"), ("off", 2, "off", "1 2 1")):
+    for name, ranks, newton, grid in (("one", 1, "on", "* * *"), ("two", 2, "on", "2 1 1"), ("off", 4, "off", "2 2 1")):
         text = deck(dim, newton=newton, grid=grid) + watch(every=steps) + f"run {steps}\n"
         runs[name] = run(tmp_path / name, text, ranks, flow_data=flow(dim), water_fsi=MATERIALS).frames()
     first, last = runs["one"]
     assert set(last["type"]) == {1, 2, 3} and len(last["id"]) > len(first["id"]) > 1000
     assert last["id"].max() != len(last["id"])
-    for name in ("two", "four", "off"):
+    for name in ("two", "off"):
         for a, b in zip(runs["one"], runs[name]):
             assert np.array_equal(a["type"], b["type"])
             for quantity in ("x", "v", "rho"):
@@ -290,3 +291,102 @@ def test_given_again_between_runs(tmp_path):
     whole = run(tmp_path / "whole", deck(2) + watch(every=90) + "run 45\nrun 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
     parts = run(tmp_path / "parts", deck(2).replace("f_ref[*]", "") + watch(every=90) + f"run 45\n{again}run 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
     assert not differing(whole, parts)
+
+
+BAD = {
+    "3": r"Illegal fix fsi/refine command: missing argument|requires keyword types",
+    "0 types 1 2 region one": r"Fix fsi/refine N 0 must be",
+    "10 types 1 region one": r"requires keyword types with two atom types or more, the coarsest first",
+    "10 types 1 2 2 region one two": r"types: 2 is there twice",
+    "10 types 1 9 region one": r"Fix fsi/refine types 9 must be between 1 and 5",
+    "10 types 1 2 3 region one": r"has 3 types and 1 regions: expected one for each type but the first",
+    "10 types 1 2 region nowhere": r"Region nowhere of fix fsi/refine does not exist",
+    "10 types 1 2 zone one": r"has 2 types|integer|Fix fsi/refine types zone",
+    "10 types 1 2 region one distance all 0.1": r"takes region or distance, not both",
+    "10 types 1 2 distance nobody 0.1": r"Group nobody of fix fsi/refine distance does not exist",
+    "10 types 1 2 3 distance wall 0.2 0.3": r"distance: 0.3 after 0.2, expected less",
+    "10 types 1 2 3 distance wall 0.3 0.2": r"there is 0.1 for atom type 2: expected at least 0.185",
+    "10 types 1 3 region one": r"spacings of 0.05 and 0.025: expected 0.0353553 of the second",
+    "10 types 1 4 region one": r"atom types 1 and 4 have the density 1000 and 900: expected one fluid",
+    "10 types 1 5 region one": r"atom type 5 is no fluid: its material is a wall",
+    "10 types 1 2 3 region one two": r"is not in the zone of type 2, but only 0.\d+ from atom \d+, which is in that of type 3 \(one and two\)",
+    "10 types 1 2 region ends": r"is in the buffer of fix out, and in the zone of a finer level: keep open ends in the coarsest level",
+}
+
+
+@pytest.mark.parametrize("words", BAD)
+def test_bad_input(tmp_path, words):
+    text = f"""units si
+dimension 2
+boundary f p p
+atom_style fsi
+region box block -0.5 1.8 0 0.8 -0.025 0.025
+create_box 5 box
+lattice sq 0.05 origin 0.5 0.5 0
+region water block 0 1 0 0.8 INF INF units box
+region wall block 1 1.05 0 0.8 INF INF units box
+create_atoms 1 region water
+create_atoms 5 region wall
+group wall type 5
+group fluid type 1 2 3 4
+pair_style fsi/fluid sound 15
+pair_coeff * * water.fsi water water water oil wall
+fix sph fluid fsi 0.05 wendland 1.5 spacing 2 0.0353553 spacing 3 0.025 spacing 4 0.0353553
+fix walls wall fsi/wall/particle
+fix out fluid fsi/outlet xlo 0.2
+region one block 0.5 0.8 0.2 0.6 INF INF units box
+region two block 0.6 0.78 0.25 0.55 INF INF units box
+region ends block 0.1 0.8 0.2 0.6 INF INF units box
+fix ref fluid fsi/refine {words}
+run 0
+"""
+    done = lammps(tmp_path, text, water_fsi=MATERIALS + "oil fluid rho 900\nwall wall rho 1000\n")
+    assert done.status != 0 and any(re.search(BAD[words], line) for line in done.errors), done.output[-600:]
+
+
+def test_coarse_fluid_at_a_body_is_warned_of(tmp_path):
+    """A wall twice as fine as the fluid beside it, unless the zone reaches it."""
+    text = """units si
+dimension 2
+boundary f p p
+atom_style fsi
+region box block -0.2 1.3 0 0.8 -0.025 0.025
+create_box 3 box
+region water block 0 1 0 0.8 INF INF units box
+region wall block 1.0125 1.1 0 0.8 INF INF units box
+lattice sq 0.05 origin 0.5 0.5 0
+create_atoms 1 region water
+lattice sq 0.025 origin 0.5 0.5 0
+create_atoms 3 region wall
+group wall type 3
+group fluid type 1 2
+pair_style fsi/fluid sound 15
+pair_coeff * * water.fsi water water wall
+fix sph fluid fsi 0.05 wendland 1.5 spacing 2 0.0353553 spacing 3 0.025
+fix walls wall fsi/wall/particle
+region one block {} INF INF INF INF units box
+fix ref fluid fsi/refine 10 types 1 2 region one
+run 0
+"""
+    for zone, warned in (("0.3 0.6", True), ("0.6 2", False)):
+        done = run(tmp_path / zone, text.format(zone), water_fsi=MATERIALS + "wall wall rho 1000\n")
+        assert warned == bool(re.search("WARNING: Fix fsi/refine: fluid atom .* has a spacing of 0.05, and beside it atom .* of a body or wall one of 0.025", done.output))
+
+
+def test_open_channel(tmp_path):
+    """Between an inlet and an outlet, through a finer zone: mass is what came in and went out, IDs are unique; who has found no partner
+    passes the outlet."""
+    x = lattice((32, 8), DX)
+    with box_scene(x, (2.0, 0, 0), size=[2.4, 0.4, 0], boundary="f p p", zone="block 0.6 1.0 INF INF INF INF", fluid="density/diffusion 0.1",
+                   before=("fix i all fsi/inlet xlo 0 velocity 2 0 0", "fix o all fsi/outlet xhi 1.6"), room=0.4) as s:
+        go(s, 0)
+        mass = exact_mass(s)
+        go(s, 600)
+        came = s.lmp.extract_fix("i", 0, 0) + s.lmp.extract_fix("o", 0, 0)
+        y, level = s.get("x"), s.get("type")
+        assert outputs(s)[SPLITS] > 150 and outputs(s)[MERGES] > 100
+        print((level[y[:, 0] > 1.2] == 2).mean())
+        assert (level[y[:, 0] < 0.55] == 1).all() and (level[y[:, 0] > 1.2] == 2).mean() < 0.1 and (level[(y[:, 0] > 0.7) & (y[:, 0] < 0.95)] == 2).all()
+        assert abs(s.get("rho") / 1000 - 1).max() < 1e-3 and np.abs(s.get("v") - (2, 0, 0)).max() < 0.05
+        between = lambda m, p: m[(p > 0) & (p < 1.6)].sum()
+        assert between(s.get("rmass"), y[:, 0]) == pytest.approx(mass * 32 / 42, rel=0.02) and abs(came) < 0.03 * mass
