@@ -209,6 +209,7 @@ void PairFSIFluid::find_meetings()
   for (size_t l = 0; l < n; l++) {
     Meeting m;
     m.level = l;
+    m.h = levels[l].h;
     m.cut = levels[l].cut;
     m.wdx = levels[l].wdx;
     const auto loops = make_loops(levels[l].h, have_packs());
@@ -229,12 +230,13 @@ void PairFSIFluid::find_meetings()
       Meeting m;
       m.level = a;
       m.unlike = true;
-      const double h = 0.5 * (levels[a].h + levels[b].h), dx = 0.5 * (levels[a].dx + levels[b].dx);
-      with_kernel(fix_fsi->kernel, fix_fsi->dim, h, [&](const auto &kernel) {
+      m.h = 0.5 * (levels[a].h + levels[b].h);
+      const double dx = 0.5 * (levels[a].dx + levels[b].dx);
+      with_kernel(fix_fsi->kernel, fix_fsi->dim, m.h, [&](const auto &kernel) {
         m.cut = kernel.cut;
         m.wdx = kernel.W(dx);
       });
-      m.loops = m.of_forces = make_loops(h, have_packs());
+      m.loops = m.of_forces = make_loops(m.h, have_packs());
       of_two_levels[n * a + b] = meetings.size();
       meetings.push_back(m);
     }
@@ -400,26 +402,42 @@ void PairFSIFluid::advance(bool advance)
 
 /* ----------------------------------------------------------------------
    Shifting's factor 1 + 0.2 (W_ij/W(dx))^4 gives it another state of rest than the force of
-   pressure has. On one lattice both are at rest; where two meet they would work against each other
-   without end. There the plain sum is left, within the support of what a particle sees of another
-   level (theory.rst).
+   pressure has. Where particles stand on one lattice both are at rest; where two lattices meet they
+   would work against each other without end. Where the flow distorts the order of particles the
+   factor keeps them apart. So of it is left min(1, (u/u0)^2), u^2 = sum_j V_j W_ij (v_ij.e_ij)^2
+   over fluid, e_ij the direction from one to the other: the speed with which neighbors come and go.
 ------------------------------------------------------------------------- */
 
 void PairFSIFluid::find_fades()
 {
-  static constexpr double NONE_LEFT = 0.01;    // part of the number density
-  const int nlocal = atom->nlocal, *const type = atom->type;
+  static constexpr double SLOW = 0.003;    // u0 over the speed of sound (doc/notes/levels.md)
+  const int dim = fix_fsi->dim, nlocal = atom->nlocal, *const type = atom->type;
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const double *const rho = atom->rho, *const rmass = atom->rmass;
   std::fill_n(fade, nlocal + atom->nghost, 0.0);
-  distance_sums(false, particles_at(nullptr),
-                [&](const Meeting &m, const std::vector<Row> &which, bool both,
-                    const Mirror *mirror, const FluidParticles &particles) {
-                  if (m.unlike)
-                    m.loops->number_density(m.kind, which, both, mirror, particles,
-                                            FixFSI::rows(atom->x), fade);
-                });
+  for (const auto &m : meetings) {
+    if (m.what != FLUIDS) continue;
+    with_kernel(fix_fsi->kernel, dim, m.h, [&](const auto &kernel) {
+      for (const Row &row : m.rows.rows)
+        for (int k = 0; k < row.n; k++) {
+          const int i = row.i, j = row.j[k];
+          double rsq = 0.0, vx = 0.0;
+          for (int d = 0; d < dim; d++) {
+            rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+            vx += (x[i][d] - x[j][d]) * (v[i][d] - v[j][d]);
+          }
+          if (rsq >= kernel.cutsq || rsq == 0.0) continue;
+          const double w = kernel.W(std::sqrt(rsq)) * (vx * vx / rsq);
+          fade[i] += rmass[j] / rho[j] * w;
+          fade[j] += rmass[i] / rho[i] * w;
+        }
+    });
+  }
   fix_fsi->add_ghosts(fade);
-  for (int i = 0; i < nlocal; i++)
-    fade[i] = std::max(0.0, 1.0 - fade[i] / (NONE_LEFT * fix_fsi->resolution[type[i]].psi_bulk));
+  for (int i = 0; i < nlocal; i++) {
+    const State &s = fix_fsi->state[type[i]];
+    if (s.species == FLUID) fade[i] = std::min(1.0, fade[i] / (SLOW * SLOW * s.csq));
+  }
   fix_fsi->send_to_ghosts(fade);
 }
 

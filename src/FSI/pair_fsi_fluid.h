@@ -114,7 +114,7 @@ class PairFSIFluid : public PairFSI {
     FSI::PairKind kind = FSI::WITH_FLUID;
     size_t level = 0;    // of the fluid particles
     bool unlike = false;
-    double cut = 0.0, wdx = 0.0;                          // of the kernel: support, W(mean spacing)
+    double h = 0.0, cut = 0.0, wdx = 0.0;                 // of the kernel: W(mean spacing) last
     std::shared_ptr<FSI::FluidLoops> loops, of_forces;    // all; those of forces
     FSI::RowList rows;                                    // of the neighbor list
     std::vector<FSI::RowList> images;    // by reflection; walls of particles have none
@@ -162,7 +162,7 @@ class PairFSIFluid : public PairFSI {
     std::vector<FSI::Contact> guards;
   };
   std::vector<Shares> shares;    // per level
-  double *fade;    // what is left of shifting's factor where a particle sees another level; or null
+  double *fade;    // of fluids of several levels: what is left of shifting's factor; or null
   void find_fades();
   double *fill, *fill_weight;    // per particle, by how much more thin bodies count (fsi_sight.h);
                                  // null: there are none

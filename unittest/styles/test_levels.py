@@ -210,3 +210,32 @@ def test_jump_is_named(tmp_path, ratio, warned):
     scene = gate(2, ratio)
     result = run(tmp_path, scene.text() + "run 0\n", scene_data=scene.data())
     assert bool(re.search(r"WARNING.*fluid particles, the first of them atom \d+, meet fluid more than 1\.45 times finer: pressure is noisy", result.output)) == warned
+
+
+@pytest.mark.parametrize("kernel", ["wendland", "quintic"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_displacement(dim, kernel):
+    """Of particle shifting in fluid without a surface: volumes, W and the mean spacing of each pair; of the factor 0.2 that is left by which neighbors
+    come and go, more than none and less than all on many particles."""
+    C, c, dt = 0.5, 10.0, 2e-3
+    x, v, fine = beside(dim, n=7 if dim == 2 else 5, jitter=0.1, vmax=0.03)
+    got = {}
+    for shift in (0, C):
+        with Scene(x, v, dim=dim, type=1 + fine, dt=dt, kernel=kernel, hdx=1.2, fluid=f"sound {c} tension yes background 5 shift {shift}", **levels()) as s:
+            s.run()
+            V = s.get("rmass") / s.get("rho")
+            s.run(1)
+            got[shift] = s.get("x")
+            # at the time of the step's middle, for which the forces are
+            i, j, d, r, k, _ = near(s, x + dt / 2 * v, fine)
+            u2 = sum_over(i, V[j] * k.W(r) * ((v[i] - v[j]) * d).sum(1)**2 / r**2, s.n)
+            left = np.minimum(1, u2 / (0.003 * c)**2)
+            i, j, d, r, k, _ = near(s, x, fine)
+            spacing = Kernel(kernel, dim, k.h).W(k.h / 1.2)
+            want = sum_over(i, (V[j] * (1 + left[i] * 0.2 * (k.W(r) / spacing)**4) * k.g(r))[:, None] * d, s.n)
+            h = np.where(fine, s.kernel.h / JUMP, s.kernel.h)
+    want *= -C * c * h[:, None] * dt
+    size = np.linalg.norm(want, axis=1)
+    want *= np.minimum(1, 0.25 * C * c * dt / size)[:, None]
+    assert ((left > 0.1) & (left < 0.9)).sum() > 0.2 * len(x) and (left == 1).any()
+    assert np.abs(got[C] - got[0] - want).max() < 1e-12
