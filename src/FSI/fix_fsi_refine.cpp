@@ -22,6 +22,7 @@
 #include "force.h"
 #include "fsi_cells.h"
 #include "fsi_gather.h"
+#include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "group.h"
@@ -248,20 +249,12 @@ void FixFSIRefine::pre_exchange()
   event(true, true);
 }
 
-/* ----------------------------------------------------------------------
-   Ghosts that lists of before have are where they were when these were built, or a step ago
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixFSIRefine::event(bool may_split, bool may_merge)
 {
   const bool first = update->ntimestep == update->firststep;
-  domain->pbc();
-  if (domain->box_change || first) {
-    domain->reset_box();
-    comm->setup();
-  }
-  comm->exchange();
-  comm->borders();
+  renew_ghosts();
   std::fill_n(mine, NTOTAL, 0.0);
   look(may_split, may_merge);
   if (moving || first) check_zones();
@@ -282,12 +275,122 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
 
   unite(unions);
   fix_fsi->population.begin();
+  std::vector<tagint> changed, released;
+  for (const auto &one : unions) changed.push_back(atom->tag[one.i]);
+  const int before = atom->nlocal;
   divide(divisions);
-  std::vector<tagint> released;
+  for (const auto &two : divisions) changed.push_back(atom->tag[two.i]);
+  for (int i = before; i < atom->nlocal; i++) changed.push_back(atom->tag[i]);
   for (const int i : gone) released.push_back(atom->tag[i]);
   fix_fsi->population.remove(gone, nullptr);
   fix_fsi->population.release(released);
   fix_fsi->population.end();
+  settle(gather(changed, world));
+}
+
+// where they belong, with ghosts that are where these are: those that lists of before have are a
+// step old
+void FixFSIRefine::renew_ghosts()
+{
+  domain->pbc();
+  if (domain->box_change || update->ntimestep == update->firststep) {
+    domain->reset_box();
+    comm->setup();
+  }
+  comm->exchange();
+  comm->borders();
+}
+
+/* ----------------------------------------------------------------------
+   What has split or merged is not where the pressure around it is even. On its way there by itself
+   it would make sound, and with each event the fluid would lose some of its mean pressure, since
+   its density follows what moves. So particles around are moved there at once, with their density,
+   by steps against the sum of V grad W: less the further they are from an event, and not where
+   they see bodies, mirror walls or a surface.
+------------------------------------------------------------------------- */
+
+std::vector<double> FixFSIRefine::mobilities(std::vector<tagint> changed, const Cells &cells) const
+{
+  std::sort(changed.begin(), changed.end());
+  const auto is_fluid = [&](int j) {
+    return fix_fsi->state[atom->type[j]].species == FLUID;
+  };
+  std::vector<double> mobility(atom->nlocal, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (level(i) < 0) continue;
+    const double *const x = atom->x[i];
+    const double cut = fix_fsi->resolution[atom->type[i]].cut, dx = fix_fsi->dx_of(atom->type[i]);
+    double event = cut, body = cut + dx;
+    cells.around(x, [&](int j, double rsq) {
+      if (rsq >= (cut + dx) * (cut + dx)) return;
+      if (!is_fluid(j)) body = std::min(body, std::sqrt(rsq));
+      if (std::binary_search(changed.begin(), changed.end(), atom->tag[j]))
+        event = std::min(event, std::sqrt(rsq));
+    });
+    for (const auto &wall : fix_fsi->walls.wall)
+      if (wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
+    mobility[i] = (1.0 - event / cut) * std::max(0.0, (body - cut) / dx);
+    if (in_open_end(i, 0)) mobility[i] = 0.0;
+  }
+  return mobility;
+}
+
+void FixFSIRefine::settle(const std::vector<tagint> &changed)
+{
+  static constexpr int STEPS = 10;
+  static constexpr double STRENGTH = 0.15, LONGEST = 0.05, SURFACE = 0.9, INSIDE = 0.95;
+  renew_ghosts();
+  const int dim = fix_fsi->dim;
+  double *const *const x = atom->x, *const account = fix_fsi->account(FixFSI::LEVELS);
+  const Cells cells(x, atom->nlocal + atom->nghost, dim, fix_fsi->cut + fix_fsi->dx, [&](int j) {
+    return fix_fsi->state[atom->type[j]].species != NONE;
+  });
+  const auto mobility = mobilities(changed, cells);
+  std::vector<double> step(3 * atom->nlocal);
+  for (int k = 0; k < STEPS; k++) {
+    std::fill(step.begin(), step.end(), 0.0);
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (mobility[i] <= 0.0) continue;
+      double *const d = &step[3 * i], sum[4];
+      even_out(i, cells, sum);
+      const double dx = fix_fsi->dx_of(atom->type[i]),
+                   full = std::clamp((sum[3] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
+      MathExtra::copy3(sum, d);
+      MathExtra::scale3(-STRENGTH * dx * dx * mobility[i] * full, d);
+      const double length = MathExtra::len3(d);
+      if (length > LONGEST * dx) MathExtra::scale3(LONGEST * dx / length, d);
+    }
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (mobility[i] <= 0.0) continue;
+      if (account) *account += fix_fsi->potential(i);
+      for (int d = 0; d < dim; d++) x[i][d] += step[3 * i + d];
+      if (account) *account -= fix_fsi->potential(i);
+    }
+    comm->forward_comm();
+  }
+}
+
+// sum of V grad W, and of V W
+void FixFSIRefine::even_out(int i, const Cells &cells, double *sum) const
+{
+  const double *const x = atom->x[i], own = fix_fsi->h_of(atom->type[i]);
+  std::fill_n(sum, 4, 0.0);
+  with_kernel(fix_fsi->kernel, fix_fsi->dim, own, [&](const auto &kernel) {
+    using K = std::decay_t<decltype(kernel)>;
+    const double volume = atom->rmass[i] / atom->rho[i];
+    sum[3] = volume * kernel.W(0.0);
+    const auto add = [&](const K &mean, int j, double rsq) {
+      if (rsq >= mean.cutsq) return;
+      const double r = std::sqrt(rsq), V = atom->rmass[j] / atom->rho[j], g = V * mean.gradient(r);
+      for (int d = 0; d < K::DIM; d++) sum[d] += g * (x[d] - atom->x[j][d]);
+      sum[3] += V * mean.W(r);
+    };
+    cells.around(x, [&](int j, double rsq) {
+      if (j == i) return;
+      const double of_j = fix_fsi->h_of(atom->type[j]);
+      of_j == own ? add(kernel, j, rsq) : add(K(0.5 * (own + of_j)), j, rsq);
+    });
+  });
 }
 
 /* ----------------------------------------------------------------------

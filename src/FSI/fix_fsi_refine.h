@@ -96,6 +96,10 @@ class FixFSIRefine : public Fix {
   double least_shell(int k) const;
 
   void event(bool may_split, bool may_merge);
+  void renew_ghosts();
+  void settle(const std::vector<tagint> &changed);
+  std::vector<double> mobilities(std::vector<tagint> changed, const FSI::Cells &) const;
+  void even_out(int i, const FSI::Cells &, double *sum) const;
   void measure_distances();
   bool in_zone(int k, int i, double grown) const;
   void look(bool may_split, bool may_merge);
