@@ -56,8 +56,8 @@ static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of 
 /* ---------------------------------------------------------------------- */
 
 FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), who("Fix fsi/refine"), every(0), body_bit(0), fix_fsi(nullptr), total{},
-    last_event(-1), moving(false), told(false), message(nullptr), mine{}
+    Fix(lmp, narg, arg), who("Fix fsi/refine"), every(0), settle_steps(30), body_bit(0),
+    fix_fsi(nullptr), total{}, last_event(-1), moving(false), told(false), message(nullptr), mine{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/refine", error);
@@ -67,7 +67,7 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
     const std::string key = arg[k++];
     std::vector<std::string> values;
     const auto is_key = [](const std::string &word) {
-      return word == "types" || word == "region" || word == "distance";
+      return word == "types" || word == "region" || word == "distance" || word == "settle";
     };
     while (k < narg && !is_key(arg[k])) values.emplace_back(arg[k++]);
     if (key == "types")
@@ -76,8 +76,12 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
       region_ids = values;
     else if (key == "distance")
       read_distances(values);
-    else
-      error->all(FLERR, "Unknown fix fsi/refine keyword {}: expected types, region or distance",
+    else if (key == "settle") {
+      if (values.size() != 1) utils::missing_cmd_args(FLERR, "fix fsi/refine settle", error);
+      settle_steps = integer(lmp, who + " settle", values[0], 0, 1000);
+    } else
+      error->all(FLERR,
+                 "Unknown fix fsi/refine keyword {}: expected types, region, distance or settle",
                  key);
   }
   if (types.size() < 2)
@@ -285,7 +289,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   fix_fsi->population.remove(gone, nullptr);
   fix_fsi->population.release(released);
   fix_fsi->population.end();
-  settle(gather(changed, world));
+  if (settle_steps > 0) settle(gather(changed, world));
 }
 
 // where they belong, with ghosts that are where these are: those that lists of before have are a
@@ -309,35 +313,41 @@ void FixFSIRefine::renew_ghosts()
    they see bodies, mirror walls or a surface.
 ------------------------------------------------------------------------- */
 
-std::vector<double> FixFSIRefine::mobilities(std::vector<tagint> changed, const Cells &cells) const
+std::vector<double> FixFSIRefine::mobilities(std::vector<tagint> changed) const
 {
   std::sort(changed.begin(), changed.end());
-  const auto is_fluid = [&](int j) {
-    return fix_fsi->state[atom->type[j]].species == FLUID;
-  };
+  const int nall = atom->nlocal + atom->nghost, dim = fix_fsi->dim;
+  const Cells events(atom->x, nall, dim, fix_fsi->cut, [&](int j) {
+    return std::binary_search(changed.begin(), changed.end(), atom->tag[j]);
+  });
+  const Cells bodies(atom->x, nall, dim, fix_fsi->cut + fix_fsi->dx, [&](int j) {
+    const int species = fix_fsi->state[atom->type[j]].species;
+    return species == SOLID || species == RIGID;
+  });
   std::vector<double> mobility(atom->nlocal, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
-    if (level(i) < 0) continue;
+    if (level(i) < 0 || in_open_end(i, 0)) continue;
     const double *const x = atom->x[i];
     const double cut = fix_fsi->resolution[atom->type[i]].cut, dx = fix_fsi->dx_of(atom->type[i]);
-    double event = cut, body = cut + dx;
-    cells.around(x, [&](int j, double rsq) {
-      if (rsq >= (cut + dx) * (cut + dx)) return;
-      if (!is_fluid(j)) body = std::min(body, std::sqrt(rsq));
-      if (std::binary_search(changed.begin(), changed.end(), atom->tag[j]))
-        event = std::min(event, std::sqrt(rsq));
+    double event = cut * cut, body = (cut + dx) * (cut + dx);
+    events.around(x, [&](int, double rsq) {
+      event = std::min(event, rsq);
     });
+    if (event >= cut * cut) continue;
+    bodies.around(x, [&](int, double rsq) {
+      body = std::min(body, rsq);
+    });
+    body = std::sqrt(body);
     for (const auto &wall : fix_fsi->walls.wall)
       if (wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
-    mobility[i] = (1.0 - event / cut) * std::max(0.0, (body - cut) / dx);
-    if (in_open_end(i, 0)) mobility[i] = 0.0;
+    mobility[i] =
+        std::min(1.0, 2.0 - 2.0 * std::sqrt(event) / cut) * std::max(0.0, (body - cut) / dx);
   }
   return mobility;
 }
 
 void FixFSIRefine::settle(const std::vector<tagint> &changed)
 {
-  static constexpr int STEPS = 10;
   static constexpr double STRENGTH = 0.15, LONGEST = 0.05, SURFACE = 0.9, INSIDE = 0.95;
   renew_ghosts();
   const int dim = fix_fsi->dim;
@@ -345,9 +355,9 @@ void FixFSIRefine::settle(const std::vector<tagint> &changed)
   const Cells cells(x, atom->nlocal + atom->nghost, dim, fix_fsi->cut + fix_fsi->dx, [&](int j) {
     return fix_fsi->state[atom->type[j]].species != NONE;
   });
-  const auto mobility = mobilities(changed, cells);
+  const auto mobility = mobilities(changed);
   std::vector<double> step(3 * atom->nlocal);
-  for (int k = 0; k < STEPS; k++) {
+  for (int k = 0; k < settle_steps; k++) {
     std::fill(step.begin(), step.end(), 0.0);
     for (int i = 0; i < atom->nlocal; i++) {
       if (mobility[i] <= 0.0) continue;

@@ -65,7 +65,7 @@ class FixFSIRefine : public Fix {
   enum Wish { SPLIT = 1 << 16, MERGE = 1 << 17, EAGER = 1 << 18 };
 
   const std::string who;
-  int every;
+  int every, settle_steps;
   std::vector<int> types, level_of;       // from the coarsest on; per type, -1: none of them
   std::vector<std::string> region_ids;    // where the levels from 1 on are,
   std::vector<class Region *> regions;
@@ -98,7 +98,7 @@ class FixFSIRefine : public Fix {
   void event(bool may_split, bool may_merge);
   void renew_ghosts();
   void settle(const std::vector<tagint> &changed);
-  std::vector<double> mobilities(std::vector<tagint> changed, const FSI::Cells &) const;
+  std::vector<double> mobilities(std::vector<tagint> changed) const;
   void even_out(int i, const FSI::Cells &, double *sum) const;
   void measure_distances();
   bool in_zone(int k, int i, double grown) const;
