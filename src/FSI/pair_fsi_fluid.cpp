@@ -531,8 +531,9 @@ void PairFSIFluid::advance_density()
   const int *const type = atom->type;
   const double dt = update->dt + fix_fsi->dt_offset;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (fix_fsi->state[type[i]].species != FLUID) continue;
-    const double next = rho[i] + dt * rate[i], alone = atom->rmass[i] * fix_fsi->state[type[i]].w0;
+    const State &s = fix_fsi->state[type[i]];
+    if (s.species != FLUID) continue;
+    const double next = rho[i] + dt * rate[i], alone = atom->rmass[i] * s.w0;
     if (next < alone) rate[i] = (alone - rho[i]) / dt;    // what go_back() takes
     rho[i] = std::max(next, alone);
   }

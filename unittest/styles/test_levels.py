@@ -239,3 +239,66 @@ def test_displacement(dim, kernel):
     want *= np.minimum(1, 0.25 * C * c * dt / size)[:, None]
     assert ((left > 0.1) & (left < 0.9)).sum() > 0.2 * len(x) and (left == 1).any()
     assert np.abs(got[C] - got[0] - want).max() < 1e-12
+
+
+def test_still_water():
+    """Where 10 rows of 1/21 of the depth meet 8 of 1/15, pressures are within 1 % of rho g H of the hydrostatic ones (root mean square, as far as the kernels
+    of both reach), the largest deviation within 3 %"""
+    df, dc, c = 1 / 21, 1 / 15, 10 * np.sqrt(2)
+    face = 10 * df
+    H = face + 8 * dc
+    x = np.concatenate([lattice([14, 10], df), lattice([10, 8], dc) + [0, face, 0]])
+    dt = 0.25 * 1.5 * df / c
+    with Scene(x, type=np.repeat([2, 1], [140, 80]), dt=dt, fluid=f"sound {c} artificial/visc 0.02 0 density/diffusion 0.1", **levels(1.4, dc),
+               commands=["fix g all gravity 1 vector 0 -1 0", f"fix w all fsi/wall/mirror xlo 0 xhi {14 * df!r} ylo 0", f"fsi/set all hydrostatic {H}"]) as s:
+        s.run(round(6 / dt))
+        y = s.get("x")[:, 1]
+        error = s.p / (1000 * H) - (1 - y / H)
+    near = np.abs(y - face) < 3 * dc
+    print(f"pressure at the jump: {100 * np.sqrt((error[near]**2).mean()):.2f} %, largest {100 * np.abs(error[near]).max():.2f} % of rho g H")
+    assert np.sqrt((error[near]**2).mean()) < 0.01 and np.abs(error[near]).max() < 0.03
+
+
+def test_poiseuille():
+    """Between fine bands along both walls of a channel, with shifting: the profile keeps within 1 % of the largest velocity, scatter about it within 0.5 %"""
+    c, nu, rows = 15.0, 0.05, 12
+    dc, df = 1 / rows, 1 / rows * 3 / 4    # 3 coarse rows are 4 fine ones
+    low = lattice([16, 4], df)
+    x = np.concatenate([low, low + [0, 0.75, 0], lattice([12, 6], dc) + [0, 0.25, 0]])
+    type_ = np.repeat([2, 1], [128, 72])
+    v = np.stack([4 * x[:, 1] * (1 - x[:, 1]), 0 * x[:, 1], 0 * x[:, 1]], 1)
+    dt = 0.375 * df / c
+    with Scene(x, v, type=type_, dt=dt, boundary="p f p", box=((0, -0.5, 0), (1, 1.5, 0)), kernel="quintic", hdx=1.0,
+               materials=(f"fluid rho 1000 viscosity {1000 * nu}",) * 2, fluid=f"sound {c} background 1000 tension yes laminar/visc density/diffusion 0.1 "
+               "shift 0.25 shift/every 4", dx=dc, density=f"spacing 2 {df!r}",
+               commands=["fix w all fsi/wall/mirror ylo 0 slip no yhi 1 slip no", f"fix g all gravity {8 * nu} vector 1 0 0"]) as s:
+        s.run(round(2 / dt))
+        y, u = s.get("x")[:, 1], s.get("v")[:, 0]
+        exact = 4 * y * (1 - y)
+    fit = np.polyval(np.polyfit(y, u - exact, 6), y)
+    print(f"velocity: {100 * np.abs(fit).max():.2f} %, scatter {100 * np.std(u - exact - fit):.3f} % of the largest")
+    assert np.abs(fit).max() < 0.01 and np.std(u - exact - fit) < 0.005
+
+
+@pytest.mark.parametrize("kind", ["wall", "body"])
+def test_hydrostatic_load(kind):
+    """Of water that is finer beside a wall of particles or a held body of the fine spacing, over the exact one: within 2 %, as on one lattice"""
+    df, dc, c = 0.01, 0.014, 20.0
+    H, wide = 14 * df, 10 * dc
+    fine, coarse, wall = lattice([14, 14], df), lattice([10, 10], dc), lattice([4, 18], df)
+    x = np.concatenate([coarse, fine + [wide, 0, 0], wall + [wide + 14 * df, 0, 0]])
+    type_ = np.repeat([1, 2, 3], [len(coarse), len(fine), len(wall)])
+    rigid = kind == "wall"
+    more = dict(materials=(WATER, WATER, "wall rho 1000")) if rigid else dict(materials=(WATER, WATER, RUBBER), solid_style="fsi/solid/tl", mol=type_)
+    dt = 0.25 * 1.5 * df / c
+    with Scene(x, dx=dc, type=type_, held=type_ == 3, dt=dt, fluid=f"sound {c} artificial/visc 0.2 0 density/diffusion 0.1",
+               density=f"spacing 2*3 {df!r}", **more, commands=["fix g all gravity 9.81 vector 0 -1 0", "fix w all fsi/wall/mirror xlo 0 ylo 0",
+               *(["fix wp held fsi/wall/particle"] if rigid else []), f"fsi/set moving hydrostatic {H}", "compute force held fsi/force"]) as s:
+        s.run(round(0.3 / dt))
+        load = []
+        for _ in range(20):
+            s.run(round(0.005 / dt))
+            load.append(s.compute_vector("force")[0])
+    found = np.mean(load) / (0.5 * 1000 * 9.81 * H**2)
+    print(f"load on a {kind} beside fine and coarse water: {found:.4f} of the hydrostatic one")
+    assert abs(found - 1) < 0.02
