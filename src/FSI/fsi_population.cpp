@@ -97,26 +97,17 @@ void Population::remove(const std::vector<int> &gone, double *account)
   removed += gone.size();
 }
 
-void Population::find_last_id()
-{
-  tagint largest = last_id;
-  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
-  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-}
-
-tagint Population::next_id(const std::string &who)
-{
-  if (last_id >= MAXTAGINT)
-    error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
-  return ++last_id;
-}
-
 void Population::make(const std::vector<Particle> &all, const std::string &who, double *account)
 {
-  find_last_id();
+  tagint mine[2] = {last_id, static_cast<tagint>(all.size())}, most[2];
+  for (int i = 0; i < atom->nlocal; i++) mine[0] = std::max(mine[0], atom->tag[i]);
+  MPI_Allreduce(mine, most, 2, MPI_LMP_TAGINT, MPI_MAX, world);
+  last_id = most[0];
+  if (last_id > MAXTAGINT - most[1])
+    error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
   const int first = atom->nlocal;
   for (const auto &p : all) {
-    next_id(who);
+    last_id++;
     double x[3] = {p.x[0], p.x[1], p.x[2]};
     if (!domain->ownatom(last_id, x, nullptr, 1)) continue;
     atom->avec->create_atom(p.type, x);
@@ -128,10 +119,11 @@ void Population::make(const std::vector<Particle> &all, const std::string &who, 
     atom->rmass[i] = p.rmass;
     std::copy_n(p.v, 3, atom->v[i]);
   }
+  last_id = most[0] + most[1];
   atom->data_fix_compute_variable(first, atom->nlocal);
   for (int i = first; account && i < atom->nlocal; i++) *account -= energy(i);
   made += atom->nlocal - first;
-  wanted += all.size();
+  wanted += most[1];
   maker = who;
 }
 
@@ -152,8 +144,12 @@ std::vector<tagint> Population::ids(int n, const std::string &who)
     for (size_t k = 0; k < some.size(); k++)
       if (!used[k]) list.push_back(some[k]);
   }
-  find_last_id();
-  while ((int) list.size() < n) list.push_back(next_id(who));
+  tagint largest = last_id;
+  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
+  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (last_id > MAXTAGINT - (n - (int) list.size()))
+    error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
+  while ((int) list.size() < n) list.push_back(++last_id);
   wanted += n;
   maker = who;
   return list;
@@ -192,8 +188,8 @@ void Population::release(const std::vector<tagint> &mine)
 
 void Population::end()
 {
-  const bigint own[] = {made, removed};
-  const tagint largest = last_id;
+  bigint own[] = {made, removed};    // not const: LAMMPS' MPI for one process takes no other
+  tagint largest = last_id;
   bigint all[2];
   MPI_Allreduce(own, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);

@@ -46,8 +46,8 @@ namespace FSI {
     // of this rank, in rising order; to an account goes their energy, from it that of new ones.
     // Null: there is none
     void remove(const std::vector<int> &, double *account);
-    // The same list on all ranks; IDs go on in its order, whatever rank the places belong to. Those
-    // of this rank are the last of its atoms then. Who: of errors
+    // The same list on all ranks that the places belong to, an empty one or this on others; IDs go
+    // on in its order. Those of this rank are the last of its atoms then. Who: of errors
     void make(const std::vector<Particle> &, const std::string &who, double *account);
     // IDs of particles that are to be made on any rank, the same list on all; first those released
     std::vector<tagint> ids(int n, const std::string &who);
@@ -65,8 +65,6 @@ namespace FSI {
     bigint made, removed, wanted;    // since begin(): of this rank; of all
     std::string maker;
     void renew_map();
-    void find_last_id();
-    tagint next_id(const std::string &who);
     std::vector<char> in_use(const std::vector<tagint> &) const;
   };
 
