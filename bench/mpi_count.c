@@ -1,8 +1,8 @@
 /* Counts what the ranks of a program send each other; loaded before the MPI library (LD_PRELOAD). Point-to-point messages, those without content, bytes,
-   and collective calls. Built and read by measure.py. */
+   collective calls, and the bytes that they reduce. Built and read by measure.py. */
 #include <mpi.h>
 
-long fsi_messages, fsi_empty, fsi_bytes, fsi_collectives;
+long fsi_messages, fsi_empty, fsi_bytes, fsi_collectives, fsi_reduced;
 
 static void sent(int count, MPI_Datatype type)
 {
@@ -34,7 +34,10 @@ int MPI_Sendrecv(const void *buf, int count, MPI_Datatype type, int to, int tag,
 
 int MPI_Allreduce(const void *buf, void *in, int count, MPI_Datatype type, MPI_Op op, MPI_Comm comm)
 {
+  int size;
+  PMPI_Type_size(type, &size);
   fsi_collectives++;
+  fsi_reduced += (long) count * size;
   return PMPI_Allreduce(buf, in, count, type, op, comm);
 }
 

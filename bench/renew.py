@@ -98,11 +98,11 @@ def take(wanted):
 
 
 def add_case(data, name, case, summary):
-    """Puts one case in the data of a scene whose others were run before. Its figures are judged if those of this name were."""
-    with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / case).symlink_to(paths.RESULTS / name / case)
-        scene.analysis(name).study(Path(folder), {case: Path(folder) / case})
-        new = [f for f in json.loads((Path(folder) / "summary.json").read_text())["figures"] if f["name"] not in results.COST]
+    """Puts one case in the data of a scene whose others were run before: figures that the study has with it and not without, next to what
+    else results have of this commit. They are judged if those of their names were."""
+    there = [k for k in scene.cases(name) if k == case or commit_of(paths.RESULTS / name / k) == summary["commit"]]
+    without = [f["name"] for f in studied(name, [k for k in there if k != case])]
+    new = [f for f in studied(name, there) if f["name"] not in [*without, *results.COST]]
     old = {f["name"]: f for f in data["figures"]}
     for figure in new:
         if (old.get(figure["name"]) or {"target": None})["target"] is None:
@@ -113,6 +113,22 @@ def add_case(data, name, case, summary):
     data["figures"][at:at] = new
     ran = {key: summary[key] for key in ("given", "particles", "steps", "ranks", "cpu_seconds", "commit", "date")}
     data["cases"] = {k: {**data["cases"], case: ran}[k] for k in scene.cases(name) if k in data["cases"] or k == case}
+
+
+def studied(name, cases):
+    """Figures of a scene's study of these cases, made anew."""
+    if not cases:
+        return []
+    with tempfile.TemporaryDirectory() as folder:
+        for case in cases:
+            (Path(folder) / case).symlink_to(paths.RESULTS / name / case)
+        scene.analysis(name).study(Path(folder), {case: Path(folder) / case for case in cases})
+        return json.loads((Path(folder) / "summary.json").read_text())["figures"]
+
+
+def commit_of(folder):
+    path = folder / "summary.json"
+    return json.loads(path.read_text()).get("commit") if path.exists() else None
 
 
 def stamp(path):
@@ -166,6 +182,7 @@ def draw():
     evidence.draw_named(PAGE / "named.png")
     effects.draw(PAGE / "effects.png", read_csv(PAGE / "effects.csv"))
     peers.draw(PAGE / "peers.png", read_csv(PAGE / "peers.csv"))
+    scaling.draw(PAGE / "scaling.png", read_csv(PAGE / "scaling.csv"))
     hard_pages.draw_hard(evidence.HARD / "hard.png")
     hard_pages.draw_robustness(evidence.HARD / "robustness.png")
 

@@ -1,12 +1,16 @@
-"""What a step costs that several ranks share: compute of a particle, bytes and exchanges of a ghost, balance. tools/cost scaling"""
+"""What a step costs that several ranks share: compute of a particle, bytes and exchanges of a ghost, balance; and how large a scene may be.
+tools/cost scaling"""
 
 import os
 import re
+import tempfile
 from pathlib import Path
 
+import effects
 import measure
 from tool import Job, say
 
+from fsi import log, plot, scene
 from fsi.command import start
 
 DECK = Path(__file__).resolve().parent / "peers" / "in.water_fsi"
@@ -78,32 +82,163 @@ def balance(kept):
     return found
 
 
+STILL = """
+variable start timer
+variable dx equal 1.0/N
+units si
+dimension 3
+boundary f f f
+atom_style fsi
+region box block $(-4*v_dx) $(1+4*v_dx) $(-4*v_dx) $(1+4*v_dx) $(-4*v_dx) 1.5
+create_box 1 box
+lattice sc ${dx} origin 0.5 0.5 0.5
+region water block 0 1 0 1 0 1 units box
+create_atoms 1 region water
+pair_style fsi/fluid sound 45 artificial/visc 0.05 0 density/diffusion 0.1
+pair_coeff * * materials.fsi water_inviscid
+fix sph all fsi ${dx} wendland 1.5
+fix gravity all gravity 9.81 vector 0 0 -1
+fix walls all fsi/wall/mirror xlo 0 xhi 1 ylo 0 yhi 1 zlo 0
+fsi/set all hydrostatic 1
+timestep $(0.1*v_dx/45)
+neighbor $(0.3*v_dx) bin
+run 0
+variable end timer
+print "FSI setup $(v_end-v_start)"
+run 3
+variable start timer
+write_restart still.restart
+variable end timer
+print "FSI write $(v_end-v_start)"
+info memory out log
+clear
+variable start timer
+read_restart still.restart
+variable end timer
+print "FSI read $(v_end-v_start)"
+"""
+SIZES = {"1 million": 100, "2 million": 126}  # particles of a cube of water along its edge
+MEMORY = 24 * 2**30
+OTHERS = "LAMMPS' atoms and images at walls"
+
+
+def size(kept):
+    """Of still water in 3D, {size: bytes of a particle by what they are for, seconds}. The peak has what is there for a while, to write the restart file."""
+    def run(text, n):
+        with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
+            folder = Path(name)
+            measure.run(folder, text)
+            said, first = (folder / "log.lammps").read_text(), log.read(folder / "log.lammps").finished[0]
+            number = lambda pattern: float(re.search(pattern, said)[1])
+            lists = 4 * first.neighbours / n + 16  # entries, and a particle's length and place
+            arrays, rows = number(r"all particles: (\d+) bytes") + 32, 32  # and forces, which LAMMPS' are added to
+            peak = number(r"Maximum resident set size: (\S+) Mbyte") * 2**20 / n
+            return {"neighbor lists": lists, "arrays of the package": arrays, "rows": rows, OTHERS: first.bytes_per_rank / n - lists - arrays - rows / 2,
+                    "peak": peak, "restart file": (folder / "still.restart").stat().st_size / n,
+                    **{what: number(rf"(?m)^FSI {what} (\S+)") for what in ("setup", "write", "read")}}
+    found = {}
+    for label, n in SIZES.items():
+        text = STILL.replace("N", str(n), 1)
+        found[label] = kept.get(["size", text], lambda t=text, m=n**3: run(t, m))
+    return found
+
+
+def largest(found):
+    """Particles that MEMORY holds, by the peak of the larger run: a model, lists and arrays being in proportion."""
+    return MEMORY / list(found.values())[-1]["peak"]
+
+
+RANKS = (2, 4, 8, 16)
+
+
+def still_deck(name, dx):
+    """A bundled deck without output, balance and choice of the step, so small a step that nothing moves."""
+    if name == "elastic_gate":
+        return re.sub(r"^timestep .*", "timestep 1e-7", effects.gate(round(1 / dx), 0), flags=re.M)
+    text = re.sub(r"&\n", " ", scene.deck(name).read_text())
+    text = re.sub(r"^(dump|dump_modify|run|thermo|thermo_style|print|if|fix +\d+ +\S+ fsi/dt|fix +dt|fix +balance|timestep) .*$", "", text, flags=re.M)
+    return text + "\ntimestep 1e-7\nthermo 1000000\n"
+
+
+def shared(kept):
+    """What the busiest of several ranks has and sends in a step: {scene: {ranks: {...}}}."""
+    os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
+    found = {}
+    for label, text in (("elastic gate, 2.5 mm", still_deck("elastic_gate", 0.0025)), ("3D water, 27,000 particles", still_water())):
+        found[label] = {ranks: kept.get(["shared", text, ranks], lambda t=text, r=ranks: measure.messages([t], r, max)[0]) for ranks in RANKS}
+    return found
+
+
+def still_water():
+    """STILL, small, without what times it."""
+    text = STILL.replace("N", "30", 1)
+    text = text[:text.index("run 0")]
+    return re.sub(r"^timestep .*", "timestep 1e-7", re.sub(r"^variable start .*", "", text, flags=re.M), flags=re.M)
+
+
+def draw(path, rows):
+    """Bytes of a particle by what they are for."""
+    parts = [r for r in rows if r["what"].startswith("bytes of a particle, ")]
+    sizes = list(SIZES)
+    with plot.picture(path, 7.2, 1.7) as figure:
+        axes = figure.add_subplot()
+        for k, label in enumerate(sizes):
+            left = 0.0
+            for colour, r in zip((plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY, plot.RED), (r for r in parts if r["what"].endswith(label))):
+                axes.barh(k, r["value"], 0.6, left=left, color=colour, label=r["what"].split(", ")[1] if k == 0 else None)
+                axes.text(left + 0.5 * r["value"], k, f"{r['value']:.0f}", ha="center", va="center", color="white", fontsize=8)
+                left += r["value"]
+        axes.set_yticks(range(len(sizes)), sizes)
+        axes.set(xlabel="bytes of a particle of 3D water")
+        axes.grid(axis="y", visible=False)
+        figure.legend(loc="upper center", ncol=5, fontsize=7.5, frameon=False)
+        figure.tight_layout(rect=(0, 0, 1, 0.92))
+
+
 def page(rows, pairs):
     """The page's text; pairs: rows of tools/cost peers, of which those of two ranks."""
     lines = ["# Several ranks", "",
              "The package runs on any number of MPI ranks, as LAMMPS does, and gives the same forces to round-off.",
-             "Two ranks were timed. What more ranks give was not measured.", "",
+             "Two ranks were timed. Of more ranks work and messages were counted, not timed.", "",
+             "![Bytes of a particle](scaling.png)", "",
+             "- Bytes of a particle are those of still water in 3D, Wendland 1.5, skin 0.3 dx, in a cube with five walls, on one rank.",
+             "- For a while: the peak of the process less the other parts. It is reached when the restart file is written.",
+             "- The largest scene is a model: memory over the peak of a particle in the larger run.",
+             "- Set-up is from the start of the script to the first step, with all checks. All seconds are wall-clock time.",
+             "- Of several ranks the row has the largest number of any of them, in a step without new lists.",
              "- Bytes and exchanges are what *fix fsi* prints; `unittest/tools/test_pay.py` checks them around the MPI calls.",
              "- Balance: a dam break in a tank that is half empty, 1,250 particles, two ranks, 0.5 s.",
              "- With the box cut in halves one rank has nearly all particles, and two ranks gain little: use `fix balance all balance 20 1.05 shift x 20 1.02`.",
              "- Two ranks are timed by `tools/cost peers`, the rest by `tools/cost scaling`.", "", "| quantity | value |", "|---|---:|"]
     lines += [f"| {r['what']} | {r['ratio']:.2f} ± {r['spread']:.2f} |" for r in pairs if r["what"].startswith("2 ranks") and r["ratio"] is not None]
     for r in rows:
-        value, unit = (1e6 * r["value"], "us") if r["unit"] == "s" else (r["value"], r["unit"] or "")
-        lines.append(f"| {r['what']} | {value:.3g} {unit}".rstrip() + " |")
+        value, unit = (1e6 * r["value"], "us") if r["unit"] == "s" and r["value"] < 1e-3 else (r["value"], r["unit"] or "")
+        lines.append(f"| {r['what']} | {f'{value:.3g}' if value < 1e4 else f'{value:,.0f}'} {unit}".rstrip() + " |")
     return "\n".join(lines) + "\n"
 
 
 def main(arguments):
     """tools/cost scaling"""
     job = Job("scaling", arguments)
-    m, balanced = measured(job.kept), balance(job.kept)
+    m, balanced, sizes = measured(job.kept), balance(job.kept), size(job.kept)
     rows = [("compute of a particle and step, 3D water in its full physics", m["tau"], "s"), ("bytes of a ghost and step", m["bytes"], "B"),
             ("exchanges of a step", m["exchanges"], ""), ("support and skin over the spacing", m["w"], "")]
     for label, words in (("never", "box cut in halves"), ("fix balance", "fix balance")):
         rows += [(f"particles of the fuller of two ranks over the mean, {words}: mean", balanced[label]["mean"], ""), ("the same, largest", balanced[label]["largest"], "")]
+    for label, of in sizes.items():
+        known = ("neighbor lists", "arrays of the package", "rows", OTHERS)
+        rows += [(f"bytes of a particle, {part}, {label}", of[part], "B") for part in known]
+        rows += [(f"bytes of a particle, for a while, {label}", of["peak"] - sum(of[part] for part in known), "B"),
+                 (f"restart file, bytes of a particle, {label}", of["restart file"], "B")]
+        rows += [(f"{word}, {label}", of[what], "s") for what, word in (("setup", "set-up"), ("write", "write_restart"), ("read", "read_restart"))]
+    rows.append(("particles that 24 GB hold (model)", largest(sizes), ""))
+    for label, of in shared(job.kept).items():
+        for ranks, n in of.items():
+            rows += [(f"{label}, {ranks} ranks: ghosts over particles", n["ghosts"] / max(n["particles"], 1), ""), ("messages", n["messages"], ""),
+                     ("bytes sent", n["bytes"], "B")]
     rows = [dict(zip(("what", "value", "unit"), row)) for row in rows]
     say("cost: " + "; ".join(f"{r['what']} {r['value']:.3g} {r['unit']}".rstrip() for r in rows))
+    draw(job.folder / "scaling.png", rows)
     job.write(("what", "value", "unit"), rows, 4, page(rows, []))
     return 0
 

@@ -3,7 +3,7 @@
 option(FSI_COMPILED_IN "The package is part of LAMMPS (OFF: of the plugin only)" ON)
 
 # What the bundled decks need. More: -DPKG_<NAME>=ON.
-foreach(pkg RIGID PLUGIN)
+foreach(pkg RIGID GRANULAR PLUGIN)
   option(PKG_${pkg} "LAMMPS package ${pkg}" ON)
 endforeach()
 option(BUILD_SHARED_LIBS "Build liblammps as a shared library (Python, plugins)" ON)

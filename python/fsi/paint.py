@@ -39,6 +39,16 @@ def _nearest(width, height, across, up, near, r):
     surface = np.full(width * height, -np.inf)
     i, j = np.floor(across).astype(int), np.floor(up).astype(int)
     reach = int(np.ceil(r.max())) if len(r) else 0
+    if len(r) < (2 * reach + 1)**2:  # fewer particles than places around one: one particle after the other
+        owner, surface = owner.reshape(height, width), surface.reshape(height, width)
+        for k in range(len(r)):
+            box = slice(max(0, j[k] - reach), max(0, j[k] + reach + 1)), slice(max(0, i[k] - reach), max(0, i[k] + reach + 1))
+            rows, columns = np.ogrid[:height, :width]
+            off = (columns[:, box[1]] + 0.5 - across[k])**2 + (rows[box[0]] + 0.5 - up[k])**2
+            top = near[k] + np.sqrt(np.maximum(r[k]**2 - off, 0.0))
+            better = (off < r[k]**2) & (top >= surface[box])
+            surface[box][better], owner[box][better] = top[better], k
+        return owner, surface
     for dj in range(-reach, reach + 1):
         for di in range(-reach, reach + 1):
             column, row = i + di, j + dj

@@ -14,8 +14,10 @@
 #include "atom_vec_fsi.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "error.h"
 #include "fsi_record.h"
+#include "modify.h"
 
 using namespace LAMMPS_NS;
 
@@ -95,6 +97,21 @@ void AtomVecFSI::data_atom_post(int ilocal)
     error->one(FLERR,
                "Invalid mass {} in Atoms section of data file: expected >= 0 (0 = of the lattice)",
                rmass[ilocal]);
+}
+
+/* ----------------------------------------------------------------------
+   of the first atom: a data file has none of what fixes and pair styles keep of solids
+------------------------------------------------------------------------- */
+
+void AtomVecFSI::pack_data_pre(int ilocal)
+{
+  if (ilocal > 0 || comm->me > 0) return;
+  if (modify->get_fix_by_style("^fsi/stress$").empty() &&
+      modify->get_fix_by_style("^FSI_REFERENCE$").empty())
+    return;
+  error->warning(FLERR,
+                 "Data files hold no strain, stress or bonds of solids: read again, bodies are at "
+                 "rest in the shape that they have. write_restart keeps all");
 }
 
 /* ----------------------------------------------------------------------

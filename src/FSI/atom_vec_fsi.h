@@ -44,6 +44,7 @@ class AtomVecFSI : virtual public AtomVec {
   void grow_pointers() override;
   void create_atom_post(int) override;
   void data_atom_post(int) override;
+  void pack_data_pre(int) override;
   int property_atom(const std::string &) override;
   void pack_property_atom(int, double *, int, int) override;
 

@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_number_density.h"
 #include "fsi_tensor.h"
 #include "memory.h"
 #include "modify.h"
@@ -38,15 +39,15 @@ ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), tensor(false), nmax(0), fix_fsi(nullptr)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "compute fsi/atom", error);
-  static const std::vector<std::string> names = {"p",        "rho", "psi", "volume",
-                                                 "vonmises", "sxx", "syy", "szz",
-                                                 "sxy",      "sxz", "syz", "plastic/strain"};
+  static const std::vector<std::string> names = {
+      "p",   "rho", "psi", "volume", "vonmises",       "sxx",  "syy",
+      "szz", "sxy", "sxz", "syz",    "plastic/strain", "bonds"};
   for (int iarg = 3; iarg < narg; iarg++) {
     const auto it = std::find(names.begin(), names.end(), arg[iarg]);
     if (it == names.end())
       error->all(FLERR,
                  "Unknown compute fsi/atom quantity {}: expected p, rho, psi, volume, vonmises, "
-                 "sxx, syy, szz, sxy, sxz, syz or plastic/strain",
+                 "sxx, syy, szz, sxy, sxz, syz, plastic/strain or bonds",
                  arg[iarg]);
     quantity.push_back(it - names.begin());
     tensor |= quantity.back() >= VONMISES && quantity.back() <= SYZ;
@@ -131,6 +132,9 @@ void ComputeFSIAtom::compute_peratom()
             break;
           case PLASTIC:
             if (of.has_stress) value = fix_stress->plastic_strain(i);
+            break;
+          case BONDS:
+            if (solid_tl) value = solid_tl->bonds(i);
             break;
           default:
             value = of.sigma[quantity[k] - SXX];

@@ -37,7 +37,11 @@ class ComputeFSIAtom : public Compute {
   double memory_usage() override;
 
  private:
-  enum Quantity { PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ, PLASTIC };
+  // clang-format off
+  enum Quantity {
+    PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ, PLASTIC, BONDS
+  };
+  // clang-format on
   std::vector<int> quantity;
   bool tensor;    // is one of them of the stress?
   std::vector<double> psi;

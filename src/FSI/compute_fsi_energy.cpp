@@ -101,7 +101,8 @@ void ComputeFSIEnergy::compute_vector()
   const auto *const stress = FixFSIStress::find(lmp);
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = fix_fsi->state[atom->type[i]];
-    if (s.species == RIGID) continue;    // what it gets is in the term of walls
+    // what a wall gets is in the term of walls; what grains get, in that of coupling
+    if (s.species == NONE || s.species == RIGID) continue;
     const double m = atom->rmass[i];
     const bool tl = fix_fsi->is_total_lagrangian(i);
     // what fix fsi does not integrate is where and as fast as it is, whatever pushes it

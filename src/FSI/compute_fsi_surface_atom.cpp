@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_keywords.h"
+#include "fsi_number_density.h"
 #include "memory.h"
 #include "pair_fsi_fluid.h"
 #include "update.h"

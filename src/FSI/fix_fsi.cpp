@@ -20,12 +20,21 @@
 #include "error.h"
 #include "force.h"
 #include "fsi_announce.h"
+#include "fsi_changes.h"
+#include "fsi_check.h"
+#include "fsi_clock.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
+#include "fsi_number_density.h"
 #include "fsi_order.h"
+#include "fsi_others.h"
 #include "fsi_part.h"
+#include "fsi_others.h"
+#include "fsi_population.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_sight.h"
+#include "fsi_surface_room.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -34,6 +43,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <functional>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -41,13 +51,33 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
+struct FixFSI::Members {
+  Keywords keywords;
+  Clock clock;
+  Check check;
+  Changes changes;
+  Population population;
+  NumberDensity number_density;
+  SurfaceRoom surface_room;
+  Others others;
+
+  Members(LAMMPS *lmp, FixFSI &fix, const std::function<void(double *)> &add_ghosts) :
+      keywords(lmp, "fix fsi"), clock(lmp), check(lmp, fix), changes(lmp), population(lmp, fix),
+      number_density(lmp, fix, add_ghosts), surface_room(lmp, fix, number_density, add_ghosts),
+      others(lmp, fix)
+  {
+  }
+};
+
 // clang-format off
 FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), Scene(lmp, this), keywords(lmp, "fix fsi"), clock(lmp),
-    check(lmp, *this), changes(lmp), population(lmp, *this),
-    number_density(lmp, *this, [this](double *n) { add_ghosts(n); }),
-    surface_room(lmp, *this, number_density, [this](double *n) { add_ghosts(n); }),
-    ids_checked(false), forward(lmp, state), back(lmp, state), scalar(lmp, state), carried(nullptr)
+    FixFields(lmp, narg, arg), Scene(lmp, this),
+    members(new Members(lmp, *this, [this](double *n) { add_ghosts(n); })),
+    keywords(members->keywords), clock(members->clock), check(members->check),
+    changes(members->changes), population(members->population),
+    number_density(members->number_density), surface_room(members->surface_room),
+    others(members->others), forward(lmp, state), back(lmp, state), scalar(lmp, state),
+    carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -78,18 +108,17 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this, thin);
 
   time_integrate = force_reneighbor = create_attribute = restart_global = 1;
+  pre_exchange_migrate = 1;
   set_fields();
   register_fields();
-  comm_reverse = 1;    // more with solids, see init()
 }
 // clang-format on
 
 // what the next one has to keep, if particles have masses since
 FixFSI::~FixFSI()
 {
-  if (parts.empty()) return;
   auto &kept = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
-  kept = std::make_unique<Record>(record());
+  if (!parts.empty()) kept = std::make_unique<Record>(record());
 }
 
 Record FixFSI::record() const
@@ -119,7 +148,7 @@ void FixFSI::set_fields()
              wall_stiffness);
 
   forward.clear();
-  forward.add(atom->rho, {NONE, FLUID, SOLID, RIGID});
+  forward.add(atom->rho, {FLUID, SOLID, RIGID});
   number_density.add_messages(forward);
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
@@ -163,6 +192,11 @@ int FixFSI::setmask()
   return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;
 }
 
+void FixFSI::post_run()
+{
+  changes.end_run();
+}
+
 void FixFSI::init()
 {
   check.before_init();
@@ -189,8 +223,9 @@ void FixFSI::init()
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
+  others.init();
   check.materials();
-  for (int i = 0; i < atom->nlocal; i++) give_defaults(i);
+  for (int i = 0; i < atom->nlocal; i++) others.give_defaults(i);
   body_forces.find(state);
   check.init();
 }
@@ -203,22 +238,10 @@ void FixFSI::setup(int)
   changes.set_up();
 }
 
-/* ----------------------------------------------------------------------
-   an atom that was never given a mass or a density gets those of the stress-free lattice
-------------------------------------------------------------------------- */
-
-void FixFSI::give_defaults(int i)
-{
-  const State &s = state[atom->type[i]];
-  if (s.species == NONE) return;    // before init()
-  if (atom->rmass[i] == 0.0) atom->rmass[i] = s.rho0 / resolution[atom->type[i]].psi_bulk;
-  if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
-}
-
 void FixFSI::find_parts()
 {
   parts.clear();
-  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"})
+  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl", "fsi/grain"})
     if (auto *p = dynamic_cast<Part *>(force->pair_match(style, 1))) parts.push_back(p);
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
@@ -311,16 +334,16 @@ template <int D> void FixFSI::kick()
     if (shifts && state[type[i]].species == FLUID)
       for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
   }
+  others.turn(dt);
 }
 
 /* ----------------------------------------------------------------------
-   bring density and stress to the time of the positions, on local and ghost atoms
-   advance = false in setup: a function of the state only, nothing evolves
+   bring density and stress of local and ghost atoms to the time of the positions; not to advance,
+   in setup: a function of the state only
 ------------------------------------------------------------------------- */
 
 void FixFSI::update_state(bool advance)
 {
-  const int nall = atom->nlocal + atom->nghost;
   fields.grow();
   changes.in_step();
   inverted = -1;
@@ -332,22 +355,18 @@ void FixFSI::update_state(bool advance)
   if (walls.any()) {
     phase.next(Profile::WALLS);
     gather_walls();
-    const Row *const x = rows(atom->x);
-    // walls of particles go on behind a mirror themselves
-    const InnerBox inner(walls.wall, cut);
-    for (int i = 0; i < nall; i++) {
-      const bool none = inner.contains(x[i]) || state[atom->type[i]].species == RIGID;
-      wmask[i] = none ? 0 : walls.near(x[i], cut);
-    }
+    find_near_walls();
   }
 
   phase.next(Profile::DENSITY);
   bool sums = false;
   for (auto *p : parts) sums = p->add_rates(advance) || sums;
+  sent = &back;
   if (sums && force->newton_pair) reverse_comm(profile, comm, this);
   for (auto *p : parts) p->advance(advance);
   number_density.renew(advance);
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
+  sent = &forward;
   forward_comm(profile, comm, this);
   for (auto *p : parts) p->end_state(advance);
 }
@@ -355,46 +374,22 @@ void FixFSI::update_state(bool advance)
 void FixFSI::add_ghosts(double *n)
 {
   carried = n;
+  sent = &scalar;
   if (force->newton_pair) reverse_comm(profile, comm, this);
-  carried = nullptr;
 }
+
 void FixFSI::send_to_ghosts(double *n)
 {
   carried = n;
+  sent = &scalar;
   forward_comm(profile, comm, this);
-  carried = nullptr;
-}
-
-/* ----------------------------------------------------------------------
-   ghosts get density, number density where in use, stress and the gradient's coefficients where
-   they are solid; back come the sums that pairs left on them
-------------------------------------------------------------------------- */
-
-int FixFSI::pack_forward_comm(int n, int *list, double *buf, int, int *)
-{
-  return (carried ? scalar : forward).pack(n, list, buf);
-}
-
-void FixFSI::unpack_forward_comm(int n, int first, double *buf)
-{
-  (carried ? scalar : forward).unpack(n, first, buf);
-}
-
-int FixFSI::pack_reverse_comm(int n, int first, double *buf)
-{
-  return (carried ? scalar : back).pack_back(n, first, buf);
-}
-
-void FixFSI::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  (carried ? scalar : back).add_up(n, list, buf);
 }
 
 void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   changes.forget();
-  give_defaults(i);
+  others.give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
     error->one(FLERR,
                "Fluid atom {} was made during a run and is not in group {} of fix {}: it "

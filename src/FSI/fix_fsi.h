@@ -20,28 +20,34 @@ FixStyle(fsi,FixFSI);
 #ifndef LMP_FIX_FSI_H
 #define LMP_FIX_FSI_H
 
-#include "atom.h"
-#include "fsi_changes.h"
-#include "fsi_check.h"
-#include "fsi_clock.h"
 #include "fsi_fields.h"
-#include "fsi_keywords.h"
-#include "fsi_number_density.h"
-#include "fsi_population.h"
-#include "fsi_record.h"
 #include "fsi_scene.h"
-#include "fsi_surface_room.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Changes;
+  class Check;
+  class Clock;
+  class Keywords;
+  class NumberDensity;
+  class Others;
+  class Population;
+  class Record;
+  class SurfaceRoom;
+}    // namespace FSI
 
 // The centre of the package: sets the scene (spacing, kernel), integrates in time (position Verlet)
 // and calls what takes part in a step, which brings density and stress of every particle to the
 // middle of the step before forces are computed.
 
 class FixFSI : public FSI::FixFields, public FSI::Scene {
+  struct Members;
+  const std::unique_ptr<Members> members;
+
  public:
   FixFSI(class LAMMPS *, int, char **);
   ~FixFSI() override;
@@ -54,11 +60,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   static FixFSI *ready(class LAMMPS *, const std::string &who);
   // once, before the first run after a restart file was read: what the file keeps for fixes that go
   // by another ID now
-  void check_restart_ids()
-  {
-    if (!ids_checked) FSI::check_ids(lmp);
-    ids_checked = true;
-  }
+  bool ids_checked = false;
   int setmask() override;
   void init() override;
   void setup(int) override;
@@ -67,41 +69,37 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void pre_exchange() override;
   void pre_force(int) override { update_state(true); }
   void final_integrate() override;
-  void post_run() override { changes.end_run(); }
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
-  int pack_reverse_comm(int, int, double *) override;
-  void unpack_reverse_comm(int, int *, double *) override;
+  void post_run() override;
   void set_arrays(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  FSI::Keywords keywords;
-  FSI::Clock clock;
-  FSI::Check check;        // stops a run that has lost its meaning
-  FSI::Changes changes;    // since the last run
-  FSI::Population population;
-
-  FSI::NumberDensity number_density;
-  FSI::SurfaceRoom surface_room;
+  FSI::Keywords &keywords;
+  FSI::Clock &clock;
+  FSI::Check &check;        // stops a run that has lost its meaning
+  FSI::Changes &changes;    // since the last run
+  FSI::Population &population;
+  FSI::NumberDensity &number_density;
+  FSI::SurfaceRoom &surface_room;
   void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
   void send_to_ghosts(double *n);
 
  private:
   void set_fields();
-  void give_defaults(int);
   int given_substeps;
   double hdx;                           // h over dx
   std::vector<double> given_spacing;    // per type; 0: dx
-  bool ids_checked;
 
+  FSI::Others &others;    // of no material; masses and densities of new ones
   void find_parts();
   FSI::Record record() const;    // of the command, for the next one
   bool goes_on(const FSI::Record &, const std::string &when);
 
-  FSI::Message forward, back;    // to ghosts, and sums from them
-  FSI::Message scalar;           // of one array of numbers per atom, both ways
-  double *carried;               // that array; null: the others
+  // ghosts get density, number density where in use, what parts of the step add; back come the
+  // sums that pairs left on them
+  FSI::Message forward, back;
+  FSI::Message scalar;    // of one array of numbers per atom, both ways
+  double *carried;        // that array
   bool fresh_start() const;
   template <int D> void drift();
   template <int D> void kick();

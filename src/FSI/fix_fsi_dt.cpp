@@ -18,7 +18,9 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_clock.h"
 #include "fsi_gather.h"
+#include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "group.h"
 #include "modify.h"
@@ -77,13 +79,6 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   dynamic_group_allow = 1;
   time_depend = restart_global = check == NO_CHECK;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIDt::setmask()
-{
-  return END_OF_STEP | POST_RUN;
 }
 
 /* ---------------------------------------------------------------------- */

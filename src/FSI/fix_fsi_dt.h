@@ -21,7 +21,6 @@ FixStyle(fsi/dt,FixFSIDt);
 #define LMP_FIX_FSI_DT_H
 
 #include "fix.h"
-#include "fsi_keywords.h"
 #include "fsi_limits.h"
 #include "fsi_part.h"
 
@@ -34,7 +33,7 @@ namespace LAMMPS_NS {
 class FixFSIDt : public Fix, public FSI::Part {
  public:
   FixFSIDt(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override { return FixConst::END_OF_STEP | FixConst::POST_RUN; }
   void init() override;
   void setup(int) override;
   void end_of_step() override;

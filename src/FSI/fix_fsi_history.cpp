@@ -16,6 +16,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_changes.h"
 #include "fsi_record.h"
 #include "modify.h"
 

@@ -21,8 +21,12 @@
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
+#include "fsi_number_density.h"
+#include "fsi_population.h"
 #include "fsi_record.h"
 #include "fsi_shift.h"
+#include "fsi_value.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -68,11 +72,12 @@ static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"),
-    keywords(lmp, keywords_name()), given(lmp, keywords_name(), NVALUES), background(false),
-    length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr), behind(nullptr), mean{},
-    filled(false), wave(0.0), gradient(0.0), before(0.0), served(0.0), has_before(false),
-    passed_in(0.0), passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0),
-    last_buffer(-1.0), told{}, push_sum{}
+    keywords(lmp, keywords_name()), given(new Values(lmp, keywords_name(), NVALUES)),
+    background(false), length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr),
+    behind(nullptr), nodes(lmp), nbounds(0), mean{}, filled(false), wave(0.0), before(0.0),
+    gradient(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0),
+    fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{},
+    ends(MPI_COMM_NULL)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, keywords_name(), error);
@@ -105,11 +110,11 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "{} {} requires keyword velocity or pressure", who, face);
   if (words[0].empty()) {
     background = p.empty();
-    if (!background && p != "free") given.read(PRESSURE, p, "pressure", "v_name or free");
+    if (!background && p != "free") given->read(PRESSURE, p, "pressure", "v_name or free");
   } else {
     for (int d = 0; d < 3; d++) {
-      given.read(d, words[d], "velocity");
-      if (d >= domain->dimension && (given.source(d) != Values::NUMBER || given.number(d) != 0.0))
+      given->read(d, words[d], "velocity");
+      if (d >= domain->dimension && (given->source(d) != Values::NUMBER || given->number(d) != 0.0))
         error->all(FLERR, "{} velocity along z must be 0 in 2D, not {}", who, words[d]);
     }
   }
@@ -133,20 +138,28 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIInlet::setmask()
+FixFSIInlet::~FixFSIInlet()
 {
-  return PRE_EXCHANGE;
+  forget_ends();
 }
 
-/* ---------------------------------------------------------------------- */
+bool FixFSIInlet::has_own_velocity() const
+{
+  return !given->given(0);
+}
+
+bool FixFSIInlet::has_own_pressure() const
+{
+  return !given->given(PRESSURE) && !background;
+}
 
 double FixFSIInlet::value(int k, int i) const
 {
-  const double x = given(k, i);
+  const double x = (*given)(k, i);
   if (!std::isfinite(x))
     error->one(FLERR, "{} {}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", who, id,
                k == PRESSURE ? "pressure" : fmt::format("velocity along {}", "xyz"[k]), x,
-               atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given.see(k));
+               atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given->see(k));
   return x;
 }
 
@@ -199,23 +212,25 @@ void FixFSIInlet::init()
                who, id, made[0], made[1], position, length);
   check_plane();
   find_region();
-  given.find();
+  given->find();
   zone_group = igroup;
-  if (given.of_atoms()) zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
+  if (given->of_atoms())
+    zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
   driven = false;
   for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
     driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->has_own_velocity();
   told = {};
-  if (given.source(PRESSURE) == Values::NUMBER && is_far(given.number(PRESSURE))) {
+  if (given->source(PRESSURE) == Values::NUMBER && is_far(given->number(PRESSURE))) {
     const State &soft = softest();
-    const double away = std::fabs(given.number(PRESSURE) - soft.p0);
+    const double away = std::fabs(given->number(PRESSURE) - soft.p0);
     error->all(FLERR,
                "{} {}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
                "most. Is it in units {}? Else take sound {:.3g} or more in pair_style fsi/fluid",
-               who, id, given.number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
+               who, id, given->number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
                update->unit_style, std::sqrt(away / (FAR * soft.rho0)));
   }
   fix_fsi->population.leave_an_id_free();
+  forget_ends();
 }
 
 /* ----------------------------------------------------------------------
@@ -343,10 +358,12 @@ void FixFSIInlet::fill_buffer()
 {
   enum { BEHIND, AHEAD, BEYOND, WALLS_BEHIND, WALLS_AHEAD, NCOUNT };
   bigint own[NCOUNT] = {}, all[NCOUNT];
+  bool has_some = false;
   std::vector<int> slices(number_of_slices(), 0);
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
     if (s <= -2.0 * length || s >= length) continue;
+    has_some = true;
     if (fix_fsi->state[atom->type[i]].species == RIGID && s > -length)
       own[s > 0.0 ? WALLS_AHEAD : WALLS_BEHIND]++;
     if (!is_fluid(i) || !in_patch(atom->x[i])) continue;
@@ -377,6 +394,7 @@ void FixFSIInlet::fill_buffer()
                    "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls "
                    "should go on along the buffer, to {} = {:g}",
                    who, id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
+  renew_ends(has_some);
   if (all[BEHIND] > 0) check_slices(slices);
   if (all[BEHIND] == 0 && all[AHEAD] > 0) {
     const auto copies = go_on_behind();
@@ -385,11 +403,11 @@ void FixFSIInlet::fill_buffer()
     fix_fsi->population.end();
   }
   find_places();    // of which variables are asked
-  given.evaluate(zone_group, 0, 3);
+  given->evaluate(zone_group, 0, 3);
   for (int i = 0; i < atom->nlocal; i++)
     if (of_buffer[i])
       for (int d = 0; d < fix_fsi->dim; d++)
-        if (given.given(d)) atom->v[i][d] = value(d, i);
+        if (given->given(d)) atom->v[i][d] = value(d, i);
 }
 
 /* ----------------------------------------------------------------------
@@ -462,7 +480,8 @@ std::vector<FixFSIInlet::Column> FixFSIInlet::columns_at_plane() const
     const double *const x = atom->x[i], s = inside(x);
     if (s > 0.0 && slice(s) == 0 && is_fluid(i) && in_patch(x)) own.push_back(along(x));
   }
-  auto columns = gather(own, world);
+  std::vector<Column> columns;
+  if (ends != MPI_COMM_NULL) columns = gather(own, ends);
   std::sort(columns.begin(), columns.end(), [](const Column &a, const Column &b) {
     return a.at[0] < b.at[0];
   });
@@ -556,7 +575,7 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Particle> &copies, bool 
       }
     }
   }
-  MPI_Allreduce(is_occupied.data(), occupied.data(), occupied.size(), MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(is_occupied.data(), occupied.data(), occupied.size(), MPI_INT, MPI_MAX, ends);
   return occupied;
 }
 
@@ -567,9 +586,10 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Particle> &copies, bool 
 
 void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
 {
-  std::vector<Particle> all = gather(own, world), copies;
-  if (all.empty()) return;
-  const std::vector<int> occupied = find_occupied(all, at_start);
+  std::vector<Particle> all, copies;
+  std::vector<int> occupied;
+  if (ends != MPI_COMM_NULL) all = gather(own, ends);
+  if (!all.empty()) occupied = find_occupied(all, at_start);
   for (size_t k = 0; k < all.size(); k++)
     if (!occupied[k]) copies.push_back(all[k]);
   std::sort(copies.begin(), copies.end(), [&](const Particle &b, const Particle &c) {
@@ -592,9 +612,11 @@ void FixFSIInlet::pre_exchange()
   std::vector<Particle> copies;
   std::vector<int> gone;
   double own[5] = {}, all[5];    // in, out, net mass, made, deleted
+  bool has_some = false;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], s = inside(x);
     if (s > 0.0 && !of_buffer[i]) continue;
+    has_some = true;
     if (!is_fluid(i)) {
       stranger(i);
       continue;
@@ -635,7 +657,10 @@ void FixFSIInlet::pre_exchange()
   auto &population = fix_fsi->population;
   population.begin();
   population.remove(gone, fix_fsi->account(FixFSI::FIELDS));
-  if (all[3] > 0.0) make(copies, false);
+  if (all[3] > 0.0) {
+    renew_ends(has_some);
+    make(copies, false);
+  }
   population.end();
 }
 
@@ -656,6 +681,7 @@ void FixFSIInlet::stranger(int i)
       "{} {}: atom {} of type {}, {},", who, id, atom->tag[i], atom->type[i],
       species == FLUID       ? fmt::format("a fluid that is not of group {}", group->names[igroup])
           : species == SOLID ? "of a solid"
+                             : species == NONE ? "without a material"
                              : "of a wall or rigid body");
   const bool out = side > 0.0 ? x[axis] < domain->boxlo[axis] : x[axis] >= domain->boxhi[axis];
   if (out && domain->boundary[axis][side < 0.0] == 1 && output->thermo->lostflag == Thermo::ERROR)
@@ -703,13 +729,48 @@ void FixFSIInlet::find_places()
     places.push_back({i, 0.0, 0.0, false});
     atom->mask[i] |= group->bitmask[zone_group];
   }
+
+  renew_ends(!places.empty());
+  if (ends == MPI_COMM_NULL) return;
+  nodes.place(axis, fix_fsi->dx);
+  // until the next lists particles move by half a skin, and a little
+  const double moved = 0.5 * neighbor->skin + fix_fsi->dx;
+  std::vector<const double *> before, behind_plane;
+  for (const auto &place : places) {
+    const double *const x = atom->x[place.i];
+    if (inside(x) > -moved) before.push_back(x);
+    if (inside(x) < moved) behind_plane.push_back(x);
+  }
+  nodes.share(before, fix_fsi->cut + moved, behind_plane, reach_of_nodes() + moved, ends);
+}
+
+// The ranks whose part of the box the zone of this end reaches, or who have particles there: these
+// make particles and know the plane. Those that were among them stay so until the next run.
+void FixFSIInlet::renew_ends(bool has_some)
+{
+  const double low = inside(domain->sublo), high = inside(domain->subhi);
+  const bool there = has_some || domain->triclinic ||
+      (std::max(low, high) > -2.0 * length - neighbor->skin &&
+       std::min(low, high) < zone() + 2.0 * neighbor->skin);
+  int mine = there && ends == MPI_COMM_NULL, any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
+  const int color = there || ends != MPI_COMM_NULL ? 0 : MPI_UNDEFINED;
+  forget_ends();
+  MPI_Comm_split(world, color, comm->me, &ends);
+}
+
+void FixFSIInlet::forget_ends()
+{
+  if (ends != MPI_COMM_NULL) MPI_Comm_free(&ends);
+  ends = MPI_COMM_NULL;
 }
 
 /* ----------------------------------------------------------------------
    Pressure or normal velocity of the fluid at the nodes of a lattice in the plane: a fit, quadratic
    along the plane, of the fluid within the kernel's support, which is on one side only. (A linear
    one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the
-   pressure, too.) The nodes are the same on all ranks. Terms that the fluid there cannot tell from
+   pressure, too.) Terms that the fluid there cannot tell from
    lower ones are left out.
    Where pressure is given the profile of the velocity is that of the fluid a buffer's length before
    the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi 2010,
@@ -717,53 +778,6 @@ void FixFSIInlet::find_places()
    keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes the
    particle before it follows what it pushes. (Half as far away some of it was left.)
 ------------------------------------------------------------------------- */
-
-template <class Visit> void FixFSIInlet::at_nodes(const double *x, double reach, Visit visit) const
-{
-  int low[2] = {0, 0}, high[2] = {0, 0};
-  for (int k = 0; k < nlateral; k++) {
-    low[k] = static_cast<int>(std::ceil((x[lateral[k]] - reach) / node_distance[k]));
-    high[k] = static_cast<int>(std::floor((x[lateral[k]] + reach) / node_distance[k]));
-  }
-  for (int b = low[1]; b <= high[1]; b++)
-    for (int a = low[0]; a <= high[0]; a++) {
-      const int at[] = {a, b};
-      int node = 0;
-      double d[2] = {0.0, 0.0};
-      bool exists = true;
-      for (int k = nlateral - 1; k >= 0; k--) {
-        int m = at[k] - first[k];
-        if (domain->periodicity[lateral[k]]) m = (m % count[k] + count[k]) % count[k];
-        exists = exists && m >= 0 && m < count[k];
-        node = node * count[k] + m;
-        d[k] = x[lateral[k]] - at[k] * node_distance[k];
-      }
-      if (exists) visit(node, d);
-    }
-}
-
-int FixFSIInlet::place_nodes()
-{
-  nlateral = 0;
-  int nodes = 1;
-  for (int d = 0; d < fix_fsi->dim; d++) {
-    if (d == axis) continue;
-    const int k = nlateral++;
-    const double lo = domain->boxlo[d], hi = domain->boxhi[d];
-    lateral[k] = d;
-    if (domain->periodicity[d]) {
-      count[k] = std::max(1, static_cast<int>(std::round(domain->prd[d] / fix_fsi->dx)));
-      node_distance[k] = domain->prd[d] / count[k];
-      first[k] = 0;
-    } else {
-      node_distance[k] = fix_fsi->dx;
-      first[k] = static_cast<int>(std::floor(lo / fix_fsi->dx)) - 1;
-      count[k] = static_cast<int>(std::ceil(hi / fix_fsi->dx)) + 2 - first[k];
-    }
-    nodes *= count[k];
-  }
-  return nodes;
-}
 
 // the row of a fit's inverse that gives its value at the node: terms 1, x, xx; 1, x, y, xx, xy, yy
 template <int TERMS> static void value_weights(const double *moment, double *row)
@@ -781,15 +795,15 @@ template <int TERMS> static void value_weights(const double *moment, double *row
 }
 
 // the fields at the nodes, from the sums there; first whether there is fluid at all
-void FixFSIInlet::fit_nodes(int nodes, int nmoment, int nfit, int nfields)
+void FixFSIInlet::fit_nodes(int nmoment, int nfit, int nfields)
 {
-  for (int node = 0; node < nodes; node++) {
-    double *const c = &sums[node * ncolumns], *const moment = c, row[6];
+  for (int node = 0; node < nodes.taken.size(); node++) {
+    double *const c = &nodes.sums[(size_t) node * nodes.row()], *const moment = c, row[6];
     if (moment[0] <= LITTLE * fix_fsi->psi_bulk) {
       c[0] = 0.0;
       continue;
     }
-    nlateral == 2 ? value_weights<6>(moment, row) : value_weights<3>(moment, row);
+    nodes.nlateral == 2 ? value_weights<6>(moment, row) : value_weights<3>(moment, row);
     for (int field = 0; field < nfields; field++) {
       const double *const F = c + nmoment + field * nfit;
       double result = 0.0;
@@ -818,17 +832,15 @@ static void times_monomials(bool plane, const double *y, double *f)
 
 void FixFSIInlet::measure()
 {
-  const int dim = fix_fsi->dim, nodes = place_nodes();
+  const int dim = fix_fsi->dim;
   const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
   // monomials of the offset over dx, by their degree: those of the fit, and all that its matrix has
-  const bool plane = nlateral == 2;
+  const bool plane = nodes.nlateral == 2;
   const int nfit = plane ? 6 : 3, nmoment = plane ? 15 : 5;
-  ncolumns = nmoment + nfit * (wants_velocity + wants_pressure);
-  mine.assign(nodes * ncolumns + NMEAN, 0.0);
-  sums.resize(mine.size());
-  bounds.assign(wants_velocity ? 2 * nodes : 0, -HUGE_VAL);
-  double *const total = mine.data() + nodes * ncolumns;
-  const bool pressure_varies = !told.far && !given.name(PRESSURE).empty();
+  nbounds = nmoment + nfit * (wants_velocity + wants_pressure);
+  nodes.begin(nbounds, wants_velocity ? 2 : 0);
+  double total[NMEAN] = {};
+  const bool pressure_varies = !told.far && !given->name(PRESSURE).empty();
 
   with_kernel(fix_fsi->kernel, dim, fix_fsi->h, [&](const auto &kernel) {
     for (auto &place : places) {
@@ -843,12 +855,12 @@ void FixFSIInlet::measure()
       total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
       if (s <= 0.0) {
         if (s > -fix_fsi->cut) total[BUFFER]++;
-        if (pressure_varies && is_far(given(PRESSURE, i))) total[TOO_FAR]++;
+        if (pressure_varies && is_far((*given)(PRESSURE, i))) total[TOO_FAR]++;
         continue;
       }
       double p = state.pressure(atom->rho[i]);
       // a variable need not know a value before the plane
-      const double q = wants_pressure ? NAN : p - (background ? state.p0 : given(PRESSURE, i));
+      const double q = wants_pressure ? NAN : p - (background ? state.p0 : (*given)(PRESSURE, i));
       if (std::isfinite(q) && s < zone()) {
         total[MASS] += m;
         total[BEYOND] += m * q;
@@ -868,31 +880,29 @@ void FixFSIInlet::measure()
       total[INNER_SPEED] += inner * side * u;
       const double away = wants_pressure ? s : from_inner;
       if (away >= fix_fsi->cut) continue;
-      at_nodes(x, std::sqrt(kernel.cutsq - away * away), [&](int node, const double *d) {
+      const auto add_to = [&](int node, const double *d) {
         const double r = std::sqrt(std::min(away * away + d[0] * d[0] + d[1] * d[1], kernel.cutsq)),
                      W = kernel.W(r);
         const double y[] = {d[0] / fix_fsi->dx, d[1] / fix_fsi->dx};
         double f[15] = {W};
         times_monomials(plane, y, f);
+        double *c = &nodes.sums_given[(size_t) node * nodes.row()];
         if (wants_velocity && std::fabs(y[0]) <= NEXT && std::fabs(y[1]) <= NEXT) {
-          bounds[2 * node] = std::max(bounds[2 * node], u);
-          bounds[2 * node + 1] = std::max(bounds[2 * node + 1], -u);
+          c[nbounds] = std::max(c[nbounds], u);
+          c[nbounds + 1] = std::max(c[nbounds + 1], -u);
         }
-        double *c = &mine[node * ncolumns];
         for (int a = 0; a < nmoment; a++) *c++ += f[a];
         if (wants_velocity)
           for (int a = 0; a < nfit; a++) *c++ += f[a] * u;
         if (wants_pressure)
           for (int a = 0; a < nfit; a++) *c++ += f[a] * p;
-      });
+      };
+      nodes.at(nodes.given, x, std::sqrt(kernel.cutsq - away * away), add_to);
     }
   });
-  MPI_Allreduce(mine.data(), sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, world);
-  std::copy_n(sums.data() + nodes * ncolumns, NMEAN, mean);
-  if (wants_velocity)
-    MPI_Allreduce(MPI_IN_PLACE, bounds.data(), bounds.size(), MPI_DOUBLE, MPI_MAX, world);
-
-  fit_nodes(nodes, nmoment, nfit, wants_velocity + wants_pressure);
+  MPI_Allreduce(total, mean, NMEAN, MPI_DOUBLE, MPI_SUM, world);
+  nodes.add_up();
+  fit_nodes(nmoment, nfit, wants_velocity + wants_pressure);
 }
 
 // exact for quadratics (Keys 1981, IEEE Trans. Acoust. Speech Signal Process. 29, 1153, eq. 15);
@@ -911,19 +921,18 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
   const int n = has_own_velocity() + has_own_pressure();
   double weight = 0.0, most = -HUGE_VAL, least = HUGE_VAL;
   std::fill_n(values, n, 0.0);
-  at_nodes(x, 2.0 * *std::max_element(node_distance, node_distance + nlateral),
-           [&](int node, const double *d) {
-             const double *const c = &sums[node * ncolumns];
-             if (c[0] == 0.0) return;
-             double w = 1.0;
-             for (int k = 0; k < nlateral; k++)
-               w *= cubic_convolution(std::fabs(d[k]) / node_distance[k]);
-             weight += w;
-             for (int k = 0; k < n; k++) values[k] += w * c[1 + k];
-             if (bounds.empty()) return;
-             most = std::max(most, bounds[2 * node]);
-             least = std::min(least, -bounds[2 * node + 1]);
-           });
+  nodes.at(nodes.taken, x, reach_of_nodes(), [&](int node, const double *d) {
+    const double *const c = &nodes.sums[(size_t) node * nodes.row()];
+    if (c[0] == 0.0) return;
+    double w = 1.0;
+    for (int k = 0; k < nodes.nlateral; k++)
+      w *= cubic_convolution(std::fabs(d[k]) / nodes.distance[k]);
+    weight += w;
+    for (int k = 0; k < n; k++) values[k] += w * c[1 + k];
+    if (!has_own_velocity()) return;
+    most = std::max(most, c[nbounds]);
+    least = std::min(least, -c[nbounds + 1]);
+  });
   if (weight < 0.5) return false;    // no fluid near
   for (int k = 0; k < n; k++) values[k] /= weight;
   if (least <= most) values[0] = std::clamp(values[0], least, most);
@@ -946,7 +955,7 @@ void FixFSIInlet::advance(bool advance)
   if (!advance) return;
   const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
-  if (!given.name(PRESSURE).empty()) given.evaluate(zone_group, PRESSURE, 1);
+  if (!given->name(PRESSURE).empty()) given->evaluate(zone_group, PRESSURE, 1);
   measure();
   keep_full();    // knows the flow of now, after a restart, too
 
@@ -976,7 +985,7 @@ void FixFSIInlet::advance(bool advance)
                    "{} {}: pressure of variable {} is more than {} rho c^2 from the background: "
                    "the fluid is no longer hardly compressed. Is it in units {}? Else a higher "
                    "sound in pair_style fsi/fluid",
-                   who, id, given.name(PRESSURE), FAR, update->unit_style);
+                   who, id, given->name(PRESSURE), FAR, update->unit_style);
   told.far = told.far || mean[TOO_FAR] > 0.0;
   check_supply();
 
@@ -1151,7 +1160,7 @@ void FixFSIInlet::prescribe()
   const double dt = update->dt;
   if (dt == 0.0) return;
   const bool wants_velocity = has_own_velocity();
-  if (!wants_velocity) given.evaluate(zone_group, 0, 3);
+  if (!wants_velocity) given->evaluate(zone_group, 0, 3);
   for (const auto &place : places) {
     const int i = place.i;
     if (place.inside > 0.0) continue;
@@ -1171,13 +1180,6 @@ void FixFSIInlet::prescribe()
     }
   }
   fix_fsi->tally(FixFSI::FIELDS, -push_sum[3]);
-}
-
-/* ---------------------------------------------------------------------- */
-
-double FixFSIInlet::compute_scalar()
-{
-  return mass_in;
 }
 
 double FixFSIInlet::compute_vector(int n)
@@ -1250,7 +1252,6 @@ void FixFSIInlet::restart(char *buf)
 
 double FixFSIInlet::memory_usage()
 {
-  return FixFields::memory_usage() + given.memory_usage() +
-      (double) (mine.capacity() + sums.capacity()) * sizeof(double) +
+  return FixFields::memory_usage() + given->memory_usage() + nodes.memory_usage() +
       (double) places.capacity() * sizeof(Place);
 }

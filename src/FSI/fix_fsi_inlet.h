@@ -22,32 +22,35 @@ FixStyle(fsi/outlet,FixFSIInlet);
 #define LMP_FIX_FSI_INLET_H
 
 #include "fsi_fields.h"
-#include "fsi_keywords.h"
+#include "fsi_nodes.h"
 #include "fsi_part.h"
-#include "fsi_population.h"
-#include "fsi_value.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  struct Particle;
+  class Values;
+}    // namespace FSI
 
 // An open end of the fluid: a plane, and behind it a buffer of particles whose velocity or pressure
-// is prescribed, and the other one that of
-// the fluid at the plane. One that passes the plane inwards is fluid from then on; the last of a
-// row that has come a spacing from
-// the buffer's end is followed by another; fluid that passes it outwards is of the buffer, and
-// deleted at its end. Inlets and outlets are the same but for defaults.
+// is prescribed, and the other one that of the fluid at the plane. One that passes the plane inward
+// is fluid from then on; the last of a row that has come a spacing from the buffer's end is
+// followed by another; fluid that passes it outward is of the buffer, and deleted at its end.
+// Inlets and outlets are the same but for defaults.
 
 class FixFSIInlet : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIInlet(class LAMMPS *, int, char **);
-  int setmask() override;
+  ~FixFSIInlet() override;
+  int setmask() override { return FixConst::PRE_EXCHANGE; }
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override;
-  double compute_scalar() override;
+  double compute_scalar() override { return mass_in; }
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -93,27 +96,27 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   int axis;
   double side, position;    // +1: the fluid is above the plane
   std::string words[4], region_id;
-  FSI::Values given;    // velocity and pressure; the other one is that of the fluid
-  bool background;      // is the pressure that of the background?
-  double absorb;        // 1/time; < 0: of the domain's length
-  bool driven;          // has an open end of the scene a given velocity?
+  const std::unique_ptr<FSI::Values>
+      given;          // velocity and pressure; the other one is that of the fluid
+  bool background;    // is the pressure that of the background?
+  double absorb;      // 1/time; < 0: of the domain's length
+  bool driven;        // has an open end of the scene a given velocity?
   double given_length, length;
   std::vector<double> made;    // of a restart file: plane and length of its buffer
   class Region *region;
   class FixFSI *fix_fsi;
 
   // LAST of a row; FOLLOWED by one that the next list has
-  enum Membership { NOT, MEMBER, LAST, FOLLOWED };
+  static constexpr double NOT = 0.0, MEMBER = 1.0, LAST = 2.0, FOLLOWED = 3.0;
   double *of_buffer;    // per atom
   double **behind;      // of one that is followed: where who follows would be now
   std::vector<Place> places;
   int zone_group;    // that of the places
 
-  // sums over the fluid at the nodes of a lattice in the plane, then values there
-  int nlateral, lateral[2], first[2], count[2], ncolumns;
-  double node_distance[2];
-  std::vector<double> mine, sums;
-  std::vector<double> bounds;    // largest and negative least velocity at a node
+  // sums over the fluid at the nodes of a lattice in the plane, then values there; then the largest
+  // and the negative least velocity
+  FSI::Nodes nodes;
+  int nbounds;
   double mean[NMEAN];
 
   // what is kept
@@ -146,13 +149,12 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   bool in_patch(const double *x) const;
   bool is_fluid(int i) const;
   std::string keywords_name() const { return std::string("fix ") + style; }
-  bool has_own_velocity() const { return !given.given(0); }    // which is extrapolated
-  bool has_own_pressure() const { return !given.given(3) && !background; }
-  double value(int k, int i) const;    // which is a number
+  bool has_own_velocity() const, has_own_pressure() const;    // which is extrapolated
+  double value(int k, int i) const;                           // which is a number
   void check_plane();
   void find_region();
   std::vector<int> find_occupied(std::vector<FSI::Particle> &copies, bool at_start);
-  void fit_nodes(int nodes, int nmoment, int nfit, int nfields);
+  void fit_nodes(int nmoment, int nfit, int nfields);
   struct Column {
     double at[2] = {};    // along the plane
   };
@@ -173,8 +175,10 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void make(const std::vector<FSI::Particle> &, bool at_start);
   void follow(int i, double s);
   void find_places();
-  template <class Visit> void at_nodes(const double *x, double reach, Visit) const;
-  int place_nodes();    // how many there are
+  MPI_Comm ends;    // of the ranks that this end is a matter of; null on others
+  void renew_ends(bool has_some);
+  void forget_ends();
+  double reach_of_nodes() const { return 2.0 * std::max(nodes.distance[0], nodes.distance[1]); }
   void measure();
   void hold_shift(const Place &);
   bool at_plane(const double *x, double *values) const;

@@ -19,7 +19,10 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_clock.h"
+#include "fsi_keywords.h"
 #include "fsi_record.h"
+#include "fsi_value.h"
 #include "lattice.h"
 #include "math_const.h"
 #include "modify.h"
@@ -89,8 +92,8 @@ class FixFSIMove::Words : protected Pointers {
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), driven{},
-    given(lmp, "fix fsi/move", 2 * VELOCITY), evaluated(-1), origin(now()), original(nullptr),
-    begun(false)
+    given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), origin(now()),
+    original(nullptr), begun(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
   Words words(lmp, narg - 3, arg + 3);
@@ -147,14 +150,14 @@ void FixFSIMove::read_motion(Words &words)
     motion = VARIABLE;
     for (int k = 0; k < 2 * VELOCITY; k++) {
       const auto name = words.variable();
-      if (!name.empty()) given.set_variable(k, name);
+      if (!name.empty()) given->set_variable(k, name);
       if (k < VELOCITY)
         driven[k] = !name.empty();
       else if (name.empty() && driven[k - VELOCITY])
         error->all(FLERR,
                    "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels "
                    "how fast a wall moves",
-                   given.name(k - VELOCITY));
+                   given->name(k - VELOCITY));
     }
   } else
     error->all(
@@ -185,11 +188,16 @@ void FixFSIMove::read_units(Words &words)
   }
 }
 
-/* ---------------------------------------------------------------------- */
+FixFSIMove::~FixFSIMove() = default;
 
-int FixFSIMove::setmask()
+bool FixFSIMove::sets_velocity(int k) const
 {
-  return INITIAL_INTEGRATE | PRE_EXCHANGE | FINAL_INTEGRATE;
+  return driven[k] || given->given(VELOCITY + k);
+}
+
+bool FixFSIMove::of_atom(int k) const
+{
+  return given->source(k) == Values::ATOM || given->source(VELOCITY + k) == Values::ATOM;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -214,7 +222,7 @@ void FixFSIMove::init()
                "too: leave them out",
                id);
   refuse_free_walls(fix_fsi);
-  given.find();
+  given->find();
 }
 
 /* ----------------------------------------------------------------------
@@ -249,17 +257,12 @@ void FixFSIMove::setup_pre_exchange()
 void FixFSIMove::initial_integrate(int)
 {
   double before[2 * VELOCITY];
-  for (int k = 0; k < 2 * VELOCITY; k++) before[k] = given.number(k);
+  for (int k = 0; k < 2 * VELOCITY; k++) before[k] = given->number(k);
   move(MIDDLE);
   if (motion != VARIABLE) return;
-  given.evaluate(igroup, 0, 2 * VELOCITY, false);
+  given->evaluate(igroup, 0, 2 * VELOCITY, false);
   evaluated = update->ntimestep;
   compare_velocities(before);
-}
-
-void FixFSIMove::final_integrate()
-{
-  move(END);
 }
 
 /* ----------------------------------------------------------------------
@@ -271,9 +274,9 @@ void FixFSIMove::compare_velocities(const double *before) const
 {
   for (int k = 0; k < domain->dimension; k++) {
     const int v = VELOCITY + k;
-    const double d = given.number(k), size = std::max(std::fabs(d), std::fabs(before[k]));
-    if (given.source(k) == Values::EQUAL && given.source(v) == Values::EQUAL)
-      compare_velocity(k, d - before[k], update->dt, before[v], given.number(v), size);
+    const double d = given->number(k), size = std::max(std::fabs(d), std::fabs(before[k]));
+    if (given->source(k) == Values::EQUAL && given->source(v) == Values::EQUAL)
+      compare_velocity(k, d - before[k], update->dt, before[v], given->number(v), size);
   }
 }
 
@@ -291,7 +294,7 @@ void FixFSIMove::compare_velocity(int k, double moved, double dt, double v, doub
   const auto text =
       fmt::format("Fix fsi/move {}: on step {} the displacement v_{} changes by {:g} per time, but "
                   "the velocity v_{} is {:g}: expected its derivative{}",
-                  id, update->ntimestep, given.name(k), mean, given.name(VELOCITY + k), v_end,
+                  id, update->ntimestep, given->name(k), mean, given->name(VELOCITY + k), v_end,
                   i < 0 ? "" : fmt::format(" (atom {})", atom->tag[i]));
   if (i < 0) error->all(FLERR, text);
   error->one(FLERR, text);
@@ -333,8 +336,8 @@ bool FixFSIMove::velocity_at_end(int i, double *v) const
   double x[3];
   if (motion != VARIABLE) follow(original[i], now() - origin, x, v);
   for (int k = 0; k < domain->dimension; k++) {
-    if (!sets_velocity(k) || given.source(VELOCITY + k) == Values::ATOM) return false;
-    if (motion == VARIABLE) v[k] = given.number(VELOCITY + k);
+    if (!sets_velocity(k) || given->source(VELOCITY + k) == Values::ATOM) return false;
+    if (motion == VARIABLE) v[k] = given->number(VELOCITY + k);
   }
   return true;
 }
@@ -350,7 +353,7 @@ void FixFSIMove::move(When when)
   if (motion == VARIABLE) {
     const double clock = update->atime;
     update->atime -= back;
-    given.evaluate(igroup, 0, 2 * VELOCITY);
+    given->evaluate(igroup, 0, 2 * VELOCITY);
     update->atime = clock;
     if (when != MIDDLE) evaluated = update->ntimestep;
   }
@@ -363,8 +366,8 @@ void FixFSIMove::move(When when)
     if (motion != VARIABLE) follow(original[i], t, to, fast);
     for (int k = 0; k < domain->dimension; k++) {
       if (motion == VARIABLE) {
-        to[k] = original[i][k] + given(k, i);
-        fast[k] = given(VELOCITY + k, i);
+        to[k] = original[i][k] + (*given)(k, i);
+        fast[k] = (*given)(VELOCITY + k, i);
         if (when == END && driven[k] && of_atom(k)) {
           double moved[3] = {};
           moved[k] = to[k] - x[k];
@@ -389,7 +392,7 @@ void FixFSIMove::move(When when)
 
 double FixFSIMove::memory_usage()
 {
-  return FixFields::memory_usage() + given.memory_usage();
+  return FixFields::memory_usage() + given->memory_usage();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -398,7 +401,7 @@ std::string FixFSIMove::text() const
 {
   static const char *const names[] = {"linear", "wiggle", "rotate", "transrot", "variable"};
   std::string words = names[motion];
-  if (motion == VARIABLE) return words + " " + given.text();
+  if (motion == VARIABLE) return words + " " + given->text();
   for (int k = 0; k < 3; k++) words += driven[k] ? fmt::format(" {}", rate[k]) : " NULL";
   if (motion == ROTATE || motion == TRANSROT)
     words += fmt::format(" about {} {} {} along {} {} {}", point[0], point[1], point[2], axis[0],
@@ -445,14 +448,14 @@ void FixFSIMove::set_arrays(int i)
   double shift[3] = {0.0, 0.0, 0.0};
   if (motion == VARIABLE) {
     // not evaluated here: a variable may sum over ranks, and only this one makes the atom
-    if (given.of_atoms())
+    if (given->of_atoms())
       error->one(FLERR, "Cannot add atoms to fix fsi/move {} with an atom-style variable", id);
     if (evaluated != update->ntimestep)
       error->one(FLERR,
                  "Cannot add atoms to fix fsi/move {} now: its variables are known from the setup "
                  "of a run on. Give run 0 before",
                  id);
-    for (int k = 0; k < 3; k++) shift[k] = given.number(k);
+    for (int k = 0; k < 3; k++) shift[k] = given->number(k);
   } else if (motion == ROTATE || motion == TRANSROT) {
     // the turn alone, backwards, of what has not been shifted; follow() shifts it back once more
     double from[3], v[3];

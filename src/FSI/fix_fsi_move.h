@@ -21,11 +21,14 @@ FixStyle(fsi/move,FixFSIMove);
 #define LMP_FIX_FSI_MOVE_H
 
 #include "fsi_fields.h"
-#include "fsi_value.h"
 
+#include <memory>
 #include <string>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Values;
+}
 
 // Prescribed motion of walls and held solids as a function of time: fix move of LAMMPS for time
 // steps that change, with positions at the middle of the step where fix fsi has its forces.
@@ -33,12 +36,16 @@ namespace LAMMPS_NS {
 class FixFSIMove : public FSI::FixFields {
  public:
   FixFSIMove(class LAMMPS *, int, char **);
-  int setmask() override;
+  ~FixFSIMove() override;
+  int setmask() override
+  {
+    return FixConst::INITIAL_INTEGRATE | FixConst::PRE_EXCHANGE | FixConst::FINAL_INTEGRATE;
+  }
   void init() override;
   void setup_pre_exchange() override;
   void pre_exchange() override {}
   void initial_integrate(int) override;
-  void final_integrate() override;
+  void final_integrate() override { move(END); }
   void reset_dt() override {}
   // velocity of a particle of the group at the end of the step that is going on; false: not known
   // before it is there
@@ -60,7 +67,7 @@ class FixFSIMove : public FSI::FixFields {
   // variables of displacements and, from VELOCITY on, of velocities; at the end of the step that is
   // going on, but for move(MIDDLE)
   static constexpr int VELOCITY = 3;
-  FSI::Values given;
+  const std::unique_ptr<FSI::Values> given;
   bigint evaluated;     // the last step at whose end they are known
   double origin;        // time at which particles were at
   double **original;    // these positions, not wrapped
@@ -70,15 +77,11 @@ class FixFSIMove : public FSI::FixFields {
 
   double now() const;
   std::string text() const;    // as in the command
-  bool sets_velocity(int k) const { return driven[k] || given.given(VELOCITY + k); }
+  bool sets_velocity(int k) const, of_atom(int k) const;
   void refuse_free_walls(const class FixFSI *) const;
   void compare_velocities(const double *before) const;
   void compare_velocity(int k, double moved, double dt, double v, double v_end, double round,
                         int i = -1) const;
-  bool of_atom(int k) const
-  {
-    return given.source(k) == FSI::Values::ATOM || given.source(VELOCITY + k) == FSI::Values::ATOM;
-  }
   void follow(const double *from, double t, double *x, double *v) const;
   void move(When);
 };

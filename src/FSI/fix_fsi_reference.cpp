@@ -20,15 +20,16 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_cells.h"
+#include "fsi_changes.h"
 #include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
+#include "fsi_part.h"
 #include "fsi_record.h"
 #include "memory.h"
 #include "modify.h"
-#include "neigh_list.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -52,7 +53,7 @@ static constexpr double WITHIN = 1.0 - 1.0e-9;
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2),
     self_range(0.0), tears(false), changes(0), swaps(lmp), clamps(lmp), fix_fsi(nullptr),
-    list(nullptr), slot(nullptr), maxbond(0), keeps_places(false), apart(0.0), layer(nullptr),
+    slot(nullptr), maxbond(0), keeps_images(false), keeps_places(false), apart(0.0), layer(nullptr),
     next_look(0)
 {
   has_record = resting = false;
@@ -80,13 +81,6 @@ FixFSIReference::~FixFSIReference()
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
 }
 
-/* ---------------------------------------------------------------------- */
-
-int FixFSIReference::setmask()
-{
-  return POST_INTEGRATE | POST_NEIGHBOR;
-}
-
 // after fix rigid has moved its bodies
 void FixFSIReference::post_integrate()
 {
@@ -99,10 +93,14 @@ void FixFSIReference::init()
 {
   // has a script put in its place what is not of this package?
   resting = facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
+  images.clear_planes();
   if (resting) return clamps.clear();
   fix_fsi = FixFSI::find(lmp, "Fix FSI_REFERENCE");
+  find_planes();
   if (!any()) {
     made.clear();
+    keeps_images = images.planes.any();
+    through.resize(keeps_images ? partner.size() : 0);
     keeps_places = self_range > 0.0;
   } else if (made != as_now())
     error->all(FLERR,
@@ -113,7 +111,30 @@ void FixFSIReference::init()
         FLERR,
         "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept only if "
         "it is on when the reference is taken: give it before the first run of the bodies");
-  neighbor->add_request(this, NeighConst::REQ_FULL | NeighConst::REQ_OCCASIONAL);
+}
+
+void FixFSIReference::find_planes()
+{
+  Walls walls;
+  std::vector<WallForce> forces;
+  for (auto *const fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
+    dynamic_cast<Part *>(fix)->add_walls(walls, forces);
+  images.find_planes(walls, forces);
+  if (!images.planes.any()) return;
+  if (self_range > 0.0)
+    error->all(FLERR,
+               "Pair style fsi/solid/tl self yes does not go with symmetry yes of fix "
+               "fsi/wall/mirror: a body would not meet its own image");
+  const auto &planes = images.planes.wall;
+  for (size_t b = 1; b < planes.size(); b++) {
+    const double apart = planes[b].position - planes[b - 1].position;
+    if (planes[b].axis == planes[b - 1].axis && std::fabs(apart) < 2.0 * fix_fsi->largest_cut)
+      error->all(FLERR,
+                 "Planes of symmetry at {} = {} and {} are too close: expected two supports of the "
+                 "kernel, {}, between them",
+                 "xyz"[planes[b].axis], planes[b - 1].position, planes[b].position,
+                 2.0 * fix_fsi->largest_cut);
+  }
 }
 
 bool FixFSIReference::any() const
@@ -125,11 +146,6 @@ bool FixFSIReference::any() const
       all;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
   return all;
-}
-
-void FixFSIReference::init_list(int, NeighList *ptr)
-{
-  list = ptr;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -282,7 +298,7 @@ void FixFSIReference::take()
   made = as_now();
   // from now on its strain says what it is
   for (const int i : bare) atom->rho[i] = fix_fsi->state[atom->type[i]].rho0;
-  neighbor->build_one(list);
+  if (images.planes.any()) check_planes(bare);
   if (domain->dimension == 2)
     take_reference<2>(bare);
   else
@@ -324,13 +340,17 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
     }
     return -1;
   };
+  // that of an image is that of its original, seen in the mirror
+  const auto layer_of = [&](int j, int k) {
+    return layer[images.original(j) * 2 * D + (images.mirrors(j, k / 2) ? k ^ 1 : k)];
+  };
   // layer 1 has nobody ahead, layer m has layer m-1 ahead; 0 = deeper than what has been found so
   // far
   for (int m = 1; m <= 3; m++) {
     for (const int i : bare)
       for (int k = 0; k < 2 * D; k++) {
         const int j = next(i, k);
-        if (m == 1 ? j < 0 : (j >= 0 && layer[j * 2 * D + k] == m - 1)) layer[i * 2 * D + k] = m;
+        if (m == 1 ? j < 0 : (j >= 0 && layer_of(j, k) == m - 1)) layer[i * 2 * D + k] = m;
       }
     comm->forward_comm(this);
   }
@@ -362,8 +382,9 @@ void FixFSIReference::unpack_forward_comm(int n, int first, double *buf)
 
 // the neighbors of i of its own body, their separations, and weights V_j W
 template <int D, class Kernel>
-void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<int> &near,
-                                     std::vector<double> &dX, std::vector<double> &w) const
+void FixFSIReference::find_neighbors(int i, const Kernel &kernel, const Cells &solids,
+                                     std::vector<int> &near, std::vector<double> &dX,
+                                     std::vector<double> &w) const
 {
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
@@ -371,9 +392,11 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<in
   near.clear();
   dX.clear();
   w.clear();
-  for (int jj = 0; jj < list->numneigh[i]; jj++) {
-    const int j = list->firstneigh[i][jj] & NEIGHMASK;
-    if (molecule[j] != molecule[i] || !is_solid(j)) continue;
+  solids.around(x[i], [&](int j, double rsq) {
+    if (j != i && molecule[j] == molecule[i] && rsq < WITHIN * kernel.cutsq) near.push_back(j);
+  });
+  std::sort(near.begin(), near.end());
+  for (const int j : near) {
     double rsq = 0.0, d[D];
     bool halfway = false;    // round the box: the image on the other side is as near
     for (int a = 0; a < D; a++) {
@@ -382,7 +405,6 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<in
       halfway = halfway ||
           (domain->periodicity[a] && 2.0 * std::fabs(d[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
     }
-    if (rsq >= WITHIN * kernel.cutsq) continue;
     if (fix_fsi->h_of(type[j]) != fix_fsi->h_of(type[i]))
       error->one(FLERR,
                  "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types {} and "
@@ -400,16 +422,77 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, std::vector<in
                  "Solid atoms {} and {} are neighbors through more than one image: a periodic box "
                  "must be wider than two supports, {}, of the kernel",
                  tag[i], tag[j], 2.0 * kernel.cut);
-    near.push_back(j);
     dX.insert(dX.end(), d, d + D);
     w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
+  }
+}
+
+// likewise images of its neighbors and of itself in planes of symmetry
+template <int D, class Kernel>
+void FixFSIReference::find_images(int i, const Kernel &kernel, std::vector<int> &near,
+                                  std::vector<double> &dX, std::vector<double> &w,
+                                  std::vector<int> &bits) const
+{
+  double **x = atom->x;
+  const int own = images.joins(atom->mask, i) ? images.planes.near(x[i], kernel.cut) : 0;
+  bits.assign(near.size(), 0);
+  if (!own) return;
+  const auto add = [&](int j, double rsq) {
+    images.planes.images(own & images.planes.near(x[j], kernel.cut), rsq, x[i], x[j],
+                         WITHIN * kernel.cutsq,
+                         [&](const Walls::Reflection &s, double image_rsq, const double *away) {
+                           near.push_back(j);
+                           bits.push_back(s.mask);
+                           for (int a = 0; a < D; a++) dX.push_back(-away[a]);
+                           w.push_back(volume(j) * kernel.W(std::sqrt(image_rsq)));
+                         });
+  };
+  const int n = near.size();
+  add(i, 0.0);
+  for (int k = 0; k < n; k++) {
+    if (!images.joins(atom->mask, near[k])) continue;
+    double rsq = 0.0;
+    for (int a = 0; a < D; a++) rsq += dX[k * D + a] * dX[k * D + a];
+    add(near[k], rsq);
+  }
+}
+
+// Bodies that are cut by a plane of symmetry: their particles are where the lattice of the whole
+// has them, before the plane. Those that end short of it would be glued to their images.
+void FixFSIReference::check_planes(const std::vector<int> &bare) const
+{
+  static constexpr double LEAST = 0.25, MOST = 0.75;    // spacings, half a one is meant
+  for (const auto &plane : images.planes.wall) {
+    std::set<tagint> there, close;
+    for (const int i : bare) {
+      if (!(atom->mask[i] & plane.joins)) continue;
+      const double dx = fix_fsi->dx_of(atom->type[i]), d = plane.distance(atom->x[i]);
+      const char *const face = plane.side > 0.0 ? "lo" : "hi";
+      if (d < LEAST * dx)
+        error->one(FLERR,
+                   "Solid atom {} of body {} is {:g} before the plane of symmetry {}{} {}: "
+                   "expected half a spacing, {:g}, or more",
+                   atom->tag[i], atom->molecule[i], d, "xyz"[plane.axis], face, plane.position,
+                   0.5 * dx);
+      if (d < MOST * dx) there.insert(atom->molecule[i]);
+      if (d < fix_fsi->resolution[atom->type[i]].cut / 2.0) close.insert(atom->molecule[i]);
+    }
+    there = gather(there, world);
+    for (const tagint body : gather(close, world))
+      if (!there.count(body))
+        error->all(
+            FLERR,
+            "Body {} ends short of the plane of symmetry at {} = {}: expected half a spacing "
+            "between them, or leave it out of the group of fix fsi/wall/mirror",
+            body, "xyz"[plane.axis], plane.position);
   }
 }
 
 // a slot with the bonds of i to them
 template <int D, class Kernel>
 void FixFSIReference::enter_bonds(int i, const Kernel &kernel, const std::vector<int> &near,
-                                  const std::vector<double> &dX, const std::vector<double> &G)
+                                  const std::vector<double> &dX, const std::vector<double> &G,
+                                  const std::vector<int> &bits)
 {
   const int n = near.size();
   slot[i] = new_slot(n);
@@ -428,6 +511,7 @@ void FixFSIReference::enter_bonds(int i, const Kernel &kernel, const std::vector
     value[2 * D * BOND_BLOCK] = vv * kernel.W(r) / rsq;
     value[(2 * D + 1) * BOND_BLOCK] = vv * kernel.gradient(r);
     partner[(size_t) slot[i] * maxbond + k] = atom->tag[near[k]];
+    if (keeps_images) through[(size_t) slot[i] * maxbond + k] = bits[k];
   }
   complete(slot[i]);
 }
@@ -445,8 +529,13 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
   for (const int i : bare)
     if (std::find(all_h.begin(), all_h.end(), fix_fsi->h_of(type[i])) == all_h.end())
       all_h.push_back(fix_fsi->h_of(type[i]));
+  // LAMMPS' list would be of all particles, and stay
+  const double widest = fix_fsi->largest_cut;
+  const Cells solids(atom->x, atom->nlocal + atom->nghost, D, widest, [this](int i) {
+    return is_solid(i);
+  });
   GradientWeights<D> weights;
-  std::vector<int> near;
+  std::vector<int> near, bits;
   std::vector<double> dX, w, G;
   bigint mine[6] = {};    // particles, bonds, particles by order reached
 
@@ -455,7 +544,8 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
       if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
         for (const int i : bare) {
           if (fix_fsi->h_of(type[i]) != h) continue;
-          find_neighbors<D>(i, kernel, near, dX, w);
+          find_neighbors<D>(i, kernel, solids, near, dX, w);
+          if (images.planes.any()) find_images<D>(i, kernel, near, dX, w, bits);
           const int n = near.size();
           G.resize((size_t) n * D);
           const auto order = weights(n, dX.data(), w.data(), h, quadratic, G.data());
@@ -468,7 +558,7 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
           mine[0]++;
           mine[1] += n;
           mine[2 + order]++;
-          enter_bonds<D>(i, kernel, near, dX, G);
+          enter_bonds<D>(i, kernel, near, dX, G, bits);
         }
     });
 
@@ -519,16 +609,22 @@ template <int D> void FixFSIReference::move_apart()
         lo[a] = std::min(lo[a], d);
         hi[a] = std::max(hi[a], d);
       }
+  // images move the other way
+  for (const auto &plane : images.planes.wall) {
+    hi[plane.axis] = std::max(hi[plane.axis], -lo[plane.axis]);
+    lo[plane.axis] = -hi[plane.axis];
+  }
   for (int a = 0; a < D; a++) sum += (hi[a] - lo[a]) * (hi[a] - lo[a]);
   apart = anew ? 0.0 : apart + std::sqrt(sum) + 1e-9 * fix_fsi->dx;    // more than round-off
 }
 
 template <int D> void FixFSIReference::break_bonds_of_all(double stretch, const Energy &energy)
 {
-  double **x = atom->x;
   const double limit = stretch * stretch;
   if (solids.empty()) return;
   move_apart<D>();
+  images.update(atom->x, atom->v);
+  double **x = images.positions(atom->x);
   for (const int i : solids) {
     double &reserve = slack[slot[i]];
     if (apart < reserve) continue;
@@ -601,6 +697,7 @@ void FixFSIReference::resolve()
   const tagint *const tag = atom->tag;
   solids.clear();
   ghosts.clear();
+  images.begin(atom->nlocal + atom->nghost);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_solid(i)) continue;
     if (slot[i] < 0)
@@ -631,7 +728,8 @@ void FixFSIReference::resolve()
                    tag[i], t,
                    comm->cutghostuser > neighbor->cutneighmax ? comm->cutghostuser
                                                               : neighbor->cutneighmax);
-      local[first + k] = j;
+      local[first + k] = keeps_images && through[first + k] ? images.find(j, through[first + k])
+                                                            : j;
     }
     std::fill(&local[first] + nbond[slot[i]], &local[first] + whole_blocks(nbond[slot[i]]), i);
   }
@@ -754,6 +852,7 @@ void FixFSIReference::move_bond(int s, int from, int to)
   const size_t first = (size_t) s * maxbond;
   local[first + to] = local[first + from];
   partner[first + to] = partner[first + from];
+  if (keeps_images) through[first + to] = through[first + from];
   for (int v = 0; v < nvalue; v++)
     bond_in(s, to)[v * BOND_BLOCK] = bond_in(s, from)[v * BOND_BLOCK];
 }
@@ -782,7 +881,7 @@ void FixFSIReference::reserve(int n)
   if (n <= maxbond) return;
   const int old = maxbond, slots = nbond.size();
   maxbond = whole_blocks(n);
-  maxexchange = 3 + maxbond * (nvalue + 1) + nplace();
+  maxexchange = 3 + maxbond * (nvalue + nwhole()) + nplace();
   const auto widen = [&](auto &list, int width) {
     std::decay_t<decltype(list)> wider((size_t) slots * maxbond * width);
     for (int s = 0; s < slots; s++)
@@ -792,6 +891,7 @@ void FixFSIReference::reserve(int n)
   };
   widen(local, 1);
   widen(partner, 1);
+  if (keeps_images) widen(through, 1);
   widen(data, nvalue);
 }
 
@@ -808,6 +908,7 @@ int FixFSIReference::new_slot(int n)
     const size_t size = (size_t) nbond.size() * maxbond;
     local.resize(size);
     partner.resize(size);
+    if (keeps_images) through.resize(size);
     data.resize(size * nvalue);
     moment.resize(nbond.size() * packed_size(domain->dimension));
   } else {
@@ -834,11 +935,6 @@ void FixFSIReference::copy_arrays(int i, int j, int delflag)
   slot[j] = slot[i];
 }
 
-void FixFSIReference::set_arrays(int i)
-{
-  slot[i] = NO_BONDS;
-}
-
 /* ----------------------------------------------------------------------
    number of bonds, then partner and values of each
 ------------------------------------------------------------------------- */
@@ -852,6 +948,7 @@ int FixFSIReference::pack(int i, double *buf) const
   buf[m++] = quadrature[slot[i]];
   const size_t first = (size_t) slot[i] * maxbond;
   for (int k = 0; k < n; k++) buf[m++] = ubuf(partner[first + k]).d;
+  for (int k = 0; k < n && keeps_images; k++) buf[m++] = ubuf(through[first + k]).d;
   for (int k = 0; k < n; k++)
     for (int v = 0; v < nvalue; v++) buf[m++] = bond(i, k)[v * BOND_BLOCK];
   for (int a = 0; a < nplace(); a++) buf[m++] = place[(size_t) slot[i] * nplace() + a];
@@ -869,6 +966,7 @@ int FixFSIReference::unpack(int i, const double *buf)
   quadrature[slot[i]] = buf[m++];
   const size_t first = (size_t) slot[i] * maxbond;
   for (int k = 0; k < n; k++) partner[first + k] = (tagint) ubuf(buf[m++]).i;
+  for (int k = 0; k < n && keeps_images; k++) through[first + k] = (int) ubuf(buf[m++]).i;
   for (int k = 0; k < n; k++)
     for (int v = 0; v < nvalue; v++) bond_in(slot[i], k)[v * BOND_BLOCK] = buf[m++];
   for (int a = 0; a < nplace(); a++) place[(size_t) slot[i] * nplace() + a] = buf[m++];
@@ -903,8 +1001,12 @@ int FixFSIReference::pack_restart(int i, double *buf)
 
 std::string FixFSIReference::as_now() const
 {
-  return fmt::format("gradient {} volumes {}", quadratic ? "quadratic" : "linear",
-                     end_corrected ? "corrected" : "plain");
+  std::string text = fmt::format("gradient {} volumes {}", quadratic ? "quadratic" : "linear",
+                                 end_corrected ? "corrected" : "plain");
+  for (const auto &plane : images.planes.wall)
+    text += fmt::format(" symmetry {}{} {}", "xyz"[plane.axis], plane.side > 0.0 ? "lo" : "hi",
+                        plane.position);
+  return text;
 }
 
 void FixFSIReference::write_restart(FILE *fp)
@@ -913,6 +1015,7 @@ void FixFSIReference::write_restart(FILE *fp)
   record.add("bonds", made.empty() ? as_now() : made);
   record.add("numbers of a bond", std::to_string(nvalue));
   record.add("positions", keeps_places ? "yes" : "no");
+  if (keeps_images) record.add("images", "yes");
   record.write(fp);
 }
 
@@ -926,6 +1029,7 @@ void FixFSIReference::restart(char *buf)
                "needs {}",
                record.value("numbers of a bond"), nvalue);
   keeps_places = record.has("positions") && record.value("positions") == "yes";
+  keeps_images = record.has("images");
   has_record = true;
 }
 
@@ -940,19 +1044,15 @@ void FixFSIReference::unpack_restart(int i, int nth)
 
 int FixFSIReference::size_restart(int i)
 {
-  return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + 1) + nplace();
-}
-
-int FixFSIReference::maxsize_restart()
-{
-  return 3 + maxbond * (nvalue + 1) + nplace();
+  return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + nwhole()) + nplace();
 }
 
 /* ---------------------------------------------------------------------- */
 
 double FixFSIReference::memory_usage()
 {
-  return (double) atom->nmax * sizeof(int) + (double) local.capacity() * sizeof(int) +
+  return (double) atom->nmax * sizeof(int) + images.memory_usage() +
+      (double) (local.capacity() + through.capacity()) * sizeof(int) +
       (double) (partner.capacity() + owner.capacity()) * sizeof(tagint) +
       (double) (data.capacity() + moment.capacity() + quadrature.capacity() + place.capacity() +
                 seen.capacity() + slack.capacity()) *

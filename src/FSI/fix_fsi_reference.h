@@ -24,6 +24,7 @@ FixStyle(FSI_REFERENCE,FixFSIReference);
 #include "fix.h"
 #include "fsi_bond_rows.h"
 #include "fsi_clamps.h"
+#include "fsi_images.h"
 #include "fsi_swaps.h"
 
 #include <functional>
@@ -31,6 +32,9 @@ FixStyle(FSI_REFERENCE,FixFSIReference);
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Cells;
+}
 
 // The reference configuration of total-Lagrangian solids: for every particle its bonds to the
 // neighbors of its own body, with the gradient's weights. Made by pair_style fsi/solid/tl; taken
@@ -42,15 +46,14 @@ class FixFSIReference : public Fix {
   static constexpr char ID[] = "FSI_REFERENCE";
   FixFSIReference(class LAMMPS *, int, char **);
   ~FixFSIReference() override;
-  int setmask() override;
+  int setmask() override { return FixConst::POST_INTEGRATE | FixConst::POST_NEIGHBOR; }
   void post_integrate() override;
   void init() override;
-  void init_list(int, class NeighList *) override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
   void grow_arrays(int) override;
   void copy_arrays(int, int, int) override;
-  void set_arrays(int) override;
+  void set_arrays(int i) override { slot[i] = NO_BONDS; }
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
@@ -60,7 +63,7 @@ class FixFSIReference : public Fix {
   void write_restart(FILE *) override;
   void restart(char *) override;
   int size_restart(int) override;
-  int maxsize_restart() override;
+  int maxsize_restart() override { return 3 + maxbond * (nvalue + nwhole()) + nplace(); }
   double memory_usage() override;
 
   bool any() const;    // bonds, on any rank: all ask together
@@ -72,7 +75,7 @@ class FixFSIReference : public Fix {
   int nvalue;
   // bonds of local atom i; what fills up its last block has zeros for numbers
   int count(int i) const { return slot[i] < 0 ? 0 : nbond[slot[i]]; }    // 0: a solid only since
-  // indices of local and ghost atoms
+  // indices of local and ghost atoms, and of images
   const int *partners(int i) const { return &local[(size_t) slot[i] * maxbond]; }
   // where they are: number_of_bond()
   const double *numbers(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }
@@ -112,6 +115,7 @@ class FixFSIReference : public Fix {
   std::vector<int> solids, ghosts;
   FSI::Swaps swaps;      // those of solids
   FSI::Clamps clamps;    // rigid bodies that take sub-steps with them
+  FSI::Images images;    // partners across planes of symmetry
 
  private:
   class FixFSI *fix_fsi;
@@ -119,13 +123,14 @@ class FixFSIReference : public Fix {
   std::string as_now() const;
   bool has_record;
   bool resting;    // no pair_style fsi/solid/tl
-  class NeighList *list;
-  int *slot;    // per local atom: where its bonds are, or NO_BONDS or FOREIGN
+  int *slot;       // per local atom: where its bonds are, or NO_BONDS or FOREIGN
   enum { NO_BONDS = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began
   int maxbond;
   std::vector<int> nbond, local, unused;
   // owner: ID of the slot's atom when its bonds were last looked at
   std::vector<tagint> partner, owner;
+  bool keeps_images;           // bodies are bonded across planes
+  std::vector<int> through;    // per bond, bits of the planes that its partner is an image in
   std::vector<double> data, moment, quadrature;
   bool keeps_places;            // for contact of a body with itself
   std::vector<double> place;    // D numbers per slot: positions in the reference
@@ -143,11 +148,16 @@ class FixFSIReference : public Fix {
   void take();
   template <int D> void take_reference(const std::vector<int> &);
   template <int D, class Kernel>
-  void find_neighbors(int i, const Kernel &, std::vector<int> &, std::vector<double> &,
-                      std::vector<double> &) const;
+  void find_neighbors(int i, const Kernel &, const FSI::Cells &solids, std::vector<int> &,
+                      std::vector<double> &, std::vector<double> &) const;
+  template <int D, class Kernel>
+  void find_images(int i, const Kernel &, std::vector<int> &near, std::vector<double> &dX,
+                   std::vector<double> &w, std::vector<int> &bits) const;
+  void find_planes();
+  void check_planes(const std::vector<int> &bare) const;
   template <int D, class Kernel>
   void enter_bonds(int i, const Kernel &, const std::vector<int> &, const std::vector<double> &,
-                   const std::vector<double> &);
+                   const std::vector<double> &, const std::vector<int> &bits);
   double volume(int i) const;
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
@@ -166,6 +176,7 @@ class FixFSIReference : public Fix {
   int nplace() const { return keeps_places ? domain->dimension : 0; }    // numbers of one
   void reserve(int n);
   int new_slot(int n);
+  int nwhole() const { return keeps_images ? 2 : 1; }    // numbers of a bond beside its doubles
   int pack(int, double *) const;
   int unpack(int, const double *);
 };

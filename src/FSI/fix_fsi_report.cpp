@@ -21,17 +21,20 @@
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
 #include "fsi_clock.h"
+#include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_population.h"
+#include "fsi_profile.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
+#include "output.h"
 #include "timer.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -48,17 +51,14 @@ static std::string word(const std::string &text)
 /* ---------------------------------------------------------------------- */
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), energy(nullptr), fp(nullptr), first_step(0), natoms(0),
-    first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{}, collected(-1), output{}
+    Fix(lmp, narg, arg), profile(new Profile()), fix_fsi(nullptr), energy(nullptr), fp(nullptr),
+    first_step(0), natoms(0), first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{},
+    collected(-1), output{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/report requires atom_style fsi");
   if (igroup)
     error->all(FLERR, "Fix fsi/report must use group all: times and energies have no group");
 
-  if (narg > 3 && !strcmp(arg[3], "every"))
-    error->all(
-        FLERR,
-        "Fix fsi/report every is for messages, which are not counted any more: leave it out");
   std::string file;
   Keywords keywords(lmp, "fix fsi/report");
   keywords.key("file").word(file, "");
@@ -87,13 +87,6 @@ FixFSIReport::~FixFSIReport()
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIReport::setmask()
-{
-  return END_OF_STEP;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSIReport::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
@@ -101,13 +94,6 @@ void FixFSIReport::init()
     error->all(FLERR, "There can be only one fix fsi/report");
   auto computes = modify->get_compute_by_style("^fsi/energy$");
   energy = computes.empty() ? nullptr : dynamic_cast<ComputeFSIEnergy *>(computes[0]);
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSIReport::setup(int)
-{
-  begin();
 }
 
 /* ----------------------------------------------------------------------
@@ -130,7 +116,7 @@ void FixFSIReport::begin()
     energy->compute_vector();
     ledger.assign(energy->vector, energy->vector + energy->size_vector);
   }
-  profile.clear();
+  profile->clear();
 }
 
 // that there are, less those that inlets and outlets have made
@@ -194,8 +180,8 @@ FixFSIReport::Balance FixFSIReport::balance() const
   const Vector now = momentum_of_moving(&b.scale);
   auto mine = impulse;
   for (int d = 0; d < 3; d++) {
-    mine[WALLS][d] += profile.reflected[d];
-    mine[HELD][d] -= force->ftm2v * profile.impulse_held[d];
+    mine[WALLS][d] += profile->reflected[d];
+    mine[HELD][d] -= force->ftm2v * profile->impulse_held[d];
   }
   MPI_Allreduce(mine.data(), b.from.data(), 3 * NGIVER, MPI_DOUBLE, MPI_SUM, world);
   for (int d = 0; d < 3; d++) {
@@ -229,9 +215,9 @@ void FixFSIReport::post_run()
 
   double loop = timer->get_wall(Timer::TOTAL), sum;
   if (!timer->has_loop()) {
-    profile.enter(Profile::OUTSIDE);
+    profile->enter(Profile::OUTSIDE);
     loop = 0.0;
-    for (const double s : profile.seconds) loop += s;
+    for (const double s : profile->seconds) loop += s;
   }
   MPI_Allreduce(&loop, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
   loop = sum / comm->nprocs;
@@ -276,9 +262,10 @@ template <class T> void FixFSIReport::enter_line(const std::string &name, const 
    parts that the package times itself; of LAMMPS' own those that hold nothing of ours
 ------------------------------------------------------------------------- */
 
+enum { NEIGH = Profile::NPART, OUTPUT, REST, NROW };
+
 std::string FixFSIReport::time_table(double loop)
 {
-  enum { NEIGH = Profile::NPART, OUTPUT, REST, NROW };
   static constexpr const char *about[NROW][2] = {
       {"density", "rates, diffusion, shifting, number density, with images at walls"},
       {"stress", "velocity gradient, stress and hourglass control of solids"},
@@ -289,8 +276,8 @@ std::string FixFSIReport::time_table(double loop)
       {"neighbor lists", ""},
       {"output", "thermo, dumps, restarts, computes they need"},
       {"rest", "drift and kick, other fixes, their computes, LAMMPS"}};
-  double mine[NROW], sum[NROW], most[NROW];
-  std::copy_n(profile.seconds, (int) Profile::NPART, mine);
+  double mine[NROW], sum[NROW], most[NROW], busiest;
+  std::copy_n(profile->seconds, (int) Profile::NPART, mine);
   const bool known = timer->has_normal();
   mine[Profile::MESSAGES] += known ? timer->get_wall(Timer::COMM) : 0.0;
   mine[NEIGH] = known ? timer->get_wall(Timer::NEIGH) : 0.0;
@@ -299,6 +286,8 @@ std::string FixFSIReport::time_table(double loop)
   for (int k = 0; k < REST; k++) mine[REST] -= mine[k];
   MPI_Allreduce(mine, sum, NROW, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(mine, most, NROW, MPI_DOUBLE, MPI_MAX, world);
+  const double work = loop - mine[Profile::MESSAGES];
+  MPI_Allreduce(&work, &busiest, 1, MPI_DOUBLE, MPI_MAX, world);
 
   std::string text =
       fmt::format("  {:<16} {:>7} {:>10} {:>10}\n", "time", "share", "mean, s", "max, s");
@@ -314,6 +303,63 @@ std::string FixFSIReport::time_table(double loop)
   if (!known)
     text += "    (timer off or loop: the rest holds neighbor lists, output and LAMMPS' "
             "communication)\n";
+  for (double &s : sum) s /= comm->nprocs;
+  return text + what_to_change(loop, sum, busiest);
+}
+
+/* ----------------------------------------------------------------------
+   Of what took more than its usual share of the time, the dearest first: what a script can change
+------------------------------------------------------------------------- */
+
+std::string FixFSIReport::what_to_change(double loop, const double *mean, double busiest)
+{
+  if (loop <= 0.0) return "";
+  struct Hint {
+    const char *name;
+    double share;
+    std::string text;
+  };
+  std::vector<Hint> hints;
+  const auto add = [&](const char *name, double seconds, double usual, const std::string &text) {
+    if (seconds > usual * loop) hints.push_back({name, seconds / loop, text});
+  };
+  const double steps = update->ntimestep - first_step, skin = neighbor->skin / fix_fsi->dx,
+               a_list = steps / std::max<bigint>(neighbor->ncalls, 1),
+               messages = mean[Profile::MESSAGES], work = loop - messages;
+
+  if (busiest > 1.1 * work)
+    add("waiting", busiest - work, 0.05,
+        fmt::format("the busiest rank works {:.2f} times as long as the mean: fix balance",
+                    busiest / work));
+  else
+    add("communication", messages, 0.25,
+        fmt::format("{} particles on each rank: fewer ranks", natoms / comm->nprocs));
+  add("neighbor lists", mean[NEIGH], 0.2,
+      fmt::format("new ones every {:.3g} steps: a {} skin than {:.3g} dx", a_list,
+                  a_list < 10.0 ? "larger" : "smaller", skin));
+  add("output", mean[OUTPUT], 0.1,
+      fmt::format("thermo every {} steps, {} dumps: less often", lmp->output->thermo_every,
+                  lmp->output->ndump));
+  add("force of solids", mean[Profile::SOLID_FORCES], 0.4,
+      fix_fsi->substeps > 1
+          ? fmt::format(
+                "{} sub-steps in each step: fewer particles through the body, a softer body",
+                fix_fsi->substeps)
+          : "fewer particles through the body");
+  if (facts_of_fluids(lmp).shift_every == 1)
+    add("density", mean[Profile::DENSITY], 0.3, "shifting in every step: shift/every 4");
+  if (fix_fsi->kernel == QUINTIC)
+    add("force of fluid", mean[Profile::FLUID_FORCES], 0.3, "kernel quintic: wendland is faster");
+  std::sort(hints.begin(), hints.end(), [](const Hint &a, const Hint &b) {
+    return a.share > b.share;
+  });
+  std::string text = "  what to change first\n";
+  if (hints.empty())
+    text += "    nothing stands out: fewer particles, or longer steps (fix fsi/dt says what limits "
+            "them)\n";
+  for (const auto &h : hints)
+    text += fmt::format("    {:<14} {:>6.1f}%   {}\n", h.name, 100.0 * h.share, h.text);
+  enter_line("change_first", hints.empty() ? "nothing" : word(hints[0].name));
   return text;
 }
 

@@ -22,9 +22,9 @@ FixStyle(fsi/report,FixFSIReport);
 
 #include "fix.h"
 #include "fsi_part.h"
-#include "fsi_profile.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -36,17 +36,17 @@ class FixFSIReport : public Fix, public FSI::Part {
  public:
   FixFSIReport(class LAMMPS *, int, char **);
   ~FixFSIReport() override;
-  int setmask() override;
+  int setmask() override { return FixConst::END_OF_STEP; }
   void init() override;
-  void setup(int) override;
+  void setup(int) override { begin(); }
   void end_of_step() override;
   void post_run() override;
   double compute_vector(int) override;
 
-  FSI::Profile *counters() override { return &profile; }
-  FSI::Profile profile;    // filled by fix fsi, pair styles and walls
+  FSI::Profile *counters() override { return profile.get(); }
 
  private:
+  const std::unique_ptr<FSI::Profile> profile;    // filled by fix fsi, pair styles and walls
   class FixFSI *fix_fsi;
   class ComputeFSIEnergy *energy;
   FILE *fp;    // of rank 0; null: the log
@@ -84,6 +84,7 @@ class FixFSIReport : public Fix, public FSI::Part {
   std::string lines;    // FSI report name value
   template <class T> void enter_line(const std::string &name, const T &value);
   std::string time_table(double loop);
+  std::string what_to_change(double loop, const double *mean, double busiest);
   std::string momentum_table(bool lost);
   std::string energy_table();
 };

@@ -84,13 +84,6 @@ FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSISpectrum::setmask()
-{
-  return END_OF_STEP | POST_RUN;
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixFSISpectrum::find_input()
 {
   ArgInfo info(argument);
@@ -131,20 +124,6 @@ void FixFSISpectrum::find_input()
       error->all(FLERR, "Fix fsi/spectrum input {}: variable {} is not equal-style", argument,
                  name);
   }
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSISpectrum::init()
-{
-  find_input();
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSISpectrum::setup(int)
-{
-  end_of_step();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -279,29 +258,6 @@ void FixFSISpectrum::analyze()
   }
 #endif
   MPI_Bcast((double *) peaks.data(), 2 * static_cast<int>(peaks.size()), MPI_DOUBLE, 0, world);
-}
-
-/* ----------------------------------------------------------------------
-   number of samples
-------------------------------------------------------------------------- */
-
-double FixFSISpectrum::compute_scalar()
-{
-  return value.size();
-}
-
-/* ----------------------------------------------------------------------
-   frequency i, the largest amplitude first; frequency and amplitude
-------------------------------------------------------------------------- */
-
-double FixFSISpectrum::compute_vector(int i)
-{
-  return peaks[i].frequency;
-}
-
-double FixFSISpectrum::compute_array(int i, int j)
-{
-  return j ? peaks[i].amplitude : peaks[i].frequency;
 }
 
 /* ----------------------------------------------------------------------

@@ -32,14 +32,18 @@ namespace LAMMPS_NS {
 class FixFSISpectrum : public Fix {
  public:
   FixFSISpectrum(class LAMMPS *, int, char **);
-  int setmask() override;
-  void init() override;
-  void setup(int) override;
+  int setmask() override { return FixConst::END_OF_STEP | FixConst::POST_RUN; }
+  void init() override { find_input(); }
+  void setup(int) override { end_of_step(); }
   void end_of_step() override;
   void post_run() override;
-  double compute_scalar() override;
-  double compute_vector(int) override;
-  double compute_array(int, int) override;
+  double compute_scalar() override { return value.size(); }    // of samples
+  // frequencies, the largest amplitude first; with amplitudes
+  double compute_vector(int i) override { return peaks[i].frequency; }
+  double compute_array(int i, int j) override
+  {
+    return j ? peaks[i].amplitude : peaks[i].frequency;
+  }
   void write_restart(FILE *) override;
   void restart(char *) override;
   double memory_usage() override;

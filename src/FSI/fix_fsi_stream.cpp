@@ -18,7 +18,9 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_keywords.h"
 #include "fsi_record.h"
+#include "fsi_value.h"
 #include "group.h"
 #include "math_const.h"
 #include "modify.h"
@@ -36,8 +38,9 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"), velocity(lmp, "fix fsi/stream", 3),
-    low(0.0), high(0.0), region(nullptr), fix_fsi(nullptr), step(-1), given{}, work(0.0)
+    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"),
+    velocity(new Values(lmp, "fix fsi/stream", 3)), low(0.0), high(0.0), region(nullptr),
+    fix_fsi(nullptr), step(-1), given{}, work(0.0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stream requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi/stream", error);
@@ -46,7 +49,7 @@ FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
     if (word == "NULL") continue;
     if (d >= domain->dimension)
       error->all(FLERR, "Fix fsi/stream velocity along z must be NULL in 2D, not {}", word);
-    velocity.read(d, word, "velocity", "NULL or v_name");
+    velocity->read(d, word, "velocity", "NULL or v_name");
   }
   keywords.key("region").word(region_id, "");
   keywords.key("rate").number(rate, 0.0, Range::above(0.0));
@@ -71,12 +74,7 @@ FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
 }
 
-/* ---------------------------------------------------------------------- */
-
-int FixFSIStream::setmask()
-{
-  return POST_FORCE;
-}
+FixFSIStream::~FixFSIStream() = default;
 
 /* ---------------------------------------------------------------------- */
 
@@ -109,9 +107,9 @@ void FixFSIStream::init()
                "{} to {}",
                region_id, low, high, "xyz"[along], domain -> boxlo[along], domain -> boxhi[along]);
 
-  velocity.find();
+  velocity->find();
   zone_group = igroup;
-  if (velocity.of_atoms())
+  if (velocity->of_atoms())
     zone_group = group->find_or_create(("fsi_stream_" + std::string(id)).c_str());
 }
 
@@ -227,7 +225,7 @@ void FixFSIStream::advance(bool advance)
 void FixFSIStream::post_force(int)
 {
   find_weights();    // in setup
-  velocity.evaluate(zone_group, 0, 3);
+  velocity->evaluate(zone_group, 0, 3);
   std::fill_n(given, 4, 0.0);
   const double dt = update->dt;
   if (dt == 0.0) return;
@@ -236,11 +234,11 @@ void FixFSIStream::post_force(int)
     const double m = atom->rmass[i], part = -std::expm1(-rate * weight * dt);
     double *const f = atom->f[i], *const v = atom->v[i];
     for (int d = 0; d < 3; d++) {
-      if (!velocity.given(d)) continue;
-      const double u = velocity(d, i);
+      if (!velocity->given(d)) continue;
+      const double u = (*velocity)(d, i);
       if (!std::isfinite(u))
         error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u,
-                   "xyz"[d], atom -> tag[i], velocity.see(d));
+                   "xyz"[d], atom -> tag[i], velocity -> see(d));
       const double push = m * part * (u - v[d]) / (dt * force->ftm2v);
       f[d] += push;
       given[d] += push;
@@ -274,7 +272,7 @@ void FixFSIStream::write_restart(FILE *fp)
 {
   const double all = compute_scalar();
   Record record(lmp, "fix fsi/stream");
-  record.add("velocity", velocity.text());
+  record.add("velocity", velocity->text());
   keywords.write(record);
   record.add("work", std::vector<double>{all});
   record.write(fp);
@@ -285,15 +283,15 @@ void FixFSIStream::restart(char *buf)
   const Record record(lmp, "fix fsi/stream", buf);
   work = comm->me == 0 ? record.numbers("work")[0] : 0.0;
   keywords.compare(record);
-  const std::string before = record.has("velocity") ? record.value("velocity") : velocity.text();
-  if (before != velocity.text() && comm->me == 0)
+  const std::string before = record.has("velocity") ? record.value("velocity") : velocity->text();
+  if (before != velocity->text() && comm->me == 0)
     error->warning(FLERR, "Fix fsi/stream: velocity was {} {}, and is {} now", before,
-                   Keywords::OF_RESTART, velocity.text());
+                   Keywords::OF_RESTART, velocity->text());
 }
 
 /* ---------------------------------------------------------------------- */
 
 double FixFSIStream::memory_usage()
 {
-  return (double) zone.capacity() * sizeof(Member) + velocity.memory_usage();
+  return (double) zone.capacity() * sizeof(Member) + velocity->memory_usage();
 }

@@ -21,14 +21,16 @@ FixStyle(fsi/stream,FixFSIStream);
 #define LMP_FIX_FSI_STREAM_H
 
 #include "fix.h"
-#include "fsi_keywords.h"
 #include "fsi_part.h"
-#include "fsi_value.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Values;
+}
 
 // Brings the fluid of a zone to a given velocity, and, where asked, its density to the zone's mean:
 // with one rate for both a sound wave that passes decays without a reflection.
@@ -36,7 +38,8 @@ namespace LAMMPS_NS {
 class FixFSIStream : public Fix, public FSI::Part {
  public:
   FixFSIStream(class LAMMPS *, int, char **);
-  int setmask() override;
+  ~FixFSIStream() override;
+  int setmask() override { return FixConst::POST_FORCE; }
   void init() override;
   void setup(int) override;
   void post_force(int) override;
@@ -52,7 +55,7 @@ class FixFSIStream : public Fix, public FSI::Part {
  private:
   FSI::Keywords keywords;
   std::string region_id;
-  FSI::Values velocity;
+  const std::unique_ptr<FSI::Values> velocity;
   int along;                    // axis
   double rate, density_rate;    // 1/time, in the middle of the zone
   double low, high;             // ends of the zone along the axis

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_changes.h"
 #include "fsi_record.h"
 #include "modify.h"
 #include "pair.h"
@@ -33,8 +34,8 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), start(nullptr),
-    keywords(lmp, "fix fsi/stress"), ns(domain->dimension == 2 ? 3 : 6), strain(nullptr)
+    FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
+    ns(domain->dimension == 2 ? 3 : 6), start(nullptr), strain(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
@@ -124,6 +125,9 @@ void FixFSIStress::enter_start(const std::vector<State> &state)
     std::copy_n(atom->x[i], dim, start[i]);
     start[i][dim] = 1.0;
   }
+  Message places(lmp, state);
+  places.add(start, 0, dim, {NONE, FLUID, SOLID, RIGID});
+  sent = &places;
   comm->forward_comm(this);
 }
 
@@ -137,20 +141,6 @@ double FixFSIStress::distance_at_start(int i, int j) const
   }
   return std::sqrt(sum);
 }
-
-int FixFSIStress::pack_forward_comm(int n, int *list, double *buf, int, int *)
-{
-  for (int k = 0; k < n; k++) buf = std::copy_n(start[list[k]], comm_forward, buf);
-  return n * comm_forward;
-}
-
-void FixFSIStress::unpack_forward_comm(int n, int first, double *buf)
-{
-  for (int i = first; i < first + n; i++, buf += comm_forward)
-    std::copy_n(buf, comm_forward, start[i]);
-}
-
-/* ---------------------------------------------------------------------- */
 
 // V S:S/(4G), with S_zz of plane strain
 double FixFSIStress::shear_energy(int i, double shear) const

@@ -22,8 +22,6 @@ FixStyle(fsi/stress,FixFSIStress);
 
 #include "fsi_fields.h"
 #include "fsi_jaumann.h"
-#include "fsi_keywords.h"
-#include "fsi_material.h"
 #include "fsi_part.h"
 #include "fsi_plasticity.h"
 
@@ -41,8 +39,6 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
   std::vector<Effect> effects() const override;
   void find_idle(const Census &, const Idle &) const override;
 

@@ -23,6 +23,7 @@
 #include "fsi_keywords.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
+#include "fsi_walls.h"
 #include "pair.h"
 #include "update.h"
 
@@ -60,23 +61,12 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
     if (key.size() == 3 && strchr("xyz", key[0]) &&
         (key.substr(1) == "lo" || key.substr(1) == "hi")) {
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror " + key, error);
-      Wall w = {};
-      w.axis = key[0] - 'x';
-      w.side = key[1] == 'l' ? 1.0 : -1.0;
-      if (w.axis == 2 && domain->dimension == 2)
-        error->all(FLERR, "Fix fsi/wall/mirror {} is not possible for dimension 2", key);
-      if (strcmp(arg[iarg + 1], "EDGE") == 0) {
+      add_wall(key);
+      Wall &w = walls.back();
+      if (strcmp(arg[iarg + 1], "EDGE") == 0)
         w.position = key[1] == 'l' ? domain->boxlo[w.axis] : domain->boxhi[w.axis];
-      } else
+      else
         w.position = number(arg[iarg + 1]);
-      if (domain->periodicity[w.axis])
-        error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", key,
-                   "xyz"[w.axis]);
-      for (int b = 0; b < 3; b++) {
-        w.lo[b] = -BIG;
-        w.hi[b] = BIG;
-      }
-      walls.push_back(w);
       slip_said.push_back(false);
       iarg += 2;
     } else if (key == "range") {
@@ -98,6 +88,12 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
       walls.back().noslip = !utils::logical(FLERR, arg[iarg + 1], false, lmp);
       slip_said.back() = true;
       iarg += 2;
+    } else if (key == "symmetry") {
+      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror symmetry", error);
+      if (walls.empty())
+        error->all(FLERR, "Fix fsi/wall/mirror symmetry must follow the wall that it belongs to");
+      walls.back().joins = utils::logical(FLERR, arg[iarg + 1], false, lmp) ? groupbit : 0;
+      iarg += 2;
     } else if (key == "guard") {
       if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror guard", error);
       guard = number(arg[iarg + 1], Range::between(0.0, 0.45));
@@ -105,12 +101,13 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
     } else
       error->all(FLERR,
                  "Unknown fix fsi/wall/mirror keyword {}: expected xlo, xhi, ylo, yhi, zlo, zhi, "
-                 "range, velocity, slip or guard",
+                 "range, velocity, slip, symmetry or guard",
                  key);
   }
   if (walls.empty())
     error->all(FLERR, "Fix fsi/wall/mirror needs at least one of xlo, xhi, ylo, yhi, zlo, zhi");
 
+  check_symmetry();
   warn_of_slip(slip_said);
   for (const auto &w : walls) start.push_back(w.position);
   force_on.resize(walls.size());
@@ -123,6 +120,24 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   global_freq = 1;
   restart_global = 1;
   nevery = 1;
+}
+
+// key: xlo to zhi
+void FixFSIWallMirror::add_wall(const std::string &key)
+{
+  Wall w = {};
+  w.axis = key[0] - 'x';
+  w.side = key[1] == 'l' ? 1.0 : -1.0;
+  if (w.axis == 2 && domain->dimension == 2)
+    error->all(FLERR, "Fix fsi/wall/mirror {} is not possible for dimension 2", key);
+  if (domain->periodicity[w.axis])
+    error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", key,
+               "xyz"[w.axis]);
+  for (int b = 0; b < 3; b++) {
+    w.lo[b] = -BIG;
+    w.hi[b] = BIG;
+  }
+  walls.push_back(w);
 }
 
 /* ----------------------------------------------------------------------
@@ -148,6 +163,23 @@ void FixFSIWallMirror::parse_range(char **arg)
   w.finite = true;
 }
 
+// a plane of symmetry is unlimited, at rest, and without friction
+void FixFSIWallMirror::check_symmetry() const
+{
+  for (const auto &w : walls) {
+    if (!w.joins) continue;
+    const bool moves = w.velocity[0] != 0.0 || w.velocity[1] != 0.0 || w.velocity[2] != 0.0;
+    if (w.finite || w.noslip || moves)
+      error->all(
+          FLERR,
+          "Fix fsi/wall/mirror symmetry: wall {} is unlimited, at rest and slips, expected no {}",
+          face(w),
+          w.finite       ? "range"
+              : w.noslip ? "slip no"
+                         : "velocity");
+  }
+}
+
 /* ----------------------------------------------------------------------
    a channel of which one wall slips is most likely one whose script says slip once for both
 ------------------------------------------------------------------------- */
@@ -161,13 +193,6 @@ void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
                        "Fix fsi/wall/mirror {}: slip no is of wall {} alone, wall {} slips: slip "
                        "belongs to the wall that it follows",
                        id, face(walls[a]), face(walls[b]));
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIWallMirror::setmask()
-{
-  return POST_INTEGRATE | END_OF_STEP;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -295,7 +320,14 @@ void FixFSIWallMirror::go_back()
 void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
 {
   const Facts fluid = facts_of_fluids(lmp);
-  if (!fluid.style)
+  const bool joins = std::any_of(walls.begin(), walls.end(), [](const Wall &w) {
+    return w.joins;
+  });
+  if (joins && all.solids == 0)
+    nothing("Fix fsi/wall/mirror symmetry", "no particle is a solid");
+  else if (joins)
+    return;
+  else if (!fluid.style)
     nothing("Fix fsi/wall/mirror", "walls mirror fluids, and there is no pair_style fsi/fluid");
   else if (all.fluids == 0)
     nothing("Fix fsi/wall/mirror", "no particle is a fluid");
@@ -339,6 +371,7 @@ std::string FixFSIWallMirror::settings(int k) const
   const Wall &w = walls[k];
   std::string text = fmt::format("velocity {} {} {} slip {} guard {}", w.velocity[0], w.velocity[1],
                                  w.velocity[2], w.noslip ? "no" : "yes", guard);
+  if (w.joins) text += " symmetry yes";
   for (int b = 0; b < 3; b++)
     if (w.lo[b] > -BIG || w.hi[b] < BIG)
       text += fmt::format(" range {} {} {}", "xyz"[b], w.lo[b], w.hi[b]);

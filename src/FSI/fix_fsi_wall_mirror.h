@@ -22,7 +22,6 @@ FixStyle(fsi/wall/mirror,FixFSIWallMirror);
 
 #include "fix.h"
 #include "fsi_part.h"
-#include "fsi_walls.h"
 
 #include <array>
 #include <string>
@@ -37,7 +36,7 @@ namespace LAMMPS_NS {
 class FixFSIWallMirror : public Fix, public FSI::Part {
  public:
   FixFSIWallMirror(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override { return FixConst::POST_INTEGRATE | FixConst::END_OF_STEP; }
   void init() override;
   void setup(int) override;
   void post_integrate() override;
@@ -57,7 +56,9 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
  private:
   std::vector<double> start;    // positions in the command
   std::string settings(int) const;
+  void add_wall(const std::string &key);
   void parse_range(char **arg);
+  void check_symmetry() const;
   void warn_of_slip(const std::vector<bool> &slip_said) const;
   double guard;    // smallest distance to a wall, in spacings
   bigint reflected;

@@ -20,6 +20,7 @@
 #include "fix_fsi_move.h"
 #include "fix_store_atom.h"
 #include "force.h"
+#include "fsi_keywords.h"
 #include "fsi_levels.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
@@ -64,13 +65,6 @@ FixFSIWallParticle::~FixFSIWallParticle()
 {
   if (!id_store.empty() && modify->get_fix_by_id(id_store)) modify->delete_fix(id_store);
   memory->destroy(sum);
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIWallParticle::setmask()
-{
-  return PRE_REVERSE;
 }
 
 /* ----------------------------------------------------------------------
@@ -314,11 +308,6 @@ void FixFSIWallParticle::end_state(bool advance)
 /* ----------------------------------------------------------------------
    force of the fluid: only pairs have added to f so far
 ------------------------------------------------------------------------- */
-
-void FixFSIWallParticle::setup_pre_reverse(int eflag, int vflag)
-{
-  pre_reverse(eflag, vflag);
-}
 
 void FixFSIWallParticle::pre_reverse(int, int)
 {

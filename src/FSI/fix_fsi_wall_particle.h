@@ -21,7 +21,6 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 #define LMP_FIX_FSI_WALL_PARTICLE_H
 
 #include "fix.h"
-#include "fsi_keywords.h"
 #include "fsi_part.h"
 
 #include <string>
@@ -39,10 +38,10 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
  public:
   FixFSIWallParticle(class LAMMPS *, int, char **);
   ~FixFSIWallParticle() override;
-  int setmask() override;
+  int setmask() override { return FixConst::PRE_REVERSE; }
   void post_constructor() override;
   void init() override;
-  void setup_pre_reverse(int, int) override;
+  void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;

@@ -29,7 +29,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -56,14 +55,6 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
     reflected_before(-1.0), warned(0), violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
-  static const std::map<std::string, const char *> elsewhere = {
-      {"mach", "mach of fix fsi"},
-      {"courant", "check of fix fsi/dt"},
-      {"restart", "written to fsi_stop.restart"},
-      {"dump", "written to fsi_stop.dump"}};
-  for (int k = 4; k < narg; k++)
-    if (const auto it = elsewhere.find(arg[k]); it != elsewhere.end())
-      error->all(FLERR, "Fix fsi/watch {} is now {}", it->first, it->second);
   static constexpr double FOLLOWS = -1.0;    // the scene, see allowed()
   Keywords keywords(lmp, "fix fsi/watch");
   keywords.argument("interval").integer(interval, 1, 1);
@@ -89,13 +80,6 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
   extscalar = extvector = 0;
   global_freq = 1;
   dynamic_group_allow = 1;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIWatch::setmask()
-{
-  return POST_FORCE;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -171,7 +155,8 @@ void FixFSIWatch::look_at_particles(double &kinetic, double &little)
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
     const State &s = fix_fsi->state[type[i]];
-    if (s.species == RIGID) continue;    // neither compressed nor integrated
+    // a wall is neither compressed nor integrated
+    if (s.species == NONE || s.species == RIGID) continue;
     const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2];
     kinetic += 0.5 * rmass[i] * vsq;
     mass[type[i]] += rmass[i];
@@ -269,22 +254,4 @@ void FixFSIWatch::judge(Stop::When when)
     warned |= 1 << k;
     if (comm->me == 0) error->warning(FLERR, text);
   }
-}
-
-/* ----------------------------------------------------------------------
-   number of checks that found something, so far
-------------------------------------------------------------------------- */
-
-double FixFSIWatch::compute_scalar()
-{
-  return static_cast<double>(violations);
-}
-
-/* ----------------------------------------------------------------------
-   of the last check: distance, density error, energy growth, lost, reflected
-------------------------------------------------------------------------- */
-
-double FixFSIWatch::compute_vector(int k)
-{
-  return seen[DISTANCE + k];
 }

@@ -35,12 +35,13 @@ class FixFSIWatch : public Fix, public FSI::Part {
  public:
   FixFSIWatch(class LAMMPS *, int, char **);
   void find_idle(const Census &, const Idle &) const override;
-  int setmask() override;
+  int setmask() override { return FixConst::POST_FORCE; }
   void init() override;
   void setup(int) override;
   void post_force(int) override;
-  double compute_scalar() override;
-  double compute_vector(int) override;
+  // checks that found something so far; what the last one saw
+  double compute_scalar() override { return static_cast<double>(violations); }
+  double compute_vector(int k) override { return seen[FSI::DISTANCE + k]; }
 
  private:
   class FixFSI *fix_fsi;

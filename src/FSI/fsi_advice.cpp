@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_advice.h"
+#include "fsi_announce.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -62,11 +62,14 @@ class Adviser : protected Pointers {
   {
     units();
     box();
-    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest());
+    const auto ours = [this](int i) {
+      return has_material(i);
+    };
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest(), ours);
     if (spacing(cells) && solids.style) {
       const double reach = solids.contact;
       const Cells wide(atom->x, atom->nlocal + atom->nghost, scene.dim,
-                       std::max(2.5, reach) * coarsest());
+                       std::max(2.5, reach) * coarsest(), ours);
       if (update->ntimestep == 0) contact(wide, reach);
       held_bodies();
       cut_by_walls();
@@ -95,6 +98,7 @@ class Adviser : protected Pointers {
     for (size_t t = 1; t < scene.resolution.size(); t++) most = std::max(most, scene.dx_of(t));
     return most;
   }
+  bool has_material(int i) const { return scene.state[atom->type[i]].species != NONE; }
   bool fluid(int i) const { return scene.state[atom->type[i]].species == FLUID; }
   bool solid(int i) const { return scene.state[atom->type[i]].species == SOLID; }
   bool moves(int i) const { return solid(i) && atom->mask[i] & scene.mover->groupbit; }
@@ -176,6 +180,7 @@ class Adviser : protected Pointers {
     } closest = {BIG, comm->me}, least;
     tagint pair[2] = {0, 0};
     for (int i = 0; i < atom->nlocal; i++) {
+      if (!has_material(i)) continue;
       double nearest = 1.25 * 1.25;    // over the spacing between the two lattices
       int who = -1;
       cells.around(atom->x[i], [&](int j, double rsq) {
@@ -344,8 +349,8 @@ class Adviser : protected Pointers {
       const auto g = scene.body_forces.on(i);
       for (size_t k = 0; k < walls.size(); k++) {
         const double at = -walls[k].distance(atom->x[i]) / dx(i);
-        if (walls[k].noslip || at <= FAR || g[walls[k].axis] != 0.0 ||
-            !walls[k].spans(atom->x[i], 0.0))
+        if (walls[k].noslip || atom->mask[i] & walls[k].joins || at <= FAR ||
+            g[walls[k].axis] != 0.0 || !walls[k].spans(atom->x[i], 0.0))
           continue;
         double &nearest =
             mine.emplace(std::array<tagint, 2>{atom->molecule[i], (tagint) k}, at).first->second;
@@ -370,7 +375,7 @@ class Adviser : protected Pointers {
       if (at >= 0.0 || both) continue;
       warn(fmt::format("body {} ends at the mirror wall at {} = {:g}, and its face there is free, "
                        "since these walls act on fluid alone: a body cut by a plane of symmetry "
-                       "must be whole, or held there",
+                       "needs symmetry yes, or must be held there",
                        of[0], "xyz"[wall.axis], wall.position));
       return;
     }
@@ -439,9 +444,7 @@ class Adviser : protected Pointers {
 
   void torn_streams() const
   {
-    if (modify->get_fix_by_style("^fsi/[io][nu]t?let$").empty() &&
-        modify->get_fix_by_style("^fsi/stream$").empty())
-      return;
+    if (!scene.has_open_ends() && modify->get_fix_by_style("^fsi/stream$").empty()) return;
     const auto found = find_particles(atom, world, [&](int i) {
       return fluid(i) && scene.is_moved(i) && scene.state[atom->type[i]].floor == 0.0 && !weighs(i);
     });

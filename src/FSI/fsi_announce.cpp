@@ -18,7 +18,6 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
-#include "fsi_advice.h"
 #include "fsi_kernel.h"
 #include "fsi_lattice.h"
 #include "fsi_part.h"
@@ -52,6 +51,10 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
   if (fluid) {
     effects.push_back({fmt::format("{} mirror walls", scene.walls.wall.size()),
                        "fix fsi/wall/mirror", scene.walls.any()});
+    int planes = 0;
+    for (const auto &w : scene.walls.wall) planes += w.joins != 0;
+    effects.push_back({fmt::format("{} planes of symmetry of solids", planes),
+                       "fix fsi/wall/mirror symmetry", planes > 0});
     const int n = lmp->modify->get_fix_by_style("^fsi/wall/particle$").size();
     effects.push_back(
         {fmt::format("{} groups of wall particles", n), "fix fsi/wall/particle", n > 0});
@@ -66,7 +69,7 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
   if (scene.surface_ratio > 0.0)
     effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every),
                        "fix fsi surface/every", scene.keep_psi});
-  effects.push_back({"energy ledger", "compute fsi/energy", scene.ledger});
+  effects.push_back({"energy balance", "compute fsi/energy", scene.ledger});
 
   std::string on, off;
   for (const auto &e : effects)
@@ -132,7 +135,7 @@ static void warn_idle(LAMMPS *lmp, const Scene &scene)
   bigint mine[2] = {0, 0}, all[2];    // fluid and solid particles
   for (int i = 0; i < lmp->atom->nlocal; i++) {
     const int species = scene.state[lmp->atom->type[i]].species;
-    if (species != RIGID) mine[species == SOLID]++;
+    if (species == FLUID || species == SOLID) mine[species == SOLID]++;
   }
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
 

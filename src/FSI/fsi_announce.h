@@ -25,6 +25,11 @@ namespace FSI {
   // on.
   void announce(LAMMPS *lmp, Scene &scene);
 
+  // Warns (fsi_advice.cpp) of numbers that are legal and most likely not what was meant: spacing,
+  // overlaps, thin bodies, speed of sound, time step, skin, box, units. Each says what to type.
+  // Reads only; a few operations per particle.
+  void advise(LAMMPS *lmp, const Scene &scene);
+
 }    // namespace FSI
 }    // namespace LAMMPS_NS
 

@@ -111,7 +111,8 @@ double BodyForces::work(const std::vector<State> &state, int groupbit) const
   for (const auto &field : all) {
     if (!field.varies) continue;
     for (int i = 0; i < atom->nlocal; i++)
-      if ((atom->mask[i] & field.mask) && state[atom->type[i]].species != RIGID)
+      if ((atom->mask[i] & field.mask) && state[atom->type[i]].species != RIGID &&
+          state[atom->type[i]].species != NONE)
         for (int d = 0; d < domain->dimension; d++)
           sum += atom->rmass[i] * field.change[d] *
               (atom->x[i][d] - (atom->mask[i] & groupbit ? dth * atom->v[i][d] : 0.0));

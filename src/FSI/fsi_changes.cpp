@@ -72,7 +72,7 @@ std::vector<std::uintptr_t> Changes::present() const
     list.push_back(reinterpret_cast<std::uintptr_t>(p));
   };
   add(force->pair);
-  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"}) {
+  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl", "fsi/grain"}) {
     Pair *const pair = force->pair_match(style, 1);
     const auto *const part = dynamic_cast<const Part *>(pair);
     add(pair);

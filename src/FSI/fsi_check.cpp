@@ -122,9 +122,6 @@ void Check::materials()
   const auto walls = modify->get_fix_by_style("^fsi/wall/particle$");
   for (int i = 0; i < atom->nlocal; i++) {
     const int species = scene.state[atom->type[i]].species;
-    if (species == NONE)
-      error->one(FLERR, "Atom {} is of type {}, which has no material: give it one in pair_coeff",
-                 atom->tag[i], atom->type[i]);
     if (species == RIGID && std::none_of(walls.begin(), walls.end(), [&](const Fix *fix) {
           return atom->mask[i] & fix->groupbit;
         }))

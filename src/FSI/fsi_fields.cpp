@@ -304,56 +304,6 @@ void FixFields::add_callback(int kind, int *&booked, int &n)
   std::sort(booked, booked + n);
 }
 
-void FixFields::grow_arrays(int nmax)
-{
-  fields.grow_lasting(nmax);
-}
-
-void FixFields::copy_arrays(int i, int j, int)
-{
-  fields.copy(i, j);
-}
-
-void FixFields::set_arrays(int i)
-{
-  fields.begin(i);
-}
-
-int FixFields::pack_exchange(int i, double *buf)
-{
-  return fields.pack(i, buf);
-}
-
-int FixFields::unpack_exchange(int i, double *buf)
-{
-  return fields.unpack(i, buf);
-}
-
-int FixFields::pack_restart(int i, double *buf)
-{
-  return fields.pack_restart(i, buf);
-}
-
-void FixFields::unpack_restart(int i, int nth)
-{
-  fields.unpack_restart(i, nth);
-}
-
-int FixFields::size_restart(int)
-{
-  return fields.restart_size();
-}
-
-int FixFields::maxsize_restart()
-{
-  return fields.restart_size();
-}
-
-double FixFields::memory_usage()
-{
-  return fields.memory_usage();
-}
-
 /* ----------------------------------------------------------------------
    messages
 ------------------------------------------------------------------------- */

@@ -87,36 +87,6 @@ namespace FSI {
     void free(Field &);
   };
 
-  // A fix with fields.
-  class FixFields : public Fix {
-   public:
-    FixFields(LAMMPS *, int, char **);
-    ~FixFields() override;
-    void grow_arrays(int) override;
-    void copy_arrays(int, int, int) override;
-    void set_arrays(int) override;
-    int pack_exchange(int, double *) override;
-    int unpack_exchange(int, double *) override;
-    int pack_restart(int, double *) override;
-    void unpack_restart(int, int) override;
-    int size_restart(int) override;
-    int maxsize_restart() override;
-    double memory_usage() override;
-
-   protected:
-    Fields fields;
-    // when those that last are set: in the constructor, and again whenever they may have changed
-    void register_fields();
-
-   private:
-    bool grows, restarts;    // with LAMMPS' own arrays
-    void add_callback(int kind, int *&booked, int &n);
-  };
-
-  // The numbers of atom i that the nth fix of a restart file left there; all begin with their
-  // length.
-  const double *restart_values(const double *extra, int nth);
-
   // What a message between ranks carries of an atom: columns of arrays, of atoms of some species.
   class Message : protected Pointers {
    public:
@@ -146,6 +116,50 @@ namespace FSI {
     const std::vector<State> &state;
     template <class Visit> void visit(int i, Visit) const;
   };
+
+  // A fix with fields, which may send messages.
+  class FixFields : public Fix {
+   public:
+    FixFields(LAMMPS *, int, char **);
+    ~FixFields() override;
+    void grow_arrays(int nmax) override { fields.grow_lasting(nmax); }
+    void copy_arrays(int i, int j, int) override { fields.copy(i, j); }
+    void set_arrays(int i) override { fields.begin(i); }
+    int pack_exchange(int i, double *buf) override { return fields.pack(i, buf); }
+    int unpack_exchange(int i, double *buf) override { return fields.unpack(i, buf); }
+    int pack_restart(int i, double *buf) override { return fields.pack_restart(i, buf); }
+    void unpack_restart(int i, int nth) override { fields.unpack_restart(i, nth); }
+    int size_restart(int) override { return fields.restart_size(); }
+    int maxsize_restart() override { return fields.restart_size(); }
+    int pack_forward_comm(int n, int *list, double *buf, int, int *) override
+    {
+      return sent->pack(n, list, buf);
+    }
+    void unpack_forward_comm(int n, int first, double *buf) override
+    {
+      sent->unpack(n, first, buf);
+    }
+    int pack_reverse_comm(int n, int first, double *buf) override
+    {
+      return sent->pack_back(n, first, buf);
+    }
+    void unpack_reverse_comm(int n, int *list, double *buf) override { sent->add_up(n, list, buf); }
+    double memory_usage() override { return fields.memory_usage(); }
+
+   protected:
+    Fields fields;
+    const Message *sent = nullptr;    // of the exchange that goes on, by LAMMPS
+    // when those that last are set: in the constructor, and again whenever they may have changed
+    void register_fields();
+
+   private:
+    bool grows, restarts;    // with LAMMPS' own arrays
+    void add_callback(int kind, int *&booked, int &n);
+  };
+
+  // The numbers of atom i that the nth fix of a restart file left there; all begin with their
+  // length.
+  const double *restart_values(const double *extra, int nth);
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

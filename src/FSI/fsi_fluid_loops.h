@@ -143,11 +143,12 @@ namespace FSI {
 
     // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting to
     // shift, rows of Shift<D>::row(laws.fills), where rates of neighbors are behind the sums;
-    // mirror: the rows' neighbors are images in it; shift, sums: or null; near: the rows become
-    // those of what is within laws.reach
+    // mirror: the rows' neighbors are images in it; shift, sums: or null; near: becomes the rows of
+    // what is within laws.reach, which are the first of each row from then on, of images its only
+    // ones; or null
     virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror,
                        const FluidParticles &, const RateLaws &, double *rate, double *shift,
-                       PairSums *sums, RowList &near) const = 0;
+                       PairSums *sums, std::vector<Row> *near) const = 0;
     // adds pressure, viscosity and what keeps fluid out of walls to force, rows of
     // row_of_forces(D); with mirror the sum of the forces on all particles to total[D]
     virtual void forces(PairKind, const std::vector<Row> &, const Mirror *mirror,

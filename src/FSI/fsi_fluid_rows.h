@@ -205,6 +205,15 @@ namespace FSI {
     return L::sum(sum);
   }
 
+  // Diffusion acts within a fluid
+  template <bool UNLIKE>
+  FSI_INLINE DensityDiffusion diffusion_of(const FluidParticles &in, double delta, double h,
+                                           int type_i, int type_j)
+  {
+    const bool one = type_i == type_j || (UNLIKE && in.is_one_fluid(type_i, type_j));
+    return DensityDiffusion(one ? delta : 0.0, h, in.state[type_i].c);
+  }
+
   // d rho_i/dt = m_i sum_j v_ij.grad_i W_ij, the rate of m_i psi_i (paper eqs. 8 and 12), which
   // makes the work of the pair force -(p_i V_i^2 + p_j V_j^2) grad_i W_ij that of the pressures;
   // and the sums of particle shifting
@@ -212,40 +221,39 @@ namespace FSI {
   FSI_INLINE void rate_rows(const Row *const rows, const int nrows, const Mirror mirror,
                             const K kernel, const FluidParticles in, const RateLaws laws,
                             double *const rate, double (*const shift)[shift_row<K::DIM>(FLAGS)],
-                            PairSums *const sums, RowList &near)
+                            PairSums *const sums, std::vector<Row> *const near)
   {
-    constexpr int D = K::DIM;
+    constexpr int D = K::DIM, N = shift_sums<D>(FLAGS);
     constexpr bool IMAGE = FLAGS & Flag::IMAGES,
                    CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL),
                    UNLIKE = KIND == WITH_FLUID && (FLAGS & Flag::UNEQUAL);
-    constexpr int N = shift_sums<D>(FLAGS);
     constexpr bool TOGETHER = (FLAGS & Flag::SHIFT) && N > D;    // shifting takes the rate along
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
     T reachsq = laws.reach * laws.reach, by_diffusion = 0.0;
-    near.clear();
+    if (near) near->clear();
+    Sieve<T, !IMAGE> sieve;
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
       if (row.n == 0) continue;
       const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
       const Particle<T, D> pi(point[i]);
-      const bool one = type_i == type_j || (UNLIKE && in.is_one_fluid(type_i, type_j));
-      const DensityDiffusion diffusion(one ? laws.delta : 0.0, kernel.h, in.state[type_i].c);
+      const auto diffusion = diffusion_of<UNLIKE>(in, laws.delta, kernel.h, type_i, type_j);
       const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0,
                    fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0,
                    back = UNLIKE ? 1.0 / in.share[type_j].volume : 1.0;
       T sum = 0.0, flux = 0.0, displacement[N];
       for (T &s : displacement) s = 0.0;
-      int *last = near.room(row.n), picked = 0;
-      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
+      if (near) sieve.open(row);
+      // returns the square of the distance
+      const auto pair = [&](const int *j, const T &weight) FSI_INLINE_LAMBDA -> T {
         Particle<T, D> pj(point, j);
         if (IMAGE) pj.reflect(mirror);
         T x[D], v[D];
         difference(pi.x, pj.x, x);
         difference(pi.v, pj.v, v);
         const T rsq = product(x, x), r = root(rsq);
-        picked = L::pick(reachsq < rsq, j, last);
         T g = kernel.gradient(r);
         if (IMAGE) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
@@ -267,23 +275,25 @@ namespace FSI {
         // of a place left over, i itself, it is 0
         if (CUT && in.cut) s += kernel.sharper(r, sharper) * L::read(in.cut->rate, j);
         sum += s;
-        if (KIND != WITH_FLUID) return;    // the density of a solid or a wall is not of these rates
+        if (KIND != WITH_FLUID) return rsq;    // density of a solid or a wall has other rates
         T rate_j = UNLIKE ? back * (pj.rho * pj.vol * s) : pj.rho * pj.vol * s;
         if (FLAGS & Flag::DIFFUSION) {
           const T k = lesser(pi.p, pj.p) * diffusion(pi.rho, pj.rho, pi.pv2 - pj.pv2, g);
           flux += k * pj.vol;
           rate_j -= k * pi.vol;
-          // m p/rho^2 of what diffusion adds to rho
-          if (FLAGS & Flag::SUMS)
+          if (FLAGS & Flag::SUMS)    // m p/rho^2 of what diffusion adds to rho
             by_diffusion -= share_of<T>(i, j, in.nlocal, in.newton) * k * pi.vol * pj.vol *
                 (T(laws.pressure_over_density[i]) - L::read(laws.pressure_over_density, j));
         }
         if constexpr (FLAGS & Flag::SHIFT) shift_pair(g, &rate_j);
         if (!TOGETHER) L::add(rate_j, rate, j);
+        return rsq;
+      };
+      for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
+        const T rsq = pair(j, weight);
+        if (near) sieve.take(reachsq < rsq, j);
       });
-      // i itself, in places left over
-      if (picked >> (L::WIDTH - 1)) last -= -row.n & (L::WIDTH - 1);
-      near.close(i, last);
+      if (near) near->push_back(sieve.close(row));
       const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if constexpr (CUT)
@@ -292,7 +302,6 @@ namespace FSI {
               point[i].vol * coming_out<T, K, IMAGE>(row, mirror, kernel, in, sharper);
       if constexpr (FLAGS & Flag::SHIFT) L::add_sums(displacement, shift[i]);
     }
-    near.end();
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);
   }
 
@@ -745,7 +754,7 @@ namespace FSI {
 
     void rates(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
                const FluidParticles &in, const RateLaws &laws, double *rate, double *shift,
-               PairSums *sums, RowList &near) const override
+               PairSums *sums, std::vector<Row> *near) const override
     {
       using namespace Flag;
       const Mirror mirror = image ? *image : Mirror();

@@ -53,7 +53,7 @@ void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_flu
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
     const State &s = scene.state[type[i]];
-    if (s.species == RIGID) continue;
+    if (s.species == NONE || s.species == RIGID) continue;
     present[type[i]] = 1;
     if (s.species == FLUID) {
       double c = s.c;

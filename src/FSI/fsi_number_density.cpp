@@ -54,7 +54,7 @@ void NumberDensity::set_fields(Fields &fields)
 
 void NumberDensity::add_messages(Message &to_ghosts)
 {
-  if (scene.need_psi) to_ghosts.add(scene.psi, {NONE, FLUID, SOLID, RIGID}, &send);
+  if (scene.need_psi) to_ghosts.add(scene.psi, {FLUID, SOLID, RIGID}, &send);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -128,7 +128,7 @@ void NumberDensity::find_density()
   const double *const rmass = atom->rmass, *const psi = scene.psi;
   for (int i = 0; i < atom->nlocal; i++) {
     const int species = scene.state[atom->type[i]].species;
-    if (species == RIGID) continue;
+    if (species == NONE || species == RIGID) continue;
     const int mode = species == FLUID ? scene.density_fluid : scene.density_solid;
     if (mode == Scene::SUMMATION)
       rho[i] = rmass[i] * psi[i];

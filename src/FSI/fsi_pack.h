@@ -257,15 +257,8 @@ namespace FSI {
     FSI_INLINE static double read(const double *a, const int *j) { return a[*j]; }
     FSI_INLINE static void add(double x, double *a, const int *j) { a[*j] += x; }
     FSI_INLINE static double sum(double x) { return x; }
-    // puts those of the places j that are not far at `last`, where there is room for WIDTH, and
-    // moves it behind them; returns which as bits, the first place's lowest. (What is not a number
-    // is not far: it is to be seen.)
-    FSI_INLINE static int pick(bool far, const int *j, int *&last)
-    {
-      *last = *j;
-      last += !far;
-      return !far;
-    }
+    // which places a mask has, the first place's lowest
+    FSI_INLINE static int bits(bool mask) { return mask; }
     // f(k) for place k
     template <class F> FSI_INLINE static double make(F f) { return f(0); }
     // 1 in the first n places, else 0
@@ -296,37 +289,15 @@ namespace FSI {
     }
     FSI_INLINE static double sum(const Pack &x) { return x.sum(); }
     template <class F> FSI_INLINE static Pack make(F f) { return {f(0), f(1), f(2), f(3)}; }
-    FSI_INLINE static int pick(const Pack::Mask &far, const int *j, int *&last)
+    FSI_INLINE static int bits(const Pack::Mask &mask)
     {
-#if defined(__x86_64__)
-      // by bits: the places of those that are set
-      // clang-format off
-      static constexpr int order[16][WIDTH] = {
-          {0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3},
-          {2, 0, 1, 3}, {0, 2, 1, 3}, {1, 2, 0, 3}, {0, 1, 2, 3},
-          {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
-          {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
-      // clang-format on
-      typedef int Places __attribute__((vector_size(WIDTH * sizeof(int))));
-      int bits;
-      Places all, picked;
-      asm("vmovmskpd %1, %0" : "=r"(bits) : "x"(far.m));
-      bits ^= (1 << WIDTH) - 1;
-      __builtin_memcpy(&all, j, sizeof(all));
-      asm("vpermilps %2, %1, %0" : "=x"(picked) : "x"(all), "m"(order[bits]));
-      __builtin_memcpy(last, &picked, sizeof(picked));
-      last += __builtin_popcount(bits);
-      return bits;
+      int bits = 0;    // clang takes such operands in functions of this target alone
+#if defined(__x86_64__) && !defined(__clang__)
+      asm("vmovmskpd %1, %0" : "=r"(bits) : "x"(mask.m));
 #else
-      int bits = 0;
-      for (int k = 0; k < WIDTH; k++) {
-        const int bit = far.m[k] ? 0 : 1;
-        *last = j[k];
-        last += bit;
-        bits |= bit << k;
-      }
-      return bits;
+      for (int k = 0; k < WIDTH; k++) bits |= (mask.m[k] ? 1 : 0) << k;
 #endif
+      return bits;
     }
     FSI_INLINE static Pack first(int n)
     {

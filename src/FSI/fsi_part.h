@@ -43,6 +43,7 @@ namespace FSI {
     bool couples_stress = false;           // solids act with a pressure or stress of their own
     bool density_at_surfaces = false;      // density/surface
     bool density_follows_shift = false;    // where there are open ends
+    int shift_every = 0;                   // steps from one shift to the next; 0: none
     // of solids
     double contact = 0.0;    // range over dx
     bool self_contact = false;

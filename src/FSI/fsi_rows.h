@@ -19,6 +19,7 @@
 
 #include "fsi_pack.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -56,26 +57,12 @@ namespace FSI {
       if (found || even_empty) rows.push_back({i, found, nullptr});
       used += found;
     }
-    // likewise a row that a loop over another's n neighbors writes: room for them, and for what
-    // Lanes::pick() writes behind them
-    int *room(int n)
-    {
-      if (used + n + Lanes<Pack>::WIDTH > pool.size())
-        pool.resize(5 * (used + n + Lanes<Pack>::WIDTH) / 4);
-      return pool.data() + used;
-    }
-    // ends that row
-    void close(int i, const int *last)
-    {
-      const int found = last - (pool.data() + used);
-      if (found) rows.push_back({i, found, nullptr});
-      used += found;
-    }
     // no more rows: points them at their neighbors
     void end()
     {
       const int *first = pool.data();
       for (auto &row : rows) {
+        if (row.j) continue;    // in LAMMPS' list
         row.j = first;
         first += row.n;
       }
@@ -139,6 +126,46 @@ namespace FSI {
       pairs(j, weight(j, left));
     }
   }
+
+  // Puts the neighbors of a row that are near in front of the others, in place, while a loop goes
+  // over them: take() when it is done with these places j. Without KEEP the others are gone. What
+  // is not a number is not far: it is to be seen.
+  template <class T, bool KEEP> class Sieve {
+    static constexpr int W = Lanes<T>::WIDTH;
+    int *last = nullptr, *end_of_far = nullptr, left = 0;
+    std::vector<int> far;
+
+   public:
+    FSI_INLINE void open(const Row &row)
+    {
+      last = const_cast<int *>(row.j);
+      left = row.n;
+      if (KEEP && far.size() <= (size_t) row.n) far.resize(2 * row.n + 1);
+      end_of_far = far.data();
+    }
+    template <class Mask> FSI_INLINE void take(const Mask &is_far, const int *j)
+    {
+      const int bits = Lanes<T>::bits(is_far), n = left < W ? left : W;
+      left -= W;
+      if (bits == 0 && n == W && j == last) {    // as most are that were sorted before
+        last += W;
+        return;
+      }
+      for (int k = 0; k < n; k++) {
+        const int neighbor = j[k], out = bits >> k & 1;
+        *last = neighbor;
+        last += 1 - out;
+        if (!KEEP) continue;
+        *end_of_far = neighbor;
+        end_of_far += out;
+      }
+    }
+    FSI_INLINE Row close(const Row &row)
+    {
+      if (KEEP) std::copy(far.data(), end_of_far, last);
+      return {row.i, static_cast<int>(last - row.j), row.j};
+    }
+  };
 
   // 1 for a pair that only this rank visits, else 1/2
   template <class T> FSI_INLINE T share_of(int i, const int *j, int nlocal, bool newton)

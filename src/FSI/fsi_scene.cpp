@@ -113,6 +113,21 @@ void Scene::gather_walls()
 
 /* ---------------------------------------------------------------------- */
 
+// walls of particles go on behind a mirror themselves
+void Scene::find_near_walls()
+{
+  const Atom *const atom = instance->atom;
+  const int nall = atom->nlocal + atom->nghost;
+  const Row *const x = rows(atom->x);
+  const InnerBox inner(walls.wall, cut);
+  for (int i = 0; i < nall; i++) {
+    const bool none = inner.contains(x[i]) || state[atom->type[i]].species == RIGID;
+    wmask[i] = none ? 0 : walls.near(x[i], cut);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
 std::vector<std::string> Discretization::density_names(int species)
 {
   if (species == FLUID) return {"continuity", "summation"};

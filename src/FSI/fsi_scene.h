@@ -11,9 +11,9 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// What everybody reads of a simulation, in three parts: what is the same in a whole run, what a step
-// has, and the energy balance. Fix fsi is a Scene and fills it in; whoever only reads takes a Scene,
-// or the part that it needs, and need not know fix fsi.
+// What everybody reads of a simulation, in three parts: what is the same in a whole run, what a
+// step has, and the energy balance. Fix fsi is a Scene and fills it in; whoever only reads takes a
+// Scene, or the part that it needs, and need not know fix fsi.
 
 #ifndef LMP_FSI_SCENE_H
 #define LMP_FSI_SCENE_H
@@ -168,6 +168,7 @@ namespace FSI {
 
    protected:
     void gather_walls();            // one list from all fixes fsi/wall/mirror
+    void find_near_walls();         // wmask
     bool states_entered = false;    // in this init()
 
    private:

@@ -101,8 +101,8 @@ void FSISet::command(int narg, char **arg)
       count++;
       continue;
     }
-    if (s.species == RIGID) continue;            // has its pressure from the fluid, and its mass
-    if (s.form == TOTAL_LAGRANGIAN) continue;    // has its density from its strain
+    if (s.species == NONE || s.species == RIGID) continue;    // walls: from the fluid
+    if (s.form == TOTAL_LAGRANGIAN) continue;    // density from its strain
     double rho = value;
     if (hydrostatic) {
       const auto g = fix_fsi->body_forces.on(i);
@@ -127,9 +127,4 @@ void FSISet::command(int narg, char **arg)
     error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", arg[0], arg[1], arg[2]);
   if (comm->me == 0)
     utils::logmesg(lmp, "  fsi/set: {} of {} particles\n", volume ? "mass" : "density", all);
-}
-
-void FSISetRenamed::command(int, char **)
-{
-  error->all(FLERR, "Command fsi_set is called fsi/set");
 }

@@ -14,7 +14,6 @@
 #ifdef COMMAND_CLASS
 // clang-format off
 CommandStyle(fsi/set,FSISet);
-CommandStyle(fsi_set,FSISetRenamed);
 // clang-format on
 #else
 
@@ -30,13 +29,6 @@ namespace LAMMPS_NS {
 class FSISet : public Command {
  public:
   FSISet(class LAMMPS *lmp) : Command(lmp) {}
-  void command(int, char **) override;
-};
-
-// The name that it had before.
-class FSISetRenamed : public Command {
- public:
-  FSISetRenamed(class LAMMPS *lmp) : Command(lmp) {}
   void command(int, char **) override;
 };
 

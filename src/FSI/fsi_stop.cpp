@@ -20,6 +20,7 @@
 #include "fix.h"
 #include "force.h"
 #include "fsi_clock.h"
+#include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_limits.h"
 #include "fsi_part.h"
@@ -319,7 +320,7 @@ void Stop::stop(const Scene &scene, std::string text, const Finding &all, When w
 
 void Stop::go_back(const Scene &scene)
 {
-  const double back = -0.5 * update->dt, dt = update->dt + scene.dt_offset;
+  const double back = -0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & scene.mover->groupbit)
       for (int d = 0; d < scene.dim; d++) atom->x[i][d] += back * atom->v[i][d];
@@ -381,9 +382,13 @@ std::string Stop::write_state(const Scene &scene)
 
 void Stop::write_neighbours(const Scene &scene, const Finding &all) const
 {
-  static constexpr int NINT = 3, NCOL = 13;
+  struct Row {
+    tagint tag, molecule;
+    int type;
+    double numbers[10];
+  };
   const double reach = 3.0 * scene.largest_cut;
-  std::vector<double> mine;
+  std::vector<Row> mine;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], *const v = atom->v[i], *const f = atom->f[i];
     double d[3] = {x[0] - all.x[0], x[1] - all.x[1], x[2] - all.x[2]};
@@ -393,17 +398,12 @@ void Stop::write_neighbours(const Scene &scene, const Finding &all) const
       domain->minimum_image(d);
       if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach * reach) continue;
     }
-    for (const tagint n : {atom->tag[i], (tagint) atom->type[i], atom->molecule[i]})
-      mine.push_back(ubuf(n).d);
-    mine.insert(mine.end(), {x[0], x[1], x[2], v[0], v[1], v[2], f[0], f[1], f[2], atom->rho[i]});
+    mine.push_back({atom->tag[i],
+                    atom->molecule[i],
+                    atom->type[i],
+                    {x[0], x[1], x[2], v[0], v[1], v[2], f[0], f[1], f[2], atom->rho[i]}});
   }
-  int n = mine.size();
-  std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
-  MPI_Gather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, world);
-  for (int k = 1; k < comm->nprocs; k++) starts[k] = starts[k - 1] + counts[k - 1];
-  std::vector<double> rows(comm->me == 0 ? starts.back() + counts.back() : 0);
-  MPI_Gatherv(mine.data(), n, MPI_DOUBLE, rows.data(), counts.data(), starts.data(), MPI_DOUBLE, 0,
-              world);
+  const auto rows = gather(mine, world);
   if (comm->me) return;
 
   FILE *fp = fopen(dump_file.c_str(), "w");
@@ -415,14 +415,13 @@ void Stop::write_neighbours(const Scene &scene, const Finding &all) const
   domain->boundary_string(bounds);
   utils::print(fp, "ITEM: TIME\n{:.16g}\n", Clock::now(update));
   utils::print(fp, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n",
-               update->ntimestep, rows.size() / NCOL, bounds);
+               update->ntimestep, rows.size(), bounds);
   for (int d = 0; d < 3; d++)
     utils::print(fp, "{:.16g} {:.16g}\n", domain->boxlo[d], domain->boxhi[d]);
   utils::print(fp, "ITEM: ATOMS id type mol x y z vx vy vz fx fy fz rho\n");
-  for (size_t k = 0; k < rows.size(); k += NCOL) {
-    for (int c = 0; c < NINT; c++)
-      utils::print(fp, "{}{}", c ? " " : "", (tagint) ubuf(rows[k + c]).i);
-    for (int c = NINT; c < NCOL; c++) utils::print(fp, " {:.16g}", rows[k + c]);
+  for (const Row &row : rows) {
+    utils::print(fp, "{} {} {}", row.tag, row.type, row.molecule);
+    for (const double number : row.numbers) utils::print(fp, " {:.16g}", number);
     utils::print(fp, "\n");
   }
   fclose(fp);

@@ -28,7 +28,7 @@ struct Brick : public CommBrick {
   static constexpr auto number = &Brick::nswap;
   static constexpr auto to = &Brick::sendproc, from = &Brick::recvproc, nsend = &Brick::sendnum,
                         nrecv = &Brick::recvnum, first = &Brick::firstrecv, flag = &Brick::pbc_flag;
-  static constexpr auto list = &Brick::sendlist, pbc = &Brick::pbc;
+  static constexpr auto list = &Brick::sendlist, shifts = &Brick::pbc;
 };
 }    // namespace
 
@@ -52,7 +52,7 @@ void Swaps::find(const std::function<bool(int)> &is_chosen)
     s.to = (brick->*Brick::to)[k];
     s.from = (brick->*Brick::from)[k];
     s.flag = (brick->*Brick::flag)[k];
-    s.pbc = (brick->*Brick::pbc)[k];
+    s.pbc = (brick->*Brick::shifts)[k];
     swaps.push_back(s);
   }
 }

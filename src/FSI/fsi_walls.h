@@ -39,6 +39,7 @@ namespace FSI {
     bool noslip = false;              // image velocity for viscous forces
     bool finite = false;              // has an extent
     double lo[3] = {}, hi[3] = {};    // extent along the other two axes
+    int joins = 0;                    // bit of the group whose solids go on in their images
 
     double distance(const double *x) const { return side * (x[axis] - position); }
     // part of the cell of a particle with spacing dx that is before a plane without end

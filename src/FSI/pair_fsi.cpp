@@ -170,7 +170,8 @@ void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
   fix_fsi = FixFSI::find(lmp, "Pair style " + style);
-  fix_fsi->check_restart_ids();
+  if (!fix_fsi->ids_checked) check_ids(lmp);
+  fix_fsi->ids_checked = true;
   if (force->pair_match(style, 1, 1) != force->pair_match(style, 1, 2))
     error->all(
         FLERR,

@@ -28,6 +28,7 @@
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "pair_hybrid.h"
 #include "update.h"
 
 #include <algorithm>
@@ -43,9 +44,10 @@ static const std::vector<std::string> coupling_names = {"wall", "full"};    // C
 /* ---------------------------------------------------------------------- */
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), images_step(-1), near_known(false), cut(false), solids_pass(false),
-    fade(nullptr), fill(nullptr), fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{},
-    fields(lmp), rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    PairFSI(lmp, "fsi/fluid"), images_step(-1), near_known(false), sorts(true), margin(0.0),
+    cut(false), solids_pass(false), fade(nullptr), fill(nullptr),
+    fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, fields(lmp), rate(nullptr),
+    beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -137,7 +139,9 @@ double PairFSIFluid::sound_of(const Material &m) const
 
 void PairFSIFluid::init_style()
 {
+  NeighList *const lists = list;    // LAMMPS makes no others where all is asked for as before
   PairFSI::init_style();
+  list = lists;
   if (delta > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR,
                "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
@@ -268,6 +272,7 @@ Facts PairFSIFluid::facts() const
   facts.couples_stress = couple != WALL;
   facts.density_at_surfaces = surfaces;
   facts.density_follows_shift = shifting > 0.0 && fills();
+  facts.shift_every = shifting > 0.0 ? shift_every : 0;
   return facts;
 }
 
@@ -291,8 +296,24 @@ int PairFSIFluid::shift_sums() const
   return fix_fsi->dim == 2 ? Shift<2>::sums(fills()) : Shift<3>::sums(fills());
 }
 
+// Is this one of several styles of a hybrid one that leaves it all its pairs? Then it takes LAMMPS'
+// list of all pairs: the hybrid style would have its own copied from that.
+bool PairFSIFluid::has_all_pairs() const
+{
+  auto *const all = dynamic_cast<PairHybrid *>(force->pair);
+  if (!all) return false;
+  char name[] = "fsi/fluid";
+  for (int a = 1; a <= atom->ntypes; a++)
+    for (int b = a; b <= atom->ntypes; b++)
+      if (setflag[a][b] && handles(material[a].species, material[b].species) &&
+          !all->check_ijtype(a, b, name))
+        return false;
+  return true;
+}
+
 void PairFSIFluid::set_fields(Scene &scene)
 {
+  if (has_all_pairs()) neighbor->add_request(this);    // after init_style()
   fields.set("density rate", Fields::STEP, scene.density_fluid == FixFSI::CONTINUITY, rate);
   fields.set("shift", Fields::STEP, shifting > 0.0, scene.shift, nshift());
   fields.set("fade of shifting", Fields::STEP, shifting > 0.0 && scene.has_levels(), fade);
@@ -316,7 +337,7 @@ void PairFSIFluid::add_costs(Costs &costs) const
 {
   const int newton = force->newton_pair, continuity = fix_fsi->density_fluid == FixFSI::CONTINUITY,
             ns = shifting > 0.0 ? shift_sums() : 0;
-  costs.bytes += 8 * (2 * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
+  costs.bytes += 8 * ((2 + continuity) * fix_fsi->dim + 4 + continuity + (ns ? nshift() : 0));
   costs.sums = costs.sums || continuity;
   costs.fluid_ghost += newton * continuity * (1 + (shift_every == 1 ? ns : 0));
   if (ns && shift_every > 1)
@@ -355,16 +376,40 @@ void PairFSIFluid::begin_state(bool advance)
   std::fill_n(fill_weight, atom->nlocal + atom->nghost, 1.0);
 }
 
-void PairFSIFluid::find_reach()
+double PairFSIFluid::within(const Meeting &m) const
 {
-  const auto *const v = FixFSI::rows(atom->v);
-  double most = 0.0;
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-    most = std::max(most, v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
-  double speed = 2.0 * std::sqrt(most);
-  for (const Wall &wall : fix_fsi->walls.wall) speed += 2.0 * std::fabs(wall.velocity[wall.axis]);
-  for (auto &m : meetings)
-    m.reach = (fix_fsi->has_levels() ? m.cut : fix_fsi->largest_cut) + update->dt * speed;
+  return fix_fsi->has_levels() ? m.cut : fix_fsi->largest_cut;
+}
+
+// Loops are at atom->x and half a step before it. Where lists have just been built, sorted_at is of
+// other atoms.
+template <int D> void PairFSIFluid::find_reach()
+{
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const int nall = atom->nlocal + atom->nghost;
+  const size_t size = rate ? (size_t) D * atom->nmax : 0;
+  if (sorted_at.size() < size) sorted_at.resize(size);
+  const auto *const old = reinterpret_cast<const double(*)[D]>(sorted_at.data());
+  double fastest = 0.0, farthest = 0.0;
+  for (int i = 0; i < nall; i++) {
+    double vsq = 0.0, rsq = 0.0;
+    for (int d = 0; d < D; d++) vsq += v[i][d] * v[i][d];
+    for (int d = 0; rate && d < D; d++) rsq += (x[i][d] - old[i][d]) * (x[i][d] - old[i][d]);
+    fastest = std::max(fastest, vsq);
+    farthest = std::max(farthest, rsq);
+  }
+  // what a pair comes nearer in a step
+  const double nearer = 2.0 * update->dt * std::sqrt(fastest);
+  double walls = 0.0;
+  for (const Wall &wall : fix_fsi->walls.wall) walls += 2.0 * std::fabs(wall.velocity[wall.axis]);
+  for (auto &m : meetings) m.reach = within(m) + nearer + update->dt * walls;
+  sorts = neighbor->ago == 0 || 2.0 * std::sqrt(farthest) + 0.5 * nearer > margin;
+  if (!sorts || !rate) return;
+  // to sort again costs less than a third of the skin's pairs in each loop
+  const double steps = std::floor(0.35 * neighbor->skin / std::max(nearer, 0.04 * neighbor->skin));
+  margin = 1.05 * (std::max(steps, 1.0) - 0.5) * nearer;
+  for (int i = 0; i < nall; i++)
+    for (int d = 0; d < D; d++) sorted_at[D * i + d] = x[i][d] - 0.5 * update->dt * v[i][d];
 }
 
 bool PairFSIFluid::add_rates(bool advance)
@@ -372,7 +417,7 @@ bool PairFSIFluid::add_rates(bool advance)
   fields.grow();
   if (fill) look_past_thin_bodies();
   find_cut_solids();
-  if (rate || fix_fsi->walls.any()) find_reach();
+  if (rate || fix_fsi->walls.any()) fix_fsi->dim == 2 ? find_reach<2>() : find_reach<3>();
   const size_t nall = atom->nlocal + atom->nghost;
   if (rate) std::fill_n(rate, nall, 0.0);
   if (fix_fsi->shifts && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
@@ -644,7 +689,7 @@ void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
 
 void PairFSIFluid::find_rows()
 {
-  const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
+  const int *const type = atom->type;
   const State *const state = fix_fsi->state.data();
   double **const x = atom->x;
   std::vector<int> fluid_types, other_types;
@@ -656,11 +701,8 @@ void PairFSIFluid::find_rows()
   find_guards();
   for (auto &m : meetings) m.rows.clear();
 
-  struct Pair {
-    int i, j;
-  };
-  std::vector<Pair> with_others;    // fluid particles and neighbors of other species, whichever of
-                                    // both has the other in its list
+  // fluid particles and neighbors of other species, whichever of both has the other in its list
+  std::vector<std::array<int, 2>> with_others;
   std::vector<char> is_fluid(atom->ntypes + 1, 0);
   for (const int t : fluid_types) is_fluid[t] = 1;
 
@@ -671,7 +713,12 @@ void PairFSIFluid::find_rows()
   std::vector<char> hides;
   Sight *const sight = fix_fsi->sight.get();
   beside.clear();
-  const bool own = other_types.empty() && fluid_types.size() == 1 && !atom->molecular;
+  const bool own = atom->ntypes == 1 && fluid_types.size() == 1 && !atom->molecular;
+  const auto alone = [&](int i, const int *j, int n) {
+    return std::all_of(j, j + n, [=](int k) {
+      return type[k] == type[i];
+    });
+  };
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], *neighbors = list->firstneigh[i];
     const int n = list->numneigh[i];
@@ -690,6 +737,10 @@ void PairFSIFluid::find_rows()
       continue;
     }
     const bool looks = sight && sight->near(x[i]);
+    if (!looks && !atom->molecular && alone(i, neighbors, n)) {
+      rows_of[(ntypes + 1) * type[i]]->rows.push_back({i, n, neighbors});
+      continue;
+    }
     if (looks) find_hidden(i, neighbors, n, fluid_types, hides);
     // that of its own type stays if it is empty, for its own images
     RowList **const to = &rows_of[ntypes * type[i]];
@@ -708,11 +759,19 @@ void PairFSIFluid::find_rows()
   for (const Row &row : meetings[HIDDEN].rows.rows) visible.resize(visible.size() + row.n);
   for (auto &m : meetings)
     if (!own && m.what == FLUIDS) m.rows.end();
-  if (other_types.empty()) return;
+  if (!other_types.empty()) find_rows_with_others(with_others, other_types);
+}
+
+// rows of fluid particles and neighbors of other species, from their pairs
+void PairFSIFluid::find_rows_with_others(const std::vector<std::array<int, 2>> &with_others,
+                                         const std::vector<int> &other_types)
+{
+  const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
+  const State *const state = fix_fsi->state.data();
   std::vector<int> first(nall + 2, 0), other(with_others.size());
-  for (const auto &pair : with_others) first[pair.i + 2]++;
+  for (const auto &pair : with_others) first[pair[0] + 2]++;
   for (int i = 0; i < nall; i++) first[i + 2] += first[i + 1];
-  for (const auto &pair : with_others) other[first[pair.i + 1]++] = pair.j;
+  for (const auto &pair : with_others) other[first[pair[0] + 1]++] = pair[1];
   for (int i = 0; i < nall; i++) {
     if (first[i] == first[i + 1]) continue;
     Meeting *const of_level = &meetings[NKINDS * fix_fsi->level_of[type[i]]];
@@ -792,13 +851,13 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
       }
     }
     for (auto &list_of : lists) list_of.end();
-    meeting.near_images.resize(n);
   }
 }
 
 /* ----------------------------------------------------------------------
    calls loop(meeting, number of reflection, mirror) for all rows of images; without extent of
-   walls they are the same in all of a step's loops
+   walls they are the same in all of a step's loops, but that of rates leaves only what is within
+   reach
 ------------------------------------------------------------------------- */
 
 template <class Position, class Loop>
@@ -832,14 +891,15 @@ FluidParticles PairFSIFluid::particles_at(const double *points)
 }
 
 FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, const Meeting &meeting,
-                                     const RowList &list_of, const std::vector<double> &parts_of)
+                                     const std::vector<Row> &list_of,
+                                     const std::vector<double> &parts_of)
 {
   FluidParticles in = particles;
   in.share = shares[meeting.level].of_type.data();
   in.unequal = shares[meeting.level].unequal;
   in.unlike = meeting.unlike;
   if (meeting.what != HIDDEN) return in;
-  seen_pairs = {parts_of.data(), list_of.rows.empty() ? nullptr : list_of.rows[0].j};
+  seen_pairs = {parts_of.data(), list_of.empty() ? nullptr : list_of[0].j};
   in.visible = &seen_pairs;
   return in;
 }
@@ -908,19 +968,25 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   RateLaws laws = {delta, pressure_over_density.data(), 0.0, fills(), 0.0};
   double *const shift = fix_fsi->shifts ? fix_fsi->shift[0] : nullptr;
   PairSums sums;
-  const auto loop = [&](const Meeting &m, const RowList &which, const std::vector<double> &parts_of,
-                        const Mirror *mirror, RowList &found) {
+  const auto loop = [&](const Meeting &m, const std::vector<Row> &which,
+                        const std::vector<double> &parts_of, const Mirror *mirror, double reach,
+                        std::vector<Row> *found) {
     FluidParticles in = of_rows(particles, m, which, parts_of);
     if (shift && fade) {
       in.fade = fade;
       in.unlike = true;
     }
     laws.wdx = m.wdx;
-    laws.reach = m.reach;
-    m.loops->rates(m.kind, which.rows, mirror, in, laws, rate, shift,
-                   fix_fsi->ledger ? &sums : nullptr, found);
+    laws.reach = reach;
+    m.loops->rates(m.kind, which, mirror, in, laws, rate, shift, fix_fsi->ledger ? &sums : nullptr,
+                   found);
   };
-  for (auto &m : meetings) loop(m, m.rows, visible, nullptr, m.near);
+  // of what thin bodies may hide the order says which part belongs to which pair
+  for (auto &m : meetings) {
+    const bool hidden = m.what == HIDDEN;
+    loop(m, sorts || hidden ? m.rows.rows : m.near, visible, nullptr, within(m) + margin,
+         sorts && !hidden ? &m.near : nullptr);
+  }
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(
       walls,
@@ -928,7 +994,9 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
         return point[i].position(x[i]);
       },
       [&](Meeting &m, int k, const Mirror *mirror) {
-        loop(m, m.images[k], visible_images[k], mirror, m.near_images[k]);
+        loop(m, m.images[k].rows, visible_images[k], mirror, m.reach,
+             m.what == HIDDEN ? nullptr : &near_images);
+        if (m.what != HIDDEN) m.images[k].rows.swap(near_images);
       });
   near_known = true;
   const int of_shift = nshift(), last = shift_sums();
@@ -969,7 +1037,7 @@ void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particle
   const auto one = [&](const Meeting &m, const RowList &which, const std::vector<double> &parts_of,
                        const Mirror *mirror) {
     const bool both = m.kind == WITH_FLUID || others_too;
-    sum(m, which.rows, both, mirror, of_rows(particles, m, which, parts_of));
+    sum(m, which.rows, both, mirror, of_rows(particles, m, which.rows, parts_of));
   };
   for (const auto &m : meetings) one(m, m.rows, visible, nullptr);
   double **x = atom->x;
@@ -1122,19 +1190,18 @@ template <int D> void PairFSIFluid::compute_forces()
   PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   double guarding[NKINDS] = {};
-  const auto loop = [&](const Meeting &m, const RowList &which, const std::vector<double> &parts_of,
-                        const Mirror *mirror, double *total) {
+  const auto loop = [&](const Meeting &m, const std::vector<Row> &which,
+                        const std::vector<double> &parts_of, const Mirror *mirror, double *total) {
     const double before = sums.guard;
     laws.guard = shares[m.level].guards.data();
-    m.of_forces->forces(m.kind, which.rows, mirror, of_rows(particles, m, which, parts_of), laws,
+    m.of_forces->forces(m.kind, which, mirror, of_rows(particles, m, which, parts_of), laws,
                         forces.data(), total, of_pairs);
     guarding[m.what] += sums.guard - before;
   };
   for (const auto &m : meetings)
-    loop(m, near_known && m.what != HIDDEN ? m.near : m.rows, visible, nullptr, nullptr);
+    loop(m, near_known && m.what != HIDDEN ? m.near : m.rows.rows, visible, nullptr, nullptr);
 
   const Walls &walls = fix_fsi->walls;
-  const bool images_known = near_known && !walls.finite();
   const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
   for_images(
       walls,
@@ -1144,8 +1211,7 @@ template <int D> void PairFSIFluid::compute_forces()
       [&](const Meeting &m, int reflection, const Mirror *mirror) {
         const auto &s = walls.reflections[reflection];
         double total[D] = {};
-        loop(m, (images_known && m.what != HIDDEN ? m.near_images : m.images)[reflection],
-             visible_images[reflection], mirror, total);
+        loop(m, m.images[reflection].rows, visible_images[reflection], mirror, total);
         for (int d = 0; d < D; d++) {
           int w = s.w[0];
           for (int k = 1; k < s.n; k++)
@@ -1194,7 +1260,7 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   viscous_forces.assign((size_t) ROW * nall, 0.0);
   for (const auto &m : meetings)
     if (m.what == WALLS || m.what == SOLIDS)
-      m.of_forces->forces(m.kind, m.rows.rows, nullptr, of_rows(particles, m, m.rows, visible),
+      m.of_forces->forces(m.kind, m.rows.rows, nullptr, of_rows(particles, m, m.rows.rows, visible),
                           laws, viscous_forces.data(), nullptr, nullptr);
   for_images(
       fix_fsi->walls,
@@ -1205,8 +1271,8 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
         double unused[D] = {};
         if (m.what == SOLIDS)
           m.of_forces->forces(m.kind, m.images[k].rows, mirror,
-                              of_rows(particles, m, m.rows, visible), laws, viscous_forces.data(),
-                              unused, nullptr);
+                              of_rows(particles, m, m.rows.rows, visible), laws,
+                              viscous_forces.data(), unused, nullptr);
       });
   for (auto *measure : force_computes)
     if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
@@ -1243,14 +1309,13 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 double PairFSIFluid::memory_usage()
 {
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
-      pressure_over_density.capacity() + parts.capacity() + part_rates.capacity() +
-      visible.capacity();
+      pressure_over_density.capacity() + sorted_at.capacity() + parts.capacity() +
+      part_rates.capacity() + visible.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double) +
       (double) beside.capacity() * sizeof(beside[0]);
   for (const auto &m : meetings) {
-    bytes += m.rows.memory_usage() + m.near.memory_usage();
+    bytes += m.rows.memory_usage() + (double) m.near.capacity() * sizeof(Row);
     for (const auto &list_of : m.images) bytes += list_of.memory_usage();
-    for (const auto &list_of : m.near_images) bytes += list_of.memory_usage();
   }
   return bytes;
 }

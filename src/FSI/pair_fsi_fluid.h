@@ -28,6 +28,7 @@ PairStyle(fsi/fluid,PairFSIFluid);
 #include "pair_fsi.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -71,11 +72,12 @@ class PairFSIFluid : public PairFSI {
     static const std::vector<FSI::Row> none;
     if (meetings.empty()) return none;    // not set up yet
     const Meeting &m = meetings[NKINDS * level + WALLS];
-    return (near_known ? m.near : m.rows).rows;
+    return near_known ? m.near : m.rows.rows;
   }
 
  protected:
   bool handles(int, int) const override;
+  bool needs_neighbors() override { return !has_all_pairs(); }
   // walls of held solid particles need no pair style of their own; wall particles act on fluids
   // only
   bool leaves_alone(int a, int b, bool alone) const override
@@ -118,12 +120,10 @@ class PairFSIFluid : public PairFSI {
     std::shared_ptr<FSI::FluidLoops> loops, of_forces;    // all; those of forces
     FSI::RowList rows;                                    // of the neighbor list
     std::vector<FSI::RowList> images;    // by reflection; walls of particles have none
-    // the support, and what a particle and another or its image may come nearer in a step
+    // of images: the support, and what a pair comes nearer in a step
     double reach = INFINITY;
-    // of these, what the loop of rates finds within the support, for the next loop of forces: the
-    // lists have the skin's pairs, too
-    FSI::RowList near;
-    std::vector<FSI::RowList> near_images;
+    // of these, what is within the support and a margin: the lists have the skin's pairs, too
+    std::vector<FSI::Row> near;
   };
   std::vector<Meeting> meetings;        // NKINDS of each level, pairs of levels
   std::vector<size_t> of_two_levels;    // the meeting of two fluids
@@ -132,17 +132,27 @@ class PairFSIFluid : public PairFSI {
   void find_guards();
   std::vector<FSI::RowList *> rows_of_fluids();
   void find_rows();
+  void find_rows_with_others(const std::vector<std::array<int, 2>> &,
+                             const std::vector<int> &other_types);
   bool has_rows_with_walls() const
   {
     return std::any_of(meetings.begin(), meetings.end(), [](const Meeting &m) {
       return m.what == WALLS && !m.rows.rows.empty();
     });
   }
+  bool has_all_pairs() const;
   bigint images_step;
   template <class Position> void find_images(const FSI::Walls &, Position);
   template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
-  void find_reach();
-  bool near_known;
+  // The loop of rates sorts near pairs out when particles may have moved by the margin since it
+  // last did. Before the lists are used by a second force evaluation at other positions they are
+  // not known.
+  bool near_known, sorts;
+  double margin;
+  std::vector<double> sorted_at;    // positions
+  template <int D> void find_reach();
+  double within(const Meeting &) const;
+  std::vector<FSI::Row> near_images;
 
   bool cut, solids_pass;    // does a solid pass through a mirror wall, may one before the next
                             // neighbor lists?
@@ -180,8 +190,8 @@ class PairFSIFluid : public PairFSI {
   FSI::Thin thin_bodies;
   FSI::Visible seen_pairs;
   // particles as the loop over these rows sees them, and that loop
-  FSI::FluidParticles of_rows(const FSI::FluidParticles &, const Meeting &, const FSI::RowList &,
-                              const std::vector<double> &visible);
+  FSI::FluidParticles of_rows(const FSI::FluidParticles &, const Meeting &,
+                              const std::vector<FSI::Row> &, const std::vector<double> &visible);
   FSI::Cut cut_solids;
   FSI::FluidParticles particles_at(const double *points);
   // positions a time t later; what else a loop needs is up to complete(i, point)

@@ -59,13 +59,6 @@ PairFSISolid::PairFSISolid(LAMMPS *lmp) :
 
 /* ---------------------------------------------------------------------- */
 
-bool PairFSISolid::handles(int a, int b) const
-{
-  return a == SOLID && b == SOLID;
-}
-
-/* ---------------------------------------------------------------------- */
-
 State PairFSISolid::make_state(const Material &m) const
 {
   const auto *const stress = FixFSIStress::find(lmp);
@@ -234,9 +227,167 @@ void PairFSISolid::find_rows()
         return !one(i, j);
       });
   }
+  find_image_rows();
   if (whole) return;
   own.end();
   others.end();
+}
+
+/* ----------------------------------------------------------------------
+   Planes of symmetry (fsi_images.h): particles before them have the images of their neighbors, and
+   of themselves. Each pair has one row: what i and the image of j do to each other, j and the image
+   of i do, too, mirrored.
+------------------------------------------------------------------------- */
+
+void PairFSISolid::find_image_rows()
+{
+  images.find_planes(fix_fsi->walls, fix_fsi->wall_forces);
+  images.begin(atom->nlocal + atom->nghost);
+  if (!images.planes.any()) return;
+  if (update->setupflag) check_planes();
+  double **x = atom->x;
+  const int *const mask = atom->mask, nlocal = atom->nlocal;
+  const double most = fix_fsi->cut + neighbor->skin;
+  std::vector<int> found[2][2];    // of other bodies, by half
+  for (auto *rows : {&own_images, &other_images})
+    for (RowList &list_ : *rows) list_.clear();
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii], near = images.planes.near(x[i], most);
+    if (!near || !images.joins(mask, i)) continue;
+    for (auto &of : found) of[0].clear(), of[1].clear();
+    const auto add = [&](int j, double rsq, bool half) {
+      const bool other = atom->molecule[i] != atom->molecule[j];
+      images.planes.images(near & images.planes.near(x[j], most), rsq, x[i], x[j], most * most,
+                           [&](const Walls::Reflection &s, double, const double *) {
+                             const int bits = s.mask | (half ? Images::HALF : 0);
+                             found[other][half].push_back(images.find(j, bits));
+                           });
+    };
+    add(i, 0.0, true);
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+      double rsq = 0.0;
+      for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+      if (images.joins(mask, j)) add(j, rsq, !force->newton_pair && j >= nlocal);
+    }
+    const auto all = [](int) {
+      return true;
+    };
+    for (const int half : {0, 1}) {
+      own_images[half].add(i, found[0][half].data(), found[0][half].size(), false, false, all);
+      other_images[half].add(i, found[1][half].data(), found[1][half].size(), false, false, all);
+    }
+  }
+  for (auto *rows : {&own_images, &other_images})
+    for (RowList &list_ : *rows) list_.end();
+  types_with_images.assign(atom->type, atom->type + images.end());
+  images.for_each([this](int k, int of, const Mirror &, bool) {
+    types_with_images[k] = atom->type[of];
+  });
+}
+
+void PairFSISolid::check_planes() const
+{
+  if (self_contact)
+    error->all(FLERR,
+               "Pair style fsi/solid self yes does not go with symmetry yes of fix "
+               "fsi/wall/mirror: a body would not meet its own image");
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (material[atom->type[i]].species != SOLID || !images.joins(atom->mask, i)) continue;
+    for (const Wall &plane : images.planes.wall)
+      if (plane.distance(atom->x[i]) < 0.0)
+        error->one(FLERR,
+                   "Solid atom {} of body {} is behind the plane of symmetry at {} = {}: expected "
+                   "half a spacing before it, or more",
+                   atom->tag[i], atom->molecule[i], "xyz"[plane.axis], plane.position);
+  }
+}
+
+// a matrix of D x n, by rows, whose columns change with these signs
+template <int D> static void mirror_matrix(const Mirror &m, int n, const double *columns, double *a)
+{
+  for (int d = 0; d < D; d++)
+    for (int k = 0; k < n; k++) a[d * n + k] *= m.sign[d] * columns[k];
+}
+
+template <int D> static void mirror_tensor(const Mirror &m, double *s)
+{
+  for (int a = 0; a < D; a++)
+    for (int b = a; b < D; b++) s[Sym<D>::id(a, b)] *= m.sign[a] * m.sign[b];
+}
+
+// what the terms of the gradient's basis change by
+template <int D, int TERMS> static void mirror_basis(const Mirror &m, double *signs)
+{
+  if constexpr (TERMS == 0)
+    std::copy_n(m.sign, D, signs);
+  else
+    gradient_basis<D, TERMS>(m.sign, signs);
+}
+
+template <class T, class K, int TERMS>
+void PairFSISolid::add_image_gradients(const K &kernel, double half)
+{
+  constexpr int D = K::DIM, N = GradientSums<D, TERMS>::N, ROW = GradientSums<D, TERMS>::ROW;
+  constexpr int COLUMNS = TERMS ? TERMS : D, MOMENTS = packed_size(TERMS);
+  image_sums.assign((size_t) ROW * images.end(), 0.0);
+  auto *const sums = reinterpret_cast<double(*)[ROW]>(image_sums.data());
+  for (const RowList &list_ : own_images)
+    run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+      gradient_rows<decltype(number), K, TERMS>(list_.rows.data(), list_.rows.size(), kernel,
+                                                rate_records.data(), half, sums);
+    });
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+    for (int k = 0; k < N; k++) grad[i][k] += sums[i][k];
+  images.for_each([&](int k, int of, const Mirror &m, bool counts) {
+    if (!counts) return;
+    double signs[COLUMNS], *s = sums[k];
+    mirror_basis<D, TERMS>(m, signs);
+    mirror_matrix<D>(m, COLUMNS, signs, s);
+    s += D * COLUMNS;
+    for (int of_both = 0; of_both < 2 && TERMS; of_both++)
+      for (int a = 0; a < TERMS; a++)
+        for (int b = 0; b <= a; b++)
+          s[of_both * MOMENTS + packed_size(a) + b] *= signs[a] * signs[b];
+    for (int n = 0; n < N; n++) grad[of][n] += sums[k][n];
+  });
+}
+
+template <class T, class K, int TERMS> void PairFSISolid::add_image_hourglass(const K &kernel)
+{
+  constexpr int D = K::DIM, ROW = GradientSums<D, TERMS>::ROW;
+  const int nall = atom->nlocal + atom->nghost;
+  image_sums.assign((size_t) ROW * images.end(), 0.0);
+  std::copy_n(grad[0], (size_t) ROW * nall, image_sums.data());
+  images.for_each([&](int k, int of, const Mirror &m, bool) {
+    std::copy_n(grad[of], D * D, &image_sums[(size_t) ROW * k]);
+    mirror_matrix<D>(m, D, m.sign, &image_sums[(size_t) ROW * k]);
+  });
+  auto *const rate = reinterpret_cast<double(*)[row_of_forces(D)]>(hourglass_rate.data());
+  for (const RowList &list_ : own_images)
+    run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+      hourglass_rows<decltype(number), K, ROW>(list_.rows.data(), list_.rows.size(), kernel,
+                                               rate_records.data(), image_sums.data(),
+                                               Hourglass{xi}, rate);
+    });
+  images.for_each([&](int k, int of, const Mirror &m, bool counts) {
+    for (int d = 0; d < D && counts; d++) rate[of][d] += m.sign[d] * rate[k][d];
+  });
+}
+
+// forces of images are folded when all are there
+template <class T, int TERMS, int FLAGS, class K, class Laws>
+void PairFSISolid::add_image_forces(const K &kernel, Laws laws, const RowList (&lists)[2])
+{
+  auto *const f = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(forces.data());
+  laws.type = types_with_images.data();
+  for (const int half : {0, 1}) {
+    laws.newton = !half;    // what counts by half, images being no local atoms
+    run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+      force_rows<decltype(number), K, TERMS, FLAGS>(
+          lists[half].rows.data(), lists[half].rows.size(), kernel, force_records.data(), laws, f);
+    });
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -341,9 +492,10 @@ void PairFSISolid::velocity_gradient(double dt)
     fill_rate_records<2>(0.5 * dt);
   else
     fill_rate_records<3>(0.5 * dt);
-  if (own.rows.empty()) return;
+  if (own.rows.empty() && !images.any()) return;
   with_loops([&](auto packed, const auto &kernel, auto terms) {
     using K = std::decay_t<decltype(kernel)>;
+    if (images.any()) add_image_gradients<Numbers<packed()>, K, terms()>(kernel, 0.5 * dt);
     auto *const sums = reinterpret_cast<double(*)[GradientSums<K::DIM, terms()>::ROW]>(grad[0]);
     run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
       gradient_rows<decltype(number), K, terms()>(own.rows.data(), own.rows.size(), kernel,
@@ -357,8 +509,8 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
   using At = RateRecord<D>;
   const State *const state = fix_fsi->state.data();
   const int nall = atom->nlocal + atom->nghost;
-  if (rate_records.size() < (size_t) At::N * nall)
-    rate_records.assign((size_t) At::N * atom->nmax, 0.0);
+  if (rate_records.size() < (size_t) At::N * images.end())
+    rate_records.assign((size_t) At::N * std::max(atom->nmax, images.end()), 0.0);
   for (int i = 0; i < nall; i++) {
     const State &s = state[atom->type[i]];
     if (s.species != SOLID) continue;
@@ -370,6 +522,14 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
     record[At::VOL] = atom->rmass[i] * s.inv_rho0;
     record[At::SHEAR] = s.shear;
   }
+  images.for_each([&](int k, int of, const Mirror &m, bool) {
+    double *const record = &rate_records[(size_t) At::N * k];
+    std::copy_n(&rate_records[(size_t) At::N * of], (int) At::N, record);
+    for (int d = 0; d < D; d++) {
+      record[At::X + d] = m.x[d] + m.sign[d] * record[At::X + d];
+      record[At::V + d] *= m.sign[d];
+    }
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -380,10 +540,11 @@ void PairFSISolid::advance_hourglass(double dt)
 {
   const int dim = fix_fsi->dim;
   forward_comm(fix_fsi->profile, comm, this);
-  hourglass_rate.assign((size_t) (atom->nlocal + atom->nghost) * row_of_forces(dim), 0.0);
-  if (!own.rows.empty())
+  hourglass_rate.assign((size_t) images.end() * row_of_forces(dim), 0.0);
+  if (!own.rows.empty() || images.any())
     with_loops([&](auto packed, const auto &kernel, auto terms) {
       using K = std::decay_t<decltype(kernel)>;
+      if (images.any()) add_image_hourglass<Numbers<packed()>, K, terms()>(kernel);
       auto *const rate = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(hourglass_rate.data());
       run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
         hourglass_rows<decltype(number), K, GradientSums<K::DIM, terms()>::ROW>(
@@ -470,6 +631,23 @@ void PairFSISolid::add_number_density(double *psi, bool all_bodies)
           psi[j] += w;
         }
     }
+    if (!images.any()) return;
+    images.update(atom->x, atom->v);
+    double **const at = images.positions(atom->x);
+    for (auto *lists : {&own_images, &other_images}) {
+      if (lists == &other_images && !all_bodies) continue;
+      for (const int half : {0, 1})
+        for (const Row &row : (*lists)[half].rows)
+          for (int k = 0; k < row.n; k++) {
+            double rsq = 0.0;
+            for (int d = 0; d < 3; d++)
+              rsq += (x[row.i][d] - at[row.j[k]][d]) * (x[row.i][d] - at[row.j[k]][d]);
+            if (rsq >= kernel.cutsq) continue;
+            const double w = kernel.W(std::sqrt(rsq));
+            psi[row.i] += w;
+            if (!half) psi[images.original(row.j[k])] += w;
+          }
+    }
   });
 }
 
@@ -500,8 +678,8 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
   const State *const state = fix_fsi->state.data();
   const int nall = atom->nlocal + atom->nghost;
   const ArtificialStress artificial(epsilon, fix_fsi->wdx);
-  if (force_records.size() < (size_t) At::N * nall)
-    force_records.assign((size_t) At::N * atom->nmax, 0.0);
+  if (force_records.size() < (size_t) At::N * images.end())
+    force_records.assign((size_t) At::N * std::max(atom->nmax, images.end()), 0.0);
   for (int i = 0; i < nall; i++) {
     const State &s = state[atom->type[i]];
     if (s.species != SOLID) continue;
@@ -526,6 +704,18 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
     if (!TERMS) stress.store(record + At::STRESS);
     if (epsilon > 0.0) artificial(stress).store(record + At::ARTIFICIAL);
   }
+  images.for_each([&](int k, int of, const Mirror &m, bool) {
+    double *const record = &force_records[(size_t) At::N * k], signs[TERMS ? TERMS : D];
+    std::copy_n(&force_records[(size_t) At::N * of], (int) At::N, record);
+    for (int d = 0; d < D; d++) {
+      record[At::X + d] = m.x[d] + m.sign[d] * record[At::X + d];
+      record[At::V + d] *= m.sign[d];
+    }
+    mirror_tensor<D>(m, record + At::STRESS);
+    mirror_tensor<D>(m, record + At::ARTIFICIAL);
+    mirror_basis<D, TERMS>(m, signs);
+    mirror_matrix<D>(m, TERMS, signs, record + At::FIT);
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -537,7 +727,7 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
   const int nall = atom->nlocal + atom->nghost;
   const bool newton = force->newton_pair, tally_pairs = evflag && !vflag_fdotr;    // newton off
   fill_force_records<D, TERMS>();
-  forces.assign((size_t) ROW * nall, 0.0);
+  forces.assign((size_t) ROW * images.end(), 0.0);
   auto *const of_rows = reinterpret_cast<double(*)[ROW]>(forces.data());
   SolidSums sums;
   const SolidLaws laws = {ArtificialViscosity(alpha, beta, fix_fsi->h),
@@ -556,16 +746,23 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
       (has_artificial() || sums_too || TERMS > D ? VISCOSITY : 0);
   with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {
     if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D)
-                         : flags() == ALL)
+                         : flags() == ALL) {
+      if (images.any()) add_image_forces<Numbers<PACKED>, TERMS, flags()>(kernel, laws, own_images);
       run_loop<Numbers<PACKED>>([&](auto number) FSI_INLINE_LAMBDA {
         force_rows<decltype(number), K, TERMS, flags()>(own.rows.data(), own.rows.size(), kernel,
                                                         force_records.data(), laws, of_rows);
       });
+    }
   });
   if (!others.rows.empty())
     force_rows<double, AnyKernel<D>, TERMS, CONTACT | VISCOSITY | SUMS>(
         others.rows.data(), others.rows.size(), AnyKernel<D>(fix_fsi->kernel, fix_fsi->h),
         force_records.data(), laws, of_rows);
+  if (images.any()) {
+    add_image_forces<double, TERMS, CONTACT | VISCOSITY | SUMS>(
+        AnyKernel<D>(fix_fsi->kernel, fix_fsi->h), laws, other_images);
+    images.fold<D>(of_rows, 1.0);
+  }
 
   double **const f = atom->f;
   for (int i = 0; i < (newton ? nall : atom->nlocal); i++)

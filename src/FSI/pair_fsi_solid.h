@@ -21,6 +21,7 @@ PairStyle(fsi/solid,PairFSISolid);
 #define LMP_PAIR_FSI_SOLID_H
 
 #include "fsi_fields.h"
+#include "fsi_images.h"
 #include "fsi_rows.h"
 #include "pair_fsi.h"
 
@@ -62,7 +63,7 @@ class PairFSISolid : public PairFSI {
   bool has_hourglass() const { return xi > 0.0; }
 
  protected:
-  bool handles(int, int) const override;
+  bool handles(int a, int b) const override { return a == FSI::SOLID && b == FSI::SOLID; }
   bool defines(int species) const override { return species == FSI::SOLID; }
   FSI::State make_state(const FSI::Material &) const override;
 
@@ -90,6 +91,18 @@ class PairFSISolid : public PairFSI {
   bool bodies, packs;
   FSI::RowList own, others;
   void find_rows();
+
+  // planes of symmetry: rows of images in the own body and of others, counted fully and by half
+  FSI::Images images;
+  FSI::RowList own_images[2], other_images[2];
+  std::vector<int> types_with_images;
+  std::vector<double> image_sums;
+  void find_image_rows();
+  void check_planes() const;
+  template <class T, class K, int TERMS> void add_image_gradients(const K &, double half);
+  template <class T, class K, int TERMS> void add_image_hourglass(const K &);
+  template <class T, int TERMS, int FLAGS, class K, class Laws>
+  void add_image_forces(const K &, Laws, const FSI::RowList (&)[2]);
   std::vector<double> hourglass_rate, forces;    // local and ghost, rows of row_of_forces
   template <int D> void rotate_hourglass(double);
 

@@ -23,6 +23,7 @@
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_check.h"
 #include "fsi_contact.h"
 #include "fsi_gather.h"
 #include "fsi_profile.h"
@@ -106,13 +107,6 @@ void PairFSISolidTL::check_settings()
     error->all(FLERR,
                "Pair style fsi/solid/tl volumetric smoothed does not go with damage, where it "
                "would make energy: expected auto or local");
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool PairFSISolidTL::handles(int a, int b) const
-{
-  return a == SOLID && b == SOLID;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -238,7 +232,8 @@ void PairFSISolidTL::refuse_rigid_parts() const
       const auto elastic = [&](int i) {
         return atom->mask[i] & fix_fsi->groupbit;
       };
-      if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int j) {
+      if (elastic(row.i) && std::any_of(row.partner, row.partner + row.n, [&](int k) {
+            const int j = reference->images.original(k);
             return !elastic(j) && atom->mask[j] & fix->groupbit;
           }))
         error->one(
@@ -302,6 +297,14 @@ void PairFSISolidTL::internal_forces()
     else
       contact_forces<3>();
   }
+  if (reference->images.planes.any() && fsolid) {
+    // in sub-steps, which add up to the force of a step
+    const double part = update->setupflag ? 1.0 : 1.0 / fix_fsi->substeps;
+    if (fix_fsi->dim == 2)
+      fold_images<2>(part);
+    else
+      fold_images<3>(part);
+  }
   if (!reference->near_itself.empty()) {
     if (fix_fsi->dim == 2)
       self_contact_forces<2>();
@@ -329,6 +332,11 @@ void PairFSISolidTL::find_rows()
         one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
       }
   }
+  const Images &images = reference->images;
+  if (images.any()) types_with_images.assign(type, type + images.end());
+  images.for_each([this, type](int k, int of, const Mirror &, bool) {
+    types_with_images[k] = type[of];
+  });
   rows.clear();
   for (const int i : reference->solids) {
     const State &s = fix_fsi->state[type[i]];
@@ -338,9 +346,9 @@ void PairFSISolidTL::find_rows()
                     zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
   }
   if (fix_fsi->substeps > 1 || (update->setupflag && takes_substeps())) refuse_rigid_parts();
-  const auto moves = [=](const BondRow &row) {
-    return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [=](int j) {
-             return mask[j] & groupbit;
+  const auto moves = [&](const BondRow &row) {
+    return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [&](int j) {
+             return mask[images.original(j)] & groupbit;
            });
   };
   nmoving = std::stable_partition(rows.begin(), rows.end(), moves) - rows.begin();
@@ -352,13 +360,15 @@ void PairFSISolidTL::find_rows()
 template <int D> void PairFSISolidTL::gather_points()
 {
   constexpr int NP = row_of_points(D);
-  if (atom->nmax > nmax) {
-    nmax = atom->nmax;
+  Images &images = reference->images;
+  const int size = images.any() ? std::max(atom->nmax, images.end()) : atom->nmax;
+  if (size > nmax) {
+    nmax = size;
     memory->destroy(fsolid);
     memory->create(fsolid, nmax, row_of_forces(fix_fsi->dim), "pair:fsolid");
   }
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
-  if (points.size() < (size_t) NP * atom->nmax) points.assign((size_t) NP * atom->nmax, 0.0);
+  if (points.size() < (size_t) NP * nmax) points.assign((size_t) NP * nmax, 0.0);
   for (const auto *set : {&reference->solids, &reference->ghosts})
     for (const int i : *set)
       for (int d = 0; d < D; d++) {
@@ -366,10 +376,20 @@ template <int D> void PairFSISolidTL::gather_points()
         points[NP * i + D + d] = v[i][d];
         fsolid[i][d] = 0.0;
       }
+  if (images.any()) {
+    images.update(atom->x, atom->v);
+    images.for_each([&](int k, int of, const Mirror &m, bool) {
+      for (int d = 0; d < D; d++) {
+        points[NP * k + d] = m.x[d] + m.sign[d] * points[NP * of + d];
+        points[NP * k + D + d] = m.sign[d] * points[NP * of + D + d];
+        fsolid[k][d] = 0.0;
+      }
+    });
+  }
   if (changes_seen == reference->changes) return;
   find_rows();
   if (!smoothed.on()) return;
-  const int *const type = atom->type;
+  const int *const type = types();
   const int *const mask = atom->mask, groupbit = fix_fsi->groupbit;
   smoothed.find_weights<D>(
       rows, type,
@@ -402,7 +422,8 @@ double PairFSISolidTL::smooth_strains(bool of_all)
   Swaps &swaps = reference->swaps;
   const int forward = comm_forward, reverse = comm_reverse;
   double energy = 0.0;
-  smoothed.resize(atom->nmax);
+  const Images &images = reference->images;
+  smoothed.resize(nmax);
   comm_forward = comm_reverse = 1;
   sends_strains = true;
   with_law([&](const auto *law_of, auto dimension) {
@@ -420,7 +441,14 @@ double PairFSISolidTL::smooth_strains(bool of_all)
     });
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
+    images.for_each([&](int k, int of, const Mirror &, bool) {
+      smoothed.strain[k] = smoothed.strain[of];
+      smoothed.force[k] = 0.0;
+    });
     have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
+    images.for_each([&](int k, int of, const Mirror &, bool) {
+      smoothed.force[of] += smoothed.force[k];
+    });
     exchange(profile, comm, [&]() {
       swaps.reverse(this);
     });
@@ -439,7 +467,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
 {
   using namespace BondFlag;
   constexpr int ALL = HOURGLASS | VISCOSITY | SUMS;
-  const int *const type = atom->type;
+  const int *const type = types();
   const State *const state = fix_fsi->state.data();
   const int nrows = only_moving ? nmoving : (int) rows.size();
   BondSums sums;
@@ -469,6 +497,64 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
   fix_fsi->tally(FixFSI::ARTIFICIAL, sums.artificial);
   if (vflag_global)
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
+}
+
+/* ----------------------------------------------------------------------
+   planes of symmetry (fsi_images.h)
+------------------------------------------------------------------------- */
+
+// of atoms and images
+const int *PairFSISolidTL::types() const
+{
+  return reference->images.any() ? types_with_images.data() : atom->type;
+}
+
+// Also bodies that meet across a plane: i and the image of j, and what this does to j
+template <int D> void PairFSISolidTL::fold_images(double part)
+{
+  const Images &images = reference->images;
+  images.fold<D>(reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid[0]), part);
+  if (!list) return;
+  double **x = atom->x;
+  const int *const type = atom->type, *const mask = atom->mask;
+  const double most = contact_range * fix_fsi->largest_cut;
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii], near = images.planes.near(x[i], most);
+    if (!near || !images.joins(mask, i)) continue;
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+      if (atom->molecule[i] == atom->molecule[j] || !images.joins(mask, j)) continue;
+      const double reachsq = contacts[type[i] * (atom->ntypes + 1) + type[j]].reachsq;
+      double rsq = 0.0;
+      for (int d = 0; d < D; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+      if (rsq >= reachsq) continue;
+      images.planes.images(near & images.planes.near(x[j], most), rsq, x[i], x[j], reachsq,
+                           [&](const Walls::Reflection &s, double image_rsq, const double *xij) {
+                             push_image<D>(i, j, s, image_rsq, xij, part);
+                           });
+    }
+  }
+}
+
+template <int D>
+void PairFSISolidTL::push_image(int i, int j, const Walls::Reflection &s, double rsq,
+                                const double *xij, double part)
+{
+  const Images &images = reference->images;
+  const Contact &contact = contacts[atom->type[i] * (atom->ntypes + 1) + atom->type[j]];
+  const State &si = fix_fsi->state[atom->type[i]], &sj = fix_fsi->state[atom->type[j]];
+  const double Ki = si.csq * si.rho0, Kj = sj.csq * sj.rho0, f = contact(rsq, Ki, Kj);
+  const Mirror mirror(images.planes, s);
+  const bool both = force->newton_pair || j < atom->nlocal;    // else the other rank does its own
+  for (int d = 0; d < D; d++) {
+    fsolid[i][d] += f * xij[d];
+    if (both) fsolid[j][d] -= f * mirror.sign[d] * xij[d];
+  }
+  for (int k = 0; k < s.n; k++) {
+    const int d = images.planes.wall[s.w[k]].axis;
+    images.forces[s.w[k]][d] -= part * (both ? 2.0 : 1.0) * f * xij[d];
+  }
+  strain_energy += (both ? 1.0 : 0.5) * contact.energy(rsq, Ki, Kj);
 }
 
 /* ----------------------------------------------------------------------
@@ -542,7 +628,7 @@ void PairFSISolidTL::push(int i, int j, const double *xij, double rsq, const Con
 
 template <int D> void PairFSISolidTL::deformation(int i, double *F) const
 {
-  double **x = atom->x;
+  double **x = reference->images.positions(atom->x);
   for (int a = 0; a < D * D; a++) F[a] = 0.0;
   for (int k = 0; k < reference->count(i); k++) {
     const double *const xj = x[reference->partners(i)[k]], *const G = reference->bond(i, k);
@@ -599,8 +685,9 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
 
 template <int D> void PairFSISolidTL::advance_rates(double dt)
 {
-  double **x = atom->x;
-  double **v = atom->v;
+  reference->images.update(atom->x, atom->v);
+  double **x = reference->images.positions(atom->x);
+  double **v = reference->images.velocities(atom->v);
   const double dth = 0.5 * dt;
   for (const int i : reference->solids) {
     const int n = reference->count(i), *const partner = reference->partners(i);
@@ -654,6 +741,11 @@ double PairFSISolidTL::stored(int i) const
   });
 }
 
+int PairFSISolidTL::bonds(int i) const
+{
+  return reference->count(i);
+}
+
 double PairFSISolidTL::volume_ratio(int i) const
 {
   if (reference->count(i) == 0) return 1.0;
@@ -673,6 +765,7 @@ double PairFSISolidTL::volume_ratio(int i) const
 void PairFSISolidTL::begin_stress()
 {
   forward_positions();    // ghosts still stand where they were in the middle of the step
+  reference->images.update(atom->x, atom->v);
   if (!smoothed.on()) return;
   if (fix_fsi->dim == 2)
     gather_points<2>();

@@ -82,10 +82,11 @@ class PairFSISolidTL : public PairFSI {
   void begin_stress();           // before stress(), on all ranks: what it needs of other particles
   Stress stress(int i) const;    // of local atom i at the positions in atom->x
   double volume_ratio(int i) const;    // det F, likewise
+  int bonds(int i) const;              // that local atom i has left
 
  protected:
   void check_settings() override;
-  bool handles(int, int) const override;
+  bool handles(int a, int b) const override { return a == FSI::SOLID && b == FSI::SOLID; }
   bool defines(int species) const override { return species == FSI::SOLID; }
   bool needs_neighbors() override { return several_bodies(); }
   FSI::State make_state(const FSI::Material &) const override;
@@ -127,6 +128,12 @@ class PairFSISolidTL : public PairFSI {
   std::vector<FSI::Contact> contacts;    // by both types
   template <int D> void contact_forces();
   template <int D> void self_contact_forces();
+  template <int D> void fold_images(double part);
+  template <int D>
+  void push_image(int i, int j, const FSI::Walls::Reflection &, double rsq, const double *xij,
+                  double part);
+  std::vector<int> types_with_images;
+  const int *types() const;
   template <int D>
   void push(int i, int j, const double *xij, double rsq, const FSI::Contact &, double share);
   template <class L, int D> void add_smoothed(int i, const double *F, FSI::PiolaStress<D> &) const;

@@ -42,6 +42,7 @@
 #include "lammps.h"
 #include "library.h"
 #include "pair_fsi_fluid.h"
+#include "pair_fsi_grain.h"
 #include "pair_fsi_solid.h"
 #include "pair_fsi_solid_tl.h"
 #include "utils.h"
@@ -127,6 +128,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   };
   // pair styles first: they are unloaded in this order, and use the fixes until they go
   one("pair", "fsi/fluid", &create<PairFSIFluid>);
+  one("pair", "fsi/grain", &create<PairFSIGrain>);
   one("pair", "fsi/solid", &create<PairFSISolid>);
   one("pair", "fsi/solid/tl", &create<PairFSISolidTL>);
   two("compute", "fsi/atom", &create_with_arguments<ComputeFSIAtom>);
@@ -151,5 +153,4 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi", &create_with_arguments<FixFSI>);
   one("command", "fsi/material", &create<FSIMaterial>);
   one("command", "fsi/set", &create<FSISet>);
-  one("command", "fsi_set", &create<FSISetRenamed>);
 }

@@ -60,6 +60,9 @@ def deck(page, example):
     """A scene of water and plate in which the example is one of the commands."""
     if page == "atom_style_fsi":
         return SETUP
+    if page == "pair_fsi_grain":    # the plate's particles are grains
+        grains = SETUP.replace("atom_style fsi", "atom_style hybrid fsi sphere\ncomm_modify vel yes")
+        return grains + "set type 2 diameter 0.004\nset type 2 density/disc 2500\n" + example + "\n" + FIX + "run 1\n"
     if page.startswith("pair"):
         return SETUP + example + "\n" + FIX + (STRESS if re.search(r"fsi/solid(?!/)", example) else "") + "run 1\n"
     sub = "substeps" in example

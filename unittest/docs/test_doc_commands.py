@@ -82,7 +82,7 @@ def shell(text, home, cwd=None, status=0, without=()):
     return done.stdout
 
 
-def fewer_frames(path, left=6):
+def fewer_frames(path, left=3):
     """Keeps some frames of a dump, the first and the last among them: a film is a picture for each."""
     start = "ITEM: TIME\n"
     frames = path.read_text().split(start)[1:]

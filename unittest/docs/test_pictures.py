@@ -71,6 +71,21 @@ def test_the_nearer_sphere_hides_the_farther(order):
     assert pixels[25, 25, 2] > 1.3 * pixels[75, 75, 2]
 
 
+@pytest.mark.parametrize("depth", [False, True])
+def test_few_are_painted_as_many_are(depth):
+    """One after the other, as where there are more than places around one: here others lie outside of the picture."""
+    random = np.random.default_rng(3)
+    x, y, near, colours = random.uniform(-0.2, 1.2, 9), random.uniform(-0.2, 1.2, 9), random.uniform(0, 1, 9), random.uniform(0, 1, (9, 3))
+
+    def painted(more):
+        far = np.full(more, 9.0)
+        return paint.discs((60, 60), ((0.0, 1.0), (0.0, 1.0)), np.append(x, far), np.append(y, far), 0.15, np.append(colours, np.ones((more, 3)), 0),
+                           np.append(near, far) if depth else None)
+
+    few = painted(0)
+    assert (few[..., 3] == 255).mean() > 0.2 and np.array_equal(few, painted(2000))
+
+
 def test_nothing_to_paint():
     assert not paint.discs((20, 10), ((0.0, 2.0), (0.0, 1.0)), [], [], 0.1, np.zeros((0, 3))).any()
     assert not paint.discs((20, 10), ((0.0, 2.0), (0.0, 1.0)), [], [], 0.1, np.zeros((0, 3)), []).any()

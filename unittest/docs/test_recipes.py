@@ -134,7 +134,7 @@ def test_piston_makes_the_waves_that_are_asked_for(tmp_path):
 
 
 def test_solitary_wave(tmp_path):
-    """Heights and speed are those of the page: the first height within 3 % of 60 mm, the speed within 5 % of sqrt(g (d + H)). A crest is where a
+    """Heights and speed are those of the page; the first height within 3 % of 60 mm, the speed within 5 % of sqrt(g (d + H)). A crest is where a
     parabola over 0.5 s, a third of the wave, is highest."""
     found = go(tmp_path, "in.solitary", dx=0.02, n=4200)
     time, heights, times = found.column("Time"), [], []
@@ -146,7 +146,9 @@ def test_solitary_wave(tmp_path):
         heights.append(level.max() - 0.2)
     speed, theory = 2 / (times[2] - times[0]), np.sqrt(9.81 * 0.26)
     page = re.search(r"height at 1, 2, 3 m \[mm\]\s+- (.*)\s+- 60\s+\* - speed from 1 to 3 m \[m/s\]\s+- (.*)\s+- (.*)", (PAGES / "Howto_piston.rst").read_text())
-    assert page[1] == ", ".join(f"{1000 * height:.1f}" for height in heights) and (page[2], page[3]) == (f"{speed:.2f}", f"{theory:.2f}")
+    # where a wave stands after 4000 steps depends on the order of sums: to one or two of the last digit
+    assert [float(height) for height in page[1].split(", ")] == pytest.approx([1000 * height for height in heights], abs=0.2)
+    assert float(page[2]) == pytest.approx(speed, abs=0.015) and page[3] == f"{theory:.2f}"
     assert not found.warnings and heights[0] == pytest.approx(0.06, rel=0.03) and speed == pytest.approx(theory, rel=0.05)
 
 

@@ -52,8 +52,8 @@ class State:
     (density, stress)."""
 
     def __init__(self, law, x, v, rho, mol, mass):
-        self.law, self.x, self.v, self.rho, self.mol, self.m = law, x, v, rho, mol, np.full(len(x),
-                                                                                            mass)
+        self.law, self.x, self.v, self.rho, self.mol = law, x, v, rho, mol
+        self.m = np.broadcast_to(mass, len(x)).astype(float)
         self.f = law.force(self)
 
     def step(self):
@@ -96,6 +96,42 @@ class Fluid:
         k, (i, j, d, r) = self.kernel, pairs(s.middle(), self.kernel.cut)
         rate = s.m[i] * k.g(r) * ((s.v[i] - s.v[j]) * d).sum(1)
         s.rho = s.rho + DT * sum_over(i, rate, len(s.x))
+
+
+class Grains(Fluid):
+    """doc/src/pair_fsi_grain.rst: a fluid, and spheres of diameter d in it, which have no forces
+    among themselves"""
+
+    def __init__(self, kernel, eta, grain, d):
+        super().__init__(kernel, eta=eta)
+        self.grain, self.d = grain, d
+
+    def part(self, s):
+        water = State.__new__(State)
+        water.x, water.v, water.rho, water.m = (a[~self.grain] for a in (s.x, s.v, s.rho, s.m))
+        return water
+
+    def force(self, s):
+        water, f = self.part(s), np.zeros_like(s.x)
+        on_water = super().force(water)
+        for g in np.flatnonzero(self.grain):
+            r = np.linalg.norm(water.x - s.x[g], axis=1)
+            w = np.where(r < self.kernel.cut, water.m / water.rho * self.kernel.W(r), 0)
+            A = np.hstack([np.ones((len(r), 1)), water.x - s.x[g]]) * np.sqrt(w)[:, None]
+            grad = np.linalg.solve(A.T @ A, A.T @ (np.sqrt(w) * self.p(water.rho)))[1:]
+            u, rho = w @ water.v / w.sum() - s.v[g], w @ water.rho / w.sum()
+            Re = rho * self.d * np.linalg.norm(u) / self.eta
+            C_D = max(24 / Re * (1 + 0.15 * Re**0.687), 0.44)
+            f[g] = (min(1, 4 * w.sum()) * np.pi / 8 * rho * self.d**2 * C_D * np.linalg.norm(u) * u
+                    - np.pi / 6 * self.d**3 * grad)
+            on_water -= w[:, None] / w.sum() * f[g]
+        f[~self.grain] = on_water
+        return f
+
+    def advance(self, s):
+        water = self.part(s)
+        super().advance(water)
+        s.rho[~self.grain] = water.rho
 
 
 class Lagrangian:
@@ -181,12 +217,13 @@ def virial(s):
                                   for value in (*np.diag(w), w[0, 1], w[0, 2], w[1, 2])) + "\n"
 
 
-def yaml(style, coeff, post, s, prerequisites=(), epsilon=1e-10):
+def yaml(style, coeff, post, s, prerequisites=(), epsilon=1e-10, deck="in.fsi"):
     head = (f"---\nlammps_version: 4 Feb 2025\ndate_generated: {DATE}\nepsilon: {epsilon}\n"
             "skip_tests:\nprerequisites: "
             + block(["atom fsi", f"pair {style.split()[0]}", "fix fsi", *prerequisites])
             + 'pre_commands: ! ""\n' + "post_commands: " + block(post)
-            + f"input_file: in.fsi\npair_style: {style}\npair_coeff: " + block([coeff])
+            + f"input_file: {deck}\npair_style: {style}\npair_coeff: "
+            + block(coeff if isinstance(coeff, list) else [coeff])
             + 'extract: ! ""\n'
             + f"natoms: {len(s.x)}\ninit_vdwl: 0\ninit_coul: 0\n"
             + f"init_stress: {virial(s)}init_forces: {numbers(s.f)}")
@@ -236,9 +273,34 @@ def main(folder):
             words, f"* * materials.fsi {SOLID}",
             [empty, f"fix sph none fsi {DX} wendland 1.5 mach off", *post], state)
 
+    files.update(of_grains(x, v, rho, mol, mass))
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
         (folder / name).write_text(text)
+
+
+def of_grains(x, v, rho, mol, mass):
+    """Six of the particles are grains: their data file, deck and test"""
+    d, density = 0.004, 2500
+    grain = np.isin(np.arange(1, len(x) + 1), (22, 23, 27, 38, 42, 43))
+    head, rest = data_file(x, v, rho, mol, mass).split("Atoms # fsi")
+    atoms, speeds = ([row.split() for row in part.strip().splitlines()]
+                     for part in rest.split("Velocities"))
+    # of particles with a diameter the column of masses is a density
+    rows = [" ".join([row[0], "2" if of else "1", *row[4 + 1:8], row[1], row[3],
+                      str(density) if of else row[4], str(d) if of else "0", "0 0 0"])
+            for row, of in zip(atoms, grain)]
+    data = (head.replace("1 atom types", "2 atom types") + "Atoms # hybrid\n\n" + "\n".join(rows)
+            + "\n\nVelocities\n\n" + "\n".join(" ".join(row) + " 0 0 0" for row in speeds) + "\n")
+    deck = (TESTS / "in.fsi").read_text().replace("data.fsi", "data.fsi_grain").replace(
+        "atom_style       fsi", "atom_style       hybrid fsi sphere")
+    m = np.where(grain, density * np.pi / 6 * d**3, mass)
+    state = State(Grains(Kernel("wendland", 3, 1.5 * DX), ETA, grain, d), x, v, rho.copy(), mol, m)
+    return {"data.fsi_grain": data, "in.fsi_grain": deck, "atomic-pair-fsi_grain.yaml": yaml(
+        f"hybrid/overlay fsi/fluid sound {C:g} tension yes laminar/visc/central fsi/grain",
+        [f"* * fsi/fluid materials.fsi {VISCOUS} NULL", "1 2 fsi/grain", "2 2 none"],
+        ["group none empty", f"fix sph none fsi {DX} wendland 1.5 mach off"], state,
+        ["atom sphere", "pair fsi/fluid"], deck="in.fsi_grain")}
 
 
 def deformation():

@@ -11,6 +11,7 @@
 // the lattice sum against it.
 
 #include "fsi_density_diffusion.h"
+#include "fsi_drag.h"
 #include "fsi_kernel.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_viscosity_artificial.h"
@@ -214,4 +215,41 @@ TYPED_TEST(Artificial, StressWeight)
                 1e-14 * artificial.weight(kernel.W(r * SPACING)));    // a few multiplications
   EXPECT_GT(artificial.weight(kernel.W(0.5 * SPACING)), 1.0);
   EXPECT_EQ(artificial.weight(kernel.W(2.7 * SPACING)), 0.0);
+}
+
+/* ---------------------------------------------------------------------- */
+
+// Coefficients by hand: Stokes' drag at Re -> 0, 24 (1 + 0.15) at Re = 1 (1^0.687 = 1), at Re = 100 24/100 (1 + 0.15 23.659)
+// (100^0.687 = 10^1.374), Newton's 0.44 above Re = 1000; 1 % of it off at most where the two meet, and no jump
+TEST(Drag, Sphere)
+{
+  const double rho = 1000.0, eta = 2e-3, d = 5e-4, pi = 3.14159265358979323846;
+  const auto speed = [&](double Re) { return Re * eta / (rho * d); };
+  const auto C = [&](double Re) { return drag_of_sphere(rho, eta, d, speed(Re)) / (pi / 8.0 * rho * d * d * speed(Re)); };
+  EXPECT_DOUBLE_EQ(drag_of_sphere(rho, eta, d, 0.0), 3.0 * pi * eta * d);
+  EXPECT_NEAR(C(1.0), 24.0 * 1.15, 1e-12);
+  EXPECT_NEAR(C(100.0), 0.24 * (1.0 + 0.15 * std::pow(10.0, 1.374)), 1e-12);
+  EXPECT_NEAR(C(5000.0), 0.44, 1e-12);
+  double last = C(900.0);
+  for (double Re = 901.0; Re < 1100.0; Re += 1.0) {
+    EXPECT_NEAR(C(Re), last, 1e-3);
+    last = C(Re);
+  }
+  EXPECT_DOUBLE_EQ(drag_of_sphere(rho, 0.0, d, 2.0), 0.055 * pi * rho * d * d * 2.0);
+}
+
+// -integral of p n dA/V over the wet part of a sphere, by latitudes: p = p0 - g z
+TEST(Drag, SphereInSurface)
+{
+  const double r = 0.3, g = 7.0;
+  const int n = 20000;
+  for (double p0 = -2.5; p0 < 2.6; p0 += 0.25) {
+    double force = 0.0;
+    for (int k = 0; k < n; k++) {
+      const double z = r * (-1.0 + (2 * k + 1.0) / n);
+      force -= std::max(p0 - g * z, 0.0) * z / r * 2.0 * M_PI * r * 2.0 * r / n;
+    }
+    EXPECT_NEAR(immersed_part(p0, g, r), force / (4.0 / 3.0 * M_PI * r * r * r * g), 1e-6);
+  }
+  EXPECT_DOUBLE_EQ(immersed_part(0.0, 0.0, r), 1.0);
 }

@@ -17,3 +17,11 @@ def test_starter(tmp_path, name, figures):
     assert all(found[figure] for figure in figures)
     assert not log.read(tmp_path / "log.lammps").warnings
     assert list(tmp_path.glob("*0.png")) and (tmp_path / "snapshots.png").exists()
+
+
+def test_grains(tmp_path):
+    """The bed is pushed 6 mm: without pair_style fsi/grain it slumps by 4 mm to the other side."""
+    assert scene.run("grains", tmp_path, 1, {"tend": "0.15"}) == 0
+    found = {f["name"]: f["value"] for f in json.loads((tmp_path / "summary.json").read_text())["figures"]}
+    assert found["particles_lost"] == 0
+    assert 0.003 < found["bed_moved"] < 0.01

@@ -103,7 +103,6 @@ CASES = [
     ("no material for a solid style", "fsi/solid materials.fsi NULL plate", "fsi/solid materials.fsi NULL NULL", r"none of its materials is a solid"),
     ("fluid for a solid style alone", HYBRID, "pair_style fsi/solid/tl\npair_coeff * * materials.fsi water plate\n", r"gives atom type 1 the fluid water: expected a solid"),
     ("another integrator", RUN, "fix n all nve\nrun 0", r"Fix n \(style nve\) and fix sph \(style fsi\) both move \d+ particles, the first of them atom 1"),
-    ("fsi_set", RUN, "fsi_set all density 1000", r"fsi_set is called fsi/set"),
     # fsi/material
     ("fsi/material without atom_style", START, "atom_style atomic\nfsi/material a fluid rho 1\n" + START, r"Fsi/material requires atom_style fsi"),
     ("fsi/material without words", START, "fsi/material rubber\n" + START, r"Fsi/material expects a name"),
@@ -293,7 +292,6 @@ CASES = [
     # fix fsi/report
     ("report of a group", RUN, "group water type 1\nfix r water fsi/report", r"fsi/report must use group all"),
     ("report keyword unknown", RUN, "fix r all fsi/report often 10", r"Unknown fix fsi/report keyword often: expected file"),
-    ("report interval", RUN, "fix r all fsi/report every 10", r"fsi/report every is for messages, which are not counted any more: leave it out"),
     ("report without value", RUN, "fix r all fsi/report file", r"fix fsi/report file command: missing"),
     ("report file that cannot be", RUN, "fix r all fsi/report file nowhere/report.txt", r"cannot write file nowhere/report\.txt"),
     ("two reports", RUN, "fix r all fsi/report\nfix s all fsi/report\nrun 0", r"only one fix fsi/report"),

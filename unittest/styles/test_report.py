@@ -108,6 +108,40 @@ def test_nothing_is_measured_with_the_timer_off(tmp_path):
     assert report[0]["seconds_neighbor_lists"] == 0.0 < report[0]["seconds_density"] < report[0]["loop_seconds"]
 
 
+def hints(done):
+    """What the report says to change first: [(part, share in per cent, text)]."""
+    table = re.search(r"^  what to change first\n((?:    .*\n)+)", done.output, re.M)[1]
+    return [(m[1], float(m[2]), m[3]) for m in re.finditer(r"^    (\S.*?) +([\d.]+)%   (.*)$", table, re.M)]
+
+
+USUAL = {"communication": 25.0, "neighbor lists": 20.0, "output": 10.0, "force of solids": 40.0, "density": 30.0, "force of fluid": 30.0}  # per cent
+
+
+@pytest.mark.parametrize("case, named", [("calm", ()), ("output", ("output",)), ("lists", ("neighbor lists",)), ("alone", ("waiting",))])
+def test_what_to_change_is_what_took_the_time(tmp_path, case, named):
+    """Each part above its usual share, with the share of the table, the dearest first: for what takes nearly all the time, and nothing else."""
+    scene = fluid_box(2)
+    more = {"calm": "", "output": "thermo 1\n" + "".join(f"dump {k} all custom 1 d{k} id x y z vx vy vz fx fy fz\n" for k in range(6)),
+            "lists": "neigh_modify delay 0 every 1 check no\n",
+            # the other rank has no particle
+            "alone": "comm_style brick\nbalance 1.0 x 0.999\n"}[case]
+    done = run(tmp_path, scene.text() + more + "fix report all fsi/report\nrun 80\n", 2 if case == "alone" else 1, scene_data=scene.data())
+    report, found = reports(done)[0], hints(done)
+    shares = [share for _, share, _ in found]
+    assert shares == sorted(shares, reverse=True)
+    assert report["change_first"] == (found[0][0].replace(" ", "_") if found else "nothing")
+    for part, share, text in found:
+        assert text
+        if part != "waiting":
+            assert share == pytest.approx(100.0 * report[f"share_{part.replace(' ', '_')}"], abs=0.051) and share > USUAL[part]
+    assert set(named) <= {part for part, _, _ in found}
+    if case != "alone":
+        for part in ("neighbor lists", "output"):
+            assert (part in [p for p, _, _ in found]) == (100.0 * report[f"share_{part.replace(' ', '_')}"] > USUAL[part])
+    if case == "lists":
+        assert "new ones every 1 steps: a larger skin" in dict((p, t) for p, _, t in found)["neighbor lists"]
+
+
 # ---- accuracy ------------------------------------------------------------------------------------------------------
 
 def test_vector_is_the_run_so_far(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 from fsi import paths
 
 SOURCES = paths.ROOT / "src" / "FSI"
-LAWS = ["contact", "density_diffusion", "elastic", "gradient", "hourglass", "jaumann", "kernel", "lattice", "pack", "plasticity", "shift", "stress_artificial",
+LAWS = ["contact", "density_diffusion", "drag", "elastic", "gradient", "hourglass", "jaumann", "kernel", "lattice", "pack", "plasticity", "shift", "stress_artificial",
         "tensor", "viscoelastic", "viscosity_artificial", "viscosity_laminar"]
 
 

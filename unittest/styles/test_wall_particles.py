@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scenes import Kernel, close, difference, differing, lattice, run
 
-from fsi import dump
+from fsi import dump, paths
 
 DX, C, G = 0.01, 20.0, 9.81
 MATERIALS = """# DATE: 2026-11-21 UNITS: si CITATION: none
@@ -179,6 +179,8 @@ def test_pressure_linear(tmp_path):
     print(f"pressure on a disc over its gradient times dx: linear {found.mean():.3f}, largest {found.max():.3f}; mean {of_means.mean():.3f}, {of_means.max():.3f}")
     assert found.max() < 0.2 and found.mean() < 0.05
     assert of_means.max() > 1.0
+    page = " ".join((paths.ROOT / "doc/src/fix_fsi_wall_particle.rst").read_text().split())
+    assert f"the mean error is {found.mean():.2f} of the gradient times dx, with *mean* {of_means.mean():.2f}" in page
 
 
 def test_no_guard_where_water_has_tension(tmp_path):

@@ -127,6 +127,39 @@ def test_substeps_send_nothing_where_no_solid_is():
     assert (found["messages"], found["empty"]) == (4, 0)
 
 
+def stream(rows):
+    """A stream between open ends that two ranks cut along its middle: rows of particles from side to side, 24 along it."""
+    return effects.write_materials(f"""units si
+dimension 2
+boundary f p p
+atom_style fsi
+processors 1 2 1
+region box block -0.5 1.5 0 {rows / 24!r} -0.005 0.005
+create_box 1 box
+lattice sq {1 / 24!r} origin 0.5 0.5 0
+region body block 0 1 INF INF INF INF units box
+create_atoms 1 region body
+pair_style fsi/fluid sound 10 tension yes background 1000
+pair_coeff * * materials.fsi water
+fix sph all fsi {1 / 24!r} wendland 1.5
+fix in all fsi/inlet xlo 0.0 velocity 0.3 0 0
+fix out all fsi/outlet xhi 1.0
+timestep 1e-7
+neighbor {0.4 / 24!r} bin
+thermo 1000000
+""")
+
+
+def test_open_ends_reduce_no_plane():
+    """A step reduces the same few numbers whatever the plane's size: 15 sums of each end, and every 20th step four. For each end a rank sends the other
+    one message, of the nodes near the line between them; every 20th step two more carry the number density home."""
+    small, large = measure.messages([stream(24), stream(48)])
+    assert small["reduced"] == pytest.approx(large["reduced"]) and 2 * 15 * 8 <= small["reduced"] < 300
+    assert small["bytes"] == pytest.approx(large["bytes"])
+    alone = measure.messages([re.sub("^fix (in|out) .*$", "", stream(48), flags=re.M)])[0]
+    assert large["messages"] == pytest.approx(alone["messages"] + 2 * (1 + 2 / 20))
+
+
 @pytest.mark.parametrize("name, size", [("fluid", 8 + 8), ("updated", 8 + 8 * 3 + 8 * 4), ("total", 8 + 8 * 2)])
 def test_bare_scenes_send_only_their_own(sent, name, size):
     """Density out and its rate back; with stress out and the velocity gradient back; forces of bonds back."""
@@ -140,21 +173,21 @@ def test_bare_scenes_send_only_their_own(sent, name, size):
 IMAGES = (1 - (119 / 125) ** 2) * (16 + 4 * (12 + 1))
 ARRAYS = {"nothing": (0, {}), "shifting": (64, {"style": "shift 0.1"}), "walls": (4 + IMAGES, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
           "surface at intervals": (8, {"style": "surface 0.9 bulk", "sph": "surface/every 10"}), "surfaces": (16, {"style": "density/surface yes"}),
-          "summation": (0, {"sph": "fluid summation"}),
+          "summation": (-16, {"sph": "fluid summation"}),
           "the rest": (0, {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1 eos tait tension yes background 1"})}
 SLOTS = 16384  # LAMMPS grows its arrays by so many atoms
 
 
 def test_memory_of_a_fluid():
     """Beyond a bare LAMMPS with the same particles and lists: position, velocity, density, volume, pressure and its factor gathered for the
-    loops, the sums of forces, the density's rate, rows of 16 bytes, and what an effect adds; no stress, no gradient."""
+    loops, the sums of forces, the density's rate, where near pairs were sorted out, rows of 16 bytes, and what an effect adds; no stress, no gradient."""
     def text(settings):
         return effects.write_materials(effects.fluid(125, 125, **settings)) + "\nrun 0"
     bare = re.sub(r"^(fix|pair_style|pair_coeff) .*\n", "", text({}), flags=re.M)
     bare = bare.replace("timestep", "pair_style zero 0.024\npair_coeff * *\nset group all mass 1\nfix move all nve\ntimestep")
     texts = [bare, *(text(settings) for _, settings in ARRAYS.values())]
     own, *found = [run.bytes_per_rank for run in measure.simulate("\nclear\n".join(texts)).finished]
-    gathered = 8 * (2 + 2 + 4 + 2 + 1) + 16
+    gathered = 8 * (2 + 2 + 4 + 2 + 1 + 2) + 16
     for (name, (more, _)), total in zip(ARRAYS.items(), found):
         assert (total - own) / SLOTS == pytest.approx(gathered + more, abs=1.5), name  # the log has four digits
 

@@ -49,6 +49,16 @@ def test_pages_hold_their_rows():
     assert "| compute | 1 us |" in text and "| bytes | 98 B |" in text and text.count("2 ranks over 1, water, by the clock | 1.70 ± 0.10 |") == 1
 
 
+def test_largest_scene_is_memory_over_the_peak_of_the_larger_run():
+    assert scaling.largest({"small": {"peak": 1.0}, "large": {"peak": 2.0**30}}) == 24.0
+
+
+def test_still_decks_move_nothing():
+    """No output, no choice of the step, and a step in which nothing moves."""
+    for text in (scaling.still_deck("elastic_gate", 0.0025), scaling.still_water()):
+        assert re.findall(r"^timestep .*", text, re.M) == ["timestep 1e-7"] and not re.search(r"^(run|dump|write_restart)|fsi/dt", text, re.M)
+
+
 def test_no_page_speaks_of_what_was_not_measured():
     """Codes that were not built here."""
     for page in (*(paths.ROOT / "doc/cost").glob("*.md"), paths.ROOT / "README.md"):

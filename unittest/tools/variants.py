@@ -5,6 +5,7 @@ usage: variants.py [NAME ...]     (default: all)
 """
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -24,6 +25,11 @@ VARIANTS = {
     # all of LAMMPS is compiled once more: not optimized in half the time
     "bigbig-serial": ("-DLAMMPS_SIZES=bigbig -DBUILD_MPI=OFF -DCMAKE_CXX_FLAGS_RELEASE=-O0", (1,)),
     "sanitized": ("-DFSI_SANITIZE=address,undefined", (1, 2)),
+}
+# other compilers, which only look at the sources, with LAMMPS' MPI for one process: those that are installed
+COMPILERS = {
+    "clang": ("clang++", "-std=c++20"),
+    "arm": ("aarch64-linux-gnu-g++", "-std=c++17"),
 }
 SCENES = {
     "dam 2D": dam_gate(2, solid="artificial/visc 0.1 0 artificial/stress 0.3 gradient corrected"),
@@ -85,13 +91,30 @@ def memcheck(folder, build):
     return done.returncode == 0
 
 
+def understood(compiler, standard):
+    """Has a compiler neither an error nor a warning for any source?"""
+    tree = Path(os.environ["LAMMPS_SOURCE_DIR"]) / "src"
+    good = True
+    for source in sorted((ROOT / "src/FSI").glob("*.cpp")):
+        done = subprocess.run([compiler, standard, "-fsyntax-only", "-Wall", "-Werror", "-DLAMMPS_SMALLBIG", f"-I{ROOT / 'src/FSI'}",
+                               *(f"-isystem{tree / part}" for part in ("", "RIGID", "STUBS")), str(source)],
+                              capture_output=True, text=True, check=False)
+        if done.returncode:
+            good = False
+            print("\n".join(line for line in done.stderr.splitlines() if "error" in line)[:1000], flush=True)
+    return good
+
+
 def main(names):
     """Returns (passed, failed)."""
     results = {}
     normal = Path(os.environ.get("FSI_BUILD_DIR") or ROOT / "build")
     with tempfile.TemporaryDirectory() as scratch:
         produce(Path(scratch) / "normal", normal, 1)
-        for name in names or VARIANTS:
+        for name in names or [*VARIANTS, *(name for name, words in COMPILERS.items() if shutil.which(words[0]))]:
+            if name in COMPILERS:
+                results[f"{name}: all sources"] = understood(*COMPILERS[name])
+                continue
             options, ranks = VARIANTS[name]
             build = Path(f"{normal}-{name}")
             built = subprocess.run([str(ROOT / "tools" / "setup")], check=False,

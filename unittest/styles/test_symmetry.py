@@ -1,0 +1,282 @@
+"""Planes of symmetry of solids (fix fsi/wall/mirror, keyword symmetry): a half is the whole."""
+
+import numpy as np
+import pytest
+from scenes import RUBBER, Scene, close, difference, differing, lattice, run, watch
+
+DX = 0.01
+DIMS = pytest.mark.parametrize("dim", [2, 3])
+
+
+def mirrored(x, axes):
+    """The same with its images in the planes at 0 normal to the axes."""
+    for a in axes:
+        other = x.copy()
+        other[:, a] *= -1
+        x = np.vstack([x, other])
+    return x
+
+
+def halves(n, axes, seed=3, shake=0.15, speed=0.5, **options):
+    """Two scenes of a shaken body, a part of it with planes of symmetry at 0 and the whole, at rest when their bonds are made: (part, whole)."""
+    x = lattice(n, DX, 0.0)
+    random = np.random.default_rng(seed)
+    moved, v = (random.uniform(-a, a, x.shape) * (np.arange(3) < len(n)) for a in (shake * DX, speed))
+    scenes = []
+    planes = "fix planes all fsi/wall/mirror " + " ".join(f"{'xyz'[a]}lo 0 symmetry yes" for a in axes)
+    more = options.pop("commands", ())
+    box = [-0.4] * 3, [0.4] * 3
+    for whole in (False, True):
+        X = mirrored(x, axes if whole else ())
+        s = Scene(X, dim=len(n), dx=DX, box=box, **{"materials": (RUBBER,), "solid_style": "fsi/solid/tl", "dt": 1e-5, **options},
+                  commands=[*([] if whole else [planes]), "compute e all fsi/energy", *more])
+        s.run()
+        d, u = moved, v
+        for a in axes if whole else ():
+            sign = np.where(np.arange(3) == a, -1.0, 1.0)
+            d, u = np.vstack([d, d * sign]), np.vstack([u, u * sign])
+        s.put("x", X + d)
+        s.put("v", u)
+        s.run()
+        scenes.append(s)
+    return scenes
+
+
+CASES = {
+    "plain": {},
+    "viscosity": {"solid": "artificial/visc 0.3 1.0"},
+    "linear": {"solid": "gradient linear volumes plain hourglass 0.2"},
+    "nearly incompressible": {"materials": ("solid rho 1000 young 1e5 poisson 0.49",)},
+    "hypoelastic": {"solid": "law hypo", "commands": ["fix stress all fsi/stress"]},
+    "viscoelastic": {"solid": "law viscoelastic", "materials": ("solid rho 1000 young 1e5 poisson 0.3 prony 0.4 0.01",)},
+    "sub-steps": {"density": "substeps 7", "solid": "artificial/visc 0.3 1.0"},
+    "quintic": {"kernel": "quintic", "hdx": 1.0},
+    "updated": {"solid_style": "fsi/solid"},
+    "updated, all effects": {"solid_style": "fsi/solid", "solid": "artificial/visc 0.3 1.0 artificial/stress 0.3 hourglass 0.2"},
+    "updated, corrected": {"solid_style": "fsi/solid", "solid": "gradient corrected artificial/visc 0.3 1.0 artificial/stress 0.3 hourglass 0.2"},
+    "updated, quadratic": {"solid_style": "fsi/solid", "solid": "gradient quadratic hourglass 0.2"},
+    "updated, number density": {"solid_style": "fsi/solid", "density": "solid ratio"},
+}
+
+
+@pytest.mark.parametrize("n, axes", [([5, 6], (0,)), ([5, 4], (0, 1)), ([3, 4, 4], (0,)), ([3, 3, 3], (0, 1, 2))])
+@pytest.mark.parametrize("case", CASES)
+def test_a_part_is_the_whole(n, axes, case):
+    """Forces, stress and energy of a shaken state, and the motion after 60 steps, to round-off: sums come in another order."""
+    part, whole = halves(n, axes, **CASES[case])
+    with part, whole:
+        m, start = part.n, part.get("x")
+        if "updated" not in case:    # else there is no stress yet
+            close(part.get("f"), whole.get("f")[:m], 1e-11)
+            close(part.sigma, whole.sigma[:m], 1e-11)
+            assert part.ledger()[3] == pytest.approx(whole.ledger()[3] / 2**len(axes), rel=1e-12)
+        part.run(60), whole.run(60)
+        moved = whole.get("x")[:m] - start
+        print(f"{case}: moved {np.abs(moved).max() / DX:.2f} spacings, apart {np.abs(part.get('x') - whole.get('x')[:m]).max() / np.abs(moved).max():.1e}")
+        close(part.get("x") - start, moved, 1e-9)
+        close(part.get("f"), whole.get("f")[:m], 1e-9)
+        close(part.sigma, whole.sigma[:m], 1e-9)
+        close(part.ledger()[:9], whole.ledger()[:9] / 2**len(axes), 1e-9)
+
+
+@DIMS
+@pytest.mark.parametrize("style, keywords", [("fsi/solid/tl", "hourglass 0.05"), ("fsi/solid/tl", "damage 0.1 gradient linear"), ("fsi/solid", "gradient quadratic")])
+def test_bodies_meet_across_the_plane(dim, style, keywords):
+    """Two bodies, the upper one thrown at the lower one along the plane, so that images take part in the contact; with damage bonds to images break."""
+    n = [3, 6] + [3] * (dim - 2)
+    low = lattice(n, DX)
+    up = low + [0, 7.5 * DX, 0]
+    x, ends = np.vstack([low, up]), []
+    mol = np.repeat([1, 2], len(low))
+    v = np.zeros_like(x)
+    v[mol == 2, 1], v[mol == 1, 1] = -4.0, 1.0
+    for whole in (False, True):
+        X, u = x, v
+        if whole:
+            X, u = mirrored(x, (0,)), mirrored(v, (0,))
+        with Scene(X, u, dim=dim, dx=DX, mol=np.tile(mol, 2 if whole else 1), materials=(RUBBER,), solid_style=style, dt=2e-5, solid=f"contact 2 artificial/visc 0.2 0 {keywords}",
+                   commands=["compute e all fsi/energy", *([] if whole else ["fix planes all fsi/wall/mirror xlo 0 symmetry yes"])], box=([-0.3] * 3, [0.4] * 3)) as s:
+            s.run(250)
+            ends.append((s.get("x")[:len(x)], s.get("f")[:len(x)], s.ledger() / (2 if whole else 1)))
+    (a, fa, ea), (b, fb, eb) = ends
+    assert (b[mol == 2, 1].min() - b[mol == 1, 1].max()) < 2 * DX    # they touch
+    assert np.abs(b[:, 0] - x[:, 0]).max() > 0.1 * DX                # and bulge
+    close(a - x, b - x, 1e-8)    # contact makes round-off grow
+    close(fa, fb, 1e-7)
+    close(ea[:9], eb[:9], 1e-8)
+
+
+@pytest.mark.parametrize("substeps", [1, 5])
+@pytest.mark.parametrize("style", ["fsi/solid/tl", "fsi/solid"])
+def test_momentum_and_the_force_on_the_plane(style, substeps):
+    """Along the plane momentum is kept to round-off; across it the plane takes what the body loses, as fix fsi/wall/mirror counts; energy is kept."""
+    if style == "fsi/solid" and substeps > 1:
+        pytest.skip("no sub-steps")
+    x, dt = lattice([6, 8], DX), 2e-5
+    v = np.zeros_like(x)
+    v[:, 0], v[:, 1] = -0.6 * x[:, 0] / x[:, 0].max(), 0.3 + 0.2 * np.sin(70 * x[:, 0])
+    solid = "hourglass 0.05 artificial/visc 0 0" if style == "fsi/solid/tl" else "gradient quadratic"    # its hourglass control moves momentum, of a whole body, too
+    with Scene(x, v, dx=DX, materials=(RUBBER,), solid_style=style, solid=solid, dt=dt, density=f"substeps {substeps}" if style == "fsi/solid/tl" else "",
+               commands=["compute e all fsi/energy", "fix planes all fsi/wall/mirror xlo 0 symmetry yes"], box=([-0.3] * 3, [0.4] * 3)) as s:
+        s.run()
+        start, energy, given = s.momentum(), s.ledger().sum(), 0.0
+        size = np.abs(s.get("rmass")[:, None] * s.get("v")).sum()
+        for _ in range(600):
+            s.run(1)
+            given += dt * s.fix_array("planes", 1)[0]
+        now = s.momentum()
+        print(f"{style}, {substeps}: momentum across {start[0]:.3g} -> {now[0]:.3g}, plane took {given[0]:.3g}; energy {s.ledger().sum() / energy - 1:+.1e}")
+        assert abs(now[1] - start[1]) < 1e-13 * size and given[1] == 0
+        assert abs(now[0] - start[0]) > 0.3 * size
+        assert abs(now[0] - start[0] + given[0]) < 1e-12 * size
+        assert style == "fsi/solid" or abs(s.ledger().sum() / energy - 1) < 2e-3    # of the order of the step
+
+
+DECK = """
+units si
+dimension {dim}
+boundary f f {end}
+atom_style fsi
+newton {newton}
+processors {grid}
+read_data scene.data
+pair_style hybrid fsi/fluid sound 10 artificial/visc 0.05 0 density/diffusion 0.1 {style}
+pair_coeff * * fsi/fluid materials.fsi water soft stiff
+pair_coeff * * {name} materials.fsi NULL soft stiff
+fix sph all fsi 0.01 wendland 1.5 {substeps}
+{stress}
+fix planes all fsi/wall/mirror {planes} ylo 0 xhi 0.12
+fix gravity all gravity 9.81 vector 0 -1 0
+timestep 2e-5
+neighbor 0.003 bin
+neigh_modify every 2 delay 0 check yes
+comm_modify cutoff 0.04
+thermo_modify norm no lost error
+"""
+MATERIALS = """# DATE: 2026-01-01 UNITS: si CITATION: none
+water fluid rho 1000
+soft solid rho 1000 young 1e5 poisson 0.3
+stiff solid rho 1300 young 3e5 poisson 0.45
+"""
+
+
+def bodies_in_water(dim, whole=False):
+    """A soft body on the plane x = 0, a stiff one above it that falls, in a tank: a data file."""
+    x = lattice([12, 16] + [4] * (dim - 2), DX)
+    soft = (x[:, 0] < 0.05) & (x[:, 1] > 0.02) & (x[:, 1] < 0.08)
+    stiff = (x[:, 0] < 0.04) & (x[:, 1] > 0.1) & (x[:, 1] < 0.14)
+    v = np.stack([-2 * x[:, 0] * (soft | stiff), 0.4 * np.sin(40 * x[:, 0]) * soft - 1.5 * stiff, 0 * x[:, 0]], axis=1)
+    kind = 1 + soft + 2 * stiff
+    if whole:
+        x, v, kind = mirrored(x, (0,)), mirrored(v, (0,)), np.tile(kind, 2)
+    box = [(-0.2, 0.2), (-0.02, 0.25), (-0.02, 0.1) if dim == 3 else (-0.005, 0.005)]
+    lines = ["bodies in water", "", f"{len(x)} atoms", "3 atom types", "", *(f"{lo} {hi} {a}lo {a}hi" for (lo, hi), a in zip(box, "xyz")), "", "Atoms # fsi", ""]
+    lines += [f"{k + 1} {kind[k] - 1} {kind[k]} 0 0 {p[0]!r} {p[1]!r} {p[2]!r}" for k, p in enumerate(x.tolist())]
+    lines += ["", "Velocities", ""] + [f"{k + 1} {p[0]!r} {p[1]!r} {p[2]!r}" for k, p in enumerate(v.tolist())]
+    return "\n".join(lines) + "\n"
+
+
+def deck(dim, style, newton="on", grid="* * *", plane="xlo 0 symmetry yes"):
+    updated = style == "fsi/solid"
+    return DECK.format(dim=dim, end="f" if dim == 3 else "p", newton=newton, grid=grid, name=style,
+                       style=f"{style} contact 2 artificial/visc 0.1 0 " + ("gradient corrected hourglass 0.1" if updated else "hourglass 0.05"),
+                       substeps="" if updated else "substeps 4", stress="fix stress all fsi/stress" if updated else "",
+                       planes=plane + (" zlo 0 symmetry yes zhi 0.04" if dim == 3 else ""))
+
+
+def files(dim, whole=False):
+    return {"materials_fsi": MATERIALS, "scene_data": bodies_in_water(dim, whole)}
+
+
+@pytest.fixture(scope="module")
+def one_rank(tmp_path_factory):
+    frames = {}
+
+    def of(dim, style):
+        if (dim, style) not in frames:
+            frames[dim, style] = run(tmp_path_factory.mktemp("one"), deck(dim, style) + watch(every=100) + "run 200", **files(dim)).frames()
+        return frames[dim, style]
+    return of
+
+
+@pytest.mark.parametrize("style", ["fsi/solid/tl", "fsi/solid"])
+@pytest.mark.parametrize("dim, ranks, grid, newton", [(2, 1, "1 1 1", "off"), (2, 2, "2 1 1", "on"), (2, 4, "2 2 1", "off"), (3, 2, "1 1 2", "on"), (3, 4, "2 2 1", "off")])
+def test_ranks(tmp_path, one_rank, dim, ranks, grid, newton, style):
+    """Two bodies in water before one plane, or two: as on one rank, to round-off."""
+    got = run(tmp_path, deck(dim, style, newton, grid) + watch(every=100) + "run 200", ranks, **files(dim)).frames()
+    for a, b in zip(one_rank(dim, style), got):
+        for quantity in ("x", "v", "f"):
+            assert difference(a, b, quantity, 1e3 if quantity == "f" else None) < 1e-9, (quantity, difference(a, b, quantity, 1))
+
+
+@pytest.mark.parametrize("style", ["fsi/solid/tl", "fsi/solid"])
+def test_restart(tmp_path, style):
+    """As the run that wrote the file, whose lists are made anew at that step: bit for bit on one rank, from a file of two to round-off."""
+    again = deck(2, style).split("pair_style")[1]
+    for ranks in (1, 2):
+        whole = run(tmp_path / f"first{ranks}", deck(2, style) + watch(every=200) + "restart 100 state.*\nrun 200", ranks, **files(2)).frames()[-1]
+        text = f"units si\nread_restart ../first{ranks}/state.100\npair_style" + again
+        got = run(tmp_path / f"second{ranks}", text + watch(every=200) + "restart 100 state.*\nrun 100", materials_fsi=MATERIALS).frames()[-1]
+        if ranks == 1:
+            assert differing(whole, got) == []
+        assert difference(whole, got, "x") < 1e-12 and difference(whole, got, "v") < 1e-9
+
+
+@pytest.mark.parametrize("style", ["fsi/solid/tl", "fsi/solid"])
+def test_half_in_water_is_the_whole(tmp_path, one_rank, style):
+    """The same with its mirror image instead of the plane: the same motion of bodies and water, to round-off."""
+    b = run(tmp_path, deck(2, style, plane="xlo -0.12") + watch(every=100) + "run 200", **files(2, whole=True)).frames()
+    for half, whole in zip(one_rank(2, style), b):
+        n = len(half["id"])
+        x, v = (np.abs(half.vector(q) - whole.vector(q)[:n]).max() for q in (("x", "y"), ("vx", "vy")))
+        print(f"in water: apart {x:.1e} m, {v:.1e} m/s")
+        assert x < 1e-12 and v < 1e-9
+
+
+# ---- what is refused -------------------------------------------------------------------------------------------------------------
+
+PLANE = "fix planes all fsi/wall/mirror xlo 0 symmetry yes"
+
+
+@pytest.mark.parametrize("x, commands, options, message", [
+    (None, [f"{PLANE} slip no"], {}, "slip no"),
+    (None, [f"{PLANE} velocity 0 1 0"], {}, "velocity"),
+    (None, [f"{PLANE} range y 0 1"], {}, "range"),
+    (None, ["fix planes all fsi/wall/mirror symmetry yes"], {}, "must follow the wall"),
+    (None, [PLANE], {"solid": "contact 2 self yes"}, "self yes"),
+    (None, [PLANE], {"solid": "contact 2 self yes", "solid_style": "fsi/solid"}, "self yes"),
+    (None, [f"{PLANE} xhi 0.05 symmetry yes"], {}, "too close"),
+    (0.1, [PLANE], {}, "before the plane of symmetry xlo 0"),
+    (-0.5, [PLANE], {}, "before the plane of symmetry xlo 0"),
+    (-0.6, [PLANE], {"solid_style": "fsi/solid"}, "behind the plane of symmetry"),
+    (1.2, [PLANE], {}, "ends short of the plane"),
+])
+def test_refused(x, commands, options, message):
+    X = lattice([4, 4], DX) + [0.0 if x is None else (x - 0.5) * DX, 0, 0]
+    with pytest.raises(Exception, match=message):
+        with Scene(X, dx=DX, **{"materials": (RUBBER,), "solid_style": "fsi/solid/tl", **options}, commands=commands, box=([-0.3] * 3, [0.3] * 3)) as s:
+            s.run()
+
+
+def test_planes_stay_as_bonds_were_made():
+    """A plane that comes later, goes, or moves is refused: the bonds of the reference are what they are. Out of its group a body is free."""
+    x = lattice([4, 4], DX)
+    with Scene(x, dx=DX, dt=1e-5, materials=(RUBBER,), solid_style="fsi/solid/tl", box=([-0.3] * 3, [0.3] * 3)) as s:
+        s.run()
+        s.run_lines(PLANE)
+        with pytest.raises(Exception, match="symmetry xlo 0: the bonds"):
+            s.run()
+    with Scene(x, dx=DX, dt=1e-5, materials=(RUBBER,), solid_style="fsi/solid/tl", commands=[PLANE], box=([-0.3] * 3, [0.3] * 3)) as s:
+        s.run(5)
+        s.run_lines("unfix planes", PLANE)
+        s.run(5)
+        s.run_lines("unfix planes", PLANE.replace("xlo 0", "xlo -0.001"))
+        with pytest.raises(Exception, match="symmetry xlo -0.001: the bonds"):
+            s.run()
+    v = np.zeros_like(x)
+    v[:, 0] = -0.1
+    ends = []
+    for plane in ([], ["group none empty", PLANE.replace(" all ", " none ")]):
+        with Scene(x, v, dx=DX, dt=1e-5, materials=(RUBBER,), solid_style="fsi/solid/tl", commands=plane, box=([-0.3] * 3, [0.3] * 3)) as s:
+            ends.append(s.run(50).get("x"))
+    assert np.array_equal(*ends)
