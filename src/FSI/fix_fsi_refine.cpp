@@ -24,6 +24,7 @@
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_population.h"
 #include "fsi_record.h"
 #include "group.h"
 #include "math_extra.h"
