@@ -67,7 +67,8 @@ const char *ComputeFSIEnergy::name(int k)
                                                            "coupling",
                                                            "gradient",
                                                            "plastic",
-                                                           "changing gravity"};
+                                                           "changing gravity",
+                                                           "splitting and merging"};
   return names[k];
 }
 

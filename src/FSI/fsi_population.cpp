@@ -17,6 +17,7 @@
 #include "atom_vec.h"
 #include "domain.h"
 #include "error.h"
+#include "fsi_gather.h"
 #include "fsi_record.h"
 #include "fsi_scene.h"
 
@@ -126,6 +127,65 @@ void Population::make(const std::vector<Particle> &all, const std::string &who, 
   maker = who;
 }
 
+/* ----------------------------------------------------------------------
+   Where particles come and go all the time, IDs that are free again come first: so the largest, and
+   LAMMPS' map of IDs, does not grow without end. Commands between runs may have given them, too.
+------------------------------------------------------------------------- */
+
+std::vector<tagint> Population::ids(int n, const std::string &who)
+{
+  std::vector<tagint> list;
+  while ((int) list.size() < n && !free_ids.empty()) {
+    const auto first = free_ids.begin(),
+               last = first + std::min<size_t>(n - list.size(), free_ids.size());
+    const std::vector<tagint> some(first, last);
+    free_ids.erase(first, last);
+    const auto used = in_use(some);
+    for (size_t k = 0; k < some.size(); k++)
+      if (!used[k]) list.push_back(some[k]);
+  }
+  tagint largest = last_id;
+  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
+  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (last_id > MAXTAGINT - (n - (int) list.size()))
+    error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
+  while ((int) list.size() < n) list.push_back(++last_id);
+  wanted += n;
+  maker = who;
+  return list;
+}
+
+// which of these, in rising order, particles have
+std::vector<char> Population::in_use(const std::vector<tagint> &list) const
+{
+  std::vector<char> own(list.size(), 0), all(list.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto at = std::lower_bound(list.begin(), list.end(), atom->tag[i]);
+    if (at != list.end() && *at == atom->tag[i]) own[at - list.begin()] = 1;
+  }
+  MPI_Allreduce(own.data(), all.data(), (int) list.size(), MPI_CHAR, MPI_MAX, world);
+  return all;
+}
+
+int Population::copy(int i, tagint id)
+{
+  atom->avec->create_atom(atom->type[i], atom->x[i]);
+  const int j = atom->nlocal - 1;
+  atom->avec->copy(i, j, 0);
+  atom->tag[j] = id;
+  made++;
+  return j;
+}
+
+void Population::release(const std::vector<tagint> &mine)
+{
+  const auto all = gather(mine, world);
+  free_ids.insert(free_ids.end(), all.begin(), all.end());
+  std::sort(free_ids.begin(), free_ids.end());
+}
+
+/* ---------------------------------------------------------------------- */
+
 void Population::end()
 {
   bigint own[] = {made, removed};    // not const: LAMMPS' MPI for one process takes no other
@@ -146,10 +206,17 @@ void Population::end()
 void Population::write(Record &record) const
 {
   if (last_id > 0) record.add("last ID", std::to_string(last_id));
+  std::string text;
+  for (const tagint id : free_ids) text += fmt::format("{}{}", text.empty() ? "" : " ", id);
+  if (!text.empty()) record.add("free IDs", text);
 }
 
 void Population::read(const Record &record)
 {
   if (record.has("last ID"))
     last_id = std::max(last_id, static_cast<tagint>(std::stoll(record.value("last ID"))));
+  if (!record.has("free IDs")) return;
+  free_ids.clear();
+  for (const auto &word : utils::split_words(record.value("free IDs")))
+    free_ids.push_back(static_cast<tagint>(std::stoll(word)));
 }

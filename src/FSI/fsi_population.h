@@ -12,7 +12,7 @@
 ------------------------------------------------------------------------- */
 
 // Making and deleting particles when neighbor lists are built, in pre_exchange(): IDs that no
-// particle ever had, LAMMPS' counts and map, the energy balance. All ranks together:
+// particle has, LAMMPS' counts and map, the energy balance. All ranks together:
 // begin(); remove(); make(); end().
 
 #ifndef LMP_FSI_POPULATION_H
@@ -49,6 +49,10 @@ namespace FSI {
     // The same list on all ranks that the places belong to, an empty one or this on others; IDs go
     // on in its order. Those of this rank are the last of its atoms then. Who: of errors
     void make(const std::vector<Particle> &, const std::string &who, double *account);
+    // IDs of particles that are to be made on any rank, the same list on all; first those released
+    std::vector<tagint> ids(int n, const std::string &who);
+    int copy(int i, tagint id);    // of this rank, with all that fixes know of it; where it is
+    void release(const std::vector<tagint> &mine);    // IDs of particles removed here: for others
     void end();
 
     void write(Record &) const;
@@ -57,9 +61,11 @@ namespace FSI {
    private:
     const Scene &scene;
     tagint last_id;                  // the largest that one had which was made or deleted here
+    std::vector<tagint> free_ids;    // below that, released; in rising order
     bigint made, removed, wanted;    // since begin(): of this rank; of all
     std::string maker;
     void renew_map();
+    std::vector<char> in_use(const std::vector<tagint> &) const;
   };
 
 }    // namespace FSI

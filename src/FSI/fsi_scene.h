@@ -120,7 +120,8 @@ namespace FSI {
   struct Ledger {
     // clang-format off
     enum Term {
-      ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS, NTERM
+      ARTIFICIAL, LAMINAR, DIFFUSION, STRESS, WALLS, COUPLING, GRADIENT, INELASTIC, FIELDS,
+      LEVELS, NTERM
     };
     // clang-format on
     bool ledger = false;

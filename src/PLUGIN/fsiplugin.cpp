@@ -29,6 +29,7 @@
 #include "fix_fsi_inlet.h"
 #include "fix_fsi_move.h"
 #include "fix_fsi_reference.h"
+#include "fix_fsi_refine.h"
 #include "fix_fsi_report.h"
 #include "fix_fsi_spectrum.h"
 #include "fix_fsi_stream.h"
@@ -144,6 +145,7 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   two("fix", "fsi/outlet", &create_with_arguments<FixFSIInlet>);
   two("fix", "fsi/move", &create_with_arguments<FixFSIMove>);
   two("fix", "fsi/stream", &create_with_arguments<FixFSIStream>);
+  two("fix", "fsi/refine", &create_with_arguments<FixFSIRefine>);
   two("fix", "fsi/report", &create_with_arguments<FixFSIReport>);
   two("fix", "fsi/stress", &create_with_arguments<FixFSIStress>);
   two("fix", "FSI_REFERENCE", &create_with_arguments<FixFSIReference>);

@@ -1,0 +1,901 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fix_fsi_refine.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fix_fsi_inlet.h"
+#include "force.h"
+#include "fsi_cells.h"
+#include "fsi_gather.h"
+#include "fsi_kernel.h"
+#include "fsi_keywords.h"
+#include "fsi_population.h"
+#include "fsi_record.h"
+#include "group.h"
+#include "math_extra.h"
+#include "modify.h"
+#include "region.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace FSI;
+
+// Spacings from one level to the next: half the mass, so long as this part of it
+static constexpr double RATIO_ERROR = 0.02;
+// Distance in spacings over which two merge; over which one does that is three times as far out as
+// need be, and has found nobody
+static constexpr double REACH = 1.2, FAR_REACH = 1.7, FAR = 3.0;
+// Nearer pairs come first: in steps of an eighth of a spacing, with edges that no lattice's
+// distances are near, since the two see their distance with different round-off
+static constexpr double PER_SPACING = 8.0, OFF_LATTICE = 0.37;
+static constexpr int ROUNDS = 3;          // of choosing partners
+static constexpr double CROWDED = 2.5;    // spacings: who is as near makes a place less empty
+static constexpr int SWEEPS = 12;         // of choosing a direction again
+static constexpr size_t MAX_LEVELS = 12;
+static constexpr double SAME = 1.0e-12;      // what comes from one material
+static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of a body it meets
+
+/* ---------------------------------------------------------------------- */
+
+FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), who("Fix fsi/refine"), every(0), settle_steps(30), body_bit(0),
+    fix_fsi(nullptr), total{}, last_event(-1), moving(false), told(false), message(nullptr), mine{}
+{
+  if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
+  if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/refine", error);
+  every = integer(lmp, who + " N", arg[3], 1);
+  level_of.assign(atom->ntypes + 1, -1);
+  for (int k = 4; k < narg;) {
+    const std::string key = arg[k++];
+    std::vector<std::string> values;
+    const auto is_key = [](const std::string &word) {
+      return word == "types" || word == "region" || word == "distance" || word == "settle";
+    };
+    while (k < narg && !is_key(arg[k])) values.emplace_back(arg[k++]);
+    if (key == "types")
+      read_types(values);
+    else if (key == "region")
+      region_ids = values;
+    else if (key == "distance")
+      read_distances(values);
+    else if (key == "settle") {
+      if (values.size() != 1) utils::missing_cmd_args(FLERR, "fix fsi/refine settle", error);
+      settle_steps = integer(lmp, who + " settle", values[0], 0, 1000);
+    } else
+      error->all(FLERR,
+                 "Unknown fix fsi/refine keyword {}: expected types, region, distance or settle",
+                 key);
+  }
+  if (types.size() < 2)
+    error->all(FLERR, "{} requires keyword types with two atom types or more, the coarsest first",
+               who);
+  const size_t zones = region_ids.size() + distances.size();
+  if (!region_ids.empty() && !distances.empty())
+    error->all(FLERR, "{} takes region or distance, not both", who);
+  if (zones != types.size() - 1)
+    error->all(FLERR,
+               "{} has {} types and {} {}: expected one for each type but the first, that of "
+               "larger spacing first",
+               who, types.size(), zones, distances.empty() ? "regions" : "distances");
+  for (const auto &name : region_ids)
+    if (!domain->get_region_by_id(name))
+      error->all(FLERR, "Region {} of fix fsi/refine does not exist", name);
+
+  directions = split_directions(domain->dimension);
+  force_reneighbor = 1;
+  vector_flag = 1;
+  size_vector = NTOTAL;
+  extvector = 1;
+  global_freq = 1;
+  restart_global = 1;
+  comm_forward = 1;
+}
+
+void FixFSIRefine::read_types(const std::vector<std::string> &words)
+{
+  types.clear();
+  for (const auto &word : words) {
+    const int type = integer(lmp, who + " types", word, 1, atom->ntypes);
+    if (level_of[type] >= 0) error->all(FLERR, "{} types: {} is there twice", who, type);
+    level_of[type] = (int) types.size();
+    types.push_back(type);
+  }
+  if (types.size() > MAX_LEVELS)
+    error->all(FLERR, "{} types: there are {}, expected {} at most", who, types.size(), MAX_LEVELS);
+}
+
+void FixFSIRefine::read_distances(const std::vector<std::string> &words)
+{
+  if (words.empty()) utils::missing_cmd_args(FLERR, "fix fsi/refine distance", error);
+  body_id = words[0];
+  const int of_body = group->find(body_id);
+  if (of_body < 0) error->all(FLERR, "Group {} of fix fsi/refine distance does not exist", body_id);
+  body_bit = group->bitmask[of_body];
+  for (size_t k = 1; k < words.size(); k++) {
+    distances.push_back(numeric(lmp, who + " distance", words[k], Range::above(0.0)));
+    if (k > 1 && distances[k - 1] >= distances[k - 2])
+      error->all(FLERR, "{} distance: {} after {}, expected less: the finer levels are nearer", who,
+                 distances[k - 1], distances[k - 2]);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+int FixFSIRefine::setmask()
+{
+  return PRE_EXCHANGE;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIRefine::init()
+{
+  fix_fsi = FixFSI::find(lmp, who);
+  if (!force->pair_match("fsi/fluid", 1))
+    error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
+  if (fix_fsi->density_fluid != FixFSI::CONTINUITY)
+    error->all(FLERR,
+               "{} requires fix fsi with fluid continuity: a density that is summed would jump "
+               "where particles split",
+               who);
+  if (facts_of_fluids(lmp).density_at_surfaces)
+    error->all(FLERR, "{} does not support density/surface of pair_style fsi/fluid", who);
+  check_types();
+  find_zones();
+  open_ends.clear();
+  for (const char *style : {"^fsi/inlet$", "^fsi/outlet$"})
+    for (const auto &fix : modify->get_fix_by_style(style))
+      open_ends.push_back(dynamic_cast<FixFSIInlet *>(fix));
+  next_reneighbor = (update->ntimestep / every + 1) * every;
+  told = false;
+  fix_fsi->population.leave_an_id_free();
+}
+
+/* ----------------------------------------------------------------------
+   levels are of one fluid, and each has half the mass of the one before
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::check_types() const
+{
+  const double expected = std::pow(2.0, -1.0 / fix_fsi->dim);
+  const State &first = fix_fsi->state[types[0]];
+  for (int k = 0; k <= finest(); k++) {
+    const State &s = fix_fsi->state[types[k]];
+    if (s.species != FLUID)
+      error->all(FLERR, "{}: atom type {} is no fluid: its material is {}", who, types[k],
+                 s.species == NONE        ? "missing"
+                     : s.species == SOLID ? "a solid"
+                                          : "a wall");
+    const auto differs = [&](const char *what, double a, double b) {
+      if (std::fabs(a - b) > SAME * std::fabs(a))
+        error->all(FLERR,
+                   "{}: atom types {} and {} have the {} {:g} and {:g}: expected one fluid, of "
+                   "one material",
+                   who, types[0], types[k], what, a, b);
+    };
+    differs("density", first.rho0, s.rho0);
+    differs("sound", first.c, s.c);
+    differs("viscosity", first.viscosity, s.viscosity);
+    differs("background pressure", first.p0, s.p0);
+    differs("lowest pressure", first.floor, s.floor);
+    if (first.tait != s.tait)
+      error->all(FLERR, "{}: atom types {} and {} have different equations of state", who, types[0],
+                 types[k]);
+    if (k == 0) continue;
+    const double coarse = fix_fsi->dx_of(types[k - 1]), fine = fix_fsi->dx_of(types[k]);
+    if (std::fabs(fine / coarse / expected - 1.0) > RATIO_ERROR)
+      error->all(FLERR,
+                 "{}: atom types {} and {} have spacings of {:g} and {:g}: expected {:g} of the "
+                 "second, 2^(-1/{}) of the first, for particles of half the mass: fix fsi spacing",
+                 who, types[k - 1], types[k], coarse, fine, expected * coarse, fix_fsi->dim);
+  }
+}
+
+void FixFSIRefine::find_zones()
+{
+  regions.clear();
+  moving = !distances.empty();
+  for (const auto &name : region_ids) {
+    regions.push_back(domain->get_region_by_id(name));
+    if (!regions.back()) error->all(FLERR, "Region {} of fix fsi/refine does not exist", name);
+    moving = moving || regions.back()->dynamic_check();
+  }
+  for (size_t k = 1; k < distances.size(); k++) {
+    const double shell = distances[k - 1] - distances[k], least = least_shell(k);
+    if (shell < least)
+      error->all(FLERR,
+                 "{} distance: from {} to {} there is {:g} for atom type {}: expected at least "
+                 "{:g}, the kernel's support of type {} and a spacing of type {}",
+                 who, distances[k], distances[k - 1], shell, types[k], least, types[k - 1],
+                 types[k]);
+  }
+}
+
+// between the zone of level k + 1 and the end of that of level k: one level is all that a particle
+// sees beside its own
+double FixFSIRefine::least_shell(int k) const
+{
+  return fix_fsi->resolution[types[k - 1]].cut + fix_fsi->dx_of(types[k]);
+}
+
+/* ----------------------------------------------------------------------
+   Before the first step, if it is one of those: all that is too coarse
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::setup_pre_exchange()
+{
+  const bool due = update->ntimestep % every == 0 && last_event != update->ntimestep;
+  for (int k = 0; k < (due ? finest() : 1); k++) event(due, false);
+}
+
+void FixFSIRefine::pre_exchange()
+{
+  if (update->ntimestep % every) return;
+  next_reneighbor = update->ntimestep + every;
+  event(true, true);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIRefine::event(bool may_split, bool may_merge)
+{
+  const bool first = update->ntimestep == update->firststep;
+  renew_ghosts();
+  std::fill_n(mine, NTOTAL, 0.0);
+  look(may_split, may_merge);
+  if (moving || first) check_zones();
+  if (first) warn_of_bodies();
+
+  const auto divisions = plan_divisions();
+  if (may_merge) choose_partners();
+  std::vector<int> gone;
+  const auto unions = may_merge ? plan_unions(gone) : std::vector<Union>();
+  mine[SPLITS] = divisions.size();
+  mine[MERGES] = unions.size();
+  double all[NTOTAL];
+  MPI_Allreduce(mine, all, NTOTAL, MPI_DOUBLE, MPI_SUM, world);
+  for (int k = 0; k < WAITING; k++) total[k] += all[k];
+  total[WAITING] = all[WAITING];
+  if (may_split) last_event = update->ntimestep;
+  if (all[SPLITS] == 0.0 && all[MERGES] == 0.0) return;
+
+  unite(unions);
+  fix_fsi->population.begin();
+  std::vector<tagint> changed, released;
+  for (const auto &one : unions) changed.push_back(atom->tag[one.i]);
+  const int before = atom->nlocal;
+  divide(divisions);
+  for (const auto &two : divisions) changed.push_back(atom->tag[two.i]);
+  for (int i = before; i < atom->nlocal; i++) changed.push_back(atom->tag[i]);
+  for (const int i : gone) released.push_back(atom->tag[i]);
+  fix_fsi->population.remove(gone, nullptr);
+  fix_fsi->population.release(released);
+  fix_fsi->population.end();
+  if (settle_steps > 0) settle(gather(changed, world));
+}
+
+// where they belong, with ghosts that are where these are: those that lists of before have are a
+// step old
+void FixFSIRefine::renew_ghosts()
+{
+  domain->pbc();
+  if (domain->box_change || update->ntimestep == update->firststep) {
+    domain->reset_box();
+    comm->setup();
+  }
+  comm->exchange();
+  comm->borders();
+}
+
+/* ----------------------------------------------------------------------
+   What has split or merged is not where the pressure around it is even. On its way there by itself
+   it would make sound, and with each event the fluid would lose some of its mean pressure, since
+   its density follows what moves. So particles around are moved there at once, with their density,
+   by steps against the sum of V grad W: less the further they are from an event, and not where
+   they see bodies, mirror walls or a surface.
+------------------------------------------------------------------------- */
+
+std::vector<double> FixFSIRefine::mobilities(std::vector<tagint> changed) const
+{
+  std::sort(changed.begin(), changed.end());
+  const int nall = atom->nlocal + atom->nghost, dim = fix_fsi->dim;
+  const Cells events(atom->x, nall, dim, fix_fsi->cut, [&](int j) {
+    return std::binary_search(changed.begin(), changed.end(), atom->tag[j]);
+  });
+  const Cells bodies(atom->x, nall, dim, fix_fsi->cut + fix_fsi->dx, [&](int j) {
+    const int species = fix_fsi->state[atom->type[j]].species;
+    return species == SOLID || species == RIGID;
+  });
+  std::vector<double> mobility(atom->nlocal, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (level(i) < 0 || in_open_end(i, 0)) continue;
+    const double *const x = atom->x[i];
+    const double cut = fix_fsi->resolution[atom->type[i]].cut, dx = fix_fsi->dx_of(atom->type[i]);
+    double event = cut * cut, body = (cut + dx) * (cut + dx);
+    events.around(x, [&](int, double rsq) {
+      event = std::min(event, rsq);
+    });
+    if (event >= cut * cut) continue;
+    bodies.around(x, [&](int, double rsq) {
+      body = std::min(body, rsq);
+    });
+    body = std::sqrt(body);
+    for (const auto &wall : fix_fsi->walls.wall)
+      if (wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
+    mobility[i] =
+        std::min(1.0, 2.0 - 2.0 * std::sqrt(event) / cut) * std::max(0.0, (body - cut) / dx);
+  }
+  return mobility;
+}
+
+void FixFSIRefine::settle(const std::vector<tagint> &changed)
+{
+  static constexpr double STRENGTH = 0.15, LONGEST = 0.05, SURFACE = 0.9, INSIDE = 0.95;
+  renew_ghosts();
+  const int dim = fix_fsi->dim;
+  double *const *const x = atom->x, *const account = fix_fsi->account(FixFSI::LEVELS);
+  const Cells cells(x, atom->nlocal + atom->nghost, dim, fix_fsi->cut + fix_fsi->dx, [&](int j) {
+    return fix_fsi->state[atom->type[j]].species != NONE;
+  });
+  const auto mobility = mobilities(changed);
+  std::vector<double> step(3 * atom->nlocal);
+  for (int k = 0; k < settle_steps; k++) {
+    std::fill(step.begin(), step.end(), 0.0);
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (mobility[i] <= 0.0) continue;
+      double *const d = &step[3 * i], sum[4];
+      even_out(i, cells, sum);
+      const double dx = fix_fsi->dx_of(atom->type[i]),
+                   full = std::clamp((sum[3] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
+      MathExtra::copy3(sum, d);
+      MathExtra::scale3(-STRENGTH * dx * dx * mobility[i] * full, d);
+      const double length = MathExtra::len3(d);
+      if (length > LONGEST * dx) MathExtra::scale3(LONGEST * dx / length, d);
+    }
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (mobility[i] <= 0.0) continue;
+      if (account) *account += fix_fsi->potential(i);
+      for (int d = 0; d < dim; d++) x[i][d] += step[3 * i + d];
+      if (account) *account -= fix_fsi->potential(i);
+    }
+    comm->forward_comm();
+  }
+}
+
+// sum of V grad W, and of V W
+void FixFSIRefine::even_out(int i, const Cells &cells, double *sum) const
+{
+  const double *const x = atom->x[i], own = fix_fsi->h_of(atom->type[i]);
+  std::fill_n(sum, 4, 0.0);
+  with_kernel(fix_fsi->kernel, fix_fsi->dim, own, [&](const auto &kernel) {
+    using K = std::decay_t<decltype(kernel)>;
+    const double volume = atom->rmass[i] / atom->rho[i];
+    sum[3] = volume * kernel.W(0.0);
+    const auto add = [&](const K &mean, int j, double rsq) {
+      if (rsq >= mean.cutsq) return;
+      const double r = std::sqrt(rsq), V = atom->rmass[j] / atom->rho[j], g = V * mean.gradient(r);
+      for (int d = 0; d < K::DIM; d++) sum[d] += g * (x[d] - atom->x[j][d]);
+      sum[3] += V * mean.W(r);
+    };
+    cells.around(x, [&](int j, double rsq) {
+      if (j == i) return;
+      const double of_j = fix_fsi->h_of(atom->type[j]);
+      of_j == own ? add(kernel, j, rsq) : add(K(0.5 * (own + of_j)), j, rsq);
+    });
+  });
+}
+
+/* ----------------------------------------------------------------------
+   A zone grown by a distance: is any place as far away, in a number of directions, inside?
+------------------------------------------------------------------------- */
+
+bool FixFSIRefine::in_zone(int k, int i, double grown) const
+{
+  if (regions.empty()) return away[i] < distances[k - 1] + grown;
+  Region *const region = regions[k - 1];
+  const double *const x = atom->x[i];
+  if (region->match(x[0], x[1], x[2])) return true;
+  if (grown == 0.0) return false;
+  const auto matches = [&](const std::array<double, 3> &e, double to) {
+    double at[3] = {x[0] + to * e[0], x[1] + to * e[1], x[2] + to * e[2]};
+    domain->remap(at);
+    return region->match(at[0], at[1], at[2]) != 0;
+  };
+  for (const auto &e : directions)
+    if (matches(e, grown) || matches(e, -grown)) return true;
+  return false;
+}
+
+/* ----------------------------------------------------------------------
+   Of each particle: the zones that it is in, and what it is to do. A particle merges a coarse
+   spacing outside of its zone, so that one that moves to and fro at the edge does not change.
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::look(bool may_split, bool may_merge)
+{
+  for (auto *region : regions) region->prematch();
+  if (body_bit) measure_distances();
+  carried.assign(atom->nlocal + atom->nghost, 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int own = level(i);
+    if (own < 0) continue;
+    int wish = 0;
+    for (int k = 1; k <= finest(); k++)
+      if (in_zone(k, i, 0.0)) wish |= 1 << k;
+    const bool leaves = in_open_end(i, wish);
+    if (may_split && own < finest() && (wish & 1 << (own + 1))) wish |= SPLIT;
+    if (may_merge && own > 0 && !leaves && !(wish & 1 << own)) {
+      const double margin = fix_fsi->dx_of(types[own - 1]);
+      if (!in_zone(own, i, margin)) wish |= in_zone(own, i, FAR * margin) ? MERGE : MERGE | EAGER;
+    }
+    carried[i] = wish;
+  }
+  send(carried);
+}
+
+// of this group, and a level of its fluid
+int FixFSIRefine::level(int i) const
+{
+  return (atom->mask[i] & groupbit) ? level_of[atom->type[i]] : -1;
+}
+
+// who is in a buffer is left to that, also one that has found no partner on its way
+bool FixFSIRefine::in_open_end(int i, int wish) const
+{
+  const double *const x = atom->x[i];
+  for (const auto *end : open_ends) {
+    if (!end->holds(x)) continue;
+    if (wish)
+      error->one(FLERR,
+                 "Atom {} at {:g} {:g} {:g} is in the buffer of fix {}, and in the zone of a finer "
+                 "level: keep open ends in the coarsest level, away from what fix {} refines",
+                 atom->tag[i], x[0], x[1], x[2], end->id, id);
+    return true;
+  }
+  return false;
+}
+
+/* ----------------------------------------------------------------------
+   distances of the fluid from the body, all of whose particles are on each rank for that
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::measure_distances()
+{
+  std::vector<std::array<double, 3>> own;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & body_bit) own.push_back({atom->x[i][0], atom->x[i][1], atom->x[i][2]});
+  auto body = gather(own, world);
+  if (body.empty()) error->all(FLERR, "{} distance: there are no atoms in group {}", who, body_id);
+  const double reach = distances[0] + FAR * fix_fsi->dx_of(types[0]);
+  for (int d = 0; d < fix_fsi->dim; d++) {    // images across periods
+    if (!domain->periodicity[d]) continue;
+    for (size_t k = 0, n = body.size(); k < n; k++)
+      for (const int side : {-1, 1}) {
+        auto image = body[k];
+        image[d] += side * domain->prd[d];
+        if (image[d] > domain->boxlo[d] - reach && image[d] < domain->boxhi[d] + reach)
+          body.push_back(image);
+      }
+  }
+  std::vector<const double *> x;
+  for (const auto &p : body) x.push_back(p.data());
+  const Cells cells(x.data(), x.size(), fix_fsi->dim, reach);
+  away.assign(atom->nlocal, Cells::LARGE);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (level(i) < 0) continue;
+    double least = Cells::LARGE;
+    cells.around(atom->x[i], [&](int, double rsq) {
+      least = std::min(least, rsq);
+    });
+    away[i] = std::sqrt(least);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Between the zone of a level and the end of that of the one before: at least the support of the
+   coarser one's kernel. As far as there is fluid.
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::check_zones() const
+{
+  const int nall = atom->nlocal + atom->nghost;
+  for (int k = 1; k < finest(); k++) {
+    const double support = fix_fsi->resolution[types[k - 1]].cut;
+    const Cells inner(atom->x, nall, fix_fsi->dim, support, [&](int j) {
+      return level(j) >= 0 && (carried[j] & 1 << (k + 1));
+    });
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (level(i) < 0 || (carried[i] & 1 << k)) continue;
+      const double *const x = atom->x[i];
+      inner.around(x, [&](int j, double rsq) {
+        if (rsq >= support * support) return;
+        const std::string zone =
+            regions.empty() ? "" : fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
+        error->one(FLERR,
+                   "Atom {} at {:g} {:g} {:g} is not in the zone of type {}, but only {:.3g} from "
+                   "atom {}, which is in that of type {}{}: fix {} needs zones inside each other, "
+                   "at least the kernel's support of type {} apart, {:g}",
+                   atom->tag[i], x[0], x[1], x[2], types[k], std::sqrt(rsq), atom->tag[j],
+                   types[k + 1], zone, id, types[k - 1], support);
+      });
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   bodies and walls meet fluid of their own spacing
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::warn_of_bodies()
+{
+  if (told) return;
+  told = true;
+  const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
+  const auto is_body = [&](int j) {
+    const int species = fix_fsi->state[type[j]].species;
+    return species == SOLID || species == RIGID;
+  };
+  const Cells bodies(atom->x, nall, fix_fsi->dim, fix_fsi->cut, is_body);
+  struct Meeting {
+    tagint fluid, body;
+    double dx, own;
+  };
+  std::vector<Meeting> meetings;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int own = level(i);
+    if (own < 0 || own == finest() || (carried[i] & SPLIT)) continue;
+    const double dx = fix_fsi->dx_of(type[i]);
+    bodies.around(atom->x[i], [&](int j, double rsq) {
+      const double of_body = fix_fsi->dx_of(type[j]);
+      if (dx > TOO_COARSE * of_body && rsq < dx * dx && meetings.empty())
+        meetings.push_back({atom->tag[i], atom->tag[j], dx, of_body});
+    });
+  }
+  const auto all = gather(meetings, world);
+  if (all.empty() || comm->me) return;
+  error->warning(FLERR,
+                 "{}: fluid atom {} has a spacing of {:g}, and beside it atom {} of a body or "
+                 "wall one of {:g}: let the finest level reach a kernel's support beyond bodies",
+                 who, all[0].fluid, all[0].dx, all[0].body, all[0].own);
+}
+
+static uint64_t hash_of(tagint a, tagint b)
+{
+  uint64_t hash = 14695981039346656037ULL;
+  for (const auto tag : {std::min(a, b), std::max(a, b)})
+    for (int k = 0; k < 64; k += 8) hash = (hash ^ ((uint64_t) tag >> k & 255)) * 1099511628211ULL;
+  return hash;
+}
+
+/* ----------------------------------------------------------------------
+   Splitting. Halves must not come nearer to a mirror wall than particles of their spacing are, and
+   not leave the box
+------------------------------------------------------------------------- */
+
+double FixFSIRefine::crowd_of_walls(const double *x, double dx) const
+{
+  double sum = 0.0;
+  for (const auto &wall : fix_fsi->walls.wall) {
+    if (!wall.spans(x, dx)) continue;
+    const double s = wall.distance(x);
+    if (wall.finite && s < -dx) continue;
+    if (s <= 0.0) return HUGE_VAL;
+    const double q = 0.5 * dx / s;
+    sum += q * q * q * q;
+  }
+  for (int d = 0; d < fix_fsi->dim; d++)
+    if (!domain->periodicity[d] && (x[d] <= domain->boxlo[d] || x[d] >= domain->boxhi[d]))
+      return HUGE_VAL;
+  return sum;
+}
+
+// velocity and density at the halves' places are those of linear fields through the neighbors;
+// a density that is the largest or smallest around stays
+template <int D> void FixFSIRefine::slopes(Division &two, const Cells &cells) const
+{
+  double *const *const x = atom->x, *const *const v = atom->v, *const rho = atom->rho;
+  const int i = two.i;
+  const double dx = fix_fsi->dx_of(atom->type[i]), cut = fix_fsi->resolution[atom->type[i]].cut;
+  std::vector<int> near;    // the same sums in whatever order particles are
+  cells.around(x[i], [&](int j, double rsq) {
+    if (j != i && rsq < cut * cut && level(j) >= 0) near.push_back(j);
+  });
+  std::sort(near.begin(), near.end(), [&](int a, int b) {
+    return atom->tag[a] != atom->tag[b] ? atom->tag[a] < atom->tag[b] : a < b;
+  });
+  Slopes<D, D + 1> fit;
+  double low = rho[i], high = rho[i];
+  for (const int j : near) {
+    double away[D], difference[D + 1], rsq = 0.0;
+    for (int d = 0; d < D; d++) {
+      away[d] = (x[j][d] - x[i][d]) / dx;
+      rsq += away[d] * away[d];
+      difference[d] = v[j][d] - v[i][d];
+    }
+    const double q = 1.0 - rsq * dx * dx / (cut * cut);
+    difference[D] = rho[j] - rho[i];
+    low = std::min(low, rho[j]);
+    high = std::max(high, rho[j]);
+    fit.add(away, q * q * atom->rmass[j] / rho[j], difference);
+  }
+  fit.solve();
+  double drho = 0.0;
+  for (int d = 0; d < D; d++) {
+    for (int a = 0; a < D; a++) two.dv[d] += fit.slope[d][a] * two.dx[a] / dx;
+    drho += fit.slope[D][d] * two.dx[d] / dx;
+  }
+  const double most = std::min(rho[i] - low, high - rho[i]);
+  two.drho = std::clamp(drho, -most, most);
+}
+
+int FixFSIRefine::choose_direction(int i, const Cells &cells) const
+{
+  const double *const x = atom->x[i];
+  const int dim = fix_fsi->dim;
+  const double dx = fix_fsi->dx_of(atom->type[i]), finer = split_spacing(dim),
+               distance = split_distance(dim) * dx, reach = CROWDED * dx;
+  std::vector<SplitNeighbor> crowd;
+  cells.around(x, [&](int j, double rsq) {
+    if (j == i || rsq > reach * reach) return;
+    SplitNeighbor n;
+    MathExtra::sub3(atom->x[j], x, n.x);
+    const double of_j = fix_fsi->dx_of(atom->type[j]);
+    if (heading[j] == 0) {
+      n.spacing = 0.5 * (finer * dx + of_j);
+      crowd.push_back(n);
+      return;
+    }
+    n.spacing = 0.5 * finer * (dx + of_j);
+    const auto &e = directions[heading[j] - 1];
+    const double to = split_distance(dim) * of_j;
+    for (int d = 0; d < 3; d++) n.x[d] += to * e[d];
+    crowd.push_back(n);
+    for (int d = 0; d < 3; d++) n.x[d] -= 2.0 * to * e[d];
+    crowd.push_back(n);
+  });
+  return split_direction(directions, crowd, distance, [&](const double *offset) {
+    const double at[3] = {x[0] + offset[0], x[1] + offset[1], x[2] + offset[2]};
+    return crowd_of_walls(at, dx);
+  });
+}
+
+/* ----------------------------------------------------------------------
+   Many may split at once, next to each other: they choose again when they know what their
+   neighbors have chosen, half of them at a time, lest two step aside into each other's way
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells &cells)
+{
+  heading.assign(atom->nlocal + atom->nghost, 0);
+  for (int sweep = 0; sweep <= SWEEPS; sweep++) {
+    std::vector<tagint> next(heading.begin(), heading.begin() + atom->nlocal);
+    for (const int i : which)
+      if (sweep == 0 || (hash_of(atom->tag[i], sweep) >> 20 & 1))
+        next[i] = 1 + choose_direction(i, cells);
+    std::copy(next.begin(), next.end(), heading.begin());
+    send(heading);
+  }
+}
+
+std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
+{
+  std::vector<Division> list;
+  std::vector<int> which;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (carried[i] & SPLIT) which.push_back(i);
+  int own = which.size(), any;
+  MPI_Allreduce(&own, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return list;
+  std::sort(which.begin(), which.end(), [&](int a, int b) {
+    return atom->tag[a] < atom->tag[b];
+  });
+  const Cells cells(atom->x, atom->nlocal + atom->nghost, fix_fsi->dim, fix_fsi->cut, [&](int j) {
+    return fix_fsi->state[atom->type[j]].species != NONE;
+  });
+  choose_directions(which, cells);
+  for (const int i : which) {
+    Division two;
+    two.i = i;
+    const double distance = split_distance(fix_fsi->dim) * fix_fsi->dx_of(atom->type[i]);
+    for (int d = 0; d < 3; d++) two.dx[d] = distance * directions[heading[i] - 1][d];
+    fix_fsi->dim == 2 ? slopes<2>(two, cells) : slopes<3>(two, cells);
+    list.push_back(two);
+    const double m = atom->rmass[i];
+    double spin[3];
+    MathExtra::cross3(two.dx, two.dv, spin);
+    mine[GAINED] += 0.5 * m * MathExtra::lensq3(two.dv);
+    for (int d = 0; d < 3; d++) mine[SPIN + d] -= m * spin[d];
+  }
+  return list;
+}
+
+/* ----------------------------------------------------------------------
+   Merging: pairs of which each is the other's best partner, by distance, then by a hash of both
+   IDs, which knows no direction; then among those that are left. Whole numbers, the same on all
+   ranks.
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::choose_partners()
+{
+  const int nall = atom->nlocal + atom->nghost;
+  const tagint *const tag = atom->tag;
+  partner.assign(nall, 0);
+  chosen.assign(atom->nlocal, -1);
+  const auto wants = [&](int i) {
+    return (carried[i] & MERGE) != 0;
+  };
+  const Cells cells(atom->x, nall, fix_fsi->dim, FAR_REACH * fix_fsi->dx_of(types[1]), wants);
+  for (int round = 0; round < ROUNDS; round++) {
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!wants(i) || partner[i] < 0) continue;
+      const double per_dx = 1.0 / fix_fsi->dx_of(atom->type[i]);
+      std::pair<int, uint64_t> best;
+      chosen[i] = -1;
+      cells.around(atom->x[i], [&](int j, double rsq) {
+        if (tag[j] == tag[i] || partner[j] < 0 || atom->type[j] != atom->type[i]) return;
+        const double q = std::sqrt(rsq) * per_dx;
+        if (q >= ((carried[i] | carried[j]) & EAGER ? FAR_REACH : REACH)) return;
+        const std::pair<int, uint64_t> key = {(int) (PER_SPACING * q + OFF_LATTICE),
+                                              hash_of(tag[i], tag[j])};
+        if (chosen[i] >= 0 && !(key < best)) return;
+        best = key;
+        chosen[i] = j;
+      });
+      partner[i] = chosen[i] < 0 ? 0 : tag[chosen[i]];
+    }
+    send(partner);
+    std::vector<int> found;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (partner[i] > 0 && partner[chosen[i]] == tag[i]) found.push_back(i);
+    for (const int i : found) partner[i] = -partner[i];
+    send(partner);
+  }
+  for (int i = 0; i < atom->nlocal; i++) mine[WAITING] += wants(i) && partner[i] >= 0;
+}
+
+// the one of the lower ID becomes both, on its rank; the other's rank deletes it
+std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gone)
+{
+  std::vector<Union> list;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (partner[i] >= 0) continue;
+    const int j = chosen[i];
+    if (atom->tag[j] < atom->tag[i]) {
+      gone.push_back(i);
+      continue;
+    }
+    const double m = atom->rmass[i], n = atom->rmass[j], part = n / (m + n), reduced = m * part;
+    double away[3], faster[3], spin[3];
+    MathExtra::sub3(atom->x[j], atom->x[i], away);
+    MathExtra::sub3(atom->v[j], atom->v[i], faster);
+    Union one;
+    one.i = i;
+    one.energy = fix_fsi->population.energy(i) + fix_fsi->population.energy(j);
+    one.rmass = m + n;
+    one.rho = one.rmass / (m / atom->rho[i] + n / atom->rho[j]);
+    for (int d = 0; d < 3; d++) {
+      one.x[d] = atom->x[i][d] + part * away[d];
+      one.v[d] = atom->v[i][d] + part * faster[d];
+    }
+    list.push_back(one);
+    MathExtra::cross3(away, faster, spin);
+    mine[LOST] += 0.5 * reduced * MathExtra::lensq3(faster);
+    for (int d = 0; d < 3; d++) mine[SPIN + d] += reduced * spin[d];
+  }
+  return list;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixFSIRefine::unite(const std::vector<Union> &unions)
+{
+  double *const account = fix_fsi->account(FixFSI::LEVELS);
+  for (const auto &one : unions) {
+    const int i = one.i;
+    std::copy_n(one.x, 3, atom->x[i]);
+    std::copy_n(one.v, 3, atom->v[i]);
+    atom->rho[i] = one.rho;
+    atom->rmass[i] = one.rmass;
+    atom->type[i] = types[level(i) - 1];
+    if (account) *account += one.energy - fix_fsi->population.energy(i);
+  }
+}
+
+void FixFSIRefine::divide(const std::vector<Division> &divisions)
+{
+  auto &population = fix_fsi->population;
+  double *const account = fix_fsi->account(FixFSI::LEVELS);
+  std::vector<tagint> parents;
+  for (const auto &two : divisions) parents.push_back(atom->tag[two.i]);
+  auto all = gather(parents, world);
+  std::sort(all.begin(), all.end());
+  const auto ids = population.ids((int) all.size(), who);
+  for (const auto &two : divisions) {
+    const int i = two.i;
+    if (account) *account += population.energy(i);
+    atom->type[i] = types[level(i) + 1];
+    atom->rmass[i] *= 0.5;
+    const auto nth = std::lower_bound(all.begin(), all.end(), atom->tag[i]) - all.begin();
+    const int j = population.copy(i, ids[nth]);
+    const auto move = [&](int k, double to) {
+      for (int d = 0; d < fix_fsi->dim; d++) {
+        atom->x[k][d] += to * two.dx[d];
+        atom->v[k][d] += to * two.dv[d];
+      }
+      atom->rho[k] += to * two.drho;
+      if (account) *account -= population.energy(k);
+    };
+    move(i, 1.0);
+    move(j, -1.0);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   messages
+------------------------------------------------------------------------- */
+
+void FixFSIRefine::send(std::vector<tagint> &numbers)
+{
+  message = &numbers;
+  comm->forward_comm(this);
+  message = nullptr;
+}
+
+int FixFSIRefine::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) buf[k] = ubuf((*message)[list[k]]).d;
+  return n;
+}
+
+void FixFSIRefine::unpack_forward_comm(int n, int first, double *buf)
+{
+  for (int k = 0; k < n; k++) (*message)[first + k] = (tagint) ubuf(buf[k]).i;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixFSIRefine::compute_vector(int n)
+{
+  return total[n];
+}
+
+void FixFSIRefine::write_restart(FILE *fp)
+{
+  Record record(lmp, style);
+  record.add("totals", std::vector<double>(total, total + NTOTAL));
+  record.add("last event", std::to_string(last_event));
+  record.write(fp);
+}
+
+void FixFSIRefine::restart(char *buf)
+{
+  const Record record(lmp, style, buf);
+  const auto totals = record.numbers("totals");
+  std::copy_n(totals.begin(), std::min(totals.size(), (size_t) NTOTAL), total);
+  last_event = std::stoll(record.value("last event"));
+}
+
+double FixFSIRefine::memory_usage()
+{
+  return (double) (carried.capacity() + partner.capacity()) * sizeof(tagint) +
+      (double) chosen.capacity() * sizeof(int) + (double) away.capacity() * sizeof(double);
+}

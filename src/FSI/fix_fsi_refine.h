@@ -1,0 +1,124 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(fsi/refine,FixFSIRefine);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_FSI_REFINE_H
+#define LMP_FIX_FSI_REFINE_H
+
+#include "fix.h"
+#include "fsi_split.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+  class Cells;
+}
+
+// Levels of one fluid, atom types each with half the mass of the one before: where a finer one is
+// wanted a particle splits in two, elsewhere two that are nearest to each other merge. Only in
+// steps that are multiples of a number, with new neighbor lists, so that neither lists nor restarts
+// change when.
+
+class FixFSIRefine : public Fix {
+ public:
+  FixFSIRefine(class LAMMPS *, int, char **);
+  int setmask() override;
+  void init() override;
+  void setup_pre_exchange() override;
+  void pre_exchange() override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double memory_usage() override;
+
+ private:
+  struct Division {    // of a particle: its halves are at x + dx and x - dx, ...
+    int i = 0;
+    double dx[3] = {}, dv[3] = {}, drho = 0.0;
+  };
+  struct Union {    // of two: what becomes of the one that stays; energy of both
+    int i = 0;
+    double x[3] = {}, v[3] = {}, rho = 0.0, rmass = 0.0, energy = 0.0;
+  };
+  enum Total { SPLITS, MERGES, LOST, GAINED, SPIN, WAITING = SPIN + 3, NTOTAL };
+  // what a particle is to do: bits above those of the zones that it is in
+  enum Wish { SPLIT = 1 << 16, MERGE = 1 << 17, EAGER = 1 << 18 };
+
+  const std::string who;
+  int every, settle_steps;
+  std::vector<int> types, level_of;       // from the coarsest on; per type, -1: none of them
+  std::vector<std::string> region_ids;    // where the levels from 1 on are,
+  std::vector<class Region *> regions;
+  std::string body_id;    // or how near to these particles
+  std::vector<double> distances;
+  int body_bit;
+  class FixFSI *fix_fsi;
+  std::vector<class FixFSIInlet *> open_ends;
+  std::vector<std::array<double, 3>> directions;    // of splitting
+  double total[NTOTAL];
+  bigint last_event;
+  bool moving, told;
+
+  // of one event
+  // per particle, local and ghost: see Wish; name; direction, from 1 on, 0: it does not split
+  std::vector<tagint> carried, partner, heading;
+  std::vector<int> chosen;     // per local one: index of its partner
+  std::vector<double> away;    // per local one: from the body
+  std::vector<tagint> *message;
+  double mine[NTOTAL];
+
+  int finest() const { return (int) types.size() - 1; }
+  int level(int i) const;
+  void read_types(const std::vector<std::string> &);
+  void read_distances(const std::vector<std::string> &);
+  void check_types() const;
+  void find_zones();
+  double least_shell(int k) const;
+
+  void event(bool may_split, bool may_merge);
+  void renew_ghosts();
+  void settle(const std::vector<tagint> &changed);
+  std::vector<double> mobilities(std::vector<tagint> changed) const;
+  void even_out(int i, const FSI::Cells &, double *sum) const;
+  void measure_distances();
+  bool in_zone(int k, int i, double grown) const;
+  void look(bool may_split, bool may_merge);
+  bool in_open_end(int i, int wish) const;
+  void check_zones() const;
+  void warn_of_bodies();
+  double crowd_of_walls(const double *x, double dx) const;
+  int choose_direction(int i, const FSI::Cells &) const;
+  void choose_directions(const std::vector<int> &which, const FSI::Cells &);
+  template <int D> void slopes(Division &, const FSI::Cells &) const;
+  std::vector<Division> plan_divisions();
+  void choose_partners();
+  std::vector<Union> plan_unions(std::vector<int> &gone);
+  void unite(const std::vector<Union> &);
+  void divide(const std::vector<Division> &);
+  void send(std::vector<tagint> &);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

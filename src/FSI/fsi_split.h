@@ -1,0 +1,143 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// How a fluid particle becomes two of the next finer level: along the direction in which there is
+// most room around it, on both sides. Two particles of mass m/2 at half the finer spacing from
+// the old one's place make the finer lattice out of a square one, and one with eight equal
+// neighbors (body-centered) out of a simple cubic one. No LAMMPS types.
+
+#ifndef LMP_FSI_SPLIT_H
+#define LMP_FSI_SPLIT_H
+
+#include "fsi_gradient.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+
+  // Directions along which a particle may split, one of each pair of opposite ones, as unit
+  // vectors; the simplest first, since the first of equals is taken: so all of a lattice split the
+  // same way.
+  inline std::vector<std::array<double, 3>> split_directions(int dim)
+  {
+    struct Whole {
+      int square;
+      std::array<int, 3> c;
+    };
+    std::vector<Whole> whole;
+    const int nz = dim == 3 ? 2 : 0;
+    for (int z = -nz; z <= nz; z++)
+      for (int y = -2; y <= 2; y++)
+        for (int x = -2; x <= 2; x++) {
+          const bool even = x % 2 == 0 && y % 2 == 0 && z % 2 == 0;    // or zero
+          const int first = x ? x : y ? y : z;
+          if (!even && first > 0) whole.push_back({x * x + y * y + z * z, {x, y, z}});
+        }
+    std::stable_sort(whole.begin(), whole.end(), [](const Whole &a, const Whole &b) {
+      return a.square < b.square;
+    });
+    std::vector<std::array<double, 3>> unit;
+    for (const auto &w : whole) {
+      const double length = std::sqrt(w.square);
+      unit.push_back({w.c[0] / length, w.c[1] / length, w.c[2] / length});
+    }
+    return unit;
+  }
+
+  // distance of each of the two from the old place, over its spacing
+  inline double split_distance(int dim)
+  {
+    return 0.25 * std::sqrt(dim);
+  }
+
+  inline double split_spacing(int dim)    // of the next level, likewise
+  {
+    return std::pow(2.0, -1.0 / dim);
+  }
+
+  // what is beside the one that splits: its place from there, mean spacing of it and a half
+  struct SplitNeighbor {
+    double x[3] = {}, spacing = 0.0;
+  };
+
+  // How crowded a place is, at an offset from the old one: sum of (spacing/distance)^4.
+  inline double crowding(const std::vector<SplitNeighbor> &around, const double *offset)
+  {
+    double sum = 0.0;
+    for (const auto &n : around) {
+      double rsq = 0.0;
+      for (int d = 0; d < 3; d++) rsq += (n.x[d] - offset[d]) * (n.x[d] - offset[d]);
+      const double q = n.spacing * n.spacing / std::max(rsq, 1.0e-4 * n.spacing * n.spacing);
+      sum += q * q;
+    }
+    return sum;
+  }
+
+  // Which of the directions has the least crowded ends; extra(offset): what else crowds one, walls.
+  // In units in which round-off does not decide between equals
+  template <class Extra>
+  int split_direction(const std::vector<std::array<double, 3>> &directions,
+                      const std::vector<SplitNeighbor> &around, double distance, Extra extra)
+  {
+    constexpr double FINE = 1.0e6, MOST = 1.0e9;
+    long long least = 0;
+    int best = -1;
+    for (size_t k = 0; k < directions.size(); k++) {
+      const auto &e = directions[k];
+      double sum = 0.0;
+      for (const double to : {distance, -distance}) {
+        const double offset[3] = {to * e[0], to * e[1], to * e[2]};
+        sum += crowding(around, offset) + extra(offset);
+      }
+      const long long score = std::llround(FINE * std::min(sum, MOST));
+      if (best >= 0 && score >= least) continue;
+      least = score;
+      best = (int) k;
+    }
+    return best;
+  }
+
+  // Slopes of fields, exact for linear ones, from weighted sums over neighbors; where those are in
+  // a line (2D) or plane (3D) there are none.
+  template <int D, int FIELDS> class Slopes {
+   public:
+    double slope[FIELDS][D] = {};
+
+    void add(const double *x, double weight, const double *differences)
+    {
+      for (int a = 0, k = 0; a < D; a++)
+        for (int b = 0; b <= a; b++) A[k++] += weight * x[a] * x[b];
+      for (int f = 0; f < FIELDS; f++)
+        for (int d = 0; d < D; d++) sum[f][d] += weight * differences[f] * x[d];
+    }
+    void solve()
+    {
+      double C[D * D];
+      if (gradient_coefficients<D, D>(A, C) == Gradient<D>::DEFICIENT) return;
+      for (int f = 0; f < FIELDS; f++)
+        for (int a = 0; a < D; a++)
+          for (int b = 0; b < D; b++) slope[f][a] += C[a * D + b] * sum[f][b];
+    }
+
+   private:
+    double A[packed_size(D)] = {}, sum[FIELDS][D] = {};
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,413 @@
+"""fix fsi/refine: fluid particles that split in finer zones and merge outside of them."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from scenes import WATER, Scene, cloud, difference, differing, lammps, lattice, run, watch
+
+DX = 0.05
+FINER = {2: 2**-0.5, 3: 2**(-1 / 3)}
+SPLITS, MERGES, LOST, GAINED, SPIN, WAITING = 0, 1, 2, 3, slice(4, 7), 7
+
+
+def box_scene(x, v=0.0, type=1, *, levels=2, refine="region zone", every=10, size=None, commands=(), before=(), zone="block 0.3 0.9 0.3 0.9 INF INF", fluid="", boundary="p p p", group="all", **options):
+    """Fluid of levels 1, 2, ... in a box, periodic by default, with a zone."""
+    dim = options.pop("dim", 2)
+    size = size or [1.2] * dim + [0] * (3 - dim)
+    low = [-options.pop("room", 0.0), 0, 0]
+    spacing = " ".join(f"spacing {k + 1} {DX * FINER[dim]**k!r}" for k in range(1, levels))
+    types = " ".join(str(k + 1) for k in range(levels))
+    return Scene(x, np.zeros_like(x) + v, dim=dim, dx=DX, type=type, box=(low, size), boundary=boundary, materials=(WATER,) * levels, density=spacing,
+                 fluid=f"sound 15 tension yes {fluid}", dt=options.pop("dt", 1e-3),
+                 commands=(*before, f"region zone {zone} units box", *commands, f"fix ref {group} fsi/refine {every} types {types} {refine}", "compute e all fsi/energy"), **options)
+
+
+def go(scene, steps):
+    """Arrays are as long as there are particles now."""
+    scene.run(steps)
+    scene.n = scene.lmp.get_natoms()
+    ids = scene.get("id")
+    assert len(set(ids)) == scene.n
+    return scene
+
+
+def outputs(scene):
+    return np.array([scene.lmp.extract_fix("ref", 0, 1, k) for k in range(8)])
+
+
+def exact_mass(scene):
+    """of all particles, without rounding"""
+    return math.fsum(scene.get("rmass"))
+
+
+def energies(scene):
+    """kinetic energy, angular momentum about the origin"""
+    m, x, v = scene.get("rmass"), scene.get("x"), scene.get("v")
+    return 0.5 * (m * (v**2).sum(1)).sum(), (m[:, None] * np.cross(x, v)).sum(0)
+
+
+def nearest(x, y, size):
+    """distances of each x from the nearest other y in a periodic box"""
+    dim = sum(s > 0 for s in size)
+    d = np.zeros((len(x), len(y)))
+    for k in range(dim):
+        a = np.abs(x[:, None, k] - y[None, :, k])
+        d += np.minimum(a, size[k] - a)**2
+    d[d < 1e-18] = np.inf
+    return np.sqrt(d.min(1))
+
+
+@pytest.mark.parametrize("n, origin, apart", [((24, 24), 0.0, 2**-0.5), ((8, 8, 8), 0.0, 3**0.5 / 2)], ids=["2D", "3D"])
+def test_a_lattice_splits(n, origin, apart):
+    """Before the first step: a square lattice becomes a square one, a cubic one a body-centered one, whose particles are that far from each other.
+    Masses are halves to the bit; linear fields of velocity and density stay what they are where the halves come to be."""
+    dim = len(n)
+    x = lattice(n, DX, origin)
+    size = [k * DX for k in n] + [0] * (3 - dim)
+    slope = np.zeros((3, 3))
+    slope[:dim, :dim] = np.random.default_rng(1).uniform(-1, 1, (dim, dim))
+    zone = "block 0.11 0.29 0.11 0.29 0.11 0.29" if dim == 3 else "block 0.3 0.9 0.3 0.9 INF INF"
+    inside = np.all((x[:, :dim] > (0.11 if dim == 3 else 0.3)) & (x[:, :dim] < (0.29 if dim == 3 else 0.9)), axis=1)
+    with box_scene(x, x @ slope.T, dim=dim, size=size, zone=zone, refine="region zone settle 0") as s:
+        s.put("rho", 1000 + x @ (1, -2, 1.5))
+        go(s, 0)
+        m = s.get("rmass").max()
+        assert s.n == len(x) + inside.sum() and outputs(s)[SPLITS] == inside.sum()
+        fine = s.get("type") == 2
+        assert fine.sum() == 2 * inside.sum() and set(s.get("rmass")[fine]) == {m / 2} and set(s.get("rmass")[~fine]) == {m}
+        y = s.get("x")
+        # fluid away from the edge of the zone, where halves are next to whole ones
+        assert nearest(y[fine], y[fine], size) == pytest.approx(apart * DX, rel=1e-9)
+        middle = np.all((y[:, :dim] > 0.1) & (y[:, :dim] < size[0] - 0.1), axis=1)
+        assert np.abs(s.get("v") - y @ slope.T)[middle & fine].max() < 1e-12
+        assert np.abs(s.get("rho") - 1000 - y @ (1, -2, 1.5))[middle & fine].max() < 1e-9
+
+
+def shaken(n=(34, 34), seed=5, vmax=1.0, dim=2):
+    """a lattice of the second level, shaken"""
+    return cloud(n, DX * FINER[dim], seed, vmax=vmax)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_pairs_merge(dim):
+    """Far from the zone nine of ten find a partner at once. Each pair becomes one at its center of mass with its momentum; energy and spin that are
+    lost are what the sums say; the balance of energy has all of it."""
+    n = (34, 34) if dim == 2 else (12, 12, 12)
+    x, v = shaken(n, dim=dim)
+    size = [1.3] * dim + [0] * (3 - dim)
+    with box_scene(x, v, 2, dim=dim, size=size, boundary="f f p" if dim == 2 else "f f f", zone="block 5 6 5 6 5 6", every=1, dt=1e-9, refine="region zone settle 0",
+                   commands=("fix g all gravity 9.81 vector 0.6 -0.8 0",)) as s:
+        s.put("rho", 1000 * (1 + 0.01 * np.random.default_rng(2).uniform(-1, 1, len(x))))
+        go(s, 0)
+        old, mass, momentum, balance = {name: s.get(name) for name in ("id", "x", "v", "rmass", "rho")}, exact_mass(s), s.momentum(), s.ledger()
+        kinetic, spin = energies(s)
+        go(s, 1)
+        out, merged = outputs(s), s.get("type") == 1
+        assert merged.sum() == out[MERGES] and s.n == len(x) - out[MERGES] and out[SPLITS] == 0
+        assert out[MERGES] > 0.43 * len(x) and out[WAITING] == len(x) - 2 * out[MERGES]
+        weight = mass * 9.81e-9 * np.array([0.6, -0.8, 0])
+        assert exact_mass(s) == mass and np.abs(s.momentum() - momentum - weight).max() < 1e-13 * (old["rmass"][:, None] * np.abs(old["v"])).sum()
+        row = {i: k for k, i in enumerate(old["id"])}
+        gone = np.array([row[i] for i in sorted(set(old["id"]) - set(s.get("id")))])
+        for i, y, rho in zip(s.get("id")[merged], s.get("x")[merged], s.get("rho")[merged]):
+            a = row[i]
+            b = gone[np.abs(0.5 * (old["x"][a] + old["x"][gone]) - y).max(1).argmin()]
+            assert np.abs(0.5 * (old["x"][a] + old["x"][b]) - y).max() < 1e-8 and i < old["id"][b]
+            assert np.linalg.norm(old["x"][a] - old["x"][b]) < 1.7 * DX * FINER[dim]
+            assert rho == pytest.approx(2 / (1 / old["rho"][a] + 1 / old["rho"][b]), rel=1e-6)    # forces have worked for 1e-9 s
+        after, spin_after = energies(s)
+        assert out[LOST] == pytest.approx(kinetic - after, rel=1e-5) and out[GAINED] == 0
+        assert out[SPIN] == pytest.approx(spin - spin_after, abs=1e-5 * np.abs(spin).max())
+        now = s.ledger()
+        assert now.sum() == pytest.approx(balance.sum(), abs=1e-6 * out[LOST])
+        assert now[13] == pytest.approx(out[LOST], rel=0.1) and now[13] != out[LOST]    # compression, too, which is not linear in the density
+        assert not now[4:13].any()
+
+
+def test_pairs_are_mutual_and_nearest_first():
+    """Four in a row, at distances of 0.9, 0.7 and 1.0 of a spacing: the middle two merge, and the outer ones, too far from each other, wait."""
+    at = 0.5 + DX * FINER[2] * np.cumsum([0, 0.9, 0.7, 1.0])
+    x = np.array([[a, 0.5, 0] for a in at])
+    with box_scene(x, 0.0, 2, zone="block 5 6 5 6 INF INF", every=1, dt=1e-9) as s:
+        go(s, 1)
+        assert list(s.get("type")) == [2, 1, 2] and outputs(s)[WAITING] == 2
+        assert s.get("x")[1, 0] == pytest.approx(0.5 * (at[1] + at[2]), abs=1e-9)
+        go(s, 5)
+        assert s.n == 3
+
+
+def test_still_fluid_moves_through_the_zone():
+    """Under a background pressure, five times through: mass to the bit, momentum to round-off, and particles that settle at once keep most of
+    the mean pressure's fall away: 0.0025 of the density, without settling 0.0089, which is all of the pressure."""
+    x = lattice((24, 12), DX)
+    lost = {}
+    for settle in (0, 30):
+        with box_scene(x, (5.0, 0, 0), size=[1.2, 0.6, 0], zone="block 0.3 0.9 INF INF INF INF", refine=f"region zone settle {settle}",
+                       fluid="density/diffusion 0.1 background 2000", dt=6.6e-4) as s:
+            go(s, 0)
+            mass, momentum = exact_mass(s), s.momentum()
+            go(s, 1800)
+            m, rho = s.get("rmass"), s.get("rho")
+            lost[settle] = 1 - m.sum() / (m / rho).sum() / 1000
+            assert exact_mass(s) == mass and np.abs(s.momentum() - momentum).max() < 1e-13 * momentum[0]
+            assert outputs(s)[SPLITS] > 1000 and outputs(s)[MERGES] > 1000
+    print(lost)
+    assert lost[30] < 0.003 < lost[0]
+
+
+def test_margin():
+    """A particle within a coarse spacing of its zone stays fine, and who is three of them away takes a partner that is further."""
+    x = lattice((34, 34), DX * FINER[2])
+    with box_scene(x, 0.0, 2, size=[34 * DX * FINER[2]] * 2 + [0], every=1, dt=1e-9) as s:
+        go(s, 1)
+        y, fine = s.get("x")[:, :2], s.get("type") == 2
+        outside = np.linalg.norm(np.maximum(np.maximum(0.3 - y, y - 0.9), 0), axis=1)
+        assert fine[outside < 0.9 * DX].all() and fine[outside > 1.5 * DX].mean() < 0.2
+        assert outputs(s)[MERGES] > 250 and exact_mass(s) == pytest.approx(1000 * (34 * DX * FINER[2])**2, rel=1e-2)
+
+
+def test_zone_that_moves():
+    """Fluid at rest: where the zone comes particles split, where it was they merge again. A split and a merge bring nobody back to where he was,
+    but mass is the same to the bit."""
+    x = lattice((24, 24), DX)
+    with box_scene(x, zone="block 0.1 0.4 0.3 0.9 INF INF move v_go NULL NULL", every=5, dt=1e-9, before=("variable go equal 0.005*step",)) as s:
+        go(s, 0)
+        mass = exact_mass(s)
+        first = (s.get("type") == 2).sum()
+        assert first == 2 * 6 * 12
+        go(s, 100)
+        y, fine = s.get("x")[:, :2], s.get("type") == 2
+        inside = np.all((y > (0.62, 0.32)) & (y < (0.88, 0.88)), axis=1)
+        outside = np.linalg.norm(np.maximum(np.maximum((0.6, 0.3) - y, y - (0.9, 0.9)), 0), axis=1)
+        assert fine[inside].all() and fine[outside > 2.5 * DX].mean() < 0.08
+        assert exact_mass(s) == mass
+        assert outputs(s)[SPLITS] - outputs(s)[MERGES] == s.n - len(x)
+
+
+def test_distance_from_a_body():
+    """Three levels around a particle beside the periodic edge of the box: by its distance, which knows images."""
+    x = lattice((32, 32), DX)
+    body = 17    # in the first column
+    with box_scene(x, levels=3, size=[1.6, 1.6, 0], refine="distance body 0.45 0.15", every=1, dt=1e-9, group="rest",
+                   commands=(f"group body id {body + 1}", "group rest subtract all body")) as s:
+        go(s, 0)
+        y, level = s.get("x"), s.get("type")
+        place = s.get("x")[s.get("id") == body + 1][0]
+        d = np.abs(y - place)
+        away = np.linalg.norm(np.minimum(d, 1.6 - d)[:, :2], axis=1)
+        assert (level[(away > 0) & (away < 0.12)] == 3).all() and (level[(away > 0.18) & (away < 0.42)] == 2).all() and (level[away > 0.48] == 1).all()
+        assert (y[level == 3, 0] > 1.5).any() and (y[level == 3, 0] < 0.1).any()
+
+
+def test_ids_stay_small_and_unique():
+    """Fluid that passes through the zone again and again: IDs of particles that merged are given again, unless a command has given them. IDs are
+    never 1 to N, which LAMMPS' dumps would take to be so for ever."""
+    x = lattice((24, 24), DX)
+    with box_scene(x, (5.0, 3.0, 0.0), every=10, fluid="density/diffusion 0.1") as s:
+        most = 0
+        for _ in range(8):
+            go(s, 125)
+            ids, most = s.get("id"), max(most, s.n)
+            assert ids.max() != s.n
+        assert outputs(s)[SPLITS] > 2 * most and ids.max() <= most + 200
+        s.run_lines("create_atoms 1 single 0.6001 0.1001 0.0 units box")
+        s.n = s.lmp.get_natoms()
+        for _ in range(4):
+            go(s, 50)
+
+
+def test_walls_and_edges():
+    """Halves stay before mirror walls and in the box, and not much nearer to a wall than the shaken lattice was."""
+    x, v = cloud((24, 24), DX, jitter=0.3)
+    with box_scene(x, zone="block INF INF INF INF INF INF", boundary="f f p", commands=("fix walls all fsi/wall/mirror xlo 0 ylo 0 yhi 1.2",)) as s:
+        go(s, 0)
+        y = s.get("x")
+        assert s.n == 2 * len(x) and y[:, :2].min() > 0.07 * DX and y[:, 1].max() < 1.2 - 0.07 * DX and y[:, 0].max() < 1.2
+
+
+DECK = """units si
+dimension {dim}
+boundary p p p
+atom_style fsi
+newton {newton}
+processors {grid}
+{start}
+pair_style fsi/fluid sound 30 tension yes density/diffusion 0.1 artificial/visc 0.02 0
+pair_coeff * * water.fsi water water water
+fix sph all fsi 0.05 wendland 1.5 spacing 2 {fine!r} spacing 3 {finest!r}
+variable place equal 0.1*sin(0.03*step)
+region one block {one} INF INF move v_place NULL NULL units box
+region two block {two} INF INF move v_place NULL NULL units box
+fix ref all fsi/refine {every} types 1 2 3 region one two
+compute e all fsi/energy
+timestep 3e-4
+neighbor 0.015 bin
+thermo 50
+thermo_style custom step atoms c_e f_ref[*]
+thermo_modify norm no lost error format float %20.15g
+"""
+MATERIALS = "# DATE: 2026-01-01 UNITS: si CITATION: none\nwater fluid rho 1000\n"
+
+
+def flow(dim):
+    """A shaken periodic box with a shear flow, as a data file"""
+    n = (40, 32) if dim == 2 else (22, 8, 8)
+    x, v = cloud(n, DX, vmax=0.1)
+    size = np.array([k * DX for k in n] + [0.05] * (3 - dim))
+    v[:, 0] += 2 + 0.5 * np.sin(2 * np.pi * x[:, 1] / size[1])
+    v[:, 1] += 0.7 + 0.5 * np.sin(2 * np.pi * x[:, 0] / size[0])
+    low = [0, 0, 0 if dim == 3 else -0.025]
+    lines = ["flow", "", f"{len(x)} atoms", "3 atom types", ""] + [f"{lo!r} {float(lo + s)!r} {a}lo {a}hi" for lo, s, a in zip(low, size, "xyz")]
+    lines += ["", "Atoms # fsi", ""] + [f"{k + 1} 0 1 0 0 {p[0]!r} {p[1]!r} {p[2]!r}" for k, p in enumerate(x.tolist())]
+    lines += ["", "Velocities", ""] + [f"{k + 1} {p[0]!r} {p[1]!r} {p[2]!r}" for k, p in enumerate(v.tolist())]
+    return "\n".join(lines) + "\n"
+
+
+def deck(dim, start="read_data flow.data", newton="on", grid="* * *", every=10):
+    one, two = ("0.3 1.7 0.2 1.4", "0.75 1.25 0.6 1.0") if dim == 2 else ("0.15 0.95 INF INF", "0.5 0.6 INF INF")
+    return DECK.format(dim=dim, start=start, newton=newton, grid=grid, every=every, one=one, two=two, fine=DX * FINER[dim], finest=DX * FINER[dim]**2)
+
+
+def thermo(result, step):
+    return [line for line in result.output.splitlines() if re.match(rf" *{step} ", line)]
+
+
+@pytest.mark.parametrize("dim, steps", [(2, 200), (3, 30)])
+def test_ranks(tmp_path, dim, steps):
+    """The same particles with the same IDs on any number of ranks, with newton off, too, to round-off."""
+    runs = {}
+    for name, ranks, newton, grid in (("one", 1, "on", "* * *"), ("two", 2, "on", "2 1 1"), ("off", 4, "off", "2 2 1")):
+        text = deck(dim, newton=newton, grid=grid) + watch(every=steps) + f"run {steps}\n"
+        runs[name] = run(tmp_path / name, text, ranks, flow_data=flow(dim), water_fsi=MATERIALS).frames()
+    first, last = runs["one"]
+    assert set(last["type"]) == {1, 2, 3} and len(last["id"]) > len(first["id"]) > 1000
+    assert last["id"].max() != len(last["id"])
+    for name in ("two", "off"):
+        for a, b in zip(runs["one"], runs[name]):
+            assert np.array_equal(a["type"], b["type"])
+            for quantity in ("x", "v", "rho"):
+                assert difference(a, b, quantity) < 1e-11, (name, quantity)
+
+
+@pytest.mark.parametrize("ranks, every, at", [(1, 10, 85), (2, 10, 80), (2, 1, 50)])
+def test_restart(tmp_path, ranks, every, at):
+    """A run that goes on from a file, written between two events or in a step of one, is the same bit for bit, and so are the sums."""
+    end = 2 * at - 10
+    whole = run(tmp_path / "whole", deck(2, every=every) + watch(every=end) + f"restart {at} r.*\nrun {end}\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
+    text = deck(2, every=every)
+    again = text.replace("read_data flow.data", f"read_restart ../whole/r.{at}").replace("pair_style", "#").replace("pair_coeff", "#")
+    rest = run(tmp_path / "rest", again + watch(every=end) + f"restart {at} r.*\nrun {end - at}\n", ranks, water_fsi=MATERIALS)
+    assert thermo(rest, end) and thermo(rest, end) == thermo(whole, end)
+    assert not differing(whole.frames()[-1], rest.frames()[-1])
+    assert "WARNING: Fix" not in rest.output
+
+
+def test_given_again_between_runs(tmp_path):
+    """The fix given again, and runs in parts, change nothing."""
+    again = "unfix ref\nfix ref all fsi/refine 10 types 1 2 3 region one two\n"
+    whole = run(tmp_path / "whole", deck(2) + watch(every=90) + "run 45\nrun 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
+    parts = run(tmp_path / "parts", deck(2).replace("f_ref[*]", "") + watch(every=90) + f"run 45\n{again}run 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
+    assert not differing(whole, parts)
+
+
+BAD = {
+    "3": r"Illegal fix fsi/refine command: missing argument|requires keyword types",
+    "0 types 1 2 region one": r"Fix fsi/refine N 0 must be",
+    "10 types 1 region one": r"requires keyword types with two atom types or more, the coarsest first",
+    "10 types 1 2 2 region one two": r"types: 2 is there twice",
+    "10 types 1 9 region one": r"Fix fsi/refine types 9 must be between 1 and 5",
+    "10 types 1 2 3 region one": r"has 3 types and 1 regions: expected one for each type but the first",
+    "10 types 1 2 region nowhere": r"Region nowhere of fix fsi/refine does not exist",
+    "10 types 1 2 zone one": r"has 2 types|integer|Fix fsi/refine types zone",
+    "10 types 1 2 region one settle -1": r"Fix fsi/refine settle -1 must be",
+    "10 types 1 2 region one settle": r"Illegal fix fsi/refine settle command: missing argument",
+    "10 types 1 2 region one distance all 0.1": r"takes region or distance, not both",
+    "10 types 1 2 distance nobody 0.1": r"Group nobody of fix fsi/refine distance does not exist",
+    "10 types 1 2 3 distance wall 0.2 0.3": r"distance: 0.3 after 0.2, expected less",
+    "10 types 1 2 3 distance wall 0.3 0.2": r"there is 0.1 for atom type 2: expected at least 0.185",
+    "10 types 1 3 region one": r"spacings of 0.05 and 0.025: expected 0.0353553 of the second",
+    "10 types 1 4 region one": r"atom types 1 and 4 have the density 1000 and 900: expected one fluid",
+    "10 types 1 5 region one": r"atom type 5 is no fluid: its material is a wall",
+    "10 types 1 2 3 region one two": r"is not in the zone of type 2, but only 0.\d+ from atom \d+, which is in that of type 3 \(one and two\)",
+    "10 types 1 2 region ends": r"is in the buffer of fix out, and in the zone of a finer level: keep open ends in the coarsest level",
+}
+
+
+@pytest.mark.parametrize("words", BAD)
+def test_bad_input(tmp_path, words):
+    text = f"""units si
+dimension 2
+boundary f p p
+atom_style fsi
+region box block -0.5 1.8 0 0.8 -0.025 0.025
+create_box 5 box
+lattice sq 0.05 origin 0.5 0.5 0
+region water block 0 1 0 0.8 INF INF units box
+region wall block 1 1.05 0 0.8 INF INF units box
+create_atoms 1 region water
+create_atoms 5 region wall
+group wall type 5
+group fluid type 1 2 3 4
+pair_style fsi/fluid sound 15
+pair_coeff * * water.fsi water water water oil wall
+fix sph fluid fsi 0.05 wendland 1.5 spacing 2 0.0353553 spacing 3 0.025 spacing 4 0.0353553
+fix walls wall fsi/wall/particle
+fix out fluid fsi/outlet xlo 0.2
+region one block 0.5 0.8 0.2 0.6 INF INF units box
+region two block 0.6 0.78 0.25 0.55 INF INF units box
+region ends block 0.1 0.8 0.2 0.6 INF INF units box
+fix ref fluid fsi/refine {words}
+run 0
+"""
+    done = lammps(tmp_path, text, water_fsi=MATERIALS + "oil fluid rho 900\nwall wall rho 1000\n")
+    assert done.status != 0 and any(re.search(BAD[words], line) for line in done.errors), done.output[-600:]
+
+
+def test_coarse_fluid_at_a_body_is_warned_of(tmp_path):
+    """A wall twice as fine as the fluid beside it, unless the zone reaches it."""
+    text = """units si
+dimension 2
+boundary f p p
+atom_style fsi
+region box block -0.2 1.3 0 0.8 -0.025 0.025
+create_box 3 box
+region water block 0 1 0 0.8 INF INF units box
+region wall block 1.0125 1.1 0 0.8 INF INF units box
+lattice sq 0.05 origin 0.5 0.5 0
+create_atoms 1 region water
+lattice sq 0.025 origin 0.5 0.5 0
+create_atoms 3 region wall
+group wall type 3
+group fluid type 1 2
+pair_style fsi/fluid sound 15
+pair_coeff * * water.fsi water water wall
+fix sph fluid fsi 0.05 wendland 1.5 spacing 2 0.0353553 spacing 3 0.025
+fix walls wall fsi/wall/particle
+region one block {} INF INF INF INF units box
+fix ref fluid fsi/refine 10 types 1 2 region one
+run 0
+"""
+    for zone, warned in (("0.3 0.6", True), ("0.6 2", False)):
+        done = run(tmp_path / zone, text.format(zone), water_fsi=MATERIALS + "wall wall rho 1000\n")
+        assert warned == bool(re.search("WARNING: Fix fsi/refine: fluid atom .* has a spacing of 0.05, and beside it atom .* of a body or wall one of 0.025", done.output))
+
+
+def test_open_channel(tmp_path):
+    """Between an inlet and an outlet, through a finer zone: mass is what came in and went out, IDs are unique; who has found no partner
+    passes the outlet."""
+    x = lattice((32, 8), DX)
+    with box_scene(x, (2.0, 0, 0), size=[2.4, 0.4, 0], boundary="f p p", zone="block 0.6 1.0 INF INF INF INF", fluid="density/diffusion 0.1",
+                   before=("fix i all fsi/inlet xlo 0 velocity 2 0 0", "fix o all fsi/outlet xhi 1.6"), room=0.4) as s:
+        go(s, 0)
+        mass = exact_mass(s)
+        go(s, 600)
+        came = s.lmp.extract_fix("i", 0, 0) + s.lmp.extract_fix("o", 0, 0)
+        y, level = s.get("x"), s.get("type")
+        assert outputs(s)[SPLITS] > 150 and outputs(s)[MERGES] > 100
+        print((level[y[:, 0] > 1.2] == 2).mean())
+        assert (level[y[:, 0] < 0.55] == 1).all() and (level[y[:, 0] > 1.2] == 2).mean() < 0.1 and (level[(y[:, 0] > 0.7) & (y[:, 0] < 0.95)] == 2).all()
+        assert abs(s.get("rho") / 1000 - 1).max() < 1e-3 and np.abs(s.get("v") - (2, 0, 0)).max() < 0.05
+        between = lambda m, p: m[(p > 0) & (p < 1.6)].sum()
+        assert between(s.get("rmass"), y[:, 0]) == pytest.approx(mass * 32 / 42, rel=0.02) and abs(came) < 0.03 * mass
