@@ -395,7 +395,10 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, const Cells &s
   solids.around(x[i], [&](int j, double rsq) {
     if (j != i && molecule[j] == molecule[i] && rsq < WITHIN * kernel.cutsq) near.push_back(j);
   });
-  std::sort(near.begin(), near.end());
+  // whatever ranks there are
+  std::sort(near.begin(), near.end(), [tag](int a, int b) {
+    return tag[a] < tag[b];
+  });
   for (const int j : near) {
     double rsq = 0.0, d[D];
     bool halfway = false;    // round the box: the image on the other side is as near
