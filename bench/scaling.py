@@ -195,6 +195,27 @@ def draw(path, rows):
         figure.tight_layout(rect=(0, 0, 1, 0.92))
 
 
+def in_words(row):
+    """value and unit"""
+    value, unit = (1e6 * row["value"], "us") if row["unit"] == "s" and row["value"] < 1e-3 else (row["value"], row["unit"] or "")
+    return f"{f'{value:.3g}' if value < 1e4 else f'{value:,.0f}'} {unit}".rstrip()
+
+
+def side_by_side(rows):
+    """[(what, rows)]: both sizes in one row, and what ranks send with their ghosts."""
+    found = {}
+    for row in rows:
+        what, size, _ = row["what"].partition(" million")
+        if size:
+            what = f"{what.rpartition(', ')[0]}, 1 and 2 million"
+        elif what in ("messages", "bytes sent", "the same, largest"):
+            found[last].append(row)
+            continue
+        last = what.replace(": mean", ": mean, largest").replace("ghosts over particles", "ghosts over particles, messages, bytes sent")
+        found.setdefault(last, []).append(row)
+    return list(found.items())
+
+
 def page(rows, pairs):
     """The page's text; pairs: rows of tools/cost peers, of which those of two ranks."""
     lines = ["# Several ranks", "",
@@ -211,9 +232,8 @@ def page(rows, pairs):
              "- With the box cut in halves one rank has nearly all particles, and two ranks gain little: use `fix balance all balance 20 1.05 shift x 20 1.02`.",
              "- Two ranks are timed by `tools/cost peers`, the rest by `tools/cost scaling`.", "", "| quantity | value |", "|---|---:|"]
     lines += [f"| {r['what']} | {r['ratio']:.2f} ± {r['spread']:.2f} |" for r in pairs if r["what"].startswith("2 ranks") and r["ratio"] is not None]
-    for r in rows:
-        value, unit = (1e6 * r["value"], "us") if r["unit"] == "s" and r["value"] < 1e-3 else (r["value"], r["unit"] or "")
-        lines.append(f"| {r['what']} | {f'{value:.3g}' if value < 1e4 else f'{value:,.0f}'} {unit}".rstrip() + " |")
+    for what, values in side_by_side(rows):
+        lines.append(f"| {what} | {'; '.join(map(in_words, values))} |")
     return "\n".join(lines) + "\n"
 
 
