@@ -286,7 +286,7 @@ std::string FixFSIReport::time_table(double loop)
   for (int k = 0; k < REST; k++) mine[REST] -= mine[k];
   MPI_Allreduce(mine, sum, NROW, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(mine, most, NROW, MPI_DOUBLE, MPI_MAX, world);
-  const double work = loop - mine[Profile::MESSAGES];
+  double work = loop - mine[Profile::MESSAGES];
   MPI_Allreduce(&work, &busiest, 1, MPI_DOUBLE, MPI_MAX, world);
 
   std::string text =

@@ -194,13 +194,13 @@ def test_momentum(tmp_path, case, ranks):
 
 def test_ledger(tmp_path):
     scene, text = gate()
-    entries = 'print "E ' + " ".join(f"$(c_e[{k}]:%.17g)" for k in range(1, 14)) + ' $(c_e:%.17g)"\n'
+    entries = 'print "E ' + " ".join(f"$(c_e[{k}]:%.17g)" for k in range(1, 15)) + ' $(c_e:%.17g)"\n'
     text += "compute e all fsi/energy\nthermo_style custom step c_e c_e[1]\nfix report all fsi/report\nrun 30\n" + entries + "run 40\n" + entries
     done = run(tmp_path, text, 2, scene_data=scene.data())
     start, end = (np.array(line.split(), float) for line in re.findall(r"^E (.*)$", done.output, re.M))
     report = reports(done)[-1]
     names = [name for name in report if name.startswith("energy_") and not name.startswith("energy_change") and name != "energy_drift_relative"]
-    assert len(names) == 14
+    assert len(names) == 15
     now = np.array([report[name] for name in names])
     np.testing.assert_allclose(now, end, rtol=1e-9)
     assert names[4] == "energy_artificial_viscosity" and end[4] > start[4] > 0
