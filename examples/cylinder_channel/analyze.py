@@ -79,7 +79,7 @@ def add(summary, folder, suffix="", finest=False):
 
 def draw(folder, cases):
     """lift.png of flows with vortices."""
-    curves = [(*curve(path), f"{label.rpartition('_')[2]} particles per diameter" if "_" in label else label) for label, path in cases.items() if not is_steady(path)]
+    curves = [(*curve(path), f"{label[7:].replace('_', ' ')} particles per diameter" if label.startswith("re_100") else label) for label, path in cases.items() if not is_steady(path)]
     if curves:
         plot.lines(folder / "lift.png", "t U/D", "lift coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves, COLOURS)],
                    levels=[(LIFT_MAX, "largest of the benchmark"), (-LIFT_MAX, "")])
@@ -92,7 +92,7 @@ def main(folder):
     add(summary, folder)
     draw(folder, {"SPH": folder})
     last = dump.read(folder / "particles.dump")[-1]
-    last = last.of_types(1)
+    last = last.of_types(1, 3, 4)
     plot.clouds(folder / "speed.png", [(f"t = {last.time:.1f} s", last["x"], last["y"], np.hypot(last["vx"], last["vy"]))],
                 summary.log.values["dx"], ((-0.3, 1.0), (0, 0.41)), "speed [m/s]", panel_width=8.0)
     return summary.write()
