@@ -14,7 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
 
-from fsi import dump, launch  # noqa: E402
+from fsi import dump, launch, paths  # noqa: E402
 
 sys.path[:0] = [str(ROOT / "unittest"), *launch.environment()["PYTHONPATH"].split(os.pathsep)]
 
@@ -93,7 +93,7 @@ def memcheck(folder, build):
 
 def understood(compiler, standard):
     """Has a compiler neither an error nor a warning for any source?"""
-    tree = Path(os.environ["LAMMPS_SOURCE_DIR"]) / "src"
+    tree = paths.lammps_source() / "src"
     good = True
     for source in sorted((ROOT / "src/FSI").glob("*.cpp")):
         done = subprocess.run([compiler, standard, "-fsyntax-only", "-Wall", "-Werror", "-DLAMMPS_SMALLBIG", f"-I{ROOT / 'src/FSI'}",
