@@ -97,14 +97,23 @@ void Population::remove(const std::vector<int> &gone, double *account)
   removed += gone.size();
 }
 
-void Population::make(const std::vector<Particle> &all, const std::string &who, double *account)
+// the largest ID that any particle has or had, with room for n more, the largest n of any rank,
+// which is returned
+tagint Population::find_last_id(tagint n, const std::string &who)
 {
-  tagint mine[2] = {last_id, static_cast<tagint>(all.size())}, most[2];
+  tagint mine[2] = {last_id, n}, most[2];
   for (int i = 0; i < atom->nlocal; i++) mine[0] = std::max(mine[0], atom->tag[i]);
   MPI_Allreduce(mine, most, 2, MPI_LMP_TAGINT, MPI_MAX, world);
   last_id = most[0];
   if (last_id > MAXTAGINT - most[1])
     error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
+  maker = who;
+  return most[1];
+}
+
+void Population::make(const std::vector<Particle> &all, const std::string &who, double *account)
+{
+  const tagint n = find_last_id(static_cast<tagint>(all.size()), who), before = last_id;
   const int first = atom->nlocal;
   for (const auto &p : all) {
     last_id++;
@@ -119,12 +128,11 @@ void Population::make(const std::vector<Particle> &all, const std::string &who, 
     atom->rmass[i] = p.rmass;
     std::copy_n(p.v, 3, atom->v[i]);
   }
-  last_id = most[0] + most[1];
+  last_id = before + n;
   atom->data_fix_compute_variable(first, atom->nlocal);
   for (int i = first; account && i < atom->nlocal; i++) *account -= energy(i);
   made += atom->nlocal - first;
-  wanted += most[1];
-  maker = who;
+  wanted += n;
 }
 
 /* ----------------------------------------------------------------------
@@ -144,14 +152,9 @@ std::vector<tagint> Population::ids(int n, const std::string &who)
     for (size_t k = 0; k < some.size(); k++)
       if (!used[k]) list.push_back(some[k]);
   }
-  tagint largest = last_id;
-  for (int i = 0; i < atom->nlocal; i++) largest = std::max(largest, atom->tag[i]);
-  MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (last_id > MAXTAGINT - (n - (int) list.size()))
-    error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
+  find_last_id(n - (tagint) list.size(), who);
   while ((int) list.size() < n) list.push_back(++last_id);
   wanted += n;
-  maker = who;
   return list;
 }
 

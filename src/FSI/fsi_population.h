@@ -65,6 +65,7 @@ namespace FSI {
     bigint made, removed, wanted;    // since begin(): of this rank; of all
     std::string maker;
     void renew_map();
+    tagint find_last_id(tagint n, const std::string &who);
     std::vector<char> in_use(const std::vector<tagint> &) const;
   };
 

@@ -297,15 +297,12 @@ int PairFSIFluid::shift_sums() const
 }
 
 // Is this one of several styles of a hybrid one that leaves it all its pairs? Then it takes LAMMPS'
-// list of all pairs: the hybrid style would have its own copied from that. Grains in it would be
-// taken for fluid.
+// list of all pairs: the hybrid style would have its own copied from that.
 bool PairFSIFluid::has_all_pairs() const
 {
   auto *const all = dynamic_cast<PairHybrid *>(force->pair);
   if (!all) return false;
   char name[] = "fsi/fluid";
-  for (int t = 1; t <= atom->ntypes; t++)
-    if (material[t].species == NONE) return false;
   for (int a = 1; a <= atom->ntypes; a++)
     for (int b = a; b <= atom->ntypes; b++)
       if (setflag[a][b] && handles(material[a].species, material[b].species) &&
