@@ -124,7 +124,7 @@ void Nodes::begin(int to_sum, int largest)
 {
   nsum = to_sum;
   nlargest = largest;
-  for (const auto part : {std::make_pair(&given, &sums_given), std::make_pair(&taken, &sums)}) {
+  for (const auto &part : {std::make_pair(&given, &sums_given), std::make_pair(&taken, &sums)}) {
     part.second->assign((size_t) part.first->size() * row(), 0.0);
     for (size_t k = nsum; nlargest && k < part.second->size(); k += row())
       std::fill_n(part.second->begin() + k, nlargest, -HUGE_VAL);
