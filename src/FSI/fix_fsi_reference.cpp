@@ -19,15 +19,19 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_bond_rows.h"
 #include "fsi_cells.h"
 #include "fsi_changes.h"
+#include "fsi_clamps.h"
 #include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
+#include "fsi_images.h"
 #include "fsi_kernel.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
+#include "fsi_swaps.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -50,11 +54,19 @@ static constexpr double WITHIN = 1.0 - 1.0e-9;
 
 /* ---------------------------------------------------------------------- */
 
+struct FixFSIReference::Members {
+  Swaps swaps;
+  Clamps clamps;
+  Images images;
+  explicit Members(LAMMPS *lmp) : swaps(lmp), clamps(lmp) {}
+};
+
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2),
-    self_range(0.0), tears(false), changes(0), swaps(lmp), clamps(lmp), fix_fsi(nullptr),
-    slot(nullptr), maxbond(0), keeps_images(false), keeps_places(false), apart(0.0), layer(nullptr),
-    next_look(0)
+    Fix(lmp, narg, arg), members(new Members(lmp)), quadratic(true), end_corrected(true),
+    nvalue(2 * domain->dimension + 2), self_range(0.0), tears(false), changes(0),
+    swaps(members->swaps), clamps(members->clamps), images(members->images), fix_fsi(nullptr),
+    slot(nullptr), maxbond(0), nmoment(packed_size(domain->dimension)), keeps_images(false),
+    keeps_places(false), apart(0.0), layer(nullptr), next_look(0)
 {
   has_record = resting = false;
   restart_peratom = restart_global = 1;
@@ -79,6 +91,21 @@ FixFSIReference::~FixFSIReference()
   }
   memory->destroy(slot);
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
+}
+
+const double *FixFSIReference::bond(int i, int k) const
+{
+  return numbers(i) + number_of_bond(k, nvalue);
+}
+
+double *FixFSIReference::bond_in(int s, int k)
+{
+  return &data[(size_t) s * maxbond * nvalue] + number_of_bond(k, nvalue);
+}
+
+int FixFSIReference::nplace() const
+{
+  return keeps_places ? domain->dimension : 0;
 }
 
 // after fix rigid has moved its bodies
