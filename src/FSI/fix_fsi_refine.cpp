@@ -357,13 +357,25 @@ void FixFSIRefine::settle(const std::vector<tagint> &changed)
     return fix_fsi->state[atom->type[j]].species != NONE;
   });
   const auto mobility = mobilities(changed);
+  // who may come near on the way: cells of the coarsest level hold many times as many fine ones
+  std::vector<int> near;
+  std::vector<size_t> end(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; end[i++] = near.size()) {
+    if (mobility[i] <= 0.0) continue;
+    const auto &own = fix_fsi->resolution[atom->type[i]];
+    cells.around(x[i], [&](int j, double rsq) {
+      const auto &other = fix_fsi->resolution[atom->type[j]];
+      const double reach = 0.5 * (own.cut + own.dx + other.cut + other.dx);
+      if (j != i && rsq < reach * reach) near.push_back(j);
+    });
+  }
   std::vector<double> step(3 * atom->nlocal);
   for (int k = 0; k < settle_steps; k++) {
     std::fill(step.begin(), step.end(), 0.0);
     for (int i = 0; i < atom->nlocal; i++) {
       if (mobility[i] <= 0.0) continue;
       double *const d = &step[3 * i], sum[4];
-      even_out(i, cells, sum);
+      even_out(i, near.data() + (i ? end[i - 1] : 0), near.data() + end[i], sum);
       const double dx = fix_fsi->dx_of(atom->type[i]),
                    full = std::clamp((sum[3] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
       MathExtra::copy3(sum, d);
@@ -381,8 +393,8 @@ void FixFSIRefine::settle(const std::vector<tagint> &changed)
   }
 }
 
-// sum of V grad W, and of V W
-void FixFSIRefine::even_out(int i, const Cells &cells, double *sum) const
+// sum of V grad W, and of V W, over particles from `near` to `end`
+void FixFSIRefine::even_out(int i, const int *near, const int *end, double *sum) const
 {
   const double *const x = atom->x[i], own = fix_fsi->h_of(atom->type[i]);
   std::fill_n(sum, 4, 0.0);
@@ -390,17 +402,23 @@ void FixFSIRefine::even_out(int i, const Cells &cells, double *sum) const
     using K = std::decay_t<decltype(kernel)>;
     const double volume = atom->rmass[i] / atom->rho[i];
     sum[3] = volume * kernel.W(0.0);
-    const auto add = [&](const K &mean, int j, double rsq) {
-      if (rsq >= mean.cutsq) return;
-      const double r = std::sqrt(rsq), V = atom->rmass[j] / atom->rho[j], g = V * mean.gradient(r);
-      for (int d = 0; d < K::DIM; d++) sum[d] += g * (x[d] - atom->x[j][d]);
-      sum[3] += V * mean.W(r);
-    };
-    cells.around(x, [&](int j, double rsq) {
-      if (j == i) return;
+    for (; near < end; near++) {
+      const int j = *near;
+      double away[K::DIM], rsq = 0.0;
+      for (int d = 0; d < K::DIM; d++) {
+        away[d] = x[d] - atom->x[j][d];
+        rsq += away[d] * away[d];
+      }
+      const auto add = [&](const K &mean) {
+        if (rsq >= mean.cutsq) return;
+        const double r = std::sqrt(rsq), V = atom->rmass[j] / atom->rho[j];
+        const double g = V * mean.gradient(r);
+        for (int d = 0; d < K::DIM; d++) sum[d] += g * away[d];
+        sum[3] += V * mean.W(r);
+      };
       const double of_j = fix_fsi->h_of(atom->type[j]);
-      of_j == own ? add(kernel, j, rsq) : add(K(0.5 * (own + of_j)), j, rsq);
-    });
+      of_j == own ? add(kernel) : add(K(0.5 * (own + of_j)));
+    }
   });
 }
 
