@@ -350,20 +350,20 @@ std::vector<double> FixFSIRefine::mobilities(std::vector<tagint> changed) const
 void FixFSIRefine::settle(const std::vector<tagint> &changed)
 {
   static constexpr double STRENGTH = 0.15, LONGEST = 0.05, SURFACE = 0.9, INSIDE = 0.95;
+  static constexpr int LISTED = 10;    // steps with one list of neighbors
   renew_ghosts();
   const int dim = fix_fsi->dim;
   double *const *const x = atom->x, *const account = fix_fsi->account(FixFSI::LEVELS);
-  const Cells cells(x, atom->nlocal + atom->nghost, dim, fix_fsi->cut + fix_fsi->dx, [&](int j) {
-    return fix_fsi->state[atom->type[j]].species != NONE;
-  });
   const auto mobility = mobilities(changed);
   std::vector<double> step(3 * atom->nlocal);
+  std::vector<int> near, first;
   for (int k = 0; k < settle_steps; k++) {
+    if (k % LISTED == 0) list_near(mobility, LISTED * LONGEST, near, first);
     std::fill(step.begin(), step.end(), 0.0);
     for (int i = 0; i < atom->nlocal; i++) {
       if (mobility[i] <= 0.0) continue;
       double *const d = &step[3 * i], sum[4];
-      even_out(i, cells, sum);
+      even_out(i, &near[first[i]], &near[0] + first[i + 1], sum);
       const double dx = fix_fsi->dx_of(atom->type[i]),
                    full = std::clamp((sum[3] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
       MathExtra::copy3(sum, d);
@@ -381,26 +381,51 @@ void FixFSIRefine::settle(const std::vector<tagint> &changed)
   }
 }
 
+// Whom those that may move can see until each has moved by this part of its spacing. The finest
+// have a small part of the cells' particles near them: it pays to ask these only now and then
+void FixFSIRefine::list_near(const std::vector<double> &mobility, double moved,
+                             std::vector<int> &near, std::vector<int> &first) const
+{
+  const double *const *const x = atom->x;
+  const double longest = fix_fsi->cut + 2.0 * moved * fix_fsi->dx;
+  const Cells cells(x, atom->nlocal + atom->nghost, fix_fsi->dim, longest, [&](int j) {
+    return fix_fsi->state[atom->type[j]].species != NONE;
+  });
+  std::vector<double> reach(atom->ntypes + 1, 0.0);    // of a kernel's half, and of a way
+  for (int t = 1; t <= atom->ntypes; t++)
+    reach[t] = 0.5 * fix_fsi->resolution[t].cut + moved * fix_fsi->dx_of(t);
+  near.clear();
+  first.assign(1, 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (mobility[i] > 0.0)
+      cells.around(x[i], [&](int j, double rsq) {
+        const double sum = reach[atom->type[i]] + reach[atom->type[j]];
+        if (j != i && rsq < sum * sum) near.push_back(j);
+      });
+    first.push_back((int) near.size());
+  }
+}
+
 // sum of V grad W, and of V W
-void FixFSIRefine::even_out(int i, const Cells &cells, double *sum) const
+void FixFSIRefine::even_out(int i, const int *from, const int *to, double *sum) const
 {
   const double *const x = atom->x[i], own = fix_fsi->h_of(atom->type[i]);
   std::fill_n(sum, 4, 0.0);
   with_kernel(fix_fsi->kernel, fix_fsi->dim, own, [&](const auto &kernel) {
     using K = std::decay_t<decltype(kernel)>;
-    const double volume = atom->rmass[i] / atom->rho[i];
-    sum[3] = volume * kernel.W(0.0);
+    sum[3] = atom->rmass[i] / atom->rho[i] * kernel.W(0.0);
     const auto add = [&](const K &mean, int j, double rsq) {
       if (rsq >= mean.cutsq) return;
       const double r = std::sqrt(rsq), V = atom->rmass[j] / atom->rho[j], g = V * mean.gradient(r);
       for (int d = 0; d < K::DIM; d++) sum[d] += g * (x[d] - atom->x[j][d]);
       sum[3] += V * mean.W(r);
     };
-    cells.around(x, [&](int j, double rsq) {
-      if (j == i) return;
-      const double of_j = fix_fsi->h_of(atom->type[j]);
-      of_j == own ? add(kernel, j, rsq) : add(K(0.5 * (own + of_j)), j, rsq);
-    });
+    for (const int *j = from; j < to; j++) {
+      const double of_j = fix_fsi->h_of(atom->type[*j]);
+      double rsq = 0.0;
+      for (int d = 0; d < K::DIM; d++) rsq += (x[d] - atom->x[*j][d]) * (x[d] - atom->x[*j][d]);
+      of_j == own ? add(kernel, *j, rsq) : add(K(0.5 * (own + of_j)), *j, rsq);
+    }
   });
 }
 
