@@ -23,6 +23,7 @@ FixStyle(FSI_REFERENCE,FixFSIReference);
 #include "fix.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -158,6 +159,13 @@ class FixFSIReference : public Fix {
   void enter_bonds(int i, const Kernel &, const std::vector<int> &, const std::vector<double> &,
                    const std::vector<double> &, const std::vector<int> &bits);
   double volume(int i) const;
+  struct Axes {
+    tagint body, tag;    // of the particle they were found at
+    double e[3][3];      // rows
+  };
+  template <int D> bool find_axes(int i, Axes &) const;
+  template <int D> bool fits(int i, const Axes &) const;
+  template <int D> std::map<tagint, Axes> turned_lattices(const std::vector<int> &) const;
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
   template <int D> void find_self_pairs();
