@@ -274,6 +274,7 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
   for (int i = 0; i < atom->nlocal; i++) {
     const int own = level(i);
     if (own < 0) continue;
+    check_mass(i);
     int wish = 0;
     for (int k = 1; k <= finest(); k++)
       if (zones->has(k, i, 0.0)) wish |= 1 << k;
@@ -287,6 +288,20 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
     carried[i] = wish;
   }
   send(carried);
+}
+
+// a level is a mass, too: a type set since leaves those of another one
+void FixFSIRefine::check_mass(int i) const
+{
+  const int t = atom->type[i];
+  const double m = atom->rmass[i],
+               usual = fix_fsi->state[t].rho0 * std::pow(fix_fsi->dx_of(t), fix_fsi->dim);
+  if (m > 0.6 * usual && m < 1.6 * usual) return;
+  error->one(FLERR,
+             "{}: atom {} of type {} has mass {:g}, expected some {:g} on this level, its density "
+             "times its spacing to the power of {}. Commands that set types leave masses as they "
+             "are: set ... mass",
+             who, atom->tag[i], t, m, usual, fix_fsi->dim);
 }
 
 // of this group, and a level of its fluid

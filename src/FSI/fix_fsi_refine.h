@@ -85,6 +85,7 @@ class FixFSIRefine : public Fix {
   double mine[NTOTAL];
 
   int finest() const { return (int) types.size() - 1; }
+  void check_mass(int i) const;
   int level(int i) const;
   void read_types(const std::vector<std::string> &);
   void check_types() const;

@@ -419,6 +419,15 @@ run 0
     assert done.status != 0 and any(re.search(BAD[words], line) for line in done.errors), done.output[-600:]
 
 
+def test_types_set_between_runs_leave_masses():
+    """A particle with the mass of another level would split below the finest one."""
+    with box_scene(lattice((24, 24), DX)) as s:
+        go(s, 20)
+        with pytest.raises(Exception, match=r"atom \d+ of type 1 has mass 1.2\d+, expected some 2.5 on"):
+            s.run_lines("set group all type 1", "run 10")
+        s.run_lines("set type 1 mass 2.5", "run 0")
+
+
 def test_coarse_fluid_at_a_body_is_warned_of(tmp_path):
     """A wall twice as fine as the fluid beside it, unless the zone reaches it."""
     text = """units si
