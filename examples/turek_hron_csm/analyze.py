@@ -71,8 +71,14 @@ def picture_tip(path, runs, points=True):
             axes.set_xlabel("time [s]")
         last.set_xlim(0.8 * end, end)
         whole.set_ylabel("vertical displacement\nof the tip [mm]")
-        figure.legend(*whole.get_legend_handles_labels(), ncols=3, loc="upper center")
+        figure.legend(*whole.get_legend_handles_labels(), ncols=3, loc="upper center", fontsize="small", columnspacing=1.2)
         figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.93))
+
+
+def picture_beam(path, folder, spacing):
+    """The beam at its lowest, colored by von Mises stress."""
+    lowest = min(dump.read(folder / "particles.dump"), key=lambda frame: frame["y"].mean())
+    plot.snapshots(path, [lowest], spacing, fluid=(), solid=(1, 2), limits=((0.22, 0.61), (0.06, 0.22)), panel_width=5.0)
 
 
 def read(folder):
@@ -88,10 +94,7 @@ def main(folder):
     damped = values["damping"] > 0
     (add_rest if damped else add_swing)(summary, tip)
     picture_tip(folder / "tip.png", [(tip, f"{values['across']:.0f} particles through the thickness")], points=not damped)
-    frames = dump.read(folder / "particles.dump")
-    k = np.argmin([frame["y"].mean() for frame in frames])
-    plot.snapshots(folder / "beam.png", [frames[k]], values["dx"], fluid=(), solid=(1, 2), limits=((0.22, 0.61), (0.06, 0.22)),
-                   panel_width=5.0)
+    picture_beam(folder / "beam.png", folder, values["dx"])
     return summary.write()
 
 
@@ -107,6 +110,7 @@ def study(folder, cases):
         else:
             add_swing(summary, tip, suffix)
             swings.append((tip, f"{values['across']:.0f} particles through the thickness"))
+            picture_beam(Path(folder) / "beam.png", Path(cases[name]), values["dx"])  # of the finest
     picture_tip(Path(folder) / "tip.png", swings)
     return summary.write()
 
