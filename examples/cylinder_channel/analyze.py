@@ -89,10 +89,10 @@ def add(summary, folder, suffix="", finest=False):
 
 
 def draw(folder, cases):
-    """lift.png of flows with vortices."""
+    """lift.png of flows with vortices, the finest of them."""
     curves = [(*curve(path), named(label)) for label, path in cases.items() if not is_steady(path)]
     if curves:
-        plot.lines(folder / "lift.png", "t U/D from a rise on, last periods", "lift coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves, COLOURS)],
+        plot.lines(folder / "lift.png", "t U/D from a rise on, last periods", "lift coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves[-len(COLOURS):], COLOURS)],
                    levels=[(LIFT_MAX, "Schaefer and Turek, largest"), (-LIFT_MAX, "")])
 
 
@@ -103,7 +103,7 @@ def main(folder):
     add(summary, folder)
     draw(folder, {"SPH": folder})
     last = dump.read(folder / "particles.dump")[-1]
-    last = last.of_types(1, 3, 4)
+    last = last.of_types(1, 3, 4, 5)
     plot.clouds(folder / "speed.png", [(f"t = {last.time:.1f} s", last["x"], last["y"], np.hypot(last["vx"], last["vy"]))],
                 summary.log.values["dx"], ((-0.3, 1.0), (0, 0.41)), "speed [m/s]", panel_width=8.0)
     return summary.write()

@@ -109,14 +109,17 @@ def picture_speed(path, frame, case, spacing):
     """Speed of the water; the cylinder and the flag above it."""
     limits, width = ((0.0, 1.2), (0.0, 0.41)), 6.6
     height = width * 0.41 / 1.2
-    water, cylinder, flag = frame.of_types(1), frame.of_types(2), frame.of_types(3, 4)
-    speeds = plot.Normalize(0.0, float(np.percentile(np.hypot(water["vx"], water["vy"]), 99.5)))
+    levels = {1: spacing} | {4 + k: spacing * 2**(-0.5 * k) for k in range(1, 5)}  # water of types 5 to 8 is finer
+    waters = [(water, size) for water, size in ((frame.of_types(type), size) for type, size in levels.items()) if len(water)]
+    flag = frame.of_types(3, 4)
+    speed = [np.hypot(water["vx"], water["vy"]) for water, _ in waters]
+    speeds = plot.Normalize(0.0, float(np.percentile(np.concatenate(speed), 99.5)))
     with plot.picture(path, width + 1.6, height + 0.75) as figure:
         whole = figure.get_size_inches()
         axes = figure.add_axes((0.62 / whole[0], 0.45 / whole[1], width / whole[0], height / whole[1]))
-        parts = [(water, spacing, plot.matplotlib.colormaps[plot.FLUID_COLOURS](speeds(np.hypot(water["vx"], water["vy"]))))]
+        parts = [(water, size, plot.matplotlib.colormaps[plot.FLUID_COLOURS](speeds(v))) for (water, size), v in zip(waters, speed)]
         parts += [(part, size, np.tile(plot.to_rgba(colour), (len(part), 1)))
-                  for part, size, colour in ((cylinder, spacing, plot.WALL_COLOUR), (flag, dump.spacing(flag), plot.ORANGE))]
+                  for part, size, colour in ((frame.of_types(2), waters[-1][1], plot.WALL_COLOUR), (flag, dump.spacing(flag), plot.ORANGE))]
         for part, size, colours in parts:
             plot.field(axes, part["x"], part["y"], size, colours, limits)
         axes.set(xlabel="x [m]", ylabel="y [m]")

@@ -19,15 +19,20 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_bond_rows.h"
 #include "fsi_cells.h"
 #include "fsi_changes.h"
+#include "fsi_clamps.h"
 #include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
+#include "fsi_images.h"
 #include "fsi_kernel.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
+#include "fsi_swaps.h"
+#include "math_extra.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -47,14 +52,24 @@ using namespace FSI;
 
 // sites of a lattice at the cutoff weigh nothing: round-off does not choose among them
 static constexpr double WITHIN = 1.0 - 1.0e-9;
+// of the spacing: neighbors are no further from where a lattice has them
+static constexpr double NEAR = 0.05;
 
 /* ---------------------------------------------------------------------- */
 
+struct FixFSIReference::Members {
+  Swaps swaps;
+  Clamps clamps;
+  Images images;
+  explicit Members(LAMMPS *lmp) : swaps(lmp), clamps(lmp) {}
+};
+
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2),
-    self_range(0.0), tears(false), changes(0), swaps(lmp), clamps(lmp), fix_fsi(nullptr),
-    slot(nullptr), maxbond(0), keeps_images(false), keeps_places(false), apart(0.0), layer(nullptr),
-    next_look(0)
+    Fix(lmp, narg, arg), members(new Members(lmp)), quadratic(true), end_corrected(true),
+    nvalue(2 * domain->dimension + 2), self_range(0.0), tears(false), changes(0),
+    swaps(members->swaps), clamps(members->clamps), images(members->images), fix_fsi(nullptr),
+    slot(nullptr), maxbond(0), nmoment(packed_size(domain->dimension)), keeps_images(false),
+    keeps_places(false), apart(0.0), layer(nullptr), next_look(0)
 {
   has_record = resting = false;
   restart_peratom = restart_global = 1;
@@ -79,6 +94,21 @@ FixFSIReference::~FixFSIReference()
   }
   memory->destroy(slot);
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
+}
+
+const double *FixFSIReference::bond(int i, int k) const
+{
+  return numbers(i) + number_of_bond(k, nvalue);
+}
+
+double *FixFSIReference::bond_in(int s, int k)
+{
+  return &data[(size_t) s * maxbond * nvalue] + number_of_bond(k, nvalue);
+}
+
+int FixFSIReference::nplace() const
+{
+  return keeps_places ? domain->dimension : 0;
 }
 
 // after fix rigid has moved its bodies
@@ -315,10 +345,93 @@ void FixFSIReference::take()
    The energy is an integral over particles in the middle of their cells: the midpoint rule,
    which lacks 1/n^2 of the bending stiffness of a plate n particles across. With its end
    corrections, 13/12, 7/8, 25/24 for the first three layers from a face (Press et al., Numerical
-   Recipes, eq. 4.1.18), quadratic integrands are exact. They apply along each axis of a lattice
-   that is aligned with the axes; a body thinner than three layers, or not on such a lattice,
-   keeps plain volumes there. Masses do not change.
+   Recipes, eq. 4.1.18), quadratic integrands are exact. They apply along each axis of the body's
+   lattice; a body thinner than three layers, or not on a lattice, keeps plain volumes there.
+   Masses do not change.
 ------------------------------------------------------------------------- */
+
+// a bond (numbers BOND_BLOCK apart) along a direction
+template <int D> static double along(const double *X, const double *e)
+{
+  double s = 0.0;
+  for (int a = 0; a < D; a++) s += X[a * BOND_BLOCK] * e[a];
+  return s;
+}
+
+template <int D> static bool nearest(const double *X, double dx)
+{
+  double rsq = 0.0;
+  for (int a = 0; a < D; a++) rsq += X[a * BOND_BLOCK] * X[a * BOND_BLOCK];
+  return std::fabs(std::sqrt(rsq) - dx) < NEAR * dx;
+}
+
+// axes of the lattice that i is on, from its nearest neighbors; false if these are too few
+template <int D> bool FixFSIReference::find_axes(int i, Axes &axes) const
+{
+  const double dx = fix_fsi->dx_of(atom->type[i]);
+  double(*const e)[3] = axes.e;
+  int k = 0;
+  axes = {atom->molecule[i], atom->tag[i], {}};
+  for (int b = 0; b < count(i) && k < D - 1; b++) {
+    const double *const X = bond(i, b) + D * BOND_BLOCK;
+    if (!nearest<D>(X, dx) || (k && std::fabs(along<D>(X, e[0])) > NEAR * dx)) continue;
+    for (int a = 0; a < D; a++) e[k][a] = X[a * BOND_BLOCK] / dx;
+    k++;
+  }
+  if (D == 3) {
+    MathExtra::cross3(e[0], e[1], e[2]);
+  } else {
+    e[1][0] = -e[0][1];
+    e[1][1] = e[0][0];
+  }
+  return k == D - 1;
+}
+
+// whether all nearest neighbors of i lie along them, none of them behind a plane of symmetry
+template <int D> bool FixFSIReference::fits(int i, const Axes &axes) const
+{
+  const double dx = fix_fsi->dx_of(atom->type[i]);
+  for (int b = 0; b < count(i); b++) {
+    const double *const X = bond(i, b) + D * BOND_BLOCK;
+    int across = 0;
+    for (int k = 0; k < D; k++) across += std::fabs(along<D>(X, axes.e[k])) < NEAR * dx;
+    if (nearest<D>(X, dx) && across < D - 1) return false;
+    if (keeps_images && through[(size_t) slot[i] * maxbond + b]) return false;
+  }
+  return true;
+}
+
+// axes of the lattices that are turned against the axes of the box, by body
+template <int D>
+std::map<tagint, FixFSIReference::Axes>
+FixFSIReference::turned_lattices(const std::vector<int> &bare) const
+{
+  std::map<tagint, Axes> first, turned;    // of the first particle that has some
+  Axes axes;
+  const auto enter = [&first](const Axes &a) {
+    const auto at = first.emplace(a.body, a).first;
+    if (a.tag < at->second.tag) at->second = a;
+  };
+  for (const int i : bare)
+    if (find_axes<D>(i, axes)) enter(axes);
+  std::vector<Axes> mine;
+  for (const auto &body : first) mine.push_back(body.second);
+  for (const auto &a : gather(mine, world)) enter(a);
+
+  for (const auto &body : first) {
+    for (const auto &e : body.second.e)
+      for (const double c : e)
+        if (std::fabs(c) > NEAR && std::fabs(c) < 1.0 - NEAR) turned.insert(body);
+  }
+  if (turned.empty()) return turned;
+  std::set<tagint> no_lattice;
+  for (const int i : bare) {
+    const auto body = turned.find(atom->molecule[i]);
+    if (body != turned.end() && !fits<D>(i, body->second)) no_lattice.insert(body->first);
+  }
+  for (const tagint body : gather(no_lattice, world)) turned.erase(body);
+  return turned;
+}
 
 template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &bare)
 {
@@ -326,16 +439,19 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
   resolve();
   std::vector<double> layers((size_t) atom->nmax * 2 * D, 0.0);
   layer = layers.data();
+  const auto turned = turned_lattices<D>(bare);
+  const Axes box = {0, 0, {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
 
   // partner one spacing away along direction k = 2 axis + (positive side), or -1
   const auto next = [&](int i, int k) {
-    const double dx = fix_fsi->dx_of(atom->type[i]), near = 0.05 * dx;
+    const auto it = turned.find(atom->molecule[i]);
+    const double *const e = (it == turned.end() ? box : it->second).e[k / 2];
+    const double dx = fix_fsi->dx_of(atom->type[i]), ahead = k % 2 ? dx : -dx;
     for (int b = 0; b < count(i); b++) {
-      const double *const value = bond(i, b);
+      const double *const X = bond(i, b) + D * BOND_BLOCK;
       bool found = true;
       for (int a = 0; a < D; a++)
-        if (std::fabs(value[(D + a) * BOND_BLOCK] - (a == k / 2 ? (k % 2 ? dx : -dx) : 0.0)) > near)
-          found = false;
+        if (std::fabs(X[a * BOND_BLOCK] - ahead * e[a]) > NEAR * dx) found = false;
       if (found) return partners(i)[b];
     }
     return -1;

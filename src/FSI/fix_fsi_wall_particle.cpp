@@ -24,6 +24,7 @@
 #include "fsi_levels.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
+#include "fsi_rows.h"
 #include "fsi_tensor.h"
 #include "group.h"
 #include "memory.h"

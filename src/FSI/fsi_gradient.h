@@ -72,7 +72,7 @@ namespace FSI {
   // h = 1.3 to 2 dx; 0.03 for quintic, h = 0.9 dx), 0.02 or less in such a body up to 0.1 dx.
   // least: the smallest such part among the quadratic terms kept, 0 if there are none.
   constexpr double MIN_INDEPENDENCE = 0.025;
-  constexpr double FLAT = 1.0e-4;    // so much, for linear terms
+  constexpr double FLAT = 1.0e-4;    // so much of the largest square, for linear terms
   template <int D, int TERMS>
   inline typename Gradient<D>::Order
   gradient_coefficients(const double *A, double *C, double quadratic_tolerance = MIN_INDEPENDENCE,
@@ -83,8 +83,9 @@ namespace FSI {
     };
 
     // A = L d L^T
-    double L[TERMS][TERMS] = {}, d[TERMS], part = 1.0;
+    double L[TERMS][TERMS] = {}, d[TERMS], part = 1.0, widest = 0.0;
     int dropped = 0;
+    for (int a = 0; a < D; a++) widest = std::max(widest, A[at(a, a)]);
     for (int a = 0; a < TERMS; a++) {
       for (int b = 0; b < a; b++) {
         if (d[b] == 0.0) continue;
@@ -94,7 +95,7 @@ namespace FSI {
       }
       d[a] = A[at(a, a)];
       for (int k = 0; k < a; k++) d[a] -= L[a][k] * L[a][k] * d[k];
-      if (!(d[a] > (a < D ? FLAT : quadratic_tolerance) * A[at(a, a)])) {
+      if (!(d[a] > (a < D ? FLAT * widest : quadratic_tolerance * A[at(a, a)]))) {
         if (a < D) return Gradient<D>::DEFICIENT;
         d[a] = 0.0;
         for (int k = 0; k < a; k++) L[a][k] = 0.0;
@@ -115,6 +116,26 @@ namespace FSI {
     }
     if (dropped == TERMS - D) return Gradient<D>::LINEAR;
     return dropped ? Gradient<D>::PARTIAL : Gradient<D>::QUADRATIC;
+  }
+
+  // Inverse C of moments sum_j w_j x_j x_j^T (packed) for the slopes of a linear fit, in which
+  // directions fade along which neighbors hardly lie apart: there a slope is that of their noise.
+  // Half of a disc about its own center has 0.28 of its largest eigenvalue, half of a ball 0.30.
+  template <int D> inline void faded_inverse(const double *moments, double *C)
+  {
+    constexpr double NONE = 0.02, ALL = 0.1;    // of the largest eigenvalue
+    double M[3][3] = {}, value[3], axes[3][3];
+    for (int a = 0, k = 0; a < D; a++)
+      for (int b = 0; b <= a; b++) M[a][b] = M[b][a] = moments[k++];
+    MathEigen::jacobi3(M, value, axes);    // as columns, by decreasing value
+    std::fill_n(C, D * D, 0.0);
+    for (int k = 0; k < D; k++) {
+      if (!(value[k] > NONE * value[0])) break;
+      const double t = std::min(1.0, (value[k] / value[0] - NONE) / (ALL - NONE));
+      for (int a = 0; a < D; a++)
+        for (int b = 0; b < D; b++)
+          C[a * D + b] += t * t * (3.0 - 2.0 * t) / value[k] * axes[a][k] * axes[b][k];
+    }
   }
 
   // the weights of one particle, from all its neighbors at once

@@ -20,11 +20,15 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_contact.h"
 #include "fsi_density_diffusion.h"
+#include "fsi_fields.h"
+#include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
 #include "fsi_levels.h"
 #include "fsi_profile.h"
 #include "fsi_shift.h"
+#include "fsi_sight.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -43,11 +47,46 @@ static const std::vector<std::string> coupling_names = {"wall", "full"};    // C
 
 /* ---------------------------------------------------------------------- */
 
+// What fluids meet: fluids, walls, solids, fluids that thin bodies may hide
+enum { FLUIDS, WALLS, SOLIDS, HIDDEN, NKINDS };
+
+// Pairs of one kernel: what fluid particles of one level of the scene meet, and pairs of two levels
+struct PairFSIFluid::Meeting {
+  int what = FLUIDS;
+  PairKind kind = WITH_FLUID;
+  size_t level = 0;    // of the fluid particles
+  bool unlike = false;
+  double h = 0.0, cut = 0.0, wdx = 0.0;            // of the kernel: W(mean spacing) last
+  std::shared_ptr<FluidLoops> loops, of_forces;    // all; those of forces
+  RowList rows;                                    // of the neighbor list
+  std::vector<RowList> images;                     // by reflection; walls of particles have none
+  // of images: the support, and what a pair comes nearer in a step
+  double reach = INFINITY;
+  // of these, what is within the support and a margin: the lists have the skin's pairs, too
+  std::vector<Row> near;
+};
+
+// Of fluid particles of a level, per type: how its particles count, where it pushes fluid off
+struct PairFSIFluid::Shares {
+  std::vector<Share> of_type;
+  bool unequal = false;    // is any solid or wall of another spacing than the fluid, or thin?
+  std::vector<Contact> guards;
+};
+
+struct PairFSIFluid::Members {
+  Fields fields;
+  Thin thin_bodies = {};
+  Visible seen_pairs = {};
+  Cut cut_solids = {};
+  explicit Members(LAMMPS *lmp) : fields(lmp) {}
+};
+
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), images_step(-1), near_known(false), sorts(true), margin(0.0),
-    cut(false), solids_pass(false), fade(nullptr), fill(nullptr),
-    fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, fields(lmp), rate(nullptr),
-    beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), images_step(-1), near_known(false),
+    sorts(true), margin(0.0), cut(false), solids_pass(false), fade(nullptr), fill(nullptr),
+    fill_weight(nullptr), thin_bodies(members->thin_bodies), seen_pairs(members->seen_pairs),
+    cut_solids(members->cut_solids), fields(members->fields), rate(nullptr), beyond(nullptr),
+    hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -83,6 +122,21 @@ void PairFSIFluid::give_back_virial()
 {
   if (hybrid) hybrid->no_virial_fdotr_compute = no_fdotr_before;
   hybrid = nullptr;
+}
+
+const std::vector<Row> &PairFSIFluid::rows_with_walls(size_t level) const
+{
+  static const std::vector<Row> none;
+  if (meetings.empty()) return none;    // not set up yet
+  const Meeting &m = meetings[NKINDS * level + WALLS];
+  return near_known ? m.near : m.rows.rows;
+}
+
+bool PairFSIFluid::has_rows_with_walls() const
+{
+  return std::any_of(meetings.begin(), meetings.end(), [](const Meeting &m) {
+    return m.what == WALLS && !m.rows.rows.empty();
+  });
 }
 
 bool PairFSIFluid::handles(int a, int b) const

@@ -20,8 +20,11 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_fields.h"
+#include "fsi_images.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
+#include "fsi_rows.h"
 #include "fsi_solid_rows.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -42,9 +45,18 @@ static constexpr double FAR = 2.0;
 
 /* ---------------------------------------------------------------------- */
 
+struct PairFSISolid::Members {
+  Fields fields;
+  RowList own, others, own_images[2], other_images[2];
+  Images images;
+  explicit Members(LAMMPS *lmp) : fields(lmp) {}
+};
+
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), fix_stress(nullptr), fields(lmp), grad(nullptr), any_gradient(false),
-    packs(have_packs())
+    PairFSI(lmp, "fsi/solid"), members(new Members(lmp)), fix_stress(nullptr),
+    fields(members->fields), grad(nullptr), any_gradient(false), packs(have_packs()),
+    own(members->own), others(members->others), images(members->images),
+    own_images(members->own_images), other_images(members->other_images)
 {
   artificial_row("solid");
   keywords.key("artificial/stress")
@@ -56,6 +68,8 @@ PairFSISolid::PairFSISolid(LAMMPS *lmp) :
   contact_row();
   keywords.key("gradient").choice(gradient, PLAIN, {"plain", "corrected", "quadratic"});
 }
+
+PairFSISolid::~PairFSISolid() = default;
 
 /* ---------------------------------------------------------------------- */
 

@@ -1,11 +1,12 @@
 """fix fsi/refine: fluid particles that split in finer zones and merge outside of them."""
 
+import ctypes
 import math
 import re
 
 import numpy as np
 import pytest
-from scenes import WATER, Scene, cloud, difference, differing, lammps, lattice, run, watch
+from scenes import WATER, Kernel, Scene, cloud, difference, differing, lammps, lattice, run, watch
 
 DX = 0.05
 FINER = {2: 2**-0.5, 3: 2**(-1 / 3)}
@@ -155,6 +156,59 @@ def test_still_fluid_moves_through_the_zone():
             assert outputs(s)[SPLITS] > 1000 and outputs(s)[MERGES] > 1000
     print(lost)
     assert lost[30] < 0.003 < lost[0]
+
+
+def test_arrays_grow():
+    """LAMMPS makes room for 16,384 particles at a time: one that splits when the arrays are full moves with them. What is read of the old arrays then
+    is a crash, where these have pages of their own."""
+    if hasattr(ctypes.CDLL(None), "mallopt"):
+        ctypes.CDLL(None).mallopt(-3, 65536)    # glibc: M_MMAP_THRESHOLD
+    x = lattice((127, 129), DX)
+    with box_scene(x, size=[127 * DX, 129 * DX, 0], boundary="f f p", zone="block 3 4 3 4 INF INF", refine="region zone settle 0") as s:
+        room = s.lmp.extract_setting("nmax")
+        go(s, 0)
+        assert room == 16384 and s.n == len(x) + outputs(s)[SPLITS] > room
+
+
+def test_settling():
+    """Particles around events go down the slope of sum V W in small steps at once: the same in numpy, of all pairs, each time. From a lattice
+    shaken by a fifth of its spacing some move by more than as much."""
+    size, steps = [1.2, 1.2, 0], 30
+    x, _ = cloud((24, 24), DX, 3, jitter=0.2)
+    found = {}
+    for settle in (0, steps):
+        with box_scene(x, zone="block 0.41 0.72 0.41 0.72 INF INF", refine=f"region zone settle {settle}") as s:
+            s.put("rho", 1000 + 20 * np.sin(9 * x[:, 0]))
+            go(s, 0)
+            found[settle] = [s.get(name) for name in ("id", "type", "x", "rmass", "rho")]
+    (ids, level, at, m, rho), (ids_then, _, then, _, rho_then) = found[0], found[steps]
+    assert list(ids) == list(ids_then) and np.abs(rho - rho_then).max() == 0.0
+    dx, V = DX * np.where(level == 2, FINER[2], 1.0), m / rho
+    kernels = {h: Kernel("wendland", 2, 1.5 * h) for h in (DX, 0.5 * DX * (1 + FINER[2]), DX * FINER[2])}
+    mean, cut = 0.5 * (dx[:, None] + dx), 3.0 * dx
+
+    def between(y):
+        d = y[:, None] - y
+        d -= 1.2 * np.round(d / 1.2)
+        return d, np.sqrt((d**2).sum(-1))
+
+    event = between(at)[1][:, level == 2].min(1)
+    mobility = np.where(event < cut, np.minimum(1.0, 2.0 - 2.0 * event / cut), 0.0)
+    y = at.copy()
+    for _ in range(steps):
+        d, r = between(y)
+        g, W = np.zeros_like(r), np.zeros_like(r)
+        for h, kernel in kernels.items():
+            these = np.isclose(mean, h)
+            g[these], W[these] = kernel.g(r[these]), kernel.W(r[these])
+        step = (g * V)[..., None] * d
+        full = np.clip(((W * V).sum(1) - 0.9) / 0.05, 0.0, 1.0)
+        step = -0.15 * (dx**2 * mobility * full)[:, None] * step.sum(1)
+        long = np.linalg.norm(step, axis=1)
+        y += step * np.minimum(1.0, 0.05 * dx / np.maximum(long, 1e-300))[:, None]
+    assert np.linalg.norm(y - at, axis=1).max() > 0.2 * DX
+    d = then - y
+    assert np.abs(d - 1.2 * np.round(d / 1.2)).max() < 1e-11    # 30 steps of sums in another order
 
 
 def test_margin():
@@ -363,6 +417,15 @@ run 0
 """
     done = lammps(tmp_path, text, water_fsi=MATERIALS + "oil fluid rho 900\nwall wall rho 1000\n")
     assert done.status != 0 and any(re.search(BAD[words], line) for line in done.errors), done.output[-600:]
+
+
+def test_types_set_between_runs_leave_masses():
+    """A particle with the mass of another level would split below the finest one."""
+    with box_scene(lattice((24, 24), DX)) as s:
+        go(s, 20)
+        with pytest.raises(Exception, match=r"atom \d+ of type 1 has mass 1.2\d+, expected some 2.5 on"):
+            s.run_lines("set group all type 1", "run 10")
+        s.run_lines("set type 1 mass 2.5", "run 0")
 
 
 def test_coarse_fluid_at_a_body_is_warned_of(tmp_path):
