@@ -64,7 +64,7 @@ def collect():
     stamps = {path: stamp(path) for path in wanted if path.suffix != ".png"}
     if unclear := [str(path.relative_to(paths.ROOT)) for path, found in stamps.items() if not found]:
         raise Refusal(f"{', '.join(unclear)}: of no commit without changes")
-    (paths.PAGE / "results.json").write_text(json.dumps(found, indent=1) + "\n")
+    (paths.PAGE / "results.json").write_text(results.packed(found))
     for path, target in wanted.items():
         shutil.copyfile(path, target)
     for name in paths.examples():
@@ -94,7 +94,7 @@ def take(wanted):
         else:
             found["scenes"][name] = {"summary": summary}
             take_pictures(name)
-    page.write_text(json.dumps(found, indent=1) + "\n")
+    page.write_text(results.packed(found))
 
 
 def add_case(data, name, case, summary):

@@ -30,6 +30,7 @@ TARGETS = {("fsi1", "uy"): 0.05, ("fsi1", "drag"): 0.03, ("cfd1", "drag"): 0.02,
            ("fsi2", "lift_amplitude"): 0.1, ("fsi3", "uy_amplitude"): 0.05, ("fsi3", "frequency"): 0.03, ("fsi3", "drag_mean"): 0.03,
            ("fsi3", "lift_amplitude"): 0.1}
 PERIODS, GROUPS = 3, 3  # figures are means over so many successive groups of the last periods: flags at Re = 200 swing unevenly
+SHOWN = 3  # periods in the picture of the study
 COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
 
 
@@ -90,6 +91,20 @@ def picture(path, runs, case, names=("uy", "drag", "lift")):
     plot.noisy(path, "t [s]", panels, 0.1 / rate)
 
 
+def picture_periods(path, runs, case):
+    """The last periods of runs, each from a rise of its tip on, between the benchmark's mean less and plus its amplitude."""
+    shown = []
+    for s, label in runs:
+        half = s.time >= 0.5 * s.time[-1]
+        rate = series.frequency(s.time[half], s["uy"][half])
+        start = series.last_rise(s.time, s["uy"], rate, SHOWN)
+        inside = (s.time >= start) & (s.time <= start + SHOWN / rate)
+        columns = {name: values[inside] for name, values in s.columns.items()}
+        columns["time"] = columns["time"] - start
+        shown.append((series.Series(columns), label))
+    picture(path, shown, case)
+
+
 def picture_speed(path, frame, case, spacing):
     """Speed of the water; the cylinder and the flag above it."""
     limits, width = ((0.0, 1.2), (0.0, 0.41)), 6.6
@@ -136,9 +151,9 @@ def study(folder, cases):
         add(summary, path, f"_{name}", name in finest.values())
         case, values, s = read(path)
         if case == "fsi3":
-            runs.append((s, f"{case.upper()}, {values['across']:.0f} particles through the flag"))
+            runs.append((s, f"{round(0.1 / values['dx'])} particles per diameter"))
     if runs:
-        picture(folder / "forces_fsi3.png", runs, "fsi3")
+        picture_periods(folder / "forces_fsi3.png", runs, "fsi3")
     return summary.write()
 
 

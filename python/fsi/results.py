@@ -65,9 +65,20 @@ def scenes_of(page):
     return json.loads(path.read_text())["scenes"] if path.exists() else {}
 
 
+def packed(found):
+    """results.json as text, a line for each figure."""
+    return re.sub(r"\{[^{}\[\]]*\}", lambda m: re.sub(r"\s*\n\s*", " ", m[0]), json.dumps(found, indent=1)) + "\n"
+
+
 def judged(entry):
     """The figures of a scene that have a target."""
     return [f for f in entry["summary"]["figures"] if f["target"] is not None]
+
+
+def listed(entry):
+    """Those that the page lists: what is compared with a reference, and what is missed; of a scene without either the first."""
+    figures = judged(entry)
+    return [f for f in figures if f["reference"] is not None or not f["met"]] or figures[:1]
 
 
 def table(found):
@@ -96,7 +107,8 @@ def render(found, up="../../"):
              "- The error is relative to the reference. Where there is none, the target bounds the value itself.",
              "- References are experiments and theory unless they say otherwise. *Code* is another program.",
              "- CPU seconds are those of all runs of a scene on one core.",
-             "- All figures, also those without a target, are in [results.csv](results.csv).", ""]
+             f"- {len(every) - sum(len(listed(entry)) for entry in scenes.values())} further bounds without a reference are kept. They are in "
+             "[results.csv](results.csv), with all figures that have no target.", ""]
     missing = [name for name, entry in found["scenes"].items() if not entry["summary"] or entry["summary"].get("failed_cases")]
     if missing:
         lines += [f"**Failed, in part or as a whole: {', '.join(missing)}.**", ""]
@@ -106,7 +118,7 @@ def render(found, up="../../"):
 def _table(scenes, up):
     rows = []
     for name, entry in scenes.items():
-        for k, f in enumerate(judged(entry)):
+        for k, f in enumerate(listed(entry)):
             reference = "" if f["reference"] is None else number(f["reference"])
             if f["source"]:
                 reference = f"{reference} ({f['source']})" if reference else f["source"]
