@@ -311,7 +311,7 @@ void FixFSIRefine::renew_ghosts()
    it would make sound, and with each event the fluid would lose some of its mean pressure, since
    its density follows what moves. So particles around are moved there at once, with their density,
    by steps against the sum of V grad W: less the further they are from an event, and not where
-   they see bodies, mirror walls or a surface.
+   they see bodies, segments of mirror walls or a surface.
 ------------------------------------------------------------------------- */
 
 std::vector<double> FixFSIRefine::mobilities(std::vector<tagint> changed) const
@@ -340,7 +340,7 @@ std::vector<double> FixFSIRefine::mobilities(std::vector<tagint> changed) const
     });
     body = std::sqrt(body);
     for (const auto &wall : fix_fsi->walls.wall)
-      if (wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
+      if (wall.finite && wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
     mobility[i] =
         std::min(1.0, 2.0 - 2.0 * std::sqrt(event) / cut) * std::max(0.0, (body - cut) / dx);
   }
@@ -357,13 +357,28 @@ void FixFSIRefine::settle(const std::vector<tagint> &changed)
     return fix_fsi->state[atom->type[j]].species != NONE;
   });
   const auto mobility = mobilities(changed);
-  std::vector<double> step(3 * atom->nlocal);
+  std::vector<int> movers, near;    // who moves, and who can come into their support on the way
+  std::vector<size_t> first;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (mobility[i] <= 0.0) continue;
+    movers.push_back(i);
+    first.push_back(near.size());
+    const double reach = fix_fsi->resolution[atom->type[i]].cut + fix_fsi->dx_of(atom->type[i]);
+    cells.around(x[i], [&](int j, double rsq) {
+      const int type = atom->type[j];
+      const double both = 0.5 * (reach + fix_fsi->resolution[type].cut + fix_fsi->dx_of(type));
+      if (j != i && rsq < both * both) near.push_back(j);
+    });
+  }
+  first.push_back(near.size());
+  std::vector<double> step(3 * movers.size()), volume;
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+    volume.push_back(atom->rho[i] > 0.0 ? atom->rmass[i] / atom->rho[i] : 0.0);
   for (int k = 0; k < settle_steps; k++) {
-    std::fill(step.begin(), step.end(), 0.0);
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (mobility[i] <= 0.0) continue;
-      double *const d = &step[3 * i], sum[4];
-      even_out(i, cells, sum);
+    for (size_t m = 0; m < movers.size(); m++) {
+      const int i = movers[m];
+      double *const d = &step[3 * m], sum[4];
+      even_out(i, near.data() + first[m], first[m + 1] - first[m], volume.data(), sum);
       const double dx = fix_fsi->dx_of(atom->type[i]),
                    full = std::clamp((sum[3] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
       MathExtra::copy3(sum, d);
@@ -371,36 +386,54 @@ void FixFSIRefine::settle(const std::vector<tagint> &changed)
       const double length = MathExtra::len3(d);
       if (length > LONGEST * dx) MathExtra::scale3(LONGEST * dx / length, d);
     }
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (mobility[i] <= 0.0) continue;
+    for (size_t m = 0; m < movers.size(); m++) {
+      const int i = movers[m];
       if (account) *account += fix_fsi->potential(i);
-      for (int d = 0; d < dim; d++) x[i][d] += step[3 * i + d];
+      for (int d = 0; d < dim; d++) x[i][d] += step[3 * m + d];
       if (account) *account -= fix_fsi->potential(i);
     }
     comm->forward_comm();
   }
 }
 
-// sum of V grad W, and of V W
-void FixFSIRefine::even_out(int i, const Cells &cells, double *sum) const
+// sum of V grad W, and of V W, over neighbors
+void FixFSIRefine::even_out(int i, const int *near, size_t n, const double *volume,
+                            double *sum) const
 {
   const double *const x = atom->x[i], own = fix_fsi->h_of(atom->type[i]);
+  const int walls = fix_fsi->walls.near(x, fix_fsi->cut);
   std::fill_n(sum, 4, 0.0);
   with_kernel(fix_fsi->kernel, fix_fsi->dim, own, [&](const auto &kernel) {
     using K = std::decay_t<decltype(kernel)>;
-    const double volume = atom->rmass[i] / atom->rho[i];
-    sum[3] = volume * kernel.W(0.0);
-    const auto add = [&](const K &mean, int j, double rsq) {
-      if (rsq >= mean.cutsq) return;
-      const double r = std::sqrt(rsq), V = atom->rmass[j] / atom->rho[j], g = V * mean.gradient(r);
-      for (int d = 0; d < K::DIM; d++) sum[d] += g * (x[d] - atom->x[j][d]);
-      sum[3] += V * mean.W(r);
+    const double supportsq = kernel.cutsq * kernel.hinv * kernel.hinv;
+    const auto count = [&](const K &mean, int j, double rsq, const double *d) {
+      const double r = std::sqrt(rsq), g = volume[j] * mean.gradient(r);
+      for (int a = 0; a < K::DIM; a++) sum[a] += g * d[a];
+      sum[3] += volume[j] * mean.W(r);
     };
-    cells.around(x, [&](int j, double rsq) {
-      if (j == i) return;
-      const double of_j = fix_fsi->h_of(atom->type[j]);
-      of_j == own ? add(kernel, j, rsq) : add(K(0.5 * (own + of_j)), j, rsq);
-    });
+    const auto images = [&](const K &mean, int j, double rsq) {
+      fix_fsi->walls.images(walls, rsq, x, atom->x[j], mean.cutsq,
+                            [&](const Walls::Reflection &, double rsq_image, const double *d) {
+                              count(mean, j, rsq_image, d);
+                            });
+    };
+    sum[3] = volume[i] * kernel.W(0.0);
+    if (walls) images(kernel, i, 0.0);
+    for (size_t k = 0; k < n; k++) {
+      const int j = near[k];
+      const double h = 0.5 * (own + fix_fsi->h_of(atom->type[j])), *const xj = atom->x[j];
+      double d[3] = {}, rsq = 0.0;
+      for (int a = 0; a < K::DIM; a++) {
+        d[a] = x[a] - xj[a];
+        rsq += d[a] * d[a];
+      }
+      if (rsq >= supportsq * h * h) continue;    // images are further away
+      const auto pair = [&](const K &mean) {
+        count(mean, j, rsq, d);
+        if (walls) images(mean, j, rsq);
+      };
+      h == own ? pair(kernel) : pair(K(h));
+    }
   });
 }
 

@@ -99,7 +99,7 @@ class FixFSIRefine : public Fix {
   void renew_ghosts();
   void settle(const std::vector<tagint> &changed);
   std::vector<double> mobilities(std::vector<tagint> changed) const;
-  void even_out(int i, const FSI::Cells &, double *sum) const;
+  void even_out(int i, const int *near, size_t n, const double *volume, double *sum) const;
   void measure_distances();
   bool in_zone(int k, int i, double grown) const;
   void look(bool may_split, bool may_merge);
