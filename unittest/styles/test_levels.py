@@ -341,7 +341,7 @@ def test_guard(dim):
     """Of a wall of particles below fluid of two spacings: pairs nearer than d, 0.9 of the mean spacing of both, are counted and repel with the energy
     K d^D (1 - r/d)^2/2, K = rho c^2. Forces are those with the guard less those without it."""
     x, v, fine = beside(dim, n=6 if dim == 2 else 4, jitter=0.3)
-    wall = lattice([14] + [2 if k == 0 else 6 for k in range(dim - 1)], 0.1 / JUMP) - np.eye(3)[1] * 0.13
+    wall = lattice([14] + [2 if k == 0 else 6 for k in range(dim - 1)], 0.1 / JUMP) - np.eye(3)[1] * 0.11
     both, type_ = np.concatenate([x, wall]), np.repeat([1, 3], [len(x), len(wall)])
     type_[:len(x)] += fine
     got = []
