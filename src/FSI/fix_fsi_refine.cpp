@@ -42,12 +42,14 @@ using namespace FSI;
 
 // Spacings from one level to the next: half the mass, so long as this part of it
 static constexpr double RATIO_ERROR = 0.02;
-// Distance in spacings over which two merge; over which one does that is three times as far out as
-// need be, and has found nobody
-static constexpr double REACH = 1.2, FAR_REACH = 1.7, FAR = 3.0;
+// Distance in spacings over which two merge; over which one does that has found nobody at the edge
+// of its zone, and is half as far again out as need be
+static constexpr double REACH = 1.2, FAR_REACH = 1.7, FAR = 1.5;
 // Nearer pairs come first: in steps of an eighth of a spacing, with edges that no lattice's
 // distances are near, since the two see their distance with different round-off
 static constexpr double PER_SPACING = 8.0, OFF_LATTICE = 0.37;
+// Who has found nobody comes before all others: further out there is nobody left for him
+static constexpr int LATER = 100;
 static constexpr int ROUNDS = 3;          // of choosing partners
 static constexpr double CROWDED = 2.5;    // spacings: who is as near makes a place less empty
 static constexpr int SWEEPS = 12;         // of choosing a direction again
@@ -568,7 +570,8 @@ void FixFSIRefine::choose_partners()
         if (tag[j] == tag[i] || partner[j] < 0 || atom->type[j] != atom->type[i]) return;
         const double q = std::sqrt(rsq) * per_dx;
         if (q >= ((carried[i] | carried[j]) & EAGER ? FAR_REACH : REACH)) return;
-        const std::pair<int, uint64_t> key = {(int) (PER_SPACING * q + OFF_LATTICE),
+        const int late = (carried[i] | carried[j]) & EAGER ? 0 : LATER;
+        const std::pair<int, uint64_t> key = {late + (int) (PER_SPACING * q + OFF_LATTICE),
                                               hash_of(tag[i], tag[j])};
         if (chosen[i] >= 0 && !(key < best)) return;
         best = key;
