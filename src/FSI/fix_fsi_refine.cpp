@@ -371,27 +371,21 @@ void FixFSIRefine::warn_of_bodies()
     return species == SOLID || species == RIGID;
   };
   const Cells bodies(atom->x, nall, fix_fsi->dim, fix_fsi->cut, is_body);
-  struct Meeting {
-    tagint fluid, body;
-    double dx, own;
-  };
-  std::vector<Meeting> meetings;
-  for (int i = 0; i < atom->nlocal; i++) {
+  const auto coarse = find_particles(atom, world, [&](int i) {
     const int own = level(i);
-    if (own < 0 || own == finest() || (carried[i] & SPLIT)) continue;
+    if (own < 0 || own == finest() || (carried[i] & SPLIT)) return false;
     const double dx = fix_fsi->dx_of(type[i]);
+    bool found = false;
     bodies.around(atom->x[i], [&](int j, double rsq) {
-      const double of_body = fix_fsi->dx_of(type[j]);
-      if (dx > TOO_COARSE * of_body && rsq < dx * dx && meetings.empty())
-        meetings.push_back({atom->tag[i], atom->tag[j], dx, of_body});
+      found = found || (rsq < dx * dx && dx > TOO_COARSE * fix_fsi->dx_of(type[j]));
     });
-  }
-  const auto all = gather(meetings, world);
-  if (all.empty() || comm->me) return;
-  error->warning(FLERR,
-                 "{}: fluid atom {} has a spacing of {:g}, and beside it atom {} of a body or "
-                 "wall one of {:g}: let the finest level reach a kernel's support beyond bodies",
-                 who, all[0].fluid, all[0].dx, all[0].body, all[0].own);
+    return found;
+  });
+  if (coarse.count && comm->me == 0)
+    error->warning(FLERR,
+                   "{}: {} fluid particles, the first of them atom {}, are beside a body or wall "
+                   "of finer spacing: let the finest level reach a kernel's support beyond bodies",
+                   who, coarse.count, coarse.first);
 }
 
 static uint64_t hash_of(tagint a, tagint b)
