@@ -375,6 +375,21 @@ def test_ranks(tmp_path, dim, steps):
                 assert difference(a, b, quantity) < 1e-11, (name, quantity)
 
 
+@pytest.mark.parametrize("first", ["refine", "balance"])
+def test_balance(tmp_path, first):
+    """Ranks that take and give particles in the steps in which these split and merge, by either fix first: the same to round-off."""
+    want = run(tmp_path / "one", deck(2) + watch(every=100) + "run 100\n", flow_data=flow(2), water_fsi=MATERIALS).frames()
+    for ranks, grid, balance in ((2, "2 1 1", "shift x 10 1.0"), (4, "2 2 1", "shift xy 10 1.0"), (4, "2 2 1", "rcb")):
+        line = ("comm_style tiled\n" if balance == "rcb" else "") + f"fix balance all balance 10 1.0 {balance}\n"
+        text = deck(2, grid=grid)
+        text = text.replace("fix ref ", line + "fix ref ") if first == "balance" else text + line
+        got = run(tmp_path / f"{ranks}{balance[:3]}", text + watch(every=100) + "run 100\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
+        for a, b in zip(want, got.frames()):
+            assert np.array_equal(a["type"], b["type"])
+            for quantity in ("x", "v", "rho"):
+                assert difference(a, b, quantity) < 1e-11, (ranks, balance, quantity)
+
+
 @pytest.mark.parametrize("ranks, every, at", [(1, 10, 85), (2, 10, 80), (2, 1, 50)])
 def test_restart(tmp_path, ranks, every, at):
     """A run that goes on from a file, written between two events or in a step of one, is the same bit for bit, and so are the sums."""
