@@ -126,7 +126,7 @@ def picture_water(folder, values):
     size = {"free": 1.0, "elastic": 0.8}.get(values["body"], 0.45)
     # the colors are those of the water that is shown
     shown = [frame.select((frame["x"] < size) & (frame["y"] > -0.5 * size)) for frame in shown]
-    plot.snapshots(folder / "snapshots.png", shown, values["dx"], (WATER,), limits=((0.0, size), (-0.5 * size, 0.4 * size)),
+    plot.snapshots(folder / "snapshots.png", shown, values["dx"], (WATER, 4, 5), limits=((0.0, size), (-0.5 * size, 0.4 * size)),
                    wall=(RIGHT, *[3] * (values["body"] == "elastic")))
 
 

@@ -68,7 +68,7 @@ void Settling::find_mobilities(const std::vector<char> &moves, const std::vector
     });
     body = std::sqrt(body);
     for (const auto &wall : scene.walls.wall)
-      if (wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
+      if (wall.finite && wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
     mobility[i] =
         std::min(1.0, 2.0 - 2.0 * std::sqrt(event) / cut) * std::max(0.0, (body - cut) / dx);
   }
@@ -135,15 +135,30 @@ template <class K> void Settling::sweep(const std::vector<K> &of_types)
     const int i = row.i;
     const K *const with = &of_types[type[i] * (atom->ntypes + 1)];
     double *const d = &steps[3 * r], filled = volume[i] * with[type[i]].W(0.0);
+    const int walls = scene.walls.near(x[i], scene.cut);
+    const auto add = [&](const K &kernel, int j, double rsq, const double *away) {
+      const double distance = std::sqrt(rsq), g = volume[j] * kernel.gradient(distance);
+      for (int a = 0; a < K::DIM; a++) d[a] += g * away[a];
+      filled += volume[j] * kernel.W(distance);
+    };
+    const auto add_images = [&](const K &kernel, int j, double rsq) {
+      scene.walls.images(walls, rsq, x[i], x[j], kernel.cutsq,
+                         [&](const Walls::Reflection &, double rsq_image, const double *away) {
+                           add(kernel, j, rsq_image, away);
+                         });
+    };
+    if (walls) add_images(with[type[i]], i, 0.0);
     for (int n = row.first; n < row.end; n++) {
       const int j = neighbors[n];
       const K &kernel = with[type[j]];
-      double rsq = 0.0;
-      for (int a = 0; a < K::DIM; a++) rsq += (x[j][a] - x[i][a]) * (x[j][a] - x[i][a]);
-      if (rsq >= kernel.cutsq) continue;
-      const double distance = std::sqrt(rsq), g = volume[j] * kernel.gradient(distance);
-      for (int a = 0; a < K::DIM; a++) d[a] += g * (x[i][a] - x[j][a]);
-      filled += volume[j] * kernel.W(distance);
+      double away[3] = {}, rsq = 0.0;
+      for (int a = 0; a < K::DIM; a++) {
+        away[a] = x[i][a] - x[j][a];
+        rsq += away[a] * away[a];
+      }
+      if (rsq >= kernel.cutsq) continue;    // images are further away
+      add(kernel, j, rsq, away);
+      if (walls) add_images(kernel, j, rsq);
     }
     const double dx = scene.dx_of(type[i]),
                  full = std::clamp((filled - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);

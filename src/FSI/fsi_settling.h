@@ -15,7 +15,7 @@
 // it would make sound, and with each event the fluid would lose some of its mean pressure, since
 // its density follows what moves. So particles around are moved there at once, with their density,
 // by steps against the sum of V grad W: less the further they are from an event, and not where
-// they see bodies, mirror walls or a surface.
+// they see bodies, segments of mirror walls or a surface.
 
 #ifndef LMP_FSI_SETTLING_H
 #define LMP_FSI_SETTLING_H

@@ -98,13 +98,10 @@ class PairFSIFluid : public PairFSI {
                                       // default
   double shifting;                    // coefficient C of particle shifting; 0 = off
   int shift_every;                    // steps from one displacement to the next
-  // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or
-  // the largest psi of all fluid particles); 0 = off
-  double surface_ratio;
-  int surface_max;
+  double surface_ratio;               // of the free-surface rule
   // distance over the mean spacing from which on solids push fluid off; 0: they do not
   double solids_guard;
-  int tait, laminar, couple, extrapolate, tension, solids_slip;
+  int tait, laminar, given_couple, couple, extrapolate, tension, solids_slip;
   int surfaces;                      // does the density follow surfaces (fsi_surface_room.h)?
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;

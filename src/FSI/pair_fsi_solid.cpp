@@ -97,6 +97,12 @@ void PairFSISolid::init_style()
   bodies = several_bodies();
 }
 
+// that of the article's scheme, unless another is given
+double PairFSISolid::artificial_stress() const
+{
+  return epsilon == 0.0 && fix_fsi->article ? 0.3 : epsilon;
+}
+
 /* ----------------------------------------------------------------------
    calls f(are pairs packed, kernel, terms of the gradient) with the types and constants that loops
    are compiled for: those of quadratic gradients, and pairs one by one, for any kernel
@@ -691,7 +697,7 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
   using At = ForceRecord<D, TERMS>;
   const State *const state = fix_fsi->state.data();
   const int nall = atom->nlocal + atom->nghost;
-  const ArtificialStress artificial(epsilon, fix_fsi->wdx);
+  const ArtificialStress artificial(artificial_stress(), fix_fsi->wdx);
   if (force_records.size() < (size_t) At::N * images.end())
     force_records.assign((size_t) At::N * std::max(atom->nmax, images.end()), 0.0);
   for (int i = 0; i < nall; i++) {
@@ -716,7 +722,7 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
     }
     stress *= vol;
     if (!TERMS) stress.store(record + At::STRESS);
-    if (epsilon > 0.0) artificial(stress).store(record + At::ARTIFICIAL);
+    if (artificial_stress() > 0.0) artificial(stress).store(record + At::ARTIFICIAL);
   }
   images.for_each([&](int k, int of, const Mirror &m, bool) {
     double *const record = &force_records[(size_t) At::N * k], signs[TERMS ? TERMS : D];
@@ -745,7 +751,7 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
   auto *const of_rows = reinterpret_cast<double(*)[ROW]>(forces.data());
   SolidSums sums;
   const SolidLaws laws = {ArtificialViscosity(alpha, beta, fix_fsi->h),
-                          ArtificialStress(epsilon, fix_fsi->wdx),
+                          ArtificialStress(artificial_stress(), fix_fsi->wdx),
                           Contact(D, fix_fsi->dx, contact_range),
                           atom->type,
                           fix_fsi->state.data(),
@@ -756,7 +762,7 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
   // sums and quadratic gradients come with viscosity, pairs one by one with all effects: what is
   // off has coefficients of zero
   const int sums_too = fix_fsi->ledger || tally_pairs ? SUMS : 0;
-  const int named = (epsilon > 0.0 ? STRESS : 0) | sums_too |
+  const int named = (artificial_stress() > 0.0 ? STRESS : 0) | sums_too |
       (has_artificial() || sums_too || TERMS > D ? VISCOSITY : 0);
   with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {
     if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D)

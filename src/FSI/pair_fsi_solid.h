@@ -94,6 +94,7 @@ class PairFSISolid : public PairFSI {
 
   enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };
   double epsilon, xi;
+  double artificial_stress() const;
   int gradient;
   bool bodies, packs;
   FSI::RowList &own, &others;

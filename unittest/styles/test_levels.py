@@ -336,6 +336,30 @@ def test_probe(dim, kernel):
             close(got[:, k], np.array(want)[:, k], 1e-11)
 
 
+@pytest.mark.parametrize("dim", [2, 3])
+def test_guard(dim):
+    """Of a wall of particles below fluid of two spacings: pairs nearer than d, 0.9 of the mean spacing of both, are counted and repel with the energy
+    K d^D (1 - r/d)^2/2, K = rho c^2. Forces are those with the guard less those without it."""
+    x, v, fine = beside(dim, n=6 if dim == 2 else 4, jitter=0.3)
+    wall = lattice([14] + [2 if k == 0 else 6 for k in range(dim - 1)], 0.1 / JUMP) - np.eye(3)[1] * 0.11
+    both, type_ = np.concatenate([x, wall]), np.repeat([1, 3], [len(x), len(wall)])
+    type_[:len(x)] += fine
+    got = []
+    for guard in (0.9, 0.0):
+        with Scene(both, dim=dim, type=type_, held=type_ == 3, fluid="sound 10 tension yes", dx=0.1, density=f"spacing 2*3 {0.1 / JUMP!r}",
+                   materials=(WATER, WATER, "wall rho 1000"), commands=[f"fix wp held fsi/wall/particle guard {guard}"]) as s:
+            s.run()
+            got.append((s.get("f"), s.fix_scalar("wp")))
+    own = np.where(type_ == 1, 0.1, 0.1 / JUMP)
+    i, j, apart, r = pairs(both, 0.1)
+    d = 0.9 * 0.5 * (own[i] + own[j])
+    near = ((type_[i] == 3) != (type_[j] == 3)) & (r < d)
+    force = sum_over(i[near], (1e5 * d**(dim - 2) * (d / r - 1))[near, None] * apart[near], len(both))
+    assert all((near & (type_[i] == t)).sum() >= 3 for t in (1, 2))
+    assert got[0][1] == near.sum() / 2 and got[1][1] == 0
+    close(got[0][0] - got[1][0], force, 1e-12)
+
+
 @pytest.mark.parametrize("kind", ["wall", "body"])
 def test_hydrostatic_load(kind):
     """Of water that is finer beside a wall of particles or a held body of the fine spacing, over the exact one: within 2 %, as on one lattice"""
