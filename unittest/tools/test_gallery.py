@@ -22,7 +22,9 @@ def test_settings_are_the_decks():
 @pytest.mark.parametrize("name", SCENES)
 def test_reference_logs(name):
     """Both rank counts ran to their end with the settings of the short form and the deck of today, and agree where they start."""
-    deck = [line.rstrip("& ") for line in scene.deck(name).read_text().splitlines()]
+    # what the short form jumps over is not in its log
+    text = re.sub(r'(?s)(\nif [^\n]* then "jump SELF (\w+)"\n).*?(\nlabel +\2\n)', r"\1", scene.deck(name).read_text())
+    deck = [line.rstrip("& ") for line in text.splitlines()]
     runs = []
     for ranks in gallery.RANKS:
         path, = (paths.EXAMPLES / name).glob(f"log.*.{name}.{ranks}")
