@@ -85,10 +85,11 @@ void Clamps::find(const Scene &scene, const Fix *fix_fsi)
 {
   bodies.clear();
   mover = fix_fsi;
-  for (auto &fix : modify->get_fix_by_style("^rigid(/small)?$")) {
+  for (auto &fix : modify->get_fix_by_style("^rigid")) {
     Body body = {};
     body.fix = fix;
-    body.small = utils::strmatch(fix->style, "small$");
+    body.small = utils::strmatch(fix->style, "^rigid/small$");
+    if (!body.small && !utils::strmatch(fix->style, "^rigid$")) continue;
     std::set<tagint> mine;
     for (int i = 0; i < atom->nlocal; i++) {
       const tagint b = id_of(body, i);
