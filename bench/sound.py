@@ -80,7 +80,7 @@ def main(arguments):
         found = {}
         for ratio in ratios:
             folder = job.folder / f"{name}_{10 * ratio}"
-            found[ratio] = job.kept.get([name, ratio, SCENES[name]], lambda: measured(folder, name, start_value * ratio))  # noqa: B023
+            found[ratio] = job.kept.get([name, ratio, *SCENES[name][1:4]], lambda: measured(folder, name, start_value * ratio))  # noqa: B023
             say(f"{name} at {10 * ratio}: " + ", ".join(f"{figure} {found[ratio][figure]:.4g}" for figure in SCENES[name][5]))
         rows += rows_of(name, found)
     job.write(COLUMNS, rows, 5, page(rows))
