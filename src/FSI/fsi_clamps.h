@@ -26,10 +26,10 @@ namespace FSI {
 
   class Scene;
 
-  // Rigid bodies of fix rigid or rigid/small with particles of total-Lagrangian solids in them, which take
-  // sub-steps: the rigid body takes them, too, with the same position Verlet. Fix rigid keeps mass,
-  // inertia and state, and has them at the end of the step; its particles have the force averaged
-  // over the sub-steps, which it sums as ever.
+  // Rigid bodies of fix rigid or rigid/small with particles of total-Lagrangian solids in them,
+  // which take sub-steps: the rigid body takes them, too, with the same position Verlet. The fix
+  // keeps mass, inertia and state, and has them at the end of the step; its particles have the
+  // force averaged over the sub-steps, which it sums as ever.
   class Clamps : protected Pointers {
    public:
     explicit Clamps(LAMMPS *lmp) : Pointers(lmp) {}
