@@ -16,12 +16,13 @@ import peers
 import robustness
 import scaling
 import solid_variants
+import sound
 from tool import PAGE, read_csv, say
 
 from fsi import gallery, paths, results, scene
 from fsi.command import Refusal, start
 
-TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling}  # of tools/cost, with a table in doc/cost
+TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling, "sound": sound}  # of tools/cost, with a table in doc/cost
 WORDS = ("--no-runs", "--pages-only")
 
 
@@ -164,7 +165,7 @@ def texts():
         pages[PAGE / f"{name}.md"] = cost_report.page(summary, f"{name}.png", f"{name}.csv")
     tables = {name: read_csv(PAGE / f"{name}.csv") for name in TOOLS}
     pages |= {PAGE / "effects.md": effects.page(tables["effects"], tables["solids"]), PAGE / "peers.md": peers.page(tables["peers"]),
-              PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"]),
+              PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"]), PAGE / "sound.md": sound.page(tables["sound"]),
               evidence.HARD / "README.md": hard_pages.hard_page(), evidence.HARD / "robustness.md": hard_pages.robustness_page(),
               paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page()}
     readme = paths.ROOT / "README.md"
