@@ -165,7 +165,7 @@ def texts():
         pages[PAGE / f"{name}.md"] = cost_report.page(summary, f"{name}.png", f"{name}.csv")
     tables = {name: read_csv(PAGE / f"{name}.csv") for name in TOOLS}
     pages |= {PAGE / "effects.md": effects.page(tables["effects"], tables["solids"]), PAGE / "peers.md": peers.page(tables["peers"]),
-              PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"]), PAGE / "sound.md": sound.page(tables["sound"]),
+              PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"]),
               evidence.HARD / "README.md": hard_pages.hard_page(), evidence.HARD / "robustness.md": hard_pages.robustness_page(),
               paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page()}
     readme = paths.ROOT / "README.md"

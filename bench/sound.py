@@ -1,7 +1,7 @@
 """What the numerical speed of sound changes: tools/cost sound [SCENE ...] [out=FOLDER]
 
 Five bundled scenes, coarse, at 10, 20 and 40 times their largest speed of flow (the flag at 10 and 20), one core. Only the speed of sound
-differs from row to row, and the time step with it. Its table is in doc/cost, its page beside it. What has been run is not run again.
+differs from row to row, and the time step with it. doc/choosing.md shows its table, which is in doc/cost. What has been run is not run again.
 """
 
 import json
@@ -51,10 +51,8 @@ def rows_of(name, found):
 
 
 def page(rows):
-    """The page's text."""
-    lines = ["# Speed of sound", "",
-             "`tools/cost sound` runs five scenes, coarse, with other speeds of sound of the water. Given is the speed of sound over the largest",
-             "speed of the flow. In brackets: the change from the column before.", "",
+    """The table for a look; doc/choosing.md has what follows from it."""
+    lines = ["# Speed of sound over the largest speed of the flow; in brackets the change from the column before", "",
              "| scene | figure | 10 | 20 | 40 |", "|---|---|---|---|---|"]
     for name, (title, *_, figures) in SCENES.items():
         for figure, text in figures.items():
