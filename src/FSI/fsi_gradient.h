@@ -157,7 +157,7 @@ namespace FSI {
 
    private:
     const bool packs = have_packs();
-    // offsets over the scale along each axis, weights, what is found: one after the other, filled up
+    // offsets over the scale along each axis, weights, what is found: in turn, filled up
     // to whole packs with neighbors that weigh nothing
     mutable std::vector<double> columns;
 
