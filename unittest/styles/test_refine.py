@@ -241,6 +241,17 @@ def test_settling_at_mirror_walls(dim):
     assert rest[30] < rest[0] / 3
 
 
+def test_nobody_stays_fine_behind_the_zone():
+    """Who finds no partner where fluid leaves the zone, one in ten, comes first next time, while there are others: ten spacings behind it all have
+    merged (without that 3 % of the particles there are still fine)."""
+    x = lattice((48, 8), DX)
+    with box_scene(x, (5.0, 0, 0), size=[2.4, 0.4, 0], every=5, zone="block 0.3 0.9 INF INF INF INF", fluid="density/diffusion 0.1 background 2000", dt=6.6e-4) as s:
+        go(s, 600)
+        behind, fine = s.get("x")[:, 0] > 1.4, s.get("type") == 2
+        print(behind.sum(), fine[behind].sum(), outputs(s)[WAITING])
+        assert behind.sum() > 140 and fine[behind].sum() <= 1 and outputs(s)[MERGES] > 200
+
+
 def test_margin():
     """A particle within a coarse spacing of its zone stays fine, and who is three of them away takes a partner that is further."""
     x = lattice((34, 34), DX * FINER[2])
