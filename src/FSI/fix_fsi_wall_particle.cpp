@@ -25,6 +25,7 @@
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_rows.h"
+#include "fsi_swaps.h"
 #include "fsi_tensor.h"
 #include "group.h"
 #include "memory.h"
@@ -46,7 +47,7 @@ static constexpr double AUTO = -1.0;
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), fix_fsi(nullptr),
-    swaps(lmp), sum(nullptr), nmax(0), nsum(0), force_on{}
+    swaps(new Swaps(lmp)), sum(nullptr), nmax(0), nsum(0), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
@@ -204,7 +205,7 @@ void FixFSIWallParticle::sum_up()
     members.clear();
     for (int i = 0; i < atom->nlocal + atom->nghost; i++)
       if (mask[i] & groupbit) members.push_back(i);
-    swaps.find([=](int i) {
+    swaps->find([=](int i) {
       return (mask[i] & groupbit) != 0;
     });
   }
@@ -247,7 +248,7 @@ void FixFSIWallParticle::sum_up()
   });
   if (force->newton_pair)
     exchange(fix_fsi->profile, comm, [this]() {
-      swaps.reverse(this);
+      swaps->reverse(this);
     });
 }
 
@@ -310,7 +311,7 @@ void FixFSIWallParticle::end_state(bool advance)
     }
   }
   exchange(fix_fsi->profile, comm, [this]() {
-    swaps.forward(this);
+    swaps->forward(this);
   });
 }
 
