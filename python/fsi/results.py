@@ -105,7 +105,7 @@ def render(found, up="../../"):
              "![Size of each figure's error over its target](results.png)", "",
              "Each dot is a figure that has a target. Right of the line the target is missed.", "",
              "- The error is relative to the reference. Where there is none, the target bounds the value itself.",
-             "- References are experiments and theory unless they say otherwise. *Code* is another program.",
+             "- References are experiments and theory unless they say otherwise. *Code* is another program. Without a source it is the one above.",
              "- CPU seconds are those of all runs of a scene on one core.",
              f"- {len(every) - sum(len(listed(entry)) for entry in scenes.values())} further bounds without a reference are kept. They are in "
              "[results.csv](results.csv), with all figures that have no target.", ""]
@@ -118,10 +118,12 @@ def render(found, up="../../"):
 def _table(scenes, up):
     rows = []
     for name, entry in scenes.items():
+        above = None  # the source of the last reference
         for k, f in enumerate(listed(entry)):
             reference = "" if f["reference"] is None else number(f["reference"])
-            if f["source"]:
+            if f["source"] and (f["source"] != above or not reference):
                 reference = f"{reference} ({f['source']})" if reference else f["source"]
+            above = f["source"] or above
             rows.append([f"[{title(name)}]({_page(name, up)})" if k == 0 else "", f"`{f['name']}`", _value(f), reference, _whole(deviation(f)), bound(f),
                          "yes" if f["met"] else "**no**", f"{core_seconds(entry['summary']):,.0f}" if k == 0 else ""])
     return _markdown(["scene", "quantity", "computed", "reference", "error", "target", "met", "CPU s"], rows)

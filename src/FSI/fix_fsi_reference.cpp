@@ -39,6 +39,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -69,7 +70,7 @@ FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
     nvalue(2 * domain->dimension + 2), self_range(0.0), tears(false), changes(0),
     swaps(members->swaps), clamps(members->clamps), images(members->images), fix_fsi(nullptr),
     slot(nullptr), maxbond(0), nmoment(packed_size(domain->dimension)), keeps_images(false),
-    keeps_places(false), apart(0.0), layer(nullptr), next_look(0)
+    keeps_places(false), apart(0.0), layer(nullptr), next_look(0), expected(0)
 {
   has_record = resting = false;
   restart_peratom = restart_global = 1;
@@ -184,12 +185,13 @@ void FixFSIReference::setup_post_neighbor()
 {
   if (resting) return;
   follow_commands();
+  const int before = changes;
   take();
   // a restart file, which rank 0 describes, needs the same largest size everywhere
   int all;
   MPI_Allreduce(&maxbond, &all, 1, MPI_INT, MPI_MAX, world);
   reserve(all);
-  resolve();
+  if (changes == before) resolve();
   for (int i = 0; i < atom->nlocal; i++)
     if (slot[i] == NO_BONDS) slot[i] = FOREIGN;
   if (next_look != MAXBIGINT) next_look = update->ntimestep;
@@ -204,6 +206,14 @@ void FixFSIReference::post_neighbor()
 }
 
 /* ---------------------------------------------------------------------- */
+
+// without there is one of each particle
+bool FixFSIReference::is_periodic() const
+{
+  return std::any_of(domain->periodicity, domain->periodicity + domain->dimension, [](int p) {
+    return p != 0;
+  });
+}
 
 bool FixFSIReference::is_solid(int i) const
 {
@@ -442,20 +452,28 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
   const auto turned = turned_lattices<D>(bare);
   const Axes box = {0, 0, {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
 
-  // partner one spacing away along direction k = 2 axis + (positive side), or -1
-  const auto next = [&](int i, int k) {
+  // per particle, partners one spacing away along directions 2 axis + (positive side), or -1
+  std::vector<std::array<int, 2 * D>> ahead;
+  for (const int i : bare) {
+    ahead.emplace_back();
+    ahead.back().fill(-1);
     const auto it = turned.find(atom->molecule[i]);
-    const double *const e = (it == turned.end() ? box : it->second).e[k / 2];
-    const double dx = fix_fsi->dx_of(atom->type[i]), ahead = k % 2 ? dx : -dx;
+    const Axes &axes = it == turned.end() ? box : it->second;
+    const double dx = fix_fsi->dx_of(atom->type[i]), near = NEAR * dx;
     for (int b = 0; b < count(i); b++) {
       const double *const X = bond(i, b) + D * BOND_BLOCK;
-      bool found = true;
-      for (int a = 0; a < D; a++)
-        if (std::fabs(X[a * BOND_BLOCK] - ahead * e[a]) > NEAR * dx) found = false;
-      if (found) return partners(i)[b];
+      int direction = -1, others = 0;
+      for (int a = 0; a < D; a++) {
+        const double s = along<D>(X, axes.e[a]);
+        if (std::fabs(s) <= near)
+          others++;
+        else if (std::fabs(std::fabs(s) - dx) <= near)
+          direction = 2 * a + (s > 0.0);
+      }
+      if (others < D - 1 || direction < 0 || ahead.back()[direction] >= 0) continue;
+      ahead.back()[direction] = partners(i)[b];
     }
-    return -1;
-  };
+  }
   // that of an image is that of its original, seen in the mirror
   const auto layer_of = [&](int j, int k) {
     return layer[images.original(j) * 2 * D + (images.mirrors(j, k / 2) ? k ^ 1 : k)];
@@ -463,9 +481,9 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
   // layer 1 has nobody ahead, layer m has layer m-1 ahead; 0 = deeper than what has been found so
   // far
   for (int m = 1; m <= 3; m++) {
-    for (const int i : bare)
-      for (int k = 0; k < 2 * D; k++) {
-        const int j = next(i, k);
+    for (size_t n = 0; n < bare.size(); n++)
+      for (int i = bare[n], k = 0; k < 2 * D; k++) {
+        const int j = ahead[n][k];
         if (m == 1 ? j < 0 : (j >= 0 && layer_of(j, k) == m - 1)) layer[i * 2 * D + k] = m;
       }
     comm->forward_comm(this);
@@ -505,18 +523,20 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, const Cells &s
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
   const int *const type = atom->type;
+  const bool periodic = is_periodic();
   near.clear();
-  dX.clear();
-  w.clear();
-  solids.around(x[i], [&](int j, double rsq) {
-    if (j != i && molecule[j] == molecule[i] && rsq < WITHIN * kernel.cutsq) near.push_back(j);
+  solids.around(x[i], kernel.cut, [&](int j, double rsq) {
+    if (rsq < WITHIN * kernel.cutsq && j != i && molecule[j] == molecule[i]) near.push_back(j);
   });
   // whatever ranks there are
   std::sort(near.begin(), near.end(), [tag](int a, int b) {
     return tag[a] < tag[b];
   });
-  for (const int j : near) {
-    double rsq = 0.0, d[D];
+  dX.resize(near.size() * D);
+  w.resize(near.size());
+  for (size_t k = 0; k < near.size(); k++) {
+    const int j = near[k];
+    double rsq = 0.0, *const d = &dX[k * D];
     bool halfway = false;    // round the box: the image on the other side is as near
     for (int a = 0; a < D; a++) {
       d[a] = x[j][a] - x[i][a];
@@ -536,13 +556,12 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, const Cells &s
           "Solid atoms {} and {} of body {} are at the same place: regions overlap, or share "
           "an edge that particles lie on; delete_atoms overlap",
           tag[i], tag[j], molecule[i]);
-    if (halfway || domain->closest_image(i, j) != j)
+    if (halfway || (periodic && domain->closest_image(i, j) != j))
       error->one(FLERR,
                  "Solid atoms {} and {} are neighbors through more than one image: a periodic box "
                  "must be wider than two supports, {}, of the kernel",
                  tag[i], tag[j], 2.0 * kernel.cut);
-    dX.insert(dX.end(), d, d + D);
-    w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
+    w[k] = volume(j) * kernel.W(std::sqrt(rsq));
   }
 }
 
@@ -650,13 +669,15 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
       all_h.push_back(fix_fsi->h_of(type[i]));
   // LAMMPS' list would be of all particles, and stay
   const double widest = fix_fsi->largest_cut;
-  const Cells solids(atom->x, atom->nlocal + atom->nghost, D, widest, [this](int i) {
+  const Cells solids(atom->x, atom->nlocal + atom->nghost, D, 0.5 * widest, [this](int i) {
     return is_solid(i);
   });
   GradientWeights<D> weights;
   std::vector<int> near, bits;
   std::vector<double> dX, w, G;
   bigint mine[6] = {};    // particles, bonds, particles by order reached
+  expected = nbond.size() - unused.size() + bare.size();
+  hold(expected);
 
   for (const double h : all_h)
     with_kernel(fix_fsi->kernel, D, h, [&](const auto &kernel) {
@@ -814,6 +835,7 @@ template <int D> bool FixFSIReference::renew(int i)
 void FixFSIReference::resolve()
 {
   const tagint *const tag = atom->tag;
+  const bool periodic = is_periodic();
   solids.clear();
   ghosts.clear();
   images.begin(atom->nlocal + atom->nghost);
@@ -829,7 +851,7 @@ void FixFSIReference::resolve()
     for (int k = 0; k < nbond[slot[i]]; k++) {
       const tagint t = partner[first + k];
       int j = atom->map(t);
-      if (j >= 0) {
+      if (j >= 0 && periodic) {
         // the image that is meant may be beyond the ghosts, too
         j = domain->closest_image(i, j);
         for (int a = 0; a < domain->dimension; a++)
@@ -1002,7 +1024,9 @@ void FixFSIReference::reserve(int n)
   maxbond = whole_blocks(n);
   maxexchange = 3 + maxbond * (nvalue + nwhole()) + nplace();
   const auto widen = [&](auto &list, int width) {
-    std::decay_t<decltype(list)> wider((size_t) slots * maxbond * width);
+    std::decay_t<decltype(list)> wider;
+    wider.reserve(std::max((size_t) slots, expected) * maxbond * width);
+    wider.resize((size_t) slots * maxbond * width);
     for (int s = 0; s < slots; s++)
       std::copy_n(list.begin() + (size_t) s * old * width, (size_t) whole_blocks(nbond[s]) * width,
                   wider.begin() + (size_t) s * maxbond * width);
@@ -1012,6 +1036,16 @@ void FixFSIReference::reserve(int n)
   widen(partner, 1);
   if (keeps_images) widen(through, 1);
   widen(data, nvalue);
+}
+
+// room for so many slots: bodies are large, and lists that grow are there twice while they do
+void FixFSIReference::hold(size_t n)
+{
+  local.reserve(n * maxbond);
+  partner.reserve(n * maxbond);
+  if (keeps_images) through.reserve(n * maxbond);
+  data.reserve(n * maxbond * nvalue);
+  moment.reserve(n * packed_size(domain->dimension));
 }
 
 int FixFSIReference::new_slot(int n)

@@ -143,6 +143,7 @@ class FixFSIReference : public Fix {
                        // ahead, by direction; places
   bigint next_look;    // for parts of a body that pass through each other; never again once they
                        // were named
+  size_t expected;     // slots, while bodies are bonded
 
   void follow_commands();
   void take();
@@ -171,6 +172,7 @@ class FixFSIReference : public Fix {
   template <int D> void find_self_pairs();
   void look_for_passing();
   bool is_solid(int i) const;
+  bool is_periodic() const;
   template <int D> void break_bonds_of_all(double stretch, const Energy &energy);
   template <int D> bool renew(int i);
   template <int D> void move_apart();
@@ -179,6 +181,7 @@ class FixFSIReference : public Fix {
   void complete(int s);
   int nplace() const;    // numbers of one
   void reserve(int n);
+  void hold(size_t n);
   int new_slot(int n);
   int nwhole() const { return keeps_images ? 2 : 1; }    // numbers of a bond beside its doubles
   int pack(int, double *) const;

@@ -42,12 +42,14 @@ using namespace FSI;
 
 // Spacings from one level to the next: half the mass, so long as this part of it
 static constexpr double RATIO_ERROR = 0.02;
-// Distance in spacings over which two merge; over which one does that is three times as far out as
-// need be, and has found nobody
-static constexpr double REACH = 1.2, FAR_REACH = 1.7, FAR = 3.0;
+// Distance in spacings over which two merge; over which one does that has found nobody at the edge
+// of its zone, and is half as far again out as need be
+static constexpr double REACH = 1.2, FAR_REACH = 1.7, FAR = 1.5;
 // Nearer pairs come first: in steps of an eighth of a spacing, with edges that no lattice's
 // distances are near, since the two see their distance with different round-off
 static constexpr double PER_SPACING = 8.0, OFF_LATTICE = 0.37;
+// Who has found nobody comes before all others: further out there is nobody left for him
+static constexpr int LATER = 100;
 static constexpr int ROUNDS = 3;          // of choosing partners
 static constexpr double CROWDED = 2.5;    // spacings: who is as near makes a place less empty
 static constexpr int SWEEPS = 12;         // of choosing a direction again
@@ -369,27 +371,21 @@ void FixFSIRefine::warn_of_bodies()
     return species == SOLID || species == RIGID;
   };
   const Cells bodies(atom->x, nall, fix_fsi->dim, fix_fsi->cut, is_body);
-  struct Meeting {
-    tagint fluid, body;
-    double dx, own;
-  };
-  std::vector<Meeting> meetings;
-  for (int i = 0; i < atom->nlocal; i++) {
+  const auto coarse = find_particles(atom, world, [&](int i) {
     const int own = level(i);
-    if (own < 0 || own == finest() || (carried[i] & SPLIT)) continue;
+    if (own < 0 || own == finest() || (carried[i] & SPLIT)) return false;
     const double dx = fix_fsi->dx_of(type[i]);
+    bool found = false;
     bodies.around(atom->x[i], [&](int j, double rsq) {
-      const double of_body = fix_fsi->dx_of(type[j]);
-      if (dx > TOO_COARSE * of_body && rsq < dx * dx && meetings.empty())
-        meetings.push_back({atom->tag[i], atom->tag[j], dx, of_body});
+      found = found || (rsq < dx * dx && dx > TOO_COARSE * fix_fsi->dx_of(type[j]));
     });
-  }
-  const auto all = gather(meetings, world);
-  if (all.empty() || comm->me) return;
-  error->warning(FLERR,
-                 "{}: fluid atom {} has a spacing of {:g}, and beside it atom {} of a body or "
-                 "wall one of {:g}: let the finest level reach a kernel's support beyond bodies",
-                 who, all[0].fluid, all[0].dx, all[0].body, all[0].own);
+    return found;
+  });
+  if (coarse.count && comm->me == 0)
+    error->warning(FLERR,
+                   "{}: {} fluid particles, the first of them atom {}, are beside a body or wall "
+                   "of finer spacing: let the finest level reach a kernel's support beyond bodies",
+                   who, coarse.count, coarse.first);
 }
 
 static uint64_t hash_of(tagint a, tagint b)
@@ -568,7 +564,8 @@ void FixFSIRefine::choose_partners()
         if (tag[j] == tag[i] || partner[j] < 0 || atom->type[j] != atom->type[i]) return;
         const double q = std::sqrt(rsq) * per_dx;
         if (q >= ((carried[i] | carried[j]) & EAGER ? FAR_REACH : REACH)) return;
-        const std::pair<int, uint64_t> key = {(int) (PER_SPACING * q + OFF_LATTICE),
+        const int late = (carried[i] | carried[j]) & EAGER ? 0 : LATER;
+        const std::pair<int, uint64_t> key = {late + (int) (PER_SPACING * q + OFF_LATTICE),
                                               hash_of(tag[i], tag[j])};
         if (chosen[i] >= 0 && !(key < best)) return;
         best = key;

@@ -67,10 +67,7 @@ class Adviser : protected Pointers {
     };
     const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest(), ours);
     if (spacing(cells) && solids.style) {
-      const double reach = solids.contact;
-      const Cells wide(atom->x, atom->nlocal + atom->nghost, scene.dim,
-                       std::max(2.5, reach) * coarsest(), ours);
-      if (update->ntimestep == 0) contact(wide, reach);
+      if (update->ntimestep == 0) contact(solids.contact);
       held_bodies();
       cut_by_walls();
       yields();
@@ -248,7 +245,7 @@ class Adviser : protected Pointers {
   /* Bodies that begin within each other's range of contact are pushed apart with its energy at
      once: that of all of them, and the nearest two. */
 
-  void contact(const Cells &cells, double range) const
+  void contact(double range) const
   {
     static constexpr double LITTLE = 0.02, OVERLAP = 0.8;    // of the range; spacings
     struct {
@@ -257,11 +254,15 @@ class Adviser : protected Pointers {
     } mine = {BIG, comm->me}, all;
     double energy = 0.0, total;
     tagint bodies[2] = {0, 0};
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, range * coarsest(),
+                      [this](int i) {
+                        return solid(i);
+                      });
     for (int i = 0; i < atom->nlocal; i++) {
       if (!solid(i)) continue;
       cells.around(atom->x[i], [&](int j, double rsq) {
         const double spacing = 0.5 * (dx(i) + dx(j)), reach = (1.0 - LITTLE) * range * spacing;
-        if (rsq >= reach * reach || !solid(j) || atom->molecule[j] == atom->molecule[i] ||
+        if (rsq >= reach * reach || atom->molecule[j] == atom->molecule[i] ||
             !(moves(i) || moves(j)))
           return;
         const State &a = scene.state[atom->type[i]], &b = scene.state[atom->type[j]];

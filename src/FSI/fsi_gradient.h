@@ -34,7 +34,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -154,6 +156,11 @@ namespace FSI {
     }
 
    private:
+    const bool packs = have_packs();
+    // offsets over the scale along each axis, weights, what is found: in turn, filled up
+    // to whole packs with neighbors that weigh nothing
+    mutable std::vector<double> columns;
+
     // squares along the normal of a face keep 0.05 to 0.15 of themselves (cubic to quintic kernel,
     // h = 1 to 2 dx), all others 0.38 or more, in the axes chosen
     static constexpr double ONE_SIDED = 0.3;
@@ -197,19 +204,33 @@ namespace FSI {
             rsq += e[a] * e[a];
             distance += (1.0 + PREFERENCE * a) * e[a] * e[a];
           }
+          if (distance >= nearest) continue;
           for (int m = 0; m < k; m++) {
             double along = 0.0;
             for (int a = 0; a < D; a++) along += e[a] * axes[m][a];
             for (int a = 0; a < D; a++) e[a] -= along * axes[m][a];
           }
           for (int a = 0; a < D; a++) across += e[a] * e[a];
-          if (!(across > 0.5 * rsq) || distance >= nearest) continue;
+          if (!(across > 0.5 * rsq)) continue;
           nearest = distance;
           for (int a = 0; a < D; a++) axes[k][a] = e[a] / std::sqrt(across);
         }
         if (nearest == std::numeric_limits<double>::max()) return false;
       }
       return true;
+    }
+
+    // but for round-off, order and sign: where both are a lattice's, as in most of a body
+    static bool same(const double (*first)[D], const double (*second)[D])
+    {
+      int found = 0;
+      for (int k = 0; k < D; k++)
+        for (int m = 0; m < D; m++) {
+          double along = 0.0;
+          for (int a = 0; a < D; a++) along += first[k][a] * second[m][a];
+          found += 1.0 - std::fabs(along) < 1.0e-14;
+        }
+      return found == D;
     }
 
     // by how one-sided the neighbors are along them, so that squares along normals come last
@@ -237,51 +258,91 @@ namespace FSI {
       for (int k = 0; k < D; k++) std::copy_n(unsorted[order[k]], D, axes[k]);
     }
 
-    // basis in the axes of a fit
-    template <int TERMS>
-    static void terms_of(const Fit<TERMS> &fit, const double *dX, double inv, double *phi)
+    // basis in the axes of a fit at what column points to
+    template <int TERMS, class T>
+    FSI_INLINE static void terms_of(const Fit<TERMS> &fit, const double *column, int size, T *phi)
     {
-      double x[D] = {};
-      for (int k = 0; k < D; k++)
-        for (int a = 0; a < D; a++) x[k] += fit.axes[k][a] * dX[a] * inv;
+      T x[D];
+      for (int k = 0; k < D; k++) {
+        x[k] = T(fit.axes[k][0]) * Lanes<T>::load(column);
+        for (int a = 1; a < D; a++) x[k] += T(fit.axes[k][a]) * Lanes<T>::load(column + a * size);
+      }
       gradient_basis<D, TERMS>(x, phi);
     }
 
-    template <int TERMS>
-    static void solve_in_axes(int n, const double *dX, const double *w, double inv, Fit<TERMS> &fit)
+    template <class Loop> void run(Loop loop) const
     {
-      double A[packed_size(TERMS)] = {}, phi[TERMS];
-      sort_axes(n, dX, w, fit.axes);
-      for (int j = 0; j < n; j++) {
-        terms_of<TERMS>(fit, dX + j * D, inv, phi);
-        for (int a = 0, m = 0; a < TERMS; a++)
-          for (int b = 0; b <= a; b++) A[m++] += w[j] * phi[a] * phi[b];
-      }
-      fit.order = gradient_coefficients<D, TERMS>(A, fit.C, ONE_SIDED, &fit.least);
+      packs ? run_loop<Pack>(loop) : run_loop<double>(loop);
     }
 
     template <int TERMS>
-    static Order solve(int n, const double *dX, const double *w, double inv, double *G)
+    void solve_in_axes(int n, const double *dX, const double *w, Fit<TERMS> &fit) const
+    {
+      double A[packed_size(TERMS)];
+      sort_axes(n, dX, w, fit.axes);
+      const int size = columns.size() / (D + 1 + D);
+      const double *const column = columns.data();
+      run([&](auto number) FSI_INLINE_LAMBDA {
+        using T = decltype(number);
+        T sum[packed_size(TERMS)], phi[TERMS];
+        for (auto &s : sum) s = T(0.0);
+        for (int j = 0; j < n; j += Lanes<T>::WIDTH) {
+          terms_of<TERMS>(fit, column + j, size, phi);
+          const T weight = Lanes<T>::load(column + D * size + j);
+          for (int a = 0, m = 0; a < TERMS; a++) {
+            const T weighed = weight * phi[a];
+            for (int b = 0; b <= a; b++) sum[m++] += weighed * phi[b];
+          }
+        }
+        for (int m = 0; m < packed_size(TERMS); m++) A[m] = Lanes<T>::sum(sum[m]);
+      });
+      fit.order = gradient_coefficients<D, TERMS>(A, fit.C, ONE_SIDED, &fit.least);
+    }
+
+    void fill_columns(int n, const double *dX, const double *w, double inv) const
+    {
+      const int size = (n + 3) / 4 * 4;
+      columns.assign((size_t) size * (D + 1 + D), 0.0);
+      for (int j = 0; j < n; j++) {
+        for (int a = 0; a < D; a++) columns[a * size + j] = dX[j * D + a] * inv;
+        columns[D * size + j] = w[j];
+      }
+    }
+
+    template <int TERMS>
+    Order solve(int n, const double *dX, const double *w, double inv, double *G) const
     {
       Fit<TERMS> fit, other;
       if (!principal_axes(n, dX, w, fit.axes)) return Gradient<D>::DEFICIENT;
-      solve_in_axes<TERMS>(n, dX, w, inv, fit);
-      if (TERMS > D && lattice_axes(n, dX, other.axes)) {
-        solve_in_axes<TERMS>(n, dX, w, inv, other);
+      fill_columns(n, dX, w, inv);
+      solve_in_axes<TERMS>(n, dX, w, fit);
+      if (TERMS > D && lattice_axes(n, dX, other.axes) && !same(fit.axes, other.axes)) {
+        solve_in_axes<TERMS>(n, dX, w, other);
         if (other.least > fit.least) fit = other;
       }
       if (fit.order == Gradient<D>::DEFICIENT) return fit.order;
-      for (int j = 0; j < n; j++) {
-        double phi[TERMS], along[D] = {};
-        terms_of<TERMS>(fit, dX + j * D, inv, phi);
-        for (int a = 0; a < D; a++)
-          for (int k = 0; k < TERMS; k++) along[a] += fit.C[a * TERMS + k] * phi[k];
-        for (int a = 0; a < D; a++) {
-          double s = 0.0;
-          for (int k = 0; k < D; k++) s += along[k] * fit.axes[k][a];
-          G[j * D + a] = w[j] * s * inv;
+      double C[D][TERMS] = {};    // back in the box's axes
+      for (int a = 0; a < D; a++)
+        for (int c = 0; c < D; c++)
+          for (int k = 0; k < TERMS; k++) C[a][k] += fit.axes[c][a] * fit.C[c * TERMS + k] * inv;
+      const int size = columns.size() / (D + 1 + D);
+      double *const column = columns.data();
+      run([&](auto number) FSI_INLINE_LAMBDA {
+        using T = decltype(number);
+        T phi[TERMS];
+        for (int j = 0; j < n; j += Lanes<T>::WIDTH) {
+          terms_of<TERMS>(fit, column + j, size, phi);
+          const T weight = Lanes<T>::load(column + D * size + j);
+          for (int a = 0; a < D; a++) {
+            T s = 0.0;
+            for (int k = 0; k < TERMS; k++) s += T(C[a][k]) * phi[k];
+            s = s * weight;
+            std::memcpy(column + (D + 1 + a) * size + j, &s, sizeof(s));
+          }
         }
-      }
+      });
+      for (int j = 0; j < n; j++)
+        for (int a = 0; a < D; a++) G[j * D + a] = column[(D + 1 + a) * size + j];
       return fit.order;
     }
   };

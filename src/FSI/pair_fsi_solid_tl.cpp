@@ -231,8 +231,8 @@ void PairFSISolidTL::refuse_constraints() const
 }
 
 /* ----------------------------------------------------------------------
-   A rigid part of an elastic body that another style than fix rigid moves is kicked once in a step,
-   by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
+   A rigid part of an elastic body that another style than fix rigid or rigid/small moves is kicked
+   once in a step, by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::refuse_rigid_parts() const
@@ -251,8 +251,8 @@ void PairFSISolidTL::refuse_rigid_parts() const
         error->one(
             FLERR,
             "Fix {} (style {}) moves a part of the elastic body of atom {}, which takes "
-            "sub-steps: the part would gain energy. Expected fix rigid, which takes them, too, "
-            "substeps 1 in fix fsi, or fix fsi/move if its motion is known",
+            "sub-steps: the part would gain energy. Expected fix rigid or rigid/small, which take "
+            "them, too, substeps 1 in fix fsi, or fix fsi/move if its motion is known",
             fix->id, fix->style, atom->tag[row.i]);
     }
   }

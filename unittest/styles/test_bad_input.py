@@ -193,7 +193,7 @@ CASES = [
     ("beta negative", "visc 0.05 0.1", "visc 0.05 -0.1", r"artificial/visc beta -0\.1 must be >= 0"),
     ("diffusion negative", "density/diffusion 0.1", "density/diffusion -0.1", r"density/diffusion -0\.1 must be >= 0"),
     ("diffusion without value", "density/diffusion 0.1", "density/diffusion", r"density/diffusion command: missing"),
-    ("surface ratio large", *fluid("", "sound 10 surface 1.5 "), r"surface ratio 1\.5 must be >= 0 and < 1"),
+    ("surface ratio large", *fluid("", "sound 10 surface 1.5 "), r"surface 1\.5 must be >= 0 and < 1"),
     ("diffusion with summation", "fluid continuity", "fluid summation", r"density/diffusion requires .*fluid continuity"),
     ("surfaces of no logical value", "density/diffusion 0.1", "density/surface perhaps", r"density/surface perhaps"),
     ("surfaces with tension", "density/diffusion 0.1", "density/surface yes tension yes", r"density/surface is for fluids with a free surface"),
@@ -374,7 +374,7 @@ NUMBERS = [
     *[(word, *fluid("", f"sound {keyword} ".replace("sound sound", "sound"))) for word, keyword in (
         ("sound", "sound {}"), ("background", "10 background {}"), ("artificial/visc alpha", "10 artificial/visc {} 0"),
         ("artificial/visc beta", "10 artificial/visc 0 {}"), ("density/diffusion", "10 density/diffusion {}"), ("shift", "10 shift {}"),
-        ("shift/every", "10 shift 0.1 shift/every {}"), ("solid/guard", "10 solid/guard {}"), ("surface ratio", "10 surface {}"))],
+        ("shift/every", "10 shift 0.1 shift/every {}"), ("solid/guard", "10 solid/guard {}"), ("surface", "10 surface {}"))],
     *[(word, "artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected", keyword) for word, keyword in (
         ("artificial/visc alpha", "artificial/visc {} 0"), ("artificial/visc beta", "artificial/visc 0 {}"),
         ("artificial/stress", "artificial/stress {}"), ("hourglass", "hourglass {}"), ("contact", "contact {}"))],

@@ -241,6 +241,17 @@ def test_settling_at_mirror_walls(dim):
     assert rest[30] < rest[0] / 3
 
 
+def test_nobody_stays_fine_behind_the_zone():
+    """Who finds no partner where fluid leaves the zone, one in ten, comes first next time, while there are others: ten spacings behind it all have
+    merged (without that 3 % of the particles there are still fine)."""
+    x = lattice((48, 8), DX)
+    with box_scene(x, (5.0, 0, 0), size=[2.4, 0.4, 0], every=5, zone="block 0.3 0.9 INF INF INF INF", fluid="density/diffusion 0.1 background 2000", dt=6.6e-4) as s:
+        go(s, 600)
+        behind, fine = s.get("x")[:, 0] > 1.4, s.get("type") == 2
+        print(behind.sum(), fine[behind].sum(), outputs(s)[WAITING])
+        assert behind.sum() > 140 and fine[behind].sum() <= 1 and outputs(s)[MERGES] > 200
+
+
 def test_margin():
     """A particle within a coarse spacing of its zone stays fine, and who is three of them away takes a partner that is further."""
     x = lattice((34, 34), DX * FINER[2])
@@ -375,6 +386,21 @@ def test_ranks(tmp_path, dim, steps):
                 assert difference(a, b, quantity) < 1e-11, (name, quantity)
 
 
+@pytest.mark.parametrize("first", ["refine", "balance"])
+def test_balance(tmp_path, first):
+    """Ranks that take and give particles in the steps in which these split and merge, by either fix first: the same to round-off."""
+    want = run(tmp_path / "one", deck(2) + watch(every=100) + "run 100\n", flow_data=flow(2), water_fsi=MATERIALS).frames()
+    for ranks, grid, balance in ((2, "2 1 1", "shift x 10 1.0"), (4, "2 2 1", "shift xy 10 1.0"), (4, "2 2 1", "rcb")):
+        line = ("comm_style tiled\n" if balance == "rcb" else "") + f"fix balance all balance 10 1.0 {balance}\n"
+        text = deck(2, grid=grid)
+        text = text.replace("fix ref ", line + "fix ref ") if first == "balance" else text + line
+        got = run(tmp_path / f"{ranks}{balance[:3]}", text + watch(every=100) + "run 100\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
+        for a, b in zip(want, got.frames()):
+            assert np.array_equal(a["type"], b["type"])
+            for quantity in ("x", "v", "rho"):
+                assert difference(a, b, quantity) < 1e-11, (ranks, balance, quantity)
+
+
 @pytest.mark.parametrize("ranks, every, at", [(1, 10, 85), (2, 10, 80), (2, 1, 50)])
 def test_restart(tmp_path, ranks, every, at):
     """A run that goes on from a file, written between two events or in a step of one, is the same bit for bit, and so are the sums."""
@@ -484,7 +510,7 @@ run 0
 """
     for zone, warned in (("0.3 0.6", True), ("0.6 2", False)):
         done = run(tmp_path / zone, text.format(zone), water_fsi=MATERIALS + "wall wall rho 1000\n")
-        assert warned == bool(re.search("WARNING: Fix fsi/refine: fluid atom .* has a spacing of 0.05, and beside it atom .* of a body or wall one of 0.025", done.output))
+        assert warned == bool(re.search(r"WARNING: Fix fsi/refine: \d+ fluid particles, the first of them atom \d+, are beside a body or wall of finer spacing", done.output))
 
 
 def test_open_channel(tmp_path):

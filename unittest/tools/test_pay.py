@@ -13,6 +13,7 @@ from fsi import paths
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import effects  # noqa: E402
 import measure  # noqa: E402
+import scaling  # noqa: E402
 
 SMALL = (24, 16)
 SAME = 2e-3  # counts of the same work differ by so much: what MPI does between is not the same every time
@@ -118,6 +119,14 @@ def test_substeps_send_nothing_where_no_solid_is():
     found, = measure.messages([re.sub(r"^timestep .*", "timestep 1e-7", effects.deck("gate", {}, effects.COUNTED["gate"]), flags=re.M)])
     assert found["ghosts"] > 100
     assert (found["messages"], found["empty"]) == (4, 0)
+
+
+def test_walls_of_particles_send_nothing_where_none_is():
+    """The channel, whose cylinder is one rank's alone, is periodic: its two ranks have two borders with each other. At each positions, forces, density
+    and its rate, and nothing for the cylinder's pressure and velocity."""
+    found, = measure.messages([scaling.still_deck(*scaling.SHARED["channel, 10 per diameter"])])
+    assert found["ghosts"] > 100
+    assert (found["messages"], found["empty"]) == (8, 0)
 
 
 def stream(rows):
