@@ -19,7 +19,7 @@ DRAG, LIFT = 5.58, 0.0107
 UNSTEADY = "the same, 2D-2"  # Cd at its largest 3.22 to 3.24, Cl 0.99 to 1.01, St 0.295 to 0.305
 DRAG_MAX, LIFT_MAX, STROUHAL = 3.23, 1.00, 0.300
 DIAMETER = 0.1
-COLOURS = ("#9ecae1", plot.BLUE, plot.ORANGE, "#c98bd8", plot.GREEN)
+COLOURS = ("#9ecae1", plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
 SHOWN = 3  # periods
 
 
