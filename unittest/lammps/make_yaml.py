@@ -327,7 +327,7 @@ def of_fix(x, v, rho, mol, mass):
     post = ["bond_style none", "angle_style none",
             f"fsi/material water fluid rho 1000 sound {C * unit:g}",
             "pair_style fsi/fluid tension yes artificial/visc 0.3 0.5",
-            "pair_coeff * * NULL water NULL NULL NULL NULL", "group none empty",
+            "pair_coeff * * NULL water water water water water", "group none empty",
             f"fix sph all fsi {DX} wendland 1.5 mach off", "fix test none nve/limit 1"]
     test = (f"---\nlammps_version: 4 Feb 2025\ndate_generated: {DATE}\nepsilon: 1e-10\n"
             "skip_tests:\nprerequisites: "

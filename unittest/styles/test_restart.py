@@ -386,6 +386,14 @@ def test_other_keywords(tmp_path, before, after):
         assert (density_low > 400.0 if "summation" in (before, after) else density_low > 950.0) and density_high < 1050.0, (step, row)
 
 
+def test_sound_of_the_material(tmp_path):
+    """The pair style names no speed of sound: its fluid has one."""
+    fluid, physics = MATERIALS.replace("rho 1000", "rho 1000 sound 20"), PHYSICS.format(sph="0.01 wendland 1.5", more="timestep 1e-4")
+    whole = run(tmp_path, FLUID + WATER.replace("sound 20 ", "") + physics + "restart 30 r.*\nrun 30\nrun 30\n", water_fsi=fluid)
+    rest = run(tmp_path, FLUID + "read_restart r.30\n" + physics + "run 30\n", water_fsi=fluid)
+    assert rows(rest.output)[60] == rows(whole.output)[60]
+
+
 @pytest.mark.parametrize("sph, message", [
     ("0.02 wendland 1.5", r"ERROR: Fix fsi: particle spacing was 0\.01 when the restart file was written, and is 0\.02 now"),
     ("0.01 cubic 1.5", r"WARNING: Fix fsi: kernel was wendland when the restart file was written, and is cubic now"),
