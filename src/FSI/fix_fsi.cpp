@@ -23,6 +23,7 @@
 #include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clock.h"
+#include "fsi_frame.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
@@ -59,11 +60,12 @@ struct FixFSI::Members {
   NumberDensity number_density;
   SurfaceRoom surface_room;
   Others others;
+  Frame frame;
 
   Members(LAMMPS *lmp, FixFSI &fix, const std::function<void(double *)> &add_ghosts) :
       keywords(lmp, "fix fsi"), clock(lmp), check(lmp, fix), changes(lmp), population(lmp, fix),
       number_density(lmp, fix, add_ghosts), surface_room(lmp, fix, number_density, add_ghosts),
-      others(lmp, fix)
+      others(lmp, fix), frame(lmp, fix)
   {
   }
 };
@@ -225,6 +227,7 @@ void FixFSI::init()
   comm->ghost_velocity = 1;
 
   others.init();
+  members->frame.init();
   check.materials();
   for (int i = 0; i < atom->nlocal; i++) others.give_defaults(i);
   body_forces.find(state);
@@ -287,6 +290,7 @@ void FixFSI::initial_integrate(int)
 {
   if (update->ntimestep - 1 == update->firststep) changes.check_pre_no();
   for (auto *p : parts) p->start_step();
+  members->frame.move();
   if (fresh_start()) {
     next_reneighbor = update->ntimestep;
     domain->pbc();
