@@ -22,6 +22,7 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 
 #include "fix.h"
 #include "fsi_part.h"
+#include "fsi_swaps.h"
 
 #include <string>
 #include <vector>
@@ -68,6 +69,7 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   class FixStoreAtom *before;    // velocity at the last step, and whether there was one
   class FixFSI *fix_fsi;
   std::vector<int> members;    // the group's particles, local and ghost
+  FSI::Swaps swaps;            // theirs
   template <class F>
   void for_pairs(size_t level, F f) const;    // f(wall particle, fluid particle) of those that
                                               // may be within the kernel's support

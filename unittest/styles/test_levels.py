@@ -198,6 +198,17 @@ def test_refused(tmp_path, edit, message):
     assert result.status and any(re.search(message, line) for line in result.errors), result.output[-1000:]
 
 
+@pytest.mark.parametrize("couple", ["wall", "full"])
+def test_couple_full_is_refused(couple):
+    x, v, fine = beside(2)
+    with Scene(x, v, type=1 + fine, fluid=f"sound 10 couple {couple}", **levels()) as s:
+        if couple == "wall":
+            s.run()
+            return
+        with pytest.raises(Exception, match=r"spacing 0\.0714\d+ of type 2, a fluid, requires couple wall in pair_style fsi/fluid"):
+            s.run()
+
+
 def test_inlet_is_for_the_coarsest(tmp_path):
     x, v, fine = beside(2, jitter=0.0, vmax=0.0)
     with Scene(x, v, type=1 + fine, fluid="tension yes background 5", **levels(), commands=[f"fix i all fsi/inlet xhi {x[:, 0].max() + 0.036!r} velocity 0 0 0"]) as s:
@@ -278,6 +289,75 @@ def test_poiseuille():
     fit = np.polyval(np.polyfit(y, u - exact, 6), y)
     print(f"velocity: {100 * np.abs(fit).max():.2f} %, scatter {100 * np.std(u - exact - fit):.3f} % of the largest")
     assert np.abs(fit).max() < 0.01 and np.std(u - exact - fit) < 0.005
+
+
+@pytest.mark.parametrize("rule", ["number/density", "divergence"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_surface(dim, rule):
+    """Of a block of two spacings, five coarse rows to seven fine ones: the first layer, all of it, and nobody where the two meet. In layer 1 of one
+    lattice the rules find 0.79 (cubic, h = 1.2 dx), in layer 2 0.99; where lattices meet it is 0.96 or more. The rule of the equation of state agrees."""
+    x, v, fine = beside(dim, n=10 if dim == 2 else 5, jitter=0.0, vmax=0.0)
+    n = 1.0 if dim == 2 else 0.5
+    first = 0.75 * np.where(fine, 0.1 / JUMP, 0.1)[:, None]
+    face = ((x < first) | (x > [2 * n, n, n] - first))[:, :dim]
+    with Scene(x, type=1 + fine, dim=dim, kernel="cubic", hdx=1.2, fluid="sound 10 surface 0.9 bulk", **levels()) as s:
+        s.run().run_lines("compute psi all fsi/atom psi", f"compute surface all fsi/surface/atom {rule} {dict(divergence=0.75).get(rule, 0.9)}")
+        s.put("rho", 1001.0)
+        found = s.run().compute("surface", columns=False)
+        assert np.array_equal(found.astype(bool), face.any(1))
+        np.testing.assert_allclose(s.p, np.where(face.any(1), 0.0, 100.0), rtol=1e-12)
+        psi = s.compute("psi", columns=False) / s.kernel.lattice_sum(0.1, dim)
+        assert psi[~face.any(1)].min() > 0.96 and psi[face.any(1)].max() < 0.82
+
+
+@pytest.mark.parametrize("kernel", ["wendland", "quintic"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_probe(dim, kernel):
+    """At points on both sides of a jump, on it, and on a mirror floor: each particle counts with the kernel of its own spacing"""
+    x, v, fine = beside(dim, n=8 if dim == 2 else 6)
+    size, floor = (0.8 if dim == 2 else 0.6), x[:, 1].min() - 0.03
+    points = [(size + a, b, 0.3 * (dim == 3)) for a, b in ((-0.25, 0.3), (-0.05, 0.31), (0.0, 0.3), (0.07, 0.25), (0.3, 0.3), (0.0, floor))]
+    text = " ".join(f"point {a!r} {b!r} {c!r}" for a, b, c in points)
+    with Scene(x, v, dim=dim, type=1 + fine, kernel=kernel, hdx=1.2, fluid="tension yes", **levels(),
+               commands=[f"fix w all fsi/wall/mirror ylo {floor!r} guard 0", f"compute probe all fsi/probe p rho vx vy fill {text}"]) as s:
+        s.put("rho", np.random.default_rng(4).uniform(1000, 1050, len(x)))
+        s.run()
+        got = np.array(s.lmp.numpy.extract_compute("probe", 0, 2))
+        V, p, rho = s.get("rmass") / s.get("rho"), s.p, s.get("rho")
+        want = []
+        for point in points:
+            sums = 0.0
+            for up in (1, -1):
+                r = np.linalg.norm(point - (x * [1, up, 1] + [0, floor * (1 - up), 0]), axis=1)
+                W = np.where(fine, Kernel(kernel, dim, s.kernel.h / JUMP).W(r), s.kernel.W(r))
+                sums = sums + (V * W) @ np.column_stack([p, rho, v[:, 0], up * v[:, 1], np.ones(len(x))])
+            want.append(np.append(sums[:4] / sums[4], sums[4]))
+        for k in range(5):
+            close(got[:, k], np.array(want)[:, k], 1e-11)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_guard(dim):
+    """Of a wall of particles below fluid of two spacings: pairs nearer than d, 0.9 of the mean spacing of both, are counted and repel with the energy
+    K d^D (1 - r/d)^2/2, K = rho c^2. Forces are those with the guard less those without it."""
+    x, v, fine = beside(dim, n=6 if dim == 2 else 4, jitter=0.3)
+    wall = lattice([14] + [2 if k == 0 else 6 for k in range(dim - 1)], 0.1 / JUMP) - np.eye(3)[1] * 0.11
+    both, type_ = np.concatenate([x, wall]), np.repeat([1, 3], [len(x), len(wall)])
+    type_[:len(x)] += fine
+    got = []
+    for guard in (0.9, 0.0):
+        with Scene(both, dim=dim, type=type_, held=type_ == 3, fluid="sound 10 tension yes", dx=0.1, density=f"spacing 2*3 {0.1 / JUMP!r}",
+                   materials=(WATER, WATER, "wall rho 1000"), commands=[f"fix wp held fsi/wall/particle guard {guard}"]) as s:
+            s.run()
+            got.append((s.get("f"), s.fix_scalar("wp")))
+    own = np.where(type_ == 1, 0.1, 0.1 / JUMP)
+    i, j, apart, r = pairs(both, 0.1)
+    d = 0.9 * 0.5 * (own[i] + own[j])
+    near = ((type_[i] == 3) != (type_[j] == 3)) & (r < d)
+    force = sum_over(i[near], (1e5 * d**(dim - 2) * (d / r - 1))[near, None] * apart[near], len(both))
+    assert all((near & (type_[i] == t)).sum() >= 3 for t in (1, 2))
+    assert got[0][1] == near.sum() / 2 and got[1][1] == 0
+    close(got[0][0] - got[1][0], force, 1e-12)
 
 
 @pytest.mark.parametrize("kind", ["wall", "body"])

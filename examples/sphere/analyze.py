@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Figures and pictures of a sphere in a stream.   usage: analyze.py FOLDER
+
+main reads series.csv, particles.dump and log.lammps of one run; study compares the runs of cases.json.
+"""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+
+import numpy as np  # noqa: E402
+
+from fsi import dump, log, plot, series  # noqa: E402
+from fsi.summary import Summary  # noqa: E402
+
+SOURCE = "Clift, Grace & Weber 1978"
+DIAMETER = 0.1
+COLORS = (plot.GREY, "black", plot.GREEN, plot.ORANGE, plot.BLUE)
+
+
+def reference(re):
+    """Drag coefficient of a sphere in free stream, Reynolds numbers from 20 to 260"""
+    return 24 / re * (1 + 0.1935 * re**0.6305)
+
+
+def read(folder):
+    """(values of the log, time in D/U, drag coefficient)"""
+    values = log.read(Path(folder) / "log.lammps").values
+    s = series.read(Path(folder) / "series.csv")
+    speed = values["velocity"]
+    area = 0.25 * np.pi * DIAMETER**2
+    return values, s.time * speed / DIAMETER, values["parts"] * s["drag"] / (500 * speed**2 * area)
+
+
+def add(summary, folder, suffix="", judged=True):
+    """The figures of one run: means over its last fifth. Returns the drag coefficient."""
+    values, time, drag = read(folder)
+    late = time >= 0.8 * time[-1]
+    half = time >= 0.9 * time[-1]
+    summary.add("drag" + suffix, drag[late].mean(), "", reference(values["Re"]), SOURCE, 0.03 if judged else None)
+    summary.add("drag_drift" + suffix, drag[half].mean() / drag[late & ~half].mean() - 1, "between the halves of the last fifth")
+    summary.add("drag_scatter" + suffix, drag[late].std())
+    return drag[late].mean()
+
+
+def curve(folder):
+    """Drag coefficient over time, means of 0.5 D/U"""
+    _, time, drag = read(folder)
+    edges = np.arange(0, time[-1] + 1e-9, 0.5)
+    which = np.digitize(time, edges)
+    kept = [k for k in range(1, len(edges)) if (which == k).any()]
+    return np.array([time[which == k].mean() for k in kept]), np.array([drag[which == k].mean() for k in kept])
+
+
+def draw(folder, cases):
+    curves = [(*curve(path), name.replace("_", " "), color) for (name, path), color in zip(cases.items(), COLORS)]
+    re = read(next(iter(cases.values())))[0]["Re"]
+    plot.lines(folder / "drag.png", "t U/D", "drag coefficient, means of 0.5 D/U", curves, levels=[(reference(re), SOURCE)])
+
+
+def picture(path, folder):
+    """The slice next to a plane of symmetry by the speed, mirrored in the other one: each particle as large as its level says."""
+    values = read(folder)[0]
+    last = dump.read(Path(folder) / "particles.dump")[-1]
+    level = np.where(last["type"] == 1, 0, np.where(last["type"] == 2, values["levels"], last["type"] - 2))
+    dx = values["dx"] * 2 ** (-level / 3)
+    cut = (last["z"] > 0) & (last["z"] < dx) & (last["type"] != 2)
+    x, y, dx = (np.concatenate([a[cut]] * 2) for a in (last["x"], last["y"], dx))
+    y[cut.sum():] *= -1
+    speed = np.tile(np.sqrt(last["vx"]**2 + last["vy"]**2 + last["vz"]**2)[cut], 2) / values["velocity"]
+    order = np.argsort(-dx)
+    half = 0.5 * values["width"] * DIAMETER
+    plot.clouds(path, [(f"t U/D = {last.time * values['velocity'] / DIAMETER:.0f}", x[order], y[order], speed[order])], dx[order],
+                ((x.min(), x.max()), (-half, half)), "speed over U", panel_width=6.5)
+
+
+def main(folder):
+    """Analyses the run in `folder`; returns the summary."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    add(summary, folder)
+    draw(folder, {"SPH": folder})
+    picture(folder / "speed.png", folder)
+    return summary.write()
+
+
+def study(folder, cases):
+    """Figures of all cases."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    finest = list(cases)[-1]
+    drag = {name: add(summary, path, f"_{name}", name == finest) for name, path in cases.items()}
+    if {"5_uniform", "5_uniform_wide"} <= set(cases):
+        summary.add("blockage", drag["5_uniform"] / drag["5_uniform_wide"] - 1, "drag, 6 D wide over 10 D wide")
+    draw(folder, cases)
+    picture(folder / "speed.png", cases[finest])
+    return summary.write()
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    main(sys.argv[1])
