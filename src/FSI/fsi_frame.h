@@ -21,11 +21,11 @@ namespace FSI {
   class Scene;
 
   // LAMMPS builds neighbor lists anew when a particle is half a skin from where it was. Lists hold
-  // as well while every particle is within half a skin of where it would be had all gone along with
-  // one velocity, whatever that is: two come nearer by less than the skin. So the places that LAMMPS
-  // measures from go along, with the mean of the highest and lowest velocities there were when lists
-  // were new. Lists of a stream last up to twice as long. By half a skin at most: those who ask for
-  // places fixed in space rely on it that nobody goes further than a skin.
+  // as well while every particle is within half a skin of where it would be had all gone along
+  // with one velocity, whatever that is: two come nearer by less than the skin. So the places that
+  // LAMMPS measures from go along, with the mean of the highest and lowest velocities there were
+  // when lists were new. Lists of a stream last up to twice as long. By half a skin at most: those
+  // who ask for places fixed in space rely on it that nobody goes further than a skin.
   class Frame : protected Pointers {
    public:
     Frame(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), allowed(false), left(0.0)

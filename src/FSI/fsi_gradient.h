@@ -157,8 +157,8 @@ namespace FSI {
 
    private:
     const bool packs = have_packs();
-    // offsets over the scale along each axis, weights, what is found: in turn, filled up
-    // to whole packs with neighbors that weigh nothing
+    // offsets over the scale along each axis, weights, what is found: one after the other, filled
+    // up to whole packs with neighbors that weigh nothing
     mutable std::vector<double> columns;
 
     // squares along the normal of a face keep 0.05 to 0.15 of themselves (cubic to quintic kernel,

@@ -124,7 +124,7 @@ def test_substeps_send_nothing_where_no_solid_is():
 def test_walls_of_particles_send_nothing_where_none_is():
     """The channel, whose cylinder is one rank's alone, is periodic: its two ranks have two borders with each other. At each positions, forces, density
     and its rate, and nothing for the cylinder's pressure and velocity."""
-    found, = measure.messages([scaling.still_deck(*scaling.SHARED["channel, 10 per diameter"])])
+    found, = measure.messages([scaling.still_deck(*scaling.SHARED["channel"])])
     assert found["ghosts"] > 100
     assert (found["messages"], found["empty"]) == (8, 0)
 
