@@ -16,12 +16,13 @@ import peers
 import robustness
 import scaling
 import solid_variants
+import sound
 from tool import PAGE, read_csv, say
 
 from fsi import gallery, paths, results, scene
 from fsi.command import Refusal, start
 
-TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling}  # of tools/cost, with a table in doc/cost
+TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling, "sound": sound}  # of tools/cost, with a table in doc/cost
 WORDS = ("--no-runs", "--pages-only")
 
 
@@ -64,7 +65,7 @@ def collect():
     stamps = {path: stamp(path) for path in wanted if path.suffix != ".png"}
     if unclear := [str(path.relative_to(paths.ROOT)) for path, found in stamps.items() if not found]:
         raise Refusal(f"{', '.join(unclear)}: of no commit without changes")
-    (paths.PAGE / "results.json").write_text(json.dumps(found, indent=1) + "\n")
+    (paths.PAGE / "results.json").write_text(results.packed(found))
     for path, target in wanted.items():
         shutil.copyfile(path, target)
     for name in paths.examples():
@@ -94,7 +95,7 @@ def take(wanted):
         else:
             found["scenes"][name] = {"summary": summary}
             take_pictures(name)
-    page.write_text(json.dumps(found, indent=1) + "\n")
+    page.write_text(results.packed(found))
 
 
 def add_case(data, name, case, summary):

@@ -18,6 +18,7 @@ exclude_patterns = ["build*", "results", ".*", "doc/notes"]
 extensions = ["sphinx_rtd_theme", "myst_parser", "sphinx.ext.mathjax", "sphinx.ext.extlinks"]
 extlinks = {"lammps": ("https://docs.lammps.org/%s.html", "%s")}
 myst_heading_anchors = 3
+highlight_language = "text"  # of blocks in Markdown that name none
 
 html_theme = "sphinx_rtd_theme"
 html_theme_options = {"collapse_navigation": False, "navigation_depth": 3, "prev_next_buttons_location": "both"}

@@ -45,7 +45,8 @@ def picture_top(path, runs):
     """Displacement of the top. runs: [(column, label)]."""
     plot.lines(path, "time [s]", "horizontal displacement of the top [m]",
                [(column.time, column["ux"], label, colour) for (column, label), colour in zip(runs, (plot.BLUE, plot.ORANGE))],
-               [(np.array([CROSSING]), np.array([0.0]), "finite elements, return", plot.GREY)])
+               [(np.array([CROSSING]), np.array([0.0]), "finite elements, return", plot.GREY)],
+               levels=[(PEAK, "finite elements, peak")])
 
 
 def read(folder):
@@ -59,7 +60,7 @@ def main(folder):
     summary = Summary(folder)
     column, values = read(folder)
     add(summary, column)
-    picture_top(folder / "top.png", [(column, f"{values['across']:.0f} across")])
+    picture_top(folder / "top.png", [(column, f"{values['across']:.0f} particles through the thickness")])
     picture_column(folder / "column.png", dump.nearest(dump.read(folder / "particles.dump"), SNAPSHOTS, 0.1), values["dx"])
     return summary.write()
 

@@ -19,7 +19,8 @@ DRAG, LIFT = 5.58, 0.0107
 UNSTEADY = "the same, 2D-2"  # Cd at its largest 3.22 to 3.24, Cl 0.99 to 1.01, St 0.295 to 0.305
 DRAG_MAX, LIFT_MAX, STROUHAL = 3.23, 1.00, 0.300
 DIAMETER = 0.1
-COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
+COLOURS = ("#9ecae1", plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
+SHOWN = 3  # periods
 
 
 def forces(folder):
@@ -54,9 +55,19 @@ def smoothed(time, values, speed):
 
 
 def curve(folder):
-    """Drag coefficient over time; where there are vortices, the lift coefficient"""
-    speed, time, drag, lift = forces(folder)
-    return smoothed(time, drag if is_steady(folder) else lift, speed)
+    """Lift coefficient over the last periods, from a rise on"""
+    speed, time, _, lift = forces(folder)
+    rate = vortices(folder)[2] * speed / DIAMETER
+    start = series.last_rise(time, lift, rate, SHOWN)
+    inside = (time >= start) & (time <= start + SHOWN / rate)
+    time, lift = smoothed(time[inside], lift[inside], speed)
+    return time - start * speed / DIAMETER, lift
+
+
+def named(case):
+    """What a case of Re = 100 is called in the picture."""
+    across, _, around = case.removeprefix("re_100_").partition("_to_")
+    return f"{across} per diameter" + (f", {around} around the cylinder" if around else "") if case.startswith("re_100_") else case
 
 
 def is_steady(folder):
@@ -78,11 +89,11 @@ def add(summary, folder, suffix="", finest=False):
 
 
 def draw(folder, cases):
-    """lift.png of flows with vortices."""
-    curves = [(*curve(path), f"{label[7:].replace('_', ' ')} particles per diameter" if label.startswith("re_100") else label) for label, path in cases.items() if not is_steady(path)]
+    """lift.png of flows with vortices, the finest of them."""
+    curves = [(*curve(path), named(label)) for label, path in cases.items() if not is_steady(path)]
     if curves:
-        plot.lines(folder / "lift.png", "t U/D", "lift coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves, COLOURS)],
-                   levels=[(LIFT_MAX, "largest of the benchmark"), (-LIFT_MAX, "")])
+        plot.lines(folder / "lift.png", "t U/D from a rise on, last periods", "lift coefficient, means of 0.2 D/U", [(*c, colour) for c, colour in zip(curves[-len(COLOURS):], COLOURS)],
+                   levels=[(LIFT_MAX, "Schaefer and Turek, largest"), (-LIFT_MAX, "")])
 
 
 def main(folder):
@@ -92,7 +103,7 @@ def main(folder):
     add(summary, folder)
     draw(folder, {"SPH": folder})
     last = dump.read(folder / "particles.dump")[-1]
-    last = last.of_types(1, 3, 4)
+    last = last.of_types(1, 3, 4, 5)
     plot.clouds(folder / "speed.png", [(f"t = {last.time:.1f} s", last["x"], last["y"], np.hypot(last["vx"], last["vy"]))],
                 summary.log.values["dx"], ((-0.3, 1.0), (0, 0.41)), "speed [m/s]", panel_width=8.0)
     return summary.write()

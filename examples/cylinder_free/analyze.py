@@ -4,6 +4,7 @@
 main(folder) reads series.csv, particles.dump and log.lammps of one run; study(folder, cases) compares runs.
 """
 
+import json
 import sys
 from pathlib import Path
 
@@ -60,6 +61,25 @@ def add(summary, folder, suffix="", judged=False):
     return time, {name: series.smooth(time, c, 0.5) for name, c in found.items()}
 
 
+def vorticity(water, dx):
+    """Vorticity at particles, of their neighbors within 2.5 spacings of their own; type 1 is the coarsest level, type 3 the next."""
+    spin = np.zeros(len(water["x"]))
+    for kind in np.unique(water["type"]):
+        level = max(0, kind - 2)
+        near = geometry.vorticity(*(water[name] for name in ("x", "y", "vx", "vy")), 2.5 * dx / 2**(level / 2))
+        spin = np.where(water["type"] == kind, near, spin)
+    return spin
+
+
+def label(folder):
+    """Of a curve: Reynolds number and resolution of a run."""
+    values = log.read(Path(folder) / "log.lammps").values
+    levels = json.loads((Path(folder) / "run.json").read_text())["variables"].get("levels", "0")
+    across = DIAMETER / values["dx"]
+    finest = f" to {across * 2**(int(levels) / 2):.0f}" if int(levels) else ""
+    return f"Re = {values['reynolds']:.0f}, {across:.0f}{finest} particles per diameter"
+
+
 def main(folder):
     """Analyses the run in `folder`; returns the summary."""
     folder = Path(folder)
@@ -69,8 +89,9 @@ def main(folder):
     plot.lines(folder / "forces.png", "t U/D", "coefficient, means of 0.5 D/U",
                [(time[shown], found[name][shown], name, colour) for name, colour in zip(("drag", "lift"), COLOURS)])
     values = summary.log.values
-    last = dump.read(folder / "particles.dump")[-1].of_types(1)
-    spin = geometry.vorticity(*(last[name] for name in ("x", "y", "vx", "vy")), 2.5 * values["dx"]) * DIAMETER / values["velocity"]
+    last = dump.read(folder / "particles.dump")[-1]
+    last = last.select(last["type"] != 2)
+    spin = vorticity(last, values["dx"]) * DIAMETER / values["velocity"]
     x, y = last["x"] / DIAMETER, last["y"] / DIAMETER
     plot.clouds(folder / "vorticity.png", [(f"t U/D = {last.time * values['velocity'] / DIAMETER:.0f}", x, y, spin)],
                 values["dx"] / DIAMETER, ((x.min(), x.max()), (-4, 4)), "vorticity D/U", (-3.0, 3.0), axis_labels=("x/D", "y/D"), panel_width=7.0, colours="RdBu_r")
@@ -82,11 +103,12 @@ def study(folder, cases):
     folder = Path(folder)
     summary = Summary(folder)
     finest = {round(read(path)[0]["reynolds"]): name for name, path in cases.items()}  # they are in the order of resolution
-    curves = []
-    for (name, path), colour in zip(cases.items(), COLOURS):
+    curves = {reynolds: [] for reynolds in finest}
+    for name, path in cases.items():
         time, found = add(summary, path, f"_{name}", name in finest.values())
         shown = time > START
-        curves.append((time[shown], found["lift"][shown], f"Re = {read(path)[0]['reynolds']:.0f}, {DIAMETER / read(path)[0]['dx']:.0f} particles per diameter", colour))
+        curves[round(read(path)[0]["reynolds"])].append((time[shown], found["lift"][shown], label(path)))
+    curves = [(*curve, colour) for curve, colour in zip((c for of_one in curves.values() for c in of_one[-2:]), COLOURS)]
     plot.lines(folder / "lift.png", "t U/D", "lift coefficient, means of 0.5 D/U", curves)
     return summary.write()
 

@@ -101,7 +101,7 @@ def study(folder, cases):
         coarser = values["block_dx"] / values["dx"]
         of = "" if coarser == 1.0 else f", spacing {coarser:g} times the water's"
         curves.append((block.time, 1e3 * block["y"], f"density ratio {values['ratio']:g}{of}", colour))
-    plot.lines(Path(folder) / "height.png", "time [s]", "height of the block's centre [mm]", curves)
+    plot.lines(Path(folder) / "height.png", "time [s]", "height of the block's center [mm]", curves)
     return summary.write()
 
 

@@ -104,6 +104,8 @@ def study(folder, cases):
         momentum, energy = balance(runs["kick"][1], runs["kick"][0])
         summary.add("momentum_unaccounted", momentum)
         summary.add("energy_error", energy, "of the kick's")
+    if "kick_fine" in runs:
+        summary.add("energy_error_fine", balance(runs["kick_fine"][1], runs["kick_fine"][0])[1], "of the kick's", target=0.01)
     if "kick_short_no_substeps" in runs:
         slow = runs["kick_short_no_substeps"][1]
         seconds = {name: sum(run.cpu_seconds for run in log.read(Path(path) / "log.lammps").runs) for name, path in cases.items()}

@@ -166,13 +166,15 @@ def main(folder):
     for k in (5, 100):
         if len(peaks) >= k:
             summary.add(f"a{k}_a1", peaks[k - 1] / peaks[0], "", 1.0, "no damping")
-    found, frames = state(folder, values["dx"], crossings)
+    askew = any(float(given.get(name, 0)) for name in ("turn", "slant"))  # no columns along x, no rows along y
+    found, frames = ({}, []) if askew else state(folder, values["dx"], crossings)
     summary.add("stopped_at", None if finished else tip.time[-1], "s")
-    summary.add("fractured_at", found["fracture"], "s")
-    summary.add("disorder", found["disorder"], "dx")
-    summary.add("neighbour_distance_deviation", found["neighbours"], "dx")
-    summary.add("stress_zigzag", found["zigzag"], "")
-    if len(crossings) > 1:
+    if found:
+        summary.add("fractured_at", found["fracture"], "s")
+        summary.add("disorder", found["disorder"], "dx")
+        summary.add("neighbour_distance_deviation", found["neighbours"], "dx")
+        summary.add("stress_zigzag", found["zigzag"], "")
+    if found and len(crossings) > 1:
         place = clamp_place([f for f in frames if f.time < crossings[1]], values["dx"])
         summary.add("clamp_place", None if place is None else place / values["dx"], "dx")
     if (folder / "energy.csv").exists():
@@ -240,6 +242,13 @@ def study(folder, cases):
         if len(rows) > 2:
             ns = np.array([n for n, _ in rows], float)
             summary.add(f"order_of_convergence{suffix}", order(ns, np.array([v["period"] for _, v in rows]) / PERIOD - 1.0))
+    for kind, suffix in (("tl", ""), ("ul", "_ul")):
+        turned = [values["period"] for name, values in found.items() if name.startswith(f"{kind}_5_turned_")]
+        if turned and f"{kind}_5" in found:
+            summary.add(f"turned_apart{suffix}", max(abs(T / found[f"{kind}_5"]["period"] - 1.0) for T in turned), "of the period", target=0.005)
+    for name, values in found.items():
+        if "_cut_" in name:
+            summary.add(f"period_{name[3:]}", values["period"], "s", PERIOD, SOURCE)
     for suffix, name, loss, drift in (("", "long_5", 0.005, 0.001), ("_fast", "fast_5", 0.005, 0.001), ("_ul", "ul_long_5", 0.1, None)):
         values = found.get(name)
         if values is not None:

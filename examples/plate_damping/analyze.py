@@ -42,7 +42,6 @@ def study(folder, cases):
                 file.write(f"{kind},{alpha:g}," + ",".join(_text(values.get(name)) for name in COLUMNS) + "\n")
                 summary.add(f"a5_a1_{kind}_a{alpha:g}", values.get("a5_a1"))
     picture_damping(folder / "damping.png", table)
-    picture_reason(folder / "reason.png", table)
     return summary.write()
 
 
@@ -88,24 +87,6 @@ def picture_damping(path, table):
             axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=2, fontsize=8)
         panels[0].set_ylabel("A5/A1")
         figure.tight_layout()
-
-
-def picture_reason(path, table):
-    """How disordered the particles are, and what viscosity takes."""
-    labels = {"cubic_1.2": "h/Δx = 1.2", "cubic_1.3": "h/Δx = 1.3", "cubic_1.5": "h/Δx = 1.5",
-              "corrected_1.3": "1.3, corrected gradient", "nostress_1.3": "1.3, no artificial stress",
-              "coarse_1.3": "the same, 5 particles thick"}
-    with plot.picture(path, 8.0, 3.6) as figure:
-        panels = figure.subplots(1, 2)
-        for axes, name, title in ((panels[0], "disorder", "zigzag of positions over Δx after four periods"),
-                                  (panels[1], "taken_by_viscosity", "taken by viscosity, over the start's energy")):
-            _curves(axes, table, labels, name, labels)
-            axes.set_title(title, loc="left")
-            axes.set_yscale("log")
-            _alpha_axis(axes, [table[kind] for kind in labels if kind in table])
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="lower center", ncols=len(labels), fontsize=7.5,
-                      columnspacing=1.2, handlelength=1.5)
-        figure.tight_layout(rect=(0.0, 0.07, 1.0, 1.0))
 
 
 if __name__ == "__main__":

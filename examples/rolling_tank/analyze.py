@@ -75,7 +75,7 @@ def main(folder):
     curves = [(history.time, history["roll"], "roll of the tank [degrees]", plot.GREY)]
     if values["baffle"] > 0.0:
         curves.append((history.time, 1e3 * history["tip"], "tip of the baffle across the tank's axis [mm]", plot.BLUE))
-    curves.append((history.time, 1e3 * history["x"], "the oil's centre of mass along the tank [mm]", plot.ORANGE))
+    curves.append((history.time, 1e3 * history["x"], "the oil's center of mass along the tank [mm]", plot.ORANGE))
     plot.lines(folder / "tank.png", "time [s]", "in the frame of the tank", curves)
     limits = ((-half - 0.05, half + 0.05), (-0.04, 0.24))
     end = frames[-1].time

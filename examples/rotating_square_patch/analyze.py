@@ -61,7 +61,7 @@ def main(folder):
     shown = dump.nearest(frames, (0.0, 1.0, 2.0), frames[-1].time)
     plot.clouds(folder / "patch.png", [(f"t = {f.time:.2f} / omega", f["x"], f["y"], 1e-3 * f["p"]) for f in shown], spacing,
                 LIMITS, "pressure / rho omega$^2$ L$^2$", PRESSURES, ("x / L", "y / L"))
-    plot.lines(folder / "centre.png", "t omega", "pressure at the centre / rho omega$^2$ L$^2$",
+    plot.lines(folder / "centre.png", "t omega", "pressure at the center / rho omega$^2$ L$^2$",
                [(table.time, 1e-3 * table["centre"], "SPH", plot.BLUE)], [([0.0], [CENTRE], "Fourier series, t = 0", plot.ORANGE)])
     return summary.write()
 
@@ -83,7 +83,7 @@ def study(folder, cases):
         widest = max(spacing, widest) if k else spacing
         curves.append((table.time, 1e-3 * table["centre"], label, (plot.BLUE, plot.ORANGE, plot.GREY)[k % 3]))
     plot.clouds(folder / "patch.png", panels, widest, LIMITS, "pressure / rho omega$^2$ L$^2$", PRESSURES, ("x / L", "y / L"))
-    plot.lines(folder / "centre.png", "t omega", "pressure at the centre / rho omega$^2$ L$^2$", curves,
+    plot.lines(folder / "centre.png", "t omega", "pressure at the center / rho omega$^2$ L$^2$", curves,
                [([0.0], [CENTRE], "Fourier series, t = 0", "black")])
     return summary.write()
 

@@ -58,17 +58,27 @@ def add_rest(summary, tip, suffix=""):
 def picture_tip(path, runs, points=True):
     """Vertical displacement of the tip. runs: [(tip, label)]."""
     fem = series.read(HERE / "fem.csv")
+    end = max(tip.time[-1] for tip, _ in runs)
     with plot.picture(path, 7.4, 3.6) as figure:
-        axes = figure.add_subplot()
-        for (tip, label), colour in zip(runs, (plot.BLUE, plot.ORANGE)):
-            axes.plot(tip.time, 1e3 * tip["uy"], color=colour, label=label)
-        if points:
-            seen = fem.time <= max(tip.time[-1] for tip, _ in runs)
-            axes.plot(fem.time[seen], 1e3 * fem["uy"][seen], "o", markersize=3.5, markerfacecolor="white", color=plot.GREY,
-                      label="finite elements, Turek & Hron")
-        axes.set(xlabel="time [s]", ylabel="vertical displacement\nof the tip [mm]")
-        axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))
-        figure.tight_layout()
+        whole, last = figure.subplots(1, 2, gridspec_kw={"width_ratios": (3, 2)}, sharey=True)
+        for axes in (whole, last):
+            for (tip, label), colour, line in zip(runs, (plot.BLUE, plot.ORANGE), ("-", "--")):
+                axes.plot(tip.time, 1e3 * tip["uy"], line, color=colour, label=label)
+            if points:
+                seen = fem.time <= end
+                axes.plot(fem.time[seen], 1e3 * fem["uy"][seen], "o", markersize=3.5, markerfacecolor="white", color=plot.GREY,
+                          label="finite elements, Turek & Hron")
+            axes.set_xlabel("time [s]")
+        last.set_xlim(0.8 * end, end)
+        whole.set_ylabel("vertical displacement\nof the tip [mm]")
+        figure.legend(*whole.get_legend_handles_labels(), ncols=3, loc="upper center", fontsize="small", columnspacing=1.2)
+        figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.93))
+
+
+def picture_beam(path, folder, spacing):
+    """The beam at its lowest, colored by von Mises stress."""
+    lowest = min(dump.read(folder / "particles.dump"), key=lambda frame: frame["y"].mean())
+    plot.snapshots(path, [lowest], spacing, fluid=(), solid=(1, 2), limits=((0.22, 0.61), (0.06, 0.22)), panel_width=5.0)
 
 
 def read(folder):
@@ -83,11 +93,8 @@ def main(folder):
     tip, values = read(folder)
     damped = values["damping"] > 0
     (add_rest if damped else add_swing)(summary, tip)
-    picture_tip(folder / "tip.png", [(tip, f"{values['across']:.0f} across")], points=not damped)
-    frames = dump.read(folder / "particles.dump")
-    k = np.argmin([frame["y"].mean() for frame in frames])
-    plot.snapshots(folder / "beam.png", [frames[k]], values["dx"], fluid=(), solid=(1, 2), limits=((0.2, 0.62), (0.05, 0.22)),
-                   panel_width=5.0)
+    picture_tip(folder / "tip.png", [(tip, f"{values['across']:.0f} particles through the thickness")], points=not damped)
+    picture_beam(folder / "beam.png", folder, values["dx"])
     return summary.write()
 
 
@@ -103,6 +110,7 @@ def study(folder, cases):
         else:
             add_swing(summary, tip, suffix)
             swings.append((tip, f"{values['across']:.0f} particles through the thickness"))
+            picture_beam(Path(folder) / "beam.png", Path(cases[name]), values["dx"])  # of the finest
     picture_tip(Path(folder) / "tip.png", swings)
     return summary.write()
 

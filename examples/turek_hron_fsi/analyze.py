@@ -30,6 +30,7 @@ TARGETS = {("fsi1", "uy"): 0.05, ("fsi1", "drag"): 0.03, ("cfd1", "drag"): 0.02,
            ("fsi2", "lift_amplitude"): 0.1, ("fsi3", "uy_amplitude"): 0.05, ("fsi3", "frequency"): 0.03, ("fsi3", "drag_mean"): 0.03,
            ("fsi3", "lift_amplitude"): 0.1}
 PERIODS, GROUPS = 3, 3  # figures are means over so many successive groups of the last periods: flags at Re = 200 swing unevenly
+SHOWN = 3  # periods in the picture of the study
 COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
 
 
@@ -90,18 +91,35 @@ def picture(path, runs, case, names=("uy", "drag", "lift")):
     plot.noisy(path, "t [s]", panels, 0.1 / rate)
 
 
+def picture_periods(path, runs, case):
+    """The last periods of runs, each from a rise of its tip on, between the benchmark's mean less and plus its amplitude."""
+    shown = []
+    for s, label in runs:
+        half = s.time >= 0.5 * s.time[-1]
+        rate = series.frequency(s.time[half], s["uy"][half])
+        start = series.last_rise(s.time, s["uy"], rate, SHOWN)
+        inside = (s.time >= start) & (s.time <= start + SHOWN / rate)
+        columns = {name: values[inside] for name, values in s.columns.items()}
+        columns["time"] = columns["time"] - start
+        shown.append((series.Series(columns), label))
+    picture(path, shown, case)
+
+
 def picture_speed(path, frame, case, spacing):
     """Speed of the water; the cylinder and the flag above it."""
     limits, width = ((0.0, 1.2), (0.0, 0.41)), 6.6
     height = width * 0.41 / 1.2
-    water, cylinder, flag = frame.of_types(1), frame.of_types(2), frame.of_types(3, 4)
-    speeds = plot.Normalize(0.0, float(np.percentile(np.hypot(water["vx"], water["vy"]), 99.5)))
+    levels = {1: spacing} | {4 + k: spacing * 2**(-0.5 * k) for k in range(1, 5)}  # water of types 5 to 8 is finer
+    waters = [(water, size) for water, size in ((frame.of_types(type), size) for type, size in levels.items()) if len(water)]
+    flag = frame.of_types(3, 4)
+    speed = [np.hypot(water["vx"], water["vy"]) for water, _ in waters]
+    speeds = plot.Normalize(0.0, float(np.percentile(np.concatenate(speed), 99.5)))
     with plot.picture(path, width + 1.6, height + 0.75) as figure:
         whole = figure.get_size_inches()
         axes = figure.add_axes((0.62 / whole[0], 0.45 / whole[1], width / whole[0], height / whole[1]))
-        parts = [(water, spacing, plot.matplotlib.colormaps[plot.FLUID_COLOURS](speeds(np.hypot(water["vx"], water["vy"]))))]
+        parts = [(water, size, plot.matplotlib.colormaps[plot.FLUID_COLOURS](speeds(v))) for (water, size), v in zip(waters, speed)]
         parts += [(part, size, np.tile(plot.to_rgba(colour), (len(part), 1)))
-                  for part, size, colour in ((cylinder, spacing, plot.WALL_COLOUR), (flag, dump.spacing(flag), plot.ORANGE))]
+                  for part, size, colour in ((frame.of_types(2), waters[-1][1], plot.WALL_COLOUR), (flag, dump.spacing(flag), plot.ORANGE))]
         for part, size, colours in parts:
             plot.field(axes, part["x"], part["y"], size, colours, limits)
         axes.set(xlabel="x [m]", ylabel="y [m]")
@@ -133,9 +151,9 @@ def study(folder, cases):
         add(summary, path, f"_{name}", name in finest.values())
         case, values, s = read(path)
         if case == "fsi3":
-            runs.append((s, f"{case.upper()}, {values['across']:.0f} particles through the flag"))
+            runs.append((s, f"{round(0.1 / values['dx'])} particles per diameter"))
     if runs:
-        picture(folder / "forces_fsi3.png", runs, "fsi3")
+        picture_periods(folder / "forces_fsi3.png", runs, "fsi3")
     return summary.write()
 
 

@@ -5,12 +5,15 @@ main reads force.csv, load.dump, particles.dump and log.lammps of one run; study
 """
 
 import sys
+from functools import lru_cache
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
+sys.path.insert(0, str(HERE))
 
 import numpy as np  # noqa: E402
+import wagner  # noqa: E402
 
 from fsi import dump, log, plot, series  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
@@ -19,9 +22,10 @@ WATER, RIGHT = 1, 2
 RHO = 1000.0
 SOURCE = "theory, Zhao & Faltinsen 1993"
 EXPERIMENT = "experiment, Yettou et al. 2006"
+BEAM, BENT_AT = "theory, Wagner's pressure on clamped beams", 1.97e-3  # [s]
 # deadrise [degrees]: force over rho V^3 t, largest pressure over rho V^2/2, its height over V t
 THEORY = {30: (14.139, 6.927, 0.4243), 40: (5.477, 3.266, 0.2866)}
-FORCE, PEAK, SCATTER, VELOCITY = 0.03, 0.10, 0.10, 0.03  # targets
+FORCE, PEAK, SCATTER, VELOCITY, BENT = 0.03, 0.10, 0.10, 0.03, 0.10  # targets
 BINS = np.arange(-1.0, 1.0001, 0.05)  # height over the still water [V t], in which the load on the face is collected
 COLORS = (plot.GREY, plot.ORANGE, plot.BLUE)
 
@@ -88,10 +92,28 @@ def add_free(summary, folder, suffix="", judged=True):
         summary.add(f"velocity_rms_{name}{suffix}", np.sqrt(np.mean(error**2)))
 
 
+@lru_cache
+def expected():
+    """(time [s], deflection of the middle of an elastic face [m]) by theory"""
+    return wagner.deflection()[:2]
+
+
+def add_elastic(summary, folder, suffix="", judged=True):
+    """Deflection of the middle of an elastic face."""
+    s, (time, theory) = series.read(folder / "force.csv"), expected()
+    summary.add(f"deflection{suffix}", 1e3 * np.interp(BENT_AT, s.time, s["deflection"]), "mm", 1e3 * np.interp(BENT_AT, time, theory), BEAM,
+                BENT if judged else None)
+    inside = s.time <= time[-1]
+    apart = np.abs(s["deflection"][inside] - np.interp(s.time[inside], time, theory)).max() / theory.max()
+    summary.add(f"deflection_apart{suffix}", apart, "of the largest", target=BENT if judged else None)
+
+
 def add(summary, folder, values, suffix="", judged=True):
     """The figures of one run."""
     if values["body"] == "free":
         add_free(summary, folder, suffix, judged)
+    elif values["body"] == "elastic":
+        add_elastic(summary, folder, suffix, judged)
     else:
         add_constant(summary, folder, values, suffix, judged)
 
@@ -101,10 +123,11 @@ def picture_water(folder, values):
     frames = dump.read(folder / "particles.dump")
     end = frames[-1].time
     shown = dump.nearest(frames, (0.3 * end, 0.65 * end, end), end)
-    size = 1.0 if values["body"] == "free" else 0.45
+    size = {"free": 1.0, "elastic": 0.8}.get(values["body"], 0.45)
     # the colors are those of the water that is shown
     shown = [frame.select((frame["x"] < size) & (frame["y"] > -0.5 * size)) for frame in shown]
-    plot.snapshots(folder / "snapshots.png", shown, values["dx"], (WATER, 4, 5), limits=((0.0, size), (-0.5 * size, 0.4 * size)), wall=(RIGHT,))
+    plot.snapshots(folder / "snapshots.png", shown, values["dx"], (WATER, 4, 5), limits=((0.0, size), (-0.5 * size, 0.4 * size)),
+                   wall=(RIGHT, *[3] * (values["body"] == "elastic")))
 
 
 def main(folder):
@@ -122,11 +145,11 @@ def study(folder, cases):
     folder = Path(folder)
     summary = Summary(folder)
     read = {name: log.read(Path(path) / "log.lammps").values for name, path in cases.items()}
-    finest = {(v["body"], v["beta"]): name for name, v in read.items() if name.replace("_", "").isdigit() or v["body"] == "free"}
+    finest = {(v["body"], v["beta"]): name for name, v in read.items() if name.replace("_", "").isdigit() or v["body"] != "constant"}
     for name, path in cases.items():
         add(summary, Path(path), read[name], f"_{name}", name in finest.values())
-    with plot.picture(folder / "curves.png", 10.0, 3.6) as figure:
-        draw(figure.subplots(1, 3), {name: (Path(cases[name]), v) for name, v in read.items() if "_lattice" not in name})
+    with plot.picture(folder / "curves.png", 13.0, 3.6) as figure:
+        draw(figure.subplots(1, 4), {name: (Path(cases[name]), v) for name, v in read.items() if "_lattice" not in name})
         figure.tight_layout()
     return summary.write()
 
@@ -134,7 +157,7 @@ def study(folder, cases):
 def draw(axes, cases):
     """Force over time, pressure over height, velocity of the free body."""
     middle = 0.5 * (BINS[1:] + BINS[:-1])
-    constant = [(path, v) for name, (path, v) in cases.items() if v["body"] != "free" and name.replace("_", "").isdigit()]
+    constant = [(path, v) for name, (path, v) in cases.items() if name.replace("_", "").isdigit()]
     colors = {dx: color for dx, color in zip(sorted({v["dx"] for _, v in constant}, reverse=True), COLORS)}
     for path, v in constant:
         time, found = force(path, v)
@@ -155,6 +178,12 @@ def draw(axes, cases):
         points = series.read(HERE / f"{name}.csv")
         axes[2].plot(1e3 * points.time, points["velocity"], mark, markersize=5, markerfacecolor="white", color="black", label=label)
     axes[2].set(xlabel="time [ms]", ylabel="velocity of the free wedge [m/s]", ylim=(0, None))
+    elastic = [(path, v) for path, v in cases.values() if v["body"] == "elastic"]
+    for (path, v), color in zip(elastic, COLORS):
+        s = series.read(path / "force.csv")
+        axes[3].plot(1e3 * s.time, 1e3 * s["deflection"], color=color, label=f"dx = {1e3 * v['dx']:.3g} mm")
+    axes[3].plot(*(1e3 * values for values in expected()), "--", color="black", linewidth=1.0, label="Wagner's pressure on beams")
+    axes[3].set(xlabel="time [ms]", ylabel="deflection of an elastic face [mm]", xlim=(0, 2), ylim=(0, None))
     for each in axes:
         each.legend(fontsize=7)
 

@@ -113,7 +113,7 @@ def noisy(path, time_label, panels, window):
                 axes.plot(x, series.smooth(x, y, window), color=colour, label=label, linewidth=1.4)
             _beside(axes, points, levels)
             axes.set_ylabel(value_label)
-            if len(curves) + len(points) + sum(bool(label) for _, label in levels) > 1:
+            if sum(bool(label) for *_, label, _ in curves) + len(points) + sum(bool(label) for _, label in levels) > 1:
                 axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.98), ncols=4, fontsize="small")
         axes.set_xlabel(f"{time_label}; dark: running means over {window:.2g}, light: as computed")
         figure.align_ylabels()

@@ -65,9 +65,20 @@ def scenes_of(page):
     return json.loads(path.read_text())["scenes"] if path.exists() else {}
 
 
+def packed(found):
+    """results.json as text, a line for each figure."""
+    return re.sub(r"\{[^{}\[\]]*\}", lambda m: re.sub(r"\s*\n\s*", " ", m[0]), json.dumps(found, indent=1)) + "\n"
+
+
 def judged(entry):
     """The figures of a scene that have a target."""
     return [f for f in entry["summary"]["figures"] if f["target"] is not None]
+
+
+def listed(entry):
+    """Those that the page lists: what is compared with a reference, and what is missed; of a scene without either the first."""
+    figures = judged(entry)
+    return [f for f in figures if f["reference"] is not None or not f["met"]] or figures[:1]
 
 
 def table(found):
@@ -94,9 +105,10 @@ def render(found, up="../../"):
              "![Size of each figure's error over its target](results.png)", "",
              "Each dot is a figure that has a target. Right of the line the target is missed.", "",
              "- The error is relative to the reference. Where there is none, the target bounds the value itself.",
-             "- References are experiments and theory unless they say otherwise. *Code* is another program.",
+             "- References are experiments and theory unless they say otherwise. *Code* is another program. Without a source it is the one above.",
              "- CPU seconds are those of all runs of a scene on one core.",
-             "- All figures, also those without a target, are in [results.csv](results.csv).", ""]
+             f"- {len(every) - sum(len(listed(entry)) for entry in scenes.values())} further bounds without a reference are kept. They are in "
+             "[results.csv](results.csv), with all figures that have no target.", ""]
     missing = [name for name, entry in found["scenes"].items() if not entry["summary"] or entry["summary"].get("failed_cases")]
     if missing:
         lines += [f"**Failed, in part or as a whole: {', '.join(missing)}.**", ""]
@@ -106,10 +118,12 @@ def render(found, up="../../"):
 def _table(scenes, up):
     rows = []
     for name, entry in scenes.items():
-        for k, f in enumerate(judged(entry)):
+        above = None  # the source of the last reference
+        for k, f in enumerate(listed(entry)):
             reference = "" if f["reference"] is None else number(f["reference"])
-            if f["source"]:
+            if f["source"] and (f["source"] != above or not reference):
                 reference = f"{reference} ({f['source']})" if reference else f["source"]
+            above = f["source"] or above
             rows.append([f"[{title(name)}]({_page(name, up)})" if k == 0 else "", f"`{f['name']}`", _value(f), reference, _whole(deviation(f)), bound(f),
                          "yes" if f["met"] else "**no**", f"{core_seconds(entry['summary']):,.0f}" if k == 0 else ""])
     return _markdown(["scene", "quantity", "computed", "reference", "error", "target", "met", "CPU s"], rows)

@@ -138,6 +138,17 @@ def swing(time, values, rate, periods=5, harmonics=4):
     return 0.5 * (curve.max() + curve.min()), 0.5 * (curve.max() - curve.min())
 
 
+def last_rise(time, values, rate, periods):
+    """When the last `periods` whole periods of a noisy signal of known frequency begin, where its fundamental rises through its mean."""
+    late = time >= time[-1] - periods / rate
+    phase = 2.0 * np.pi * rate * time[late]
+    weights = np.gradient(time[late])
+    shapes = np.vstack([np.ones(late.sum()), np.cos(phase), np.sin(phase)])
+    _, a, b = np.linalg.lstsq((shapes * np.sqrt(weights)).T, values[late] * np.sqrt(weights), rcond=None)[0]
+    rise = -np.arctan2(a, b) / (2.0 * np.pi * rate)
+    return float(rise + np.floor((time[-1] - rise) * rate - periods) / rate)
+
+
 def still_moving(time, values):
     """Share of its range by which a column went on in the last tenth of the time, if it is farthest from where it began there: it has
     neither swung back nor come to rest. None if it has.

@@ -23,13 +23,13 @@
 #include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clock.h"
+#include "fsi_frame.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
 #include "fsi_order.h"
 #include "fsi_others.h"
 #include "fsi_part.h"
-#include "fsi_others.h"
 #include "fsi_population.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
@@ -60,11 +60,12 @@ struct FixFSI::Members {
   NumberDensity number_density;
   SurfaceRoom surface_room;
   Others others;
+  Frame frame;
 
   Members(LAMMPS *lmp, FixFSI &fix, const std::function<void(double *)> &add_ghosts) :
       keywords(lmp, "fix fsi"), clock(lmp), check(lmp, fix), changes(lmp), population(lmp, fix),
       number_density(lmp, fix, add_ghosts), surface_room(lmp, fix, number_density, add_ghosts),
-      others(lmp, fix)
+      others(lmp, fix), frame(lmp, fix)
   {
   }
 };
@@ -90,16 +91,18 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   keywords.argument("particle spacing").number(dx, 0.0, positive).kept(kept);
   keywords.argument("kernel").choice(kernel, CUBIC, names).changes(of_kernel);
   keywords.argument("smoothing length over spacing").number(hdx, 0.0, ratios).changes(of_kernel);
+  keywords.key("scheme").choice(article, 0, {"standard", "article"});
   const auto of_fluid = density_names(FLUID), of_solid = density_names(SOLID);
   keywords.key("fluid").choice(density_fluid, CONTINUITY, of_fluid, "density").changes(of_mode);
   keywords.key("solid").choice(density_solid, CONTINUITY, of_solid, "density").changes(of_mode);
   keywords.key("substeps").integer(given_substeps, 1, 1, 10000);
-  keywords.key("surface/every").integer(surface_every, 1, 1);
   keywords.key("spacing").per_type(given_spacing, positive).kept(kept);
   keywords.key("thin").types(thin);
   keywords.key("mach").number(mach, 1.0, positive).or_word("off", Check::OFF);
   keywords.parse(narg - 3, arg + 3);
   substeps = given_substeps;
+  if (article && density_fluid == CONTINUITY) density_fluid = SUMMATION;
+  if (article && density_solid == CONTINUITY) density_solid = RATIO;
 
   dim = domain->dimension;
   resolve(hdx, given_spacing);
@@ -207,7 +210,7 @@ void FixFSI::init()
   find_parts();
   profile = nullptr;
   shift = nullptr;
-  noslip_walls = surface_max = false;
+  noslip_walls = false;
   surface_ratio = 0.0;
   for (auto *p : parts) {
     if (auto *counters = p->counters()) profile = counters;
@@ -224,6 +227,7 @@ void FixFSI::init()
   comm->ghost_velocity = 1;
 
   others.init();
+  members->frame.init();
   check.materials();
   for (int i = 0; i < atom->nlocal; i++) others.give_defaults(i);
   body_forces.find(state);
@@ -286,6 +290,7 @@ void FixFSI::initial_integrate(int)
 {
   if (update->ntimestep - 1 == update->firststep) changes.check_pre_no();
   for (auto *p : parts) p->start_step();
+  members->frame.move();
   if (fresh_start()) {
     next_reneighbor = update->ntimestep;
     domain->pbc();
@@ -364,7 +369,7 @@ void FixFSI::update_state(bool advance)
   sent = &back;
   if (sums && force->newton_pair) reverse_comm(profile, comm, this);
   for (auto *p : parts) p->advance(advance);
-  number_density.renew(advance);
+  number_density.renew();
   if (comm->nprocs > 1) phase.next(Profile::MESSAGES);
   sent = &forward;
   forward_comm(profile, comm, this);
@@ -399,7 +404,7 @@ void FixFSI::set_arrays(int i)
 
 /* ----------------------------------------------------------------------
    Restart files: the command, the clock, what the ledger's terms have taken; per atom the
-   reference of density mode ratio, or the number density that is kept.
+   reference of density mode ratio.
 ------------------------------------------------------------------------- */
 
 void FixFSI::write_restart(FILE *fp)
@@ -432,7 +437,7 @@ bool FixFSI::goes_on(const Record &record, const std::string &when)
 void FixFSI::restart(char *buf)
 {
   const Record record(lmp, "fix fsi", buf);
-  const std::vector<std::string> of_kernel = {"reference of ratio", "number density"};
+  const std::vector<std::string> of_kernel = {"reference of ratio"};
   fields.read(record, goes_on(record, Keywords::OF_RESTART) ? decltype(of_kernel)() : of_kernel);
   surface_room.read(record);
   clock.read(record);

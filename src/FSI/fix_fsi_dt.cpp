@@ -21,6 +21,7 @@
 #include "fsi_clock.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
+#include "fsi_limits.h"
 #include "fsi_record.h"
 #include "group.h"
 #include "modify.h"
@@ -38,7 +39,8 @@ using namespace FixConst;
 using namespace FSI;
 
 static constexpr double BIG = Limits::UNLIMITED;
-static constexpr int MAXSUBSTEPS = 1000;
+static constexpr int NLIMIT = Limits::NLIMIT, MAXSUBSTEPS = 1000;
+enum Cause { MAXIMUM = NLIMIT, GROWTH };      // beyond the limits
 static constexpr double ROUNDING = 1.0e-9;    // of the time left, in steps
 static constexpr double PRINT =
     0.95;    // causes whose limits differ by less than this are not worth a line each
@@ -46,9 +48,9 @@ static constexpr double PRINT =
 /* ---------------------------------------------------------------------- */
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), keywords(lmp, "fix fsi/dt"), cut(false), limits(lmp),
-    target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0),
-    restored(false)
+    Fix(lmp, narg, arg), fix_fsi(nullptr), keywords(lmp, "fix fsi/dt"), cut(false),
+    limits(new Limits(lmp)), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0),
+    next_substeps(0), warned(0), restored(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   keywords.argument("interval").integer(interval, 1, 1);
@@ -72,7 +74,7 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "Fix fsi/dt stop cannot be combined with check: a check changes nothing");
 
   nevery = end < BIG ? 1 : interval;
-  for (int k = 0; k < NLIMIT; k++) step[k] = sub[k] = limit[k] = BIG;
+  step = sub = limit = std::vector<double>(NLIMIT, BIG);
   scalar_flag = vector_flag = 1;
   size_vector = NLIMIT + 2;
   extscalar = extvector = 0;
@@ -80,6 +82,8 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
   dynamic_group_allow = 1;
   time_depend = restart_global = check == NO_CHECK;
 }
+
+FixFSIDt::~FixFSIDt() = default;
 
 /* ---------------------------------------------------------------------- */
 
@@ -126,7 +130,7 @@ void FixFSIDt::init()
 }
 
 /* ----------------------------------------------------------------------
-   The first run, or one for which the script gave another time step, begins with the limits.
+   The first run, or one for which the script gave another time step, begins with the limits->
    Other runs go on with what was chosen before: two runs are one, and a restarted run is the
    uninterrupted one.
 ------------------------------------------------------------------------- */
@@ -260,17 +264,17 @@ void FixFSIDt::start_step()
 }
 
 /* ----------------------------------------------------------------------
-   the limits (fsi_limits.cpp) with the factors
+   the limits (fsi_limits->cpp) with the factors
 ------------------------------------------------------------------------- */
 
 void FixFSIDt::find_limits()
 {
   const bool may = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   const bool substeps = may && (automatic || fix_fsi->substeps > 1);
-  limits.find(*fix_fsi, groupbit, substeps, of_fluid, of_solid);
-  limits.reduce();
-  std::copy_n(limits.step, NLIMIT, step);
-  std::copy_n(limits.sub, NLIMIT, sub);
+  limits->find(*fix_fsi, groupbit, substeps, of_fluid, of_solid);
+  limits->reduce();
+  step.assign(limits->step, limits->step + NLIMIT);
+  sub.assign(limits->sub, limits->sub + NLIMIT);
 }
 
 /* ----------------------------------------------------------------------
@@ -280,9 +284,9 @@ void FixFSIDt::find_limits()
 
 void FixFSIDt::choose(double most)
 {
-  const double shortest = *std::min_element(sub, sub + NLIMIT);
+  const double shortest = *std::min_element(sub.begin(), sub.end());
   int n = fix_fsi->substeps;
-  const bool free = automatic && *std::min_element(step, step + NLIMIT) < BIG;
+  const bool free = automatic && *std::min_element(step.begin(), step.end()) < BIG;
   target = high;
   cause = MAXIMUM;
   const auto combine = [&]() {
@@ -290,7 +294,7 @@ void FixFSIDt::choose(double most)
   };
   if (automatic && !free) n = 1;    // nothing but sub-stepped solids
   combine();
-  const double *const ruled = free ? step : limit;
+  const double *const ruled = (free ? step : limit).data();
   for (int k = 0; k < NLIMIT; k++)
     if (ruled[k] < target) {
       target = ruled[k];
@@ -331,9 +335,9 @@ void FixFSIDt::choose(double most)
 std::string FixFSIDt::name(int k) const
 {
   std::string text = k < NLIMIT ? Limits::names[k] : "the upper bound";
-  if (k == Limits::SOUND) text += fmt::format(" (atom {})", limits.culprit[0][0]);
+  if (k == Limits::SOUND) text += fmt::format(" (atom {})", limits->culprit[0][0]);
   if (k == Limits::ACCELERATION)
-    text += fmt::format(" (atom {})", limits.culprit[step[k] > limit[k]][1]);
+    text += fmt::format(" (atom {})", limits->culprit[step[k] > limit[k]][1]);
   return text;
 }
 

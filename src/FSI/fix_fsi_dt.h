@@ -21,18 +21,23 @@ FixStyle(fsi/dt,FixFSIDt);
 #define LMP_FIX_FSI_DT_H
 
 #include "fix.h"
-#include "fsi_limits.h"
 #include "fsi_part.h"
 
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Limits;
+}
 
 // Time step, and number of sub-steps of total-Lagrangian solids, from what the particles do.
 
 class FixFSIDt : public Fix, public FSI::Part {
  public:
   FixFSIDt(class LAMMPS *, int, char **);
+  ~FixFSIDt() override;
   int setmask() override { return FixConst::END_OF_STEP | FixConst::POST_RUN; }
   void init() override;
   void setup(int) override;
@@ -50,8 +55,6 @@ class FixFSIDt : public Fix, public FSI::Part {
   bool chooses_substeps() const { return automatic; }
 
  private:
-  static constexpr int NLIMIT = FSI::Limits::NLIMIT;
-  enum Cause { MAXIMUM = NLIMIT, GROWTH };
   enum CheckAction { NO_CHECK, WARN, STOP };
   class FixFSI *fix_fsi;
 
@@ -63,13 +66,13 @@ class FixFSIDt : public Fix, public FSI::Part {
   int automatic;    // number of sub-steps
   int check;
 
-  FSI::Limits limits;
-  double step[NLIMIT], sub[NLIMIT];    // limits of the step, and of a sub-step of what takes
-                                       // sub-steps, with the factors
-  double limit[NLIMIT];                // both together
-  double target;                       // smallest of these and of the bound
-  int cause, ruling;                   // what sets the next step; last one that was printed
-  double dt, next_dt;                  // of the last step taken, 0 = none; from the next step on
+  const std::unique_ptr<FSI::Limits> limits;
+  // of each cause: limits of the step, and of a sub-step of what takes sub-steps, with the factors;
+  // both together
+  std::vector<double> step, sub, limit;
+  double target;         // smallest of these and of the bound
+  int cause, ruling;     // what sets the next step; last one that was printed
+  double dt, next_dt;    // of the last step taken, 0 = none; from the next step on
   int next_substeps;
   int warned;    // bits of causes
   bool restored;

@@ -22,6 +22,7 @@
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_nodes.h"
 #include "fsi_number_density.h"
 #include "fsi_population.h"
 #include "fsi_record.h"
@@ -74,10 +75,10 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"),
     keywords(lmp, keywords_name()), given(new Values(lmp, keywords_name(), NVALUES)),
     background(false), length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr),
-    behind(nullptr), nodes(lmp), nbounds(0), mean{}, filled(false), wave(0.0), before(0.0),
-    gradient(0.0), served(0.0), has_before(false), passed_in(0.0), passed_out(0.0), mass_in(0.0),
-    fill(0.0), mean_fill(1.0), column(1.0), last_buffer(-1.0), told{}, push_sum{},
-    ends(MPI_COMM_NULL)
+    behind(nullptr), nodes_held(new Nodes(lmp)), nodes(*nodes_held), nbounds(0), mean{},
+    filled(false), wave(0.0), before(0.0), gradient(0.0), served(0.0), has_before(false),
+    passed_in(0.0), passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0),
+    last_buffer(-1.0), told{}, push_sum{}, ends(MPI_COMM_NULL)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, keywords_name(), error);
@@ -141,6 +142,11 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
 FixFSIInlet::~FixFSIInlet()
 {
   forget_ends();
+}
+
+double FixFSIInlet::reach_of_nodes() const
+{
+  return 2.0 * std::max(nodes.distance[0], nodes.distance[1]);
 }
 
 bool FixFSIInlet::has_own_velocity() const
@@ -681,7 +687,7 @@ void FixFSIInlet::stranger(int i)
       "{} {}: atom {} of type {}, {},", who, id, atom->tag[i], atom->type[i],
       species == FLUID       ? fmt::format("a fluid that is not of group {}", group->names[igroup])
           : species == SOLID ? "of a solid"
-                             : species == NONE ? "without a material"
+          : species == NONE  ? "without a material"
                              : "of a wall or rigid body");
   const bool out = side > 0.0 ? x[axis] < domain->boxlo[axis] : x[axis] >= domain->boxhi[axis];
   if (out && domain->boundary[axis][side < 0.0] == 1 && output->thermo->lostflag == Thermo::ERROR)

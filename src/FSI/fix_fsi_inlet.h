@@ -22,16 +22,15 @@ FixStyle(fsi/outlet,FixFSIInlet);
 #define LMP_FIX_FSI_INLET_H
 
 #include "fsi_fields.h"
-#include "fsi_nodes.h"
 #include "fsi_part.h"
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
+  class Nodes;
   struct Particle;
   class Values;
 }    // namespace FSI
@@ -115,7 +114,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
 
   // sums over the fluid at the nodes of a lattice in the plane, then values there; then the largest
   // and the negative least velocity
-  FSI::Nodes nodes;
+  const std::unique_ptr<FSI::Nodes> nodes_held;
+  FSI::Nodes &nodes;
   int nbounds;
   double mean[NMEAN];
 
@@ -178,7 +178,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   MPI_Comm ends;    // of the ranks that this end is a matter of; null on others
   void renew_ends(bool has_some);
   void forget_ends();
-  double reach_of_nodes() const { return 2.0 * std::max(nodes.distance[0], nodes.distance[1]); }
+  double reach_of_nodes() const;
   void measure();
   void hold_shift(const Place &);
   bool at_plane(const double *x, double *values) const;

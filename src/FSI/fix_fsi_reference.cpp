@@ -19,21 +19,27 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_bond_rows.h"
 #include "fsi_cells.h"
 #include "fsi_changes.h"
+#include "fsi_clamps.h"
 #include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
+#include "fsi_images.h"
 #include "fsi_kernel.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
+#include "fsi_swaps.h"
+#include "math_extra.h"
 #include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -47,14 +53,24 @@ using namespace FSI;
 
 // sites of a lattice at the cutoff weigh nothing: round-off does not choose among them
 static constexpr double WITHIN = 1.0 - 1.0e-9;
+// of the spacing: neighbors are no further from where a lattice has them
+static constexpr double NEAR = 0.05;
 
 /* ---------------------------------------------------------------------- */
 
+struct FixFSIReference::Members {
+  Swaps swaps;
+  Clamps clamps;
+  Images images;
+  explicit Members(LAMMPS *lmp) : swaps(lmp), clamps(lmp) {}
+};
+
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), quadratic(true), end_corrected(true), nvalue(2 * domain->dimension + 2),
-    self_range(0.0), tears(false), changes(0), swaps(lmp), clamps(lmp), fix_fsi(nullptr),
-    slot(nullptr), maxbond(0), keeps_images(false), keeps_places(false), apart(0.0), layer(nullptr),
-    next_look(0)
+    Fix(lmp, narg, arg), members(new Members(lmp)), quadratic(true), end_corrected(true),
+    nvalue(2 * domain->dimension + 2), self_range(0.0), tears(false), changes(0),
+    swaps(members->swaps), clamps(members->clamps), images(members->images), fix_fsi(nullptr),
+    slot(nullptr), maxbond(0), nmoment(packed_size(domain->dimension)), keeps_images(false),
+    keeps_places(false), apart(0.0), layer(nullptr), next_look(0), expected(0)
 {
   has_record = resting = false;
   restart_peratom = restart_global = 1;
@@ -79,6 +95,21 @@ FixFSIReference::~FixFSIReference()
   }
   memory->destroy(slot);
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
+}
+
+const double *FixFSIReference::bond(int i, int k) const
+{
+  return numbers(i) + number_of_bond(k, nvalue);
+}
+
+double *FixFSIReference::bond_in(int s, int k)
+{
+  return &data[(size_t) s * maxbond * nvalue] + number_of_bond(k, nvalue);
+}
+
+int FixFSIReference::nplace() const
+{
+  return keeps_places ? domain->dimension : 0;
 }
 
 // after fix rigid has moved its bodies
@@ -154,12 +185,13 @@ void FixFSIReference::setup_post_neighbor()
 {
   if (resting) return;
   follow_commands();
+  const int before = changes;
   take();
   // a restart file, which rank 0 describes, needs the same largest size everywhere
   int all;
   MPI_Allreduce(&maxbond, &all, 1, MPI_INT, MPI_MAX, world);
   reserve(all);
-  resolve();
+  if (changes == before) resolve();
   for (int i = 0; i < atom->nlocal; i++)
     if (slot[i] == NO_BONDS) slot[i] = FOREIGN;
   if (next_look != MAXBIGINT) next_look = update->ntimestep;
@@ -174,6 +206,14 @@ void FixFSIReference::post_neighbor()
 }
 
 /* ---------------------------------------------------------------------- */
+
+// without there is one of each particle
+bool FixFSIReference::is_periodic() const
+{
+  return std::any_of(domain->periodicity, domain->periodicity + domain->dimension, [](int p) {
+    return p != 0;
+  });
+}
 
 bool FixFSIReference::is_solid(int i) const
 {
@@ -315,10 +355,93 @@ void FixFSIReference::take()
    The energy is an integral over particles in the middle of their cells: the midpoint rule,
    which lacks 1/n^2 of the bending stiffness of a plate n particles across. With its end
    corrections, 13/12, 7/8, 25/24 for the first three layers from a face (Press et al., Numerical
-   Recipes, eq. 4.1.18), quadratic integrands are exact. They apply along each axis of a lattice
-   that is aligned with the axes; a body thinner than three layers, or not on such a lattice,
-   keeps plain volumes there. Masses do not change.
+   Recipes, eq. 4.1.18), quadratic integrands are exact. They apply along each axis of the body's
+   lattice; a body thinner than three layers, or not on a lattice, keeps plain volumes there.
+   Masses do not change.
 ------------------------------------------------------------------------- */
+
+// a bond (numbers BOND_BLOCK apart) along a direction
+template <int D> static double along(const double *X, const double *e)
+{
+  double s = 0.0;
+  for (int a = 0; a < D; a++) s += X[a * BOND_BLOCK] * e[a];
+  return s;
+}
+
+template <int D> static bool nearest(const double *X, double dx)
+{
+  double rsq = 0.0;
+  for (int a = 0; a < D; a++) rsq += X[a * BOND_BLOCK] * X[a * BOND_BLOCK];
+  return std::fabs(std::sqrt(rsq) - dx) < NEAR * dx;
+}
+
+// axes of the lattice that i is on, from its nearest neighbors; false if these are too few
+template <int D> bool FixFSIReference::find_axes(int i, Axes &axes) const
+{
+  const double dx = fix_fsi->dx_of(atom->type[i]);
+  double(*const e)[3] = axes.e;
+  int k = 0;
+  axes = {atom->molecule[i], atom->tag[i], {}};
+  for (int b = 0; b < count(i) && k < D - 1; b++) {
+    const double *const X = bond(i, b) + D * BOND_BLOCK;
+    if (!nearest<D>(X, dx) || (k && std::fabs(along<D>(X, e[0])) > NEAR * dx)) continue;
+    for (int a = 0; a < D; a++) e[k][a] = X[a * BOND_BLOCK] / dx;
+    k++;
+  }
+  if (D == 3) {
+    MathExtra::cross3(e[0], e[1], e[2]);
+  } else {
+    e[1][0] = -e[0][1];
+    e[1][1] = e[0][0];
+  }
+  return k == D - 1;
+}
+
+// whether all nearest neighbors of i lie along them, none of them behind a plane of symmetry
+template <int D> bool FixFSIReference::fits(int i, const Axes &axes) const
+{
+  const double dx = fix_fsi->dx_of(atom->type[i]);
+  for (int b = 0; b < count(i); b++) {
+    const double *const X = bond(i, b) + D * BOND_BLOCK;
+    int across = 0;
+    for (int k = 0; k < D; k++) across += std::fabs(along<D>(X, axes.e[k])) < NEAR * dx;
+    if (nearest<D>(X, dx) && across < D - 1) return false;
+    if (keeps_images && through[(size_t) slot[i] * maxbond + b]) return false;
+  }
+  return true;
+}
+
+// axes of the lattices that are turned against the axes of the box, by body
+template <int D>
+std::map<tagint, FixFSIReference::Axes>
+FixFSIReference::turned_lattices(const std::vector<int> &bare) const
+{
+  std::map<tagint, Axes> first, turned;    // of the first particle that has some
+  Axes axes;
+  const auto enter = [&first](const Axes &a) {
+    const auto at = first.emplace(a.body, a).first;
+    if (a.tag < at->second.tag) at->second = a;
+  };
+  for (const int i : bare)
+    if (find_axes<D>(i, axes)) enter(axes);
+  std::vector<Axes> mine;
+  for (const auto &body : first) mine.push_back(body.second);
+  for (const auto &a : gather(mine, world)) enter(a);
+
+  for (const auto &body : first) {
+    for (const auto &e : body.second.e)
+      for (const double c : e)
+        if (std::fabs(c) > NEAR && std::fabs(c) < 1.0 - NEAR) turned.insert(body);
+  }
+  if (turned.empty()) return turned;
+  std::set<tagint> no_lattice;
+  for (const int i : bare) {
+    const auto body = turned.find(atom->molecule[i]);
+    if (body != turned.end() && !fits<D>(i, body->second)) no_lattice.insert(body->first);
+  }
+  for (const tagint body : gather(no_lattice, world)) turned.erase(body);
+  return turned;
+}
 
 template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &bare)
 {
@@ -326,20 +449,31 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
   resolve();
   std::vector<double> layers((size_t) atom->nmax * 2 * D, 0.0);
   layer = layers.data();
+  const auto turned = turned_lattices<D>(bare);
+  const Axes box = {0, 0, {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
 
-  // partner one spacing away along direction k = 2 axis + (positive side), or -1
-  const auto next = [&](int i, int k) {
-    const double dx = fix_fsi->dx_of(atom->type[i]), near = 0.05 * dx;
+  // per particle, partners one spacing away along directions 2 axis + (positive side), or -1
+  std::vector<std::array<int, 2 * D>> ahead;
+  for (const int i : bare) {
+    ahead.emplace_back();
+    ahead.back().fill(-1);
+    const auto it = turned.find(atom->molecule[i]);
+    const Axes &axes = it == turned.end() ? box : it->second;
+    const double dx = fix_fsi->dx_of(atom->type[i]), near = NEAR * dx;
     for (int b = 0; b < count(i); b++) {
-      const double *const value = bond(i, b);
-      bool found = true;
-      for (int a = 0; a < D; a++)
-        if (std::fabs(value[(D + a) * BOND_BLOCK] - (a == k / 2 ? (k % 2 ? dx : -dx) : 0.0)) > near)
-          found = false;
-      if (found) return partners(i)[b];
+      const double *const X = bond(i, b) + D * BOND_BLOCK;
+      int direction = -1, others = 0;
+      for (int a = 0; a < D; a++) {
+        const double s = along<D>(X, axes.e[a]);
+        if (std::fabs(s) <= near)
+          others++;
+        else if (std::fabs(std::fabs(s) - dx) <= near)
+          direction = 2 * a + (s > 0.0);
+      }
+      if (others < D - 1 || direction < 0 || ahead.back()[direction] >= 0) continue;
+      ahead.back()[direction] = partners(i)[b];
     }
-    return -1;
-  };
+  }
   // that of an image is that of its original, seen in the mirror
   const auto layer_of = [&](int j, int k) {
     return layer[images.original(j) * 2 * D + (images.mirrors(j, k / 2) ? k ^ 1 : k)];
@@ -347,9 +481,9 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
   // layer 1 has nobody ahead, layer m has layer m-1 ahead; 0 = deeper than what has been found so
   // far
   for (int m = 1; m <= 3; m++) {
-    for (const int i : bare)
-      for (int k = 0; k < 2 * D; k++) {
-        const int j = next(i, k);
+    for (size_t n = 0; n < bare.size(); n++)
+      for (int i = bare[n], k = 0; k < 2 * D; k++) {
+        const int j = ahead[n][k];
         if (m == 1 ? j < 0 : (j >= 0 && layer_of(j, k) == m - 1)) layer[i * 2 * D + k] = m;
       }
     comm->forward_comm(this);
@@ -389,18 +523,20 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, const Cells &s
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
   const int *const type = atom->type;
+  const bool periodic = is_periodic();
   near.clear();
-  dX.clear();
-  w.clear();
-  solids.around(x[i], [&](int j, double rsq) {
-    if (j != i && molecule[j] == molecule[i] && rsq < WITHIN * kernel.cutsq) near.push_back(j);
+  solids.around(x[i], kernel.cut, [&](int j, double rsq) {
+    if (rsq < WITHIN * kernel.cutsq && j != i && molecule[j] == molecule[i]) near.push_back(j);
   });
   // whatever ranks there are
   std::sort(near.begin(), near.end(), [tag](int a, int b) {
     return tag[a] < tag[b];
   });
-  for (const int j : near) {
-    double rsq = 0.0, d[D];
+  dX.resize(near.size() * D);
+  w.resize(near.size());
+  for (size_t k = 0; k < near.size(); k++) {
+    const int j = near[k];
+    double rsq = 0.0, *const d = &dX[k * D];
     bool halfway = false;    // round the box: the image on the other side is as near
     for (int a = 0; a < D; a++) {
       d[a] = x[j][a] - x[i][a];
@@ -420,13 +556,12 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, const Cells &s
           "Solid atoms {} and {} of body {} are at the same place: regions overlap, or share "
           "an edge that particles lie on; delete_atoms overlap",
           tag[i], tag[j], molecule[i]);
-    if (halfway || domain->closest_image(i, j) != j)
+    if (halfway || (periodic && domain->closest_image(i, j) != j))
       error->one(FLERR,
                  "Solid atoms {} and {} are neighbors through more than one image: a periodic box "
                  "must be wider than two supports, {}, of the kernel",
                  tag[i], tag[j], 2.0 * kernel.cut);
-    dX.insert(dX.end(), d, d + D);
-    w.push_back(volume(j) * kernel.W(std::sqrt(rsq)));
+    w[k] = volume(j) * kernel.W(std::sqrt(rsq));
   }
 }
 
@@ -534,13 +669,15 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
       all_h.push_back(fix_fsi->h_of(type[i]));
   // LAMMPS' list would be of all particles, and stay
   const double widest = fix_fsi->largest_cut;
-  const Cells solids(atom->x, atom->nlocal + atom->nghost, D, widest, [this](int i) {
+  const Cells solids(atom->x, atom->nlocal + atom->nghost, D, 0.5 * widest, [this](int i) {
     return is_solid(i);
   });
   GradientWeights<D> weights;
   std::vector<int> near, bits;
   std::vector<double> dX, w, G;
   bigint mine[6] = {};    // particles, bonds, particles by order reached
+  expected = nbond.size() - unused.size() + bare.size();
+  hold(expected);
 
   for (const double h : all_h)
     with_kernel(fix_fsi->kernel, D, h, [&](const auto &kernel) {
@@ -698,6 +835,7 @@ template <int D> bool FixFSIReference::renew(int i)
 void FixFSIReference::resolve()
 {
   const tagint *const tag = atom->tag;
+  const bool periodic = is_periodic();
   solids.clear();
   ghosts.clear();
   images.begin(atom->nlocal + atom->nghost);
@@ -713,7 +851,7 @@ void FixFSIReference::resolve()
     for (int k = 0; k < nbond[slot[i]]; k++) {
       const tagint t = partner[first + k];
       int j = atom->map(t);
-      if (j >= 0) {
+      if (j >= 0 && periodic) {
         // the image that is meant may be beyond the ghosts, too
         j = domain->closest_image(i, j);
         for (int a = 0; a < domain->dimension; a++)
@@ -886,7 +1024,9 @@ void FixFSIReference::reserve(int n)
   maxbond = whole_blocks(n);
   maxexchange = 3 + maxbond * (nvalue + nwhole()) + nplace();
   const auto widen = [&](auto &list, int width) {
-    std::decay_t<decltype(list)> wider((size_t) slots * maxbond * width);
+    std::decay_t<decltype(list)> wider;
+    wider.reserve(std::max((size_t) slots, expected) * maxbond * width);
+    wider.resize((size_t) slots * maxbond * width);
     for (int s = 0; s < slots; s++)
       std::copy_n(list.begin() + (size_t) s * old * width, (size_t) whole_blocks(nbond[s]) * width,
                   wider.begin() + (size_t) s * maxbond * width);
@@ -896,6 +1036,16 @@ void FixFSIReference::reserve(int n)
   widen(partner, 1);
   if (keeps_images) widen(through, 1);
   widen(data, nvalue);
+}
+
+// room for so many slots: bodies are large, and lists that grow are there twice while they do
+void FixFSIReference::hold(size_t n)
+{
+  local.reserve(n * maxbond);
+  partner.reserve(n * maxbond);
+  if (keeps_images) through.reserve(n * maxbond);
+  data.reserve(n * maxbond * nvalue);
+  moment.reserve(n * packed_size(domain->dimension));
 }
 
 int FixFSIReference::new_slot(int n)

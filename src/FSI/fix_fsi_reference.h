@@ -20,21 +20,21 @@ FixStyle(FSI_REFERENCE,FixFSIReference);
 #ifndef LMP_FIX_FSI_REFERENCE_H
 #define LMP_FIX_FSI_REFERENCE_H
 
-#include "domain.h"
 #include "fix.h"
-#include "fsi_bond_rows.h"
-#include "fsi_clamps.h"
-#include "fsi_images.h"
-#include "fsi_swaps.h"
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
   class Cells;
-}
+  class Clamps;
+  class Images;
+  class Swaps;
+}    // namespace FSI
 
 // The reference configuration of total-Lagrangian solids: for every particle its bonds to the
 // neighbors of its own body, with the gradient's weights. Made by pair_style fsi/solid/tl; taken
@@ -42,6 +42,9 @@ namespace FSI {
 // from one pair_style command to the next. Memory and messages exist for solid particles only.
 
 class FixFSIReference : public Fix {
+  struct Members;
+  const std::unique_ptr<Members> members;
+
  public:
   static constexpr char ID[] = "FSI_REFERENCE";
   FixFSIReference(class LAMMPS *, int, char **);
@@ -79,12 +82,9 @@ class FixFSIReference : public Fix {
   const int *partners(int i) const { return &local[(size_t) slot[i] * maxbond]; }
   // where they are: number_of_bond()
   const double *numbers(int i) const { return &data[(size_t) slot[i] * maxbond * nvalue]; }
-  const double *bond(int i, int k) const { return numbers(i) + FSI::number_of_bond(k, nvalue); }
+  const double *bond(int i, int k) const;
   // sum_j w X_ij (x) X_ij
-  const double *moments(int i) const
-  {
-    return &moment[(size_t) slot[i] * FSI::packed_size(domain->dimension)];
-  }
+  const double *moments(int i) const { return &moment[(size_t) slot[i] * nmoment]; }
   // of i in the energy's integral, times its volume
   double weight(int i) const { return quadrature[slot[i]]; }
 
@@ -113,9 +113,9 @@ class FixFSIReference : public Fix {
   int changes;    // how often bonds, or where their partners are, have changed
   // local solid atoms, and ghosts of solid atoms
   std::vector<int> solids, ghosts;
-  FSI::Swaps swaps;      // those of solids
-  FSI::Clamps clamps;    // rigid bodies that take sub-steps with them
-  FSI::Images images;    // partners across planes of symmetry
+  FSI::Swaps &swaps;      // those of solids
+  FSI::Clamps &clamps;    // rigid bodies that take sub-steps with them
+  FSI::Images &images;    // partners across planes of symmetry
 
  private:
   class FixFSI *fix_fsi;
@@ -125,7 +125,7 @@ class FixFSIReference : public Fix {
   bool resting;    // no pair_style fsi/solid/tl
   int *slot;       // per local atom: where its bonds are, or NO_BONDS or FOREIGN
   enum { NO_BONDS = -1, FOREIGN = -2 };    // no bonds yet; no solid when a run began
-  int maxbond;
+  int maxbond, nmoment;
   std::vector<int> nbond, local, unused;
   // owner: ID of the slot's atom when its bonds were last looked at
   std::vector<tagint> partner, owner;
@@ -143,6 +143,7 @@ class FixFSIReference : public Fix {
                        // ahead, by direction; places
   bigint next_look;    // for parts of a body that pass through each other; never again once they
                        // were named
+  size_t expected;     // slots, while bodies are bonded
 
   void follow_commands();
   void take();
@@ -159,22 +160,28 @@ class FixFSIReference : public Fix {
   void enter_bonds(int i, const Kernel &, const std::vector<int> &, const std::vector<double> &,
                    const std::vector<double> &, const std::vector<int> &bits);
   double volume(int i) const;
+  struct Axes {
+    tagint body, tag;    // of the particle they were found at
+    double e[3][3];      // rows
+  };
+  template <int D> bool find_axes(int i, Axes &) const;
+  template <int D> bool fits(int i, const Axes &) const;
+  template <int D> std::map<tagint, Axes> turned_lattices(const std::vector<int> &) const;
   template <int D> void find_quadrature(const std::vector<int> &);
   void resolve();
   template <int D> void find_self_pairs();
   void look_for_passing();
   bool is_solid(int i) const;
+  bool is_periodic() const;
   template <int D> void break_bonds_of_all(double stretch, const Energy &energy);
   template <int D> bool renew(int i);
   template <int D> void move_apart();
-  double *bond_in(int s, int k)
-  {
-    return &data[(size_t) s * maxbond * nvalue] + FSI::number_of_bond(k, nvalue);
-  }
+  double *bond_in(int s, int k);
   void move_bond(int s, int from, int to);
   void complete(int s);
-  int nplace() const { return keeps_places ? domain->dimension : 0; }    // numbers of one
+  int nplace() const;    // numbers of one
   void reserve(int n);
+  void hold(size_t n);
   int new_slot(int n);
   int nwhole() const { return keeps_images ? 2 : 1; }    // numbers of a bond beside its doubles
   int pack(int, double *) const;

@@ -26,10 +26,11 @@
 #include "fsi_keywords.h"
 #include "fsi_population.h"
 #include "fsi_record.h"
-#include "group.h"
+#include "fsi_settling.h"
+#include "fsi_split.h"
+#include "fsi_zones.h"
 #include "math_extra.h"
 #include "modify.h"
-#include "region.h"
 #include "update.h"
 
 #include <algorithm>
@@ -41,12 +42,14 @@ using namespace FSI;
 
 // Spacings from one level to the next: half the mass, so long as this part of it
 static constexpr double RATIO_ERROR = 0.02;
-// Distance in spacings over which two merge; over which one does that is three times as far out as
-// need be, and has found nobody
-static constexpr double REACH = 1.2, FAR_REACH = 1.7, FAR = 3.0;
+// Distance in spacings over which two merge; over which one does that has found nobody at the edge
+// of its zone, and is half as far again out as need be
+static constexpr double REACH = 1.2, FAR_REACH = 1.7, FAR = 1.5;
 // Nearer pairs come first: in steps of an eighth of a spacing, with edges that no lattice's
 // distances are near, since the two see their distance with different round-off
 static constexpr double PER_SPACING = 8.0, OFF_LATTICE = 0.37;
+// Who has found nobody comes before all others: further out there is nobody left for him
+static constexpr int LATER = 100;
 static constexpr int ROUNDS = 3;          // of choosing partners
 static constexpr double CROWDED = 2.5;    // spacings: who is as near makes a place less empty
 static constexpr int SWEEPS = 12;         // of choosing a direction again
@@ -57,8 +60,9 @@ static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of 
 /* ---------------------------------------------------------------------- */
 
 FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), who("Fix fsi/refine"), every(0), settle_steps(30), body_bit(0),
-    fix_fsi(nullptr), total{}, last_event(-1), moving(false), told(false), message(nullptr), mine{}
+    Fix(lmp, narg, arg), who("Fix fsi/refine"), every(0), settle_steps(30),
+    zones(new Zones(lmp, who)), fix_fsi(nullptr), total{}, last_event(-1), told(false),
+    message(nullptr), mine{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/refine", error);
@@ -74,9 +78,9 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
     if (key == "types")
       read_types(values);
     else if (key == "region")
-      region_ids = values;
+      zones->read_regions(values);
     else if (key == "distance")
-      read_distances(values);
+      zones->read_distances(values);
     else if (key == "settle") {
       if (values.size() != 1) utils::missing_cmd_args(FLERR, "fix fsi/refine settle", error);
       settle_steps = integer(lmp, who + " settle", values[0], 0, 1000);
@@ -88,18 +92,7 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
   if (types.size() < 2)
     error->all(FLERR, "{} requires keyword types with two atom types or more, the coarsest first",
                who);
-  const size_t zones = region_ids.size() + distances.size();
-  if (!region_ids.empty() && !distances.empty())
-    error->all(FLERR, "{} takes region or distance, not both", who);
-  if (zones != types.size() - 1)
-    error->all(FLERR,
-               "{} has {} types and {} {}: expected one for each type but the first, that of "
-               "larger spacing first",
-               who, types.size(), zones, distances.empty() ? "regions" : "distances");
-  for (const auto &name : region_ids)
-    if (!domain->get_region_by_id(name))
-      error->all(FLERR, "Region {} of fix fsi/refine does not exist", name);
-
+  zones->check_number(types.size());
   directions = split_directions(domain->dimension);
   force_reneighbor = 1;
   vector_flag = 1;
@@ -109,6 +102,8 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
   comm_forward = 1;
 }
+
+FixFSIRefine::~FixFSIRefine() = default;
 
 void FixFSIRefine::read_types(const std::vector<std::string> &words)
 {
@@ -121,21 +116,6 @@ void FixFSIRefine::read_types(const std::vector<std::string> &words)
   }
   if (types.size() > MAX_LEVELS)
     error->all(FLERR, "{} types: there are {}, expected {} at most", who, types.size(), MAX_LEVELS);
-}
-
-void FixFSIRefine::read_distances(const std::vector<std::string> &words)
-{
-  if (words.empty()) utils::missing_cmd_args(FLERR, "fix fsi/refine distance", error);
-  body_id = words[0];
-  const int of_body = group->find(body_id);
-  if (of_body < 0) error->all(FLERR, "Group {} of fix fsi/refine distance does not exist", body_id);
-  body_bit = group->bitmask[of_body];
-  for (size_t k = 1; k < words.size(); k++) {
-    distances.push_back(numeric(lmp, who + " distance", words[k], Range::above(0.0)));
-    if (k > 1 && distances[k - 1] >= distances[k - 2])
-      error->all(FLERR, "{} distance: {} after {}, expected less: the finer levels are nearer", who,
-                 distances[k - 1], distances[k - 2]);
-  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -160,7 +140,7 @@ void FixFSIRefine::init()
   if (facts_of_fluids(lmp).density_at_surfaces)
     error->all(FLERR, "{} does not support density/surface of pair_style fsi/fluid", who);
   check_types();
-  find_zones();
+  zones->init(*fix_fsi, types);
   open_ends.clear();
   for (const char *style : {"^fsi/inlet$", "^fsi/outlet$"})
     for (const auto &fix : modify->get_fix_by_style(style))
@@ -210,33 +190,6 @@ void FixFSIRefine::check_types() const
   }
 }
 
-void FixFSIRefine::find_zones()
-{
-  regions.clear();
-  moving = !distances.empty();
-  for (const auto &name : region_ids) {
-    regions.push_back(domain->get_region_by_id(name));
-    if (!regions.back()) error->all(FLERR, "Region {} of fix fsi/refine does not exist", name);
-    moving = moving || regions.back()->dynamic_check();
-  }
-  for (size_t k = 1; k < distances.size(); k++) {
-    const double shell = distances[k - 1] - distances[k], least = least_shell(k);
-    if (shell < least)
-      error->all(FLERR,
-                 "{} distance: from {} to {} there is {:g} for atom type {}: expected at least "
-                 "{:g}, the kernel's support of type {} and a spacing of type {}",
-                 who, distances[k], distances[k - 1], shell, types[k], least, types[k - 1],
-                 types[k]);
-  }
-}
-
-// between the zone of level k + 1 and the end of that of level k: one level is all that a particle
-// sees beside its own
-double FixFSIRefine::least_shell(int k) const
-{
-  return fix_fsi->resolution[types[k - 1]].cut + fix_fsi->dx_of(types[k]);
-}
-
 /* ----------------------------------------------------------------------
    Before the first step, if it is one of those: all that is too coarse
 ------------------------------------------------------------------------- */
@@ -262,7 +215,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   renew_ghosts();
   std::fill_n(mine, NTOTAL, 0.0);
   look(may_split, may_merge);
-  if (moving || first) check_zones();
+  if (zones->moving() || first) check_zones();
   if (first) warn_of_bodies();
 
   const auto divisions = plan_divisions();
@@ -290,7 +243,12 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   fix_fsi->population.remove(gone, nullptr);
   fix_fsi->population.release(released);
   fix_fsi->population.end();
-  if (settle_steps > 0) settle(gather(changed, world));
+  if (settle_steps == 0) return;
+  const auto events = gather(changed, world);
+  renew_ghosts();
+  std::vector<char> moves(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; i++) moves[i] = level(i) >= 0 && !in_open_end(i, 0);
+  Settling(lmp, *fix_fsi, moves, events).run(settle_steps);
 }
 
 // where they belong, with ghosts that are where these are: those that lists of before have are a
@@ -307,182 +265,45 @@ void FixFSIRefine::renew_ghosts()
 }
 
 /* ----------------------------------------------------------------------
-   What has split or merged is not where the pressure around it is even. On its way there by itself
-   it would make sound, and with each event the fluid would lose some of its mean pressure, since
-   its density follows what moves. So particles around are moved there at once, with their density,
-   by steps against the sum of V grad W: less the further they are from an event, and not where
-   they see bodies, segments of mirror walls or a surface.
-------------------------------------------------------------------------- */
-
-std::vector<double> FixFSIRefine::mobilities(std::vector<tagint> changed) const
-{
-  std::sort(changed.begin(), changed.end());
-  const int nall = atom->nlocal + atom->nghost, dim = fix_fsi->dim;
-  const Cells events(atom->x, nall, dim, fix_fsi->cut, [&](int j) {
-    return std::binary_search(changed.begin(), changed.end(), atom->tag[j]);
-  });
-  const Cells bodies(atom->x, nall, dim, fix_fsi->cut + fix_fsi->dx, [&](int j) {
-    const int species = fix_fsi->state[atom->type[j]].species;
-    return species == SOLID || species == RIGID;
-  });
-  std::vector<double> mobility(atom->nlocal, 0.0);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (level(i) < 0 || in_open_end(i, 0)) continue;
-    const double *const x = atom->x[i];
-    const double cut = fix_fsi->resolution[atom->type[i]].cut, dx = fix_fsi->dx_of(atom->type[i]);
-    double event = cut * cut, body = (cut + dx) * (cut + dx);
-    events.around(x, [&](int, double rsq) {
-      event = std::min(event, rsq);
-    });
-    if (event >= cut * cut) continue;
-    bodies.around(x, [&](int, double rsq) {
-      body = std::min(body, rsq);
-    });
-    body = std::sqrt(body);
-    for (const auto &wall : fix_fsi->walls.wall)
-      if (wall.finite && wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
-    mobility[i] =
-        std::min(1.0, 2.0 - 2.0 * std::sqrt(event) / cut) * std::max(0.0, (body - cut) / dx);
-  }
-  return mobility;
-}
-
-void FixFSIRefine::settle(const std::vector<tagint> &changed)
-{
-  static constexpr double STRENGTH = 0.15, LONGEST = 0.05, SURFACE = 0.9, INSIDE = 0.95;
-  renew_ghosts();
-  const int dim = fix_fsi->dim;
-  double *const *const x = atom->x, *const account = fix_fsi->account(FixFSI::LEVELS);
-  const Cells cells(x, atom->nlocal + atom->nghost, dim, fix_fsi->cut + fix_fsi->dx, [&](int j) {
-    return fix_fsi->state[atom->type[j]].species != NONE;
-  });
-  const auto mobility = mobilities(changed);
-  std::vector<int> movers, near;    // who moves, and who can come into their support on the way
-  std::vector<size_t> first;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (mobility[i] <= 0.0) continue;
-    movers.push_back(i);
-    first.push_back(near.size());
-    const double reach = fix_fsi->resolution[atom->type[i]].cut + fix_fsi->dx_of(atom->type[i]);
-    cells.around(x[i], [&](int j, double rsq) {
-      const int type = atom->type[j];
-      const double both = 0.5 * (reach + fix_fsi->resolution[type].cut + fix_fsi->dx_of(type));
-      if (j != i && rsq < both * both) near.push_back(j);
-    });
-  }
-  first.push_back(near.size());
-  std::vector<double> step(3 * movers.size()), volume;
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-    volume.push_back(atom->rho[i] > 0.0 ? atom->rmass[i] / atom->rho[i] : 0.0);
-  for (int k = 0; k < settle_steps; k++) {
-    for (size_t m = 0; m < movers.size(); m++) {
-      const int i = movers[m];
-      double *const d = &step[3 * m], sum[4];
-      even_out(i, near.data() + first[m], first[m + 1] - first[m], volume.data(), sum);
-      const double dx = fix_fsi->dx_of(atom->type[i]),
-                   full = std::clamp((sum[3] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
-      MathExtra::copy3(sum, d);
-      MathExtra::scale3(-STRENGTH * dx * dx * mobility[i] * full, d);
-      const double length = MathExtra::len3(d);
-      if (length > LONGEST * dx) MathExtra::scale3(LONGEST * dx / length, d);
-    }
-    for (size_t m = 0; m < movers.size(); m++) {
-      const int i = movers[m];
-      if (account) *account += fix_fsi->potential(i);
-      for (int d = 0; d < dim; d++) x[i][d] += step[3 * m + d];
-      if (account) *account -= fix_fsi->potential(i);
-    }
-    comm->forward_comm();
-  }
-}
-
-// sum of V grad W, and of V W, over neighbors
-void FixFSIRefine::even_out(int i, const int *near, size_t n, const double *volume,
-                            double *sum) const
-{
-  const double *const x = atom->x[i], own = fix_fsi->h_of(atom->type[i]);
-  const int walls = fix_fsi->walls.near(x, fix_fsi->cut);
-  std::fill_n(sum, 4, 0.0);
-  with_kernel(fix_fsi->kernel, fix_fsi->dim, own, [&](const auto &kernel) {
-    using K = std::decay_t<decltype(kernel)>;
-    const double supportsq = kernel.cutsq * kernel.hinv * kernel.hinv;
-    const auto count = [&](const K &mean, int j, double rsq, const double *d) {
-      const double r = std::sqrt(rsq), g = volume[j] * mean.gradient(r);
-      for (int a = 0; a < K::DIM; a++) sum[a] += g * d[a];
-      sum[3] += volume[j] * mean.W(r);
-    };
-    const auto images = [&](const K &mean, int j, double rsq) {
-      fix_fsi->walls.images(walls, rsq, x, atom->x[j], mean.cutsq,
-                            [&](const Walls::Reflection &, double rsq_image, const double *d) {
-                              count(mean, j, rsq_image, d);
-                            });
-    };
-    sum[3] = volume[i] * kernel.W(0.0);
-    if (walls) images(kernel, i, 0.0);
-    for (size_t k = 0; k < n; k++) {
-      const int j = near[k];
-      const double h = 0.5 * (own + fix_fsi->h_of(atom->type[j])), *const xj = atom->x[j];
-      double d[3] = {}, rsq = 0.0;
-      for (int a = 0; a < K::DIM; a++) {
-        d[a] = x[a] - xj[a];
-        rsq += d[a] * d[a];
-      }
-      if (rsq >= supportsq * h * h) continue;    // images are further away
-      const auto pair = [&](const K &mean) {
-        count(mean, j, rsq, d);
-        if (walls) images(mean, j, rsq);
-      };
-      h == own ? pair(kernel) : pair(K(h));
-    }
-  });
-}
-
-/* ----------------------------------------------------------------------
-   A zone grown by a distance: is any place as far away, in a number of directions, inside?
-------------------------------------------------------------------------- */
-
-bool FixFSIRefine::in_zone(int k, int i, double grown) const
-{
-  if (regions.empty()) return away[i] < distances[k - 1] + grown;
-  Region *const region = regions[k - 1];
-  const double *const x = atom->x[i];
-  if (region->match(x[0], x[1], x[2])) return true;
-  if (grown == 0.0) return false;
-  const auto matches = [&](const std::array<double, 3> &e, double to) {
-    double at[3] = {x[0] + to * e[0], x[1] + to * e[1], x[2] + to * e[2]};
-    domain->remap(at);
-    return region->match(at[0], at[1], at[2]) != 0;
-  };
-  for (const auto &e : directions)
-    if (matches(e, grown) || matches(e, -grown)) return true;
-  return false;
-}
-
-/* ----------------------------------------------------------------------
    Of each particle: the zones that it is in, and what it is to do. A particle merges a coarse
    spacing outside of its zone, so that one that moves to and fro at the edge does not change.
 ------------------------------------------------------------------------- */
 
 void FixFSIRefine::look(bool may_split, bool may_merge)
 {
-  for (auto *region : regions) region->prematch();
-  if (body_bit) measure_distances();
+  zones->find(*fix_fsi, FAR * fix_fsi->dx_of(types[0]));
   carried.assign(atom->nlocal + atom->nghost, 0);
   for (int i = 0; i < atom->nlocal; i++) {
     const int own = level(i);
     if (own < 0) continue;
+    check_mass(i);
     int wish = 0;
     for (int k = 1; k <= finest(); k++)
-      if (in_zone(k, i, 0.0)) wish |= 1 << k;
+      if (zones->has(k, i, 0.0)) wish |= 1 << k;
     const bool leaves = in_open_end(i, wish);
     if (may_split && own < finest() && (wish & 1 << (own + 1))) wish |= SPLIT;
     if (may_merge && own > 0 && !leaves && !(wish & 1 << own)) {
       const double margin = fix_fsi->dx_of(types[own - 1]);
-      if (!in_zone(own, i, margin)) wish |= in_zone(own, i, FAR * margin) ? MERGE : MERGE | EAGER;
+      if (!zones->has(own, i, margin))
+        wish |= zones->has(own, i, FAR * margin) ? MERGE : MERGE | EAGER;
     }
     carried[i] = wish;
   }
   send(carried);
+}
+
+// a level is a mass, too: a type set since leaves those of another one
+void FixFSIRefine::check_mass(int i) const
+{
+  const int t = atom->type[i];
+  const double m = atom->rmass[i],
+               usual = fix_fsi->state[t].rho0 * std::pow(fix_fsi->dx_of(t), fix_fsi->dim);
+  if (m > 0.6 * usual && m < 1.6 * usual) return;
+  error->one(FLERR,
+             "{}: atom {} of type {} has mass {:g}, expected some {:g} on this level, its density "
+             "times its spacing to the power of {}. Commands that set types leave masses as they "
+             "are: set ... mass",
+             who, atom->tag[i], t, m, usual, fix_fsi->dim);
 }
 
 // of this group, and a level of its fluid
@@ -508,42 +329,6 @@ bool FixFSIRefine::in_open_end(int i, int wish) const
 }
 
 /* ----------------------------------------------------------------------
-   distances of the fluid from the body, all of whose particles are on each rank for that
-------------------------------------------------------------------------- */
-
-void FixFSIRefine::measure_distances()
-{
-  std::vector<std::array<double, 3>> own;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & body_bit) own.push_back({atom->x[i][0], atom->x[i][1], atom->x[i][2]});
-  auto body = gather(own, world);
-  if (body.empty()) error->all(FLERR, "{} distance: there are no atoms in group {}", who, body_id);
-  const double reach = distances[0] + FAR * fix_fsi->dx_of(types[0]);
-  for (int d = 0; d < fix_fsi->dim; d++) {    // images across periods
-    if (!domain->periodicity[d]) continue;
-    for (size_t k = 0, n = body.size(); k < n; k++)
-      for (const int side : {-1, 1}) {
-        auto image = body[k];
-        image[d] += side * domain->prd[d];
-        if (image[d] > domain->boxlo[d] - reach && image[d] < domain->boxhi[d] + reach)
-          body.push_back(image);
-      }
-  }
-  std::vector<const double *> x;
-  for (const auto &p : body) x.push_back(p.data());
-  const Cells cells(x.data(), x.size(), fix_fsi->dim, reach);
-  away.assign(atom->nlocal, Cells::LARGE);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (level(i) < 0) continue;
-    double least = Cells::LARGE;
-    cells.around(atom->x[i], [&](int, double rsq) {
-      least = std::min(least, rsq);
-    });
-    away[i] = std::sqrt(least);
-  }
-}
-
-/* ----------------------------------------------------------------------
    Between the zone of a level and the end of that of the one before: at least the support of the
    coarser one's kernel. As far as there is fluid.
 ------------------------------------------------------------------------- */
@@ -561,14 +346,12 @@ void FixFSIRefine::check_zones() const
       const double *const x = atom->x[i];
       inner.around(x, [&](int j, double rsq) {
         if (rsq >= support * support) return;
-        const std::string zone =
-            regions.empty() ? "" : fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
         error->one(FLERR,
                    "Atom {} at {:g} {:g} {:g} is not in the zone of type {}, but only {:.3g} from "
                    "atom {}, which is in that of type {}{}: fix {} needs zones inside each other, "
                    "at least the kernel's support of type {} apart, {:g}",
                    atom->tag[i], x[0], x[1], x[2], types[k], std::sqrt(rsq), atom->tag[j],
-                   types[k + 1], zone, id, types[k - 1], support);
+                   types[k + 1], zones->names(k), id, types[k - 1], support);
       });
     }
   }
@@ -588,27 +371,21 @@ void FixFSIRefine::warn_of_bodies()
     return species == SOLID || species == RIGID;
   };
   const Cells bodies(atom->x, nall, fix_fsi->dim, fix_fsi->cut, is_body);
-  struct Meeting {
-    tagint fluid, body;
-    double dx, own;
-  };
-  std::vector<Meeting> meetings;
-  for (int i = 0; i < atom->nlocal; i++) {
+  const auto coarse = find_particles(atom, world, [&](int i) {
     const int own = level(i);
-    if (own < 0 || own == finest() || (carried[i] & SPLIT)) continue;
+    if (own < 0 || own == finest() || (carried[i] & SPLIT)) return false;
     const double dx = fix_fsi->dx_of(type[i]);
+    bool found = false;
     bodies.around(atom->x[i], [&](int j, double rsq) {
-      const double of_body = fix_fsi->dx_of(type[j]);
-      if (dx > TOO_COARSE * of_body && rsq < dx * dx && meetings.empty())
-        meetings.push_back({atom->tag[i], atom->tag[j], dx, of_body});
+      found = found || (rsq < dx * dx && dx > TOO_COARSE * fix_fsi->dx_of(type[j]));
     });
-  }
-  const auto all = gather(meetings, world);
-  if (all.empty() || comm->me) return;
-  error->warning(FLERR,
-                 "{}: fluid atom {} has a spacing of {:g}, and beside it atom {} of a body or "
-                 "wall one of {:g}: let the finest level reach a kernel's support beyond bodies",
-                 who, all[0].fluid, all[0].dx, all[0].body, all[0].own);
+    return found;
+  });
+  if (coarse.count && comm->me == 0)
+    error->warning(FLERR,
+                   "{}: {} fluid particles, the first of them atom {}, are beside a body or wall "
+                   "of finer spacing: let the finest level reach a kernel's support beyond bodies",
+                   who, coarse.count, coarse.first);
 }
 
 static uint64_t hash_of(tagint a, tagint b)
@@ -787,7 +564,8 @@ void FixFSIRefine::choose_partners()
         if (tag[j] == tag[i] || partner[j] < 0 || atom->type[j] != atom->type[i]) return;
         const double q = std::sqrt(rsq) * per_dx;
         if (q >= ((carried[i] | carried[j]) & EAGER ? FAR_REACH : REACH)) return;
-        const std::pair<int, uint64_t> key = {(int) (PER_SPACING * q + OFF_LATTICE),
+        const int late = (carried[i] | carried[j]) & EAGER ? 0 : LATER;
+        const std::pair<int, uint64_t> key = {late + (int) (PER_SPACING * q + OFF_LATTICE),
                                               hash_of(tag[i], tag[j])};
         if (chosen[i] >= 0 && !(key < best)) return;
         best = key;
@@ -930,5 +708,5 @@ void FixFSIRefine::restart(char *buf)
 double FixFSIRefine::memory_usage()
 {
   return (double) (carried.capacity() + partner.capacity()) * sizeof(tagint) +
-      (double) chosen.capacity() * sizeof(int) + (double) away.capacity() * sizeof(double);
+      (double) chosen.capacity() * sizeof(int);
 }

@@ -21,16 +21,17 @@ FixStyle(fsi/refine,FixFSIRefine);
 #define LMP_FIX_FSI_REFINE_H
 
 #include "fix.h"
-#include "fsi_split.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
   class Cells;
-}
+  class Zones;
+}    // namespace FSI
 
 // Levels of one fluid, atom types each with half the mass of the one before: where a finer one is
 // wanted a particle splits in two, elsewhere two that are nearest to each other merge. Only in
@@ -40,6 +41,7 @@ namespace FSI {
 class FixFSIRefine : public Fix {
  public:
   FixFSIRefine(class LAMMPS *, int, char **);
+  ~FixFSIRefine() override;
   int setmask() override;
   void init() override;
   void setup_pre_exchange() override;
@@ -66,42 +68,30 @@ class FixFSIRefine : public Fix {
 
   const std::string who;
   int every, settle_steps;
-  std::vector<int> types, level_of;       // from the coarsest on; per type, -1: none of them
-  std::vector<std::string> region_ids;    // where the levels from 1 on are,
-  std::vector<class Region *> regions;
-  std::string body_id;    // or how near to these particles
-  std::vector<double> distances;
-  int body_bit;
+  std::vector<int> types, level_of;           // from the coarsest on; per type, -1: none of them
+  const std::unique_ptr<FSI::Zones> zones;    // where the levels from 1 on are
   class FixFSI *fix_fsi;
   std::vector<class FixFSIInlet *> open_ends;
   std::vector<std::array<double, 3>> directions;    // of splitting
   double total[NTOTAL];
   bigint last_event;
-  bool moving, told;
+  bool told;
 
   // of one event
   // per particle, local and ghost: see Wish; name; direction, from 1 on, 0: it does not split
   std::vector<tagint> carried, partner, heading;
-  std::vector<int> chosen;     // per local one: index of its partner
-  std::vector<double> away;    // per local one: from the body
+  std::vector<int> chosen;    // per local one: index of its partner
   std::vector<tagint> *message;
   double mine[NTOTAL];
 
   int finest() const { return (int) types.size() - 1; }
+  void check_mass(int i) const;
   int level(int i) const;
   void read_types(const std::vector<std::string> &);
-  void read_distances(const std::vector<std::string> &);
   void check_types() const;
-  void find_zones();
-  double least_shell(int k) const;
 
   void event(bool may_split, bool may_merge);
   void renew_ghosts();
-  void settle(const std::vector<tagint> &changed);
-  std::vector<double> mobilities(std::vector<tagint> changed) const;
-  void even_out(int i, const int *near, size_t n, const double *volume, double *sum) const;
-  void measure_distances();
-  bool in_zone(int k, int i, double grown) const;
   void look(bool may_split, bool may_merge);
   bool in_open_end(int i, int wish) const;
   void check_zones() const;

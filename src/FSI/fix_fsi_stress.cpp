@@ -20,6 +20,8 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_changes.h"
+#include "fsi_jaumann.h"
+#include "fsi_plasticity.h"
 #include "fsi_record.h"
 #include "modify.h"
 #include "pair.h"
@@ -112,6 +114,21 @@ void FixFSIStress::init()
         FLERR,
         "A material has a yield stress, but stays elastic: fix fsi/stress lacks keyword plastic");
 }
+
+template <int D>
+double FixFSIStress::advance_stress(int i, const double *L, double dt, const State &material)
+{
+  auto s = Sym<D>::load(stress[i]);
+  double work = 0.0;
+  jaumann_update<D>(s, L, dt, material.shear, plane_stress);
+  if (plastic && material.yield > 0.0)
+    work = radial_return<D>(s, strain[i], material.shear, material.yield, material.hardening);
+  s.store(stress[i]);
+  return work;
+}
+
+template double FixFSIStress::advance_stress<2>(int, const double *, double, const State &);
+template double FixFSIStress::advance_stress<3>(int, const double *, double, const State &);
 
 /* ----------------------------------------------------------------------
    Where solids were when they were first seen, for contact of a body with itself; ghosts are told.

@@ -21,9 +21,7 @@ FixStyle(fsi/stress,FixFSIStress);
 #define LMP_FIX_FSI_STRESS_H
 
 #include "fsi_fields.h"
-#include "fsi_jaumann.h"
 #include "fsi_part.h"
-#include "fsi_plasticity.h"
 
 namespace LAMMPS_NS {
 
@@ -57,17 +55,7 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   // half a step back to half a step ahead, with the velocity gradient L of the time between
   // (fsi_jaumann.h) returns the plastic work per volume
   template <int D>
-  double advance_stress(int i, const double *L, double dt, const FSI::State &material)
-  {
-    auto s = FSI::Sym<D>::load(stress[i]);
-    double work = 0.0;
-    FSI::jaumann_update<D>(s, L, dt, material.shear, plane_stress);
-    if (plastic && material.yield > 0.0)
-      work =
-          FSI::radial_return<D>(s, strain[i], material.shear, material.yield, material.hardening);
-    s.store(stress[i]);
-    return work;
-  }
+  double advance_stress(int i, const double *L, double dt, const FSI::State &material);
 
   // equivalent plastic strain of atom i
   double plastic_strain(int i) const { return plastic ? strain[i] : 0.0; }

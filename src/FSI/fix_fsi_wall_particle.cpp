@@ -24,6 +24,8 @@
 #include "fsi_levels.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
+#include "fsi_rows.h"
+#include "fsi_swaps.h"
 #include "fsi_tensor.h"
 #include "group.h"
 #include "memory.h"
@@ -45,7 +47,7 @@ static constexpr double AUTO = -1.0;
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), fix_fsi(nullptr),
-    sum(nullptr), nmax(0), nsum(0), force_on{}
+    swaps(new Swaps(lmp)), sum(nullptr), nmax(0), nsum(0), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
@@ -203,6 +205,9 @@ void FixFSIWallParticle::sum_up()
     members.clear();
     for (int i = 0; i < atom->nlocal + atom->nghost; i++)
       if (mask[i] & groupbit) members.push_back(i);
+    swaps->find([=](int i) {
+      return (mask[i] & groupbit) != 0;
+    });
   }
   if (atom->nmax > nmax) {
     nmax = atom->nmax;
@@ -241,7 +246,10 @@ void FixFSIWallParticle::sum_up()
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     });
   });
-  if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
+  if (force->newton_pair)
+    exchange(fix_fsi->profile, comm, [this]() {
+      swaps->reverse(this);
+    });
 }
 
 /* ----------------------------------------------------------------------
@@ -302,7 +310,9 @@ void FixFSIWallParticle::end_state(bool advance)
       old[3] = 1.0;
     }
   }
-  forward_comm(fix_fsi->profile, comm, this);
+  exchange(fix_fsi->profile, comm, [this]() {
+    swaps->forward(this);
+  });
 }
 
 /* ----------------------------------------------------------------------

@@ -23,10 +23,14 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 #include "fix.h"
 #include "fsi_part.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Swaps;
+}
 
 // Walls of any shape, made of particles (Adami, Hu & Adams, J. Comput. Phys. 231 (2012) 7057): a
 // wall particle's pressure, and for no slip its velocity in viscous forces, are extrapolated from
@@ -67,7 +71,8 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   std::vector<class FixFSIMove *> movers;
   class FixStoreAtom *before;    // velocity at the last step, and whether there was one
   class FixFSI *fix_fsi;
-  std::vector<int> members;    // the group's particles, local and ghost
+  std::vector<int> members;                   // the group's particles, local and ghost
+  const std::unique_ptr<FSI::Swaps> swaps;    // theirs
   template <class F>
   void for_pairs(size_t level, F f) const;    // f(wall particle, fluid particle) of those that
                                               // may be within the kernel's support

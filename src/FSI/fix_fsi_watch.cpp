@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_keywords.h"
+#include "fsi_stop.h"
 #include "group.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -51,7 +52,8 @@ static constexpr Description about[] = {    // from DISTANCE on
 /* ---------------------------------------------------------------------- */
 
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), halt(lmp, "Fix fsi/watch"), energy_before(-1.0),
+    Fix(lmp, narg, arg), fix_fsi(nullptr), halt(new Stop(lmp, "Fix fsi/watch")), limit(NTROUBLE),
+    worst(NTROUBLE), total(NTROUBLE), seen(NTROUBLE, 0.0), energy_before(-1.0),
     reflected_before(-1.0), warned(0), violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
@@ -74,12 +76,18 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
   if (!loses) limit[LOST] = 0.0;
 
   clear();
-  for (double &s : seen) s = 0.0;
   scalar_flag = vector_flag = 1;
   size_vector = NTROUBLE - DISTANCE;
   extscalar = extvector = 0;
   global_freq = 1;
   dynamic_group_allow = 1;
+}
+
+FixFSIWatch::~FixFSIWatch() = default;
+
+double FixFSIWatch::compute_vector(int k)
+{
+  return seen[DISTANCE + k];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -103,7 +111,7 @@ void FixFSIWatch::find_idle(const Census &, const Idle &nothing) const
 void FixFSIWatch::setup(int)
 {
   energy_before = reflected_before = -1.0;
-  look(Stop::START);
+  look(true);
 }
 
 /* ----------------------------------------------------------------------
@@ -114,12 +122,12 @@ void FixFSIWatch::setup(int)
 
 void FixFSIWatch::post_force(int)
 {
-  if (update->ntimestep % interval == 0) look(Stop::MIDDLE);
+  if (update->ntimestep % interval == 0) look(false);
 }
 
 // particles may be meant to leave
 
-double FixFSIWatch::allowed(Trouble q) const
+double FixFSIWatch::allowed(int q) const
 {
   return q == LOST && !loses && output->thermo->lostflag == Thermo::IGNORE ? BIG : limit[q];
 }
@@ -128,18 +136,18 @@ double FixFSIWatch::allowed(Trouble q) const
 
 void FixFSIWatch::clear()
 {
-  for (Finding &w : worst) w = {};
+  worst.assign(NTROUBLE, {});
   worst[DISTANCE].value = BIG;
-  for (double &t : total) t = 0.0;
+  total.assign(NTROUBLE, 0.0);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSIWatch::enter(Trouble q, int i, double value, int j)
+void FixFSIWatch::enter(int q, int i, double value, int j)
 {
   Finding &w = worst[q];
   if (w.tag && (q == DISTANCE ? value >= w.value : value <= w.value)) return;
-  w = halt.finding(q, i, value, j);
+  w = halt->finding((Trouble) q, i, value, j);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -207,7 +215,7 @@ void FixFSIWatch::look_at_pairs()
 
 /* ---------------------------------------------------------------------- */
 
-void FixFSIWatch::look(Stop::When when)
+void FixFSIWatch::look(bool at_start)
 {
   clear();
   double mine[3] = {0.0, 0.0, (double) atom->nlocal}, all[3];
@@ -228,29 +236,30 @@ void FixFSIWatch::look(Stop::When when)
   double own[NTROUBLE];
   for (int q = 0; q < NTROUBLE; q++)
     own[q] = q == DISTANCE ? -worst[q].value : q >= ENERGY ? total[q] : worst[q].value;
-  MPI_Allreduce(own, seen, NTROUBLE, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(own, seen.data(), NTROUBLE, MPI_DOUBLE, MPI_MAX, world);
   seen[DISTANCE] = -seen[DISTANCE];
-  judge(when);
+  judge(at_start);
 }
 
 /* ----------------------------------------------------------------------
    all ranks know what is wrong, and warn or stop together
 ------------------------------------------------------------------------- */
 
-void FixFSIWatch::judge(Stop::When when)
+void FixFSIWatch::judge(bool at_start)
 {
+  const auto when = at_start ? Stop::START : Stop::MIDDLE;
   for (int k = DISTANCE; k < NTROUBLE; k++) {
     const auto q = static_cast<Trouble>(k);
     if (q == DISTANCE ? seen[q] >= allowed(q) : seen[q] <= allowed(q)) continue;
     violations++;
     if (warned & 1 << k) continue;
-    Finding all = halt.worst(worst[q], q == DISTANCE ? -worst[q].value : worst[q].value);
+    Finding all = halt->worst(worst[q], q == DISTANCE ? -worst[q].value : worst[q].value);
     all.trouble = q;
     all.value = seen[q];
     const auto what = fmt::format("{} {:.4g} is {} the limit {:g}", about[q - DISTANCE].what,
                                   all.value, q == DISTANCE ? "below" : "above", allowed(q));
-    const auto text = halt.describe(*fix_fsi, what, all, when);
-    if (!warn) halt.stop(*fix_fsi, text, all, when);
+    const auto text = halt->describe(*fix_fsi, what, all, when);
+    if (!warn) halt->stop(*fix_fsi, text, all, when);
     warned |= 1 << k;
     if (comm->me == 0) error->warning(FLERR, text);
   }

@@ -22,11 +22,15 @@ FixStyle(fsi/watch,FixFSIWatch);
 
 #include "fix.h"
 #include "fsi_part.h"
-#include "fsi_stop.h"
 
-#include <string>
+#include <memory>
+#include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  struct Finding;
+  class Stop;
+}    // namespace FSI
 
 // Limits of what fix fsi itself (fsi_check.h) does not look at: stops a run that goes wrong, or
 // warns, and says what went wrong where.
@@ -34,6 +38,7 @@ namespace LAMMPS_NS {
 class FixFSIWatch : public Fix, public FSI::Part {
  public:
   FixFSIWatch(class LAMMPS *, int, char **);
+  ~FixFSIWatch() override;
   void find_idle(const Census &, const Idle &) const override;
   int setmask() override { return FixConst::POST_FORCE; }
   void init() override;
@@ -41,33 +46,34 @@ class FixFSIWatch : public Fix, public FSI::Part {
   void post_force(int) override;
   // checks that found something so far; what the last one saw
   double compute_scalar() override { return static_cast<double>(violations); }
-  double compute_vector(int k) override { return seen[FSI::DISTANCE + k]; }
+  double compute_vector(int k) override;
 
  private:
   class FixFSI *fix_fsi;
   class PairFSISolidTL *solid_tl;
-  FSI::Stop halt;
+  const std::unique_ptr<FSI::Stop> halt;
 
   int interval;
-  double limit[FSI::NTROUBLE];    // BIG, for DISTANCE 0, = off
+  // of each trouble (fsi_stop.h)
+  std::vector<double> limit;          // BIG, for DISTANCE 0, = off
+  std::vector<FSI::Finding> worst;    // on this rank
+  std::vector<double> total;          // of all ranks: ENERGY, LOST, REFLECTED
+  std::vector<double> seen;           // of all ranks at the last check: the output
   int warn;
   bool distances;    // found, whether there is a limit or not
   bool loses;        // does the script say how many?
 
-  FSI::Finding worst[FSI::NTROUBLE];    // on this rank
-  double total[FSI::NTROUBLE];          // of all ranks: ENERGY, LOST, REFLECTED
-  double seen[FSI::NTROUBLE];           // of all ranks at the last check: the output
   double energy_before, reflected_before;
   int warned;    // bits of quantities
   bigint violations;
 
   void clear();
-  void enter(FSI::Trouble, int i, double value, int j = -1);
-  double allowed(FSI::Trouble) const;
+  void enter(int trouble, int i, double value, int j = -1);
+  double allowed(int trouble) const;
   void look_at_particles(double &kinetic, double &little);
   void look_at_pairs();
-  void look(FSI::Stop::When);
-  void judge(FSI::Stop::When);
+  void look(bool at_start);
+  void judge(bool at_start);
 };
 
 }    // namespace LAMMPS_NS

@@ -67,10 +67,7 @@ class Adviser : protected Pointers {
     };
     const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest(), ours);
     if (spacing(cells) && solids.style) {
-      const double reach = solids.contact;
-      const Cells wide(atom->x, atom->nlocal + atom->nghost, scene.dim,
-                       std::max(2.5, reach) * coarsest(), ours);
-      if (update->ntimestep == 0) contact(wide, reach);
+      if (update->ntimestep == 0) contact(solids.contact);
       held_bodies();
       cut_by_walls();
       yields();
@@ -178,7 +175,7 @@ class Adviser : protected Pointers {
       double r;
       int rank;
     } closest = {BIG, comm->me}, least;
-    tagint pair[2] = {0, 0};
+    tagint pair[3] = {0, 0, -1};    // the last: the direction in which they meet around the box
     for (int i = 0; i < atom->nlocal; i++) {
       if (!has_material(i)) continue;
       double nearest = 1.25 * 1.25;    // over the spacing between the two lattices
@@ -203,6 +200,7 @@ class Adviser : protected Pointers {
         closest.r = r;
         pair[0] = std::min(atom->tag[i], atom->tag[who]);
         pair[1] = std::max(atom->tag[i], atom->tag[who]);
+        pair[2] = around_box(who);
       }
     }
     MPI_Allreduce(mine, sum, 3, MPI_DOUBLE, MPI_SUM, world);
@@ -222,20 +220,32 @@ class Adviser : protected Pointers {
     }
     if (update->ntimestep == 0) {
       MPI_Allreduce(&closest, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-      MPI_Bcast(pair, 2, MPI_LMP_TAGINT, least.rank, world);
+      MPI_Bcast(pair, 3, MPI_LMP_TAGINT, least.rank, world);
       if (least.r < 0.4)
-        warn(fmt::format("atoms {} and {} are {:.2g} spacings apart: do bodies or phases overlap? "
-                         "Put them on one lattice, or "
-                         "delete_atoms overlap",
-                         pair[0], pair[1], least.r));
+        warn(fmt::format("atoms {} and {} are {:.2g} spacings apart{}", pair[0], pair[1], least.r,
+                         pair[2] < 0 ? std::string(": do bodies or phases overlap? Put them on one "
+                                                   "lattice, or delete_atoms overlap")
+                                     : fmt::format(" around the periodic box: make it a whole "
+                                                   "number of spacings long in {}",
+                                                   "xyz"[pair[2]])));
     }
     return true;
+  }
+
+  // direction of the periodic face beyond which a particle is; -1: it is in the box
+  int around_box(int i) const
+  {
+    for (int d = 0; d < scene.dim; d++)
+      if (domain->periodicity[d] &&
+          (atom->x[i][d] < domain->boxlo[d] || atom->x[i][d] >= domain->boxhi[d]))
+        return d;
+    return -1;
   }
 
   /* Bodies that begin within each other's range of contact are pushed apart with its energy at
      once: that of all of them, and the nearest two. */
 
-  void contact(const Cells &cells, double range) const
+  void contact(double range) const
   {
     static constexpr double LITTLE = 0.02, OVERLAP = 0.8;    // of the range; spacings
     struct {
@@ -244,11 +254,15 @@ class Adviser : protected Pointers {
     } mine = {BIG, comm->me}, all;
     double energy = 0.0, total;
     tagint bodies[2] = {0, 0};
+    const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, range * coarsest(),
+                      [this](int i) {
+                        return solid(i);
+                      });
     for (int i = 0; i < atom->nlocal; i++) {
       if (!solid(i)) continue;
       cells.around(atom->x[i], [&](int j, double rsq) {
         const double spacing = 0.5 * (dx(i) + dx(j)), reach = (1.0 - LITTLE) * range * spacing;
-        if (rsq >= reach * reach || !solid(j) || atom->molecule[j] == atom->molecule[i] ||
+        if (rsq >= reach * reach || atom->molecule[j] == atom->molecule[i] ||
             !(moves(i) || moves(j)))
           return;
         const State &a = scene.state[atom->type[i]], &b = scene.state[atom->type[j]];

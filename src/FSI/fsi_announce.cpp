@@ -66,9 +66,8 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
                               : fmt::format("{} solid sub-steps", scene.substeps),
                        "fix fsi substeps", chosen || scene.substeps > 1});
   }
-  if (scene.surface_ratio > 0.0)
-    effects.push_back({fmt::format("surface looked for every {} steps", scene.surface_every),
-                       "fix fsi surface/every", scene.keep_psi});
+  if (scene.article)
+    effects.push_back({"what the article's scheme sets where nothing else is said", "", true});
   effects.push_back({"energy balance", "compute fsi/energy", scene.ledger});
 
   std::string on, off;
@@ -100,13 +99,13 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
 
 static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
 {
-  const bool newton = lmp->force->newton_pair, psi = scene.need_psi, send = psi && !scene.keep_psi;
+  const bool newton = lmp->force->newton_pair, psi = scene.need_psi;
   Part::Costs costs;
   costs.bytes = 8 * psi + (scene.walls.any() ? sizeof(int) : 0);
   costs.arrays = psi ? ", number density" : "";
   costs.forward = 1;
-  costs.back = newton * send;
-  costs.fluid_ghost = costs.solid_ghost = 1 + send * (1 + newton);
+  costs.back = newton * psi;
+  costs.fluid_ghost = costs.solid_ghost = 1 + psi * (1 + newton);
   for (const auto *p : scene.parts) p->add_costs(costs);
   costs.back += newton * costs.sums;
 
@@ -119,10 +118,6 @@ static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
       "  they carry for each ghost:{}{}\n",
       fluid ? fmt::format(" {} bytes of a fluid", 8 * costs.fluid_ghost) : "",
       solid ? fmt::format("{} {} bytes of a solid", fluid ? "," : "", 8 * costs.solid_ghost) : "");
-  if (psi && !send)
-    text += fmt::format(
-        "  every {} steps: {} message back and {} bytes of a ghost more, number density\n",
-        scene.surface_every, (int) newton, 8 * (1 + newton));
   text += costs.rarely;
 }
 
@@ -144,10 +139,7 @@ static void warn_idle(LAMMPS *lmp, const Scene &scene)
   };
   for (const auto *p : scene.parts) p->find_idle({all[0], all[1]}, nothing);
   if (scene.substeps > 1 && all[1] == 0) nothing("Fix fsi substeps", "no particle is a solid");
-  if (scene.surface_every > 1 && !scene.need_psi)
-    nothing("Fix fsi surface/every", "pair_style fsi/fluid has no surface rule");
-  if (scene.surface_every > 1 && scene.need_psi && !scene.keep_psi)
-    nothing("Fix fsi surface/every", "a density mode needs the number density in each step");
+  if (scene.article) return;
   if (scene.density_fluid != Scene::CONTINUITY && !facts_of_fluids(lmp).style)
     nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");
   if (scene.density_solid != Scene::CONTINUITY && !facts_of_solids(lmp).style)

@@ -35,7 +35,7 @@ namespace FSI {
     }
     template <class Choose>
     Cells(const double *const *x, int n, int dim, double size, Choose choose) :
-        x(x), dim(dim), size(size), next(n)
+        x(x), dim(dim), size(size)
     {
       for (int d = 0; d < dim; d++) {
         low[d] = LARGE;
@@ -58,42 +58,50 @@ namespace FSI {
       int total = 1;
       for (int d = 0; d < dim; d++)
         total *= count[d] = static_cast<int>(extent[d] / this->size) + 1;
-      head.assign(total, -1);
+      first.assign(total + 1, 0);
+      std::vector<int> cell(n, -1);
       for (int i = 0; i < n; i++) {
         if (!choose(i)) continue;
         int c = 0;
         for (int d = dim - 1; d >= 0; d--) c = c * count[d] + place(d, x[i][d]);
-        next[i] = head[c];
-        head[c] = i;
+        cell[i] = c;
+        first[c]++;
       }
+      // until all are there, where the last one of a cell has gone
+      for (int c = 0; c < total; c++) first[c + 1] += first[c];
+      members.resize(first[total]);
+      for (int i = 0; i < n; i++)
+        if (cell[i] >= 0) members[--first[cell[i]]] = i;
     }
 
-    // calls f(j, squared distance) for all particles within the cell size of a place
-    template <typename F> void around(const double *p, F f) const
+    // calls f(j, squared distance) for all particles within the cell size of a place, or the reach
+    // given: cells half as wide hold fewer that are too far
+    template <typename F> void around(const double *p, F f) const { around(p, size, f); }
+    template <typename F> void around(const double *p, double reach, F f) const
     {
       int from[3] = {0, 0, 0}, to[3] = {0, 0, 0}, c[3];
       for (int d = 0; d < dim; d++) {
-        from[d] = place(d, p[d] - size);
-        to[d] = place(d, p[d] + size);
+        from[d] = place(d, p[d] - reach);
+        to[d] = place(d, p[d] + reach);
       }
       for (c[2] = from[2]; c[2] <= to[2]; c[2]++)
-        for (c[1] = from[1]; c[1] <= to[1]; c[1]++)
-          for (c[0] = from[0]; c[0] <= to[0]; c[0]++) {
-            int k = 0;
-            for (int d = dim - 1; d >= 0; d--) k = k * count[d] + c[d];
-            for (int j = head[k]; j >= 0; j = next[j]) {
-              double rsq = 0.0;
-              for (int d = 0; d < dim; d++) rsq += (x[j][d] - p[d]) * (x[j][d] - p[d]);
-              f(j, rsq);
-            }
+        for (c[1] = from[1]; c[1] <= to[1]; c[1]++) {
+          // cells along x are next to each other
+          const int row = (dim == 3 ? c[2] * count[1] + c[1] : c[1]) * count[0];
+          for (int m = first[row + from[0]]; m < first[row + to[0] + 1]; m++) {
+            const int j = members[m];
+            double rsq = 0.0;
+            for (int d = 0; d < dim; d++) rsq += (x[j][d] - p[d]) * (x[j][d] - p[d]);
+            f(j, rsq);
           }
+        }
     }
 
    private:
     const double *const *x;
     int dim, count[3];
     double size, low[3], extent[3];
-    std::vector<int> head, next;
+    std::vector<int> first, members;    // cell by cell; where each begins, and the last one ends
 
     // clamped, which also takes what is not a number
     int place(int d, double r) const

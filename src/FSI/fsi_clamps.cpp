@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_scene.h"
 #include "math_extra.h"
 #include "modify.h"
@@ -26,10 +27,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <unordered_map>
 
 // there without package RIGID: then there is no fix rigid, and no body
 #if __has_include("fix_rigid.h")
 #include "fix_rigid.h"
+#include "fix_rigid_small.h"
 #define LMP_FSI_HAS_RIGID
 #endif
 
@@ -53,6 +57,25 @@ struct Rigid : public FixRigid {
   static constexpr auto gravity = &Rigid::id_gravity;
   static constexpr auto field = &Rigid::gvec;
 };
+struct Small : public FixRigidSmall {
+  static constexpr auto early = &Small::earlyflag, own = &Small::nlocal_body,
+                        ghosts = &Small::nghost_body, thermal = &Small::langflag;
+  static constexpr auto of_atom = &Small::bodytag;
+  static constexpr auto images = &Small::xcmimage;
+  static constexpr auto place = &Small::displace;
+  static constexpr auto bodies = &Small::body;
+  static constexpr auto gravity = &Small::id_gravity;
+  static constexpr auto field = &Small::gvec;
+};
+
+FixRigid *large(Fix *fix)
+{
+  return static_cast<FixRigid *>(fix);
+}
+FixRigidSmall *small(Fix *fix)
+{
+  return static_cast<FixRigidSmall *>(fix);
+}
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
@@ -62,22 +85,25 @@ void Clamps::find(const Scene &scene, const Fix *fix_fsi)
 {
   bodies.clear();
   mover = fix_fsi;
-  for (auto &fix : modify->get_fix_by_style("^rigid$")) {
-    auto *const rigid = static_cast<FixRigid *>(fix);
-    const int n = rigid->*Rigid::count;
-    std::vector<int> mine(n, 0), any(n, 0);
+  for (auto &fix : modify->get_fix_by_style("^rigid")) {
+    Body body = {};
+    body.fix = fix;
+    body.small = utils::strmatch(fix->style, "^rigid/small$");
+    if (!body.small && !utils::strmatch(fix->style, "^rigid$")) continue;
+    std::set<tagint> mine;
     for (int i = 0; i < atom->nlocal; i++) {
-      const int b = (rigid->*Rigid::of_atom)[i];
-      if (b >= 0 && scene.is_total_lagrangian(i) && !(atom->mask[i] & mover->groupbit)) mine[b] = 1;
+      const tagint b = id_of(body, i);
+      if (b >= 0 && scene.is_total_lagrangian(i) && !(atom->mask[i] & mover->groupbit))
+        mine.insert(b);
     }
-    MPI_Allreduce(mine.data(), any.data(), n, MPI_INT, MPI_MAX, world);
-    for (int b = 0; b < n; b++)
-      if (any[b]) {
-        Body body = {};
-        body.fix = rigid;
-        body.index = b;
-        bodies.push_back(body);
-      }
+    for (const tagint id : gather(mine, world)) {
+      body.id = id;
+      for (int d = 0; d < 6; d++)
+        body.free[d] = body.small ? 1.0
+            : d < 3               ? (large(fix)->*Rigid::free_force)[id][d]
+                                  : (large(fix)->*Rigid::free_torque)[id][d - 3];
+      bodies.push_back(body);
+    }
     if (known(fix)) refuse(fix);
   }
   sums.resize(6 * bodies.size());
@@ -86,67 +112,144 @@ void Clamps::find(const Scene &scene, const Fix *fix_fsi)
 bool Clamps::known(const Fix *fix) const
 {
   return std::any_of(bodies.begin(), bodies.end(), [=](const Body &b) {
-    return static_cast<const Fix *>(b.fix) == fix;
+    return b.fix == fix;
   });
 }
 
-void Clamps::refuse(const Fix *fix) const
+void Clamps::refuse(Fix *fix) const
 {
+  const bool is_small = utils::strmatch(fix->style, "small$");
   const auto &all = modify->get_fix_list();
   if (std::find(all.begin(), all.end(), fix) < std::find(all.begin(), all.end(), mover))
     error->all(FLERR,
                "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected after "
                "fix {}, whose sub-steps find the forces on them",
                fix->id, fix->style, mover->id);
-  if (static_cast<const FixRigid *>(fix)->*Rigid::early)
+  if (is_small && small(fix)->*Small::thermal)
+    error->all(FLERR,
+               "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected no "
+               "keyword langevin, or fix rigid",
+               fix->id, fix->style);
+  if (is_small ? small(fix)->*Small::early : large(fix)->*Rigid::early)
     error->all(FLERR,
                "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected "
                "bodyforces late in fix_modify, since fix {} finds the forces on them later",
                fix->id, fix->style, mover->id);
 }
 
+// of the body that atom i is in: an index in fix rigid, a tag in fix rigid/small; -1: in none
+tagint Clamps::id_of(const Body &b, int i) const
+{
+  if (!b.small) return (large(b.fix)->*Rigid::of_atom)[i];
+  const tagint id = (small(b.fix)->*Small::of_atom)[i];
+  return id > 0 ? id : -1;
+}
+
 void Clamps::find_members()
 {
   members.clear();
-  for (size_t first = 0; first < bodies.size();) {
-    FixRigid *const fix = bodies[first].fix;
-    std::vector<int> entry(fix->*Rigid::count, -1);
-    for (; first < bodies.size() && bodies[first].fix == fix; first++)
-      entry[bodies[first].index] = first;
-    const int *const of_atom = fix->*Rigid::of_atom;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (of_atom[i] >= 0 && entry[of_atom[i]] >= 0) members.push_back({i, entry[of_atom[i]]});
+  for (size_t first = 0, last; first < bodies.size(); first = last) {
+    std::unordered_map<tagint, int> entry;
+    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix; last++) {
+      Body &b = bodies[last];
+      entry[b.id] = last;
+      b.displace = b.small ? small(b.fix)->*Small::place : large(b.fix)->*Rigid::place;
+      b.image = b.small ? small(b.fix)->*Small::images : large(b.fix)->*Rigid::images;
+    }
+    for (int i = 0; i < atom->nlocal; i++) {
+      const auto at = entry.find(id_of(bodies[first], i));
+      if (at != entry.end()) members.push_back({i, at->second});
+    }
   }
 }
 
 /* ----------------------------------------------------------------------
-   state of a body here and there
+   state of a body here and there; fix rigid has all on each rank, fix rigid/small has each on the
+   rank of one of its atoms, and copies where others are
 ------------------------------------------------------------------------- */
 
-void Clamps::load(Body &b) const
+std::vector<Clamps::State> Clamps::states(Fix *fix) const
 {
-  std::copy_n((b.fix->*Rigid::center)[b.index], 3, b.x);
-  std::copy_n((b.fix->*Rigid::velocity)[b.index], 3, b.v);
-  std::copy_n((b.fix->*Rigid::turned)[b.index], 4, b.q);
-  std::copy_n((b.fix->*Rigid::momentum)[b.index], 3, b.L);
+  std::vector<State> mine;
+  State s = {};
+  if (!utils::strmatch(fix->style, "small$")) {
+    FixRigid *const r = large(fix);
+    for (int b = 0; b < r->*Rigid::count; b++) {
+      s.id = b;
+      std::copy_n((r->*Rigid::center)[b], 3, s.x);
+      std::copy_n((r->*Rigid::velocity)[b], 3, s.v);
+      std::copy_n((r->*Rigid::turned)[b], 4, s.q);
+      std::copy_n((r->*Rigid::momentum)[b], 3, s.L);
+      s.mass = (r->*Rigid::mass)[b];
+      std::copy_n((r->*Rigid::moments)[b], 3, s.inertia);
+      mine.push_back(s);
+    }
+    return mine;
+  }
+  for (int k = 0; k < small(fix)->*Small::own; k++) {
+    const auto &b = (small(fix)->*Small::bodies)[k];
+    s.id = atom->tag[b.ilocal];
+    std::copy_n(b.xcm, 3, s.x);
+    std::copy_n(b.vcm, 3, s.v);
+    std::copy_n(b.quat, 4, s.q);
+    std::copy_n(b.angmom, 3, s.L);
+    s.mass = b.mass;
+    std::copy_n(b.inertia, 3, s.inertia);
+    mine.push_back(s);
+  }
+  auto all = gather(mine, world);
+  std::sort(all.begin(), all.end(), [](const State &a, const State &b) {
+    return a.id < b.id;
+  });
+  return all;
 }
 
-void Clamps::store(Body &b) const
+void Clamps::store(const Body &b) const
 {
-  std::copy_n(b.x, 3, (b.fix->*Rigid::center)[b.index]);
-  std::copy_n(b.v, 3, (b.fix->*Rigid::velocity)[b.index]);
-  std::copy_n(b.q, 4, (b.fix->*Rigid::turned)[b.index]);
-  std::copy_n(b.L, 3, (b.fix->*Rigid::momentum)[b.index]);
-  std::copy_n(b.omega, 3, (b.fix->*Rigid::spin)[b.index]);
-  std::copy_n(b.ex, 3, (b.fix->*Rigid::axis_x)[b.index]);
-  std::copy_n(b.ey, 3, (b.fix->*Rigid::axis_y)[b.index]);
-  std::copy_n(b.ez, 3, (b.fix->*Rigid::axis_z)[b.index]);
+  if (b.small) {
+    const int n = small(b.fix)->*Small::own + small(b.fix)->*Small::ghosts;
+    for (int k = 0; k < n; k++) {
+      auto &to = (small(b.fix)->*Small::bodies)[k];
+      if (atom->tag[to.ilocal] != b.id) continue;
+      std::copy_n(b.x, 3, to.xcm);
+      std::copy_n(b.v, 3, to.vcm);
+      std::copy_n(b.q, 4, to.quat);
+      std::copy_n(b.L, 3, to.angmom);
+      std::copy_n(b.omega, 3, to.omega);
+      std::copy_n(b.ex, 3, to.ex_space);
+      std::copy_n(b.ey, 3, to.ey_space);
+      std::copy_n(b.ez, 3, to.ez_space);
+    }
+    return;
+  }
+  FixRigid *const r = large(b.fix);
+  std::copy_n(b.x, 3, (r->*Rigid::center)[b.id]);
+  std::copy_n(b.v, 3, (r->*Rigid::velocity)[b.id]);
+  std::copy_n(b.q, 4, (r->*Rigid::turned)[b.id]);
+  std::copy_n(b.L, 3, (r->*Rigid::momentum)[b.id]);
+  std::copy_n(b.omega, 3, (r->*Rigid::spin)[b.id]);
+  std::copy_n(b.ex, 3, (r->*Rigid::axis_x)[b.id]);
+  std::copy_n(b.ey, 3, (r->*Rigid::axis_y)[b.id]);
+  std::copy_n(b.ez, 3, (r->*Rigid::axis_z)[b.id]);
+}
+
+// calls use(body, its state) for all; both are in the order of IDs
+template <class Use> void Clamps::with_states(Use use)
+{
+  for (size_t first = 0, last; first < bodies.size(); first = last) {
+    const auto all = states(bodies[first].fix);
+    auto s = all.begin();
+    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix; last++) {
+      while (s != all.end() && s->id < bodies[last].id) ++s;
+      if (s != all.end() && s->id == bodies[last].id) use(bodies[last], *s);
+    }
+  }
 }
 
 void Clamps::follow(Body &b) const
 {
   MathExtra::q_to_exyz(b.q, b.ex, b.ey, b.ez);
-  MathExtra::angmom_to_omega(b.L, b.ex, b.ey, b.ez, (b.fix->*Rigid::moments)[b.index], b.omega);
+  MathExtra::angmom_to_omega(b.L, b.ex, b.ey, b.ez, b.inertia, b.omega);
 }
 
 /* ----------------------------------------------------------------------
@@ -178,10 +281,10 @@ void Clamps::drift(Body &b, double t) const
 
 void Clamps::kick(Body &b, double t, const double *force_and_torque) const
 {
-  const double tf = t * force->ftm2v, tm = tf / (b.fix->*Rigid::mass)[b.index];
+  const double tf = t * force->ftm2v, tm = tf / b.mass;
   for (int d = 0; d < 3; d++) {
-    b.v[d] += tm * force_and_torque[d] * (b.fix->*Rigid::free_force)[b.index][d];
-    b.L[d] += tf * force_and_torque[3 + d] * (b.fix->*Rigid::free_torque)[b.index][d];
+    b.v[d] += tm * force_and_torque[d] * b.free[d];
+    b.L[d] += tf * force_and_torque[3 + d] * b.free[3 + d];
   }
   follow(b);
 }
@@ -194,7 +297,7 @@ void Clamps::kick(Body &b, double t, const double *force_and_torque) const
 void Clamps::arm(const Member &m, double *r) const
 {
   const Body &b = bodies[m.body];
-  MathExtra::matvec(b.ex, b.ey, b.ez, (b.fix->*Rigid::place)[m.i], r);
+  MathExtra::matvec(b.ex, b.ey, b.ez, b.displace[m.i], r);
   if (domain->dimension == 2) r[2] = 0.0;
 }
 
@@ -202,7 +305,7 @@ void Clamps::place(const std::vector<Member> &list) const
 {
   for (const Member &m : list) {
     const Body &b = bodies[m.body];
-    const imageint image = (b.fix->*Rigid::images)[m.i];
+    const imageint image = b.image[m.i];
     const int box[3] = {int(image & IMGMASK) - IMGMAX, int(image >> IMGBITS & IMGMASK) - IMGMAX,
                         int(image >> IMG2BITS) - IMGMAX};
     double r[3], around[3];
@@ -236,15 +339,13 @@ void Clamps::sum(const std::vector<Member> &list, const double *const *f)
 }
 
 // what fix rigid itself adds to the sums: keywords langevin and gravity
-void Clamps::add_own(Body &b, double *force_and_torque) const
+void Clamps::add_own(const Body &b, double *force_and_torque) const
 {
-  for (int d = 0; d < 3; d++) {
-    const double *const langevin = (b.fix->*Rigid::langevin)[b.index];
-    force_and_torque[d] += (b.fix->*Rigid::free_force)[b.index][d] * langevin[d];
-    force_and_torque[3 + d] += (b.fix->*Rigid::free_torque)[b.index][d] * langevin[3 + d];
-    if (b.fix->*Rigid::gravity)
-      force_and_torque[d] += (b.fix->*Rigid::field)[d] * (b.fix->*Rigid::mass)[b.index];
-  }
+  const double *const langevin = b.small ? nullptr : (large(b.fix)->*Rigid::langevin)[b.id];
+  const bool field = b.small ? small(b.fix)->*Small::gravity : large(b.fix)->*Rigid::gravity;
+  const double *const g = b.small ? small(b.fix)->*Small::field : large(b.fix)->*Rigid::field;
+  for (int d = 0; d < 6 && langevin; d++) force_and_torque[d] += b.free[d] * langevin[d];
+  for (int d = 0; d < 3 && field; d++) force_and_torque[d] += g[d] * b.mass;
   if (domain->dimension == 2) force_and_torque[2] = force_and_torque[3] = force_and_torque[4] = 0.0;
 }
 
@@ -252,13 +353,13 @@ void Clamps::add_own(Body &b, double *force_and_torque) const
 
 void Clamps::begin()
 {
-  for (Body &b : bodies) {
-    load(b);
+  with_states([](Body &b, const State &s) {
+    static_cast<State &>(b) = s;
     std::copy_n(b.x, 3, b.x0);
     std::copy_n(b.v, 3, b.v0);
     std::copy_n(b.q, 4, b.q0);
     std::copy_n(b.L, 3, b.L0);
-  }
+  });
 }
 
 void Clamps::to_start()
@@ -292,12 +393,12 @@ void Clamps::to_middle()
 // fix rigid may have moved a body by a period of the box since
 void Clamps::follow_boundary()
 {
-  for (Body &b : bodies)
+  with_states([](Body &b, const State &s) {
     for (int d = 0; d < 3; d++) {
-      const double now = (b.fix->*Rigid::center)[b.index][d];
-      b.x0[d] += now - b.middle[d];
-      b.middle[d] = now;
+      b.x0[d] += s.x[d] - b.middle[d];
+      b.middle[d] = s.x[d];
     }
+  });
 }
 
 /* ---------------------------------------------------------------------- */

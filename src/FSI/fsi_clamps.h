@@ -21,16 +21,15 @@
 
 namespace LAMMPS_NS {
 class Fix;
-class FixRigid;
 
 namespace FSI {
 
   class Scene;
 
-  // Rigid bodies of fix rigid with particles of total-Lagrangian solids in them, which take
-  // sub-steps: the rigid body takes them, too, with the same position Verlet. Fix rigid keeps mass,
-  // inertia and state, and has them at the end of the step; its particles have the force averaged
-  // over the sub-steps, which it sums as ever.
+  // Rigid bodies of fix rigid or rigid/small with particles of total-Lagrangian solids in them,
+  // which take sub-steps: the rigid body takes them, too, with the same position Verlet. The fix
+  // keeps mass, inertia and state, and has them at the end of the step; its particles have the
+  // force averaged over the sub-steps, which it sums as ever.
   class Clamps : protected Pointers {
    public:
     explicit Clamps(LAMMPS *lmp) : Pointers(lmp) {}
@@ -52,10 +51,17 @@ namespace FSI {
     void go_back();      // from the middle of the step to its start
 
    private:
-    struct Body {
-      FixRigid *fix;
-      int index;
-      double x[3], v[3], q[4], L[3];           // now
+    struct State {
+      tagint id;    // index in fix rigid, bodytag in fix rigid/small
+      double x[3], v[3], q[4], L[3];
+      double mass, inertia[3];
+    };
+    struct Body : State {    // state of now
+      Fix *fix;
+      bool small;
+      double free[6];                          // 0: components of force and torque left out
+      const double *const *displace;           // of atoms, from the center in the body's axes
+      const imageint *image;                   // of atoms
       double x0[3], v0[3], q0[4], L0[3];       // at the start of the step
       double middle[3];                        // x, in the middle of the step
       double ex[3], ey[3], ez[3], omega[3];    // follow from the orientation
@@ -70,17 +76,19 @@ namespace FSI {
     std::vector<double> impulse;            // of clamps, over the last sub-steps' length
     std::vector<double> sums;               // force and torque of each body
     const Fix *mover = nullptr;
-    void refuse(const Fix *) const;
+    void refuse(Fix *) const;
     void find_members();
     void follow(Body &) const;
     void drift(Body &, double t) const;
     void kick(Body &, double t, const double *force_and_torque) const;
     void arm(const Member &, double *) const;
+    tagint id_of(const Body &, int i) const;
     void place(const std::vector<Member> &) const;
     void sum(const std::vector<Member> &, const double *const *f);
-    void add_own(Body &, double *force_and_torque) const;
-    void load(Body &) const;
-    void store(Body &) const;
+    void add_own(const Body &, double *force_and_torque) const;
+    std::vector<State> states(Fix *) const;    // of all its bodies
+    template <class Use> void with_states(Use);
+    void store(const Body &) const;
     void to_start();
     void follow_boundary();
   };

@@ -34,7 +34,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
@@ -72,7 +74,7 @@ namespace FSI {
   // h = 1.3 to 2 dx; 0.03 for quintic, h = 0.9 dx), 0.02 or less in such a body up to 0.1 dx.
   // least: the smallest such part among the quadratic terms kept, 0 if there are none.
   constexpr double MIN_INDEPENDENCE = 0.025;
-  constexpr double FLAT = 1.0e-4;    // so much, for linear terms
+  constexpr double FLAT = 1.0e-4;    // so much of the largest square, for linear terms
   template <int D, int TERMS>
   inline typename Gradient<D>::Order
   gradient_coefficients(const double *A, double *C, double quadratic_tolerance = MIN_INDEPENDENCE,
@@ -83,8 +85,9 @@ namespace FSI {
     };
 
     // A = L d L^T
-    double L[TERMS][TERMS] = {}, d[TERMS], part = 1.0;
+    double L[TERMS][TERMS] = {}, d[TERMS], part = 1.0, widest = 0.0;
     int dropped = 0;
+    for (int a = 0; a < D; a++) widest = std::max(widest, A[at(a, a)]);
     for (int a = 0; a < TERMS; a++) {
       for (int b = 0; b < a; b++) {
         if (d[b] == 0.0) continue;
@@ -94,7 +97,7 @@ namespace FSI {
       }
       d[a] = A[at(a, a)];
       for (int k = 0; k < a; k++) d[a] -= L[a][k] * L[a][k] * d[k];
-      if (!(d[a] > (a < D ? FLAT : quadratic_tolerance) * A[at(a, a)])) {
+      if (!(d[a] > (a < D ? FLAT * widest : quadratic_tolerance * A[at(a, a)]))) {
         if (a < D) return Gradient<D>::DEFICIENT;
         d[a] = 0.0;
         for (int k = 0; k < a; k++) L[a][k] = 0.0;
@@ -117,6 +120,26 @@ namespace FSI {
     return dropped ? Gradient<D>::PARTIAL : Gradient<D>::QUADRATIC;
   }
 
+  // Inverse C of moments sum_j w_j x_j x_j^T (packed) for the slopes of a linear fit, in which
+  // directions fade along which neighbors hardly lie apart: there a slope is that of their noise.
+  // Half of a disc about its own center has 0.28 of its largest eigenvalue, half of a ball 0.30.
+  template <int D> inline void faded_inverse(const double *moments, double *C)
+  {
+    constexpr double NONE = 0.02, ALL = 0.1;    // of the largest eigenvalue
+    double M[3][3] = {}, value[3], axes[3][3];
+    for (int a = 0, k = 0; a < D; a++)
+      for (int b = 0; b <= a; b++) M[a][b] = M[b][a] = moments[k++];
+    MathEigen::jacobi3(M, value, axes);    // as columns, by decreasing value
+    std::fill_n(C, D * D, 0.0);
+    for (int k = 0; k < D; k++) {
+      if (!(value[k] > NONE * value[0])) break;
+      const double t = std::min(1.0, (value[k] / value[0] - NONE) / (ALL - NONE));
+      for (int a = 0; a < D; a++)
+        for (int b = 0; b < D; b++)
+          C[a * D + b] += t * t * (3.0 - 2.0 * t) / value[k] * axes[a][k] * axes[b][k];
+    }
+  }
+
   // the weights of one particle, from all its neighbors at once
   template <int D> class GradientWeights : public Gradient<D> {
    public:
@@ -133,6 +156,11 @@ namespace FSI {
     }
 
    private:
+    const bool packs = have_packs();
+    // offsets over the scale along each axis, weights, what is found: in turn, filled up
+    // to whole packs with neighbors that weigh nothing
+    mutable std::vector<double> columns;
+
     // squares along the normal of a face keep 0.05 to 0.15 of themselves (cubic to quintic kernel,
     // h = 1 to 2 dx), all others 0.38 or more, in the axes chosen
     static constexpr double ONE_SIDED = 0.3;
@@ -176,19 +204,33 @@ namespace FSI {
             rsq += e[a] * e[a];
             distance += (1.0 + PREFERENCE * a) * e[a] * e[a];
           }
+          if (distance >= nearest) continue;
           for (int m = 0; m < k; m++) {
             double along = 0.0;
             for (int a = 0; a < D; a++) along += e[a] * axes[m][a];
             for (int a = 0; a < D; a++) e[a] -= along * axes[m][a];
           }
           for (int a = 0; a < D; a++) across += e[a] * e[a];
-          if (!(across > 0.5 * rsq) || distance >= nearest) continue;
+          if (!(across > 0.5 * rsq)) continue;
           nearest = distance;
           for (int a = 0; a < D; a++) axes[k][a] = e[a] / std::sqrt(across);
         }
         if (nearest == std::numeric_limits<double>::max()) return false;
       }
       return true;
+    }
+
+    // but for round-off, order and sign: where both are a lattice's, as in most of a body
+    static bool same(const double (*first)[D], const double (*second)[D])
+    {
+      int found = 0;
+      for (int k = 0; k < D; k++)
+        for (int m = 0; m < D; m++) {
+          double along = 0.0;
+          for (int a = 0; a < D; a++) along += first[k][a] * second[m][a];
+          found += 1.0 - std::fabs(along) < 1.0e-14;
+        }
+      return found == D;
     }
 
     // by how one-sided the neighbors are along them, so that squares along normals come last
@@ -216,51 +258,91 @@ namespace FSI {
       for (int k = 0; k < D; k++) std::copy_n(unsorted[order[k]], D, axes[k]);
     }
 
-    // basis in the axes of a fit
-    template <int TERMS>
-    static void terms_of(const Fit<TERMS> &fit, const double *dX, double inv, double *phi)
+    // basis in the axes of a fit at what column points to
+    template <int TERMS, class T>
+    FSI_INLINE static void terms_of(const Fit<TERMS> &fit, const double *column, int size, T *phi)
     {
-      double x[D] = {};
-      for (int k = 0; k < D; k++)
-        for (int a = 0; a < D; a++) x[k] += fit.axes[k][a] * dX[a] * inv;
+      T x[D];
+      for (int k = 0; k < D; k++) {
+        x[k] = T(fit.axes[k][0]) * Lanes<T>::load(column);
+        for (int a = 1; a < D; a++) x[k] += T(fit.axes[k][a]) * Lanes<T>::load(column + a * size);
+      }
       gradient_basis<D, TERMS>(x, phi);
     }
 
-    template <int TERMS>
-    static void solve_in_axes(int n, const double *dX, const double *w, double inv, Fit<TERMS> &fit)
+    template <class Loop> void run(Loop loop) const
     {
-      double A[packed_size(TERMS)] = {}, phi[TERMS];
-      sort_axes(n, dX, w, fit.axes);
-      for (int j = 0; j < n; j++) {
-        terms_of<TERMS>(fit, dX + j * D, inv, phi);
-        for (int a = 0, m = 0; a < TERMS; a++)
-          for (int b = 0; b <= a; b++) A[m++] += w[j] * phi[a] * phi[b];
-      }
-      fit.order = gradient_coefficients<D, TERMS>(A, fit.C, ONE_SIDED, &fit.least);
+      packs ? run_loop<Pack>(loop) : run_loop<double>(loop);
     }
 
     template <int TERMS>
-    static Order solve(int n, const double *dX, const double *w, double inv, double *G)
+    void solve_in_axes(int n, const double *dX, const double *w, Fit<TERMS> &fit) const
+    {
+      double A[packed_size(TERMS)];
+      sort_axes(n, dX, w, fit.axes);
+      const int size = columns.size() / (D + 1 + D);
+      const double *const column = columns.data();
+      run([&](auto number) FSI_INLINE_LAMBDA {
+        using T = decltype(number);
+        T sum[packed_size(TERMS)], phi[TERMS];
+        for (auto &s : sum) s = T(0.0);
+        for (int j = 0; j < n; j += Lanes<T>::WIDTH) {
+          terms_of<TERMS>(fit, column + j, size, phi);
+          const T weight = Lanes<T>::load(column + D * size + j);
+          for (int a = 0, m = 0; a < TERMS; a++) {
+            const T weighed = weight * phi[a];
+            for (int b = 0; b <= a; b++) sum[m++] += weighed * phi[b];
+          }
+        }
+        for (int m = 0; m < packed_size(TERMS); m++) A[m] = Lanes<T>::sum(sum[m]);
+      });
+      fit.order = gradient_coefficients<D, TERMS>(A, fit.C, ONE_SIDED, &fit.least);
+    }
+
+    void fill_columns(int n, const double *dX, const double *w, double inv) const
+    {
+      const int size = (n + 3) / 4 * 4;
+      columns.assign((size_t) size * (D + 1 + D), 0.0);
+      for (int j = 0; j < n; j++) {
+        for (int a = 0; a < D; a++) columns[a * size + j] = dX[j * D + a] * inv;
+        columns[D * size + j] = w[j];
+      }
+    }
+
+    template <int TERMS>
+    Order solve(int n, const double *dX, const double *w, double inv, double *G) const
     {
       Fit<TERMS> fit, other;
       if (!principal_axes(n, dX, w, fit.axes)) return Gradient<D>::DEFICIENT;
-      solve_in_axes<TERMS>(n, dX, w, inv, fit);
-      if (TERMS > D && lattice_axes(n, dX, other.axes)) {
-        solve_in_axes<TERMS>(n, dX, w, inv, other);
+      fill_columns(n, dX, w, inv);
+      solve_in_axes<TERMS>(n, dX, w, fit);
+      if (TERMS > D && lattice_axes(n, dX, other.axes) && !same(fit.axes, other.axes)) {
+        solve_in_axes<TERMS>(n, dX, w, other);
         if (other.least > fit.least) fit = other;
       }
       if (fit.order == Gradient<D>::DEFICIENT) return fit.order;
-      for (int j = 0; j < n; j++) {
-        double phi[TERMS], along[D] = {};
-        terms_of<TERMS>(fit, dX + j * D, inv, phi);
-        for (int a = 0; a < D; a++)
-          for (int k = 0; k < TERMS; k++) along[a] += fit.C[a * TERMS + k] * phi[k];
-        for (int a = 0; a < D; a++) {
-          double s = 0.0;
-          for (int k = 0; k < D; k++) s += along[k] * fit.axes[k][a];
-          G[j * D + a] = w[j] * s * inv;
+      double C[D][TERMS] = {};    // back in the box's axes
+      for (int a = 0; a < D; a++)
+        for (int c = 0; c < D; c++)
+          for (int k = 0; k < TERMS; k++) C[a][k] += fit.axes[c][a] * fit.C[c * TERMS + k] * inv;
+      const int size = columns.size() / (D + 1 + D);
+      double *const column = columns.data();
+      run([&](auto number) FSI_INLINE_LAMBDA {
+        using T = decltype(number);
+        T phi[TERMS];
+        for (int j = 0; j < n; j += Lanes<T>::WIDTH) {
+          terms_of<TERMS>(fit, column + j, size, phi);
+          const T weight = Lanes<T>::load(column + D * size + j);
+          for (int a = 0; a < D; a++) {
+            T s = 0.0;
+            for (int k = 0; k < TERMS; k++) s += T(C[a][k]) * phi[k];
+            s = s * weight;
+            std::memcpy(column + (D + 1 + a) * size + j, &s, sizeof(s));
+          }
         }
-      }
+      });
+      for (int j = 0; j < n; j++)
+        for (int a = 0; a < D; a++) G[j * D + a] = column[(D + 1 + a) * size + j];
       return fit.order;
     }
   };

@@ -393,6 +393,7 @@ void Keywords::read(const Record &record)
 {
   begin();
   for (const auto &row : rows) {
+    if (record.value(row.name) == row.text()) continue;    // not named: may be outside of its range
     const auto words = utils::split_words(record.value(row.name));
     if (words.size() != row.values.size())
       error->all(FLERR, "The restart file is damaged in {} of {}", row.name, record.style);

@@ -14,13 +14,10 @@
 #include "fsi_number_density.h"
 
 #include "atom.h"
-#include "force.h"
 #include "fsi_fields.h"
 #include "fsi_part.h"
 #include "fsi_profile.h"
 #include "fsi_scene.h"
-#include "neighbor.h"
-#include "update.h"
 
 #include <algorithm>
 #include <cstring>
@@ -32,7 +29,7 @@ using namespace FSI;
 /* ---------------------------------------------------------------------- */
 
 NumberDensity::NumberDensity(LAMMPS *lmp, Scene &scene, SumOverGhosts add_ghosts) :
-    Pointers(lmp), scene(scene), add_ghosts(std::move(add_ghosts)), ratio(nullptr), send(true)
+    Pointers(lmp), scene(scene), add_ghosts(std::move(add_ghosts)), ratio(nullptr)
 {
 }
 
@@ -41,36 +38,25 @@ NumberDensity::NumberDensity(LAMMPS *lmp, Scene &scene, SumOverGhosts add_ghosts
 void NumberDensity::set_fields(Fields &fields)
 {
   const int of_fluid = scene.density_fluid, of_solid = scene.density_solid;
-  scene.keep_psi =
-      scene.surface_every > 1 && of_fluid == Scene::CONTINUITY && of_solid == Scene::CONTINUITY;
   scene.need_psi = of_fluid != Scene::CONTINUITY || scene.surface_ratio > 0.0 ||
       (of_solid != Scene::CONTINUITY && facts_of_solids(lmp).style == Facts::OF_SOLIDS);
   fields.set("reference of ratio", Fields::RESTART, of_solid == Scene::RATIO, ratio);
-  fields.set("number density", scene.keep_psi ? Fields::RESTART : Fields::STEP,
-             scene.keep_psi || scene.need_psi, scene.psi);
+  fields.set("number density", Fields::STEP, scene.need_psi, scene.psi);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void NumberDensity::add_messages(Message &to_ghosts)
 {
-  if (scene.need_psi) to_ghosts.add(scene.psi, {FLUID, SOLID, RIGID}, &send);
+  if (scene.need_psi) to_ghosts.add(scene.psi, {FLUID, SOLID, RIGID});
 }
 
 /* ---------------------------------------------------------------------- */
 
-void NumberDensity::renew(bool advance)
+void NumberDensity::renew()
 {
-  // or to new ghosts
-  send = scene.need_psi && (!scene.keep_psi || !advance || neighbor->ago == 0);
-  if (scene.need_psi && is_due(advance)) {
-    const Phase phase(scene.profile, Profile::DENSITY);
-    find(scene.psi);
-    send = true;
-  }
-  if (!send) return;
-  scene.psi_reference = scene.psi_bulk;
-  if (scene.surface_max) {
+  if (!scene.need_psi) return;
+  const Phase phase(scene.profile, Profile::DENSITY);
+  find(scene.psi);
+  if (scene.surface_ratio > 0.0) {
     double mine = 0.0;
     for (int i = 0; i < atom->nlocal; i++)
       if (scene.state[atom->type[i]].species == FLUID && scene.psi[i] > mine) mine = scene.psi[i];
@@ -78,19 +64,6 @@ void NumberDensity::renew(bool advance)
   }
   if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY)
     find_density();
-}
-
-/* ----------------------------------------------------------------------
-   setup goes on with what was kept, as a run must that goes on from a restart file
-------------------------------------------------------------------------- */
-
-bool NumberDensity::is_due(bool advance) const
-{
-  if (!scene.keep_psi) return true;
-  if (advance) return update->ntimestep % scene.surface_every == 0;
-  int mine = std::count(scene.psi, scene.psi + atom->nlocal, 0.0), all;
-  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
-  return all > 0;
 }
 
 /* ----------------------------------------------------------------------

@@ -36,7 +36,7 @@ namespace FSI {
     void set_fields(Fields &);    // for the effects that there are now
     void add_messages(Message &to_ghosts);
     // of the positions in atom->x; and the densities that follow from it
-    void renew(bool advance);
+    void renew();
     // of local atoms into n[0..nlocal-1], for ghosts as they are in atom->x; n has room for ghosts
     void find(double *n) const;
 
@@ -44,8 +44,6 @@ namespace FSI {
     Scene &scene;
     const SumOverGhosts add_ghosts;
     double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
-    bool send;        // in this step
-    bool is_due(bool advance) const;
     void find_density();
   };
 

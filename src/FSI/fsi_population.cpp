@@ -172,7 +172,8 @@ std::vector<char> Population::in_use(const std::vector<tagint> &list) const
 
 int Population::copy(int i, tagint id)
 {
-  atom->avec->create_atom(atom->type[i], atom->x[i]);
+  double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};    // arrays may grow meanwhile
+  atom->avec->create_atom(atom->type[i], x);
   const int j = atom->nlocal - 1;
   atom->avec->copy(i, j, 0);
   atom->tag[j] = id;

@@ -38,6 +38,7 @@ namespace FSI {
 
   // Constant from init() on.
   struct Discretization {
+    int article;    // the article's scheme: what it sets where a style says nothing else
     enum Density { CONTINUITY, SUMMATION, RATIO };
     static std::vector<std::string> density_names(int species);    // of these
     int density_fluid, density_solid;                              // Density
@@ -73,14 +74,9 @@ namespace FSI {
     bool noslip_walls = false;
     double mach;    // largest Mach number of fluids
 
-    // Free-surface rule of pair_style fsi/fluid: p = 0 where psi is below this part of a reference,
-    // the largest psi of fluids, or the lattice's; 0: off
+    // Free-surface rule: p = 0 where psi is below this part of the largest one of fluids; 0: off
     double surface_ratio = 0.0;
-    bool surface_max = false;
-    int surface_every;        // steps from one number density to the next of that rule
     bool need_psi = false;    // for any mode or rule
-    bool keep_psi =
-        false;    // it is that of some steps only: it goes with its atom, to restarts too
   };
 
   // Of one step.

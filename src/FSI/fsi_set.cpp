@@ -102,7 +102,7 @@ void FSISet::command(int narg, char **arg)
       continue;
     }
     if (s.species == NONE || s.species == RIGID) continue;    // walls: from the fluid
-    if (s.form == TOTAL_LAGRANGIAN) continue;    // density from its strain
+    if (s.form == TOTAL_LAGRANGIAN) continue;                 // density from its strain
     double rho = value;
     if (hydrostatic) {
       const auto g = fix_fsi->body_forces.on(i);

@@ -149,7 +149,7 @@ namespace FSI {
     }
   };
 
-  using SolidLaws = LawsOf<StVenantKirchhoff, NeoHookean, HypoElastic, ViscoElastic>;
+  class SolidLaws : public LawsOf<StVenantKirchhoff, NeoHookean, HypoElastic, ViscoElastic> {};
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

@@ -112,7 +112,7 @@ namespace FSI {
   }
 
   // Slopes of fields, exact for linear ones, from weighted sums over neighbors; where those are in
-  // a line (2D) or plane (3D) there are none.
+  // a line (2D) or plane (3D) there are none across it.
   template <int D, int FIELDS> class Slopes {
    public:
     double slope[FIELDS][D] = {};
@@ -127,7 +127,7 @@ namespace FSI {
     void solve()
     {
       double C[D * D];
-      if (gradient_coefficients<D, D>(A, C) == Gradient<D>::DEFICIENT) return;
+      faded_inverse<D>(A, C);
       for (int f = 0; f < FIELDS; f++)
         for (int a = 0; a < D; a++)
           for (int b = 0; b < D; b++) slope[f][a] += C[a * D + b] * sum[f][b];

@@ -14,6 +14,7 @@
 #include "fsi_swaps.h"
 
 #include "comm_brick.h"
+#include "fix.h"
 #include "fsi_profile.h"
 #include "pair.h"
 
@@ -74,25 +75,42 @@ double *Swaps::pass(int to, int n, int from, int most)
 
 /* ---------------------------------------------------------------------- */
 
-void Swaps::forward(Pair *pair)
+template <class Who> void Swaps::forward_of(Who *who)
 {
-  if (!chosen) return comm->forward_comm(pair);
-  const int size = pair->comm_forward;
+  if (!chosen) return comm->forward_comm(who);
+  const int size = who->comm_forward;
   for (Swap &s : swaps) {
     if (out.size() < s.list.size() * size) out.resize(s.list.size() * size);
-    const int n = pair->pack_forward_comm(s.list.size(), s.list.data(), out.data(), s.flag, s.pbc);
-    pair->unpack_forward_comm(s.n, s.first, pass(s.to, n, s.from, s.arriving * size));
+    const int n = who->pack_forward_comm(s.list.size(), s.list.data(), out.data(), s.flag, s.pbc);
+    who->unpack_forward_comm(s.n, s.first, pass(s.to, n, s.from, s.arriving * size));
   }
 }
 
-void Swaps::reverse(Pair *pair)
+template <class Who> void Swaps::reverse_of(Who *who)
 {
-  if (!chosen) return comm->reverse_comm(pair);
-  const int size = pair->comm_reverse;
+  if (!chosen) return comm->reverse_comm(who);
+  const int size = who->comm_reverse;
   for (auto s = swaps.rbegin(); s != swaps.rend(); ++s) {
     if ((int) out.size() < s->arriving * size) out.resize(s->arriving * size);
-    const int n = pair->pack_reverse_comm(s->n, s->first, out.data());
-    pair->unpack_reverse_comm(s->list.size(), s->list.data(),
-                              pass(s->from, n, s->to, s->list.size() * size));
+    const int n = who->pack_reverse_comm(s->n, s->first, out.data());
+    who->unpack_reverse_comm(s->list.size(), s->list.data(),
+                             pass(s->from, n, s->to, s->list.size() * size));
   }
+}
+
+void Swaps::forward(Pair *pair)
+{
+  forward_of(pair);
+}
+void Swaps::forward(Fix *fix)
+{
+  forward_of(fix);
+}
+void Swaps::reverse(Pair *pair)
+{
+  reverse_of(pair);
+}
+void Swaps::reverse(Fix *fix)
+{
+  reverse_of(fix);
 }

@@ -20,6 +20,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class Fix;
 class Pair;
 
 namespace FSI {
@@ -31,9 +32,11 @@ namespace FSI {
    public:
     explicit Swaps(LAMMPS *lmp) : Pointers(lmp), chosen(false) {}
     void find(const std::function<bool(int)> &is_chosen);    // whenever ghosts are new
-    // the pair style packs and unpacks the chosen particles only
+    // for a pair style or a fix, which packs and unpacks the chosen particles only
     void forward(Pair *);
+    void forward(Fix *);
     void reverse(Pair *);
+    void reverse(Fix *);
 
    private:
     struct Swap {
@@ -45,6 +48,8 @@ namespace FSI {
     bool chosen;
     std::vector<Swap> swaps;
     std::vector<double> out, in;
+    template <class Who> void forward_of(Who *);
+    template <class Who> void reverse_of(Who *);
     double *pass(int to, int n, int from, int most);
   };
 

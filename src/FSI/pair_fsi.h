@@ -70,7 +70,7 @@ class PairFSI : public Pair, public FSI::Part {
   void check_pair_coeff(int, char **) const;
   FSI::State solid_state(const FSI::Material &, bool plane_stress) const;
   bool several_bodies() const;
-  bool any_relaxes() const;    // has a material a Prony series?
+  bool any_relaxes() const;           // has a material a Prony series?
   virtual void check_settings() {}    // what a row of keywords cannot say
   void artificial_row(const std::string &of);
   void contact_row();

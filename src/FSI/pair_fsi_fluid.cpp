@@ -20,11 +20,15 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_contact.h"
 #include "fsi_density_diffusion.h"
+#include "fsi_fields.h"
+#include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
 #include "fsi_levels.h"
 #include "fsi_profile.h"
 #include "fsi_shift.h"
+#include "fsi_sight.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -43,11 +47,46 @@ static const std::vector<std::string> coupling_names = {"wall", "full"};    // C
 
 /* ---------------------------------------------------------------------- */
 
+// What fluids meet: fluids, walls, solids, fluids that thin bodies may hide
+enum { FLUIDS, WALLS, SOLIDS, HIDDEN, NKINDS };
+
+// Pairs of one kernel: what fluid particles of one level of the scene meet, and pairs of two levels
+struct PairFSIFluid::Meeting {
+  int what = FLUIDS;
+  PairKind kind = WITH_FLUID;
+  size_t level = 0;    // of the fluid particles
+  bool unlike = false;
+  double h = 0.0, cut = 0.0, wdx = 0.0;            // of the kernel: W(mean spacing) last
+  std::shared_ptr<FluidLoops> loops, of_forces;    // all; those of forces
+  RowList rows;                                    // of the neighbor list
+  std::vector<RowList> images;                     // by reflection; walls of particles have none
+  // of images: the support, and what a pair comes nearer in a step
+  double reach = INFINITY;
+  // of these, what is within the support and a margin: the lists have the skin's pairs, too
+  std::vector<Row> near;
+};
+
+// Of fluid particles of a level, per type: how its particles count, where it pushes fluid off
+struct PairFSIFluid::Shares {
+  std::vector<Share> of_type;
+  bool unequal = false;    // is any solid or wall of another spacing than the fluid, or thin?
+  std::vector<Contact> guards;
+};
+
+struct PairFSIFluid::Members {
+  Fields fields;
+  Thin thin_bodies = {};
+  Visible seen_pairs = {};
+  Cut cut_solids = {};
+  explicit Members(LAMMPS *lmp) : fields(lmp) {}
+};
+
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), images_step(-1), near_known(false), sorts(true), margin(0.0),
-    cut(false), solids_pass(false), fade(nullptr), fill(nullptr),
-    fill_weight(nullptr), thin_bodies{}, seen_pairs{}, cut_solids{}, fields(lmp), rate(nullptr),
-    beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), images_step(-1), near_known(false),
+    sorts(true), margin(0.0), cut(false), solids_pass(false), couple(WALL), fade(nullptr),
+    fill(nullptr), fill_weight(nullptr), thin_bodies(members->thin_bodies),
+    seen_pairs(members->seen_pairs), cut_solids(members->cut_solids), fields(members->fields),
+    rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -65,12 +104,11 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
       .effect("particle shifting {}");
   keywords.key("shift/every").integer(shift_every, 1, 1);
   keywords.key("surface")
-      .number(surface_ratio, 0.0, Range::from_to_below(0.0, 1.0), "ratio")
-      .choice(surface_max, 0, {"bulk", "max"}, "reference")
+      .number(surface_ratio, 0.0, Range::from_to_below(0.0, 1.0))
       .effect("free surface where psi is below {}");
   keywords.key("tension").logical(tension, false).effect("tension in the fluid");
   keywords.key("background").number(background, 0.0).effect("background pressure {}");
-  keywords.key("couple").choice(couple, WALL, coupling_names);
+  keywords.key("couple").choice(given_couple, WALL, coupling_names);
   keywords.key("extrapolate").logical(extrapolate, false);
 }
 
@@ -83,6 +121,21 @@ void PairFSIFluid::give_back_virial()
 {
   if (hybrid) hybrid->no_virial_fdotr_compute = no_fdotr_before;
   hybrid = nullptr;
+}
+
+const std::vector<Row> &PairFSIFluid::rows_with_walls(size_t level) const
+{
+  static const std::vector<Row> none;
+  if (meetings.empty()) return none;    // not set up yet
+  const Meeting &m = meetings[NKINDS * level + WALLS];
+  return near_known ? m.near : m.rows.rows;
+}
+
+bool PairFSIFluid::has_rows_with_walls() const
+{
+  return std::any_of(meetings.begin(), meetings.end(), [](const Meeting &m) {
+    return m.what == WALLS && !m.rows.rows.empty();
+  });
 }
 
 bool PairFSIFluid::handles(int a, int b) const
@@ -142,18 +195,16 @@ void PairFSIFluid::init_style()
   NeighList *const lists = list;    // LAMMPS makes no others where all is asked for as before
   PairFSI::init_style();
   list = lists;
-  if (delta > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
-    error->all(FLERR,
-               "Pair style fsi/fluid density/diffusion requires fix fsi with fluid continuity");
-  if (surfaces && fix_fsi->density_fluid != FixFSI::CONTINUITY)
-    error->all(FLERR,
-               "Pair style fsi/fluid density/surface requires fix fsi with fluid continuity");
+  for (const auto &of_continuity :
+       {std::make_pair(delta > 0.0, "density/diffusion"),
+        std::make_pair(surfaces != 0, "density/surface"), std::make_pair(shifting > 0.0, "shift")})
+    if (of_continuity.first && fix_fsi->density_fluid != FixFSI::CONTINUITY)
+      error->all(FLERR, "Pair style fsi/fluid {} requires fix fsi with fluid continuity",
+                 of_continuity.second);
   if (surfaces && (tension || background != 0.0))
     error->all(FLERR,
                "Pair style fsi/fluid density/surface is for fluids with a free surface: without "
                "tension yes and background");
-  if (shifting > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
-    error->all(FLERR, "Pair style fsi/fluid shift requires fix fsi with fluid continuity");
   if (laminar) {
     bool any = false;
     for (const auto &m : material) any = any || m.viscosity > 0.0;
@@ -166,6 +217,8 @@ void PairFSIFluid::init_style()
   force_computes.clear();
   for (auto *compute : modify->get_compute_by_style("^fsi/force$"))
     force_computes.push_back(dynamic_cast<ComputeFSIForce *>(compute));
+  const Facts of_solids = facts_of_solids(lmp);
+  couple = fix_fsi->article && of_solids.style == Facts::OF_SOLIDS ? FULL : given_couple;
   if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
     error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
                    has_solids() ? "it is for couple wall" : "there is no solid");
@@ -184,7 +237,6 @@ void PairFSIFluid::init_style()
     no_fdotr_before = hybrid->no_virial_fdotr_compute;
     hybrid->no_virial_fdotr_compute = 1;
   }
-  const Facts of_solids = facts_of_solids(lmp);
   if (couple != WALL && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS)
     error->all(FLERR,
                "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress "
@@ -321,8 +373,7 @@ void PairFSIFluid::set_fields(Scene &scene)
   fields.set("room behind thin bodies", Fields::STEP, scene.sight != nullptr, fill);
   fields.set("weight behind thin bodies", Fields::STEP, scene.sight != nullptr, fill_weight);
   scene.noslip_walls = scene.noslip_walls || sticks_to_solids();
-  scene.surface_ratio = surface_ratio;
-  scene.surface_max = surface_max;
+  scene.surface_ratio = surface_ratio == 0.0 && scene.article ? 0.9 : surface_ratio;
 }
 
 void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
@@ -1172,7 +1223,7 @@ template <int D> void PairFSIFluid::compute_forces()
   // newton off, or a hybrid style with solids that need it, or images, which are no particles: like
   // LAMMPS' own walls they do not count in the virial, and forces times positions would have them
   const bool tally_pairs = vflag_fdotr ? fix_fsi->walls.any() : evflag != 0;
-  const bool own_pressure = surface_ratio > 0.0 || fix_fsi->wall_stiffness;
+  const bool own_pressure = fix_fsi->surface_ratio > 0.0 || fix_fsi->wall_stiffness;
   const FluidParticles particles = gather<D>(0.0, [&](int i, Point<D> &p) {
     p.p = own_pressure ? fix_fsi->pressure(i) : fix_fsi->state[type[i]].pressure(p.rho);
     p.pv2 = p.p * p.vol * p.vol;

@@ -20,24 +20,32 @@ PairStyle(fsi/fluid,PairFSIFluid);
 #ifndef LMP_PAIR_FSI_FLUID_H
 #define LMP_PAIR_FSI_FLUID_H
 
-#include "fsi_contact.h"
-#include "fsi_fields.h"
-#include "fsi_fluid_loops.h"
-#include "fsi_sight.h"
-#include "fsi_walls.h"
 #include "pair_fsi.h"
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  struct Contact;
+  struct Cut;
+  class Fields;
+  struct FluidParticles;
+  struct ForceLaws;
+  struct Row;
+  class RowList;
+  struct Thin;
+  struct Visible;
+}    // namespace FSI
 
 // Fluid-fluid and fluid-solid pairs: pressure, viscosity, density rate and diffusion, mirror
 // images.
 
 class PairFSIFluid : public PairFSI {
+  struct Members;
+  const std::unique_ptr<Members> members;
+
  public:
   enum Couple { WALL, FULL };
 
@@ -67,13 +75,7 @@ class PairFSIFluid : public PairFSI {
   void add_position_divergence(double *div);
   void add_gradient_sum(double *) override;
   // fluid particles of a level of the scene and wall particles that may be within the support
-  const std::vector<FSI::Row> &rows_with_walls(size_t level) const
-  {
-    static const std::vector<FSI::Row> none;
-    if (meetings.empty()) return none;    // not set up yet
-    const Meeting &m = meetings[NKINDS * level + WALLS];
-    return near_known ? m.near : m.rows.rows;
-  }
+  const std::vector<FSI::Row> &rows_with_walls(size_t level) const;
 
  protected:
   bool handles(int, int) const override;
@@ -96,35 +98,15 @@ class PairFSIFluid : public PairFSI {
                                       // default
   double shifting;                    // coefficient C of particle shifting; 0 = off
   int shift_every;                    // steps from one displacement to the next
-  // paper's free-surface rule: p = 0 where psi <= surface_ratio * reference (the bulk lattice's, or
-  // the largest psi of all fluid particles); 0 = off
-  double surface_ratio;
-  int surface_max;
+  double surface_ratio;               // of the free-surface rule
   // distance over the mean spacing from which on solids push fluid off; 0: they do not
   double solids_guard;
-  int tait, laminar, couple, extrapolate, tension, solids_slip;
+  int tait, laminar, given_couple, couple, extrapolate, tension, solids_slip;
   int surfaces;                      // does the density follow surfaces (fsi_surface_room.h)?
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
-  // What fluids meet: fluids, walls, solids, fluids that thin bodies may hide
-  enum { FLUIDS, WALLS, SOLIDS, HIDDEN, NKINDS };
-  // Pairs of one kernel: what fluid particles of one level of the scene meet, and pairs of two
-  // levels
-  struct Meeting {
-    int what = FLUIDS;
-    FSI::PairKind kind = FSI::WITH_FLUID;
-    size_t level = 0;    // of the fluid particles
-    bool unlike = false;
-    double h = 0.0, cut = 0.0, wdx = 0.0;                 // of the kernel: W(mean spacing) last
-    std::shared_ptr<FSI::FluidLoops> loops, of_forces;    // all; those of forces
-    FSI::RowList rows;                                    // of the neighbor list
-    std::vector<FSI::RowList> images;    // by reflection; walls of particles have none
-    // of images: the support, and what a pair comes nearer in a step
-    double reach = INFINITY;
-    // of these, what is within the support and a margin: the lists have the skin's pairs, too
-    std::vector<FSI::Row> near;
-  };
+  struct Meeting;                       // pairs of one kernel
   std::vector<Meeting> meetings;        // NKINDS of each level, pairs of levels
   std::vector<size_t> of_two_levels;    // the meeting of two fluids
   void find_meetings();
@@ -134,12 +116,7 @@ class PairFSIFluid : public PairFSI {
   void find_rows();
   void find_rows_with_others(const std::vector<std::array<int, 2>> &,
                              const std::vector<int> &other_types);
-  bool has_rows_with_walls() const
-  {
-    return std::any_of(meetings.begin(), meetings.end(), [](const Meeting &m) {
-      return m.what == WALLS && !m.rows.rows.empty();
-    });
-  }
+  bool has_rows_with_walls() const;
   bool has_all_pairs() const;
   bigint images_step;
   template <class Position> void find_images(const FSI::Walls &, Position);
@@ -164,13 +141,8 @@ class PairFSIFluid : public PairFSI {
 
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
-  std::vector<double> taken;    // by coupling and friction, if there is a ledger
-  // Of fluid particles of a level, per type: how its particles count, where it pushes fluid off
-  struct Shares {
-    std::vector<FSI::Share> of_type;
-    bool unequal = false;    // is any solid or wall of another spacing than the fluid, or thin?
-    std::vector<FSI::Contact> guards;
-  };
+  std::vector<double> taken;     // by coupling and friction, if there is a ledger
+  struct Shares;                 // how bodies count at fluid particles
   std::vector<Shares> shares;    // per level
   double *fade;    // of fluids of several levels: what is left of shifting's factor; or null
   void find_fades();
@@ -187,24 +159,24 @@ class PairFSIFluid : public PairFSI {
   void look_past_thin_bodies();
   void find_hidden(int i, const int *neighbors, int n, const std::vector<int> &fluid_types,
                    std::vector<char> &hides);
-  FSI::Thin thin_bodies;
-  FSI::Visible seen_pairs;
+  FSI::Thin &thin_bodies;
+  FSI::Visible &seen_pairs;
   // particles as the loop over these rows sees them, and that loop
   FSI::FluidParticles of_rows(const FSI::FluidParticles &, const Meeting &,
                               const std::vector<FSI::Row> &, const std::vector<double> &visible);
-  FSI::Cut cut_solids;
+  FSI::Cut &cut_solids;
   FSI::FluidParticles particles_at(const double *points);
   // positions a time t later; what else a loop needs is up to complete(i, point)
   template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions
   // dt/2 ago, to which the velocities belong
-  FSI::Fields fields;
+  FSI::Fields &fields;
   double *rate;    // local after the reverse communication
   int nshift() const, shift_sums() const;
   bool fills() const
-  {
+  {    // no free surfaces: with a background pressure they would blow up
     return background > 0.0;
-  }    // no free surfaces: with a background pressure they would blow up
+  }
   bool open_ends;
   double *const *velocity_of_shifting() const;
   // of solids that fluid sticks to: the sums of v W, and of W, of the fluid around

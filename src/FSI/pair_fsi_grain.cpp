@@ -240,12 +240,11 @@ template <int D> void PairFSIGrain::forces()
     for (int a = 0, n = 0; a < D; a++)
       for (int b = 0; b <= a; b++, n++)
         moments[n] = sum[Of::XX + n] - per * sum[Of::X + a] * sum[Of::X + b];
-    if (gradient_coefficients<D, D>(moments, C) != Gradient<D>::DEFICIENT)
-      for (int a = 0; a < D; a++) {
-        for (int b = 0; b < D; b++)
-          slope[a] += C[a * D + b] * (sum[Of::PX + b] - p * sum[Of::X + b]);
-        steepness += slope[a] * slope[a];
-      }
+    faded_inverse<D>(moments, C);
+    for (int a = 0; a < D; a++) {
+      for (int b = 0; b < D; b++) slope[a] += C[a * D + b] * (sum[Of::PX + b] - p * sum[Of::X + b]);
+      steepness += slope[a] * slope[a];
+    }
     for (int a = 0; a < D; a++) p -= per * slope[a] * sum[Of::X + a];
     const double hinv = 1.0 / fix_fsi->h;
     const double part = least_floor < 0.0 ? 1.0 : immersed_part(p, std::sqrt(steepness) * hinv, r);

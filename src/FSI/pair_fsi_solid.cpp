@@ -20,8 +20,11 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_fields.h"
+#include "fsi_images.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
+#include "fsi_rows.h"
 #include "fsi_solid_rows.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -42,9 +45,18 @@ static constexpr double FAR = 2.0;
 
 /* ---------------------------------------------------------------------- */
 
+struct PairFSISolid::Members {
+  Fields fields;
+  RowList own, others, own_images[2], other_images[2];
+  Images images;
+  explicit Members(LAMMPS *lmp) : fields(lmp) {}
+};
+
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid"), fix_stress(nullptr), fields(lmp), grad(nullptr), any_gradient(false),
-    packs(have_packs())
+    PairFSI(lmp, "fsi/solid"), members(new Members(lmp)), fix_stress(nullptr),
+    fields(members->fields), grad(nullptr), any_gradient(false), packs(have_packs()),
+    own(members->own), others(members->others), images(members->images),
+    own_images(members->own_images), other_images(members->other_images)
 {
   artificial_row("solid");
   keywords.key("artificial/stress")
@@ -56,6 +68,8 @@ PairFSISolid::PairFSISolid(LAMMPS *lmp) :
   contact_row();
   keywords.key("gradient").choice(gradient, PLAIN, {"plain", "corrected", "quadratic"});
 }
+
+PairFSISolid::~PairFSISolid() = default;
 
 /* ---------------------------------------------------------------------- */
 
@@ -81,6 +95,12 @@ void PairFSISolid::init_style()
   comm_forward = has_hourglass() ? fix_fsi->dim * fix_fsi->dim : 0;
   comm_reverse = has_hourglass() ? fix_fsi->dim : 0;
   bodies = several_bodies();
+}
+
+// that of the article's scheme, unless another is given
+double PairFSISolid::artificial_stress() const
+{
+  return epsilon == 0.0 && fix_fsi->article ? 0.3 : epsilon;
 }
 
 /* ----------------------------------------------------------------------
@@ -677,7 +697,7 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
   using At = ForceRecord<D, TERMS>;
   const State *const state = fix_fsi->state.data();
   const int nall = atom->nlocal + atom->nghost;
-  const ArtificialStress artificial(epsilon, fix_fsi->wdx);
+  const ArtificialStress artificial(artificial_stress(), fix_fsi->wdx);
   if (force_records.size() < (size_t) At::N * images.end())
     force_records.assign((size_t) At::N * std::max(atom->nmax, images.end()), 0.0);
   for (int i = 0; i < nall; i++) {
@@ -702,7 +722,7 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
     }
     stress *= vol;
     if (!TERMS) stress.store(record + At::STRESS);
-    if (epsilon > 0.0) artificial(stress).store(record + At::ARTIFICIAL);
+    if (artificial_stress() > 0.0) artificial(stress).store(record + At::ARTIFICIAL);
   }
   images.for_each([&](int k, int of, const Mirror &m, bool) {
     double *const record = &force_records[(size_t) At::N * k], signs[TERMS ? TERMS : D];
@@ -731,7 +751,7 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
   auto *const of_rows = reinterpret_cast<double(*)[ROW]>(forces.data());
   SolidSums sums;
   const SolidLaws laws = {ArtificialViscosity(alpha, beta, fix_fsi->h),
-                          ArtificialStress(epsilon, fix_fsi->wdx),
+                          ArtificialStress(artificial_stress(), fix_fsi->wdx),
                           Contact(D, fix_fsi->dx, contact_range),
                           atom->type,
                           fix_fsi->state.data(),
@@ -742,7 +762,7 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
   // sums and quadratic gradients come with viscosity, pairs one by one with all effects: what is
   // off has coefficients of zero
   const int sums_too = fix_fsi->ledger || tally_pairs ? SUMS : 0;
-  const int named = (epsilon > 0.0 ? STRESS : 0) | sums_too |
+  const int named = (artificial_stress() > 0.0 ? STRESS : 0) | sums_too |
       (has_artificial() || sums_too || TERMS > D ? VISCOSITY : 0);
   with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {
     if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D)

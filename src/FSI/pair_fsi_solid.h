@@ -20,22 +20,29 @@ PairStyle(fsi/solid,PairFSISolid);
 #ifndef LMP_PAIR_FSI_SOLID_H
 #define LMP_PAIR_FSI_SOLID_H
 
-#include "fsi_fields.h"
-#include "fsi_images.h"
-#include "fsi_rows.h"
 #include "pair_fsi.h"
 
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Fields;
+  class Images;
+  class RowList;
+}    // namespace FSI
 
 // Solid-solid pairs, updated Lagrangian: full Cauchy stress, artificial viscosity, artificial
 // stress; and the sums that the velocity gradient is made of. Pairs of different bodies (molecule
 // IDs) only push.
 
 class PairFSISolid : public PairFSI {
+  struct Members;
+  const std::unique_ptr<Members> members;
+
  public:
   PairFSISolid(class LAMMPS *);
+  ~PairFSISolid() override;
   void init_style() override;
   void compute(int, int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
@@ -69,7 +76,7 @@ class PairFSISolid : public PairFSI {
 
  private:
   class FixFSIStress *fix_stress;
-  FSI::Fields fields;
+  FSI::Fields &fields;
   // local and ghost: sums of the velocity gradient, afterwards L and the coefficients of its
   // weights (fsi_gradient.h)
   double **grad;
@@ -87,14 +94,15 @@ class PairFSISolid : public PairFSI {
 
   enum GradientKind { PLAIN, CORRECTED_LINEAR, CORRECTED_QUADRATIC };
   double epsilon, xi;
+  double artificial_stress() const;
   int gradient;
   bool bodies, packs;
-  FSI::RowList own, others;
+  FSI::RowList &own, &others;
   void find_rows();
 
   // planes of symmetry: rows of images in the own body and of others, counted fully and by half
-  FSI::Images images;
-  FSI::RowList own_images[2], other_images[2];
+  FSI::Images &images;
+  FSI::RowList (&own_images)[2], (&other_images)[2];
   std::vector<int> types_with_images;
   std::vector<double> image_sums;
   void find_image_rows();

@@ -23,11 +23,17 @@
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_bond_rows.h"
 #include "fsi_check.h"
+#include "fsi_clamps.h"
 #include "fsi_contact.h"
 #include "fsi_gather.h"
+#include "fsi_images.h"
 #include "fsi_profile.h"
+#include "fsi_solid_laws.h"
+#include "fsi_swaps.h"
 #include "fsi_viscosity_artificial.h"
+#include "fsi_volumetric.h"
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -43,10 +49,16 @@ using namespace FSI;
 
 /* ---------------------------------------------------------------------- */
 
+struct PairFSISolidTL::Members {
+  SolidLaws laws;
+  VolumetricStrain smoothed;
+};
+
 PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/solid/tl"), strain_energy(0.0), reference(nullptr), fix_stress(nullptr),
-    fix_history(nullptr), fsolid(nullptr), nmax(0), nmoving(0), changes_seen(-1),
-    only_moving(false), one_material(true), sends_strains(false)
+    PairFSI(lmp, "fsi/solid/tl"), members(new Members), strain_energy(0.0), reference(nullptr),
+    fix_stress(nullptr), fix_history(nullptr), laws(members->laws), fsolid(nullptr), nmax(0),
+    nmoving(0), changes_seen(-1), only_moving(false), one_material(true),
+    smoothed(members->smoothed), sends_strains(false)
 {
   no_virial_fdotr_compute = 1;
   artificial_row("solid");
@@ -219,8 +231,8 @@ void PairFSISolidTL::refuse_constraints() const
 }
 
 /* ----------------------------------------------------------------------
-   A rigid part of an elastic body that another style than fix rigid moves is kicked once in a step,
-   by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
+   A rigid part of an elastic body that another style than fix rigid or rigid/small moves is kicked
+   once in a step, by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
 ------------------------------------------------------------------------- */
 
 void PairFSISolidTL::refuse_rigid_parts() const
@@ -239,8 +251,8 @@ void PairFSISolidTL::refuse_rigid_parts() const
         error->one(
             FLERR,
             "Fix {} (style {}) moves a part of the elastic body of atom {}, which takes "
-            "sub-steps: the part would gain energy. Expected fix rigid, which takes them, too, "
-            "substeps 1 in fix fsi, or fix fsi/move if its motion is known",
+            "sub-steps: the part would gain energy. Expected fix rigid or rigid/small, which take "
+            "them, too, substeps 1 in fix fsi, or fix fsi/move if its motion is known",
             fix->id, fix->style, atom->tag[row.i]);
     }
   }

@@ -20,15 +20,19 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 #ifndef LMP_PAIR_FSI_SOLID_TL_H
 #define LMP_PAIR_FSI_SOLID_TL_H
 
-#include "fsi_bond_rows.h"
-#include "fsi_contact.h"
-#include "fsi_solid_laws.h"
-#include "fsi_volumetric.h"
 #include "pair_fsi.h"
 
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  struct BondRow;
+  struct Contact;
+  template <int D> struct PiolaStress;
+  class SolidLaws;
+  struct VolumetricStrain;
+}    // namespace FSI
 
 // Elastic solids in total-Lagrangian form. The deformation gradient of particle i is
 //   F_i = sum_j (x_j - x_i) (x) G_ij
@@ -39,6 +43,9 @@ namespace LAMMPS_NS {
 // contact only.
 
 class PairFSISolidTL : public PairFSI {
+  struct Members;
+  const std::unique_ptr<Members> members;
+
  public:
   PairFSISolidTL(class LAMMPS *);
   ~PairFSISolidTL() override;
@@ -98,7 +105,7 @@ class PairFSISolidTL : public PairFSI {
   class FixFSIReference *reference;
   class FixFSIStress *fix_stress;      // null: the law has no rates
   class FixFSIHistory *fix_history;    // null: the law has no history of its own
-  FSI::SolidLaws laws;
+  FSI::SolidLaws &laws;
   double **fsolid;
   int nmax;
 
@@ -118,7 +125,7 @@ class PairFSISolidTL : public PairFSI {
   void find_rows();
   std::vector<double> points;    // of solids and their ghosts, gathered for the loop over bonds
   template <int D> void gather_points();
-  FSI::VolumetricStrain smoothed;
+  FSI::VolumetricStrain &smoothed;
   bool sends_strains;    // what messages carry: these, or positions and forces
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count

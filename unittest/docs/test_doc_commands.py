@@ -27,6 +27,7 @@ import renew  # noqa: E402
 import robustness  # noqa: E402
 import scaling  # noqa: E402
 import solid_variants  # noqa: E402
+import sound  # noqa: E402
 
 NOTES = paths.ROOT / "doc/notes"    # of what was tried at its time
 PAGES = [paths.ROOT / "README.md", *(page for page in (paths.ROOT / "doc").rglob("*.md") if NOTES not in page.parents), *(paths.ROOT / "doc/src").glob("*.rst"),
@@ -35,7 +36,7 @@ PROGRAMS = r"tools/\w+|build/lmp|mpirun |fsi |python3? -m |pip install |cmake -|
 PLACEHOLDERS = {"NAME": "elastic_gate", "SCENE": "elastic_gate", "CASE": "10MPa_3_across", "FILE": "unittest/styles/test_dt.py", "R": "2.5", "FOLDER": "results/beam",
                 "COMMAND": "log"}
 COST = {"solids": solid_variants, "effects": effects, "peers": peers, "scaling": scaling, "robustness": robustness,
-        "open_ends": open_ends}  # as tools/cost chooses
+        "open_ends": open_ends, "sound": sound}  # as tools/cost chooses
 
 
 def fenced(path, text):

@@ -61,7 +61,7 @@ def mixed(scene, *names):
 
 
 TL = r"TL quadratic, "    # with a column held
-WATER = ("fluid", "shifting"), ("fluid", "shifting, every 4 steps"), ("fluid", "free-surface rule"), ("fluid", "free-surface rule, every 10 steps")
+WATER = ("fluid", "shifting"), ("fluid", "shifting, every 4 steps")
 # page, the words around the numbers ({} stands for one), the numbers
 QUOTED = [
     ("doc/choosing.md", "{} %, {} %, {} % of the period | 3, 5, 10", lambda: curve("oscillating_plate", TL, 3, 5, 10)),
@@ -87,8 +87,6 @@ QUOTED = [
     ("doc/choosing.md", "+{} % instructions of a solid alone, +{} % of the gate", lambda: [effect("total", "hourglass control"), effect("gate", "hourglass control")]),
     ("doc/choosing.md", "0.7 % become 3.9 %; +{} % instructions", lambda: [effect(*WATER[0])]),
     ("doc/choosing.md", "+{} % instructions instead of +{} % |\n| *density/surface*", lambda: [effect(*WATER[1]), effect(*WATER[0])]),
-    ("doc/choosing.md", "+{} % instructions instead of +{} % |\n| *spacing*", lambda: [effect(*WATER[3]), effect(*WATER[2])]),
-    ("doc/src/fix_fsi.rst", "the rule adds {} % to the instructions of a step\nof plain water instead of {} %", lambda: [effect(*WATER[3]), effect(*WATER[2])]),
     ("doc/src/pair_fsi_fluid.rst", "it adds {} % to the instructions of plain water instead of {} %", lambda: [effect(*WATER[1]), effect(*WATER[0])]),
     ("doc/src/pair_fsi_solid_tl.rst", "a solid alone takes {} times", lambda: [1 + effect("total", "hourglass control") / 100]),
     ("doc/src/pair_fsi_solid_tl.rst", "its water {} times", lambda: [1 + effect("gate", "hourglass control") / 100]),
@@ -105,6 +103,9 @@ SCENES = [
     *((("cylinder_channel", f"| {n} | {{}} (+{{}} %) | {{}} ({sign}{{}} %) | {{}} (-{{}} %) | {{}} min",
         lambda scene, *names: mixed(scene, *names[:3]) + minutes(scene, names[3]),
         [f"drag_max_re_100_{n}", f"lift_max_re_100_{n}", f"strouhal_re_100_{n}", f"re_100_{n}"])) for n, sign in ((14, "+"), (20, "+"), (28, "-"))),
+    ("cylinder_channel", "| 14, 40 around the cylinder | {} (+{} %) | {} (-{} %) | {} (-{} %) |", mixed,
+     [f"{name}_re_100_14_to_40" for name in ("drag_max", "lift_max", "strouhal")]),
+    ("cylinder_free", "28 around the cylinder | mean drag, lift, Strouhal number | {}, {}, {} |", sizes, [f"{name}_7_to_28" for name in ("drag", "lift", "strouhal")]),
     ("cylinder_free", "Re = 100, 10 per diameter | mean drag | {} |", sizes, ["drag_10_across"]),
     ("cylinder_free", "Re = 200, 10 per diameter | mean drag | {} |", sizes, ["drag_re_200"]),
     ("dam_break_3d", "mean pressure at P1 | {} |", sizes, ["P1_steady"]),

@@ -53,7 +53,7 @@ def test_deck_is_short(deck):
     assert len([line for line in (RECIPES / deck).read_text().splitlines() if line.strip()]) <= 45
 
 
-@pytest.mark.parametrize("name", ["in.float", "in.loose", "in.flap", "in.turned", "in.tear", "in.channel", "in.inflow", "in.fine", "in.viscoelastic"])
+@pytest.mark.parametrize("name", ["in.float", "in.loose", "in.flap", "in.mooring", "in.turned", "in.tear", "in.channel", "in.inflow", "in.fine", "in.viscoelastic"])
 def test_deck(tmp_path, name):
     found = go(tmp_path, name, n=20)
     assert found.finished[-1].steps == 20 and not found.warnings
@@ -98,6 +98,19 @@ def test_float_is_at_rest_where_archimedes_says(tmp_path):
     found = go(tmp_path, "in.float", n=3000)
     heave = found.column("v_heave")
     assert not found.warnings and 0.5 * (heave.min() + heave[len(heave) // 2:].max()) == pytest.approx(-0.02 + 0.2 * 0.02 / 0.6, abs=0.002)
+
+
+def test_mooring_line_carries_what_archimedes_leaves(tmp_path):
+    """The mean pull downward over whole swings is buoyancy less weight, 0.01 m^2 x 500 kg/m^3 x g: what the water does in the mean is hydrostatic,
+    to the momentum by which the ends of those swings differ, some 15 kg (buoy and water) times 0.01 m/s over 1.5 s, 0.2 %. The line is slack at first."""
+    found = go(tmp_path, "in.mooring", n=8000)
+    time, length, tension, y = (found.column(name) for name in ("Time", "v_length", "v_tension", "v_y"))
+    pull = tension * y / length
+    rises = np.flatnonzero((length[:-1] < 0.1698) & (length[1:] >= 0.1698))
+    first, last = rises[2], rises[-1]
+    mean = np.trapezoid(pull[first:last + 1], time[first:last + 1]) / (time[last] - time[first])
+    print(f"mooring: {len(rises)} swings, mean pull {mean:.2f} N")
+    assert mean == pytest.approx(0.01 * 500 * 9.81, rel=0.01) and tension[0] == tension.min() == 0.0
 
 
 def wave_number(omega, depth):

@@ -274,6 +274,7 @@ def main(folder):
             [empty, f"fix sph none fsi {DX} wendland 1.5 mach off", *post], state)
 
     files.update(of_grains(x, v, rho, mol, mass))
+    files.update(of_fix(x, v, rho, mol, mass))
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
         (folder / name).write_text(text)
@@ -301,6 +302,40 @@ def of_grains(x, v, rho, mol, mass):
         [f"* * fsi/fluid materials.fsi {VISCOUS} NULL", "1 2 fsi/grain", "2 2 none"],
         ["group none empty", f"fix sph none fsi {DX} wendland 1.5 mach off"], state,
         ["atom sphere", "pair fsi/fluid"], deck="in.fsi_grain")}
+
+
+def of_fix(x, v, rho, mol, mass):
+    """Eight steps of fix fsi. The frame takes steps of 0.25 and defines a force field with bonds,
+    which is given up again. It runs the fix of ID test with rRESPA, too, which fix fsi refuses,
+    but for some styles: fix nve/limit of an empty group has the ID."""
+    unit = DT / 0.25    # of time, s
+    state = State(Fluid(Kernel("wendland", 3, 1.5 * DX), artificial=(0.3, 0.5)), x, v, rho, mol,
+                  mass)
+    for _ in range(8):    # doc/src/fix_fsi.rst
+        state.x = state.x + DT / 2 * state.v
+        state.law.advance(state)
+        state.v = state.v + DT * state.law.force(state) / state.m[:, None]
+        state.x = state.x + DT / 2 * state.v
+    head, rest = data_file(x, (v * unit).round(9), rho, mol, mass).split("Atoms # fsi")
+    atoms, speeds = rest.split("Velocities")
+    rows = [row.split() for row in atoms.strip().splitlines()]
+    rows = [" ".join([row[0], "1", *row[5:8], row[1], row[3], row[4], "0 0 0"]) for row in rows]
+    data = (head.replace("1 atom types", "5 atom types\n5 bond types\n4 angle types")
+            + "Atoms # hybrid\n\n" + "\n".join(rows) + "\n\nVelocities" + speeds)
+    deck = (TESTS / "in.fsi").read_text().replace("data.fsi", "data.fsi_timestep").replace(
+        "atom_style       fsi", "atom_style       hybrid fsi angle")
+    post = ["bond_style none", "angle_style none",
+            f"fsi/material water fluid rho 1000 sound {C * unit:g}",
+            "pair_style fsi/fluid tension yes artificial/visc 0.3 0.5",
+            "pair_coeff * * NULL water water water water water", "group none empty",
+            f"fix sph all fsi {DX} wendland 1.5 mach off", "fix test none nve/limit 1"]
+    test = (f"---\nlammps_version: 4 Feb 2025\ndate_generated: {DATE}\nepsilon: 1e-10\n"
+            "skip_tests:\nprerequisites: "
+            + block(["atom fsi", "atom angle", "pair fsi/fluid", "fix fsi", "fix nve/limit"])
+            + 'pre_commands: ! ""\n' + "post_commands: " + block(post)
+            + f"input_file: in.fsi_timestep\nnatoms: {len(x)}\nglobal_scalar: 0\n"
+            + f"run_pos: {numbers(state.x)}run_vel: {numbers(state.v * unit)}...\n")
+    return {"data.fsi_timestep": data, "in.fsi_timestep": deck, "fix-timestep-fsi.yaml": test}
 
 
 def deformation():

@@ -228,6 +228,46 @@ TYPED_TEST(Weights, LineOrPlaneIsDeficient)
   EXPECT_EQ(weigh(skew, true, G), GradientWeights<D>::DEFICIENT);
 }
 
+// round-off does not make a line of two directions, along an axis either
+TYPED_TEST(Weights, NearlyALineIsDeficient)
+{
+  constexpr int D = TypeParam::value;
+  double A[packed_size(D)] = {}, C[D * D];
+  for (int flat = 0; flat < D; flat++) {
+    for (int a = 0; a < D; a++) A[packed_size(a) + a] = a == flat ? 1e-12 : 1.0;
+    EXPECT_EQ((gradient_coefficients<D, D>(A, C)), Gradient<D>::DEFICIENT) << flat;
+  }
+}
+
+// the inverse of round moments, and of those of half a disc or ball; nothing across a line or plane, whichever way it lies
+TYPED_TEST(Weights, FadedInverse)
+{
+  constexpr int D = TypeParam::value;
+  Random random(7);
+  const auto R = random_rotation<D>(random);
+  const auto entry = [&R](double across, int a, int b) {
+    double sum = 0.0;
+    for (int k = 0; k < D; k++) sum += (k ? 2.0 : 2.0 * across) * R(a, k) * R(b, k);
+    return sum;
+  };
+  for (const double across : {1.0, 0.28, 0.06, 0.019, 1e-16, 0.0}) {
+    double M[packed_size(D)], C[D * D];
+    for (int a = 0, n = 0; a < D; a++)
+      for (int b = 0; b <= a; b++) M[n++] = entry(across, a, b);
+    faded_inverse<D>(M, C);
+    const double part = across > 0.1 ? 1.0 : across == 0.06 ? 0.5 : 0.0;    // half way between 0.02 and 0.1
+    for (int a = 0; a < D; a++)
+      for (int b = 0; b < D; b++) {
+        double expected = 0.0;
+        for (int k = 0; k < D; k++) expected += (k ? 0.5 : part ? 0.5 * part / across : 0.0) * R(a, k) * R(b, k);
+        EXPECT_NEAR(C[a * D + b], expected, 1e-13 / std::max(across, 0.05)) << across;
+      }
+  }
+  double none[packed_size(D)] = {}, C[D * D];
+  faded_inverse<D>(none, C);
+  for (const double c : C) EXPECT_EQ(c, 0.0);
+}
+
 TYPED_TEST(Weights, TooFewNeighborsAreDeficient)
 {
   constexpr int D = TypeParam::value;

@@ -55,6 +55,19 @@ def test_updated_solid_with_quadratic_gradients(tmp_path):
     assert 0.0 < figures["period"] / PERIOD - 1.0 < 0.07
 
 
+@pytest.mark.parametrize("solid", ["tl", "ul"])
+def test_turned_plate_swings_alike(tmp_path, solid):
+    # nothing of the solid knows the axes of the box; weights of round-off sized terms leave 1e-8
+    periods = [run_scene(tmp_path / str(turn), "oscillating_plate", n=4, solid=solid, turn=turn, periods=1.1)["period"] for turn in (0, 30)]
+    assert periods[1] == pytest.approx(periods[0], rel=1e-6)
+
+
+def test_plate_cut_aslant_from_a_lattice_is_softer(tmp_path):
+    # steps of its faces carry no stress: 4 of 5 layers are through everywhere, which lengthens the period by up to (5/4)^(3/2) - 1 = 40 %
+    figures = run_scene(tmp_path, "oscillating_plate", n=5, slant=30, periods=1.3)
+    assert 0.05 < figures["period"] / PERIOD - 1.0 < 0.4
+
+
 def test_run_without_viscosity_ends_early_and_says_so(tmp_path):
     # the paper: "unstable for alpha = 0"
     figures = run_scene(tmp_path, "oscillating_plate", n=5, mode="paper", alpha=0, periods=2.0)

@@ -48,6 +48,9 @@ CASES = {
     "spacing": ([("fsi 0.01", "fsi 0.0085"), ("4e-5", "3e-5")], None, r"nearest neighbors are 0.01 apart on average, but the spacing is 0.0085"),
     "coarse": ([("sq 0.01", "sq 0.013")], None, r"most particles have no neighbor within 0.0125: is 0.01 the spacing"),
     "overlap": ([("run 0", "create_atoms 1 single 0.028 0.025 0 units box\nrun 0")], None, r"atoms 13 and 65 are 0.3 spacings apart"),
+    "around": ([("boundary f f p", "boundary p f p"), ("box block -0.05 0.15", "box block 0.0045 0.0755"), ("water block 0 0.05", "water block INF INF"),
+                ("walls all fsi/wall/mirror xlo 0", "walls all fsi/wall/mirror"), ("create_atoms 2 region plate", "")], None,
+               r"atoms 1 and 8 are 0.1 spacings apart around the periodic box: make it a whole number of spacings long in x"),
     "idle": ([("fix sph all", "group moving type 2\ngroup some id 1:20\ngroup moving union moving some\nfix sph moving")], None,
              r"20 fluid particles, the first of them atom 21, are not in group moving of fix sph"),
     # alpha h c/16 = 2.9e-3 against 1e-3/1000*1000

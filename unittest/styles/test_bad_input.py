@@ -193,8 +193,7 @@ CASES = [
     ("beta negative", "visc 0.05 0.1", "visc 0.05 -0.1", r"artificial/visc beta -0\.1 must be >= 0"),
     ("diffusion negative", "density/diffusion 0.1", "density/diffusion -0.1", r"density/diffusion -0\.1 must be >= 0"),
     ("diffusion without value", "density/diffusion 0.1", "density/diffusion", r"density/diffusion command: missing"),
-    ("surface ratio large", *fluid("", "sound 10 surface 1.5 bulk "), r"surface ratio 1\.5 must be >= 0 and < 1"),
-    ("surface reference unknown", *fluid("", "sound 10 surface 0.9 mean "), r"surface reference mean"),
+    ("surface ratio large", *fluid("", "sound 10 surface 1.5 "), r"surface 1\.5 must be >= 0 and < 1"),
     ("diffusion with summation", "fluid continuity", "fluid summation", r"density/diffusion requires .*fluid continuity"),
     ("surfaces of no logical value", "density/diffusion 0.1", "density/surface perhaps", r"density/surface perhaps"),
     ("surfaces with tension", "density/diffusion 0.1", "density/surface yes tension yes", r"density/surface is for fluids with a free surface"),
@@ -206,7 +205,7 @@ CASES = [
     ("ratio of fluids", "fluid continuity", "fluid ratio", r"Unknown fix fsi fluid density ratio: expected continuity or summation"),
     ("coupling by pressure", "density/diffusion 0.1", "couple pressure", r"Unknown pair_style fsi/fluid couple pressure: expected wall or full"),
     *[(f"{key} without value", "density/diffusion 0.1", key, rf"fsi/fluid {key.split()[0]} command: missing")
-      for key in ("eos", "background", "tension", "artificial/visc 0.1", "couple", "extrapolate", "surface 0.9",
+      for key in ("eos", "background", "tension", "artificial/visc 0.1", "couple", "extrapolate", "surface",
                   "shift")],
     # pair_style fsi/solid
     ("solid keyword unknown", "gradient corrected", "slope corrected", r"keyword slope"),
@@ -272,7 +271,8 @@ CASES = [
      r"solid density .*fsi/solid/tl"),
     ("substeps without tl", SPH, SPH + " substeps 4", r"substeps requires pair_style fsi/solid/tl"),
     ("substeps zero", SPH, SPH + " substeps 0", r"substeps 0 must be between 1 and 10000"),
-    ("surface/every zero", SPH, SPH + " surface/every 0", r"surface/every 0 must be >= 1"),
+    ("scheme unknown", SPH, SPH + " scheme paper", r"scheme paper: expected standard or article"),
+    ("scheme with another form", SPH, SPH + " scheme article", r"density/diffusion requires fix fsi with fluid continuity"),
     ("fluid coarser than dx", SPH, SPH + " spacing 1 0.02", r"spacing 0\.02 of type 1, a fluid: dx, 0\.01, is to be that of the coarsest fluid"),
     ("spacing of fsi/solid", SPH, SPH + " spacing 2 0.005", r"spacing 0\.005 of type 2: .*Use pair_style fsi/solid/tl"),
     ("spacing without value", SPH, SPH + " spacing 2", r"fix fsi spacing command: missing"),
@@ -370,11 +370,11 @@ NUMBERS = [
     ("particle spacing", "fsi 0.01", "fsi {}"),
     ("smoothing length over spacing", "wendland 1.5", "wendland {}"),
     ("fsi substeps", *tl("", more="fix more all fsi 0.01 wendland 1.5 substeps {}\nunfix more\n")),
-    *[(word, SPH, f"{SPH} {word} {{}}") for word in ("surface/every", "mach")],
+    *[(word, SPH, f"{SPH} {word} {{}}") for word in ("mach",)],
     *[(word, *fluid("", f"sound {keyword} ".replace("sound sound", "sound"))) for word, keyword in (
         ("sound", "sound {}"), ("background", "10 background {}"), ("artificial/visc alpha", "10 artificial/visc {} 0"),
         ("artificial/visc beta", "10 artificial/visc 0 {}"), ("density/diffusion", "10 density/diffusion {}"), ("shift", "10 shift {}"),
-        ("shift/every", "10 shift 0.1 shift/every {}"), ("solid/guard", "10 solid/guard {}"), ("surface ratio", "10 surface {} bulk"))],
+        ("shift/every", "10 shift 0.1 shift/every {}"), ("solid/guard", "10 solid/guard {}"), ("surface", "10 surface {}"))],
     *[(word, "artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected", keyword) for word, keyword in (
         ("artificial/visc alpha", "artificial/visc {} 0"), ("artificial/visc beta", "artificial/visc 0 {}"),
         ("artificial/stress", "artificial/stress {}"), ("hourglass", "hourglass {}"), ("contact", "contact {}"))],

@@ -321,6 +321,30 @@ def test_ranks(tmp_path, one_rank, ranks, grid, newton):
         assert x < 1e-12 and v < 1e-9, (x, v)
 
 
+@pytest.mark.parametrize("ranks, grid, newton", [(1, "1 1 1", "on"), (2, "2 1 1", "off"), (4, "2 2 1", "on")])
+def test_rigid_small(tmp_path, one_rank, ranks, grid, newton):
+    """The same bodies, each kept by the rank of one of its atoms: as with fix rigid, to round-off as above."""
+    text = deck(newton, grid).replace("rigid group 2 one two force * on on off torque * off off on", "rigid/small molecule").replace("cutoff 0.042", "cutoff 0.075")
+    got = run(tmp_path, text + watch(every=500) + "run 1500", ranks, **FILES).frames()
+    for a, b in zip(one_rank, got, strict=True):
+        x, v = apart(a, b)
+        assert x < 1e-12 and v < 1e-9, (x, v)
+
+
+@pytest.mark.parametrize("n", [[24, 4], [14, 3, 4]])
+def test_momenta_of_a_free_beam_with_rigid_small(n):
+    """As with fix rigid"""
+    s, _ = beam(n, 4, 10, 2e-4, commands=["unfix tip", "fix tip held rigid/small molecule"])
+    with s:
+        s.run()
+        start, energy = momenta(s), s.ledger().sum()
+        s.run(400)
+        now = momenta(s)
+        assert np.abs(now[0] - start[0]).max() < 1e-12 * start[2]
+        assert np.abs(now[1] - start[1]).max() < 1e-12 * start[3]
+        assert abs(s.ledger().sum() / energy - 1) < 5e-4
+
+
 def test_restart(tmp_path, one_rank):
     """Fix rigid keeps no state in the file and finds its bodies again from positions and velocities of particles: as good as those are, not bit
     for bit."""
@@ -360,7 +384,13 @@ def test_early_forces_are_refused():
         s.run()
 
 
-@pytest.mark.parametrize("style", ["rigid/nve single", "rigid/small molecule", "rigid/nve/small molecule"])
+def test_small_bodies_in_a_heat_bath_are_refused():
+    s, _ = beam([12, 4], 4, 4, 4e-5, commands=["unfix tip", "set group all mol 1", "fix tip held rigid/small molecule langevin 1.0 1.0 1.0 4711"])
+    with s, pytest.raises(Exception, match=r"Fix tip \(style rigid/small\) moves particles of elastic bodies with sub-steps: expected no"):
+        s.run()
+
+
+@pytest.mark.parametrize("style", ["rigid/nve single", "rigid/nve/small molecule"])
 @pytest.mark.parametrize("auto", [False, True])
 def test_other_styles_are_refused(style, auto):
     """They keep their bodies in another way; a run of no steps, as that of `fsi check`, says so where fix fsi/dt may choose sub-steps."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import KERNELS, RUBBER, WATER, Kernel, Scene, close, cloud, lattice, pairs, sum_over
+from scenes import KERNELS, RUBBER, WATER, Kernel, Scene, close, cloud, dam_gate, differing, lattice, pairs, run, sum_over, watch
 
 ROUND_OFF = 1e-12    # sums of about 20 to 120 terms of one sign
 BOTH = pytest.mark.parametrize("n", [(9, 9), (6, 6, 6)], ids=["2D", "3D"])
@@ -228,3 +228,16 @@ def test_fsi_set_pressure(eos):
         close(s.run().get("rho"), 1000 + x[:, 0], 1e-14)
         s.run_lines("fsi/set all pressure 70")
         assert np.abs(s.run().p - 70).max() < 1e-8
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_article_is_its_settings(tmp_path, dim):
+    """Scheme article is the six settings that its page lists, bit for bit; what a style says itself is kept."""
+    def end(name, density, fluid="", solid=""):
+        scene = dam_gate(dim, kernel="cubic 1.3", density=density, fluid=f"sound 10 tension yes artificial/visc 0.1 0 {fluid}",
+                         solid=f"artificial/visc 0.1 0 {solid}", sph="mach off")
+        return run(tmp_path / name, scene.text() + watch(every=40) + "run 40\n", scene_data=scene.data()).frames()[-1]
+    word = end("word", "scheme article")
+    assert differing(word, end("settings", "fluid summation solid ratio", "surface 0.9 couple full", "artificial/stress 0.3 gradient plain")) == []
+    for k, other in enumerate((("", "artificial/stress 0.1"), ("surface 0.99",))):
+        assert "vx" in differing(word, end(f"other{k}", "scheme article", *other))

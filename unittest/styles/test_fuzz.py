@@ -16,14 +16,14 @@ FRESH = 250  # inputs before the next LAMMPS instance
 
 COMMANDS = [
     "pair_style fsi/fluid sound 10 eos tait background 100 tension yes artificial/visc 0.1 0.1 laminar/visc",
-    "pair_style fsi/fluid sound 10 density/diffusion 0.1 couple full extrapolate no surface 0.9 bulk",
+    "pair_style fsi/fluid sound 10 density/diffusion 0.1 couple full extrapolate no surface 0.9",
     "pair_style fsi/solid artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected",
     "pair_style fsi/solid/tl artificial/visc 0.1 0.1 hourglass 0.1 law svk plane strain gradient linear volumes plain",
     "pair_style hybrid fsi/fluid sound 10 couple wall fsi/solid gradient plain",
     "pair_coeff * * materials.fsi water plate",
     "pair_coeff * * materials.fsi water tank",
     "pair_coeff * * fsi/fluid materials.fsi water plate",
-    "fix sph all fsi 0.01 wendland 1.5 fluid continuity solid ratio substeps 3 surface/every 5",
+    "fix sph all fsi 0.01 wendland 1.5 scheme article fluid continuity solid ratio substeps 3",
     "fix stress all fsi/stress plane strain",
     "fix particles all fsi/wall/particle slip no guard 0.9",
     "fix walls all fsi/wall/mirror xlo 0 range y 0 INF velocity 0.1 0 0 slip no ylo EDGE guard 0.2",

@@ -170,6 +170,18 @@ def hydrostatic(x, top):
     return 1000 + 1000 * G * (top - x[:, 1]) / C**2
 
 
+def test_edge_of_a_column(tmp_path):
+    """A grain that sees one upright row of fluid, straight to 1e-5 of a spacing, gets no force across it: no gradient is known there."""
+    random = np.random.default_rng(3)
+    x = np.zeros((9, 3))
+    x[:, 0], x[:, 1] = 0.05 + 1e-7 * random.uniform(-1, 1, 9), 0.05 + DX * np.arange(9)
+    with Grains(tmp_path, 2, x, np.zeros_like(x), np.array([[0.05 + 1.5 * DX, 0.092, 0.0]]), np.zeros((1, 3)), 0.4 * DX, fluid="tension yes") as s:
+        s.run()
+        s.lmp.numpy.extract_atom("rho")[:9] = random.uniform(1000, 1010, 9)
+        f = s.run().get("f")[9]
+    assert abs(f[1]) > 1e-3 and abs(f[0]) < 1e-6 * abs(f[1])
+
+
 @pytest.mark.parametrize("dim", (2, 3))
 def test_archimedes(tmp_path, dim):
     """Still water whose pressure is a plane: a sphere under water is pushed up by the weight of its volume, one in the surface by that

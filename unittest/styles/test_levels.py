@@ -300,7 +300,7 @@ def test_surface(dim, rule):
     n = 1.0 if dim == 2 else 0.5
     first = 0.75 * np.where(fine, 0.1 / JUMP, 0.1)[:, None]
     face = ((x < first) | (x > [2 * n, n, n] - first))[:, :dim]
-    with Scene(x, type=1 + fine, dim=dim, kernel="cubic", hdx=1.2, fluid="sound 10 surface 0.9 bulk", **levels()) as s:
+    with Scene(x, type=1 + fine, dim=dim, kernel="cubic", hdx=1.2, fluid="sound 10 surface 0.9", **levels()) as s:
         s.run().run_lines("compute psi all fsi/atom psi", f"compute surface all fsi/surface/atom {rule} {dict(divergence=0.75).get(rule, 0.9)}")
         s.put("rho", 1001.0)
         found = s.run().compute("surface", columns=False)

@@ -210,7 +210,7 @@ OTHER = {  # scene, name: other commands, each with what an error says if it is 
     ("tank", "pair"): {f"pair_style hybrid fsi/fluid {fluid} {body}": refused for fluid, body, refused in [
         (FLUID + " density/surface yes", BODY, ""), (FLUID + " shift 0.1", BODY, ""), (FLUID + " shift 0.1 shift/every 3", BODY, ""),
         (FLUID + " laminar/visc", BODY, ""), (FLUID + " laminar/visc/central solid/slip yes", BODY, ""), (FLUID + " extrapolate yes", BODY, ""),
-        (FLUID + " surface 0.7 max", BODY, ""), ("sound 12 eos tait", BODY, ""), (FLUID + " tension yes background 100", BODY, ""),
+        (FLUID + " surface 0.7", BODY, ""), ("sound 12 eos tait", BODY, ""), (FLUID + " tension yes background 100", BODY, ""),
         (FLUID, BODY + " hourglass 0.2", ""), (FLUID, BODY + " law neohookean", ""), (FLUID, BODY + " plane stress", ""),
         (FLUID, BODY + " damage 0.5", ""), (FLUID, BODY + " contact 1.5", ""),
         (FLUID, BODY + " gradient linear", "bonds of its bodies were made with"), (FLUID, BODY + " volumes plain", "bonds of its bodies were made with"),
@@ -220,7 +220,7 @@ OTHER = {  # scene, name: other commands, each with what an error says if it is 
                         "pair_coeff * * fsi/fluid m.fsi water stiffer wall\npair_coeff * * fsi/solid/tl m.fsi NULL rubber NULL": "expected the same"},
     ("tank", "fsi"): {f"fix fsi moves fsi {words}": refused for words, refused in [
         ("0.01 wendland 1.5 substeps 4", ""), ("0.01 wendland 1.5 thin 2", ""), ("0.01 wendland 1.5 thin 3", ""), ("0.01 wendland 1.5 mach off", ""),
-        ("0.01 wendland 1.5 surface/every 3", ""), ("0.012 wendland 1.5", "particle spacing was 0.01 in the last run, and is 0.012 now"),
+        ("0.012 wendland 1.5", "particle spacing was 0.01 in the last run, and is 0.012 now"),
         ("0.01 wendland 1.5 spacing 2 0.005", "spacing was none in the last run, and is 2 0.005 now"),
         ("0.01 wendland 1.5 fluid summation", "density/diffusion requires"), ("0.01 quintic 1.0", OLD_KERNEL)]},
     ("tank", "gravity"): {"fix gravity all gravity 5 vector 1 -1 0": "", "fix gravity water gravity 9.81 vector 0 -1 0": ""},
@@ -240,7 +240,7 @@ OTHER = {  # scene, name: other commands, each with what an error says if it is 
     ("updated", "pair"): {f"pair_style hybrid fsi/fluid sound 10 artificial/visc 0.05 0 {words} fsi/solid artificial/visc 0.1 0 {body}": "" for words, body in [
         ("", ""), ("", "gradient corrected"), ("couple full", "gradient plain artificial/stress 0.3"), ("shift 0.1", "hourglass 0.3 gradient quadratic"),
         ("density/surface yes", "hourglass 0.1 gradient quadratic")]},
-    ("updated", "fsi"): {"fix fsi moves fsi 0.01 wendland 1.5 solid ratio": "", "fix fsi moves fsi 0.01 wendland 1.5 fluid summation solid summation": "",
+    ("updated", "fsi"): {"fix fsi moves fsi 0.01 wendland 1.5 solid ratio": "", "fix fsi moves fsi 0.01 wendland 1.5 fluid summation solid summation": "", "fix fsi moves fsi 0.01 wendland 1.5 scheme article": "requires pair_style fsi/solid gradient plain",
                          "fix fsi moves fsi 0.01 cubic 1.3": OLD_KERNEL},
     ("updated", "stress"): {"fix stress all fsi/stress plastic": ""},
     ("open", "pair"): {f"pair_style fsi/fluid sound 10 background 500 tension yes {words}": "" for words in

@@ -17,13 +17,11 @@ DIGITS = 1e-14
 MODES = {
     "dam 2D": lambda: dam_gate(2),
     "dam 3D": lambda: dam_gate(3),
-    "ratio": lambda: dam_gate(2, density="fluid summation solid ratio",
-                              fluid="sound 10 artificial/visc 0.05 0 surface 0.9 bulk"),
+    "article": lambda: dam_gate(2, density="scheme article", fluid="sound 10 tension yes artificial/visc 0.05 0", solid="artificial/visc 0.1 0.1"),
     "fluid": lambda: fluid_box(2),
     "shift": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5"),
     "shift every third step": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 shift 0.5 shift/every 3"),
     "shift in a full box": lambda: dam_gate(2, fluid="sound 10 tension yes background 50 density/diffusion 0.1 shift 0.5"),
-    "surface": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 surface 0.9 max", sph="surface/every 7"),
     "surfaces": lambda: dam_gate(2, fluid="sound 10 artificial/visc 0.05 0 density/diffusion 0.1 density/surface yes"),
     "tl 2D": lambda: dam_gate(2, solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0.1 hourglass 0.1"),
     "tl 3D": lambda: dam_gate(3, solid_style="fsi/solid/tl", solid="law neohookean", sph="substeps 4"),
@@ -308,7 +306,7 @@ create_atoms 2 region plate
 
 
 @pytest.mark.parametrize("first, again", [
-    ("sound 10 shift 0.5 tension yes density/diffusion 0.1 background 50 surface 0.9 max laminar/visc extrapolate yes couple full eos tait", "sound 10"),
+    ("sound 10 shift 0.5 tension yes density/diffusion 0.1 background 50 surface 0.9 laminar/visc extrapolate yes couple full eos tait", "sound 10"),
     ("sound 10 artificial/visc 0.1 1", "sound 10 eos tait"), ("sound 10 laminar/visc/central", "sound 10 laminar/visc")])
 def test_pair_style_given_again(tmp_path, first, again):
     """Only the keywords of the last command count."""
@@ -330,7 +328,7 @@ create_box 1 box
 lattice sq 0.01 origin 0.5 0.5 0
 region water block 0 0.2 0 0.2 INF INF units box
 create_atoms 1 region water
-pair_style fsi/fluid sound 20 artificial/visc 0.05 0 surface 0.9 bulk
+pair_style fsi/fluid sound 20 artificial/visc 0.05 0 surface 0.9
 pair_coeff * * water.fsi water
 """
 PHYSICS = """fix 1 all fsi {sph}
@@ -362,7 +360,7 @@ def second_part(folder, sph, more="", steps=30, runner=run):
     return runner(folder, FLUID + f"read_restart r.{steps}\n" + PHYSICS.format(sph=sph, more=more) + f"run {steps}\n", water_fsi=MATERIALS)
 
 
-MODES_OF_FLUID = {"": "", "every": "surface/every 7", "thousand": "surface/every 1000", "summation": "fluid summation"}
+MODES_OF_FLUID = {"": "", "summation": "fluid summation"}
 
 
 @pytest.mark.parametrize("after", MODES_OF_FLUID)
@@ -386,6 +384,14 @@ def test_other_keywords(tmp_path, before, after):
         low, density_low, high, density_high = row[2:]
         assert np.isfinite(row).all() and low >= 0.0 and high < 8000.0, (step, row)
         assert (density_low > 400.0 if "summation" in (before, after) else density_low > 950.0) and density_high < 1050.0, (step, row)
+
+
+def test_sound_of_the_material(tmp_path):
+    """The pair style names no speed of sound: its fluid has one."""
+    fluid, physics = MATERIALS.replace("rho 1000", "rho 1000 sound 20"), PHYSICS.format(sph="0.01 wendland 1.5", more="timestep 1e-4")
+    whole = run(tmp_path, FLUID + WATER.replace("sound 20 ", "") + physics + "restart 30 r.*\nrun 30\nrun 30\n", water_fsi=fluid)
+    rest = run(tmp_path, FLUID + "read_restart r.30\n" + physics + "run 30\n", water_fsi=fluid)
+    assert rows(rest.output)[60] == rows(whole.output)[60]
 
 
 @pytest.mark.parametrize("sph, message", [

@@ -186,6 +186,29 @@ def test_corrected_volumes(n):
             close(s.get("f"), f, 3e-12)
 
 
+@pytest.mark.parametrize("n, angle", [([8, 7], 10), ([4, 5], 45), ([5, 4, 6], 30)])
+def test_corrected_volumes_of_turned_lattices(n, angle):
+    """As above along the axes of each body's own lattice: one along the box's, one turned, and one turned of which a particle is off
+    its lattice, which keeps plain volumes."""
+    dim, x = len(n), lattice(n, DX)
+    axis = np.array([0, 0, 1.0] if dim == 2 else [1, 2, 3]) / (1 if dim == 2 else np.sqrt(14))
+    c, s_ = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    turned = (x * c + np.cross(axis, x) * s_ + np.outer(x @ axis, axis) * (1 - c))
+    off = turned.copy()
+    off[-1] += 0.2 * (turned[1] - turned[0])  # at its edge, along it or across
+    x = np.vstack([x, turned + [3.0, 0, 0], off + [6.0, 0, 0]])
+    mol, weight = np.repeat([1, 2, 3], np.prod(n)), np.concatenate([tensor(n), tensor(n), np.ones(np.prod(n))])
+    with solid(x, mol=mol, commands=["compute e all fsi/energy"], dim=dim) as s:
+        s.run()
+        y = x.copy()
+        y[:, :dim] += x[:, :dim] @ np.random.default_rng(1).uniform(-0.1, 0.1, (dim, dim)).T  # a linear field: F is exact
+        s.put("x", y)
+        s.run()
+        energy, f = Reference(x, s.kernel, dim, s.get("rmass"), mol, weight=weight)(y)
+        assert entry(s, 3) == pytest.approx(energy, rel=1e-12)
+        close(s.get("f")[mol < 3], f[mol < 3], 1e-11)
+
+
 def test_corrected_volumes_of_a_hole():
     """Faces need not be those of a box: each row of particles between two faces for itself."""
     n = [12, 11]

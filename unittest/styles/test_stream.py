@@ -180,3 +180,35 @@ def test_bad_input(tmp_path, name, change, message):
                                       "pair_coeff * * fsi/solid/tl materials.fsi NULL plate")
     result = lammps(tmp_path, text + "run 1\n")
     assert result.status != 0 and any(re.search(message, line) for line in result.errors), result.output[-1500:]
+
+
+def test_order_of_the_script_does_not_matter(tmp_path):
+    """A zone that damps densities reaches into the buffer of an open end: what the end gives its particles stands, whichever of the two the script has
+    first. Parts of a step have a rank (fsi_part.h)."""
+    def end(*fixes):
+        text = """units si
+dimension 2
+boundary f f p
+atom_style fsi
+region box block -0.08 0.28 -0.05 0.15 -0.005 0.005
+create_box 1 box
+lattice sq 0.01 origin 0.5 0.5 0
+region channel block 0 0.2 0 0.1 INF INF units box
+create_atoms 1 region channel
+displace_atoms all random 0.0005 0.0005 0 7 units box
+velocity all set 0.5 0 0 units box
+fsi/material water fluid rho 1000 sound 10
+pair_style fsi/fluid background 500 tension yes density/diffusion 0.1
+pair_coeff * * NULL water
+fix fsi all fsi 0.01 wendland 1.5
+fix mirror all fsi/wall/mirror ylo 0 yhi 0.1
+region zone block -0.06 0.06 INF INF INF INF units box
+neighbor 0.003 bin
+timestep 1e-4
+""" + "\n".join(fixes) + "\nfix outlet all fsi/outlet xhi 0.2\n" + watch(every=20) + "run 20\n"
+        folder = tmp_path / str(len(list(tmp_path.iterdir())))
+        return run(folder, text).frames()[-1]
+    inlet, stream = "fix inlet all fsi/inlet xlo 0 velocity 0.5 0 0", "fix stream all fsi/stream 0.5 NULL NULL region zone rate 20"
+    first, last = end(inlet, stream + " density 500"), end(stream + " density 500", inlet)
+    assert differing(first, last) == []
+    assert "rho" in differing(first, end(inlet, stream))    # the zone has something to damp

@@ -48,6 +48,21 @@ def test_no_circle():
     assert circle(edges) == []
 
 
+def test_style_headers_are_bare():
+    """LAMMPS' rule: the header of a style includes those of its base classes alone, each of which its class statement names."""
+    names = {"fix": "Fix", "pair": "Pair", "compute": "Compute", "command": "Command", "atom_vec": "AtomVec", "fsi_part": "FSI::Part", "fsi_scene": "FSI::Scene",
+             "pair_fsi": "PairFSI", "fsi_fields": "FSI::FixFields"}
+    styles, more = 0, {}
+    for file in SOURCES.glob("*.h"):
+        text = file.read_text()
+        if not re.search(r"^(Fix|Pair|Compute|Atom|Command)Style\(", text, re.M):
+            continue
+        styles += 1
+        bases = set(re.search(r"^class \w+ : ([^{]*)\{", text, re.M)[1].replace("virtual", "").replace("public", "").replace(" ", "").strip().split(","))
+        more[file.name] = {h for h in re.findall(r'#include "(\w+)\.h"', text) if names.get(h) not in bases}
+    assert styles > 20 and {name: found for name, found in more.items() if found} == {}
+
+
 def test_fix_fsi_knows_no_style():
     assert [name for name in includes("fix_fsi") if re.match(r"(fix|pair|compute)_", name)] == []
     assert len((SOURCES / "fix_fsi.cpp").read_text().splitlines()) < 450

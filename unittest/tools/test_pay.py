@@ -13,12 +13,13 @@ from fsi import paths
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import effects  # noqa: E402
 import measure  # noqa: E402
+import scaling  # noqa: E402
 
 SMALL = (24, 16)
 SAME = 2e-3  # counts of the same work differ by so much: what MPI does between is not the same every time
 DECKS = {"fluid": effects.fluid, "updated": effects.updated, "total": effects.total}
 ZERO = {  # every effect of a style that has a size, of size zero, or as it is where nothing is named
-    "fluid": "artificial/visc 0 0 density/diffusion 0 shift 0 surface 0 bulk tension no background 0 couple wall extrapolate no",
+    "fluid": "artificial/visc 0 0 density/diffusion 0 shift 0 surface 0 tension no background 0 couple wall extrapolate no",
     "updated": "artificial/visc 0 0 artificial/stress 0 hourglass 0 gradient plain",
     "total": "artificial/visc 0 0 hourglass 0.05 damage 0 law svk"}
 AWAY = "fix away all fsi/wall/mirror xlo -0.15 xhi 1.15 ylo -0.15 yhi 1.15"  # nobody is near
@@ -36,7 +37,6 @@ def counted():
     cases = {(name, "nothing"): deck(name) for name in DECKS}
     cases |= {(name, "zero"): deck(name, style=style) for name, style in ZERO.items()}
     cases |= {("fluid", "walls"): deck("fluid", walls="yes"), ("fluid", "walls away"): deck("fluid", commands=AWAY),
-              ("fluid", "surface"): deck("fluid", style="surface 0.9 bulk", sph="surface/every 1000"),
               ("fluid", "viscosity"): deck("fluid", style="artificial/visc 0.05 0"), ("fluid", "shift"): deck("fluid", style="shift 0.1"),
               ("updated", "stress"): deck("updated", style="artificial/stress 0.3"), ("total", "bare"): deck("total", style="hourglass 0"),
               ("total", "damage"): deck("total", style="damage 0.5")}
@@ -63,12 +63,6 @@ def test_an_effect_is_counted(counted, name, what, without, least):
 def test_damage_looks_where_a_bond_may_break(counted):
     """Each particle's motion, at some 20 instructions, but not its bonds, at some 50 each."""
     more = sum(counted["total", "damage"].values()) - sum(counted["total", "nothing"].values())
-    assert 0 < more < 50 * SMALL[0] * SMALL[1]
-
-
-def test_between_looks_for_the_surface_it_costs_nothing(counted):
-    """A comparison for each particle, where its pressure is computed, and no loop over pairs, some 16 of them at 60 each."""
-    more = sum(counted["fluid", "surface"].values()) - sum(counted["fluid", "nothing"].values())
     assert 0 < more < 50 * SMALL[0] * SMALL[1]
 
 
@@ -127,6 +121,14 @@ def test_substeps_send_nothing_where_no_solid_is():
     assert (found["messages"], found["empty"]) == (4, 0)
 
 
+def test_walls_of_particles_send_nothing_where_none_is():
+    """The channel, whose cylinder is one rank's alone, is periodic: its two ranks have two borders with each other. At each positions, forces, density
+    and its rate, and nothing for the cylinder's pressure and velocity."""
+    found, = measure.messages([scaling.still_deck(*scaling.SHARED["channel, 10 per diameter"])])
+    assert found["ghosts"] > 100
+    assert (found["messages"], found["empty"]) == (8, 0)
+
+
 def stream(rows):
     """A stream between open ends that two ranks cut along its middle: rows of particles from side to side, 24 along it."""
     return effects.write_materials(f"""units si
@@ -171,8 +173,7 @@ def test_bare_scenes_send_only_their_own(sent, name, size):
 
 # three rows of particles along each side of the square are near a wall: a row of images each, of half their neighbors and themselves
 IMAGES = (1 - (119 / 125) ** 2) * (16 + 4 * (12 + 1))
-ARRAYS = {"nothing": (0, {}), "shifting": (64, {"style": "shift 0.1"}), "walls": (4 + IMAGES, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9 bulk"}),
-          "surface at intervals": (8, {"style": "surface 0.9 bulk", "sph": "surface/every 10"}), "surfaces": (16, {"style": "density/surface yes"}),
+ARRAYS = {"nothing": (0, {}), "shifting": (64, {"style": "shift 0.1"}), "walls": (4 + IMAGES, {"walls": "yes"}), "surface": (8, {"style": "surface 0.9"}), "surfaces": (16, {"style": "density/surface yes"}),
           "summation": (-16, {"sph": "fluid summation"}),
           "the rest": (0, {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1 eos tait tension yes background 1"})}
 SLOTS = 16384  # LAMMPS grows its arrays by so many atoms
@@ -225,9 +226,6 @@ VAIN = {
     "density of solids without their style": (world("fsi/fluid sound 10", 1, "solid ratio"), ["Fix fsi solid density has nothing to act on"]),
     "no-slip walls without viscosity": (world("fsi/fluid sound 10", 1, commands="fix walls all fsi/wall/mirror ylo 0 slip no"),
                                         ["Fix fsi/wall/mirror slip no has nothing to act on: pair_style fsi/fluid has no laminar/visc"]),
-    "surface without its rule": (world("fsi/fluid sound 10", 1, "surface/every 10"), ["Fix fsi surface/every has nothing to act on: pair_style fsi/fluid"]),
-    "surface with a density that needs it always": (world("fsi/fluid sound 10 surface 0.9 bulk", 1, "fluid summation surface/every 10"),
-                                                    ["Fix fsi surface/every has nothing to act on: a density mode"]),
     "extrapolation without solid": (world("fsi/fluid sound 10 extrapolate yes", 1).replace("water plate", "water water"),
                                     ["extrapolate has nothing to act on: there is no solid"]),
     "extrapolation without walls of solid": (world(HYBRID.format("couple full extrapolate yes", ""), 1, commands="set atom 1 type 2"),

@@ -427,6 +427,16 @@ def test_periods():
     assert series.periodic(t, np.exp(-t)) is None
 
 
+def test_last_rise():
+    """sin(2 pi f (t - 0.07)) with its mean, an overtone that begins elsewhere, and noise, f = 2: three whole periods before t = 10 begin at 8.07."""
+    t = np.linspace(0.0, 10.0, 4001)
+    wave = 5.0 + np.sin(4 * np.pi * (t - 0.07)) + 0.4 * np.cos(8 * np.pi * t)
+    noise = np.random.default_rng(3).normal(0, 0.3, len(t))
+    assert series.last_rise(t, wave, 2.0, 3) == pytest.approx(8.07, abs=1e-3)
+    assert series.last_rise(t, wave + noise, 2.0, 3) == pytest.approx(8.07, abs=0.01)  # 0.3 sqrt(2/600) of a radian is 0.0014
+    assert series.last_rise(t[t < 9.57], wave[t < 9.57], 2.0, 3) == pytest.approx(7.57, abs=1e-3)
+
+
 def test_swing_that_has_not_settled(tmp_path, capsys):
     t = np.arange(0.0, 5.0, 0.01)
     (tmp_path / "tip.csv").write_text("time,tip\n" + "".join(f"{a},{np.exp(0.1 * a) * np.sin(6.0 * a)}\n" for a in t))

@@ -62,7 +62,10 @@ def test_table(found):
     assert ("| [Falling stone](../../examples/stone/README.md) | `speed` | 11\u00a0m/s | 10 (experiment, A \\| B 1999) | +10.0\u00a0% | 5 % | **no** | 25 |"
             in page)
     assert "|  | `time` | 1.01\u00a0s | 1 (theory) | +1.0\u00a0% | 5 % | yes |  |" in page
-    assert "|  | `lost` | 0 |  |  | 0 | yes |  |" in page
+    assert "`lost`" not in page and "- 1 further bounds without a reference are kept." in page
+    missed = copy.deepcopy(found)
+    missed["scenes"]["stone"]["summary"]["figures"][2] |= {"value": 1, "met": False}
+    assert "|  | `lost` | 1 |  |  | 0 | **no** |  |" in results.render(missed)
     assert "| [Study \\| stones](../../examples/study/README.md) | `slope` | 1.9 | 2 (the same) | -5.0\u00a0% | 10 % | yes | 601 |" in page
     # no target: in the table of all figures; what a run costs: in neither
     assert "`colour`" not in page and "`order`" not in page and "`cpu_seconds`" not in page
@@ -112,6 +115,8 @@ def test_results_of_several_commits_or_with_changes_are_refused(tree):
 
 
 def test_page_follows_from_its_json(found):
+    assert json.loads(results.packed(found)) == json.loads(json.dumps(found)) and results.packed(found).count('"name"') == 8
+    assert all(line.count('"name"') < 2 for line in results.packed(found).splitlines())
     assert results.render(json.loads(json.dumps(found))) == results.render(found)
 
 

@@ -1,0 +1,77 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_frame.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "fsi_scene.h"
+#include "math_extra.h"
+#include "modify.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ----------------------------------------------------------------------
+   Not where something else than particles moves relative to the places: walls, the box. Open ends
+   make and delete particles when lists are new, before these have gone half a skin.
+------------------------------------------------------------------------- */
+
+void Frame::init()
+{
+  left = 0.0;
+  allowed = neighbor->dist_check && !domain->box_change;
+  for (const char *end : {"^fsi/inlet$", "^fsi/outlet$"})
+    allowed = allowed && modify->get_fix_by_style(end).empty();
+  for (const auto &wall : scene.walls.wall) allowed = allowed && wall.velocity[wall.axis] == 0.0;
+}
+
+void Frame::find_velocity()
+{
+  static constexpr double GAIN = 0.8;    // of the highest speed: else it is not worth the while
+  double mine[7] = {}, all[7];           // highest, highest of the negative; of the square
+  std::fill_n(mine, 6, -INFINITY);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const v = atom->v[i];
+    for (int d = 0; d < 3; d++) {
+      mine[d] = std::max(mine[d], v[d]);
+      mine[3 + d] = std::max(mine[3 + d], -v[d]);
+    }
+    mine[6] = std::max(mine[6], MathExtra::lensq3(v));
+  }
+  MPI_Allreduce(mine, all, 7, MPI_DOUBLE, MPI_MAX, world);
+  double range = 0.0;
+  for (int d = 0; d < 3; d++) {
+    velocity[d] = 0.5 * (all[d] - all[3 + d]);
+    range += 0.25 * (all[d] + all[3 + d]) * (all[d] + all[3 + d]);
+  }
+  left = std::sqrt(range) < GAIN * std::sqrt(all[6]) ? 0.5 * neighbor->skin : 0.0;
+}
+
+void Frame::move()
+{
+  if (!allowed) return;
+  if (neighbor->ago == 0) find_velocity();
+  if (left <= 0.0) return;
+  const double dt = update->dt;
+  left -= dt * MathExtra::len3(velocity);
+  if (left < 0.0) return;
+  double *const *const from = neighbor->get_xhold();
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) from[i][d] += dt * velocity[d];
+}

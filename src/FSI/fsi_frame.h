@@ -1,0 +1,47 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_FSI_FRAME_H
+#define LMP_FSI_FRAME_H
+
+#include "pointers.h"
+
+namespace LAMMPS_NS {
+namespace FSI {
+  class Scene;
+
+  // LAMMPS builds neighbor lists anew when a particle is half a skin from where it was. Lists hold
+  // as well while every particle is within half a skin of where it would be had all gone along with
+  // one velocity, whatever that is: two come nearer by less than the skin. So the places that LAMMPS
+  // measures from go along, with the mean of the highest and lowest velocities there were when lists
+  // were new. Lists of a stream last up to twice as long. By half a skin at most: those who ask for
+  // places fixed in space rely on it that nobody goes further than a skin.
+  class Frame : protected Pointers {
+   public:
+    Frame(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), allowed(false), left(0.0)
+    {
+    }
+    void init();
+    void move();    // once in a step, before particles move
+
+   private:
+    const Scene &scene;
+    bool allowed;
+    double velocity[3], left;    // how far it may go until lists are new
+    void find_velocity();
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,55 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// What has split or merged is not where the pressure around it is even. On its way there by itself
+// it would make sound, and with each event the fluid would lose some of its mean pressure, since
+// its density follows what moves. So particles around are moved there at once, with their density,
+// by steps against the sum of V grad W: less the further they are from an event, and not where
+// they see bodies, segments of mirror walls or a surface.
+
+#ifndef LMP_FSI_SETTLING_H
+#define LMP_FSI_SETTLING_H
+
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+namespace FSI {
+  class Scene;
+
+  class Settling : protected Pointers {
+   public:
+    // moves: per local particle, may it be moved? Ghosts are where these are, and follow
+    Settling(LAMMPS *, Scene &, const std::vector<char> &moves, std::vector<tagint> changed);
+    void run(int sweeps);
+
+   private:
+    struct Row {    // a particle that is moved, and its neighbors
+      int i, first, end;
+    };
+    Scene &scene;
+    std::vector<double> mobility, volume, start;    // start: positions that the rows are for
+    std::vector<Row> rows;
+    std::vector<int> neighbors;
+
+    void find_mobilities(const std::vector<char> &moves, const std::vector<tagint> &changed);
+    void find_rows();
+    bool rows_hold() const;
+    template <class K> void sweep(const std::vector<K> &of_types);
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,166 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_zones.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "fsi_cells.h"
+#include "fsi_gather.h"
+#include "fsi_keywords.h"
+#include "fsi_scene.h"
+#include "fsi_split.h"
+#include "group.h"
+#include "region.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+/* ---------------------------------------------------------------------- */
+
+Zones::Zones(LAMMPS *lmp, const std::string &who) :
+    Pointers(lmp), who(who), body_bit(0), can_move(false),
+    directions(split_directions(domain->dimension))
+{
+}
+
+void Zones::read_regions(const std::vector<std::string> &words)
+{
+  region_ids = words;
+  for (const auto &name : region_ids)
+    if (!domain->get_region_by_id(name))
+      error->all(FLERR, "Region {} of fix fsi/refine does not exist", name);
+}
+
+void Zones::read_distances(const std::vector<std::string> &words)
+{
+  if (words.empty()) utils::missing_cmd_args(FLERR, "fix fsi/refine distance", error);
+  body_id = words[0];
+  const int of_body = group->find(body_id);
+  if (of_body < 0) error->all(FLERR, "Group {} of fix fsi/refine distance does not exist", body_id);
+  body_bit = group->bitmask[of_body];
+  for (size_t k = 1; k < words.size(); k++) {
+    distances.push_back(numeric(lmp, who + " distance", words[k], Range::above(0.0)));
+    if (k > 1 && distances[k - 1] >= distances[k - 2])
+      error->all(FLERR, "{} distance: {} after {}, expected less: the finer levels are nearer", who,
+                 distances[k - 1], distances[k - 2]);
+  }
+}
+
+void Zones::check_number(size_t types) const
+{
+  if (!region_ids.empty() && !distances.empty())
+    error->all(FLERR, "{} takes region or distance, not both", who);
+  if (region_ids.size() + distances.size() != types - 1)
+    error->all(FLERR,
+               "{} has {} types and {} {}: expected one for each type but the first, that of "
+               "larger spacing first",
+               who, types, region_ids.size() + distances.size(),
+               distances.empty() ? "regions" : "distances");
+}
+
+// Between the zone of level k + 1 and the end of that of level k: one level is all that a particle
+// sees beside its own
+void Zones::init(const Scene &scene, const std::vector<int> &types)
+{
+  regions.clear();
+  can_move = !distances.empty();
+  for (const auto &name : region_ids) {
+    regions.push_back(domain->get_region_by_id(name));
+    if (!regions.back()) error->all(FLERR, "Region {} of fix fsi/refine does not exist", name);
+    can_move = can_move || regions.back()->dynamic_check();
+  }
+  for (size_t k = 1; k < distances.size(); k++) {
+    const double shell = distances[k - 1] - distances[k],
+                 least = scene.resolution[types[k - 1]].cut + scene.dx_of(types[k]);
+    if (shell < least)
+      error->all(FLERR,
+                 "{} distance: from {} to {} there is {:g} for atom type {}: expected at least "
+                 "{:g}, the kernel's support of type {} and a spacing of type {}",
+                 who, distances[k], distances[k - 1], shell, types[k], least, types[k - 1],
+                 types[k]);
+  }
+}
+
+std::string Zones::names(int k) const
+{
+  return regions.empty() ? "" : fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Zones::find(const Scene &scene, double beyond)
+{
+  for (auto *region : regions) region->prematch();
+  if (!body_bit) return;
+  const double reach = distances[0] + beyond;
+  const auto body = find_body(scene.dim, reach);
+  std::vector<const double *> x;
+  for (const auto &p : body) x.push_back(p.data());
+  const Cells cells(x.data(), x.size(), scene.dim, reach);
+  away.assign(atom->nlocal, Cells::LARGE);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (scene.state[atom->type[i]].species != FLUID) continue;
+    double least = Cells::LARGE;
+    cells.around(atom->x[i], [&](int, double rsq) {
+      least = std::min(least, rsq);
+    });
+    away[i] = std::sqrt(least);
+  }
+}
+
+// all particles of the body, which each rank has for that, and their images across periods
+std::vector<std::array<double, 3>> Zones::find_body(int dim, double reach) const
+{
+  std::vector<std::array<double, 3>> own;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & body_bit) own.push_back({atom->x[i][0], atom->x[i][1], atom->x[i][2]});
+  auto body = gather(own, world);
+  if (body.empty()) error->all(FLERR, "{} distance: there are no atoms in group {}", who, body_id);
+  for (int d = 0; d < dim; d++) {
+    if (!domain->periodicity[d]) continue;
+    for (size_t k = 0, n = body.size(); k < n; k++)
+      for (const int side : {-1, 1}) {
+        auto image = body[k];
+        image[d] += side * domain->prd[d];
+        if (image[d] > domain->boxlo[d] - reach && image[d] < domain->boxhi[d] + reach)
+          body.push_back(image);
+      }
+  }
+  return body;
+}
+
+/* ----------------------------------------------------------------------
+   A zone grown by a distance: is any place as far away, in a number of directions, inside?
+------------------------------------------------------------------------- */
+
+bool Zones::has(int k, int i, double grown) const
+{
+  if (regions.empty()) return away[i] < distances[k - 1] + grown;
+  Region *const region = regions[k - 1];
+  const double *const x = atom->x[i];
+  if (region->match(x[0], x[1], x[2])) return true;
+  if (grown == 0.0) return false;
+  const auto matches = [&](const std::array<double, 3> &e, double to) {
+    double at[3] = {x[0] + to * e[0], x[1] + to * e[1], x[2] + to * e[2]};
+    domain->remap(at);
+    return region->match(at[0], at[1], at[2]) != 0;
+  };
+  for (const auto &e : directions)
+    if (matches(e, grown) || matches(e, -grown)) return true;
+  return false;
+}

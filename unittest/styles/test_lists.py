@@ -1,0 +1,65 @@
+"""When neighbor lists are new: they go along with a stream, and nothing depends on it."""
+
+import re
+
+import numpy as np
+import pytest
+
+from scenes import difference, run, watch
+
+DECK = """units si
+dimension 2
+boundary p {y} p
+atom_style fsi
+newton on
+processors {grid}
+region box block 0 1 0 1 -0.025 0.025
+create_box 1 box
+lattice sq 0.05 origin 0.5 0.5 0
+create_atoms 1 box
+{start}
+variable u atom {u}
+velocity all set v_u 0 0 units box
+pair_style fsi/fluid sound 20 tension yes density/diffusion 0.1
+pair_coeff * * water.fsi water
+fix sph all fsi 0.05 wendland 1.5
+{more}
+timestep 1e-3
+neighbor 0.0205 bin
+neigh_modify every 1 delay 0 check {check}
+thermo_modify lost error
+"""
+MATERIALS = "# DATE: 2026-01-01 UNITS: si CITATION: none\nwater fluid rho 1000\n"
+SHAKEN = "reset_atoms id sort yes\ndisplace_atoms all random 0.005 0.005 0 1 units box"
+
+
+def stream(folder, u, steps, ranks=1, grid="* * *", start="", more="", check="yes", y="p"):
+    """The run and how many lists it made."""
+    text = DECK.format(u=u, grid=grid, start=start, more=more, check=check, y=y) + watch(every=steps) + f"run {steps}\n"
+    result = run(folder, text, ranks, water_fsi=MATERIALS)
+    return result, int(re.search(r"Neighbor list builds = (\d+)", result.output)[1])
+
+
+@pytest.mark.parametrize("u, more, last", [("1", "", 21), ("2*(y>0.5)-1", "", 11), ("1", "fix w all fsi/wall/mirror ylo 0 velocity 0 1e-9 0", 11)],
+                         ids=["stream", "two streams", "a wall that moves"])
+def test_lists_last_as_long_as_pairs_allow(tmp_path, u, more, last):
+    """A stream of 1 m/s goes 1 mm a step. Lists that hold for half a skin, 10.25 mm, are new in the 11th step; those that go along for half a skin
+    in the 21st. Where streams go both ways, or walls move, nothing goes along. The first step of a run has new ones in any case."""
+    steps = 100
+    assert stream(tmp_path, u, steps, more=more, y="f" if more else "p")[1] == 1 + (steps - 1) // last
+
+
+@pytest.mark.parametrize("ranks, grid", [(1, "1 1 1"), (2, "1 2 1"), (4, "2 2 1")])
+def test_nothing_depends_on_it(tmp_path, ranks, grid):
+    """Two streams of 0.75 m/s against each other, each on ranks of its own: the same as with lists that are new in every step, to round-off. Pairs that lists
+    lack show at 1e-6 and above."""
+    u = "1.5*(y>0.5)-0.75"
+    want, every = stream(tmp_path / "every", u, 60, start=SHAKEN, check="no")
+    got, some = stream(tmp_path / "some", u, 60, ranks, grid, SHAKEN)
+    assert every == 60 > some
+    a, b = want.frames()[-1], got.frames()[-1]
+    assert np.abs(a.vector(("vx", "vy", "vz"))).max() > 0.7
+    apart = a.vector() - b.vector()
+    assert np.abs(apart - np.round(apart)).max() < 1e-10  # wrapped round the box at other times
+    for quantity in ("v", "rho"):
+        assert difference(a, b, quantity) < 1e-10, quantity
