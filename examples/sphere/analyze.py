@@ -16,7 +16,7 @@ from fsi.summary import Summary  # noqa: E402
 
 SOURCE = "Clift, Grace & Weber 1978"
 DIAMETER = 0.1
-COLORS = (plot.GREY, "black", plot.GREEN, plot.ORANGE, plot.BLUE)
+COLORS = (plot.GREY, plot.BLUE, plot.ORANGE)
 
 
 def reference(re):
@@ -34,14 +34,14 @@ def read(folder):
 
 
 def add(summary, folder, suffix="", judged=True):
-    """The figures of one run: means over its last fifth. Returns the drag coefficient."""
+    """The figures of one run: means over its last fifth."""
     values, time, drag = read(folder)
     late = time >= 0.8 * time[-1]
     half = time >= 0.9 * time[-1]
     summary.add("drag" + suffix, drag[late].mean(), "", reference(values["Re"]), SOURCE, 0.03 if judged else None)
-    summary.add("drag_drift" + suffix, drag[half].mean() / drag[late & ~half].mean() - 1, "between the halves of the last fifth")
-    summary.add("drag_scatter" + suffix, drag[late].std())
-    return drag[late].mean()
+    if judged:
+        summary.add("drag_drift" + suffix, drag[half].mean() / drag[late & ~half].mean() - 1, "between the halves of the last fifth")
+        summary.add("drag_scatter" + suffix, drag[late].std())
 
 
 def curve(folder):
@@ -90,9 +90,8 @@ def study(folder, cases):
     folder = Path(folder)
     summary = Summary(folder)
     finest = list(cases)[-1]
-    drag = {name: add(summary, path, f"_{name}", name == finest) for name, path in cases.items()}
-    if {"5_uniform", "5_uniform_wide"} <= set(cases):
-        summary.add("blockage", drag["5_uniform"] / drag["5_uniform_wide"] - 1, "drag, 6 D wide over 10 D wide")
+    for name, path in cases.items():
+        add(summary, path, f"_{name}", name != "5_uniform")
     draw(folder, cases)
     picture(folder / "speed.png", cases[finest])
     return summary.write()
