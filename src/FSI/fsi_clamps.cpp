@@ -197,11 +197,7 @@ std::vector<Clamps::State> Clamps::states(Fix *fix) const
     std::copy_n(b.inertia, 3, s.inertia);
     mine.push_back(s);
   }
-  auto all = gather(mine, world);
-  std::sort(all.begin(), all.end(), [](const State &a, const State &b) {
-    return a.id < b.id;
-  });
-  return all;
+  return gather(mine, world);
 }
 
 void Clamps::store(const Body &b) const
@@ -233,16 +229,14 @@ void Clamps::store(const Body &b) const
   std::copy_n(b.ez, 3, (r->*Rigid::axis_z)[b.id]);
 }
 
-// calls use(body, its state) for all; both are in the order of IDs
+// calls use(body, its state) for all
 template <class Use> void Clamps::with_states(Use use)
 {
   for (size_t first = 0, last; first < bodies.size(); first = last) {
     const auto all = states(bodies[first].fix);
-    auto s = all.begin();
-    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix; last++) {
-      while (s != all.end() && s->id < bodies[last].id) ++s;
-      if (s != all.end() && s->id == bodies[last].id) use(bodies[last], *s);
-    }
+    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix; last++)
+      for (const State &s : all)
+        if (s.id == bodies[last].id) use(bodies[last], s);
   }
 }
 
