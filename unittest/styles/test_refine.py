@@ -414,6 +414,64 @@ def test_restart(tmp_path, ranks, every, at):
     assert "WARNING: Fix" not in rest.output
 
 
+BODY = ("""units si
+dimension 2
+boundary p p p
+atom_style fsi
+newton {newton}
+processors {grid}
+""", """region box block 0 2 0 1.6 -0.025 0.025
+create_box 4 box
+lattice sq 0.05 origin 0.5 0.5 0
+create_atoms 1 box
+region around block 0.79 1.21 0.74 0.86 INF INF units box
+delete_atoms region around compress yes
+lattice sq 0.025 origin 0.5 0.5 0
+region strip block 0.8 1.2 0.75 0.85 INF INF units box
+create_atoms 4 region strip
+group water type 1
+group body type 4
+set group body mol 1
+reset_atoms id sort yes
+displace_atoms water random 0.005 0.005 0 7 units box
+velocity water set 3 1 0 units box
+velocity body set -3 0 0 units box
+""", """pair_style hybrid fsi/fluid sound 30 tension yes density/diffusion 0.1 shift 0.25 shift/every 4 artificial/visc 0.02 0 fsi/solid/tl
+pair_coeff * * fsi/fluid water.fsi water water water rubber
+pair_coeff * * fsi/solid/tl water.fsi NULL NULL NULL rubber
+fix sph all fsi 0.05 wendland 1.5 substeps 4 spacing 2 0.0353553390593 spacing 3*4 0.025
+fix ref water fsi/refine 10 types 1 2 3 distance body 0.5 0.25
+compute e all fsi/energy
+variable px equal vcm(all,x)*mass(all)
+variable py equal vcm(all,y)*mass(all)
+timestep 2e-4
+neighbor 0.015 bin
+thermo 20
+thermo_style custom step atoms c_e f_ref[*] v_px v_py
+thermo_modify norm no lost error format float %20.15g
+""")
+
+
+def test_levels_around_an_elastic_body(tmp_path):
+    """A heavy strip with sub-steps against a stream, two levels of water around it by the distance: momentum to round-off, the same on any number of ranks and
+    from a restart file."""
+    materials = MATERIALS + "rubber solid rho 8000 young 3e6 poisson 0.4\n"
+    runs = {}
+    for name, ranks, newton, grid, start, steps in (("one", 1, "on", "* * *", BODY[1], 160), ("two", 2, "on", "2 1 1", BODY[1], 160), ("four", 4, "off", "2 2 1", BODY[1], 160),
+                                                    ("rest", 1, "on", "* * *", "read_restart ../one/r.85\n", 75)):
+        text = BODY[0].format(newton=newton, grid=grid) + start + BODY[2]
+        runs[name] = run(tmp_path / name, text + watch(every=160) + f"restart 85 r.*\nrun {steps}\n", ranks, water_fsi=materials)
+    last = {name: result.frames()[-1] for name, result in runs.items()}
+    assert set(last["one"]["type"]) == {1, 2, 3, 4}
+    first, end = (np.array(thermo(runs["one"], step)[0].split(), float) for step in (0, 160))
+    assert np.abs(end[-2:] - first[-2:]).max() < 1e-13 * first[-2] and end[-10] > first[-10] and end[-9] > 50
+    for name in ("two", "four"):
+        assert np.array_equal(last["one"]["type"], last[name]["type"])
+        for quantity in ("x", "v", "rho"):
+            assert difference(last["one"], last[name], quantity) < 1e-11, (name, quantity)
+    assert thermo(runs["rest"], 160) == thermo(runs["one"], 160) and not differing(last["one"], last["rest"])
+
+
 def test_given_again_between_runs(tmp_path):
     """The fix given again, and runs in parts, change nothing."""
     again = "unfix ref\nfix ref all fsi/refine 10 types 1 2 3 region one two\n"
