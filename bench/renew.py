@@ -16,12 +16,13 @@ import peers
 import robustness
 import scaling
 import solid_variants
+import sound
 from tool import PAGE, read_csv, say
 
 from fsi import gallery, paths, results, scene
 from fsi.command import Refusal, start
 
-TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling}  # of tools/cost, with a table in doc/cost
+TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling, "sound": sound}  # of tools/cost, with a table in doc/cost
 WORDS = ("--no-runs", "--pages-only")
 
 

@@ -109,7 +109,7 @@ def test_page_has_every_keyword(page, name):
         return
     code = source.read_text()
     if page in ("fix_fsi", "pair_fsi_fluid"):    # settings of the article's scheme have a page of their own
-        text += (PAGES / "Howto_article.rst").read_text()
+        text += (PAGES / "scheme_article.rst").read_text()
     words = set(re.findall(r'strcmp\(arg\[[^\]]*\](?:, | \+ \d\], )"([^"]+)"\)', code)) | set(re.findall(r'key == "([^"]+)"', code))
     words |= set(re.findall(r'^    \{"(\w+)", "', code, re.M))  # fix fsi/watch
     words |= set(re.findall(r'(?:\.key|or_word)\("([^"]+)"', code))

@@ -149,7 +149,7 @@ SCENES = [
         lambda scene, *names: sizes(scene, *names[:2]) + mixed(scene, names[2]), [f"peak_pressure_{beta}_{n}" for n in (16, 25, 50)]))
       for beta, reference in ((30, "6.927"), (40, "3.266"))),
     ("wedge_entry", "standard deviation) | {} % | {} % | {} %", figures, [f"force_scatter_30_{n}" for n in (16, 25, 50)]),
-    ("wedge_entry", "as above | -{} % | {} %", figures, ["force_30_25", "force_scatter_30_25"]),
+    ("wedge_entry", "50 dx everywhere 70 s) | -{} % | {} %", figures, ["force_30_25_to_50", "force_scatter_30_25_to_50"]),
     ("wedge_entry", "water's lattice | +{} % | {} %", figures, ["force_30_25_lattice", "force_scatter_30_25_lattice"]),
     ("wedge_entry", "the default | -{} % | {} %", figures, ["force_30_25_guard_0.9", "force_scatter_30_25_guard_0.9"]),
     ("wedge_entry", "viscosity 0.02 | -{} % | {} %", figures, ["force_30_25_alpha_0.02", "force_scatter_30_25_alpha_0.02"]),
