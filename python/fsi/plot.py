@@ -87,7 +87,10 @@ def lines(path, time_label, value_label, curves, points=(), log_scale=False, lev
             axes.minorticks_off()
         axes.set_xlabel(time_label)
         axes.set_ylabel(value_label)
-        if len(curves) + len(points) + len(levels) > 1:
+        shown = len(curves) + len(points) + len(levels)
+        if shown > 3:  # curves that swing leave no room for as many
+            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize="small")
+        elif shown > 1:
             axes.legend()
         figure.tight_layout()
 
