@@ -151,7 +151,8 @@ def study(folder, cases):
         add(summary, path, f"_{name}", name in finest.values())
         case, values, s = read(path)
         if case == "fsi3":
-            runs.append((s, f"{round(0.1 / values['dx'])} particles per diameter"))
+            near = f", {round(0.4 / values['dx'])} near the flag" if "_to_" in name else ""
+            runs.append((s, f"{round(0.1 / values['dx'])} per diameter{near}"))
     if runs:
         picture_periods(folder / "forces_fsi3.png", runs, "fsi3")
     return summary.write()

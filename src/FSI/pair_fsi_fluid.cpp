@@ -82,8 +82,8 @@ struct PairFSIFluid::Members {
 };
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
-    PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), images_step(-1), near_known(false),
-    sorts(true), margin(0.0), cut(false), solids_pass(false), couple(WALL), fade(nullptr),
+    PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), couple(WALL), images_step(-1),
+    near_known(false), sorts(true), margin(0.0), cut(false), solids_pass(false), fade(nullptr),
     fill(nullptr), fill_weight(nullptr), thin_bodies(members->thin_bodies),
     seen_pairs(members->seen_pairs), cut_solids(members->cut_solids), fields(members->fields),
     rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)

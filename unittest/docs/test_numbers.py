@@ -132,6 +132,8 @@ SCENES = [
      ["uy_amplitude_fsi2_2", "uy_amplitude_fsi2_4", "frequency_fsi2_4"]),
     ("turek_hron_fsi", "| 1.25 +- {} [{}] (+{} %)", lambda scene, size, rate: sizes(scene, size, rate) + figures(scene, size),
      ["uy_amplitude_fsi2_2_to_8", "frequency_fsi2_2_to_8"]),
+    ("turek_hron_fsi", "| 2.23 +- {} [{}] (-{} %)", lambda scene, size, rate: sizes(scene, size, rate) + figures(scene, size),
+     ["uy_amplitude_fsi3_2_to_8", "frequency_fsi3_2_to_8"]),
     ("turek_hron_fsi", "(amplitude -{} %) | 2.03 +- {} [{}] (+{} %)",
      lambda scene, coarse, fine, rate: figures(scene, coarse) + sizes(scene, fine, rate) + figures(scene, fine),
      ["uy_amplitude_fsi3_2", "uy_amplitude_fsi3_4", "frequency_fsi3_4"]),
