@@ -85,16 +85,29 @@ def work(definition, settings):
     return fineness**(definition.get("dimension", 2) + 1) * sound / 10.0 / float(settings.get("cfl", BASE_CFL))
 
 
+def take_cases(store, name, wanted):
+    """Stores the points that are cases of the scene and that tools/run left: these are not run again."""
+    keys = {store.path(point["settings"]) for point in wanted}
+    for case, run in scene.cases(name).items():
+        if not run["deck"] and store.path(run["variables"]) in keys and (folder := scene.left(name, case)):
+            store.take(run["variables"], folder, figures_of(folder))
+
+
 def analysed(name):
     """What turns the folder of a scene's run into its figures: the scene's own analysis."""
     module = scene.analysis(name)
 
     def measure(folder):
         module.main(folder)
-        figures = json.loads((folder / "summary.json").read_text())["figures"]
-        references = {f"{f['name']} reference": f["reference"] for f in figures if f["reference"]}
-        return {f["name"]: f["value"] for f in figures} | references
+        return figures_of(folder)
     return measure
+
+
+def figures_of(folder):
+    """{figure: its value} of an analysed run, references included."""
+    figures = json.loads((folder / "summary.json").read_text())["figures"]
+    references = {f"{f['name']} reference": f["reference"] for f in figures if f["reference"]}
+    return {f["name"]: f["value"] for f in figures} | references
 
 
 def printed(name):
@@ -215,6 +228,8 @@ def main(arguments):
 
     store = sweep.Store(folder / "points", deck, measure, files, options["limit"] or 600.0, options["repeats"], options.get("source"))
     if options.get("draw") is None:
+        if bundled:
+            take_cases(store, name, wanted)
         complete = sweep.sweep(store, [(p["label"], p["settings"], work(definition, p["settings"])) for p in wanted],
                                say, options["budget"])
         if complete:

@@ -231,6 +231,14 @@ def _is_there(task, now):
     return (found["commit"], found["ranks"], found["given"]) == (now, ranks, variables)
 
 
+def left(scene, case):
+    """The folder in which tools/run left a case of this commit on one core, its own deck whole; None if it did not."""
+    found = cases(scene)[case]
+    folder = paths.RESULTS / scene / case
+    task = (scene, folder, RANKS, found["variables"], case)
+    return folder if not found["deck"] and not found["may_fail"] and _is_there(task, commit()) else None
+
+
 def _seconds_of_page():
     """{(scene, case): core seconds} of what the page of results knows."""
     took = {}

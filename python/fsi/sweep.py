@@ -114,6 +114,11 @@ class Store:
         found = self.get(settings)
         return found if found is not None else self._put(settings, self._run(settings))
 
+    def take(self, settings, folder, figures):
+        """The point from a run of this deck that `folder` holds and whose figures are known, if it is not stored yet."""
+        if self.get(settings) is None:
+            self._put(settings, self._point(settings) | {"figures": figures} | cost_of(log.read(folder / "log.lammps")))
+
     def again(self, settings):
         """Times a stored point once more."""
         point = self.get(settings)
@@ -141,8 +146,11 @@ class Store:
     def _put(self, settings, point):
         return put(self.path(settings), point)
 
+    def _point(self, settings):
+        return {"settings": self.deck.normal(settings), "source": self.source, "status": "ok", "why": None, "figures": {}}
+
     def _run(self, settings):
-        point = {"settings": self.deck.normal(settings), "source": self.source, "status": "ok", "why": None, "figures": {}}
+        point = self._point(settings)
         with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
             folder = Path(name)
             cost = self._simulate(folder, settings)
@@ -183,18 +191,23 @@ class Store:
         if done.returncode or found is None or not found.finished:
             why = (found.errors if found else None) or [line for line in done.stdout.splitlines() if "ERROR" in line or "ignal" in line]
             return cost | {"status": "failed", "why": (why or ["stopped"])[0][:200], "dx": found.values.get("dx") if found else None}
-        runs = found.finished
         if counted := re.search(r"Collected : (\d+)", done.stdout):
             cost["instructions"] = int(counted[1])
         if (folder / AT_FIRST).exists():
             cost["bodies"] = dump.bodies(next(dump.frames(folder / AT_FIRST)))
-        cost["cpu_seconds"] = [sum(run.cpu_seconds for run in runs)]
-        return cost | {
-            "dx": found.values.get("dx"), "particles": runs[0].atoms, "steps": sum(run.steps for run in runs),
-            # a sub-step moves the solid's particles only, and visits its bonds
-            "particle_steps": round(sum(run.steps * (run.atoms + (found.substeps_of(run) - 1) * found.solid_particles) for run in runs)),
-            "pair_visits": found.pair_visits(),
-            "neighbour_builds": sum(run.builds or 0 for run in runs)}
+        return cost | cost_of(found)
+
+
+def cost_of(found):
+    """What the log of a whole run says of its cost."""
+    runs = found.finished
+    return {
+        "cpu_seconds": [sum(run.cpu_seconds for run in runs)],
+        "dx": found.values.get("dx"), "particles": runs[0].atoms, "steps": sum(run.steps for run in runs),
+        # a sub-step moves the solid's particles only, and visits its bonds
+        "particle_steps": round(sum(run.steps * (run.atoms + (found.substeps_of(run) - 1) * found.solid_particles) for run in runs)),
+        "pair_visits": found.pair_visits(),
+        "neighbour_builds": sum(run.builds or 0 for run in runs)}
 
 
 @contextlib.contextmanager

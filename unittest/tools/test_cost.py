@@ -134,6 +134,26 @@ def test_nothing_is_run_twice(plate, monkeypatch):
     assert store.get(settings) is None
 
 
+def test_cases_of_the_scene_are_taken(plate, tmp_path, monkeypatch):
+    """A point that tools/run left as a case is the point of a sweep, cost and figures alike; one of another commit is run."""
+    _, _, _, store, jobs = plate
+    settings = next(settings for label, settings, _ in jobs if label == "TL linear, n = 3")
+    monkeypatch.setattr(paths, "RESULTS", tmp_path)
+    monkeypatch.setattr(scene, "cases", lambda _: {"three": {"variables": settings, "ranks": 1, "deck": None, "may_fail": False}})
+    monkeypatch.setattr(scene, "commit", lambda: "0123456789")
+    assert scene.run("oscillating_plate", tmp_path / "oscillating_plate" / "three", 1, settings, "three") == 0
+    found = sweep.Store(tmp_path / "points", store.deck, store.measure, source=store.source)
+    accuracy_cost.take_cases(found, "oscillating_plate", [{"settings": settings}])
+    monkeypatch.setattr(sweep.Store, "_simulate", lambda *_: pytest.fail("ran again"))
+    taken, own = found.make(settings), store.get(settings)
+    of_run = {"cpu_seconds": 0, "particle_steps_per_second": 0, "bytes_per_particle": 0}
+    assert taken["figures"] | of_run == pytest.approx(own["figures"] | of_run)
+    for name in ("settings", "source", "status", "dx", "particles", "steps", "particle_steps", "pair_visits"):
+        assert taken[name] == own[name], name
+    monkeypatch.setattr(scene, "commit", lambda: "9876543210")
+    assert scene.left("oscillating_plate", "three") is None
+
+
 def test_defaults_that_a_recipe_changes_are_given():
     """The plate's kernel is one by default and another with mode=paper, so that a setting equal to the former must not be dropped."""
     deck = sweep.Deck(scene.deck("oscillating_plate"))
