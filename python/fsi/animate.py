@@ -12,7 +12,7 @@ from . import dump, plot
 from .dump import spacing
 from .progress import Progress
 
-OPTIONS = ("solid", "wall", "view", "colour", "types")  # of pictures, as the command line has them
+OPTIONS = ("solid", "wall", "view", "color", "types")  # of pictures, as the command line has them
 
 
 def species(frames, solid=None, wall=None):
@@ -38,8 +38,8 @@ def _at_rest(parts):
 
 
 def prepared(frames, options):
-    """(frames, arguments of plot's functions) with what `options` say of view, colour and types."""
-    colour, solid, wall = options.get("colour"), _types(options, "solid"), _types(options, "wall")
+    """(frames, arguments of plot's functions) with what `options` say of view, color and types."""
+    colour, solid, wall = options.get("color"), _types(options, "solid"), _types(options, "wall")
     wanted = _types(options, "types")
     if wanted:
         frames = [frame.of_types(*wanted) for frame in frames]
@@ -52,7 +52,7 @@ def prepared(frames, options):
         raise ValueError(f"the dump has no column {colour}; it has {', '.join(frames[0].columns)}")
     elif not colour and not any("p" in frame or "vonmises" in frame for frame in frames):
         raise ValueError("the dump has neither column p nor vonmises: dump_modify ... colname c_ID[1] p colname c_ID[2] vonmises, "
-                         "with ID that of compute fsi/atom p vonmises; or colour=COLUMN")
+                         "with ID that of compute fsi/atom p vonmises; or color=COLUMN")
     fluid, solid, wall = species(frames, solid, wall)
     distance = spacing(frames[0])
     labels = plot.LABELS

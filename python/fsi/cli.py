@@ -110,11 +110,11 @@ def show_frequency(files, options):
 
 
 def show_dump(files, options):
-    """fsi dump DUMP [plot=FILE.png] [view=...] [colour=COLUMN] [types=1,2] [frames=6]
+    """fsi dump DUMP [plot=FILE.png] [view=...] [color=COLUMN] [types=1,2] [frames=6]
 
     Without plot: frames, particles of each body or type at first and their extent in spacings (the least of a plate: particles across it),
-    columns and their ranges in the last frame. plot draws up to six frames (frames=N), coloured by
-    pressure and von Mises stress, or by the column of colour=; colour=speed is made of vx, vy, vz. Walls are grey: wall=2,3 names their types,
+    columns and their ranges in the last frame. plot draws up to six frames (frames=N), colored by
+    pressure and von Mises stress, or by the column of color=; color=speed is made of vx, vy, vz. Walls are gray: wall=2,3 names their types,
     by default those without molecule ID that stand still. solid= names those of solids, by default with a molecule ID. types= leaves others out.
     view= is for three dimensions: x, y or z looks along that axis; AZIMUTH,ELEVATION (degrees; default 30,20) from there, with z up;
     AZIMUTH,ELEVATION,y with y up.
@@ -153,10 +153,10 @@ def make_vtk(files, _):
 
 
 def make_animation(files, options):
-    """fsi animate DUMP [FILE.mp4 or FILE.gif] [rate=25] [solid=TYPES] [wall=TYPES] [view=...] [colour=COLUMN] [types=1,2]
+    """fsi animate DUMP [FILE.mp4 or FILE.gif] [rate=25] [solid=TYPES] [wall=TYPES] [view=...] [color=COLUMN] [types=1,2]
 
-    By ffmpeg; without it the numbered pictures stay, in a folder beside the animation's place. Fluids are coloured by pressure, solids
-    by von Mises stress. solid, wall, view, colour, types: as for fsi dump.
+    By ffmpeg; without it the numbered pictures stay, in a folder beside the animation's place. Fluids are colored by pressure, solids
+    by von Mises stress. solid, wall, view, color, types: as for fsi dump.
     """
     print(animate.animate(*files, options=options))
 

@@ -281,11 +281,11 @@ def test_views():
 def test_pictures_in_three_dimensions(tmp_path, capsys):
     path = tmp_path / "cube.dump"
     path.write_text("".join(DUMP.format(step=k, time=k, p=k).replace("x y vx vy sxx sxy p", "x y z vx vy vz p") for k in range(9)))
-    for words in (["view=30,20"], ["view=y", "colour=speed", "types=1"], ["frames=2", "solid=1,2", "colour=vx"]):
+    for words in (["view=30,20"], ["view=y", "color=speed", "types=1"], ["frames=2", "solid=1,2", "color=vx"]):
         cli.main(["dump", str(path), f"plot={tmp_path / 'a.png'}", *words])
         assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
     assert [frame.step for frame in dump.some(path, 3)] == [0, 4, 8]
-    for words, message in ((["types=7"], "no such particles"), (["types=a"], "atom types are needed"), (["colour=q"], "no column q"), (["view=w"], "AZIMUTH"),
+    for words, message in ((["types=7"], "no such particles"), (["types=a"], "atom types are needed"), (["color=q"], "no column q"), (["view=w"], "AZIMUTH"),
                            (["frames=0"], "whole number")):
         with pytest.raises(SystemExit, match=message):
             cli.main(["dump", str(path), f"plot={tmp_path / 'a.png'}", *words])
