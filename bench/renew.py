@@ -17,6 +17,7 @@ import robustness
 import scaling
 import solid_variants
 import sound
+import typed_numbers
 from tool import PAGE, read_csv, say
 
 from fsi import gallery, paths, results, scene
@@ -202,6 +203,8 @@ def main(arguments):
     for path, text in texts().items():
         Path(path).write_text(text, encoding="utf-8")
     say(f"renew: {len(texts())} pages written")
+    if typed := typed_numbers.report("HEAD"):
+        say("renew: numbers that are typed by hand and have other data than in HEAD\n" + "\n".join(typed))
     if failed:
         print("renew: failed:", ", ".join(failed), file=sys.stderr)
     return 1 if failed else 0
