@@ -156,6 +156,12 @@ def test_every_bundled_material_is_on_its_page():
     assert len(names) > 10 and not [name for name in names if f"*{name}*" not in text]
 
 
+def test_every_file_of_tests_is_on_its_page():
+    text = (paths.ROOT / "doc/testing.md").read_text()
+    names = {path.name for path in (paths.ROOT / "unittest").glob("*/test_*.py") if not path.name.startswith("test_scene_")}
+    assert len(names) > 50 and not sorted(name for name in names if f"`{name}`" not in text)
+
+
 def test_howto_deck(tmp_path):
     """The deck of the Howto, shortened to the first contact."""
     text = (PAGES / "in.howto").read_text()
