@@ -112,7 +112,7 @@ def show_frequency(files, options):
 def show_dump(files, options):
     """fsi dump DUMP [plot=FILE.png] [view=...] [color=COLUMN] [types=1,2] [frames=6]
 
-    Without plot: frames, particles of each body or type at first and their extent in spacings (the least of a plate: particles across it),
+    Without plot: frames, particles of each body or type at first and their extent in spacings (the least of a plate: particles through its thickness),
     columns and their ranges in the last frame. plot draws up to six frames (frames=N), colored by
     pressure and von Mises stress, or by the column of color=; color=speed is made of vx, vy, vz. Walls are gray: wall=2,3 names their types,
     by default those without molecule ID that stand still. solid= names those of solids, by default with a molecule ID. types= leaves others out.
@@ -155,7 +155,7 @@ def make_vtk(files, _):
 def make_animation(files, options):
     """fsi animate DUMP [FILE.mp4 or FILE.gif] [rate=25] [solid=TYPES] [wall=TYPES] [view=...] [color=COLUMN] [types=1,2]
 
-    By ffmpeg; without it the numbered pictures stay, in a folder beside the animation's place. Fluids are colored by pressure, solids
+    By ffmpeg; without it the numbered pictures stay, in a folder next to the animation. Fluids are colored by pressure, solids
     by von Mises stress. solid, wall, view, color, types: as for fsi dump.
     """
     print(animate.animate(*files, options=options))

@@ -195,9 +195,9 @@ def measure(simplices, dx, given):
     across = extent / dx
     size = " x ".join(f"{value:.4g}" for value in extent) + ", in spacings " + " x ".join(f"{value:.4g}" for value in across)
     if np.prod(np.ceil(across) + 2.0 * given.shell) > LARGEST:
-        raise SystemExit(f"{given.surface} is {size}: too many particles. " + _hint(across / 1000.0, given.scale * 1e-3, "in millimetres"))
+        raise SystemExit(f"{given.surface} is {size}: too many particles. " + _hint(across / 1000.0, given.scale * 1e-3, "in millimeters"))
     if across.max() < 1.0:
-        raise SystemExit(f"{given.surface} is {size}: no particle fits. " + _hint(across * 1000.0, given.scale * 1e3, "in metres, DX in millimetres"))
+        raise SystemExit(f"{given.surface} is {size}: no particle fits. " + _hint(across * 1000.0, given.scale * 1e3, "in meters, DX in millimeters"))
     return size, across
 
 
@@ -210,12 +210,12 @@ def main(arguments=None):
     """The command line of `fsi fill`."""
     parser = argparse.ArgumentParser(
         prog="fsi fill", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="fsi fill tank.stl 0.01 tank.data --scale 0.001 --shell 4 --type 2       the walls of a tank that was drawn in millimetres\n"
+        epilog="fsi fill tank.stl 0.01 tank.data --scale 0.001 --shell 4 --type 2       the walls of a tank that was drawn in millimeters\n"
                "fsi fill cylinder.csv 0.005 cylinder.data --rings --type 2               a round body in a stream")
     parser.add_argument("surface", metavar="SURFACE", help="STL file (NAME.stl) or text file of an outline")
     parser.add_argument("dx", metavar="DX", type=float, help="spacing of the particles, that of fix fsi")
     parser.add_argument("out", metavar="OUT.data", help="data file to write")
-    parser.add_argument("--scale", metavar="S", type=float, default=1.0, help="factor of the surface's coordinates: 0.001 for millimetres in a scene in metres")
+    parser.add_argument("--scale", metavar="S", type=float, default=1.0, help="factor of the surface's coordinates: 0.001 for millimeters in a scene in meters")
     parser.add_argument("--origin", metavar="X", type=float, nargs="+", help="X Y [Z]: moves the surface so far, after scaling")
     parser.add_argument("--turn", metavar="DEGREES", type=float, nargs="+",
                         help="turns the surface about the origin before it is moved: one angle in 2D, angles about x, y and z, in this order, in 3D")
@@ -246,12 +246,12 @@ def main(arguments=None):
     if not len(points):
         raise SystemExit(f"{given.surface} is {size}: no particle fits")
     write(given.out, points, given.dx, given.type, given.mol, given.box)
-    print(f"{given.surface} is {size}; {len(points)} particles in {given.out}; lengths are metres with units si")
+    print(f"{given.surface} is {size}; {len(points)} particles in {given.out}; lengths are meters with units si")
     longest = (simplices.reshape(-1, dim).max(0) - simplices.reshape(-1, dim).min(0)).max()
     if longest > LONG:
-        print(f"fsi fill: with units si it is {longest:.4g} m long. If it is in millimetres: --scale 0.001, and DX in metres")
+        print(f"fsi fill: with units si it is {longest:.4g} m long. If it is in millimeters: --scale 0.001, and DX in meters")
     if not given.shell and across.min() < 3.0:
-        print(f"fsi fill: only {across.min():.2g} particles across: a body or a jet wants three or more")
+        print(f"fsi fill: only {across.min():.2g} particles through the thickness: a body or a jet needs three or more")
 
 
 def rotation(degrees):

@@ -1,4 +1,4 @@
-"""Runs the scenes in examples/, and the drivers of tests in unittest/: builds, simulates, analyses. The command line of tools/run.
+"""Runs the scenes in examples/, and the drivers of tests in unittest/: builds, simulates, analyzes. The command line of tools/run.
 
 Each scene is a folder with an analyze.py whose main(folder) writes summary.json and pictures, and a deck, study/in.<scene>. in.<scene> is the same
 in few lines, for users to copy (unittest/scenes/test_plain_decks.py); starters have this one alone.

@@ -173,8 +173,8 @@ def test_rings_are_of_outlines(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("scale, dx, says", [
-    (100.0, "0.05", "100 x 100 x 100, in spacings 2000 x 2000 x 2000: too many particles. If it is in millimetres: --scale 0.001"),
-    (1e-4, "0.01", "0.0001 x 0.0001 x 0.0001, in spacings 0.01 x 0.01 x 0.01: no particle fits. If it is in metres, DX in millimetres: --scale 1000"),
+    (100.0, "0.05", "100 x 100 x 100, in spacings 2000 x 2000 x 2000: too many particles. If it is in millimeters: --scale 0.001"),
+    (1e-4, "0.01", "0.0001 x 0.0001 x 0.0001, in spacings 0.01 x 0.01 x 0.01: no particle fits. If it is in metres, DX in millimeters: --scale 1000"),
     (1e6, "0.05", "too many particles. Mind its units"), (1e-9, "0.05", "no particle fits. Mind its units")])
 def test_scale_that_is_off(tmp_path, scale, dx, says):
     surface = write_stl(tmp_path / "box.stl", scale * box((0, 0, 0), (1, 1, 1)))
@@ -187,7 +187,7 @@ def test_size_is_said(tmp_path, capsys):
     surface = write_stl(tmp_path / "box.stl", box((0, 0, 0), (100, 200, 20)))
     cli.main(["fill", surface, "0.01", str(tmp_path / "out.data"), "--scale", "0.001"])
     text = capsys.readouterr().out
-    assert "0.1 x 0.2 x 0.02, in spacings 10 x 20 x 2; 400 particles" in text and "only 2 particles across" in text
+    assert "0.1 x 0.2 x 0.02, in spacings 10 x 20 x 2; 400 particles" in text and "only 2 particles through the thickness" in text
 
 
 def test_millimetres_in_surface_and_spacing(tmp_path, capsys):
@@ -195,7 +195,7 @@ def test_millimetres_in_surface_and_spacing(tmp_path, capsys):
     surface = write_stl(tmp_path / "box.stl", box((0, 0, 0), (100, 50, 50)))
     cli.main(["fill", surface, "10", str(tmp_path / "out.data")])
     text = capsys.readouterr().out
-    assert "100 x 50 x 50" in text and "lengths are metres with units si" in text and "it is 100 m long. If it is in millimetres: --scale 0.001" in text
+    assert "100 x 50 x 50" in text and "lengths are meters with units si" in text and "it is 100 m long. If it is in millimeters: --scale 0.001" in text
     cli.main(["fill", surface, "0.01", str(tmp_path / "out.data"), "--scale", "0.001"])
     assert "m long" not in capsys.readouterr().out
 
