@@ -174,7 +174,7 @@ def test_rings_are_of_outlines(tmp_path, capsys):
 
 @pytest.mark.parametrize("scale, dx, says", [
     (100.0, "0.05", "100 x 100 x 100, in spacings 2000 x 2000 x 2000: too many particles. If it is in millimeters: --scale 0.001"),
-    (1e-4, "0.01", "0.0001 x 0.0001 x 0.0001, in spacings 0.01 x 0.01 x 0.01: no particle fits. If it is in metres, DX in millimeters: --scale 1000"),
+    (1e-4, "0.01", "0.0001 x 0.0001 x 0.0001, in spacings 0.01 x 0.01 x 0.01: no particle fits. If it is in meters, DX in millimeters: --scale 1000"),
     (1e6, "0.05", "too many particles. Mind its units"), (1e-9, "0.05", "no particle fits. Mind its units")])
 def test_scale_that_is_off(tmp_path, scale, dx, says):
     surface = write_stl(tmp_path / "box.stl", scale * box((0, 0, 0), (1, 1, 1)))
