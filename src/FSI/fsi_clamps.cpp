@@ -28,7 +28,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <unordered_map>
 
 // there without package RIGID: then there is no fix rigid, and no body
 #if __has_include("fix_rigid.h")
@@ -148,19 +147,18 @@ tagint Clamps::id_of(const Body &b, int i) const
 void Clamps::find_members()
 {
   members.clear();
-  for (size_t first = 0, last; first < bodies.size(); first = last) {
-    std::unordered_map<tagint, int> entry;
-    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix; last++) {
-      Body &b = bodies[last];
-      entry[b.id] = last;
+  of_fixes([this](size_t first, size_t last) {
+    const auto of = entries(first, last);
+    for (size_t k = first; k < last; k++) {
+      Body &b = bodies[k];
       b.displace = b.small ? small(b.fix)->*Small::place : large(b.fix)->*Rigid::place;
       b.image = b.small ? small(b.fix)->*Small::images : large(b.fix)->*Rigid::images;
     }
     for (int i = 0; i < atom->nlocal; i++) {
-      const auto at = entry.find(id_of(bodies[first], i));
-      if (at != entry.end()) members.push_back({i, at->second});
+      const auto at = of.find(id_of(bodies[first], i));
+      if (at != of.end()) members.push_back({i, (int) at->second});
     }
-  }
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -200,13 +198,38 @@ std::vector<Clamps::State> Clamps::states(Fix *fix) const
   return gather(mine, world);
 }
 
-void Clamps::store(const Body &b) const
+// calls use(first, last) for the bodies of each fix
+template <class Use> void Clamps::of_fixes(Use use) const
 {
-  if (b.small) {
-    const int n = small(b.fix)->*Small::own + small(b.fix)->*Small::ghosts;
+  for (size_t first = 0, last; first < bodies.size(); first = last) {
+    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix;) last++;
+    use(first, last);
+  }
+}
+
+// which of those it is that a fix knows by this
+std::unordered_map<tagint, size_t> Clamps::entries(size_t first, size_t last) const
+{
+  std::unordered_map<tagint, size_t> of;
+  for (size_t k = first; k < last; k++) of[bodies[k].id] = k;
+  return of;
+}
+
+void Clamps::store() const
+{
+  of_fixes([this](size_t first, size_t last) {
+    if (!bodies[first].small) {
+      for (size_t k = first; k < last; k++) store_large(bodies[k]);
+      return;
+    }
+    FixRigidSmall *const fix = small(bodies[first].fix);
+    const auto of = entries(first, last);
+    const int n = fix->*Small::own + fix->*Small::ghosts;
     for (int k = 0; k < n; k++) {
-      auto &to = (small(b.fix)->*Small::bodies)[k];
-      if (atom->tag[to.ilocal] != b.id) continue;
+      auto &to = (fix->*Small::bodies)[k];
+      const auto at = of.find(atom->tag[to.ilocal]);
+      if (at == of.end()) continue;
+      const Body &b = bodies[at->second];
       std::copy_n(b.x, 3, to.xcm);
       std::copy_n(b.v, 3, to.vcm);
       std::copy_n(b.q, 4, to.quat);
@@ -216,8 +239,11 @@ void Clamps::store(const Body &b) const
       std::copy_n(b.ey, 3, to.ey_space);
       std::copy_n(b.ez, 3, to.ez_space);
     }
-    return;
-  }
+  });
+}
+
+void Clamps::store_large(const Body &b) const
+{
   FixRigid *const r = large(b.fix);
   std::copy_n(b.x, 3, (r->*Rigid::center)[b.id]);
   std::copy_n(b.v, 3, (r->*Rigid::velocity)[b.id]);
@@ -232,12 +258,13 @@ void Clamps::store(const Body &b) const
 // calls use(body, its state) for all
 template <class Use> void Clamps::with_states(Use use)
 {
-  for (size_t first = 0, last; first < bodies.size(); first = last) {
-    const auto all = states(bodies[first].fix);
-    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix; last++)
-      for (const State &s : all)
-        if (s.id == bodies[last].id) use(bodies[last], s);
-  }
+  of_fixes([&](size_t first, size_t last) {
+    const auto of = entries(first, last);
+    for (const State &s : states(bodies[first].fix)) {
+      const auto at = of.find(s.id);
+      if (at != of.end()) use(bodies[at->second], s);
+    }
+  });
 }
 
 void Clamps::follow(Body &b) const
@@ -379,8 +406,8 @@ void Clamps::to_middle()
   for (Body &b : bodies) {
     drift(b, 0.5 * update->dt);
     std::copy_n(b.x, 3, b.middle);
-    store(b);
   }
+  store();
   place(members);
 }
 
@@ -469,8 +496,8 @@ void Clamps::finish()
     Body &b = bodies[k];
     add_own(b, &sums[6 * k]);
     kick(b, -0.5 * update->dt, &sums[6 * k]);
-    store(b);
   }
+  store();
   place(members);
 }
 
@@ -479,7 +506,7 @@ void Clamps::go_back()
   find_members();
   follow_boundary();
   to_start();
-  for (Body &b : bodies) store(b);
+  store();
   place(members);
 }
 

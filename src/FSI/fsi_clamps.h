@@ -17,6 +17,7 @@
 #include "pointers.h"
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -87,8 +88,11 @@ namespace FSI {
     void sum(const std::vector<Member> &, const double *const *f);
     void add_own(const Body &, double *force_and_torque) const;
     std::vector<State> states(Fix *) const;    // of all its bodies
+    template <class Use> void of_fixes(Use) const;
+    std::unordered_map<tagint, size_t> entries(size_t first, size_t last) const;
     template <class Use> void with_states(Use);
-    void store(const Body &) const;
+    void store() const;
+    void store_large(const Body &) const;
     void to_start();
     void follow_boundary();
   };
