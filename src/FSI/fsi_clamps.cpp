@@ -60,6 +60,7 @@ struct Small : public FixRigidSmall {
   static constexpr auto early = &Small::earlyflag, own = &Small::nlocal_body,
                         ghosts = &Small::nghost_body, thermal = &Small::langflag;
   static constexpr auto of_atom = &Small::bodytag;
+  static constexpr auto owned = &Small::bodyown;
   static constexpr auto images = &Small::xcmimage;
   static constexpr auto place = &Small::displace;
   static constexpr auto bodies = &Small::body;
@@ -124,6 +125,7 @@ void Clamps::refuse(Fix *fix) const
                "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected after "
                "fix {}, whose sub-steps find the forces on them",
                fix->id, fix->style, mover->id);
+  if (is_small) refuse_new_ids(fix);
   if (is_small && small(fix)->*Small::thermal)
     error->all(FLERR,
                "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected no "
@@ -134,6 +136,17 @@ void Clamps::refuse(Fix *fix) const
                "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected "
                "bodyforces late in fix_modify, since fix {} finds the forces on them later",
                fix->id, fix->style, mover->id);
+}
+
+// fix rigid/small knows its bodies by the ID of an atom, which delete_atoms changes
+void Clamps::refuse_new_ids(Fix *fix) const
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((small(fix)->*Small::owned)[i] >= 0 && (small(fix)->*Small::of_atom)[i] != atom->tag[i])
+      error->one(FLERR,
+                 "Fix {} (style {}) knows a body by the ID {} of an atom that has the ID {} now: "
+                 "after delete_atoms define the fix again, or use compress no",
+                 fix->id, fix->style, (small(fix)->*Small::of_atom)[i], atom->tag[i]);
 }
 
 // of the body that atom i is in: an index in fix rigid, a tag in fix rigid/small; -1: in none

@@ -78,6 +78,7 @@ namespace FSI {
     std::vector<double> sums;               // force and torque of each body
     const Fix *mover = nullptr;
     void refuse(Fix *) const;
+    void refuse_new_ids(Fix *) const;
     void find_members();
     void follow(Body &) const;
     void drift(Body &, double t) const;
