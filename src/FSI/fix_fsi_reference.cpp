@@ -192,6 +192,7 @@ void FixFSIReference::setup_post_neighbor()
   MPI_Allreduce(&maxbond, &all, 1, MPI_INT, MPI_MAX, world);
   reserve(all);
   if (changes == before) resolve();
+  refuse_split_bodies();
   for (int i = 0; i < atom->nlocal; i++)
     if (slot[i] == NO_BONDS) slot[i] = FOREIGN;
   if (next_look != MAXBIGINT) next_look = update->ntimestep;
@@ -307,6 +308,22 @@ void FixFSIReference::follow_commands()
                    "  fsi/solid/tl: {} bonds to deleted particles are cut, gradients of {} "
                    "particles made anew, {} have no bonds left\n",
                    all[0], all[1], all[2]);
+}
+
+// contact would push bonded particles apart that have got molecule IDs of their own
+void FixFSIReference::refuse_split_bodies() const
+{
+  for (const int i : solids)
+    for (int k = 0; k < count(i); k++) {
+      const int j = images.original(partners(i)[k]);
+      if (atom->molecule[i] != atom->molecule[j])
+        error->one(
+            FLERR,
+            "Solid atoms {} and {} are bonded, but of the bodies {} and {} now: a body keeps "
+            "one molecule ID. To part it delete_atoms, and create a body in place of the "
+            "rest",
+            atom->tag[i], atom->tag[j], atom->molecule[i], atom->molecule[j]);
+    }
 }
 
 /* ----------------------------------------------------------------------
@@ -982,7 +999,8 @@ void FixFSIReference::look_for_passing()
     error->warning(FLERR,
                    "Pair style fsi/solid/tl: atoms {} and {} of body {} have no bond and are "
                    "{:.2g} spacings apart at step {}: parts of one body pass through each other. "
-                   "Contact between them: contact 2 self yes",
+                   "If they are two bodies, give each a molecule ID; for contact of a body with "
+                   "itself contact 2 self yes",
                    pair[0], pair[1], pair[2], least.r, update->ntimestep);
 }
 

@@ -146,6 +146,7 @@ class FixFSIReference : public Fix {
   size_t expected;     // slots, while bodies are bonded
 
   void follow_commands();
+  void refuse_split_bodies() const;
   void take();
   template <int D> void take_reference(const std::vector<int> &);
   template <int D, class Kernel>

@@ -25,6 +25,7 @@
 #include "fsi_limits.h"
 #include "fsi_part.h"
 #include "fsi_scene.h"
+#include "fsi_sight.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -77,7 +78,10 @@ class Adviser : protected Pointers {
       nothing_acts();
       torn_streams();
       speeds();
-      if (scene.has_levels()) levels();
+      if (scene.has_levels())
+        levels();
+      else if (update->ntimestep == 0)
+        seen_through();
     }
     weightless();
     if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
@@ -330,6 +334,50 @@ class Adviser : protected Pointers {
                        "times finer: pressure is noisy there. Put a band of a spacing between "
                        "them, wider than the kernel's support",
                        jumps.count, jumps.first, JUMP));
+  }
+
+  /* Fluids that see each other through a body or wall thinner than the kernel's support, less what
+     hardly counts, where thin would be accepted; of one type after the other, while those that it
+     goes on in count as well (fsi_sight.h). Some of the fluid beside it are enough. */
+
+  void seen_through() const
+  {
+    static constexpr double PART = 0.95, HIDDEN = 0.5;
+    static constexpr size_t ENOUGH = 2000;
+    if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY ||
+        fluids.couples_stress)
+      return;
+    const double reach = PART * scene.cut;
+    const Cells others(atom->x, atom->nlocal + atom->nghost, scene.dim, 0.5 * reach, [this](int i) {
+      return fluid(i);
+    });
+    for (int t = 1; t <= atom->ntypes; t++) {
+      const int species = scene.state[t].species;
+      if (scene.thin[t] != 0.0 || (species != SOLID && species != RIGID)) continue;
+      std::vector<double> types(atom->ntypes + 1, 0.0);
+      types[t] = 1.0;
+      Sight sight(lmp, scene, types);
+      sight.find_bodies();
+      std::vector<int> beside;
+      for (int i = 0; i < atom->nlocal; i++)
+        if (fluid(i) && sight.near(atom->x[i])) beside.push_back(i);
+      tagint mine = MAXTAGINT, first;
+      for (size_t k = 0; k < beside.size(); k += beside.size() / ENOUGH + 1) {
+        const int i = beside[k];
+        sight.look_from(atom->x[i]);
+        others.around(atom->x[i], reach, [&](int j, double rsq) {
+          if (j != i && atom->tag[i] < mine && rsq < reach * reach &&
+              sight.may_hide(atom->x[j], 0.0) && sight.visible(atom->x[j]) < HIDDEN)
+            mine = atom->tag[i];
+        });
+      }
+      MPI_Allreduce(&mine, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+      if (first < MAXTAGINT)
+        warn(fmt::format("fluid atom {} sees fluid on the other side of a body or wall of type {}, "
+                         "which is thinner than the kernel's support {:g}: if pressures on its two "
+                         "sides differ, they mix. Then fix {} ... thin {}",
+                         first, t, scene.cut, scene.mover->id, t));
+    }
   }
 
   /* elastic bodies, none of which moves */

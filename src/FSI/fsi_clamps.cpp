@@ -28,7 +28,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <unordered_map>
 
 // there without package RIGID: then there is no fix rigid, and no body
 #if __has_include("fix_rigid.h")
@@ -61,6 +60,7 @@ struct Small : public FixRigidSmall {
   static constexpr auto early = &Small::earlyflag, own = &Small::nlocal_body,
                         ghosts = &Small::nghost_body, thermal = &Small::langflag;
   static constexpr auto of_atom = &Small::bodytag;
+  static constexpr auto owned = &Small::bodyown;
   static constexpr auto images = &Small::xcmimage;
   static constexpr auto place = &Small::displace;
   static constexpr auto bodies = &Small::body;
@@ -125,6 +125,7 @@ void Clamps::refuse(Fix *fix) const
                "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected after "
                "fix {}, whose sub-steps find the forces on them",
                fix->id, fix->style, mover->id);
+  if (is_small) refuse_new_ids(fix);
   if (is_small && small(fix)->*Small::thermal)
     error->all(FLERR,
                "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected no "
@@ -135,6 +136,17 @@ void Clamps::refuse(Fix *fix) const
                "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected "
                "bodyforces late in fix_modify, since fix {} finds the forces on them later",
                fix->id, fix->style, mover->id);
+}
+
+// fix rigid/small knows its bodies by the ID of an atom, which delete_atoms changes
+void Clamps::refuse_new_ids(Fix *fix) const
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if ((small(fix)->*Small::owned)[i] >= 0 && (small(fix)->*Small::of_atom)[i] != atom->tag[i])
+      error->one(FLERR,
+                 "Fix {} (style {}) knows a body by the ID {} of an atom that has the ID {} now: "
+                 "after delete_atoms define the fix again, or use compress no",
+                 fix->id, fix->style, (small(fix)->*Small::of_atom)[i], atom->tag[i]);
 }
 
 // of the body that atom i is in: an index in fix rigid, a tag in fix rigid/small; -1: in none
@@ -148,19 +160,18 @@ tagint Clamps::id_of(const Body &b, int i) const
 void Clamps::find_members()
 {
   members.clear();
-  for (size_t first = 0, last; first < bodies.size(); first = last) {
-    std::unordered_map<tagint, int> entry;
-    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix; last++) {
-      Body &b = bodies[last];
-      entry[b.id] = last;
+  of_fixes([this](size_t first, size_t last) {
+    const auto of = entries(first, last);
+    for (size_t k = first; k < last; k++) {
+      Body &b = bodies[k];
       b.displace = b.small ? small(b.fix)->*Small::place : large(b.fix)->*Rigid::place;
       b.image = b.small ? small(b.fix)->*Small::images : large(b.fix)->*Rigid::images;
     }
     for (int i = 0; i < atom->nlocal; i++) {
-      const auto at = entry.find(id_of(bodies[first], i));
-      if (at != entry.end()) members.push_back({i, at->second});
+      const auto at = of.find(id_of(bodies[first], i));
+      if (at != of.end()) members.push_back({i, (int) at->second});
     }
-  }
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -200,13 +211,38 @@ std::vector<Clamps::State> Clamps::states(Fix *fix) const
   return gather(mine, world);
 }
 
-void Clamps::store(const Body &b) const
+// calls use(first, last) for the bodies of each fix
+template <class Use> void Clamps::of_fixes(Use use) const
 {
-  if (b.small) {
-    const int n = small(b.fix)->*Small::own + small(b.fix)->*Small::ghosts;
+  for (size_t first = 0, last; first < bodies.size(); first = last) {
+    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix;) last++;
+    use(first, last);
+  }
+}
+
+// which of those it is that a fix knows by this
+std::unordered_map<tagint, size_t> Clamps::entries(size_t first, size_t last) const
+{
+  std::unordered_map<tagint, size_t> of;
+  for (size_t k = first; k < last; k++) of[bodies[k].id] = k;
+  return of;
+}
+
+void Clamps::store() const
+{
+  of_fixes([this](size_t first, size_t last) {
+    if (!bodies[first].small) {
+      for (size_t k = first; k < last; k++) store_large(bodies[k]);
+      return;
+    }
+    FixRigidSmall *const fix = small(bodies[first].fix);
+    const auto of = entries(first, last);
+    const int n = fix->*Small::own + fix->*Small::ghosts;
     for (int k = 0; k < n; k++) {
-      auto &to = (small(b.fix)->*Small::bodies)[k];
-      if (atom->tag[to.ilocal] != b.id) continue;
+      auto &to = (fix->*Small::bodies)[k];
+      const auto at = of.find(atom->tag[to.ilocal]);
+      if (at == of.end()) continue;
+      const Body &b = bodies[at->second];
       std::copy_n(b.x, 3, to.xcm);
       std::copy_n(b.v, 3, to.vcm);
       std::copy_n(b.q, 4, to.quat);
@@ -216,8 +252,11 @@ void Clamps::store(const Body &b) const
       std::copy_n(b.ey, 3, to.ey_space);
       std::copy_n(b.ez, 3, to.ez_space);
     }
-    return;
-  }
+  });
+}
+
+void Clamps::store_large(const Body &b) const
+{
   FixRigid *const r = large(b.fix);
   std::copy_n(b.x, 3, (r->*Rigid::center)[b.id]);
   std::copy_n(b.v, 3, (r->*Rigid::velocity)[b.id]);
@@ -232,12 +271,13 @@ void Clamps::store(const Body &b) const
 // calls use(body, its state) for all
 template <class Use> void Clamps::with_states(Use use)
 {
-  for (size_t first = 0, last; first < bodies.size(); first = last) {
-    const auto all = states(bodies[first].fix);
-    for (last = first; last < bodies.size() && bodies[last].fix == bodies[first].fix; last++)
-      for (const State &s : all)
-        if (s.id == bodies[last].id) use(bodies[last], s);
-  }
+  of_fixes([&](size_t first, size_t last) {
+    const auto of = entries(first, last);
+    for (const State &s : states(bodies[first].fix)) {
+      const auto at = of.find(s.id);
+      if (at != of.end()) use(bodies[at->second], s);
+    }
+  });
 }
 
 void Clamps::follow(Body &b) const
@@ -379,8 +419,8 @@ void Clamps::to_middle()
   for (Body &b : bodies) {
     drift(b, 0.5 * update->dt);
     std::copy_n(b.x, 3, b.middle);
-    store(b);
   }
+  store();
   place(members);
 }
 
@@ -469,8 +509,8 @@ void Clamps::finish()
     Body &b = bodies[k];
     add_own(b, &sums[6 * k]);
     kick(b, -0.5 * update->dt, &sums[6 * k]);
-    store(b);
   }
+  store();
   place(members);
 }
 
@@ -479,7 +519,7 @@ void Clamps::go_back()
   find_members();
   follow_boundary();
   to_start();
-  for (Body &b : bodies) store(b);
+  store();
   place(members);
 }
 

@@ -17,6 +17,7 @@
 #include "pointers.h"
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -77,6 +78,7 @@ namespace FSI {
     std::vector<double> sums;               // force and torque of each body
     const Fix *mover = nullptr;
     void refuse(Fix *) const;
+    void refuse_new_ids(Fix *) const;
     void find_members();
     void follow(Body &) const;
     void drift(Body &, double t) const;
@@ -87,8 +89,11 @@ namespace FSI {
     void sum(const std::vector<Member> &, const double *const *f);
     void add_own(const Body &, double *force_and_torque) const;
     std::vector<State> states(Fix *) const;    // of all its bodies
+    template <class Use> void of_fixes(Use) const;
+    std::unordered_map<tagint, size_t> entries(size_t first, size_t last) const;
     template <class Use> void with_states(Use);
-    void store(const Body &) const;
+    void store() const;
+    void store_large(const Body &) const;
     void to_start();
     void follow_boundary();
   };

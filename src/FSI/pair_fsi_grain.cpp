@@ -118,7 +118,21 @@ double PairFSIGrain::init_one(int i, int j)
                "Pair_coeff of pair style fsi/grain: atom type {} has {} and type {} {}: expected a "
                "fluid and grains, which have none (NULL in pair_style fsi/fluid)",
                i, words[a], j, words[b]);
+  check_radii(a == NONE ? i : j);
   return fix_fsi->cut;
+}
+
+// one without a diameter has LAMMPS', 1: neighbor lists of contacts would be of all particles
+void PairFSIGrain::check_radii(int type) const
+{
+  for (int k = 0; k < atom->nlocal; k++)
+    if (atom->type[k] == type && atom->radius[k] > fix_fsi->cut)
+      error->one(
+          FLERR,
+          "Pair style fsi/grain: atom {} of type {} has the diameter {:g}: expected grains "
+          "smaller than the fluid's kernel, whose support is {:g}. Use set type {} diameter, "
+          "after create_atoms",
+          atom->tag[k], type, 2.0 * atom->radius[k], fix_fsi->cut, type);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -71,6 +71,7 @@ class PairFSIGrain : public Pair, public FSI::Part {
   template <class K> void sum_up(const K &);
   template <int D> void forces();
   template <int D> void give_back();
+  void check_radii(int type) const;
   void check_step(int i, double drag, double dt) const;
 };
 

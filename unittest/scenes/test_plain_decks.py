@@ -40,7 +40,8 @@ STEPS = {"cylinder_channel": 50, "cylinder_free": 10, "dam_break": 30, "dam_brea
          "dam_break_elastic": 3, "elastic_gate": 30, "flexible_plate": 3, "hydrostatic_plate": 10,
          "open_channel": 50, "plate_crossflow": 3, "ring_annulus": 10, "rolling_tank": 10, "sphere": 3, "taylor_bar": 30, "turek_hron_fsi": 50}
 # what fix fsi warns of, in these decks alone
-ADVICE = {"ring_annulus": "speed of sound 20", "submerged_plate": "see each other"}
+ADVICE = {"ring_annulus": "speed of sound 20", "submerged_plate": "on the other side of a body",
+          "floating_flap": "on the other side of a body"}
 STATE = "id xu yu zu vx vy vz modify format float %.17g"
 
 

@@ -89,6 +89,10 @@ CASES = {
     "cut by a mirror": ([("xlo 0 ylo 0", "xlo 0 xhi 0.08 ylo 0")], None, r"body 1 ends at the mirror wall at x = 0.08, and its face there is free"),
     "skin": ([("neighbor 0.003", "neighbor 0.016")], None, r"skin 0.016 is 1.6 spacings wide, .*: neighbor 0.003 bin"),
 }
+# a support of 4 spacings, a plate of 2, and water behind it
+THIN = [("wendland 1.5", "wendland 2"), ("0.05 0.08 0 0.08", "0.05 0.07 0 0.08"),
+        ("create_atoms 1 region water", "create_atoms 1 region water\nregion behind block 0.07 0.12 0 0.08 INF INF units box\ncreate_atoms 1 region behind")]
+CASES["thin"] = (THIN, None, r"fluid atom 5 sees fluid on the other side of a body or wall of type 2, which is thinner than .* 0\.04: .* Then fix sph \.\.\. thin 2$")
 ALSO = {  # what follows from the mistake as well
     "grams": r"too long for elastic", "megapascal": r"times shorter",
 }
@@ -108,10 +112,13 @@ def test_sound_deck_is_not_criticized(tmp_path):
     assert advice(tmp_path) == []
     # the bounds themselves: 7 sqrt(2gH), 0.4 h/c_l, three layers
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
+    # a thin plate that is said to be thin, and one of three layers between the same water
+    assert advice(tmp_path, [*THIN, ("wendland 2", "wendland 2 thin 2")]) == []
+    assert advice(tmp_path, [*THIN[2:], ("0.07 0.12", "0.08 0.12")]) == []
 
 
 ON_TWO_RANKS = ("sound", "spacing", "overlap", "idle", "long fluid", "contact", "held", "weightless body", "nothing acts",
-                "cut by a mirror")  # what is summed over ranks
+                "cut by a mirror", "thin")  # what is summed over ranks
 
 
 @pytest.mark.parametrize("name, ranks", [(name, 1) for name in CASES] + [(name, 2) for name in ON_TWO_RANKS])

@@ -390,6 +390,22 @@ def test_small_bodies_in_a_heat_bath_are_refused():
         s.run()
 
 
+@pytest.mark.parametrize("compress", ["yes", "no"])
+def test_small_bodies_are_known_by_atom_ids(compress):
+    """Delete_atoms of a part of the elastic body gives all atoms new IDs, which fix rigid/small does not follow: refused until it is given again."""
+    s, tip = beam([16, 4], 4, 4, 4e-5, commands=["unfix tip", "fix tip held rigid/small molecule"])
+    with s:
+        s.run(2)
+        s.run_lines("group end id 1:8", f"delete_atoms group end compress {compress}")
+        s.n -= 8
+        if compress == "yes":
+            with pytest.raises(Exception, match=r"Fix tip \(style rigid/small\) knows a body by the ID \d+ of an atom"):
+                s.run(1)
+            s.run_lines("unfix tip", "fix tip held rigid/small molecule")
+        s.run(20)
+        assert np.isfinite(s.get("x")).all()
+
+
 @pytest.mark.parametrize("style", ["rigid/nve single", "rigid/nve/small molecule"])
 @pytest.mark.parametrize("auto", [False, True])
 def test_other_styles_are_refused(style, auto):

@@ -365,6 +365,7 @@ BAD = {
     "two fluids": (("pair_coeff 2 2 none", "pair_coeff 2 2 fsi/grain"), "type 2 has no material and type 2 no material: expected a fluid and grains"),
     "materials": (("test.fsi water NULL", "test.fsi water thin"), "type 1 has a fluid and type 2 a fluid: expected a fluid and grains"),
     "no mass": (("fsi sphere", "sphere fsi"), "Atom 2 is of type 2, which has no material, and has no mass"),
+    "no diameter": (("set type 2 diameter 0.0001\n", ""), r"atom 2 of type 2 has the diameter 1: expected grains smaller than .* support is 0\.03\. Use set type 2 diameter"),
     "step": (("timestep 1e-4", "timestep 10"), "drag stops atom|Mach"),
 }
 

@@ -662,7 +662,8 @@ SPECIES = [("fsi/solid/tl", "set atom 1 type 2", "Atom 1 of type 2 is a solid no
            ("fsi/solid/tl", "set atom 43 type 1", "Atom 43 of type 1 is bonded to body 2 and no solid any more"),
            ("fsi/solid", "set atom 43 type 1", "Atom 43 of type 1 is no solid any more, as it was when a run began"),
            ("fsi/solid/tl", "create_atoms 2 single 1.0 1.0 0.0\nset type 2 mol 2", "Solid atom 73 has no bonds to body 2, which took them"),
-           ("fsi/solid/tl", "create_atoms 2 single 2.05 0.05 0.0\nset atom 73 mol 5\nset atom 37*72 mol 5", "Solid atom 73 has no bonds to body 5")]
+           ("fsi/solid/tl", "create_atoms 2 single 2.05 0.05 0.0\nset atom 73 mol 5\nset atom 37*72 mol 5", "Solid atom 73 has no bonds to body 5"),
+           ("fsi/solid/tl", "set atom 37*54 mol 5", r"Solid atoms \d+ and \d+ are bonded, but of the bodies [25] and [25] now")]
 
 
 @pytest.mark.parametrize("style, command, message", SPECIES)
