@@ -18,17 +18,13 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
-#include "force.h"
 #include "fsi_number_density.h"
 #include "fsi_tensor.h"
 #include "memory.h"
-#include "modify.h"
 #include "pair_fsi_solid_tl.h"
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FSI;

@@ -32,7 +32,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -130,7 +129,7 @@ void FixFSIDt::init()
 }
 
 /* ----------------------------------------------------------------------
-   The first run, or one for which the script gave another time step, begins with the limits->
+   The first run, or one for which the script gave another time step, begins with the limits.
    Other runs go on with what was chosen before: two runs are one, and a restarted run is the
    uninterrupted one.
 ------------------------------------------------------------------------- */
@@ -264,7 +263,7 @@ void FixFSIDt::start_step()
 }
 
 /* ----------------------------------------------------------------------
-   the limits (fsi_limits->cpp) with the factors
+   the limits (fsi_limits.cpp) with the factors
 ------------------------------------------------------------------------- */
 
 void FixFSIDt::find_limits()
@@ -408,7 +407,7 @@ void FixFSIDt::restart(char *buf)
 Facts FixFSIDt::facts() const
 {
   Facts facts;
-  facts.chooses_step = chooses();
+  facts.chooses_step = check == NO_CHECK;
   facts.chooses_substeps = automatic;
   return facts;
 }

@@ -25,12 +25,10 @@
 #include "fsi_value.h"
 #include "lattice.h"
 #include "math_const.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;

@@ -18,13 +18,11 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "force.h"
 #include "fsi_changes.h"
 #include "fsi_jaumann.h"
 #include "fsi_plasticity.h"
 #include "fsi_record.h"
 #include "modify.h"
-#include "pair.h"
 #include "update.h"
 
 #include <algorithm>

@@ -18,17 +18,14 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "force.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_walls.h"
-#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <map>
 
@@ -54,50 +51,44 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   int iarg = 3;
   while (iarg < narg) {
     const std::string key = arg[iarg];
+    const auto values = [&](int n) {
+      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror " + key, error);
+      char **const first = arg + iarg + 1;
+      iarg += n + 1;
+      return first;
+    };
     const auto number = [&](const char *value, const Range &range = {}) {
       return numeric(lmp, "Fix fsi/wall/mirror " + key, value, range, false,
                      key == "guard" || key == "velocity" ? "" : "EDGE");
     };
+    const auto of_wall = [&](int n) {
+      char **const first = values(n);
+      if (walls.empty())
+        error->all(FLERR, "Fix fsi/wall/mirror {} must follow the wall that it belongs to", key);
+      return first;
+    };
     if (key.size() == 3 && strchr("xyz", key[0]) &&
         (key.substr(1) == "lo" || key.substr(1) == "hi")) {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror " + key, error);
+      const char *const place = values(1)[0];
       add_wall(key);
       Wall &w = walls.back();
-      if (strcmp(arg[iarg + 1], "EDGE") == 0)
+      if (strcmp(place, "EDGE") == 0)
         w.position = key[1] == 'l' ? domain->boxlo[w.axis] : domain->boxhi[w.axis];
       else
-        w.position = number(arg[iarg + 1]);
+        w.position = number(place);
       slip_said.push_back(false);
-      iarg += 2;
     } else if (key == "range") {
-      if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror range", error);
-      if (walls.empty())
-        error->all(FLERR, "Fix fsi/wall/mirror range must follow the wall that it belongs to");
-      parse_range(arg + iarg + 1);
-      iarg += 4;
+      parse_range(of_wall(3));
     } else if (key == "velocity") {
-      if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror velocity", error);
-      if (walls.empty())
-        error->all(FLERR, "Fix fsi/wall/mirror velocity must follow the wall that it belongs to");
-      for (int b = 0; b < 3; b++) walls.back().velocity[b] = number(arg[iarg + 1 + b]);
-      iarg += 4;
+      char **const v = of_wall(3);
+      for (int b = 0; b < 3; b++) walls.back().velocity[b] = number(v[b]);
     } else if (key == "slip") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror slip", error);
-      if (walls.empty())
-        error->all(FLERR, "Fix fsi/wall/mirror slip must follow the wall that it belongs to");
-      walls.back().noslip = !utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      walls.back().noslip = !utils::logical(FLERR, of_wall(1)[0], false, lmp);
       slip_said.back() = true;
-      iarg += 2;
     } else if (key == "symmetry") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror symmetry", error);
-      if (walls.empty())
-        error->all(FLERR, "Fix fsi/wall/mirror symmetry must follow the wall that it belongs to");
-      walls.back().joins = utils::logical(FLERR, arg[iarg + 1], false, lmp) ? groupbit : 0;
-      iarg += 2;
+      walls.back().joins = utils::logical(FLERR, of_wall(1)[0], false, lmp) ? groupbit : 0;
     } else if (key == "guard") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror guard", error);
-      guard = number(arg[iarg + 1], Range::between(0.0, 0.45));
-      iarg += 2;
+      guard = number(values(1)[0], Range::between(0.0, 0.45));
     } else
       error->all(FLERR,
                  "Unknown fix fsi/wall/mirror keyword {}: expected xlo, xhi, ylo, yhi, zlo, zhi, "
@@ -378,13 +369,18 @@ std::string FixFSIWallMirror::settings(int k) const
   return text;
 }
 
+std::string FixFSIWallMirror::faces() const
+{
+  std::string all;
+  for (const auto &w : walls) all += (all.empty() ? "" : " ") + face(w);
+  return all;
+}
+
 void FixFSIWallMirror::write_restart(FILE *fp)
 {
   Record record(lmp, "fix fsi/wall/mirror");
   record.add("reflections", std::vector<double>{compute_scalar()});
-  std::string faces;
-  for (const auto &w : walls) faces += (faces.empty() ? "" : " ") + face(w);
-  record.add("walls", faces);
+  record.add("walls", faces());
   for (size_t k = 0; k < walls.size(); k++) {
     record.add(fmt::format("place {}", k), std::vector<double>{start[k], walls[k].position});
     record.add(fmt::format("settings {}", k), settings(k));
@@ -397,13 +393,11 @@ void FixFSIWallMirror::write_restart(FILE *fp)
 void FixFSIWallMirror::restart(char *buf)
 {
   const Record record(lmp, "fix fsi/wall/mirror", buf);
-  std::string faces;
-  for (const auto &w : walls) faces += (faces.empty() ? "" : " ") + face(w);
-  if (faces != record.value("walls"))
+  if (faces() != record.value("walls"))
     error->all(FLERR,
                "Fix fsi/wall/mirror {} has the walls {}, the restart file {} of it: give it "
                "another ID to place all walls anew",
-               id, faces, record.value("walls"));
+               id, faces(), record.value("walls"));
   reflected = (comm->me == 0) ? static_cast<bigint>(record.numbers("reflections")[0]) : 0;
   for (size_t k = 0; k < walls.size(); k++) {
     const auto place = record.numbers(fmt::format("place {}", k));

@@ -18,7 +18,6 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_move.h"
-#include "fix_store_atom.h"
 #include "force.h"
 #include "fsi_keywords.h"
 #include "fsi_levels.h"
@@ -27,8 +26,6 @@
 #include "fsi_rows.h"
 #include "fsi_swaps.h"
 #include "fsi_tensor.h"
-#include "group.h"
-#include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "pair_fsi_fluid.h"
@@ -46,8 +43,8 @@ static constexpr double AUTO = -1.0;
 /* ---------------------------------------------------------------------- */
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), fix_fsi(nullptr),
-    swaps(new Swaps(lmp)), sum(nullptr), nmax(0), nsum(0), force_on{}
+    FixFields(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr),
+    fix_fsi(nullptr), swaps(new Swaps(lmp)), sum(nullptr), nsum(0), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
@@ -59,26 +56,11 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
   extscalar = extvector = 1;
   global_freq = 1;
   restart_global = 1;
+  fields.set("velocity of the last step", Fields::RESTART, true, before, 4);
+  register_fields();
 }
 
-/* ---------------------------------------------------------------------- */
-
-FixFSIWallParticle::~FixFSIWallParticle()
-{
-  if (!id_store.empty() && modify->get_fix_by_id(id_store)) modify->delete_fix(id_store);
-  memory->destroy(sum);
-}
-
-/* ----------------------------------------------------------------------
-   velocities of the last step, which migrate with the atoms and go into restart files
-------------------------------------------------------------------------- */
-
-void FixFSIWallParticle::post_constructor()
-{
-  id_store = id + std::string("_FSI_WALL");
-  before = dynamic_cast<FixStoreAtom *>(
-      modify->add_fix(fmt::format("{} {} STORE/ATOM 4 0 0 1", id_store, group->names[igroup])));
-}
+FixFSIWallParticle::~FixFSIWallParticle() = default;
 
 /* ---------------------------------------------------------------------- */
 
@@ -130,9 +112,17 @@ void FixFSIWallParticle::init()
   first_moment = 2 + dim * (slip ? 1 : 2);
   first_stiffness = first_moment + (linear ? dim * (dim + 5) / 2 : 0);
   nsum = first_stiffness + stiffness;
+  fields.set("sums over the fluid", Fields::STEP, true, sum, nsum);
+  for (auto *message : {&to_ghosts, &from_ghosts}) {
+    *message = std::make_unique<Message>(lmp, fix_fsi->state);
+    (*message)->group = groupbit;
+  }
+  to_ghosts->add(atom->rho, {RIGID});
+  if (stiffness) to_ghosts->add(fix_fsi->wall_stiffness, {RIGID});
+  if (!slip) to_ghosts->add(fix_fsi->wall_velocity, 0, dim, {RIGID});
+  from_ghosts->add(sum, 0, nsum, {RIGID});
+  comm_forward = to_ghosts->size();
   comm_reverse = nsum;
-  comm_forward = 1 + (slip ? 0 : dim) + stiffness;
-  nmax = 0;    // sums of another size than in the last run
 }
 
 /* ---------------------------------------------------------------------- */
@@ -209,10 +199,7 @@ void FixFSIWallParticle::sum_up()
       return (mask[i] & groupbit) != 0;
     });
   }
-  if (atom->nmax > nmax) {
-    nmax = atom->nmax;
-    memory->grow(sum, nmax, nsum, "fsi/wall/particle:sum");
-  }
+  fields.grow();
   for (const int i : members) std::fill_n(sum[i], nsum, 0.0);
 
   for_levels(*fix_fsi, [&](size_t level, const auto &kernel) {
@@ -246,6 +233,7 @@ void FixFSIWallParticle::sum_up()
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     });
   });
+  sent = from_ghosts.get();
   if (force->newton_pair)
     exchange(fix_fsi->profile, comm, [this]() {
       swaps->reverse(this);
@@ -272,7 +260,7 @@ void FixFSIWallParticle::end_state(bool advance)
     if (i >= atom->nlocal) break;    // ghosts come last
     const State &state = fix_fsi->state[type[i]];
     const double *const s = sum[i];
-    double *const old = before->astore[i];
+    double *const old = before[i];
     // acceleration: in this step where the motion is known, else in the last; a wall that is set in
     // motion has none in its first step
     const double *from = old, *to = v[i];
@@ -310,6 +298,7 @@ void FixFSIWallParticle::end_state(bool advance)
       old[3] = 1.0;
     }
   }
+  sent = to_ghosts.get();
   exchange(fix_fsi->profile, comm, [this]() {
     swaps->forward(this);
   });
@@ -364,74 +353,24 @@ double FixFSIWallParticle::compute_scalar()
 
 /* ---------------------------------------------------------------------- */
 
-int FixFSIWallParticle::pack_forward_comm(int n, int *list, double *buf, int, int *)
-{
-  int m = 0;
-  for (int ii = 0; ii < n; ii++) {
-    const int i = list[ii];
-    if (!(atom->mask[i] & groupbit)) continue;
-    buf[m++] = atom->rho[i];
-    if (fix_fsi->wall_stiffness) buf[m++] = fix_fsi->wall_stiffness[i];
-    if (!slip)
-      for (int d = 0; d < fix_fsi->dim; d++) buf[m++] = fix_fsi->wall_velocity[i][d];
-  }
-  return m;
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSIWallParticle::unpack_forward_comm(int n, int first, double *buf)
-{
-  int m = 0;
-  for (int i = first; i < first + n; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    atom->rho[i] = buf[m++];
-    if (fix_fsi->wall_stiffness) fix_fsi->wall_stiffness[i] = buf[m++];
-    if (!slip)
-      for (int d = 0; d < fix_fsi->dim; d++) fix_fsi->wall_velocity[i][d] = buf[m++];
-  }
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIWallParticle::pack_reverse_comm(int n, int first, double *buf)
-{
-  int m = 0;
-  for (int i = first; i < first + n; i++)
-    if (atom->mask[i] & groupbit)
-      for (int k = 0; k < nsum; k++) buf[m++] = sum[i][k];
-  return m;
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSIWallParticle::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  int m = 0;
-  for (int ii = 0; ii < n; ii++)
-    if (atom->mask[list[ii]] & groupbit)
-      for (int k = 0; k < nsum; k++) sum[list[ii]][k] += buf[m++];
-}
-
-/* ----------------------------------------------------------------------
-   restart: velocities are those of fix STORE/ATOM; the command, to compare
-------------------------------------------------------------------------- */
-
 void FixFSIWallParticle::write_restart(FILE *fp)
 {
   Record record(lmp, "fix fsi/wall/particle");
   keywords.write(record);
+  fields.write(record);
   record.write(fp);
 }
 
 void FixFSIWallParticle::restart(char *buf)
 {
-  keywords.compare(Record(lmp, "fix fsi/wall/particle", buf));
+  const Record record(lmp, "fix fsi/wall/particle", buf);
+  keywords.compare(record);
+  fields.read(record);
 }
 
 /* ---------------------------------------------------------------------- */
 
 double FixFSIWallParticle::memory_usage()
 {
-  return (double) nmax * nsum * sizeof(double) + (double) members.capacity() * sizeof(members[0]);
+  return FixFields::memory_usage() + (double) members.capacity() * sizeof(members[0]);
 }

@@ -222,6 +222,16 @@ void Check::integrators() const
    particles one by one (theory.rst). Which of several fluids they meet is seen at the start.
 ------------------------------------------------------------------------- */
 
+static constexpr char STANDARD[] = "density by continuity, as fix fsi scheme standard has it",
+                      COUPLE_WALL[] = "couple wall in pair_style fsi/fluid",
+                      OWN_VOLUMES[] = "a pressure of the body's own is that of its own volumes";
+
+void Check::require(const std::string &what, bool met, const char *setting,
+                    const char *reason) const
+{
+  if (!met) error->all(FLERR, "{} requires {}: {}", what, setting, reason);
+}
+
 void Check::spacings() const
 {
   constexpr double FINEST = 4.0, COARSEST = 2.0, HELD = 1.5, ROUND = 1.0 + 1.0e-6;
@@ -234,7 +244,7 @@ void Check::spacings() const
     if (s.species == FLUID) {
       if (own > dx)
         error->all(FLERR, "{}, a fluid: dx, {:g}, is to be that of the coarsest fluid", what, dx);
-      fluid_spacings(what);
+      fluid_spacings(what + ", a fluid,");
       continue;
     }
     if (s.form == UPDATED_LAGRANGIAN)
@@ -243,10 +253,8 @@ void Check::spacings() const
                  "Use pair_style fsi/solid/tl, whose "
                  "bonds are those of one body",
                  what);
-    if (scene.density_solid != Scene::CONTINUITY)
-      error->all(FLERR,
-                 "{} requires fix fsi solid continuity: number densities are those of one spacing",
-                 what);
+    require(what, scene.density_solid == Scene::CONTINUITY, STANDARD,
+            "number densities are those of one spacing");
     if (!fluid.style) continue;
     if (own > ROUND * std::min(COARSEST * dx, scene.cut / HELD))
       error->all(FLERR,
@@ -257,32 +265,22 @@ void Check::spacings() const
     if (ROUND * FINEST * own < finest)
       error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most",
                  what, finest / own, finest, FINEST);
-    if (fluid.couples_stress)
-      error->all(FLERR,
-                 "{} requires couple wall in pair_style fsi/fluid: a pressure of the body's own is "
-                 "that of its own volumes",
-                 what);
+    require(what, !fluid.couples_stress, COUPLE_WALL, OWN_VOLUMES);
   }
 }
 
-/* ----------------------------------------------------------------------
-   what one lattice alone has a number density for
-------------------------------------------------------------------------- */
-
+// what one lattice alone has a number density for
 void Check::fluid_spacings(const std::string &what) const
 {
   const Facts fluid = facts_of_fluids(lmp);
-  const auto require = [&](bool met, const char *setting, const char *reason) {
-    if (!met) error->all(FLERR, "{}, a fluid, requires {}: {}", what, setting, reason);
-  };
   const char *const jump = "number densities are not smooth where two lattices meet";
-  require(scene.density_fluid == Scene::CONTINUITY, "fix fsi fluid continuity", jump);
-  require(scene.density_solid != Scene::SUMMATION, "another mode than fix fsi solid summation",
-          jump);
-  require(!fluid.density_at_surfaces, "pair_style fsi/fluid density/surface no", jump);
-  require(!fluid.couples_stress, "couple wall in pair_style fsi/fluid",
-          "a pressure of the body's own is that of its own volumes");
-  require(!scene.sight, "fix fsi without thin", "what a thin body hides is found for one spacing");
+  require(what, scene.density_fluid == Scene::CONTINUITY, STANDARD, jump);
+  require(what, scene.density_solid != Scene::SUMMATION,
+          "another mode than fix fsi solid summation", jump);
+  require(what, !fluid.density_at_surfaces, "pair_style fsi/fluid density/surface no", jump);
+  require(what, !fluid.couples_stress, COUPLE_WALL, OWN_VOLUMES);
+  require(what, !scene.sight, "fix fsi without thin",
+          "what a thin body hides is found for one spacing");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -297,15 +295,10 @@ void Check::thin_bodies() const
     if (species == FLUID)
       error->all(FLERR, "{}: atom type {} is a fluid, expected a solid or a wall of particles",
                  what, t);
-    if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY)
-      error->all(FLERR,
-                 "{} requires fix fsi fluid continuity and solid continuity: number densities "
-                 "would jump where a body comes between",
-                 what);
-    if (fluid.couples_stress)
-      error->all(FLERR,
-                 "{} requires couple wall in pair_style fsi/fluid: each side has its own pressure",
-                 what);
+    require(what,
+            scene.density_fluid == Scene::CONTINUITY && scene.density_solid == Scene::CONTINUITY,
+            STANDARD, "number densities would jump where a body comes between");
+    require(what, !fluid.couples_stress, COUPLE_WALL, "each side has its own pressure");
   }
 }
 

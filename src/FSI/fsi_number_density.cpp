@@ -19,7 +19,6 @@
 #include "fsi_profile.h"
 #include "fsi_scene.h"
 
-#include <algorithm>
 #include <cstring>
 #include <utility>
 

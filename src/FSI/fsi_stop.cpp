@@ -85,14 +85,7 @@ Finding Stop::not_finite(int i, bool forces) const
 
 Finding Stop::worst(const Finding &mine, double key) const
 {
-  struct {
-    double key;
-    int rank;
-  } own = {mine.tag ? key : -1.0e300, comm->me}, first;
-  MPI_Allreduce(&own, &first, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-  Finding all = mine;
-  MPI_Bcast(&all, sizeof(Finding), MPI_BYTE, first.rank, world);
-  return all;
+  return of_least(mine.tag ? -key : 1.0e300, mine, world);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -149,12 +142,7 @@ Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
           r,    scene.dx_of(type[i]), atom->tag[i], atom->molecule[i], scene.state[type[i]].species,
           false};
   });
-  struct {
-    double distance;
-    int rank;
-  } own = {body.distance, comm->me}, first;
-  MPI_Allreduce(&own, &first, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-  MPI_Bcast(&body, sizeof(Neighbor), MPI_BYTE, first.rank, world);
+  body = of_least(body.distance, body, world);
   double mine[4] = {}, sum[4];
   for_near([&](int i, double r, const double *d) {
     if (atom->molecule[i] != body.molecule || r == 0.0 ||

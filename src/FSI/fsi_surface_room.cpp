@@ -22,7 +22,6 @@
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_scene.h"
-#include "pair.h"
 #include "update.h"
 
 #include <algorithm>

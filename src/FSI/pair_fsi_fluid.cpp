@@ -38,7 +38,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -75,6 +74,7 @@ struct PairFSIFluid::Shares {
 
 struct PairFSIFluid::Members {
   Fields fields;
+  // what loops get the address of
   Thin thin_bodies = {};
   Visible seen_pairs = {};
   Cut cut_solids = {};
@@ -84,9 +84,8 @@ struct PairFSIFluid::Members {
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), couple(WALL), images_step(-1),
     near_known(false), sorts(true), margin(0.0), cut(false), solids_pass(false), fade(nullptr),
-    fill(nullptr), fill_weight(nullptr), thin_bodies(members->thin_bodies),
-    seen_pairs(members->seen_pairs), cut_solids(members->cut_solids), fields(members->fields),
-    rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    fill(nullptr), fill_weight(nullptr), fields(members->fields), rate(nullptr), beyond(nullptr),
+    hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -199,7 +198,9 @@ void PairFSIFluid::init_style()
        {std::make_pair(delta > 0.0, "density/diffusion"),
         std::make_pair(surfaces != 0, "density/surface"), std::make_pair(shifting > 0.0, "shift")})
     if (of_continuity.first && fix_fsi->density_fluid != FixFSI::CONTINUITY)
-      error->all(FLERR, "Pair style fsi/fluid {} requires fix fsi with fluid continuity",
+      error->all(FLERR,
+                 "Pair style fsi/fluid {} requires density by continuity, as fix fsi scheme "
+                 "standard has it",
                  of_continuity.second);
   if (surfaces && (tension || background != 0.0))
     error->all(FLERR,
@@ -931,16 +932,16 @@ void PairFSIFluid::for_images(const Walls &walls, Position position, Loop loop)
 
 FluidParticles PairFSIFluid::particles_at(const double *points)
 {
-  thin_bodies = {fill, fill_weight};
-  cut_solids = {parts.data(), part_rates.data()};
+  members->thin_bodies = {fill, fill_weight};
+  members->cut_solids = {parts.data(), part_rates.data()};
   return {points,
           atom->type,
           fix_fsi->state.data(),
           atom->nlocal,
           nullptr,
           false,
-          fill ? &thin_bodies : nullptr,
-          cut ? &cut_solids : nullptr,
+          fill ? &members->thin_bodies : nullptr,
+          cut ? &members->cut_solids : nullptr,
           force->newton_pair != 0};
 }
 
@@ -953,8 +954,8 @@ FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, const Meet
   in.unequal = shares[meeting.level].unequal;
   in.unlike = meeting.unlike;
   if (meeting.what != HIDDEN) return in;
-  seen_pairs = {parts_of.data(), list_of.empty() ? nullptr : list_of[0].j};
-  in.visible = &seen_pairs;
+  members->seen_pairs = {parts_of.data(), list_of.empty() ? nullptr : list_of[0].j};
+  in.visible = &members->seen_pairs;
   return in;
 }
 
