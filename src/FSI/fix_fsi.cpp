@@ -49,8 +49,6 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 struct FixFSI::Members {
   Keywords keywords;
   Clock clock;
@@ -133,10 +131,7 @@ Record FixFSI::record() const
   return record;
 }
 
-/* ----------------------------------------------------------------------
-   the arrays that the effects need which there are now
-------------------------------------------------------------------------- */
-
+// the arrays that the effects need which there are now
 void FixFSI::set_fields()
 {
   const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
@@ -255,13 +250,10 @@ void FixFSI::find_parts()
   });
 }
 
-/* ----------------------------------------------------------------------
-   A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must
-   keep their order, which is that of atoms and neighbour lists. So the first step of a run, and
-   the one after a restart was written, do the same: wrap positions, rebuild, and put the atoms
-   of each rank in an order that depends on nothing but where they are and their IDs.
-------------------------------------------------------------------------- */
-
+// A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must
+// keep their order, which is that of atoms and neighbour lists. So the first step of a run, and
+// the one after a restart was written, do the same: wrap positions, rebuild, and put the atoms
+// of each rank in an order that depends on nothing but where they are and their IDs.
 bool FixFSI::fresh_start() const
 {
   const bigint before = update->ntimestep - 1;
@@ -282,10 +274,7 @@ void FixFSI::pre_exchange()
   sort_by_place(atom, dx);
 }
 
-/* ----------------------------------------------------------------------
-   paper eq. 15: drift to the middle of the step
-------------------------------------------------------------------------- */
-
+// paper eq. 15: drift to the middle of the step
 void FixFSI::initial_integrate(int)
 {
   if (update->ntimestep - 1 == update->firststep) changes.check_pre_no();
@@ -308,10 +297,7 @@ template <int D> void FixFSI::drift()
       for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
 }
 
-/* ----------------------------------------------------------------------
-   paper eqs. 17 and 18: kick, and drift to the end of the step
-------------------------------------------------------------------------- */
-
+// paper eqs. 17 and 18: kick, and drift to the end of the step
 void FixFSI::final_integrate()
 {
   for (auto *p : parts) p->prescribe();
@@ -342,11 +328,8 @@ template <int D> void FixFSI::kick()
   others.turn(dt);
 }
 
-/* ----------------------------------------------------------------------
-   bring density and stress of local and ghost atoms to the time of the positions; not to advance,
-   in setup: a function of the state only
-------------------------------------------------------------------------- */
-
+// bring density and stress of local and ghost atoms to the time of the positions; not to advance,
+// in setup: a function of the state only
 void FixFSI::update_state(bool advance)
 {
   fields.grow();
@@ -402,11 +385,8 @@ void FixFSI::set_arrays(int i)
                atom->tag[i], group->names[igroup], id);
 }
 
-/* ----------------------------------------------------------------------
-   Restart files: the command, the clock, what the ledger's terms have taken; per atom the
-   reference of density mode ratio.
-------------------------------------------------------------------------- */
-
+// Restart files: the command, the clock, what the ledger's terms have taken; per atom the
+// reference of density mode ratio.
 void FixFSI::write_restart(FILE *fp)
 {
   double all[NTERM];

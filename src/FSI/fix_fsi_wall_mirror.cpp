@@ -40,8 +40,6 @@ static std::string face(const Wall &w)
   return std::string(1, "xyz"[w.axis]) + (w.side > 0.0 ? "lo" : "hi");
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), guard(0.1), reflected(0), fix_fsi(nullptr)
 {
@@ -131,10 +129,7 @@ void FixFSIWallMirror::add_wall(const std::string &key)
   walls.push_back(w);
 }
 
-/* ----------------------------------------------------------------------
-   extent of the last wall along another axis
-------------------------------------------------------------------------- */
-
+// extent of the last wall along another axis
 void FixFSIWallMirror::parse_range(char **arg)
 {
   const auto number = [&](const char *value) {
@@ -171,10 +166,7 @@ void FixFSIWallMirror::check_symmetry() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   a channel of which one wall slips is most likely one whose script says slip once for both
-------------------------------------------------------------------------- */
-
+// a channel of which one wall slips is most likely one whose script says slip once for both
 void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
 {
   for (size_t a = 0; a < walls.size() && comm->me == 0; a++)
@@ -186,17 +178,12 @@ void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
                        id, face(walls[a]), face(walls[b]));
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWallMirror::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");
 }
 
-/* ----------------------------------------------------------------------
-   a fluid particle that starts behind a wall is a mistake in the script
-------------------------------------------------------------------------- */
-
+// a fluid particle that starts behind a wall is a mistake in the script
 void FixFSIWallMirror::setup(int)
 {
   double **x = atom->x;
@@ -211,14 +198,11 @@ void FixFSIWallMirror::setup(int)
   }
 }
 
-/* ----------------------------------------------------------------------
-   after the first drift: walls move along, and a fluid particle nearer than the guard distance, or
-   behind the wall, is reflected. A segment acts on what has come through it in this step, not on
-   what flows behind it.
-   The ledger has velocities of the middle of a step, half a kick on, of which the kick of gravity
-   is not reflected. What that of the other forces differs by, density takes up.
-------------------------------------------------------------------------- */
-
+// after the first drift: walls move along, and a fluid particle nearer than the guard distance, or
+// behind the wall, is reflected. A segment acts on what has come through it in this step, not on
+// what flows behind it.
+// The ledger has velocities of the middle of a step, half a kick on, of which the kick of gravity
+// is not reflected. What that of the other forces differs by, density takes up.
 void FixFSIWallMirror::post_integrate()
 {
   const Phase phase(fix_fsi->profile, Profile::WALLS);
@@ -256,8 +240,6 @@ void FixFSIWallMirror::post_integrate()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWallMirror::end_of_step()
 {
   for (size_t k = 0; k < walls.size(); k++) {
@@ -268,8 +250,6 @@ void FixFSIWallMirror::end_of_step()
         fix_fsi->energy_out[FixFSI::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIWallMirror::add_walls(Walls &all, std::vector<WallForce> &forces)
 {
@@ -282,11 +262,8 @@ void FixFSIWallMirror::begin_state(bool)
   for (auto &f : force_on) f = {0.0, 0.0, 0.0};
 }
 
-/* ----------------------------------------------------------------------
-   Particles that this step has reflected, on whatever rank they are now, are back in front of it
-   with their own velocity: they have been moved back by half a step with the reflected one.
-------------------------------------------------------------------------- */
-
+// Particles that this step has reflected, on whatever rank they are now, are back in front of it
+// with their own velocity: they have been moved back by half a step with the reflected one.
 void FixFSIWallMirror::go_back()
 {
   reflected -= turns.size();
@@ -330,10 +307,7 @@ void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
     nothing("Fix fsi/wall/mirror slip no", "pair_style fsi/fluid has no laminar/visc");
 }
 
-/* ----------------------------------------------------------------------
-   number of reflections since the fix was defined
-------------------------------------------------------------------------- */
-
+// number of reflections since the fix was defined
 double FixFSIWallMirror::compute_scalar()
 {
   bigint all;
@@ -341,10 +315,7 @@ double FixFSIWallMirror::compute_scalar()
   return static_cast<double>(all);
 }
 
-/* ----------------------------------------------------------------------
-   force of the fluid on wall i
-------------------------------------------------------------------------- */
-
+// force of the fluid on wall i
 double FixFSIWallMirror::compute_array(int i, int j)
 {
   double all;
@@ -352,11 +323,8 @@ double FixFSIWallMirror::compute_array(int i, int j)
   return all;
 }
 
-/* ----------------------------------------------------------------------
-   restart: count of reflections and where the walls are; a wall that the command puts elsewhere
-   than before stands there
-------------------------------------------------------------------------- */
-
+// restart: count of reflections and where the walls are; a wall that the command puts elsewhere
+// than before stands there
 std::string FixFSIWallMirror::settings(int k) const
 {
   const Wall &w = walls[k];
@@ -387,8 +355,6 @@ void FixFSIWallMirror::write_restart(FILE *fp)
   }
   record.write(fp);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIWallMirror::restart(char *buf)
 {

@@ -40,8 +40,6 @@ using namespace FSI;
 
 static constexpr double AUTO = -1.0;
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr),
     fix_fsi(nullptr), swaps(new Swaps(lmp)), sum(nullptr), nsum(0), force_on{}
@@ -61,8 +59,6 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
 }
 
 FixFSIWallParticle::~FixFSIWallParticle() = default;
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIWallParticle::init()
 {
@@ -125,8 +121,6 @@ void FixFSIWallParticle::init()
   comm_reverse = nsum;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWallParticle::set_fields(Scene &scene)
 {
   scene.noslip_walls = scene.noslip_walls || !slip;
@@ -138,8 +132,6 @@ void FixFSIWallParticle::add_costs(Costs &costs) const
   costs.back += force->newton_pair;
 }
 
-/* ---------------------------------------------------------------------- */
-
 template <class F> void FixFSIWallParticle::for_pairs(size_t level, F f) const
 {
   const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
@@ -150,14 +142,11 @@ template <class F> void FixFSIWallParticle::for_pairs(size_t level, F f) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   What is added to the mean of the fluid's pressures p at a wall particle by weighted least squares
-   for a pressure linear in d = x_wall - x: -mean(d).C^-1 cov(d, p), C = cov(d, d). In both means p
-   has on it what body forces and the wall's acceleration a add on the way, -rho a.d, so that only
-   the rest is extrapolated. Particles in a line or plane tell nothing across it: 0.005 dx^2 more of
-   variance in all directions takes the rest for constant there.
-------------------------------------------------------------------------- */
-
+// What is added to the mean of the fluid's pressures p at a wall particle by weighted least squares
+// for a pressure linear in d = x_wall - x: -mean(d).C^-1 cov(d, p), C = cov(d, d). In both means p
+// has on it what body forces and the wall's acceleration a add on the way, -rho a.d, so that only
+// the rest is extrapolated. Particles in a line or plane tell nothing across it: 0.005 dx^2 more of
+// variance in all directions takes the rest for constant there.
 template <int D>
 double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p, double rho,
                                        const double *a) const
@@ -179,10 +168,7 @@ double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p
   return sum / determinant<D>(C);
 }
 
-/* ----------------------------------------------------------------------
-   sums over the fluid around each particle of the wall
-------------------------------------------------------------------------- */
-
+// sums over the fluid around each particle of the wall
 void FixFSIWallParticle::sum_up()
 {
   const int dim = fix_fsi->dim;
@@ -240,12 +226,9 @@ void FixFSIWallParticle::sum_up()
     });
 }
 
-/* ----------------------------------------------------------------------
-   p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq.
-   27), a_w: acceleration of the wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of
-   fluids of different rho c^2 the wall has the mean, likewise
-------------------------------------------------------------------------- */
-
+// p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq.
+// 27), a_w: acceleration of the wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of
+// fluids of different rho c^2 the wall has the mean, likewise
 void FixFSIWallParticle::end_state(bool advance)
 {
   const Phase phase(fix_fsi->profile, Profile::WALLS);
@@ -304,10 +287,7 @@ void FixFSIWallParticle::end_state(bool advance)
   });
 }
 
-/* ----------------------------------------------------------------------
-   force of the fluid: only pairs have added to f so far
-------------------------------------------------------------------------- */
-
+// force of the fluid: only pairs have added to f so far
 void FixFSIWallParticle::pre_reverse(int, int)
 {
   const int n = atom->nlocal + (force->newton_pair ? atom->nghost : 0);
@@ -317,8 +297,6 @@ void FixFSIWallParticle::pre_reverse(int, int)
       for (int d = 0; d < 3; d++) force_on[d] += atom->f[i][d];
 }
 
-/* ---------------------------------------------------------------------- */
-
 double FixFSIWallParticle::compute_vector(int n)
 {
   double all;
@@ -326,10 +304,7 @@ double FixFSIWallParticle::compute_vector(int n)
   return all;
 }
 
-/* ----------------------------------------------------------------------
-   pairs of fluid and wall within the guard's distance
-------------------------------------------------------------------------- */
-
+// pairs of fluid and wall within the guard's distance
 double FixFSIWallParticle::compute_scalar()
 {
   // before the first run, or with a new fix fsi
@@ -351,8 +326,6 @@ double FixFSIWallParticle::compute_scalar()
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWallParticle::write_restart(FILE *fp)
 {
   Record record(lmp, "fix fsi/wall/particle");
@@ -367,8 +340,6 @@ void FixFSIWallParticle::restart(char *buf)
   keywords.compare(record);
   fields.read(record);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixFSIWallParticle::memory_usage()
 {

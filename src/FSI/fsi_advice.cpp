@@ -607,8 +607,6 @@ class Adviser : protected Pointers {
 
 }    // namespace
 
-/* ---------------------------------------------------------------------- */
-
 void FSI::advise(LAMMPS *lmp, const Scene &scene)
 {
   Adviser(lmp, scene).all();

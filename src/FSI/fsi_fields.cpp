@@ -25,8 +25,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 Fields::~Fields()
 {
   for (auto &f : fields)
@@ -55,8 +53,6 @@ void Fields::set(const std::string &name, Life life, bool wanted, int *&array)
   f.integers_of = &array;
   set(f, wanted);
 }
-
-/* ---------------------------------------------------------------------- */
 
 Fields::Field *Fields::find(const std::string &name)
 {
@@ -110,8 +106,6 @@ void Fields::resize(Field &f, int rows)
   f.with(hand_over);
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool Fields::any(Life life) const
 {
   return std::any_of(fields.begin(), fields.end(), [=](const Field &f) {
@@ -138,8 +132,6 @@ double Fields::memory_usage() const
     bytes += (double) f.rows * f.columns * (f.integers ? sizeof(int) : sizeof(double));
   return bytes;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Fields::grow_lasting(int nmax)
 {

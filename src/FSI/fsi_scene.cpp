@@ -27,14 +27,10 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) : mover(fix_fsi), body_forces(lmp), instance(lmp)
 {
   state.resize(lmp->atom->ntypes + 1);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Discretization::resolve(double hdx, const std::vector<double> &spacing)
 {
@@ -65,8 +61,6 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Scene::enter_state(int type, const State &s)
 {
   if (!states_entered) state.assign(state.size(), State());
@@ -77,8 +71,6 @@ void Scene::enter_state(int type, const State &s)
   state[type].h = resolution[type].h;
   state[type].w0 = resolution[type].w0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Discretization::find_levels()
 {
@@ -98,8 +90,6 @@ void Discretization::find_levels()
       if (state[t].species == FLUID && dx_of(t) == levels[l].dx) level_of[t] = l;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Scene::gather_walls()
 {
   walls.wall.clear();
@@ -110,8 +100,6 @@ void Scene::gather_walls()
                          walls.wall.size(), Walls::MAXWALL);
   walls.find_reflections();
 }
-
-/* ---------------------------------------------------------------------- */
 
 // walls of particles go on behind a mirror themselves
 void Scene::find_near_walls()
@@ -126,8 +114,6 @@ void Scene::find_near_walls()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<std::string> Discretization::density_names(int species)
 {
   if (species == FLUID) return {"continuity", "summation"};
@@ -139,16 +125,12 @@ bool Scene::density_follows_shift() const
   return facts_of_fluids(instance).density_follows_shift;
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool Scene::has_open_ends() const
 {
   Modify *const modify = instance->modify;
   return !modify->get_fix_by_style("^fsi/inlet$").empty() ||
       !modify->get_fix_by_style("^fsi/outlet$").empty();
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool Discretization::several_stiffnesses() const
 {
@@ -164,8 +146,6 @@ bool Discretization::several_stiffnesses() const
   return false;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double Scene::pressure(int i) const
 {
   const Atom *const atom = instance->atom;
@@ -177,14 +157,10 @@ double Scene::pressure(int i) const
   return s.pressure(atom->rho[i]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 double Scene::density_ratio(int i) const
 {
   return instance->atom->rho[i] / state[instance->atom->type[i]].rho0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double Scene::potential(int i) const
 {
@@ -198,8 +174,6 @@ double Scene::stored(int i) const
   const Atom *const atom = instance->atom;
   return atom->rmass[i] * state[atom->type[i]].energy(atom->rho[i]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool Scene::is_total_lagrangian(int i) const
 {
