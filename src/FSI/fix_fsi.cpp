@@ -131,7 +131,7 @@ Record FixFSI::record() const
   return record;
 }
 
-// the arrays that the effects need which there are now
+// arrays of the effects that are on
 void FixFSI::set_fields()
 {
   const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
@@ -380,8 +380,8 @@ void FixFSI::set_arrays(int i)
   others.give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
     error->one(FLERR,
-               "Fluid atom {} was made during a run and is not in group {} of fix {}: it "
-               "would hang in the air. Give the fix that makes it that group",
+               "Fluid atom {} was made during a run and is not in group {} of fix {}: no fix "
+               "integrates it. Give the fix that makes it that group",
                atom->tag[i], group->names[igroup], id);
 }
 

@@ -143,7 +143,7 @@ void FixFSIDt::setup(int)
   if (end < BIG) approach_end();
 }
 
-// what moves, but is not looked at
+// particles that move, but do not limit the step
 void FixFSIDt::find_outside() const
 {
   const auto outside = [&](int i, int species) {

@@ -118,7 +118,7 @@ bigint FixFSIReport::particles() const
   return all - fix_fsi->population.net;
 }
 
-// what pushed in this step; without reductions
+// this rank's impulses of this step
 void FixFSIReport::end_of_step()
 {
   const int dim = fix_fsi->dim;

@@ -200,9 +200,8 @@ void FixFSIWallMirror::setup(int)
 
 // after the first drift: walls move along, and a fluid particle nearer than the guard distance, or
 // behind the wall, is reflected. A segment acts on what has come through it in this step, not on
-// what flows behind it.
-// The ledger has velocities of the middle of a step, half a kick on, of which the kick of gravity
-// is not reflected. What that of the other forces differs by, density takes up.
+// what flows behind it. The ledger has velocities of the middle of a step, half a kick on, of which
+// the kick of gravity is not reflected. What that of the other forces differs by, density takes up.
 void FixFSIWallMirror::post_integrate()
 {
   const Phase phase(fix_fsi->profile, Profile::WALLS);

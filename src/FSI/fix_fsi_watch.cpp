@@ -106,9 +106,8 @@ void FixFSIWatch::setup(int)
   look(true);
 }
 
-// Positions of local and ghost atoms are those of the middle of the step, velocities those of
-// its start, and both can be brought back: from here a run is stopped with a state that can be
-// written.
+// Positions of local and ghost atoms are those of the middle of the step, velocities those of its
+// start, and both can be brought back: from here a run is stopped with a state that can be written.
 void FixFSIWatch::post_force(int)
 {
   if (update->ntimestep % interval == 0) look(false);

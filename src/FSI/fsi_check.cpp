@@ -279,7 +279,6 @@ void Check::thin_bodies() const
   }
 }
 
-// LAMMPS stops at positions that are not finite, too, but does not say whose: look before it does
 void Check::init()
 {
   limit_sq.assign(atom->ntypes + 1, HUGE_SQUARE);
@@ -312,7 +311,7 @@ void Check::setup()
   judge(Stop::START);
 }
 
-// before LAMMPS says of a position only that it is none
+// LAMMPS would say that a position is not finite, but not whose
 void Check::positions()
 {
   const int n = atom->nlocal;
@@ -322,11 +321,10 @@ void Check::positions()
   judge(Stop::BEFORE);
 }
 
-// Positions of local and ghost atoms are those of the middle of the step, velocities those of
-// its start, and both can be brought back. Forces are looked at in each step, what follows from
-// them every few: what the kicks between two looks add up to is finite. (Stress that is not
-// finite makes forces that are not, too; a position does not, since pairs do not see each other
-// any more.)
+// Positions of local and ghost atoms are those of the middle of the step, velocities those of its
+// start, and both can be brought back. Forces are looked at in each step, what follows from them
+// every few: what the kicks between two looks add up to is finite. (Stress that is not finite makes
+// forces that are not, too; a position does not, since pairs do not see each other any more.)
 void Check::before_kick()
 {
   look(neighbor->ago == 0 || update->ntimestep % EVERY == 0, update->dt * force->ftm2v);

@@ -283,7 +283,7 @@ bool Sight::find_face(Face &face) const
   return back > 0.0;
 }
 
-// as far as the body hides what is as far behind it as x is before it
+// in the part in which the body hides the place that is as far behind it as x is before it
 Sight::Fill Sight::fill(const Face &face) const
 {
   const Fill all = beyond(face.type, face.distance),

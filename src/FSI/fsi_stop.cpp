@@ -150,7 +150,7 @@ bool Stop::too_near(const Scene &scene, const Neighbor &body)
       (body.distance < 0.25 * (scene.dx + body.dx) || (body.around && body.distance < body.dx));
 }
 
-// of waves in what an atom type is made of, at rest
+// of waves in an atom type at rest
 double Stop::courant(const Scene &scene, int type) const
 {
   const State &s = scene.state[type];

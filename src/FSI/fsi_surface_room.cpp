@@ -149,7 +149,7 @@ void SurfaceRoom::add_costs(Costs &costs) const
   costs.bytes += room ? 2 * sizeof(double) : 0;
 }
 
-// what is new
+// of particles that are new
 void SurfaceRoom::begin()
 {
   const int nlocal = atom->nlocal, *const type = atom->type;

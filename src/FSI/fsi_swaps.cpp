@@ -56,7 +56,7 @@ void Swaps::find(const std::function<bool(int)> &is_chosen)
   }
 }
 
-// n numbers of out to a rank, at most so many from another; what has come
+// sends n numbers of out to a rank; returns those from another, at most so many
 double *Swaps::pass(int to, int n, int from, int most)
 {
   if (to == comm->me) return out.data();

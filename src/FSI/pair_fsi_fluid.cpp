@@ -874,9 +874,8 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
   }
 }
 
-// calls loop(meeting, number of reflection, mirror) for all rows of images; without extent of
-// walls they are the same in all of a step's loops, but that of rates leaves only what is within
-// reach
+// calls loop(meeting, number of reflection, mirror) for all rows of images; without extent of walls
+// they are the same in all of a step's loops, but that of rates leaves only what is within reach
 template <class Position, class Loop>
 void PairFSIFluid::for_images(const Walls &walls, Position position, Loop loop)
 {
