@@ -58,8 +58,7 @@ void ComputeFSISurfaceAtom::init()
 
 // number/density: psi_i <= threshold * psi of the bulk lattice (the paper's rule)
 // divergence: sum_j V_j x_ji.grad_i W_ij <= threshold * dim (Lee et al. 2008, J. Comput. Phys. 227,
-// 8417); it does not
-//   depend on how dense the fluid is packed
+//   8417); it does not depend on how dense the fluid is packed
 void ComputeFSISurfaceAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;

@@ -74,8 +74,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     members(new Members(lmp, *this, [this](double *n) { add_ghosts(n); })),
     keywords(members->keywords), clock(members->clock), check(members->check),
     changes(members->changes), population(members->population),
-    number_density(members->number_density), surface_room(members->surface_room),
-    others(members->others), forward(lmp, state), back(lmp, state), scalar(lmp, state),
+    number_density(members->number_density), forward(lmp, state), back(lmp, state), scalar(lmp, state),
     carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
@@ -136,7 +135,7 @@ void FixFSI::set_fields()
 {
   const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
   number_density.set_fields(fields);
-  surface_room.set_array(fields);
+  members->surface_room.set_array(fields);
   for (int d = 0; d < 3; d++)
     fields.set(std::string("velocity of shifting along ") + "xyz"[d], Fields::RESTART,
                d < dim && density_follows_shift(), shift_velocity[d]);
@@ -221,10 +220,10 @@ void FixFSI::init()
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
-  others.init();
+  members->others.init();
   members->frame.init();
   check.materials();
-  for (int i = 0; i < atom->nlocal; i++) others.give_defaults(i);
+  for (int i = 0; i < atom->nlocal; i++) members->others.give_defaults(i);
   body_forces.find(state);
   check.init();
 }
@@ -244,7 +243,7 @@ void FixFSI::find_parts()
     if (auto *p = dynamic_cast<Part *>(force->pair_match(style, 1))) parts.push_back(p);
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
-  parts.push_back(&surface_room);
+  parts.push_back(&members->surface_room);
   std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->rank() < b->rank();
   });
@@ -325,7 +324,7 @@ template <int D> void FixFSI::kick()
     if (shifts && state[type[i]].species == FLUID)
       for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
   }
-  others.turn(dt);
+  members->others.turn(dt);
 }
 
 // bring density and stress of local and ghost atoms to the time of the positions; not to advance,
@@ -377,7 +376,7 @@ void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   changes.forget();
-  others.give_defaults(i);
+  members->others.give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
     error->one(FLERR,
                "Fluid atom {} was made during a run and is not in group {} of fix {}: no fix "
@@ -394,7 +393,7 @@ void FixFSI::write_restart(FILE *fp)
   Record record = this->record();
   clock.write(record);
   if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
-  surface_room.write(record);
+  members->surface_room.write(record);
   fields.write(record);
   record.write(fp);
 }
@@ -419,7 +418,7 @@ void FixFSI::restart(char *buf)
   const Record record(lmp, "fix fsi", buf);
   const std::vector<std::string> of_kernel = {"reference of ratio"};
   fields.read(record, goes_on(record, Keywords::OF_RESTART) ? decltype(of_kernel)() : of_kernel);
-  surface_room.read(record);
+  members->surface_room.read(record);
   clock.read(record);
   if (record.has("ledger") && comm->me == 0) {
     const auto terms = record.numbers("ledger");

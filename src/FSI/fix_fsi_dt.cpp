@@ -71,7 +71,7 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "Fix fsi/dt stop cannot be combined with check: a check changes nothing");
 
   nevery = end < BIG ? 1 : interval;
-  step = sub = limit = std::vector<double>(NLIMIT, BIG);
+  limit.assign(NLIMIT, BIG);
   scalar_flag = vector_flag = 1;
   size_vector = NLIMIT + 2;
   extscalar = extvector = 0;
@@ -248,17 +248,16 @@ void FixFSIDt::find_limits()
   const bool substeps = may && (automatic || fix_fsi->substeps > 1);
   limits->find(*fix_fsi, groupbit, substeps, of_fluid, of_solid);
   limits->reduce();
-  step.assign(limits->step, limits->step + NLIMIT);
-  sub.assign(limits->sub, limits->sub + NLIMIT);
 }
 
 // the next time step, at most that much; with a given number of sub-steps the solid limits the
 // step, else the step gives the number
 void FixFSIDt::choose(double most)
 {
-  const double shortest = *std::min_element(sub.begin(), sub.end());
+  const double *const step = limits->step, *const sub = limits->sub,
+                      shortest = *std::min_element(sub, sub + NLIMIT);
   int n = fix_fsi->substeps;
-  const bool free = automatic && *std::min_element(step.begin(), step.end()) < BIG;
+  const bool free = automatic && *std::min_element(step, step + NLIMIT) < BIG;
   target = high;
   cause = MAXIMUM;
   const auto combine = [&]() {
@@ -266,7 +265,7 @@ void FixFSIDt::choose(double most)
   };
   if (automatic && !free) n = 1;    // nothing but sub-stepped solids
   combine();
-  const double *const ruled = (free ? step : limit).data();
+  const double *const ruled = free ? step : limit.data();
   for (int k = 0; k < NLIMIT; k++)
     if (ruled[k] < target) {
       target = ruled[k];
@@ -307,7 +306,7 @@ std::string FixFSIDt::name(int k) const
   std::string text = k < NLIMIT ? Limits::names[k] : "the upper bound";
   if (k == Limits::SOUND) text += fmt::format(" (atom {})", limits->culprit[0][0]);
   if (k == Limits::ACCELERATION)
-    text += fmt::format(" (atom {})", limits->culprit[step[k] > limit[k]][1]);
+    text += fmt::format(" (atom {})", limits->culprit[limits->step[k] > limit[k]][1]);
   return text;
 }
 

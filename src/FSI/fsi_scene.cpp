@@ -16,10 +16,12 @@
 #include "atom.h"
 #include "error.h"
 #include "fix.h"
+#include "force.h"
 #include "fsi_kernel.h"
 #include "fsi_part.h"
 #include "lammps.h"
 #include "modify.h"
+#include "pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -189,4 +191,23 @@ bool Scene::is_moved(int i) const
     if (modify->fix[k]->time_integrate && instance->atom->mask[i] & modify->fix[k]->groupbit)
       return true;
   return false;
+}
+
+static Facts facts_of(LAMMPS *lmp, const char *style)
+{
+  if (!lmp->force->pair) return Facts();
+  const auto *const part = dynamic_cast<const Part *>(lmp->force->pair_match(style, 1));
+  return part ? part->facts() : Facts();
+}
+
+Facts FSI::facts_of_fluids(LAMMPS *lmp)
+{
+  return facts_of(lmp, "fsi/fluid");
+}
+
+// there is one of the two (pair_fsi_solid_tl.cpp)
+Facts FSI::facts_of_solids(LAMMPS *lmp)
+{
+  const Facts facts = facts_of(lmp, "fsi/solid");
+  return facts.style ? facts : facts_of(lmp, "fsi/solid/tl");
 }
