@@ -74,8 +74,8 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     members(new Members(lmp, *this, [this](double *n) { add_ghosts(n); })),
     keywords(members->keywords), clock(members->clock), check(members->check),
     changes(members->changes), population(members->population),
-    number_density(members->number_density), forward(lmp, state), back(lmp, state), scalar(lmp, state),
-    carried(nullptr)
+    number_density(members->number_density), forward(lmp, state), back(lmp, state),
+    scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 

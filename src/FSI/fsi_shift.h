@@ -14,8 +14,8 @@
 // Particle shifting (delta-plus-SPH: Sun, Colagrossi, Marrone and Zhang 2017, Comput. Methods Appl.
 // Mech. Eng. 315, 25):
 //   delta r_i = -C c h dt sum_j V_j [1 + 0.2 (W_ij/W(dx))^4] grad_i W_ij,  |delta r_i| <= C c dt/4
-// Particles move from where they are dense to where they are not; on a lattice the sum vanishes. Sun
-// et al. have C = 2 Ma, Ma = 0.1 the largest expected speed U over c: the bound is their U/2.
+// Particles move from where they are dense to where they are not; the sum vanishes on a lattice.
+// Sun et al. have C = 2 Ma, Ma = 0.1 the largest expected speed U over c: the bound is their U/2.
 //
 // Where kernels are cut off by a free surface the sum points out of the fluid. There the part along
 // the normal n ~ sum_j V_j grad_i W_ij is taken out, and nothing is left on edges, in jets and
