@@ -21,8 +21,6 @@
 
 using namespace LAMMPS_NS;
 
-/* ---------------------------------------------------------------------- */
-
 AtomVecFSI::AtomVecFSI(LAMMPS *lmp) : AtomVec(lmp), rmass(nullptr), rho(nullptr)
 {
   molecular = Atom::ATOMIC;
@@ -52,11 +50,8 @@ AtomVecFSI::AtomVecFSI(LAMMPS *lmp) : AtomVec(lmp), rmass(nullptr), rho(nullptr)
   setup_fields();
 }
 
-/* ----------------------------------------------------------------------
-   set local copies of all grow ptrs used by this class, except defaults
-   needed in replicate when 2 atom classes exist and it calls pack_restart()
-------------------------------------------------------------------------- */
-
+// set local copies of all grow ptrs used by this class, except defaults
+// needed in replicate when 2 atom classes exist and it calls pack_restart()
 void AtomVecFSI::grow_pointers()
 {
   rmass = atom->rmass;
@@ -71,21 +66,15 @@ AtomVecFSI::~AtomVecFSI()
   if (!atom->radius_flag) atom->radius = nullptr;
 }
 
-/* ----------------------------------------------------------------------
-   zero mass and density mean "not set yet": fix fsi gives such a particle
-   the mass that makes its bulk lattice stress-free and the density of its material
-------------------------------------------------------------------------- */
-
+// zero mass and density mean "not set yet": fix fsi gives such a particle
+// the mass that makes its bulk lattice stress-free and the density of its material
 void AtomVecFSI::create_atom_post(int ilocal)
 {
   rmass[ilocal] = 0.0;
   rho[ilocal] = 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   check what AtomVec::data_atom() just unpacked
-------------------------------------------------------------------------- */
-
+// check what AtomVec::data_atom() just unpacked
 void AtomVecFSI::data_atom_post(int ilocal)
 {
   if (rho[ilocal] < 0.0)
@@ -99,10 +88,7 @@ void AtomVecFSI::data_atom_post(int ilocal)
                rmass[ilocal]);
 }
 
-/* ----------------------------------------------------------------------
-   of the first atom: a data file has none of what fixes and pair styles keep of solids
-------------------------------------------------------------------------- */
-
+// of the first atom: a data file has none of what fixes and pair styles keep of solids
 void AtomVecFSI::pack_data_pre(int ilocal)
 {
   if (ilocal > 0 || comm->me > 0) return;
@@ -114,22 +100,16 @@ void AtomVecFSI::pack_data_pre(int ilocal)
                  "rest in the shape that they have. write_restart keeps all");
 }
 
-/* ----------------------------------------------------------------------
-   assign an index to named atom property and return index
-   return -1 if name is unknown to this atom style
-------------------------------------------------------------------------- */
-
+// assign an index to named atom property and return index
+// return -1 if name is unknown to this atom style
 int AtomVecFSI::property_atom(const std::string &name)
 {
   if (name == "rho") return 0;
   return -1;
 }
 
-/* ----------------------------------------------------------------------
-   pack per-atom data into buf for ComputePropertyAtom
-   index maps to data specific to this atom style
-------------------------------------------------------------------------- */
-
+// pack per-atom data into buf for ComputePropertyAtom
+// index maps to data specific to this atom style
 void AtomVecFSI::pack_property_atom(int /*index*/, double *buf, int nvalues, int groupbit)
 {
   const int *const mask = atom->mask;

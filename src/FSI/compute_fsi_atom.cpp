@@ -18,22 +18,16 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
-#include "force.h"
 #include "fsi_number_density.h"
 #include "fsi_tensor.h"
 #include "memory.h"
-#include "modify.h"
 #include "pair_fsi_solid_tl.h"
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
-
-/* ---------------------------------------------------------------------- */
 
 ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), tensor(false), nmax(0), fix_fsi(nullptr)
@@ -56,15 +50,11 @@ ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
   size_peratom_cols = quantity.size() == 1 ? 0 : quantity.size();
 }
 
-/* ---------------------------------------------------------------------- */
-
 ComputeFSIAtom::~ComputeFSIAtom()
 {
   memory->destroy(vector_atom);
   memory->destroy(array_atom);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void ComputeFSIAtom::init()
 {
@@ -74,8 +64,6 @@ void ComputeFSIAtom::init()
       (!stress || !stress->plastic))
     error->all(FLERR, "Compute fsi/atom plastic/strain requires fix fsi/stress plastic");
 }
-
-/* ---------------------------------------------------------------------- */
 
 void ComputeFSIAtom::grow()
 {
@@ -90,8 +78,6 @@ void ComputeFSIAtom::grow()
     memory->create(array_atom, nmax, n, "fsi/atom:array_atom");
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void ComputeFSIAtom::compute_peratom()
 {
@@ -147,11 +133,8 @@ void ComputeFSIAtom::compute_peratom()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Cauchy stress sigma = -p I + S, tension positive; sigma_zz of plane strain is -p - (S_xx + S_yy),
-   of plane stress 0
-------------------------------------------------------------------------- */
-
+// Cauchy stress sigma = -p I + S, tension positive; sigma_zz of plane strain is -p - (S_xx + S_yy),
+// of plane stress 0
 void ComputeFSIAtom::find(int i, Properties &of) const
 {
   const State &state = fix_fsi->state[atom->type[i]];
@@ -183,8 +166,6 @@ void ComputeFSIAtom::find(int i, Properties &of) const
   of.mises = von_mises(of.sigma);    // a pressure changes nothing
   for (int d = 0; d < 3; d++) of.sigma[d] -= of.p;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double ComputeFSIAtom::memory_usage()
 {

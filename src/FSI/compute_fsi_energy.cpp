@@ -26,8 +26,6 @@ using namespace FSI;
 
 static constexpr int NHAVE = 4;    // kinetic, gravitational, compressive, shear
 
-/* ---------------------------------------------------------------------- */
-
 ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), fix_fsi(nullptr)
 {
@@ -39,14 +37,10 @@ ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) :
   vector = new double[size_vector];
 }
 
-/* ---------------------------------------------------------------------- */
-
 ComputeFSIEnergy::~ComputeFSIEnergy()
 {
   delete[] vector;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void ComputeFSIEnergy::init()
 {
@@ -72,10 +66,7 @@ const char *ComputeFSIEnergy::name(int k)
   return names[k];
 }
 
-/* ----------------------------------------------------------------------
-   the sum of the ledger: constant, but for the error of the time step
-------------------------------------------------------------------------- */
-
+// the sum of the ledger: constant, but for the error of the time step
 double ComputeFSIEnergy::compute_scalar()
 {
   if (invoked_vector != update->ntimestep) compute_vector();
@@ -85,10 +76,7 @@ double ComputeFSIEnergy::compute_scalar()
   return scalar;
 }
 
-/* ----------------------------------------------------------------------
-   everything at the middle of the last step, where densities and stresses are
-------------------------------------------------------------------------- */
-
+// everything at the middle of the last step, where densities and stresses are
 void ComputeFSIEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;

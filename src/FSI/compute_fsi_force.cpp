@@ -25,8 +25,6 @@
 
 using namespace LAMMPS_NS;
 
-/* ---------------------------------------------------------------------- */
-
 ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), sum{}, origin{}, reduced(false), fix_fsi(nullptr)
 {
@@ -39,14 +37,10 @@ ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) :
   vector = new double[size_vector];
 }
 
-/* ---------------------------------------------------------------------- */
-
 ComputeFSIForce::~ComputeFSIForce()
 {
   delete[] vector;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void ComputeFSIForce::init()
 {
@@ -55,19 +49,14 @@ void ComputeFSIForce::init()
     error->all(FLERR, "Compute fsi/force requires pair_style fsi/fluid");
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool ComputeFSIForce::counts(int i) const
 {
   const int species = fix_fsi->state[atom->type[i]].species;
   return (atom->mask[i] & groupbit) && (species == FSI::SOLID || species == FSI::RIGID);
 }
 
-/* ----------------------------------------------------------------------
-   a point inside the body: where its first particle is; later its center of mass when it was last
-   asked for
-------------------------------------------------------------------------- */
-
+// a point inside the body: where its first particle is; later its center of mass when it was last
+// asked for
 void ComputeFSIForce::find_body()
 {
   tagint mine = MAXTAGINT, first;
@@ -82,12 +71,9 @@ void ComputeFSIForce::find_body()
   MPI_Allreduce(place, origin, 3, MPI_DOUBLE, MPI_SUM, world);
 }
 
-/* ----------------------------------------------------------------------
-   Forces on ghosts count where they are, before they are sent home: the sum is the same. Without
-   newton ghosts get none. Lever arms are those of the nearest periodic image, from a point inside
-   the body.
-------------------------------------------------------------------------- */
-
+// Forces on ghosts count where they are, before they are sent home: the sum is the same. Without
+// newton ghosts get none. Lever arms are those of the nearest periodic image, from a point inside
+// the body.
 void ComputeFSIForce::add(int i, const double *f, double sign, int where)
 {
   double r[3];
@@ -123,8 +109,6 @@ void ComputeFSIForce::tally_viscosity(const double *forces, int row)
   for (int i = 0; i < nall; i++)
     if (counts(i)) add(i, forces + (size_t) i * row, 1.0, VISCOUS);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void ComputeFSIForce::compute_vector()
 {

@@ -33,8 +33,6 @@ using namespace FSI;
 
 static constexpr double MOST = 1.0e7;    // points of one place
 
-/* ---------------------------------------------------------------------- */
-
 ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1), fix_fsi(nullptr)
 {
@@ -108,19 +106,14 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 ComputeFSIProbe::~ComputeFSIProbe()
 {
   if (vector_flag) memory->destroy(vector);
   if (array_flag) memory->destroy(array);
 }
 
-/* ----------------------------------------------------------------------
-   points: half a spacing apart on a patch, in the middle of their cells; a quarter along a line,
-   with both ends
-------------------------------------------------------------------------- */
-
+// points: half a spacing apart on a patch, in the middle of their cells; a quarter along a line,
+// with both ends
 void ComputeFSIProbe::init()
 {
   fix_fsi = FixFSI::find(lmp, "Compute fsi/probe");
@@ -164,8 +157,6 @@ void ComputeFSIProbe::init()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 double ComputeFSIProbe::Place::along(int d, const double *x) const
 {
   const double *const e = step[d];
@@ -173,11 +164,8 @@ double ComputeFSIProbe::Place::along(int d, const double *x) const
       (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
 }
 
-/* ----------------------------------------------------------------------
-   particles that may come within the kernel's support of a place before the neighbor lists are
-   built anew
-------------------------------------------------------------------------- */
-
+// particles that may come within the kernel's support of a place before the neighbor lists are
+// built anew
 void ComputeFSIProbe::find_near()
 {
   listed = neighbor->lastcall;
@@ -212,10 +200,7 @@ void ComputeFSIProbe::find_near()
   }
 }
 
-/* ----------------------------------------------------------------------
-   points of the grid within the kernel's support of x: from lo to hi on each axis
-------------------------------------------------------------------------- */
-
+// points of the grid within the kernel's support of x: from lo to hi on each axis
 void ComputeFSIProbe::Place::range(const double *x, double cut, int *lo, int *hi) const
 {
   for (int d = 0; d < 3; d++) {
@@ -228,10 +213,7 @@ void ComputeFSIProbe::Place::range(const double *x, double cut, int *lo, int *hi
   }
 }
 
-/* ----------------------------------------------------------------------
-   mirror walls near each point, as bits; points on a wall are put where it is: not behind it
-------------------------------------------------------------------------- */
-
+// mirror walls near each point, as bits; points on a wall are put where it is: not behind it
 std::vector<int> ComputeFSIProbe::walls_near(const Walls &walls, std::vector<double> &at) const
 {
   std::vector<int> mask(at.size() / 3, 0);
@@ -245,11 +227,8 @@ std::vector<int> ComputeFSIProbe::walls_near(const Walls &walls, std::vector<dou
   return mask;
 }
 
-/* ----------------------------------------------------------------------
-   volume of particle i at x. Behind a mirror wall a solid is not there, but its image is; walls of
-   particles have no images, and are there
-------------------------------------------------------------------------- */
-
+// volume of particle i at x. Behind a mirror wall a solid is not there, but its image is; walls of
+// particles have no images, and are there
 double ComputeFSIProbe::volume_at(const double *x, int i, const Walls &walls) const
 {
   double vol = atom->rmass[i] / atom->rho[i];
@@ -258,10 +237,7 @@ double ComputeFSIProbe::volume_at(const double *x, int i, const Walls &walls) co
   return vol;
 }
 
-/* ----------------------------------------------------------------------
-   adds particles with this kernel near each place to its sums; at: points; mask: walls near them
-------------------------------------------------------------------------- */
-
+// adds particles with this kernel near each place to its sums; at: points; mask: walls near them
 template <class K>
 void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &walls,
                                 const std::vector<double> &at, const std::vector<int> &mask)
@@ -331,11 +307,8 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
     }
 }
 
-/* ----------------------------------------------------------------------
-   sums of V W and of V W times each quantity over fluid particles and their images in mirror walls;
-   along lines of V W over fluids and over solids
-------------------------------------------------------------------------- */
-
+// sums of V W and of V W times each quantity over fluid particles and their images in mirror walls;
+// along lines of V W over fluids and over solids
 void ComputeFSIProbe::sum_up()
 {
   fix_fsi = FixFSI::ready(lmp, "Compute fsi/probe");
@@ -358,11 +331,8 @@ void ComputeFSIProbe::sum_up()
   MPI_Allreduce(sums.data(), all.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, world);
 }
 
-/* ----------------------------------------------------------------------
-   mean over the points of a place of quantity k; a point without fluid within the kernel's support
-   counts as 0
-------------------------------------------------------------------------- */
-
+// mean over the points of a place of quantity k; a point without fluid within the kernel's support
+// counts as 0
 double ComputeFSIProbe::field(const Place &place, int k) const
 {
   double mean = 0.0;
@@ -376,11 +346,8 @@ double ComputeFSIProbe::field(const Place &place, int k) const
   return mean / place.size();
 }
 
-/* ----------------------------------------------------------------------
-   Water is where fluid fills more than half of what solids leave: F > (1 - S)/2. The level is where
-   that ends last, seen from the line's start; wet is the length over which it holds.
-------------------------------------------------------------------------- */
-
+// Water is where fluid fills more than half of what solids leave: F > (1 - S)/2. The level is where
+// that ends last, seen from the line's start; wet is the length over which it holds.
 double ComputeFSIProbe::level(const Place &place, bool wet) const
 {
   const auto excess = [&](int m) {
@@ -407,8 +374,6 @@ double ComputeFSIProbe::level(const Place &place, bool wet) const
   return (wet ? length : top) * std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void ComputeFSIProbe::evaluate(double *result)
 {
   sum_up();
@@ -416,8 +381,6 @@ void ComputeFSIProbe::evaluate(double *result)
     for (size_t k = 0; k < quantity.size(); k++)
       *result++ = place.line ? level(place, quantity[k] == WET) : field(place, k);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double ComputeFSIProbe::compute_scalar()
 {
@@ -437,8 +400,6 @@ void ComputeFSIProbe::compute_array()
   invoked_array = update->ntimestep;
   evaluate(array[0]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double ComputeFSIProbe::memory_usage()
 {

@@ -29,8 +29,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 ComputeFSISurfaceAtom::ComputeFSISurfaceAtom(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), nmax(0), fix_fsi(nullptr)
 {
@@ -46,14 +44,10 @@ ComputeFSISurfaceAtom::ComputeFSISurfaceAtom(LAMMPS *lmp, int narg, char **arg) 
   size_peratom_cols = 0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 ComputeFSISurfaceAtom::~ComputeFSISurfaceAtom()
 {
   memory->destroy(vector_atom);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void ComputeFSISurfaceAtom::init()
 {
@@ -62,13 +56,9 @@ void ComputeFSISurfaceAtom::init()
     error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
 }
 
-/* ----------------------------------------------------------------------
-   number/density: psi_i <= threshold * psi of the bulk lattice (the paper's rule)
-   divergence: sum_j V_j x_ji.grad_i W_ij <= threshold * dim (Lee et al. 2008, J. Comput. Phys. 227,
-   8417); it does not
-     depend on how dense the fluid is packed
-------------------------------------------------------------------------- */
-
+// number/density: psi_i <= threshold * psi of the bulk lattice (the paper's rule)
+// divergence: sum_j V_j x_ji.grad_i W_ij <= threshold * dim (Lee et al. 2008, J. Comput. Phys. 227,
+//   8417); it does not depend on how dense the fluid is packed
 void ComputeFSISurfaceAtom::compute_peratom()
 {
   invoked_peratom = update->ntimestep;
@@ -97,8 +87,6 @@ void ComputeFSISurfaceAtom::compute_peratom()
         (mask[i] & groupbit) && fix_fsi->state[type[i]].species == FLUID && sum[i] <= limit ? 1.0
                                                                                             : 0.0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double ComputeFSISurfaceAtom::memory_usage()
 {

@@ -49,8 +49,6 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 struct FixFSI::Members {
   Keywords keywords;
   Clock clock;
@@ -76,9 +74,8 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     members(new Members(lmp, *this, [this](double *n) { add_ghosts(n); })),
     keywords(members->keywords), clock(members->clock), check(members->check),
     changes(members->changes), population(members->population),
-    number_density(members->number_density), surface_room(members->surface_room),
-    others(members->others), forward(lmp, state), back(lmp, state), scalar(lmp, state),
-    carried(nullptr)
+    number_density(members->number_density), forward(lmp, state), back(lmp, state),
+    scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -133,15 +130,12 @@ Record FixFSI::record() const
   return record;
 }
 
-/* ----------------------------------------------------------------------
-   the arrays that the effects need which there are now
-------------------------------------------------------------------------- */
-
+// arrays of the effects that are on
 void FixFSI::set_fields()
 {
   const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
   number_density.set_fields(fields);
-  surface_room.set_array(fields);
+  members->surface_room.set_array(fields);
   for (int d = 0; d < 3; d++)
     fields.set(std::string("velocity of shifting along ") + "xyz"[d], Fields::RESTART,
                d < dim && density_follows_shift(), shift_velocity[d]);
@@ -226,10 +220,10 @@ void FixFSI::init()
   // pair forces and density rates need the velocities of ghosts
   comm->ghost_velocity = 1;
 
-  others.init();
+  members->others.init();
   members->frame.init();
   check.materials();
-  for (int i = 0; i < atom->nlocal; i++) others.give_defaults(i);
+  for (int i = 0; i < atom->nlocal; i++) members->others.give_defaults(i);
   body_forces.find(state);
   check.init();
 }
@@ -249,19 +243,16 @@ void FixFSI::find_parts()
     if (auto *p = dynamic_cast<Part *>(force->pair_match(style, 1))) parts.push_back(p);
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
-  parts.push_back(&surface_room);
+  parts.push_back(&members->surface_room);
   std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->rank() < b->rank();
   });
 }
 
-/* ----------------------------------------------------------------------
-   A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must
-   keep their order, which is that of atoms and neighbour lists. So the first step of a run, and
-   the one after a restart was written, do the same: wrap positions, rebuild, and put the atoms
-   of each rank in an order that depends on nothing but where they are and their IDs.
-------------------------------------------------------------------------- */
-
+// A run that goes on from a restart file must be the uninterrupted run bit for bit, so sums must
+// keep their order, which is that of atoms and neighbour lists. So the first step of a run, and
+// the one after a restart was written, do the same: wrap positions, rebuild, and put the atoms
+// of each rank in an order that depends on nothing but where they are and their IDs.
 bool FixFSI::fresh_start() const
 {
   const bigint before = update->ntimestep - 1;
@@ -282,10 +273,7 @@ void FixFSI::pre_exchange()
   sort_by_place(atom, dx);
 }
 
-/* ----------------------------------------------------------------------
-   paper eq. 15: drift to the middle of the step
-------------------------------------------------------------------------- */
-
+// paper eq. 15: drift to the middle of the step
 void FixFSI::initial_integrate(int)
 {
   if (update->ntimestep - 1 == update->firststep) changes.check_pre_no();
@@ -308,10 +296,7 @@ template <int D> void FixFSI::drift()
       for (int d = 0; d < D; d++) x[i][d] += dth * v[i][d];
 }
 
-/* ----------------------------------------------------------------------
-   paper eqs. 17 and 18: kick, and drift to the end of the step
-------------------------------------------------------------------------- */
-
+// paper eqs. 17 and 18: kick, and drift to the end of the step
 void FixFSI::final_integrate()
 {
   for (auto *p : parts) p->prescribe();
@@ -339,14 +324,11 @@ template <int D> void FixFSI::kick()
     if (shifts && state[type[i]].species == FLUID)
       for (int d = 0; d < 2 * D; d++) (d < D ? x[i][d] : v[i][d - D]) += shift[i][d];
   }
-  others.turn(dt);
+  members->others.turn(dt);
 }
 
-/* ----------------------------------------------------------------------
-   bring density and stress of local and ghost atoms to the time of the positions; not to advance,
-   in setup: a function of the state only
-------------------------------------------------------------------------- */
-
+// bring density and stress of local and ghost atoms to the time of the positions; not to advance,
+// in setup: a function of the state only
 void FixFSI::update_state(bool advance)
 {
   fields.grow();
@@ -394,19 +376,16 @@ void FixFSI::set_arrays(int i)
 {
   fields.begin(i);
   changes.forget();
-  others.give_defaults(i);
+  members->others.give_defaults(i);
   if (update->whichflag == 1 && state[atom->type[i]].species == FLUID && !is_moved(i))
     error->one(FLERR,
-               "Fluid atom {} was made during a run and is not in group {} of fix {}: it "
-               "would hang in the air. Give the fix that makes it that group",
+               "Fluid atom {} was made during a run and is not in group {} of fix {}: no fix "
+               "integrates it. Give the fix that makes it that group",
                atom->tag[i], group->names[igroup], id);
 }
 
-/* ----------------------------------------------------------------------
-   Restart files: the command, the clock, what the ledger's terms have taken; per atom the
-   reference of density mode ratio.
-------------------------------------------------------------------------- */
-
+// Restart files: the command, the clock, what the ledger's terms have taken; per atom the
+// reference of density mode ratio.
 void FixFSI::write_restart(FILE *fp)
 {
   double all[NTERM];
@@ -414,7 +393,7 @@ void FixFSI::write_restart(FILE *fp)
   Record record = this->record();
   clock.write(record);
   if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
-  surface_room.write(record);
+  members->surface_room.write(record);
   fields.write(record);
   record.write(fp);
 }
@@ -439,7 +418,7 @@ void FixFSI::restart(char *buf)
   const Record record(lmp, "fix fsi", buf);
   const std::vector<std::string> of_kernel = {"reference of ratio"};
   fields.read(record, goes_on(record, Keywords::OF_RESTART) ? decltype(of_kernel)() : of_kernel);
-  surface_room.read(record);
+  members->surface_room.read(record);
   clock.read(record);
   if (record.has("ledger") && comm->me == 0) {
     const auto terms = record.numbers("ledger");

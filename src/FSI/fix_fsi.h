@@ -34,10 +34,8 @@ namespace FSI {
   class Clock;
   class Keywords;
   class NumberDensity;
-  class Others;
   class Population;
   class Record;
-  class SurfaceRoom;
 }    // namespace FSI
 
 // The centre of the package: sets the scene (spacing, kernel), integrates in time (position Verlet)
@@ -80,7 +78,6 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::Changes &changes;    // since the last run
   FSI::Population &population;
   FSI::NumberDensity &number_density;
-  FSI::SurfaceRoom &surface_room;
   void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
   void send_to_ghosts(double *n);
 
@@ -90,7 +87,6 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   double hdx;                           // h over dx
   std::vector<double> given_spacing;    // per type; 0: dx
 
-  FSI::Others &others;    // of no material; masses and densities of new ones
   void find_parts();
   FSI::Record record() const;    // of the command, for the next one
   bool goes_on(const FSI::Record &, const std::string &when);

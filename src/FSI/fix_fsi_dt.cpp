@@ -32,7 +32,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -44,8 +43,6 @@ enum Cause { MAXIMUM = NLIMIT, GROWTH };      // beyond the limits
 static constexpr double ROUNDING = 1.0e-9;    // of the time left, in steps
 static constexpr double PRINT =
     0.95;    // causes whose limits differ by less than this are not worth a line each
-
-/* ---------------------------------------------------------------------- */
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), fix_fsi(nullptr), keywords(lmp, "fix fsi/dt"), cut(false),
@@ -74,7 +71,7 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "Fix fsi/dt stop cannot be combined with check: a check changes nothing");
 
   nevery = end < BIG ? 1 : interval;
-  step = sub = limit = std::vector<double>(NLIMIT, BIG);
+  limit.assign(NLIMIT, BIG);
   scalar_flag = vector_flag = 1;
   size_vector = NLIMIT + 2;
   extscalar = extvector = 0;
@@ -84,8 +81,6 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
 }
 
 FixFSIDt::~FixFSIDt() = default;
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIDt::init()
 {
@@ -129,12 +124,9 @@ void FixFSIDt::init()
   }
 }
 
-/* ----------------------------------------------------------------------
-   The first run, or one for which the script gave another time step, begins with the limits->
-   Other runs go on with what was chosen before: two runs are one, and a restarted run is the
-   uninterrupted one.
-------------------------------------------------------------------------- */
-
+// The first run, or one for which the script gave another time step, begins with the limits.
+// Other runs go on with what was chosen before: two runs are one, and a restarted run is the
+// uninterrupted one.
 void FixFSIDt::setup(int)
 {
   const bool go_on = restored || (dt > 0.0 && update->dt == dt);
@@ -151,10 +143,7 @@ void FixFSIDt::setup(int)
   if (end < BIG) approach_end();
 }
 
-/* ----------------------------------------------------------------------
-   what moves, but is not looked at
-------------------------------------------------------------------------- */
-
+// particles that move, but do not limit the step
 void FixFSIDt::find_outside() const
 {
   const auto outside = [&](int i, int species) {
@@ -175,8 +164,6 @@ void FixFSIDt::find_outside() const
   if (comm->me == 0) error->warning(FLERR, "{}: they do not limit the time step", text);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIDt::end_of_step()
 {
   if (update->ntimestep % interval == 0) {
@@ -189,12 +176,9 @@ void FixFSIDt::end_of_step()
   if (end < BIG) approach_end();
 }
 
-/* ----------------------------------------------------------------------
-   What is left of the time is taken in one step, or, to have no tiny one, in two equal ones.
-   LAMMPS is told which step will be the last, by and by more exactly: for the time that remains
-   and for the last thermo output. Then the run is cut as by fix halt.
-------------------------------------------------------------------------- */
-
+// What is left of the time is taken in one step, or, to have no tiny one, in two equal ones.
+// LAMMPS is told which step will be the last, by and by more exactly: for the time that remains
+// and for the last thermo output. Then the run is cut as by fix halt.
 void FixFSIDt::approach_end()
 {
   const bigint now = update->ntimestep, last = update->firststep + update->nsteps;
@@ -224,27 +208,21 @@ void FixFSIDt::approach_end()
   modify->addstep_compute(output->next_thermo);
 }
 
-/* ----------------------------------------------------------------------
-   another run may follow
-------------------------------------------------------------------------- */
-
+// another run may follow
 void FixFSIDt::post_run()
 {
   if (cut) timer->reset_timeout();
   cut = false;
 }
 
-/* ----------------------------------------------------------------------
-   A new time step begins with a step, between two of position Verlet, each of which is second
-   order on its own: positions and velocities need no more care. What lives at the middle of
-   steps, the density of continuity and the stress of fsi/solid, goes from t^n - dt_old/2 to t^n
-   + dt_new/2 with the rate of t^n: by the mean of the two, or every change would add an error of
-   first order, (dt_new - dt_old)/2 times the rate. Fix fsi takes the difference from dt_offset.
-   (The rates' positions, dt/2 v before those in atom->x, are of the new step, as they should.)
-   Other styles hear of it as from fix dt/reset; the clock and the dumps by time count from the
-   end of the last step.
-------------------------------------------------------------------------- */
-
+// A new time step begins with a step, between two of position Verlet, each of which is second
+// order on its own: positions and velocities need no more care. What lives at the middle of
+// steps, the density of continuity and the stress of fsi/solid, goes from t^n - dt_old/2 to t^n
+// + dt_new/2 with the rate of t^n: by the mean of the two, or every change would add an error of
+// first order, (dt_new - dt_old)/2 times the rate. Fix fsi takes the difference from dt_offset.
+// (The rates' positions, dt/2 v before those in atom->x, are of the new step, as they should.)
+// Other styles hear of it as from fix dt/reset; the clock and the dumps by time count from the
+// end of the last step.
 void FixFSIDt::start_step()
 {
   if (check) return;
@@ -263,30 +241,23 @@ void FixFSIDt::start_step()
   dt = update->dt;
 }
 
-/* ----------------------------------------------------------------------
-   the limits (fsi_limits->cpp) with the factors
-------------------------------------------------------------------------- */
-
+// the limits (fsi_limits.cpp) with the factors
 void FixFSIDt::find_limits()
 {
   const bool may = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   const bool substeps = may && (automatic || fix_fsi->substeps > 1);
   limits->find(*fix_fsi, groupbit, substeps, of_fluid, of_solid);
   limits->reduce();
-  step.assign(limits->step, limits->step + NLIMIT);
-  sub.assign(limits->sub, limits->sub + NLIMIT);
 }
 
-/* ----------------------------------------------------------------------
-   the next time step, at most that much; with a given number of sub-steps the solid limits the
-   step, else the step gives the number
-------------------------------------------------------------------------- */
-
+// the next time step, at most that much; with a given number of sub-steps the solid limits the
+// step, else the step gives the number
 void FixFSIDt::choose(double most)
 {
-  const double shortest = *std::min_element(sub.begin(), sub.end());
+  const double *const step = limits->step, *const sub = limits->sub,
+                      shortest = *std::min_element(sub, sub + NLIMIT);
   int n = fix_fsi->substeps;
-  const bool free = automatic && *std::min_element(step.begin(), step.end()) < BIG;
+  const bool free = automatic && *std::min_element(step, step + NLIMIT) < BIG;
   target = high;
   cause = MAXIMUM;
   const auto combine = [&]() {
@@ -294,7 +265,7 @@ void FixFSIDt::choose(double most)
   };
   if (automatic && !free) n = 1;    // nothing but sub-stepped solids
   combine();
-  const double *const ruled = (free ? step : limit).data();
+  const double *const ruled = free ? step : limit.data();
   for (int k = 0; k < NLIMIT; k++)
     if (ruled[k] < target) {
       target = ruled[k];
@@ -330,21 +301,16 @@ void FixFSIDt::choose(double most)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::string FixFSIDt::name(int k) const
 {
   std::string text = k < NLIMIT ? Limits::names[k] : "the upper bound";
   if (k == Limits::SOUND) text += fmt::format(" (atom {})", limits->culprit[0][0]);
   if (k == Limits::ACCELERATION)
-    text += fmt::format(" (atom {})", limits->culprit[step[k] > limit[k]][1]);
+    text += fmt::format(" (atom {})", limits->culprit[limits->step[k] > limit[k]][1]);
   return text;
 }
 
-/* ----------------------------------------------------------------------
-   check: the time step is not touched
-------------------------------------------------------------------------- */
-
+// check: the time step is not touched
 void FixFSIDt::report()
 {
   choose(BIG);
@@ -358,19 +324,13 @@ void FixFSIDt::report()
   if (comm->me == 0) error->warning(FLERR, text);
 }
 
-/* ----------------------------------------------------------------------
-   time step that the next step takes
-------------------------------------------------------------------------- */
-
+// time step that the next step takes
 double FixFSIDt::compute_scalar()
 {
   return next_dt > 0.0 ? next_dt : update->dt;
 }
 
-/* ----------------------------------------------------------------------
-   the limits; number of what sets the time step, from 1; sub-steps
-------------------------------------------------------------------------- */
-
+// the limits; number of what sets the time step, from 1; sub-steps
 double FixFSIDt::compute_vector(int k)
 {
   if (k < NLIMIT) return limit[k];
@@ -379,8 +339,6 @@ double FixFSIDt::compute_vector(int k)
   return next_substeps ? next_substeps : fix_fsi && scene ? scene->substeps : 0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIDt::write_restart(FILE *fp)
 {
   Record record(lmp, "fix fsi/dt");
@@ -388,8 +346,6 @@ void FixFSIDt::write_restart(FILE *fp)
   record.add("steps", std::vector<double>{dt, next_dt, (double) next_substeps, (double) ruling});
   record.write(fp);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIDt::restart(char *buf)
 {
@@ -403,12 +359,10 @@ void FixFSIDt::restart(char *buf)
   restored = dt > 0.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 Facts FixFSIDt::facts() const
 {
   Facts facts;
-  facts.chooses_step = chooses();
+  facts.chooses_step = check == NO_CHECK;
   facts.chooses_substeps = automatic;
   return facts;
 }

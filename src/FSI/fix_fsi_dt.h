@@ -51,7 +51,6 @@ class FixFSIDt : public Fix, public FSI::Part {
   void start_step() override;
   FSI::Facts facts() const override;
   void find_idle(const Census &, const Idle &) const override;
-  bool chooses() const { return check == NO_CHECK; }
   bool chooses_substeps() const { return automatic; }
 
  private:
@@ -66,11 +65,9 @@ class FixFSIDt : public Fix, public FSI::Part {
   int automatic;    // number of sub-steps
   int check;
 
-  const std::unique_ptr<FSI::Limits> limits;
-  // of each cause: limits of the step, and of a sub-step of what takes sub-steps, with the factors;
-  // both together
-  std::vector<double> step, sub, limit;
-  double target;         // smallest of these and of the bound
+  const std::unique_ptr<FSI::Limits> limits;    // with the factors
+  std::vector<double> limit;                    // of each cause: of step and sub-steps together
+  double target;                                // smallest of these and of the bound
   int cause, ruling;     // what sets the next step; last one that was printed
   double dt, next_dt;    // of the last step taken, 0 = none; from the next step on
   int next_substeps;

@@ -28,10 +28,7 @@ using namespace FSI;
 
 static constexpr char ID[] = "FSI_HISTORY";
 
-/* ----------------------------------------------------------------------
-   arguments: columns, name in one word
-------------------------------------------------------------------------- */
-
+// arguments: columns, name in one word
 static std::string spaced(std::string word)
 {
   std::replace(word.begin(), word.end(), '_', ' ');
@@ -53,8 +50,6 @@ FixFSIHistory::~FixFSIHistory()
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIHistory *FixFSIHistory::keep(LAMMPS *lmp, std::string_view name, int columns)
 {
   Modify *const modify = lmp->modify;
@@ -72,8 +67,6 @@ FixFSIHistory *FixFSIHistory::keep(LAMMPS *lmp, std::string_view name, int colum
   return dynamic_cast<FixFSIHistory *>(
       modify->add_fix(fmt::format("{} all FSI_HISTORY {} {}", ID, columns, word)));
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIHistory::write_restart(FILE *fp)
 {

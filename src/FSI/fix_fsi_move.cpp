@@ -25,21 +25,16 @@
 #include "fsi_value.h"
 #include "lattice.h"
 #include "math_const.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-/* ----------------------------------------------------------------------
-   the words of the command, one after the other
-------------------------------------------------------------------------- */
-
+// the words of the command, one after the other
 class FixFSIMove::Words : protected Pointers {
  public:
   Words(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp), word(arg, arg + narg), at(0)
@@ -88,8 +83,6 @@ class FixFSIMove::Words : protected Pointers {
   size_t at;
 };
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), driven{},
     given(new Values(lmp, "fix fsi/move", 2 * VELOCITY)), evaluated(-1), origin(now()),
@@ -107,8 +100,6 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
   register_fields();
   for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], original[i]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIMove::read_motion(Words &words)
 {
@@ -166,8 +157,6 @@ void FixFSIMove::read_motion(Words &words)
         words.motion);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIMove::read_units(Words &words)
 {
   bool lattice = motion != VARIABLE;
@@ -200,14 +189,10 @@ bool FixFSIMove::of_atom(int k) const
   return given->source(k) == Values::ATOM || given->source(VELOCITY + k) == Values::ATOM;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double FixFSIMove::now() const
 {
   return FSI::Clock::now(update);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIMove::init()
 {
@@ -225,10 +210,7 @@ void FixFSIMove::init()
   given->find();
 }
 
-/* ----------------------------------------------------------------------
-   Nothing holds the particles of a wall together: forces would take each its own way
-------------------------------------------------------------------------- */
-
+// Nothing holds the particles of a wall together: forces would take each its own way
 void FixFSIMove::refuse_free_walls(const FixFSI *fix_fsi) const
 {
   for (int k = 0; k < domain->dimension; k++) {
@@ -243,10 +225,7 @@ void FixFSIMove::refuse_free_walls(const FixFSI *fix_fsi) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   velocities that the first forces feel
-------------------------------------------------------------------------- */
-
+// velocities that the first forces feel
 void FixFSIMove::setup_pre_exchange()
 {
   if (!begun) origin = now();    // the clock of a restart file is right from init() on
@@ -265,10 +244,7 @@ void FixFSIMove::initial_integrate(int)
   compare_velocities(before);
 }
 
-/* ----------------------------------------------------------------------
-   Fluid feels a wall's velocity, and would not know of another one by which its place changes
-------------------------------------------------------------------------- */
-
+// Fluid feels a wall's velocity, and would not know of another one by which its place changes
 // of equal-style variables; before: at the start of the step
 void FixFSIMove::compare_velocities(const double *before) const
 {
@@ -300,10 +276,7 @@ void FixFSIMove::compare_velocity(int k, double moved, double dt, double v, doub
   error->one(FLERR, text);
 }
 
-/* ----------------------------------------------------------------------
-   where a particle that started there is after the time t, and how fast
-------------------------------------------------------------------------- */
-
+// where a particle that started there is after the time t, and how fast
 void FixFSIMove::follow(const double *from, double t, double *x, double *v) const
 {
   const double c = std::cos(omega * t), s = std::sin(omega * t);
@@ -329,8 +302,6 @@ void FixFSIMove::follow(const double *from, double t, double *x, double *v) cons
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool FixFSIMove::velocity_at_end(int i, double *v) const
 {
   double x[3];
@@ -342,11 +313,8 @@ bool FixFSIMove::velocity_at_end(int i, double *v) const
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   In a step: positions to its middle, where forces are; velocities and positions to its end. What
-   is free goes with position Verlet, as fix fsi has it.
-------------------------------------------------------------------------- */
-
+// In a step: positions to its middle, where forces are; velocities and positions to its end. What
+// is free goes with position Verlet, as fix fsi has it.
 void FixFSIMove::move(When when)
 {
   const double dt = update->dt, back = when == MIDDLE ? 0.5 * dt : 0.0, t = now() - origin - back;
@@ -388,14 +356,10 @@ void FixFSIMove::move(When when)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 double FixFSIMove::memory_usage()
 {
   return FixFields::memory_usage() + given->memory_usage();
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::string FixFSIMove::text() const
 {
@@ -436,10 +400,7 @@ void FixFSIMove::restart(char *buf)
   fields.read(record, {"place before the motion"});
 }
 
-/* ----------------------------------------------------------------------
-   a particle that was made in a run: where it was at the start of the motion
-------------------------------------------------------------------------- */
-
+// a particle that was made in a run: where it was at the start of the motion
 void FixFSIMove::set_arrays(int i)
 {
   domain->unmap(atom->x[i], atom->image[i], original[i]);

@@ -48,8 +48,6 @@ static std::string word(const std::string &text)
   return w;
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), profile(new Profile()), fix_fsi(nullptr), energy(nullptr), fp(nullptr),
     first_step(0), natoms(0), first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{},
@@ -77,15 +75,11 @@ FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
   dynamic_group_allow = 1;
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIReport::~FixFSIReport()
 {
   if (fp) fclose(fp);
   for (auto &fix : modify->get_fix_by_style("^fsi$")) static_cast<FixFSI *>(fix)->profile = nullptr;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIReport::init()
 {
@@ -96,10 +90,7 @@ void FixFSIReport::init()
   energy = computes.empty() ? nullptr : dynamic_cast<ComputeFSIEnergy *>(computes[0]);
 }
 
-/* ----------------------------------------------------------------------
-   where a run starts; one with "pre no" has no setup and starts where the one before ended
-------------------------------------------------------------------------- */
-
+// where a run starts; one with "pre no" has no setup and starts where the one before ended
 void FixFSIReport::begin()
 {
   first_step = update->ntimestep;
@@ -127,10 +118,7 @@ bigint FixFSIReport::particles() const
   return all - fix_fsi->population.net;
 }
 
-/* ----------------------------------------------------------------------
-   what pushed in this step; without reductions
-------------------------------------------------------------------------- */
-
+// this rank's impulses of this step
 void FixFSIReport::end_of_step()
 {
   const int dim = fix_fsi->dim;
@@ -154,8 +142,6 @@ void FixFSIReport::end_of_step()
   for (int d = 0; d < dim; d++) impulse[HELD][d] -= dtf * sum[d];
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIReport::Vector FixFSIReport::momentum_of_moving(double *scale) const
 {
   double mine[4] = {}, all[4];
@@ -170,10 +156,7 @@ FixFSIReport::Vector FixFSIReport::momentum_of_moving(double *scale) const
   return {all[0], all[1], all[2]};
 }
 
-/* ----------------------------------------------------------------------
-   what moves gains what gravity, walls and held particles give it, and nothing else
-------------------------------------------------------------------------- */
-
+// what moves gains what gravity, walls and held particles give it, and nothing else
 FixFSIReport::Balance FixFSIReport::balance() const
 {
   Balance b;
@@ -192,10 +175,7 @@ FixFSIReport::Balance FixFSIReport::balance() const
   return b;
 }
 
-/* ----------------------------------------------------------------------
-   momentum unaccounted for, so far in this run
-------------------------------------------------------------------------- */
-
+// momentum unaccounted for, so far in this run
 double FixFSIReport::compute_vector(int k)
 {
   // before the first run, or with a new fix fsi
@@ -205,10 +185,7 @@ double FixFSIReport::compute_vector(int k)
   return output[k];
 }
 
-/* ----------------------------------------------------------------------
-   the report
-------------------------------------------------------------------------- */
-
+// the report
 void FixFSIReport::post_run()
 {
   if (update->whichflag != 1 || update->ntimestep == first_step) return;
@@ -258,10 +235,7 @@ template <class T> void FixFSIReport::enter_line(const std::string &name, const 
     lines += fmt::format("FSI report {} {}\n", name, value);
 }
 
-/* ----------------------------------------------------------------------
-   parts that the package times itself; of LAMMPS' own those that hold nothing of ours
-------------------------------------------------------------------------- */
-
+// parts that the package times itself; of LAMMPS' own those that hold nothing of ours
 enum { NEIGH = Profile::NPART, OUTPUT, REST, NROW };
 
 std::string FixFSIReport::time_table(double loop)
@@ -307,10 +281,7 @@ std::string FixFSIReport::time_table(double loop)
   return text + what_to_change(loop, sum, busiest);
 }
 
-/* ----------------------------------------------------------------------
-   Of what took more than its usual share of the time, the dearest first: what a script can change
-------------------------------------------------------------------------- */
-
+// Of what took more than its usual share of the time, the dearest first: what a script can change
 std::string FixFSIReport::what_to_change(double loop, const double *mean, double busiest)
 {
   if (loop <= 0.0) return "";
@@ -363,8 +334,6 @@ std::string FixFSIReport::what_to_change(double loop, const double *mean, double
   return text;
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::string FixFSIReport::momentum_table(bool lost)
 {
   const auto b = balance();
@@ -398,8 +367,6 @@ std::string FixFSIReport::momentum_table(bool lost)
                       relative);
   return text;
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::string FixFSIReport::energy_table()
 {

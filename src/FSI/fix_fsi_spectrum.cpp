@@ -42,8 +42,6 @@ using namespace FSI;
 
 static constexpr int LEAST = 8;    // samples that make a spectrum
 
-/* ---------------------------------------------------------------------- */
-
 FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), input_kind(0), input_index(0), input_variable(-1), input_compute(nullptr),
     input_fix(nullptr), last(-1)
@@ -81,8 +79,6 @@ FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
   modify->addstep_compute_all(((update->ntimestep + nevery - 1) / nevery) * nevery);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSISpectrum::find_input()
 {
@@ -126,8 +122,6 @@ void FixFSISpectrum::find_input()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSISpectrum::end_of_step()
 {
   const bigint step = update->ntimestep;
@@ -139,8 +133,6 @@ void FixFSISpectrum::end_of_step()
   modify->addstep_compute(step + nevery);
   if (analyze_every && value.size() % analyze_every == 0) analyze();
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixFSISpectrum::sample()
 {
@@ -158,8 +150,6 @@ double FixFSISpectrum::sample()
   return input_index ? input_compute->vector[input_index - 1] : input_compute->scalar;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSISpectrum::post_run()
 {
   if ((int) value.size() < LEAST && update->nsteps && comm->me == 0)
@@ -168,11 +158,8 @@ void FixFSISpectrum::post_run()
   analyze();
 }
 
-/* ----------------------------------------------------------------------
-   samples equally spaced in time (interpolated where fix fsi/dt has changed their distance),
-   without trend, times the window; area: sum of the window
-------------------------------------------------------------------------- */
-
+// samples equally spaced in time (interpolated where fix fsi/dt has changed their distance),
+// without trend, times the window; area: sum of the window
 std::vector<double> FixFSISpectrum::prepare(double &area) const
 {
   const int n = value.size();
@@ -203,15 +190,12 @@ std::vector<double> FixFSISpectrum::prepare(double &area) const
   return y;
 }
 
-/* ----------------------------------------------------------------------
-   Amplitudes A_k = 2 |X_k|/sum of w at k/(n dt). A sine whose frequency lies the part d of the
-   distance to the next frequency beyond k has, with the window sin^2m and many periods, the ratio
-   of its two largest amplitudes
-     a = A_k+1/A_k = (m + d)/(m + 1 - d)
-   (m = 0, 1: Rife & Vincent 1970, Grandke 1983), and A_k = amplitude sin(pi d)/(pi d)/prod_j=1..m
-   (1 - d^2/j^2).
-------------------------------------------------------------------------- */
-
+// Amplitudes A_k = 2 |X_k|/sum of w at k/(n dt). A sine whose frequency lies the part d of the
+// distance to the next frequency beyond k has, with the window sin^2m and many periods, the ratio
+// of its two largest amplitudes
+//   a = A_k+1/A_k = (m + d)/(m + 1 - d)
+// (m = 0, 1: Rife & Vincent 1970, Grandke 1983), and A_k = amplitude sin(pi d)/(pi d)/prod_j=1..m
+// (1 - d^2/j^2).
 void FixFSISpectrum::analyze()
 {
   std::fill(peaks.begin(), peaks.end(), Peak{0.0, 0.0});
@@ -260,10 +244,7 @@ void FixFSISpectrum::analyze()
   MPI_Bcast((double *) peaks.data(), 2 * static_cast<int>(peaks.size()), MPI_DOUBLE, 0, world);
 }
 
-/* ----------------------------------------------------------------------
-   restart: the samples
-------------------------------------------------------------------------- */
-
+// restart: the samples
 void FixFSISpectrum::write_restart(FILE *fp)
 {
   Record record(lmp, "fix fsi/spectrum");
@@ -274,8 +255,6 @@ void FixFSISpectrum::write_restart(FILE *fp)
   record.add("values", value);
   record.write(fp);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSISpectrum::restart(char *buf)
 {
@@ -294,8 +273,6 @@ void FixFSISpectrum::restart(char *buf)
   time = record.numbers("times");
   value = record.numbers("values");
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixFSISpectrum::memory_usage()
 {

@@ -18,13 +18,11 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "force.h"
 #include "fsi_changes.h"
 #include "fsi_jaumann.h"
 #include "fsi_plasticity.h"
 #include "fsi_record.h"
 #include "modify.h"
-#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
@@ -32,8 +30,6 @@
 
 using namespace LAMMPS_NS;
 using namespace FSI;
-
-/* ---------------------------------------------------------------------- */
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
@@ -58,8 +54,6 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
   register_fields();
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIStress::~FixFSIStress()
 {
   if (auto *const now = FixFSI::there(lmp)) now->changes.forget();
@@ -71,8 +65,6 @@ FixFSIStress *FixFSIStress::find(LAMMPS *lmp)
   return fixes.empty() ? nullptr : dynamic_cast<FixFSIStress *>(fixes[0]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIStress::choose_fields()
 {
   const Facts facts = facts_of_solids(lmp);
@@ -83,8 +75,6 @@ void FixFSIStress::choose_fields()
              domain->dimension + 1);
   fields.set("hourglass force", Fields::RESTART, facts.hourglass, hourglass, domain->dimension);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIStress::init()
 {
@@ -130,10 +120,7 @@ double FixFSIStress::advance_stress(int i, const double *L, double dt, const Sta
 template double FixFSIStress::advance_stress<2>(int, const double *, double, const State &);
 template double FixFSIStress::advance_stress<3>(int, const double *, double, const State &);
 
-/* ----------------------------------------------------------------------
-   Where solids were when they were first seen, for contact of a body with itself; ghosts are told.
-------------------------------------------------------------------------- */
-
+// Where solids were when they were first seen, for contact of a body with itself; ghosts are told.
 void FixFSIStress::enter_start(const std::vector<State> &state)
 {
   const int dim = domain->dimension;
@@ -172,8 +159,6 @@ double FixFSIStress::shear_energy(int i, double shear) const
   return atom->rmass[i] / atom->rho[i] * ss / (4.0 * shear);
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<FixFSIStress::Effect> FixFSIStress::effects() const
 {
   return {{"plasticity", "fix fsi/stress plastic", plastic != 0}};
@@ -186,8 +171,6 @@ void FixFSIStress::find_idle(const Census &all, const Idle &nothing) const
   else if (all.solids == 0)
     nothing("Fix fsi/stress", "no particle is a solid");
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIStress::write_restart(FILE *fp)
 {

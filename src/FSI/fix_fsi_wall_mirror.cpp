@@ -18,17 +18,14 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "force.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_walls.h"
-#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <map>
 
@@ -43,8 +40,6 @@ static std::string face(const Wall &w)
   return std::string(1, "xyz"[w.axis]) + (w.side > 0.0 ? "lo" : "hi");
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), guard(0.1), reflected(0), fix_fsi(nullptr)
 {
@@ -54,50 +49,44 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   int iarg = 3;
   while (iarg < narg) {
     const std::string key = arg[iarg];
+    const auto values = [&](int n) {
+      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror " + key, error);
+      char **const first = arg + iarg + 1;
+      iarg += n + 1;
+      return first;
+    };
     const auto number = [&](const char *value, const Range &range = {}) {
       return numeric(lmp, "Fix fsi/wall/mirror " + key, value, range, false,
                      key == "guard" || key == "velocity" ? "" : "EDGE");
     };
+    const auto of_wall = [&](int n) {
+      char **const first = values(n);
+      if (walls.empty())
+        error->all(FLERR, "Fix fsi/wall/mirror {} must follow the wall that it belongs to", key);
+      return first;
+    };
     if (key.size() == 3 && strchr("xyz", key[0]) &&
         (key.substr(1) == "lo" || key.substr(1) == "hi")) {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror " + key, error);
+      const char *const place = values(1)[0];
       add_wall(key);
       Wall &w = walls.back();
-      if (strcmp(arg[iarg + 1], "EDGE") == 0)
+      if (strcmp(place, "EDGE") == 0)
         w.position = key[1] == 'l' ? domain->boxlo[w.axis] : domain->boxhi[w.axis];
       else
-        w.position = number(arg[iarg + 1]);
+        w.position = number(place);
       slip_said.push_back(false);
-      iarg += 2;
     } else if (key == "range") {
-      if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror range", error);
-      if (walls.empty())
-        error->all(FLERR, "Fix fsi/wall/mirror range must follow the wall that it belongs to");
-      parse_range(arg + iarg + 1);
-      iarg += 4;
+      parse_range(of_wall(3));
     } else if (key == "velocity") {
-      if (iarg + 4 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror velocity", error);
-      if (walls.empty())
-        error->all(FLERR, "Fix fsi/wall/mirror velocity must follow the wall that it belongs to");
-      for (int b = 0; b < 3; b++) walls.back().velocity[b] = number(arg[iarg + 1 + b]);
-      iarg += 4;
+      char **const v = of_wall(3);
+      for (int b = 0; b < 3; b++) walls.back().velocity[b] = number(v[b]);
     } else if (key == "slip") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror slip", error);
-      if (walls.empty())
-        error->all(FLERR, "Fix fsi/wall/mirror slip must follow the wall that it belongs to");
-      walls.back().noslip = !utils::logical(FLERR, arg[iarg + 1], false, lmp);
+      walls.back().noslip = !utils::logical(FLERR, of_wall(1)[0], false, lmp);
       slip_said.back() = true;
-      iarg += 2;
     } else if (key == "symmetry") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror symmetry", error);
-      if (walls.empty())
-        error->all(FLERR, "Fix fsi/wall/mirror symmetry must follow the wall that it belongs to");
-      walls.back().joins = utils::logical(FLERR, arg[iarg + 1], false, lmp) ? groupbit : 0;
-      iarg += 2;
+      walls.back().joins = utils::logical(FLERR, of_wall(1)[0], false, lmp) ? groupbit : 0;
     } else if (key == "guard") {
-      if (iarg + 2 > narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror guard", error);
-      guard = number(arg[iarg + 1], Range::between(0.0, 0.45));
-      iarg += 2;
+      guard = number(values(1)[0], Range::between(0.0, 0.45));
     } else
       error->all(FLERR,
                  "Unknown fix fsi/wall/mirror keyword {}: expected xlo, xhi, ylo, yhi, zlo, zhi, "
@@ -140,10 +129,7 @@ void FixFSIWallMirror::add_wall(const std::string &key)
   walls.push_back(w);
 }
 
-/* ----------------------------------------------------------------------
-   extent of the last wall along another axis
-------------------------------------------------------------------------- */
-
+// extent of the last wall along another axis
 void FixFSIWallMirror::parse_range(char **arg)
 {
   const auto number = [&](const char *value) {
@@ -180,10 +166,7 @@ void FixFSIWallMirror::check_symmetry() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   a channel of which one wall slips is most likely one whose script says slip once for both
-------------------------------------------------------------------------- */
-
+// a channel of which one wall slips is most likely one whose script says slip once for both
 void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
 {
   for (size_t a = 0; a < walls.size() && comm->me == 0; a++)
@@ -195,17 +178,12 @@ void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
                        id, face(walls[a]), face(walls[b]));
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWallMirror::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");
 }
 
-/* ----------------------------------------------------------------------
-   a fluid particle that starts behind a wall is a mistake in the script
-------------------------------------------------------------------------- */
-
+// a fluid particle that starts behind a wall is a mistake in the script
 void FixFSIWallMirror::setup(int)
 {
   double **x = atom->x;
@@ -220,14 +198,10 @@ void FixFSIWallMirror::setup(int)
   }
 }
 
-/* ----------------------------------------------------------------------
-   after the first drift: walls move along, and a fluid particle nearer than the guard distance, or
-   behind the wall, is reflected. A segment acts on what has come through it in this step, not on
-   what flows behind it.
-   The ledger has velocities of the middle of a step, half a kick on, of which the kick of gravity
-   is not reflected. What that of the other forces differs by, density takes up.
-------------------------------------------------------------------------- */
-
+// after the first drift: walls move along, and a fluid particle nearer than the guard distance, or
+// behind the wall, is reflected. A segment acts on what has come through it in this step, not on
+// what flows behind it. The ledger has velocities of the middle of a step, half a kick on, of which
+// the kick of gravity is not reflected. What that of the other forces differs by, density takes up.
 void FixFSIWallMirror::post_integrate()
 {
   const Phase phase(fix_fsi->profile, Profile::WALLS);
@@ -265,8 +239,6 @@ void FixFSIWallMirror::post_integrate()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWallMirror::end_of_step()
 {
   for (size_t k = 0; k < walls.size(); k++) {
@@ -277,8 +249,6 @@ void FixFSIWallMirror::end_of_step()
         fix_fsi->energy_out[FixFSI::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIWallMirror::add_walls(Walls &all, std::vector<WallForce> &forces)
 {
@@ -291,11 +261,8 @@ void FixFSIWallMirror::begin_state(bool)
   for (auto &f : force_on) f = {0.0, 0.0, 0.0};
 }
 
-/* ----------------------------------------------------------------------
-   Particles that this step has reflected, on whatever rank they are now, are back in front of it
-   with their own velocity: they have been moved back by half a step with the reflected one.
-------------------------------------------------------------------------- */
-
+// Particles that this step has reflected, on whatever rank they are now, are back in front of it
+// with their own velocity: they have been moved back by half a step with the reflected one.
 void FixFSIWallMirror::go_back()
 {
   reflected -= turns.size();
@@ -339,10 +306,7 @@ void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
     nothing("Fix fsi/wall/mirror slip no", "pair_style fsi/fluid has no laminar/visc");
 }
 
-/* ----------------------------------------------------------------------
-   number of reflections since the fix was defined
-------------------------------------------------------------------------- */
-
+// number of reflections since the fix was defined
 double FixFSIWallMirror::compute_scalar()
 {
   bigint all;
@@ -350,10 +314,7 @@ double FixFSIWallMirror::compute_scalar()
   return static_cast<double>(all);
 }
 
-/* ----------------------------------------------------------------------
-   force of the fluid on wall i
-------------------------------------------------------------------------- */
-
+// force of the fluid on wall i
 double FixFSIWallMirror::compute_array(int i, int j)
 {
   double all;
@@ -361,11 +322,8 @@ double FixFSIWallMirror::compute_array(int i, int j)
   return all;
 }
 
-/* ----------------------------------------------------------------------
-   restart: count of reflections and where the walls are; a wall that the command puts elsewhere
-   than before stands there
-------------------------------------------------------------------------- */
-
+// restart: count of reflections and where the walls are; a wall that the command puts elsewhere
+// than before stands there
 std::string FixFSIWallMirror::settings(int k) const
 {
   const Wall &w = walls[k];
@@ -378,13 +336,18 @@ std::string FixFSIWallMirror::settings(int k) const
   return text;
 }
 
+std::string FixFSIWallMirror::faces() const
+{
+  std::string all;
+  for (const auto &w : walls) all += (all.empty() ? "" : " ") + face(w);
+  return all;
+}
+
 void FixFSIWallMirror::write_restart(FILE *fp)
 {
   Record record(lmp, "fix fsi/wall/mirror");
   record.add("reflections", std::vector<double>{compute_scalar()});
-  std::string faces;
-  for (const auto &w : walls) faces += (faces.empty() ? "" : " ") + face(w);
-  record.add("walls", faces);
+  record.add("walls", faces());
   for (size_t k = 0; k < walls.size(); k++) {
     record.add(fmt::format("place {}", k), std::vector<double>{start[k], walls[k].position});
     record.add(fmt::format("settings {}", k), settings(k));
@@ -392,18 +355,14 @@ void FixFSIWallMirror::write_restart(FILE *fp)
   record.write(fp);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWallMirror::restart(char *buf)
 {
   const Record record(lmp, "fix fsi/wall/mirror", buf);
-  std::string faces;
-  for (const auto &w : walls) faces += (faces.empty() ? "" : " ") + face(w);
-  if (faces != record.value("walls"))
+  if (faces() != record.value("walls"))
     error->all(FLERR,
                "Fix fsi/wall/mirror {} has the walls {}, the restart file {} of it: give it "
                "another ID to place all walls anew",
-               id, faces, record.value("walls"));
+               id, faces(), record.value("walls"));
   reflected = (comm->me == 0) ? static_cast<bigint>(record.numbers("reflections")[0]) : 0;
   for (size_t k = 0; k < walls.size(); k++) {
     const auto place = record.numbers(fmt::format("place {}", k));

@@ -55,7 +55,7 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
 
  private:
   std::vector<double> start;    // positions in the command
-  std::string settings(int) const;
+  std::string settings(int) const, faces() const;
   void add_wall(const std::string &key);
   void parse_range(char **arg);
   void check_symmetry() const;

@@ -18,7 +18,6 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_move.h"
-#include "fix_store_atom.h"
 #include "force.h"
 #include "fsi_keywords.h"
 #include "fsi_levels.h"
@@ -27,8 +26,6 @@
 #include "fsi_rows.h"
 #include "fsi_swaps.h"
 #include "fsi_tensor.h"
-#include "group.h"
-#include "memory.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "pair_fsi_fluid.h"
@@ -43,11 +40,9 @@ using namespace FSI;
 
 static constexpr double AUTO = -1.0;
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr), fix_fsi(nullptr),
-    swaps(new Swaps(lmp)), sum(nullptr), nmax(0), nsum(0), force_on{}
+    FixFields(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr),
+    fix_fsi(nullptr), swaps(new Swaps(lmp)), sum(nullptr), nsum(0), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
@@ -59,28 +54,11 @@ FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
   extscalar = extvector = 1;
   global_freq = 1;
   restart_global = 1;
+  fields.set("velocity of the last step", Fields::RESTART, true, before, 4);
+  register_fields();
 }
 
-/* ---------------------------------------------------------------------- */
-
-FixFSIWallParticle::~FixFSIWallParticle()
-{
-  if (!id_store.empty() && modify->get_fix_by_id(id_store)) modify->delete_fix(id_store);
-  memory->destroy(sum);
-}
-
-/* ----------------------------------------------------------------------
-   velocities of the last step, which migrate with the atoms and go into restart files
-------------------------------------------------------------------------- */
-
-void FixFSIWallParticle::post_constructor()
-{
-  id_store = id + std::string("_FSI_WALL");
-  before = dynamic_cast<FixStoreAtom *>(
-      modify->add_fix(fmt::format("{} {} STORE/ATOM 4 0 0 1", id_store, group->names[igroup])));
-}
-
-/* ---------------------------------------------------------------------- */
+FixFSIWallParticle::~FixFSIWallParticle() = default;
 
 void FixFSIWallParticle::init()
 {
@@ -130,12 +108,18 @@ void FixFSIWallParticle::init()
   first_moment = 2 + dim * (slip ? 1 : 2);
   first_stiffness = first_moment + (linear ? dim * (dim + 5) / 2 : 0);
   nsum = first_stiffness + stiffness;
+  fields.set("sums over the fluid", Fields::STEP, true, sum, nsum);
+  for (auto *message : {&to_ghosts, &from_ghosts}) {
+    *message = std::make_unique<Message>(lmp, fix_fsi->state);
+    (*message)->group = groupbit;
+  }
+  to_ghosts->add(atom->rho, {RIGID});
+  if (stiffness) to_ghosts->add(fix_fsi->wall_stiffness, {RIGID});
+  if (!slip) to_ghosts->add(fix_fsi->wall_velocity, 0, dim, {RIGID});
+  from_ghosts->add(sum, 0, nsum, {RIGID});
+  comm_forward = to_ghosts->size();
   comm_reverse = nsum;
-  comm_forward = 1 + (slip ? 0 : dim) + stiffness;
-  nmax = 0;    // sums of another size than in the last run
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIWallParticle::set_fields(Scene &scene)
 {
@@ -148,8 +132,6 @@ void FixFSIWallParticle::add_costs(Costs &costs) const
   costs.back += force->newton_pair;
 }
 
-/* ---------------------------------------------------------------------- */
-
 template <class F> void FixFSIWallParticle::for_pairs(size_t level, F f) const
 {
   const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
@@ -160,14 +142,11 @@ template <class F> void FixFSIWallParticle::for_pairs(size_t level, F f) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   What is added to the mean of the fluid's pressures p at a wall particle by weighted least squares
-   for a pressure linear in d = x_wall - x: -mean(d).C^-1 cov(d, p), C = cov(d, d). In both means p
-   has on it what body forces and the wall's acceleration a add on the way, -rho a.d, so that only
-   the rest is extrapolated. Particles in a line or plane tell nothing across it: 0.005 dx^2 more of
-   variance in all directions takes the rest for constant there.
-------------------------------------------------------------------------- */
-
+// What is added to the mean of the fluid's pressures p at a wall particle by weighted least squares
+// for a pressure linear in d = x_wall - x: -mean(d).C^-1 cov(d, p), C = cov(d, d). In both means p
+// has on it what body forces and the wall's acceleration a add on the way, -rho a.d, so that only
+// the rest is extrapolated. Particles in a line or plane tell nothing across it: 0.005 dx^2 more of
+// variance in all directions takes the rest for constant there.
 template <int D>
 double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p, double rho,
                                        const double *a) const
@@ -189,10 +168,7 @@ double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p
   return sum / determinant<D>(C);
 }
 
-/* ----------------------------------------------------------------------
-   sums over the fluid around each particle of the wall
-------------------------------------------------------------------------- */
-
+// sums over the fluid around each particle of the wall
 void FixFSIWallParticle::sum_up()
 {
   const int dim = fix_fsi->dim;
@@ -209,10 +185,7 @@ void FixFSIWallParticle::sum_up()
       return (mask[i] & groupbit) != 0;
     });
   }
-  if (atom->nmax > nmax) {
-    nmax = atom->nmax;
-    memory->grow(sum, nmax, nsum, "fsi/wall/particle:sum");
-  }
+  fields.grow();
   for (const int i : members) std::fill_n(sum[i], nsum, 0.0);
 
   for_levels(*fix_fsi, [&](size_t level, const auto &kernel) {
@@ -246,18 +219,16 @@ void FixFSIWallParticle::sum_up()
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     });
   });
+  sent = from_ghosts.get();
   if (force->newton_pair)
     exchange(fix_fsi->profile, comm, [this]() {
       swaps->reverse(this);
     });
 }
 
-/* ----------------------------------------------------------------------
-   p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq.
-   27), a_w: acceleration of the wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of
-   fluids of different rho c^2 the wall has the mean, likewise
-------------------------------------------------------------------------- */
-
+// p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq.
+// 27), a_w: acceleration of the wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of
+// fluids of different rho c^2 the wall has the mean, likewise
 void FixFSIWallParticle::end_state(bool advance)
 {
   const Phase phase(fix_fsi->profile, Profile::WALLS);
@@ -272,7 +243,7 @@ void FixFSIWallParticle::end_state(bool advance)
     if (i >= atom->nlocal) break;    // ghosts come last
     const State &state = fix_fsi->state[type[i]];
     const double *const s = sum[i];
-    double *const old = before->astore[i];
+    double *const old = before[i];
     // acceleration: in this step where the motion is known, else in the last; a wall that is set in
     // motion has none in its first step
     const double *from = old, *to = v[i];
@@ -310,15 +281,13 @@ void FixFSIWallParticle::end_state(bool advance)
       old[3] = 1.0;
     }
   }
+  sent = to_ghosts.get();
   exchange(fix_fsi->profile, comm, [this]() {
     swaps->forward(this);
   });
 }
 
-/* ----------------------------------------------------------------------
-   force of the fluid: only pairs have added to f so far
-------------------------------------------------------------------------- */
-
+// force of the fluid: only pairs have added to f so far
 void FixFSIWallParticle::pre_reverse(int, int)
 {
   const int n = atom->nlocal + (force->newton_pair ? atom->nghost : 0);
@@ -328,8 +297,6 @@ void FixFSIWallParticle::pre_reverse(int, int)
       for (int d = 0; d < 3; d++) force_on[d] += atom->f[i][d];
 }
 
-/* ---------------------------------------------------------------------- */
-
 double FixFSIWallParticle::compute_vector(int n)
 {
   double all;
@@ -337,10 +304,7 @@ double FixFSIWallParticle::compute_vector(int n)
   return all;
 }
 
-/* ----------------------------------------------------------------------
-   pairs of fluid and wall within the guard's distance
-------------------------------------------------------------------------- */
-
+// pairs of fluid and wall within the guard's distance
 double FixFSIWallParticle::compute_scalar()
 {
   // before the first run, or with a new fix fsi
@@ -362,76 +326,22 @@ double FixFSIWallParticle::compute_scalar()
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
-int FixFSIWallParticle::pack_forward_comm(int n, int *list, double *buf, int, int *)
-{
-  int m = 0;
-  for (int ii = 0; ii < n; ii++) {
-    const int i = list[ii];
-    if (!(atom->mask[i] & groupbit)) continue;
-    buf[m++] = atom->rho[i];
-    if (fix_fsi->wall_stiffness) buf[m++] = fix_fsi->wall_stiffness[i];
-    if (!slip)
-      for (int d = 0; d < fix_fsi->dim; d++) buf[m++] = fix_fsi->wall_velocity[i][d];
-  }
-  return m;
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSIWallParticle::unpack_forward_comm(int n, int first, double *buf)
-{
-  int m = 0;
-  for (int i = first; i < first + n; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    atom->rho[i] = buf[m++];
-    if (fix_fsi->wall_stiffness) fix_fsi->wall_stiffness[i] = buf[m++];
-    if (!slip)
-      for (int d = 0; d < fix_fsi->dim; d++) fix_fsi->wall_velocity[i][d] = buf[m++];
-  }
-}
-
-/* ---------------------------------------------------------------------- */
-
-int FixFSIWallParticle::pack_reverse_comm(int n, int first, double *buf)
-{
-  int m = 0;
-  for (int i = first; i < first + n; i++)
-    if (atom->mask[i] & groupbit)
-      for (int k = 0; k < nsum; k++) buf[m++] = sum[i][k];
-  return m;
-}
-
-/* ---------------------------------------------------------------------- */
-
-void FixFSIWallParticle::unpack_reverse_comm(int n, int *list, double *buf)
-{
-  int m = 0;
-  for (int ii = 0; ii < n; ii++)
-    if (atom->mask[list[ii]] & groupbit)
-      for (int k = 0; k < nsum; k++) sum[list[ii]][k] += buf[m++];
-}
-
-/* ----------------------------------------------------------------------
-   restart: velocities are those of fix STORE/ATOM; the command, to compare
-------------------------------------------------------------------------- */
-
 void FixFSIWallParticle::write_restart(FILE *fp)
 {
   Record record(lmp, "fix fsi/wall/particle");
   keywords.write(record);
+  fields.write(record);
   record.write(fp);
 }
 
 void FixFSIWallParticle::restart(char *buf)
 {
-  keywords.compare(Record(lmp, "fix fsi/wall/particle", buf));
+  const Record record(lmp, "fix fsi/wall/particle", buf);
+  keywords.compare(record);
+  fields.read(record);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixFSIWallParticle::memory_usage()
 {
-  return (double) nmax * nsum * sizeof(double) + (double) members.capacity() * sizeof(members[0]);
+  return FixFields::memory_usage() + (double) members.capacity() * sizeof(members[0]);
 }

@@ -20,11 +20,10 @@ FixStyle(fsi/wall/particle,FixFSIWallParticle);
 #ifndef LMP_FIX_FSI_WALL_PARTICLE_H
 #define LMP_FIX_FSI_WALL_PARTICLE_H
 
-#include "fix.h"
+#include "fsi_fields.h"
 #include "fsi_part.h"
 
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -38,19 +37,14 @@ namespace FSI {
 // particle as fluid. What moves the particles (fix move, fix rigid, nothing) is of no concern here:
 // their acceleration is that of their velocity.
 
-class FixFSIWallParticle : public Fix, public FSI::Part {
+class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
  public:
   FixFSIWallParticle(class LAMMPS *, int, char **);
   ~FixFSIWallParticle() override;
   int setmask() override { return FixConst::PRE_REVERSE; }
-  void post_constructor() override;
   void init() override;
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int, int) override;
-  int pack_forward_comm(int, int *, double *, int, int *) override;
-  void unpack_forward_comm(int, int, double *) override;
-  int pack_reverse_comm(int, int, double *) override;
-  void unpack_reverse_comm(int, int *, double *) override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -67,19 +61,19 @@ class FixFSIWallParticle : public Fix, public FSI::Part {
   FSI::Keywords keywords;
   double guard;    // distance of a fluid particle below which it is pushed off, in spacings; < 0:
                    // as the fluid has tension or not
-  std::string id_store;
   std::vector<class FixFSIMove *> movers;
-  class FixStoreAtom *before;    // velocity at the last step, and whether there was one
+  double **before;    // velocity at the last step, and whether there was one
   class FixFSI *fix_fsi;
   std::vector<int> members;                   // the group's particles, local and ghost
   const std::unique_ptr<FSI::Swaps> swaps;    // theirs
+  std::unique_ptr<FSI::Message> to_ghosts, from_ghosts;
   template <class F>
   void for_pairs(size_t level, F f) const;    // f(wall particle, fluid particle) of those that
                                               // may be within the kernel's support
   void sum_up();
   double **sum;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d
                    // W, d d W, p d W, d = x_wall - x
-  int nmax, nsum, first_moment, first_stiffness;
+  int nsum, first_moment, first_stiffness;
   double force_on[3];    // this group, this rank's part
 
   template <int D>

@@ -49,8 +49,6 @@ static constexpr Description about[] = {    // from DISTANCE on
     {"reflected", "number of reflections at mirror walls"}};
 // clang-format on
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), fix_fsi(nullptr), halt(new Stop(lmp, "Fix fsi/watch")), limit(NTROUBLE),
     worst(NTROUBLE), total(NTROUBLE), seen(NTROUBLE, 0.0), energy_before(-1.0),
@@ -90,15 +88,11 @@ double FixFSIWatch::compute_vector(int k)
   return seen[DISTANCE + k];
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWatch::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/watch");
   solid_tl = PairFSISolidTL::find(lmp);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIWatch::find_idle(const Census &, const Idle &nothing) const
 {
@@ -106,20 +100,14 @@ void FixFSIWatch::find_idle(const Census &, const Idle &nothing) const
     nothing("Fix fsi/watch", fmt::format("group {} is empty", group->names[igroup]));
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWatch::setup(int)
 {
   energy_before = reflected_before = -1.0;
   look(true);
 }
 
-/* ----------------------------------------------------------------------
-   Positions of local and ghost atoms are those of the middle of the step, velocities those of
-   its start, and both can be brought back: from here a run is stopped with a state that can be
-   written.
-------------------------------------------------------------------------- */
-
+// Positions of local and ghost atoms are those of the middle of the step, velocities those of its
+// start, and both can be brought back: from here a run is stopped with a state that can be written.
 void FixFSIWatch::post_force(int)
 {
   if (update->ntimestep % interval == 0) look(false);
@@ -132,8 +120,6 @@ double FixFSIWatch::allowed(int q) const
   return q == LOST && !loses && output->thermo->lostflag == Thermo::IGNORE ? BIG : limit[q];
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWatch::clear()
 {
   worst.assign(NTROUBLE, {});
@@ -141,16 +127,12 @@ void FixFSIWatch::clear()
   total.assign(NTROUBLE, 0.0);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWatch::enter(int q, int i, double value, int j)
 {
   Finding &w = worst[q];
   if (w.tag && (q == DISTANCE ? value >= w.value : value <= w.value)) return;
   w = halt->finding((Trouble) q, i, value, j);
 }
-
-/* ---------------------------------------------------------------------- */
 
 // kinetic energy, and what of it is small: that of a hundredth of the speed of waves
 void FixFSIWatch::look_at_particles(double &kinetic, double &little)
@@ -213,8 +195,6 @@ void FixFSIWatch::look_at_pairs()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIWatch::look(bool at_start)
 {
   clear();
@@ -241,10 +221,7 @@ void FixFSIWatch::look(bool at_start)
   judge(at_start);
 }
 
-/* ----------------------------------------------------------------------
-   all ranks know what is wrong, and warn or stop together
-------------------------------------------------------------------------- */
-
+// all ranks know what is wrong, and warn or stop together
 void FixFSIWatch::judge(bool at_start)
 {
   const auto when = at_start ? Stop::START : Stop::MIDDLE;

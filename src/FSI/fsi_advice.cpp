@@ -18,7 +18,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
-#include "force.h"
 #include "fsi_cells.h"
 #include "fsi_contact.h"
 #include "fsi_gather.h"
@@ -177,9 +176,9 @@ class Adviser : protected Pointers {
     double mine[3] = {0.0, 0.0, 0.0}, sum[3];    // distances, particles that have a neighbor, all
     struct {
       double r;
-      int rank;
-    } closest = {BIG, comm->me}, least;
-    tagint pair[3] = {0, 0, -1};    // the last: the direction in which they meet around the box
+      tagint a, b;
+      int around;    // direction in which they meet around the box, or -1
+    } closest = {BIG, 0, 0, -1};
     for (int i = 0; i < atom->nlocal; i++) {
       if (!has_material(i)) continue;
       double nearest = 1.25 * 1.25;    // over the spacing between the two lattices
@@ -200,12 +199,9 @@ class Adviser : protected Pointers {
                    atom->tag[i], atom->tag[who], atom->x[i][0], atom->x[i][1], atom->x[i][2]);
       mine[0] += r;
       mine[1]++;
-      if (r < closest.r) {
-        closest.r = r;
-        pair[0] = std::min(atom->tag[i], atom->tag[who]);
-        pair[1] = std::max(atom->tag[i], atom->tag[who]);
-        pair[2] = around_box(who);
-      }
+      if (r < closest.r)
+        closest = {r, std::min(atom->tag[i], atom->tag[who]),
+                   std::max(atom->tag[i], atom->tag[who]), around_box(who)};
     }
     MPI_Allreduce(mine, sum, 3, MPI_DOUBLE, MPI_SUM, world);
     if (sum[2] < 2.0) return true;
@@ -223,15 +219,15 @@ class Adviser : protected Pointers {
       return false;
     }
     if (update->ntimestep == 0) {
-      MPI_Allreduce(&closest, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-      MPI_Bcast(pair, 3, MPI_LMP_TAGINT, least.rank, world);
-      if (least.r < 0.4)
-        warn(fmt::format("atoms {} and {} are {:.2g} spacings apart{}", pair[0], pair[1], least.r,
-                         pair[2] < 0 ? std::string(": do bodies or phases overlap? Put them on one "
-                                                   "lattice, or delete_atoms overlap")
-                                     : fmt::format(" around the periodic box: make it a whole "
-                                                   "number of spacings long in {}",
-                                                   "xyz"[pair[2]])));
+      const auto all = of_least(closest.r, closest, world);
+      if (all.r < 0.4)
+        warn(fmt::format("atoms {} and {} are {:.2g} spacings apart{}", all.a, all.b, all.r,
+                         all.around < 0
+                             ? std::string(": do bodies or phases overlap? Put them on one "
+                                           "lattice, or delete_atoms overlap")
+                             : fmt::format(" around the periodic box: make it a whole "
+                                           "number of spacings long in {}",
+                                           "xyz"[all.around])));
     }
     return true;
   }
@@ -254,10 +250,9 @@ class Adviser : protected Pointers {
     static constexpr double LITTLE = 0.02, OVERLAP = 0.8;    // of the range; spacings
     struct {
       double apart;
-      int rank;
-    } mine = {BIG, comm->me}, all;
+      tagint a, b;
+    } mine = {BIG, 0, 0};
     double energy = 0.0, total;
-    tagint bodies[2] = {0, 0};
     const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, range * coarsest(),
                       [this](int i) {
                         return solid(i);
@@ -274,21 +269,19 @@ class Adviser : protected Pointers {
             Contact(scene.dim, spacing, range)
                 .energy(rsq, a.csq * a.rho0, b.csq * b.rho0);    // each sees the other
         const double apart = std::sqrt(rsq) / spacing;
-        if (apart >= mine.apart) return;
-        mine.apart = apart;
-        bodies[0] = std::min(atom->molecule[i], atom->molecule[j]);
-        bodies[1] = std::max(atom->molecule[i], atom->molecule[j]);
+        if (apart < mine.apart)
+          mine = {apart, std::min(atom->molecule[i], atom->molecule[j]),
+                  std::max(atom->molecule[i], atom->molecule[j])};
       });
     }
     MPI_Allreduce(&energy, &total, 1, MPI_DOUBLE, MPI_SUM, world);
-    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-    MPI_Bcast(bodies, 2, MPI_LMP_TAGINT, all.rank, world);
+    const auto all = of_least(mine.apart, mine, world);
     if (all.apart == BIG) return;
     warn(fmt::format(
         "bodies {} and {} {} {:.2g} spacings apart at the start, and contact reaches "
         "{:.3g}: contact energy {:.4g} at once. Move them apart{}",
-        bodies[0], bodies[1], all.apart < OVERLAP ? "overlap, with particles" : "begin", all.apart,
-        range, total,
+        all.a, all.b, all.apart < OVERLAP ? "overlap, with particles" : "begin", all.apart, range,
+        total,
         all.apart < 1.0 - 1.0e-6
             ? ""
             : fmt::format(", or contact {:.3g}", std::floor(10.0 * all.apart + 1.0e-6) / 10.0)));
@@ -661,8 +654,6 @@ class Adviser : protected Pointers {
 };
 
 }    // namespace
-
-/* ---------------------------------------------------------------------- */
 
 void FSI::advise(LAMMPS *lmp, const Scene &scene)
 {

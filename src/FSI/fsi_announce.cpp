@@ -31,8 +31,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
 {
   const auto modes = Scene::density_names(SOLID);
@@ -92,11 +90,8 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
     });
 }
 
-/* ----------------------------------------------------------------------
-   memory, and what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a
-   ghost
-------------------------------------------------------------------------- */
-
+// memory, and what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a
+// ghost
 static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
 {
   const bool newton = lmp->force->newton_pair, psi = scene.need_psi;
@@ -121,10 +116,7 @@ static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
   text += costs.rarely;
 }
 
-/* ----------------------------------------------------------------------
-   effects that a script names and that have nothing to act on
-------------------------------------------------------------------------- */
-
+// effects that a script names and that have nothing to act on
 static void warn_idle(LAMMPS *lmp, const Scene &scene)
 {
   bigint mine[2] = {0, 0}, all[2];    // fluid and solid particles
@@ -145,8 +137,6 @@ static void warn_idle(LAMMPS *lmp, const Scene &scene)
   if (scene.density_solid != Scene::CONTINUITY && !facts_of_solids(lmp).style)
     nothing("Fix fsi solid density", "there is no pair_style fsi/solid");
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FSI::announce(LAMMPS *lmp, Scene &scene)
 {

@@ -26,11 +26,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ----------------------------------------------------------------------
-   all fix gravity commands, and which of them act on all particles of a type: only then two
-   neighbors are pushed alike, and what is hydrostatic between them has a meaning
-------------------------------------------------------------------------- */
-
+// all fix gravity commands, and which of them act on all particles of a type: only then two
+// neighbors are pushed alike, and what is hydrostatic between them has a meaning
 namespace {
 struct Peek : FixGravity {
   static bool is_disabled(const FixGravity *fix) { return fix->*&Peek::disable; }
@@ -73,11 +70,8 @@ void BodyForces::find(const std::vector<State> &state)
   of_type.assign(ntypes + 1, {0.0, 0.0, 0.0});
 }
 
-/* ----------------------------------------------------------------------
-   Body forces of this step. Fix gravity evaluates its variables when it acts, after the pair
-   styles: it is asked to do so earlier, with nothing to act on.
-------------------------------------------------------------------------- */
-
+// Body forces of this step. Fix gravity evaluates its variables when it acts, after the pair
+// styles: it is asked to do so earlier, with nothing to act on.
 void BodyForces::evaluate()
 {
   of_type.assign(atom->ntypes + 1, {0.0, 0.0, 0.0});
@@ -99,11 +93,8 @@ void BodyForces::evaluate()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Where a field changes, so does the potential energy of what is there, which the ledger has to
-   know.
-------------------------------------------------------------------------- */
-
+// Where a field changes, so does the potential energy of what is there, which the ledger has to
+// know.
 double BodyForces::work(const std::vector<State> &state, int groupbit) const
 {
   const double dth = 0.5 * update->dt;
@@ -119,8 +110,6 @@ double BodyForces::work(const std::vector<State> &state, int groupbit) const
   }
   return sum;
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::array<double, 3> BodyForces::on(int i) const
 {

@@ -29,10 +29,7 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ----------------------------------------------------------------------
-   Who is where in the arrays of this rank, and of what type: FNV-1a of it
-------------------------------------------------------------------------- */
-
+// Who is where in the arrays of this rank, and of what type: FNV-1a of it
 uint64_t Changes::fingerprint() const
 {
   uint64_t hash = 14695981039346656037ULL;
@@ -62,8 +59,6 @@ bool Changes::any_mass() const
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::vector<std::uintptr_t> Changes::present() const
 {

@@ -43,11 +43,8 @@ static constexpr int BLOCK = 256;
 static constexpr double COMPRESSED =
     1.2;    // density over that at rest: Mach numbers of the limit make it in head-on impacts
 
-/* ----------------------------------------------------------------------
-   Is no number of these larger than that? A comparison that NaN fails. In a form that compilers
-   turn into vector instructions.
-------------------------------------------------------------------------- */
-
+// Is no number of these larger than that? A comparison that NaN fails. In a form that compilers
+// turn into vector instructions.
 static FSI_INLINE bool none_above(int n, const double *a, double most)
 {
   int64_t above = 0;
@@ -67,15 +64,11 @@ static bool all_below(int n, const double *a, double most)
   return packed ? all_below_packed(n, a, most) : none_above(n, a, most);
 }
 
-/* ---------------------------------------------------------------------- */
-
 Check::Check(LAMMPS *lmp, const Scene &scene) :
     Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0),
     lightest(0.0), substepped(nullptr), densest{}, told_dense(false), found{}
 {
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Check::before_init()
 {
@@ -115,8 +108,6 @@ void Check::before_init()
                "fsi/solid/tl follows from its strain");
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Check::materials()
 {
   const auto walls = modify->get_fix_by_style("^fsi/wall/particle$");
@@ -135,11 +126,8 @@ void Check::materials()
   integrators();
 }
 
-/* ----------------------------------------------------------------------
-   Another material for particles that have a mass: it stays that of their lattice with the
-   density of before. (Fix FSI_REFERENCE looks at total-Lagrangian solids itself.)
-------------------------------------------------------------------------- */
-
+// Another material for particles that have a mass: it stays that of their lattice with the
+// density of before. (Fix FSI_REFERENCE looks at total-Lagrangian solids itself.)
 void Check::compare_densities()
 {
   densities.resize(atom->ntypes + 1, 0.0);
@@ -168,11 +156,8 @@ void Check::read(const Record &record)
   if (record.has("densities")) densities = record.numbers("densities");
 }
 
-/* ----------------------------------------------------------------------
-   A part of a body that has a velocity, but that nothing moves, strains the rest of it for ever.
-   (A whole body is a surface that drags fluid along.)
-------------------------------------------------------------------------- */
-
+// A part of a body that has a velocity, but that nothing moves, strains the rest of it for ever.
+// (A whole body is a surface that drags fluid along.)
 void Check::held_parts() const
 {
   std::set<tagint> mine;
@@ -197,10 +182,7 @@ void Check::held_parts() const
     }
 }
 
-/* ----------------------------------------------------------------------
-   Another integrator of what fix fsi moves: it would move twice in a step.
-------------------------------------------------------------------------- */
-
+// Another integrator of what fix fsi moves: it would move twice in a step.
 void Check::integrators() const
 {
   for (const auto &fix : modify->get_fix_list()) {
@@ -216,11 +198,18 @@ void Check::integrators() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   The coarsest fluid's spacing is dx. Bodies and walls meet fluids with the fluid's kernel: they
-   may be coarser as long as its support holds so many of their spacings. With fewer it tells their
-   particles one by one (theory.rst). Which of several fluids they meet is seen at the start.
-------------------------------------------------------------------------- */
+// The coarsest fluid's spacing is dx. Bodies and walls meet fluids with the fluid's kernel: they
+// may be coarser as long as its support holds so many of their spacings. With fewer it tells their
+// particles one by one (theory.rst). Which of several fluids they meet is seen at the start.
+static constexpr char STANDARD[] = "density by continuity, as fix fsi scheme standard has it",
+                      COUPLE_WALL[] = "couple wall in pair_style fsi/fluid",
+                      OWN_VOLUMES[] = "a pressure of the body's own is that of its own volumes";
+
+void Check::require(const std::string &what, bool met, const char *setting,
+                    const char *reason) const
+{
+  if (!met) error->all(FLERR, "{} requires {}: {}", what, setting, reason);
+}
 
 void Check::spacings() const
 {
@@ -234,7 +223,7 @@ void Check::spacings() const
     if (s.species == FLUID) {
       if (own > dx)
         error->all(FLERR, "{}, a fluid: dx, {:g}, is to be that of the coarsest fluid", what, dx);
-      fluid_spacings(what);
+      fluid_spacings(what + ", a fluid,");
       continue;
     }
     if (s.form == UPDATED_LAGRANGIAN)
@@ -243,10 +232,8 @@ void Check::spacings() const
                  "Use pair_style fsi/solid/tl, whose "
                  "bonds are those of one body",
                  what);
-    if (scene.density_solid != Scene::CONTINUITY)
-      error->all(FLERR,
-                 "{} requires fix fsi solid continuity: number densities are those of one spacing",
-                 what);
+    require(what, scene.density_solid == Scene::CONTINUITY, STANDARD,
+            "number densities are those of one spacing");
     if (!fluid.style) continue;
     if (own > ROUND * std::min(COARSEST * dx, scene.cut / HELD))
       error->all(FLERR,
@@ -257,35 +244,23 @@ void Check::spacings() const
     if (ROUND * FINEST * own < finest)
       error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most",
                  what, finest / own, finest, FINEST);
-    if (fluid.couples_stress)
-      error->all(FLERR,
-                 "{} requires couple wall in pair_style fsi/fluid: a pressure of the body's own is "
-                 "that of its own volumes",
-                 what);
+    require(what, !fluid.couples_stress, COUPLE_WALL, OWN_VOLUMES);
   }
 }
 
-/* ----------------------------------------------------------------------
-   what one lattice alone has a number density for
-------------------------------------------------------------------------- */
-
+// what one lattice alone has a number density for
 void Check::fluid_spacings(const std::string &what) const
 {
   const Facts fluid = facts_of_fluids(lmp);
-  const auto require = [&](bool met, const char *setting, const char *reason) {
-    if (!met) error->all(FLERR, "{}, a fluid, requires {}: {}", what, setting, reason);
-  };
   const char *const jump = "number densities are not smooth where two lattices meet";
-  require(scene.density_fluid == Scene::CONTINUITY, "fix fsi fluid continuity", jump);
-  require(scene.density_solid != Scene::SUMMATION, "another mode than fix fsi solid summation",
-          jump);
-  require(!fluid.density_at_surfaces, "pair_style fsi/fluid density/surface no", jump);
-  require(!fluid.couples_stress, "couple wall in pair_style fsi/fluid",
-          "a pressure of the body's own is that of its own volumes");
-  require(!scene.sight, "fix fsi without thin", "what a thin body hides is found for one spacing");
+  require(what, scene.density_fluid == Scene::CONTINUITY, STANDARD, jump);
+  require(what, scene.density_solid != Scene::SUMMATION,
+          "another mode than fix fsi solid summation", jump);
+  require(what, !fluid.density_at_surfaces, "pair_style fsi/fluid density/surface no", jump);
+  require(what, !fluid.couples_stress, COUPLE_WALL, OWN_VOLUMES);
+  require(what, !scene.sight, "fix fsi without thin",
+          "what a thin body hides is found for one spacing");
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Check::thin_bodies() const
 {
@@ -297,21 +272,12 @@ void Check::thin_bodies() const
     if (species == FLUID)
       error->all(FLERR, "{}: atom type {} is a fluid, expected a solid or a wall of particles",
                  what, t);
-    if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY)
-      error->all(FLERR,
-                 "{} requires fix fsi fluid continuity and solid continuity: number densities "
-                 "would jump where a body comes between",
-                 what);
-    if (fluid.couples_stress)
-      error->all(FLERR,
-                 "{} requires couple wall in pair_style fsi/fluid: each side has its own pressure",
-                 what);
+    require(what,
+            scene.density_fluid == Scene::CONTINUITY && scene.density_solid == Scene::CONTINUITY,
+            STANDARD, "number densities would jump where a body comes between");
+    require(what, !fluid.couples_stress, COUPLE_WALL, "each side has its own pressure");
   }
 }
-
-/* ----------------------------------------------------------------------
-   LAMMPS stops at positions that are not finite, too, but does not say whose: look before it does
-------------------------------------------------------------------------- */
 
 void Check::init()
 {
@@ -339,18 +305,13 @@ void Check::init()
   judge(Stop::BEFORE);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Check::setup()
 {
   look(true, 0.0);
   judge(Stop::START);
 }
 
-/* ----------------------------------------------------------------------
-   before LAMMPS says of a position only that it is none
-------------------------------------------------------------------------- */
-
+// LAMMPS would say that a position is not finite, but not whose
 void Check::positions()
 {
   const int n = atom->nlocal;
@@ -360,25 +321,18 @@ void Check::positions()
   judge(Stop::BEFORE);
 }
 
-/* ----------------------------------------------------------------------
-   Positions of local and ghost atoms are those of the middle of the step, velocities those of
-   its start, and both can be brought back. Forces are looked at in each step, what follows from
-   them every few: what the kicks between two looks add up to is finite. (Stress that is not
-   finite makes forces that are not, too; a position does not, since pairs do not see each other
-   any more.)
-------------------------------------------------------------------------- */
-
+// Positions of local and ghost atoms are those of the middle of the step, velocities those of its
+// start, and both can be brought back. Forces are looked at in each step, what follows from them
+// every few: what the kicks between two looks add up to is finite. (Stress that is not finite makes
+// forces that are not, too; a position does not, since pairs do not see each other any more.)
 void Check::before_kick()
 {
   look(neighbor->ago == 0 || update->ntimestep % EVERY == 0, update->dt * force->ftm2v);
   if (scene.substeps == 1) judge(Stop::MIDDLE);
 }
 
-/* ----------------------------------------------------------------------
-   sub-steps may take solids anywhere: keep a state to go back to, and look at them before the
-   fluid is kicked
-------------------------------------------------------------------------- */
-
+// sub-steps may take solids anywhere: keep a state to go back to, and look at them before the
+// fluid is kicked
 void Check::before_substeps(const std::vector<int> &solids)
 {
   substepped = &solids;
@@ -405,10 +359,7 @@ void Check::after_substeps()
   judge(Stop::MIDDLE);
 }
 
-/* ----------------------------------------------------------------------
-   blocks of particles in which all is small are passed over
-------------------------------------------------------------------------- */
-
+// blocks of particles in which all is small are passed over
 void Check::look(bool closely, double kick)
 {
   const int n = atom->nlocal;
@@ -433,12 +384,9 @@ void Check::look(bool closely, double kick)
   if (closely && !told_dense) look_at_densities();
 }
 
-/* ----------------------------------------------------------------------
-   What is pressed together far more than sound allows for is no fluid of this method: a pressure
-   in wrong units, two inlets against each other, a force that holds particles where others come.
-   It goes on, but not without a word.
-------------------------------------------------------------------------- */
-
+// What is pressed together far more than sound allows for is no fluid of this method: a pressure
+// in wrong units, two inlets against each other, a force that holds particles where others come.
+// It goes on, but not without a word.
 void Check::look_at_densities()
 {
   const double *const rho = atom->rho;
@@ -474,8 +422,6 @@ void Check::inside_out()
   if (scene.inverted >= 0) enter(stop.finding(DENSITY, scene.inverted, scene.inverted_density));
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Check::examine(int i, double kick)
 {
   const double *const v = atom->v[i], *const f = atom->f[i];
@@ -505,10 +451,7 @@ void Check::examine(int i, double kick)
     enter(stop.finding(MACH, i, std::sqrt(vsq / s.wave_speed_sq())));
 }
 
-/* ----------------------------------------------------------------------
-   what is not finite comes first
-------------------------------------------------------------------------- */
-
+// what is not finite comes first
 static double rank_of(const Finding &f)
 {
   if (!f.tag) return 0.0;
@@ -522,10 +465,7 @@ void Check::enter(const Finding &one)
   if (rank_of(one) > rank_of(found)) found = one;
 }
 
-/* ----------------------------------------------------------------------
-   all ranks stop together
-------------------------------------------------------------------------- */
-
+// all ranks stop together
 void Check::judge(Stop::When when)
 {
   enum { CALM, DENSE, LOST_MEANING };

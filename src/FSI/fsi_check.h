@@ -58,6 +58,7 @@ namespace FSI {
     bool told_dense;                       // in this run
     Finding found;    // the first thing that is not finite, or the worst of this rank
 
+    void require(const std::string &what, bool met, const char *setting, const char *reason) const;
     void spacings() const;
     void fluid_spacings(const std::string &what) const;
     void compare_densities();

@@ -21,8 +21,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 double Clock::now(const Update *update)
 {
   return update->atime + (update->ntimestep - update->atimestep) * update->dt;
@@ -42,12 +40,9 @@ void Clock::read(const Record &record)
               at[1]};
 }
 
-/* ----------------------------------------------------------------------
-   LAMMPS counts time from a step on, and forgets that step at each init: in a run that goes on
-   without a timestep command the time since then is lost. With the numbers of the file it is that
-   of the uninterrupted run, bit for bit. Where a command has set another time or step, that holds.
-------------------------------------------------------------------------- */
-
+// LAMMPS counts time from a step on, and forgets that step at each init: in a run that goes on
+// without a timestep command the time since then is lost. With the numbers of the file it is that
+// of the uninterrupted run, bit for bit. Where a command has set another time or step, that holds.
 void Clock::restore()
 {
   if (!kept) return;

@@ -25,48 +25,34 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 Fields::~Fields()
 {
-  for (auto &f : fields) {
-    memory->destroy(f.one);
-    memory->destroy(f.many);
-    memory->destroy(f.integers);
-  }
+  for (auto &f : fields)
+    f.with([this](auto *&own, auto *&) {
+      memory->destroy(own);
+    });
 }
 
 void Fields::set(const std::string &name, Life life, bool wanted, double *&array)
 {
-  Field f;
-  f.name = name;
-  f.life = life;
-  f.columns = 1;
+  Field f = {name, life, 1};
   f.one_of = &array;
   set(f, wanted);
 }
 
 void Fields::set(const std::string &name, Life life, bool wanted, double **&array, int columns)
 {
-  Field f;
-  f.name = name;
-  f.life = life;
-  f.columns = columns;
+  Field f = {name, life, columns};
   f.many_of = &array;
   set(f, wanted);
 }
 
 void Fields::set(const std::string &name, Life life, bool wanted, int *&array)
 {
-  Field f;
-  f.name = name;
-  f.life = life;
-  f.columns = 1;
+  Field f = {name, life, 1};
   f.integers_of = &array;
   set(f, wanted);
 }
-
-/* ---------------------------------------------------------------------- */
 
 Fields::Field *Fields::find(const std::string &name)
 {
@@ -75,7 +61,11 @@ Fields::Field *Fields::find(const std::string &name)
   return nullptr;
 }
 
-void Fields::set(const Field &f, bool wanted)
+static const auto hand_over = [](auto *own, auto *&of_owner) {
+  of_owner = own;
+};
+
+void Fields::set(Field f, bool wanted)
 {
   Field *old = find(f.name);
   if (old && wanted && old->columns == f.columns && old->life == f.life) {
@@ -83,16 +73,13 @@ void Fields::set(const Field &f, bool wanted)
     old->one_of = f.one_of;
     old->many_of = f.many_of;
     old->integers_of = f.integers_of;
-    hand_over(*old);
+    old->with(hand_over);
     return;
   }
+  f.with(hand_over);    // null
   if (old) {
     free(*old);
     fields.erase(fields.begin() + (old - fields.data()));
-  } else {
-    if (f.one_of) *f.one_of = nullptr;
-    if (f.many_of) *f.many_of = nullptr;
-    if (f.integers_of) *f.integers_of = nullptr;
   }
   if (!wanted) return;
   fields.push_back(f);
@@ -103,12 +90,10 @@ void Fields::set(const Field &f, bool wanted)
 
 void Fields::free(Field &f)
 {
-  memory->destroy(f.one);
-  memory->destroy(f.many);
-  memory->destroy(f.integers);
-  if (f.one_of) *f.one_of = nullptr;
-  if (f.many_of) *f.many_of = nullptr;
-  if (f.integers_of) *f.integers_of = nullptr;
+  f.with([this](auto *&own, auto *&of_owner) {
+    memory->destroy(own);
+    of_owner = nullptr;
+  });
 }
 
 void Fields::resize(Field &f, int rows)
@@ -118,17 +103,8 @@ void Fields::resize(Field &f, int rows)
   if (f.one_of) memory->grow(f.one, rows, name.c_str());
   if (f.many_of) memory->grow(f.many, rows, f.columns, name.c_str());
   if (f.integers_of) memory->grow(f.integers, rows, name.c_str());
-  hand_over(f);
+  f.with(hand_over);
 }
-
-void Fields::hand_over(const Field &f)
-{
-  if (f.one_of) *f.one_of = f.one;
-  if (f.many_of) *f.many_of = f.many;
-  if (f.integers_of) *f.integers_of = f.integers;
-}
-
-/* ---------------------------------------------------------------------- */
 
 bool Fields::any(Life life) const
 {
@@ -156,8 +132,6 @@ double Fields::memory_usage() const
     bytes += (double) f.rows * f.columns * (f.integers ? sizeof(int) : sizeof(double));
   return bytes;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Fields::grow_lasting(int nmax)
 {
@@ -340,6 +314,7 @@ int Message::size() const
 
 template <class Visit> void Message::visit(int i, Visit visit) const
 {
+  if (group && !(atom->mask[i] & group)) return;
   const int kind = 1 << state[atom->type[i]].species;
   for (const auto &p : columns)
     if ((p.species & kind) && (!p.when || *p.when)) visit(p.at(i), p.n);

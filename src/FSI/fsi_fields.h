@@ -75,15 +75,20 @@ namespace FSI {
       int **integers_of = nullptr;
       int in_file = -1;    // where its numbers begin in those of a restart file
 
+      template <class Use> void with(Use use)    // its array, and where its owner has that
+      {
+        if (one_of) use(one, *one_of);
+        if (many_of) use(many, *many_of);
+        if (integers_of) use(integers, *integers_of);
+      }
       double *at(int i) const { return one ? one + i : many[i]; }
     };
     std::vector<Field> fields;
     bool has_record = false;
 
     Field *find(const std::string &name);
-    void set(const Field &, bool wanted);
+    void set(Field, bool wanted);
     void resize(Field &, int rows);
-    static void hand_over(const Field &);
     void free(Field &);
   };
 
@@ -93,6 +98,7 @@ namespace FSI {
     Message(LAMMPS *lmp, const std::vector<State> &state) : Pointers(lmp), state(state) {}
     Message(const Message &) = delete;    // holds addresses of its owner
     void clear() { columns.clear(); }
+    int group = 0;    // bit of the group whose particles it is about; 0: all
     // when: null, or whether it is carried now
     void add(double *&array, std::initializer_list<int> species, const bool *when = nullptr);
     void add(double **&array, int first, int n, std::initializer_list<int> species,

@@ -18,8 +18,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 std::shared_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h, bool packs)
 {
 #if FSI_PACKS

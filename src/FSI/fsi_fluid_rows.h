@@ -329,7 +329,7 @@ namespace FSI {
   // What is constant in a row of forces.
   struct RowConstants {
     double c, bulk, floor;     // speed of sound of viscosity, modulus of the guard, lowest pressure
-    double rubs, visc;         // does the wall? sum of both viscosities
+    double rubs, visc;         // 0 where a wall slips, else 1; sum of both viscosities
     double volume, sharper;    // of neighbors of another spacing
     bool thin;
     double extrapolate[3];    // solids and thin walls: gravity, if pressures beyond them are

@@ -27,11 +27,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ----------------------------------------------------------------------
-   Not where something else than particles moves relative to the places: walls, the box. Open ends
-   make and delete particles when lists are new, before these have gone half a skin.
-------------------------------------------------------------------------- */
-
+// Not where something else than particles moves relative to the places: walls, the box. Open ends
+// make and delete particles when lists are new, before these have gone half a skin.
 void Frame::init()
 {
   left = 0.0;

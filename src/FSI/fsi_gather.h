@@ -51,6 +51,20 @@ namespace FSI {
     return {all.begin(), all.end()};
   }
 
+  // what the rank has whose key is the least; T: anything without pointers
+  template <class T> inline T of_least(double key, T mine, MPI_Comm world)
+  {
+    static_assert(std::is_trivially_copyable<T>::value, "it is sent as bytes");
+    struct {
+      double key;
+      int rank;
+    } own = {key, 0}, least;
+    MPI_Comm_rank(world, &own.rank);
+    MPI_Allreduce(&own, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+    MPI_Bcast(&mine, sizeof(T), MPI_BYTE, least.rank, world);
+    return mine;
+  }
+
   // how many particles there are that is(i) holds for, and the least of their tags
   struct Found {
     bigint count = 0;

@@ -120,23 +120,32 @@ namespace FSI {
     return dropped ? Gradient<D>::PARTIAL : Gradient<D>::QUADRATIC;
   }
 
-  // Inverse C of moments sum_j w_j x_j x_j^T (packed) for the slopes of a linear fit, in which
-  // directions fade along which neighbors hardly lie apart: there a slope is that of their noise.
-  // Half of a disc about its own center has 0.28 of its largest eigenvalue, half of a ball 0.30.
+  // principal values, decreasing, and axes (rows) of packed moments sum_j w_j x_j x_j^T
+  template <int D> inline void principal(const double *moments, double *value, double (*axes)[D])
+  {
+    double M[3][3] = {}, columns[3][3];
+    for (int a = 0; a < D; a++)
+      for (int b = 0; b <= a; b++) M[a][b] = M[b][a] = *moments++;
+    MathEigen::jacobi3(M, value, columns);    // in 2D the third is across the plane
+    for (int k = 0; k < D; k++)
+      for (int a = 0; a < D; a++) axes[k][a] = columns[a][k];
+  }
+
+  // Inverse C of such moments for the slopes of a linear fit. Directions along which neighbors
+  // hardly lie apart fade: there a slope is that of noise. Half of a disc about its own center has
+  // 0.28 of its largest eigenvalue, half of a ball 0.30.
   template <int D> inline void faded_inverse(const double *moments, double *C)
   {
     constexpr double NONE = 0.02, ALL = 0.1;    // of the largest eigenvalue
-    double M[3][3] = {}, value[3], axes[3][3];
-    for (int a = 0, k = 0; a < D; a++)
-      for (int b = 0; b <= a; b++) M[a][b] = M[b][a] = moments[k++];
-    MathEigen::jacobi3(M, value, axes);    // as columns, by decreasing value
+    double value[3], axes[D][D];
+    principal<D>(moments, value, axes);
     std::fill_n(C, D * D, 0.0);
     for (int k = 0; k < D; k++) {
       if (!(value[k] > NONE * value[0])) break;
       const double t = std::min(1.0, (value[k] / value[0] - NONE) / (ALL - NONE));
       for (int a = 0; a < D; a++)
         for (int b = 0; b < D; b++)
-          C[a * D + b] += t * t * (3.0 - 2.0 * t) / value[k] * axes[a][k] * axes[b][k];
+          C[a * D + b] += t * t * (3.0 - 2.0 * t) / value[k] * axes[k][a] * axes[k][b];
     }
   }
 
@@ -179,15 +188,12 @@ namespace FSI {
     // bar two by two across. False if the neighbors lie in a line (2D) or plane (3D).
     static bool principal_axes(int n, const double *dX, const double *w, double (*axes)[D])
     {
-      // in 2D a third axis, the last, without neighbors along it
-      double moment[3][3] = {}, value[3], principal[3][3];
+      double moments[packed_size(D)] = {}, value[3];
       for (int j = 0; j < n; j++)
-        for (int a = 0; a < D; a++)
-          for (int b = 0; b < D; b++) moment[a][b] += w[j] * dX[j * D + a] * dX[j * D + b];
-      for (int a = 0; a < D; a++) moment[a][a] *= 1.0 - PREFERENCE * a;
-      MathEigen::jacobi3(moment, value, principal);    // as columns, by decreasing value
-      for (int k = 0; k < D; k++)
-        for (int a = 0; a < D; a++) axes[k][a] = principal[a][k];
+        for (int a = 0, m = 0; a < D; a++)
+          for (int b = 0; b <= a; b++) moments[m++] += w[j] * dX[j * D + b] * dX[j * D + a];
+      for (int a = 0; a < D; a++) moments[packed_size(a) + a] *= 1.0 - PREFERENCE * a;
+      principal<D>(moments, value, axes);
       return value[D - 1] > FLAT * value[0];
     }
 

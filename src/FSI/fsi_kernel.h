@@ -27,7 +27,6 @@
 #include "math_const.h"
 
 #include <cmath>
-#include <type_traits>
 
 namespace LAMMPS_NS {
 namespace FSI {

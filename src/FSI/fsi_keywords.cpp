@@ -25,8 +25,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 std::string Range::text() const
 {
   if (low > -LARGEST && high < LARGEST && !low_open && !high_open)
@@ -37,8 +35,6 @@ std::string Range::text() const
     text += fmt::format("{}{} {:g}", text.empty() ? "" : " and ", high_open ? "<" : "<=", high);
   return text.empty() ? "a number" : text;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FSI::numeric(LAMMPS *lmp, const std::string &what, const std::string &value,
                     const Range &range, bool alone, const std::string &other)
@@ -421,8 +417,6 @@ void Keywords::compare(const Record &record, const std::string &when) const
     if (comm->me == 0) error->warning(FLERR, text);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::vector<Keywords::Effect> Keywords::effects() const
 {

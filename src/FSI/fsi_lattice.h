@@ -30,30 +30,9 @@
 #include "fsi_kernel.h"
 
 #include <cmath>
-#include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
-
-  struct LatticeNeighbor {
-    double x[3] = {}, g = 0.0, q = 0.0;    // place; g and (W'' - g)/r^2 over psi
-  };
-
-  template <class K> std::vector<LatticeNeighbor> lattice_neighbors(const K &kernel, double dx)
-  {
-    const double psi = lattice_number_density(kernel, dx);
-    const int n = static_cast<int>(kernel.cut / dx) + 1, nz = K::DIM == 3 ? n : 0;
-    std::vector<LatticeNeighbor> all;
-    for (int k = -nz; k <= nz; k++)
-      for (int j = -n; j <= n; j++)
-        for (int i = -n; i <= n; i++) {
-          const double rsq = dx * dx * (i * i + j * j + k * k), r = std::sqrt(rsq);
-          if (r == 0.0 || r >= kernel.cut) continue;
-          const double g = kernel.gradient(r) / psi;
-          all.push_back({{i * dx, j * dx, k * dx}, g, (kernel.curvature(r) / psi - g) / rsq});
-        }
-    return all;
-  }
 
   struct LatticeStiffness {
     double stretch = 0.0, shear = 0.0;    // modulus over pressure
@@ -61,12 +40,19 @@ namespace FSI {
 
   template <class K> LatticeStiffness lattice_stiffness(const K &kernel, double dx)
   {
-    LatticeStiffness s = {0.0, 0.0};
-    for (const auto &j : lattice_neighbors(kernel, dx)) {
-      const double xsq = j.x[0] * j.x[0], ysq = j.x[1] * j.x[1];
-      s.stretch += j.q * (xsq - ysq) * (xsq - ysq) + 2.0 * j.g * (xsq + ysq);
-      s.shear += j.q * xsq * ysq + j.g * ysq;
-    }
+    const double psi = lattice_number_density(kernel, dx);
+    const int n = static_cast<int>(kernel.cut / dx) + 1, nz = K::DIM == 3 ? n : 0;
+    LatticeStiffness s;
+    for (int k = -nz; k <= nz; k++)
+      for (int j = -n; j <= n; j++)
+        for (int i = -n; i <= n; i++) {
+          const double rsq = dx * dx * (i * i + j * j + k * k), r = std::sqrt(rsq);
+          if (r == 0.0 || r >= kernel.cut) continue;
+          const double g = kernel.gradient(r) / psi, q = (kernel.curvature(r) / psi - g) / rsq,
+                       xsq = i * dx * (i * dx), ysq = j * dx * (j * dx);
+          s.stretch += q * (xsq - ysq) * (xsq - ysq) + 2.0 * g * (xsq + ysq);
+          s.shear += q * xsq * ysq + g * ysq;
+        }
     return s;
   }
 

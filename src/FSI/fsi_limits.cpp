@@ -26,18 +26,13 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
 {
   for (double *row : {step, sub}) std::fill_n(row, NLIMIT, UNLIMITED);
 }
 
-/* ----------------------------------------------------------------------
-   fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6
-   alpha); laminar: h^2/16nu; acceleration: sqrt(h/|a|)/4
-------------------------------------------------------------------------- */
-
+// fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6
+// alpha); laminar: h^2/16nu; acceleration: sqrt(h/|a|)/4
 void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_fluid, double of_solid)
 {
   const int *const mask = atom->mask, *const type = atom->type;
@@ -105,8 +100,6 @@ void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_flu
       m[LAMINAR] = std::min(m[LAMINAR], own * safe[LAMINAR] * h * h * s.rho0 / s.viscosity);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Limits::reduce()
 {

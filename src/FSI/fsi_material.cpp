@@ -29,18 +29,13 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 double State::density(double p) const
 {
   if (tait) return rho0 * std::pow(1.0 + 7.0 * (p - p0) / (rho0 * csq), 1.0 / 7.0);
   return rho0 + (p - p0) / csq;
 }
 
-/* ----------------------------------------------------------------------
-   below the density at which the floor is reached p stays at the floor
-------------------------------------------------------------------------- */
-
+// below the density at which the floor is reached p stays at the floor
 double State::energy(double rho) const
 {
   const auto integral = [this](double r) {
@@ -218,8 +213,6 @@ class MaterialReader : protected Pointers {
 
 }    // namespace
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<Material> FSI::read_materials(LAMMPS *lmp, const std::string &file,
                                           const std::vector<std::string> &names,
                                           const std::map<std::string, std::string> &given)
@@ -241,8 +234,6 @@ std::vector<Material> FSI::read_all_materials(LAMMPS *lmp, const std::string &fi
   MPI_Bcast(found.data(), static_cast<int>(n * sizeof(Material)), MPI_BYTE, 0, lmp->world);
   return found;
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::string FSI::describe(const Material &m)
 {

@@ -24,10 +24,7 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ----------------------------------------------------------------------
-   A name that is given again is the new material; a pair style has it from its next pair_coeff on.
-------------------------------------------------------------------------- */
-
+// A name that is given again is the new material; a pair style has it from its next pair_coeff on.
 void FSIMaterial::command(int narg, char **arg)
 {
   auto *const avec = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));

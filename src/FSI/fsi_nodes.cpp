@@ -20,8 +20,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 Nodes::Nodes(LAMMPS *lmp) :
     Pointers(lmp),
     nlateral(1), lateral{0, 0}, distance{1.0, 1.0}, first{0, 0}, count{1, 1}, periodic{false,
@@ -53,8 +51,6 @@ void Nodes::place(int axis, double spacing)
   }
   if (nlateral == 1) distance[1] = distance[0];
 }
-
-/* ---------------------------------------------------------------------- */
 
 Nodes::Box Nodes::around(const std::vector<const double *> &places, double reach) const
 {
@@ -117,8 +113,6 @@ void Nodes::share(const std::vector<const double *> &give, double reach,
     if (!peer.give.empty() || !peer.take.empty()) peers.push_back(std::move(peer));
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Nodes::begin(int to_sum, int largest)
 {

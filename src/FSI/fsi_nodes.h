@@ -21,7 +21,6 @@
 #include "pointers.h"
 
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {

@@ -19,21 +19,16 @@
 #include "fsi_profile.h"
 #include "fsi_scene.h"
 
-#include <algorithm>
 #include <cstring>
 #include <utility>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 NumberDensity::NumberDensity(LAMMPS *lmp, Scene &scene, SumOverGhosts add_ghosts) :
     Pointers(lmp), scene(scene), add_ghosts(std::move(add_ghosts)), ratio(nullptr)
 {
 }
-
-/* ---------------------------------------------------------------------- */
 
 void NumberDensity::set_fields(Fields &fields)
 {
@@ -48,8 +43,6 @@ void NumberDensity::add_messages(Message &to_ghosts)
 {
   if (scene.need_psi) to_ghosts.add(scene.psi, {FLUID, SOLID, RIGID});
 }
-
-/* ---------------------------------------------------------------------- */
 
 void NumberDensity::renew()
 {
@@ -66,12 +59,9 @@ void NumberDensity::renew()
     find_density();
 }
 
-/* ----------------------------------------------------------------------
-   psi_i = sum_j W_ij, self included (paper eq. 8): over all neighbors for a fluid; for a solid over
-   its own body, and over all neighbors in density mode summation, the paper's. Of finer fluids it
-   is what it would be on the coarsest's lattice.
-------------------------------------------------------------------------- */
-
+// psi_i = sum_j W_ij, self included (paper eq. 8): over all neighbors for a fluid; for a solid over
+// its own body, and over all neighbors in density mode summation, the paper's. Of finer fluids it
+// is what it would be on the coarsest's lattice.
 void NumberDensity::find(double *n) const
 {
   memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
@@ -90,11 +80,8 @@ void NumberDensity::find(double *n) const
   });
 }
 
-/* ----------------------------------------------------------------------
-   summation: rho_i = m_i psi_i (paper eq. 12)
-   ratio: rho_i = rho_i^0 psi_i/psi_i^0 with the reference taken when the mode starts
-------------------------------------------------------------------------- */
-
+// summation: rho_i = m_i psi_i (paper eq. 12)
+// ratio: rho_i = rho_i^0 psi_i/psi_i^0 with the reference taken when the mode starts
 void NumberDensity::find_density()
 {
   double *rho = atom->rho;

@@ -23,11 +23,8 @@
 
 using namespace LAMMPS_NS;
 
-/* ----------------------------------------------------------------------
-   By cells of space, by ID in each: what is near in space is near in memory, whatever IDs are like.
-   Cells do not depend on the box, whose bounds may follow the particles.
-------------------------------------------------------------------------- */
-
+// By cells of space, by ID in each: what is near in space is near in memory, whatever IDs are like.
+// Cells do not depend on the box, whose bounds may follow the particles.
 void FSI::sort_by_place(Atom *atom, double width)
 {
   const int n = atom->nlocal;

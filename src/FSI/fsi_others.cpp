@@ -40,10 +40,7 @@ void Others::init()
   spins = any && atom->radius_flag && atom->omega_flag && atom->torque_flag;
 }
 
-/* ----------------------------------------------------------------------
-   an atom that was never given a mass or a density gets those of the stress-free lattice
-------------------------------------------------------------------------- */
-
+// an atom that was never given a mass or a density gets those of the stress-free lattice
 void Others::give_defaults(int i) const
 {
   if (scene.parts.empty()) return;    // before the first run
@@ -72,10 +69,7 @@ bool Others::has_mass_of_new_sphere(int i) const
       atom->rmass[i] == 4.0 * MY_PI / 3.0 * 0.5 * 0.5 * 0.5;    // as AtomVecSphere writes it
 }
 
-/* ----------------------------------------------------------------------
-   spheres, in 2D too, as in fix nve/sphere
-------------------------------------------------------------------------- */
-
+// spheres, in 2D too, as in fix nve/sphere
 void Others::turn(double dt) const
 {
   if (!spins) return;

@@ -27,8 +27,6 @@ using namespace FSI;
 
 static constexpr char MAGIC[] = "FSI 2 ";    // of the format
 
-/* ---------------------------------------------------------------------- */
-
 Record::Record(LAMMPS *lmp, const std::string &style_in) : Pointers(lmp), style(style_in) {}
 
 Record::Record(LAMMPS *lmp, const std::string &style_in, const char *text) :
@@ -48,8 +46,6 @@ Record::Record(LAMMPS *lmp, const std::string &style_in, const char *text) :
     text = end + 1;
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Record::add(const std::string &name, const std::vector<double> &numbers)
 {
@@ -80,8 +76,6 @@ std::vector<double> Record::numbers(const std::string &name) const
     list.push_back(std::strtod(word.c_str(), nullptr));
   return list;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Record::write(FILE *fp) const
 {
@@ -116,8 +110,6 @@ Record Record::read(LAMMPS *lmp, const std::string &style, FILE *fp)
   text.back() = '\0';
   return {lmp, style, text.data()};
 }
-
-/* ---------------------------------------------------------------------- */
 
 // LAMMPS shows what it has read to classes derived from its own only
 namespace {

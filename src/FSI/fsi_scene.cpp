@@ -16,10 +16,12 @@
 #include "atom.h"
 #include "error.h"
 #include "fix.h"
+#include "force.h"
 #include "fsi_kernel.h"
 #include "fsi_part.h"
 #include "lammps.h"
 #include "modify.h"
+#include "pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,14 +29,10 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) : mover(fix_fsi), body_forces(lmp), instance(lmp)
 {
   state.resize(lmp->atom->ntypes + 1);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Discretization::resolve(double hdx, const std::vector<double> &spacing)
 {
@@ -65,8 +63,6 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Scene::enter_state(int type, const State &s)
 {
   if (!states_entered) state.assign(state.size(), State());
@@ -77,8 +73,6 @@ void Scene::enter_state(int type, const State &s)
   state[type].h = resolution[type].h;
   state[type].w0 = resolution[type].w0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Discretization::find_levels()
 {
@@ -98,8 +92,6 @@ void Discretization::find_levels()
       if (state[t].species == FLUID && dx_of(t) == levels[l].dx) level_of[t] = l;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Scene::gather_walls()
 {
   walls.wall.clear();
@@ -110,8 +102,6 @@ void Scene::gather_walls()
                          walls.wall.size(), Walls::MAXWALL);
   walls.find_reflections();
 }
-
-/* ---------------------------------------------------------------------- */
 
 // walls of particles go on behind a mirror themselves
 void Scene::find_near_walls()
@@ -126,8 +116,6 @@ void Scene::find_near_walls()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<std::string> Discretization::density_names(int species)
 {
   if (species == FLUID) return {"continuity", "summation"};
@@ -139,16 +127,12 @@ bool Scene::density_follows_shift() const
   return facts_of_fluids(instance).density_follows_shift;
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool Scene::has_open_ends() const
 {
   Modify *const modify = instance->modify;
   return !modify->get_fix_by_style("^fsi/inlet$").empty() ||
       !modify->get_fix_by_style("^fsi/outlet$").empty();
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool Discretization::several_stiffnesses() const
 {
@@ -164,8 +148,6 @@ bool Discretization::several_stiffnesses() const
   return false;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double Scene::pressure(int i) const
 {
   const Atom *const atom = instance->atom;
@@ -177,14 +159,10 @@ double Scene::pressure(int i) const
   return s.pressure(atom->rho[i]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 double Scene::density_ratio(int i) const
 {
   return instance->atom->rho[i] / state[instance->atom->type[i]].rho0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double Scene::potential(int i) const
 {
@@ -198,8 +176,6 @@ double Scene::stored(int i) const
   const Atom *const atom = instance->atom;
   return atom->rmass[i] * state[atom->type[i]].energy(atom->rho[i]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool Scene::is_total_lagrangian(int i) const
 {
@@ -215,4 +191,23 @@ bool Scene::is_moved(int i) const
     if (modify->fix[k]->time_integrate && instance->atom->mask[i] & modify->fix[k]->groupbit)
       return true;
   return false;
+}
+
+static Facts facts_of(LAMMPS *lmp, const char *style)
+{
+  if (!lmp->force->pair) return Facts();
+  const auto *const part = dynamic_cast<const Part *>(lmp->force->pair_match(style, 1));
+  return part ? part->facts() : Facts();
+}
+
+Facts FSI::facts_of_fluids(LAMMPS *lmp)
+{
+  return facts_of(lmp, "fsi/fluid");
+}
+
+// there is one of the two (pair_fsi_solid_tl.cpp)
+Facts FSI::facts_of_solids(LAMMPS *lmp)
+{
+  const Facts facts = facts_of(lmp, "fsi/solid");
+  return facts.style ? facts : facts_of(lmp, "fsi/solid/tl");
 }

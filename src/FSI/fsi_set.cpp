@@ -32,19 +32,16 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ----------------------------------------------------------------------
-   fsi/set group-ID density value
-   fsi/set group-ID pressure value      density that gives this pressure
-   fsi/set group-ID hydrostatic level
-     the same for p = rho0 |g| (level - height), height along -g; nothing above the level
-   fsi/set group-ID volume value        mass of a particle that has another place than that of the
-                                        square or cubic lattice
-   value: a number or, of density, pressure and volume, an atom-style variable
-   The mass follows: a particle keeps the volume of its place in the lattice. (With the mass of the
-   uncompressed lattice volumes would say "compressed" where distances do not, and still water would
-   settle 2 % off at c = 10 sqrt(2 g H).)
-------------------------------------------------------------------------- */
-
+// fsi/set group-ID density value
+// fsi/set group-ID pressure value      density that gives this pressure
+// fsi/set group-ID hydrostatic level
+//   the same for p = rho0 |g| (level - height), height along -g; nothing above the level
+// fsi/set group-ID volume value        mass of a particle that has another place than that of the
+//                                      square or cubic lattice
+// value: a number or, of density, pressure and volume, an atom-style variable
+// The mass follows: a particle keeps the volume of its place in the lattice. (With the mass of the
+// uncompressed lattice volumes would say "compressed" where distances do not, and still water would
+// settle 2 % off at c = 10 sqrt(2 g H).)
 void FSISet::command(int narg, char **arg)
 {
   if (domain->box_exist == 0) error->all(FLERR, "Fsi/set command before simulation box is defined");

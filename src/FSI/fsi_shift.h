@@ -14,18 +14,15 @@
 // Particle shifting (delta-plus-SPH: Sun, Colagrossi, Marrone and Zhang 2017, Comput. Methods Appl.
 // Mech. Eng. 315, 25):
 //   delta r_i = -C c h dt sum_j V_j [1 + 0.2 (W_ij/W(dx))^4] grad_i W_ij,  |delta r_i| <= C c dt/4
-// Particles move from where they are dense to where they are not. Sun et al. have C = 2 Ma, with Ma
-// = 0.1 the largest
-// expected speed U over c; the bound is then their U/2. The sum vanishes on a lattice.
+// Particles move from where they are dense to where they are not; the sum vanishes on a lattice.
+// Sun et al. have C = 2 Ma, Ma = 0.1 the largest expected speed U over c: the bound is their U/2.
 //
 // Where kernels are cut off by a free surface the sum points out of the fluid. There the part along
-// the normal
-// n ~ sum_j V_j grad_i W_ij is taken out, and nothing is left on edges, in jets and drops. What
-// tells is how much of the divergence of position is missing, d - sum_j V_j x_ji.grad_i W_ij: 0
-// inside, 0.7 to 0.8 in the first row of a plane surface
-// and 0.1 to 0.4 in the second, 1.3 on a straight edge, in 2D and 3D. Walls (images) and solids
-// count as full. A fluid that fills its box has no surface: what is missing there is a gap, which
-// the whole sum closes.
+// the normal n ~ sum_j V_j grad_i W_ij is taken out, and nothing is left on edges, in jets and
+// drops. What tells is how much of the divergence of position is missing, d - sum_j V_j x_ji.grad_i
+// W_ij: 0 inside, 0.7 to 0.8 in the first row of a plane surface and 0.1 to 0.4 in the second, 1.3
+// on a straight edge, in 2D and 3D. Walls (images) and solids count as full. A fluid that fills its
+// box has no surface: what is missing there is a gap, which the whole sum closes.
 //
 // The flow does not move with the particles: where a particle comes to it takes the velocity of the
 // flow there (Sun, Colagrossi, Marrone, Antuono and Zhang 2019, Comput. Phys. Commun. 244, 36, have
@@ -35,14 +32,12 @@
 // of fluid neighbors alone, exact for linear fields wherever they are. Without it vortices behind a
 // cylinder are too weak (doc/src/theory.rst). This does not keep momentum, so it is done where the
 // fluid fills its box: there walls and streams give and take momentum all the time; a jet or a drop
-// has but its own. Density goes along
-// unchanged: delta r.grad rho is sound, which goes as it comes. But displaced particles fill their
-// places with the mass that they have, and density and volume drift apart: in a closed stream
-// pressure falls, and between open ends, where nothing else holds the number of particles, it grows
-// until some are pressed out. So there the rate of density has the velocity v + delta r/dt (delta r
-// of the step before), at the price of sound: half as much again in forces.
-// Angular momentum and energy are not kept exactly, and the energy ledger knows nothing of
-// shifting.
+// has but its own. Density goes along unchanged: delta r.grad rho would be sound. But displaced
+// particles fill their places with the mass that they have, so density and volume drift apart: in a
+// closed stream pressure falls, between open ends it grows until particles are pressed out. There
+// the rate of density has the velocity v + delta r/dt (of the step before), at the price of sound:
+// half as much again in forces. Angular momentum and energy are not kept exactly; the energy ledger
+// knows nothing of shifting.
 
 #ifndef LMP_FSI_SHIFT_H
 #define LMP_FSI_SHIFT_H

@@ -30,11 +30,8 @@ static constexpr int NTABLE = 400;    // distances for which forces are tabulate
 // where it is so much of the radius, 5/16 in 2D and 64/(70 pi) in 3D
 static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4, AT_EDGE = 0.3;
 
-/* ----------------------------------------------------------------------
-   A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice
-   is finer than the fluid's.
-------------------------------------------------------------------------- */
-
+// A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice
+// is finer than the fluid's.
 Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
     Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{},
     half_space(types.size())
@@ -69,11 +66,8 @@ Sight::Fill Sight::beyond(int type, double distance) const
   return {a.force + (at - k) * (b.force - a.force), a.weight + (at - k) * (b.weight - a.weight)};
 }
 
-/* ----------------------------------------------------------------------
-   local particles and ghosts into cells as wide as the reach of neighbor lists. Those of other
-   bodies count, too, where a thin one goes on as one of them.
-------------------------------------------------------------------------- */
-
+// local particles and ghosts into cells as wide as the reach of neighbor lists. Those of other
+// bodies count, too, where a thin one goes on as one of them.
 bool Sight::counts(int type) const
 {
   const int species = scene.state[type].species;
@@ -144,11 +138,8 @@ bool Sight::near(const double *x) const
   return any;
 }
 
-/* ----------------------------------------------------------------------
-   A solid that passes through a mirror wall goes on in its images, which fluids meet in place of
-   what is behind. Walls of particles have none: they go on behind a mirror themselves.
-------------------------------------------------------------------------- */
-
+// A solid that passes through a mirror wall goes on in its images, which fluids meet in place of
+// what is behind. Walls of particles have none: they go on behind a mirror themselves.
 void Sight::look_from(const double *x, double slack)
 {
   const double within = (scene.cut + slack) * (scene.cut + slack);
@@ -192,8 +183,6 @@ void Sight::see_images()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool Sight::may_hide(const double *y, double slack) const
 {
   double d[3], dsq = 0.0;
@@ -211,13 +200,10 @@ bool Sight::may_hide(const double *y, double slack) const
   });
 }
 
-/* ----------------------------------------------------------------------
-   sum = how many particles of thin bodies the line meets, which end with their spacing and at both
-   ends of the line; lean = the mean place across the line of what is around where it meets them,
-   over that beside a straight edge. The ball in which that is reaches as far as both supports do,
-   so that each rank that has one of the pair has what is in it.
-------------------------------------------------------------------------- */
-
+// sum = how many particles of thin bodies the line meets, which end with their spacing and at both
+// ends of the line; lean = the mean place across the line of what is around where it meets them,
+// over that beside a straight edge. The ball in which that is reaches as far as both supports do,
+// so that each rank that has one of the pair has what is in it.
 static double smooth(double x)
 {
   const double t = std::min(std::max(x, 0.0), 1.0);
@@ -263,11 +249,8 @@ double Sight::visible(const double *y) const
       smooth((sum - MISSES) / (MEETS - MISSES)) * smooth((OUTSIDE - lean) / (OUTSIDE - INSIDE));
 }
 
-/* ----------------------------------------------------------------------
-   The body is as thick as it is along its normal through x, which is the mean of what is on the
-   side of the nearest particle. What is seen beyond the support tells that it is thicker.
-------------------------------------------------------------------------- */
-
+// The body is as thick as it is along its normal through x, which is the mean of what is on the
+// side of the nearest particle. What is seen beyond the support tells that it is thicker.
 static double dot(const double *a, const double *b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -300,10 +283,7 @@ bool Sight::find_face(Face &face) const
   return back > 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   as far as the body hides what is as far behind it as x is before it
-------------------------------------------------------------------------- */
-
+// in the part in which the body hides the place that is as far behind it as x is before it
 Sight::Fill Sight::fill(const Face &face) const
 {
   const Fill all = beyond(face.type, face.distance),
@@ -318,8 +298,6 @@ Sight::Fill Sight::fill(const Face &face) const
   };
   return {over(all.force, missing.force), over(all.weight, missing.weight)};
 }
-
-/* ---------------------------------------------------------------------- */
 
 double Sight::memory_usage() const
 {

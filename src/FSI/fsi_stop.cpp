@@ -41,8 +41,6 @@ using namespace FSI;
 
 static constexpr double SUSPECT = 1.6;    // over the usual Courant number: may be the cause
 
-/* ---------------------------------------------------------------------- */
-
 // as LAMMPS names the log files of partitions
 static std::string of_partition(const Universe *all, const std::string &name)
 {
@@ -55,16 +53,12 @@ Stop::Stop(LAMMPS *lmp, const std::string &who) :
 {
 }
 
-/* ---------------------------------------------------------------------- */
-
 Finding Stop::finding(Trouble trouble, int i, double value, int j) const
 {
   const double *const x = atom->x[i];
   return {value, {x[0], x[1], x[2]}, atom->tag[i], j < 0 ? 0 : atom->tag[j], atom->type[i], trouble,
           0};
 }
-
-/* ---------------------------------------------------------------------- */
 
 Finding Stop::not_finite(int i, bool forces) const
 {
@@ -81,21 +75,10 @@ Finding Stop::not_finite(int i, bool forces) const
   return {};
 }
 
-/* ---------------------------------------------------------------------- */
-
 Finding Stop::worst(const Finding &mine, double key) const
 {
-  struct {
-    double key;
-    int rank;
-  } own = {mine.tag ? key : -1.0e300, comm->me}, first;
-  MPI_Allreduce(&own, &first, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-  Finding all = mine;
-  MPI_Bcast(&all, sizeof(Finding), MPI_BYTE, first.rank, world);
-  return all;
+  return of_least(mine.tag ? -key : 1.0e300, mine, world);
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::string Stop::describe(const Scene &scene, const std::string &what, const Finding &all,
                            When when) const
@@ -120,10 +103,7 @@ std::string Stop::describe(const Scene &scene, const std::string &what, const Fi
   return text + ". Try " + advice(scene, all, when, body);
 }
 
-/* ----------------------------------------------------------------------
-   On all ranks. A body is around a place if the directions to its particles near it all but cancel.
-------------------------------------------------------------------------- */
-
+// On all ranks. A body is around a place if the directions to its particles near it all but cancel.
 Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
 {
   Neighbor body = {1.0e300, scene.dx, 0, 0, NONE, false};
@@ -149,12 +129,7 @@ Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
           r,    scene.dx_of(type[i]), atom->tag[i], atom->molecule[i], scene.state[type[i]].species,
           false};
   });
-  struct {
-    double distance;
-    int rank;
-  } own = {body.distance, comm->me}, first;
-  MPI_Allreduce(&own, &first, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-  MPI_Bcast(&body, sizeof(Neighbor), MPI_BYTE, first.rank, world);
+  body = of_least(body.distance, body, world);
   double mine[4] = {}, sum[4];
   for_near([&](int i, double r, const double *d) {
     if (atom->molecule[i] != body.molecule || r == 0.0 ||
@@ -175,10 +150,7 @@ bool Stop::too_near(const Scene &scene, const Neighbor &body)
       (body.distance < 0.25 * (scene.dx + body.dx) || (body.around && body.distance < body.dx));
 }
 
-/* ----------------------------------------------------------------------
-   of waves in what an atom type is made of, at rest
-------------------------------------------------------------------------- */
-
+// of waves in an atom type at rest
 double Stop::courant(const Scene &scene, int type) const
 {
   const State &s = scene.state[type];
@@ -222,10 +194,7 @@ static std::string shorter_step(const Scene &scene, double number, bool fluid, b
   return tip + fmt::format("a smaller cfl/{} of fix fsi/dt", fluid ? "fluid" : "solid");
 }
 
-/* ----------------------------------------------------------------------
-   what to try that is not on already
-------------------------------------------------------------------------- */
-
+// what to try that is not on already
 std::string Stop::advice(const Scene &scene, const Finding &all, When when,
                          const Neighbor &body) const
 {
@@ -299,8 +268,6 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when,
   return text.empty() ? "a look at the particles around it" : text;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Stop::stop(const Scene &scene, std::string text, const Finding &all, When when)
 {
   if (when == MIDDLE) go_back(scene);
@@ -312,12 +279,9 @@ void Stop::stop(const Scene &scene, std::string text, const Finding &all, When w
   error->all(FLERR, text);
 }
 
-/* ----------------------------------------------------------------------
-   In the middle of a step positions, walls and densities go back to its start: a state from
-   which the step can be repeated. (The stress of fsi/solid stays where it is, a step too far: an
-   error of one step's strain.)
-------------------------------------------------------------------------- */
-
+// In the middle of a step positions, walls and densities go back to its start: a state from
+// which the step can be repeated. (The stress of fsi/solid stays where it is, a step too far: an
+// error of one step's strain.)
 void Stop::go_back(const Scene &scene)
 {
   const double back = -0.5 * update->dt;
@@ -328,10 +292,7 @@ void Stop::go_back(const Scene &scene)
   update->ntimestep--;
 }
 
-/* ----------------------------------------------------------------------
-   restart file, and what to say of it
-------------------------------------------------------------------------- */
-
+// restart file, and what to say of it
 std::string Stop::write_state(const Scene &scene)
 {
   int mine = 1, writable;
@@ -376,10 +337,7 @@ std::string Stop::write_state(const Scene &scene)
   return fmt::format(". State of step {}: {}", update->ntimestep, restart_file);
 }
 
-/* ----------------------------------------------------------------------
-   text dump of all particles within three cutoffs
-------------------------------------------------------------------------- */
-
+// text dump of all particles within three cutoffs
 void Stop::write_neighbours(const Scene &scene, const Finding &all) const
 {
   struct Row {

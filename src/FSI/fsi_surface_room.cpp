@@ -22,7 +22,6 @@
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_scene.h"
-#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
@@ -39,10 +38,7 @@ static constexpr double ROUND = 1.0e-6;    // missing parts of a lattice's sum t
 // more room over that of a plane than on any edge: of the two sides of a film s cancels
 static constexpr double EDGE = 100.0;
 
-/* ----------------------------------------------------------------------
-   sums over the planes of a lattice that are missing
-------------------------------------------------------------------------- */
-
+// sums over the planes of a lattice that are missing
 RoomOfPlane::RoomOfPlane(int kernel, int dim, double h_over_dx)
 {
   with_kernel(kernel, dim, h_over_dx, [this](const auto &k) {
@@ -75,8 +71,6 @@ double RoomOfPlane::operator()(double s) const
   const auto &a = layers[k - 1], &b = layers[k];
   return a.second + (s - a.first) * (b.second - a.second) / (b.first - a.first);
 }
-
-/* ---------------------------------------------------------------------- */
 
 SurfaceRoom::SurfaceRoom(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density,
                          SumOverGhosts add_ghosts) :
@@ -144,8 +138,6 @@ void SurfaceRoom::go_back()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<Part::Effect> SurfaceRoom::effects() const
 {
   if (!facts_of_fluids(lmp).style) return {};
@@ -157,10 +149,7 @@ void SurfaceRoom::add_costs(Costs &costs) const
   costs.bytes += room ? 2 * sizeof(double) : 0;
 }
 
-/* ----------------------------------------------------------------------
-   what is new
-------------------------------------------------------------------------- */
-
+// of particles that are new
 void SurfaceRoom::begin()
 {
   const int nlocal = atom->nlocal, *const type = atom->type;
@@ -184,10 +173,7 @@ void SurfaceRoom::begin()
     }
 }
 
-/* ----------------------------------------------------------------------
-   s of local atoms
-------------------------------------------------------------------------- */
-
+// s of local atoms
 std::vector<double> SurfaceRoom::gradients() const
 {
   const int nlocal = atom->nlocal, dim = scene.dim;
@@ -224,12 +210,9 @@ void SurfaceRoom::follow()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Forces have the density of before until the step's start, and that of after from there: the
-   change is one at its start, between two densities, which is what the ledger's energy is of (where
-   it takes half of a step's work, the other is in the next)
-------------------------------------------------------------------------- */
-
+// Forces have the density of before until the step's start, and that of after from there: the
+// change is one at its start, between two densities, which is what the ledger's energy is of (where
+// it takes half of a step's work, the other is in the next)
 double SurfaceRoom::energy_loss(int i, double now, double change) const
 {
   const State &state = scene.state[atom->type[i]];

@@ -33,8 +33,6 @@ struct Brick : public CommBrick {
 };
 }    // namespace
 
-/* ---------------------------------------------------------------------- */
-
 void Swaps::find(const std::function<bool(int)> &is_chosen)
 {
   swaps.clear();
@@ -58,10 +56,7 @@ void Swaps::find(const std::function<bool(int)> &is_chosen)
   }
 }
 
-/* ----------------------------------------------------------------------
-   n numbers of out to a rank, at most so many from another; what has come
-------------------------------------------------------------------------- */
-
+// sends n numbers of out to a rank; returns those from another, at most so many
 double *Swaps::pass(int to, int n, int from, int most)
 {
   if (to == comm->me) return out.data();
@@ -72,8 +67,6 @@ double *Swaps::pass(int to, int n, int from, int most)
   if (most) MPI_Wait(&request, MPI_STATUS_IGNORE);
   return in.data();
 }
-
-/* ---------------------------------------------------------------------- */
 
 template <class Who> void Swaps::forward_of(Who *who)
 {

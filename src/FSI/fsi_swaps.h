@@ -41,9 +41,8 @@ namespace FSI {
    private:
     struct Swap {
       std::vector<int> list;    // chosen particles that are sent
-      // ghosts first to first + n - 1, chosen or
+      // ghosts are first to first + n - 1; arriving: how many of them are chosen
       int to = 0, from = 0, first = 0, n = 0, arriving = 0, flag = 0, *pbc = nullptr;
-      // not; how many are
     };
     bool chosen;
     std::vector<Swap> swaps;

@@ -28,8 +28,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 Values::Values(LAMMPS *lmp, const std::string &command, int n) :
     Pointers(lmp), command(command), list(n), each(nullptr), nmax(0)
 {
@@ -39,8 +37,6 @@ Values::~Values()
 {
   memory->destroy(each);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Values::read(int k, const std::string &word, const std::string &what, const std::string &other)
 {
@@ -57,10 +53,7 @@ void Values::set_variable(int k, const std::string &name)
   list[k].source = EQUAL;    // or atom-style, see find()
 }
 
-/* ----------------------------------------------------------------------
-   Each time by its name: a variable that is deleted gives its number in LAMMPS' list to others
-------------------------------------------------------------------------- */
-
+// Each time by its name: a variable that is deleted gives its number in LAMMPS' list to others
 int Values::variable(Value &v) const
 {
   const int n = input->variable->find(v.name.c_str());
@@ -97,8 +90,6 @@ std::string Values::text() const
   return text;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Values::evaluate(int igroup, int first, int n, bool atoms)
 {
   if (atoms && of_atoms() && atom->nmax > nmax) {
@@ -123,8 +114,6 @@ void Values::evaluate(int igroup, int first, int n, bool atoms)
   }
   modify->addstep_compute(update->ntimestep + 1);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double Values::memory_usage() const
 {

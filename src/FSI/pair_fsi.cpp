@@ -34,8 +34,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
     Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr), alpha(0.0),
     beta(0.0), contact_range(1.0), self_contact(0)
@@ -47,8 +45,6 @@ PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
   no_virial_fdotr_compute = 0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 PairFSI::~PairFSI()
 {
   if (allocated) {
@@ -56,8 +52,6 @@ PairFSI::~PairFSI()
     memory->destroy(cutsq);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSI::allocate()
 {
@@ -68,8 +62,6 @@ void PairFSI::allocate()
   material.assign(n, Material{});
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSI::settings(int narg, char **arg)
 {
   keywords.parse(narg, arg);
@@ -77,10 +69,7 @@ void PairFSI::settings(int narg, char **arg)
   fix_fsi = nullptr;
 }
 
-/* ----------------------------------------------------------------------
-   pair_coeff * * file name_1 ... name_ntypes
-------------------------------------------------------------------------- */
-
+// pair_coeff * * file name_1 ... name_ntypes
 void PairFSI::coeff(int narg, char **arg)
 {
   check_pair_coeff(narg, arg);
@@ -109,11 +98,8 @@ void PairFSI::check_pair_coeff(int narg, char **arg) const
         style, narg > 3 ? narg - 3 : 0, atom->ntypes);
 }
 
-/* ----------------------------------------------------------------------
-   Of a type that no style has a force for LAMMPS says only "All pair coeffs are not set". Before
-   the first run: later one pair_coeff after another may change materials.
-------------------------------------------------------------------------- */
-
+// Of a type that no style has a force for LAMMPS says only "All pair coeffs are not set". Before
+// the first run: later one pair_coeff after another may change materials.
 static std::string in_words(const Material &m)
 {
   static const char *const words[] = {"", "fluid ", "solid ", "wall "};
@@ -146,8 +132,6 @@ void PairFSI::check_species() const
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSI::set_flags()
 {
   int count = 0;
@@ -163,8 +147,6 @@ void PairFSI::set_flags()
                "Pair_coeff gives pair style {} no pair to act on: none of its materials is a {}",
                style, handles(FLUID, FLUID) ? "fluid" : "solid");
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSI::init_style()
 {
@@ -221,8 +203,6 @@ void PairFSI::check_same_materials() const
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void *PairFSI::extract(const char *name, int &dim_of_extract)
 {
   dim_of_extract = 0;
@@ -246,10 +226,7 @@ std::string PairFSI::named_effects() const
   return named;
 }
 
-/* ----------------------------------------------------------------------
-   is there more than one solid body? pairs need not ask if there is not
-------------------------------------------------------------------------- */
-
+// is there more than one solid body? pairs need not ask if there is not
 bool PairFSI::several_bodies() const
 {
   tagint low = MAXTAGINT, high = 0;
@@ -263,8 +240,6 @@ bool PairFSI::several_bodies() const
   MPI_Allreduce(&high, &all_high, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   return all_low < all_high;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double PairFSI::init_one(int i, int j)
 {
@@ -301,10 +276,7 @@ void PairFSI::check_contact() const
                style, contact_range, fix_fsi->cut / fix_fsi->dx);
 }
 
-/* ----------------------------------------------------------------------
-   the solid's speed of sound is that of its bulk modulus (paper eq. 21)
-------------------------------------------------------------------------- */
-
+// the solid's speed of sound is that of its bulk modulus (paper eq. 21)
 State PairFSI::solid_state(const Material &m, bool plane_stress) const
 {
   State s;
@@ -327,8 +299,6 @@ bool PairFSI::any_relaxes() const
   });
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSI::check_tally()
 {
   if (vflag_atom)
@@ -337,10 +307,7 @@ void PairFSI::check_tally()
                style);
 }
 
-/* ----------------------------------------------------------------------
-   restart files: keywords, and materials as they stand in their file
-------------------------------------------------------------------------- */
-
+// restart files: keywords, and materials as they stand in their file
 void PairFSI::write_restart_settings(FILE *fp)
 {
   Record record(lmp, "pair_style " + style);

@@ -38,14 +38,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
 static const std::vector<std::string> coupling_names = {"wall", "full"};    // Couple
-
-/* ---------------------------------------------------------------------- */
 
 // What fluids meet: fluids, walls, solids, fluids that thin bodies may hide
 enum { FLUIDS, WALLS, SOLIDS, HIDDEN, NKINDS };
@@ -75,6 +72,7 @@ struct PairFSIFluid::Shares {
 
 struct PairFSIFluid::Members {
   Fields fields;
+  // what loops get the address of
   Thin thin_bodies = {};
   Visible seen_pairs = {};
   Cut cut_solids = {};
@@ -84,9 +82,8 @@ struct PairFSIFluid::Members {
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), couple(WALL), images_step(-1),
     near_known(false), sorts(true), margin(0.0), cut(false), solids_pass(false), fade(nullptr),
-    fill(nullptr), fill_weight(nullptr), thin_bodies(members->thin_bodies),
-    seen_pairs(members->seen_pairs), cut_solids(members->cut_solids), fields(members->fields),
-    rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    fill(nullptr), fill_weight(nullptr), fields(members->fields), rate(nullptr), beyond(nullptr),
+    hybrid(nullptr), no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -143,8 +140,6 @@ bool PairFSIFluid::handles(int a, int b) const
   return a == FLUID || b == FLUID;
 }
 
-/* ---------------------------------------------------------------------- */
-
 State PairFSIFluid::make_state(const Material &m) const
 {
   // a solid's state is that of pair_style fsi/solid, if there is one: it enters its own afterwards
@@ -173,8 +168,6 @@ State PairFSIFluid::make_state(const Material &m) const
   return s;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double PairFSIFluid::sound_of(const Material &m) const
 {
   if (m.sound > 0.0) return m.sound;
@@ -186,10 +179,7 @@ double PairFSIFluid::sound_of(const Material &m) const
   return sound;
 }
 
-/* ----------------------------------------------------------------------
-   choose the loops for kernel, dimension and the effects that the script names
-------------------------------------------------------------------------- */
-
+// choose the loops for kernel, dimension and the effects that the script names
 void PairFSIFluid::init_style()
 {
   NeighList *const lists = list;    // LAMMPS makes no others where all is asked for as before
@@ -199,7 +189,9 @@ void PairFSIFluid::init_style()
        {std::make_pair(delta > 0.0, "density/diffusion"),
         std::make_pair(surfaces != 0, "density/surface"), std::make_pair(shifting > 0.0, "shift")})
     if (of_continuity.first && fix_fsi->density_fluid != FixFSI::CONTINUITY)
-      error->all(FLERR, "Pair style fsi/fluid {} requires fix fsi with fluid continuity",
+      error->all(FLERR,
+                 "Pair style fsi/fluid {} requires density by continuity, as fix fsi scheme "
+                 "standard has it",
                  of_continuity.second);
   if (surfaces && (tension || background != 0.0))
     error->all(FLERR,
@@ -250,8 +242,6 @@ void PairFSIFluid::init_style()
   open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSIFluid::find_meetings()
 {
@@ -314,8 +304,6 @@ void PairFSIFluid::find_shares()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 Facts PairFSIFluid::facts() const
 {
   Facts facts = PairFSI::facts();
@@ -327,8 +315,6 @@ Facts PairFSIFluid::facts() const
   facts.shift_every = shifting > 0.0 ? shift_every : 0;
   return facts;
 }
-
-/* ---------------------------------------------------------------------- */
 
 // what density follows: between open ends, where nothing else holds the number of particles
 double *const *PairFSIFluid::velocity_of_shifting() const
@@ -410,8 +396,6 @@ void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
     nothing("Pair style fsi/fluid shift/every", "keyword shift is 0");
   if (all.fluids == 0) nothing("Pair style fsi/fluid" + named_effects(), "no particle is a fluid");
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSIFluid::begin_state(bool advance)
 {
@@ -497,14 +481,11 @@ void PairFSIFluid::advance(bool advance)
   if (fix_fsi->shifts) displacements(update->dt * shift_every);
 }
 
-/* ----------------------------------------------------------------------
-   Shifting's factor 1 + 0.2 (W_ij/W(dx))^4 gives it another state of rest than the force of
-   pressure has. Where particles stand on one lattice both are at rest; where two lattices meet they
-   would work against each other without end. Where the flow distorts the order of particles the
-   factor keeps them apart. So of it is left min(1, (u/u0)^2), u^2 = sum_j V_j W_ij (v_ij.e_ij)^2
-   over fluid, e_ij the direction from one to the other: the speed with which neighbors come and go.
-------------------------------------------------------------------------- */
-
+// Shifting's factor 1 + 0.2 (W_ij/W(dx))^4 gives it another state of rest than the force of
+// pressure has. Where particles stand on one lattice both are at rest; where two lattices meet they
+// would work against each other without end. Where the flow distorts the order of particles the
+// factor keeps them apart. So of it is left min(1, (u/u0)^2), u^2 = sum_j V_j W_ij (v_ij.e_ij)^2
+// over fluid, e_ij the direction from one to the other: the speed with which neighbors come and go.
 void PairFSIFluid::find_fades()
 {
   static constexpr double SLOW = 0.003;    // u0 over the speed of sound (doc/notes/levels.md)
@@ -617,11 +598,8 @@ void PairFSIFluid::look_past_thin_bodies()
   fix_fsi->send_to_ghosts(fill_weight);
 }
 
-/* ----------------------------------------------------------------------
-   continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; rho >= m W(0), the density of an
-   isolated particle: diffusion could make that of ejected spray negative
-------------------------------------------------------------------------- */
-
+// continuity: rho^{n+1/2} = rho^{n-1/2} + dt (d rho/dt)^n; rho >= m W(0), the density of an
+// isolated particle: diffusion could make that of ejected spray negative
 void PairFSIFluid::advance_density()
 {
   double *const rho = atom->rho;
@@ -636,11 +614,8 @@ void PairFSIFluid::advance_density()
   }
 }
 
-/* ----------------------------------------------------------------------
-   The ledger's powers have velocities of the start of the step. With those of its middle, which are
-   known now, they are second order in time.
-------------------------------------------------------------------------- */
-
+// The ledger's powers have velocities of the start of the step. With those of its middle, which are
+// known now, they are second order in time.
 void PairFSIFluid::prescribe()
 {
   if (!fix_fsi->ledger || taken.empty()) return;
@@ -671,12 +646,9 @@ void PairFSIFluid::go_back()
     if (fix_fsi->state[atom->type[i]].species == FLUID) atom->rho[i] -= dt * rate[i];
 }
 
-/* ----------------------------------------------------------------------
-   What keeps fluid out of walls and solids: the energy K d^(D-2) (d-r)^2/2 of a pair nearer than d.
-   Of a finer solid the more particles push the finer it is: with K dx^(D-2) (dx_s/dx)^(D-1) for K
-   d^(D-2) its face is as stiff, and a pair swings slower than the step of sound allows.
-------------------------------------------------------------------------- */
-
+// What keeps fluid out of walls and solids: the energy K d^(D-2) (d-r)^2/2 of a pair nearer than d.
+// Of a finer solid the more particles push the finer it is: with K dx^(D-2) (dx_s/dx)^(D-1) for K
+// d^(D-2) its face is as stiff, and a pair swings slower than the step of sound allows.
 Contact PairFSIFluid::guard_of(int t, double dx) const
 {
   const State &s = fix_fsi->state[t];
@@ -741,11 +713,8 @@ static bool all_of_type(int t, const int *type, const int *j, int n)
   });
 }
 
-/* ----------------------------------------------------------------------
-   the pairs of the neighbor list as rows of a fluid particle and neighbors of one type: those of
-   one fluid alone are LAMMPS' own
-------------------------------------------------------------------------- */
-
+// the pairs of the neighbor list as rows of a fluid particle and neighbors of one type: those of
+// one fluid alone are LAMMPS' own
 void PairFSIFluid::find_rows()
 {
   const int *const type = atom->type;
@@ -839,13 +808,10 @@ void PairFSIFluid::find_rows_with_others(const std::vector<std::array<int, 2>> &
     if (m.what == WALLS || m.what == SOLIDS) m.rows.end();
 }
 
-/* ----------------------------------------------------------------------
-   rows of images, one list per reflection: of local fluid particles themselves, and of the
-   neighbors that are near its walls, too, both together not farther than the support; segments of
-   walls reflect a pair only if the line between them passes
-   through. position(i) says where particles are
-------------------------------------------------------------------------- */
-
+// rows of images, one list per reflection: of local fluid particles themselves, and of the
+// neighbors that are near its walls, too, both together not farther than the support; segments of
+// walls reflect a pair only if the line between them passes
+// through. position(i) says where particles are
 template <class Position> void PairFSIFluid::find_images(const Walls &walls, Position position)
 {
   const int *const wmask = fix_fsi->wmask, *const type = atom->type, nlocal = atom->nlocal;
@@ -908,12 +874,8 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
   }
 }
 
-/* ----------------------------------------------------------------------
-   calls loop(meeting, number of reflection, mirror) for all rows of images; without extent of
-   walls they are the same in all of a step's loops, but that of rates leaves only what is within
-   reach
-------------------------------------------------------------------------- */
-
+// calls loop(meeting, number of reflection, mirror) for all rows of images; without extent of walls
+// they are the same in all of a step's loops, but that of rates leaves only what is within reach
 template <class Position, class Loop>
 void PairFSIFluid::for_images(const Walls &walls, Position position, Loop loop)
 {
@@ -927,20 +889,18 @@ void PairFSIFluid::for_images(const Walls &walls, Position position, Loop loop)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 FluidParticles PairFSIFluid::particles_at(const double *points)
 {
-  thin_bodies = {fill, fill_weight};
-  cut_solids = {parts.data(), part_rates.data()};
+  members->thin_bodies = {fill, fill_weight};
+  members->cut_solids = {parts.data(), part_rates.data()};
   return {points,
           atom->type,
           fix_fsi->state.data(),
           atom->nlocal,
           nullptr,
           false,
-          fill ? &thin_bodies : nullptr,
-          cut ? &cut_solids : nullptr,
+          fill ? &members->thin_bodies : nullptr,
+          cut ? &members->cut_solids : nullptr,
           force->newton_pair != 0};
 }
 
@@ -953,8 +913,8 @@ FluidParticles PairFSIFluid::of_rows(const FluidParticles &particles, const Meet
   in.unequal = shares[meeting.level].unequal;
   in.unlike = meeting.unlike;
   if (meeting.what != HIDDEN) return in;
-  seen_pairs = {parts_of.data(), list_of.empty() ? nullptr : list_of[0].j};
-  in.visible = &seen_pairs;
+  members->seen_pairs = {parts_of.data(), list_of.empty() ? nullptr : list_of[0].j};
+  in.visible = &members->seen_pairs;
   return in;
 }
 
@@ -979,11 +939,8 @@ template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, C
   return particles_at(points.data());
 }
 
-/* ----------------------------------------------------------------------
-   Positions are those of time n, half a step before atom->x, where the velocities belong: the
-   density leapfrogs from n-1/2 to n+1/2, second order in time.
-------------------------------------------------------------------------- */
-
+// Positions are those of time n, half a step before atom->x, where the velocities belong: the
+// density leapfrogs from n-1/2 to n+1/2, second order in time.
 template <int D> void PairFSIFluid::add_density_rate(double dt)
 {
   const double dth = 0.5 * dt;
@@ -1060,8 +1017,6 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   fix_fsi->tally(FixFSI::WALLS, sums.walls);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSIFluid::displacements(double dt)
 {
   double *const *const velocity = velocity_of_shifting();
@@ -1080,8 +1035,6 @@ void PairFSIFluid::displacements(double dt)
       for (int d = 0; d < fix_fsi->dim; d++) velocity[d][i] = sums[i][d] / dt;
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 // sums of what depends on the distance of a pair, walls' images included: sum(meeting, rows, both,
 // mirror, particles), of neighbors only if both
@@ -1127,8 +1080,6 @@ void PairFSIFluid::add_position_divergence(double *div)
                 });
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSIFluid::add_gradient_sum(double *s)
 {
   if (fix_fsi->dim == 2)
@@ -1156,8 +1107,6 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
     for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d];
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSIFluid::add_velocities_at_solids()
 {
   const int dim = fix_fsi->dim;
@@ -1176,11 +1125,8 @@ void PairFSIFluid::add_velocities_at_solids()
   });
 }
 
-/* ----------------------------------------------------------------------
-   velocity of solids in viscous forces: where fluid would be inside the solid, that with which the
-   face has the solid's, 2 v_s - sum v W/sum W, as for walls of particles
-------------------------------------------------------------------------- */
-
+// velocity of solids in viscous forces: where fluid would be inside the solid, that with which the
+// face has the solid's, 2 v_s - sum v W/sum W, as for walls of particles
 void PairFSIFluid::extrapolate_velocities()
 {
   const int dim = fix_fsi->dim;
@@ -1191,8 +1137,6 @@ void PairFSIFluid::extrapolate_velocities()
       fix_fsi->wall_velocity[i][d] = s[dim] > 0.0 ? 2.0 * v[d] - s[d] / s[dim] : v[d];
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSIFluid::compute(int eflag, int vflag)
 {
@@ -1207,14 +1151,11 @@ void PairFSIFluid::compute(int eflag, int vflag)
   if (vflag_fdotr && !fix_fsi->walls.any()) virial_fdotr_compute();
 }
 
-/* ----------------------------------------------------------------------
-   F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14),
-   antisymmetric between fluid and solid:
-     couple wall  both pressures are the fluid's: the solid is a moving wall to the fluid and
-                  takes the reaction
-     couple full  the whole stress of the solid crosses, as in the paper
-------------------------------------------------------------------------- */
-
+// F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14),
+// antisymmetric between fluid and solid:
+//   couple wall  both pressures are the fluid's: the solid is a moving wall to the fluid and
+//                takes the reaction
+//   couple full  the whole stress of the solid crosses, as in the paper
 template <int D> void PairFSIFluid::compute_forces()
 {
   constexpr int ROW = row_of_forces(D);
@@ -1291,11 +1232,8 @@ template <int D> void PairFSIFluid::compute_forces()
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
 
-/* ----------------------------------------------------------------------
-   for those who ask for them, forces of viscosity alone on solids and walls: the same loops without
-   pressures, guard and stress
-------------------------------------------------------------------------- */
-
+// for those who ask for them, forces of viscosity alone on solids and walls: the same loops without
+// pressures, guard and stress
 template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles, ForceLaws laws)
 {
   if (std::none_of(force_computes.begin(), force_computes.end(), [](const auto *measure) {
@@ -1332,16 +1270,12 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
     if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool PairFSIFluid::has_solids() const
 {
   for (const auto &m : material)
     if (m.species == SOLID) return true;
   return false;
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::vector<PairFSI::Effect> PairFSIFluid::effects() const
 {
@@ -1357,8 +1291,6 @@ std::vector<PairFSI::Effect> PairFSIFluid::effects() const
   list.push_back({"no slip at solids", "solid/slip no", sticks_to_solids()});
   return list;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double PairFSIFluid::memory_usage()
 {

@@ -29,14 +29,11 @@ PairStyle(fsi/fluid,PairFSIFluid);
 namespace LAMMPS_NS {
 namespace FSI {
   struct Contact;
-  struct Cut;
   class Fields;
   struct FluidParticles;
   struct ForceLaws;
   struct Row;
   class RowList;
-  struct Thin;
-  struct Visible;
 }    // namespace FSI
 
 // Fluid-fluid and fluid-solid pairs: pressure, viscosity, density rate and diffusion, mirror
@@ -159,12 +156,9 @@ class PairFSIFluid : public PairFSI {
   void look_past_thin_bodies();
   void find_hidden(int i, const int *neighbors, int n, const std::vector<int> &fluid_types,
                    std::vector<char> &hides);
-  FSI::Thin &thin_bodies;
-  FSI::Visible &seen_pairs;
   // particles as the loop over these rows sees them, and that loop
   FSI::FluidParticles of_rows(const FSI::FluidParticles &, const Meeting &,
                               const std::vector<FSI::Row> &, const std::vector<double> &visible);
-  FSI::Cut &cut_solids;
   FSI::FluidParticles particles_at(const double *points);
   // positions a time t later; what else a loop needs is up to complete(i, point)
   template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);

@@ -32,7 +32,7 @@ def test_molecules_with_and_without_masses(tmp_path, how, masses, expected):
 
 @pytest.mark.parametrize("group, moved", [("moving", True), ("all", False), ("inlet", False)])
 def test_fluid_made_outside_the_group_is_refused(group, moved):
-    """It would hang in the air; fix deposit gives its particles its own group and all. Here the first particle is held."""
+    """Nothing would integrate it; fix deposit gives its particles its own group and all. Here the first particle is held."""
     region = f"region r block 1.5 2.5 1.5 2.5 {-DX / 2} {DX / 2}"
     with scene(held=[True] + [False] * 15, commands=["group inlet empty", region, f"fix d {group} deposit 1 1 2 4711 region r"]) as s:
         if moved:
