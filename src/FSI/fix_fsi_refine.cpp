@@ -24,6 +24,7 @@
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_others.h"
 #include "fsi_population.h"
 #include "fsi_record.h"
 #include "fsi_settling.h"
@@ -296,14 +297,12 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
 void FixFSIRefine::check_mass(int i) const
 {
   const int t = atom->type[i];
-  const double m = atom->rmass[i],
-               usual = fix_fsi->state[t].rho0 * std::pow(fix_fsi->dx_of(t), fix_fsi->dim);
+  const double m = atom->rmass[i], usual = Others::lattice_mass(*fix_fsi, t);
   if (m > 0.6 * usual && m < 1.6 * usual) return;
   error->one(FLERR,
-             "{}: atom {} of type {} has mass {:g}, expected some {:g} on this level, its density "
-             "times its spacing to the power of {}. Commands that set types leave masses as they "
-             "are: set ... mass",
-             who, atom->tag[i], t, m, usual, fix_fsi->dim);
+             "{}: atom {} of type {} has mass {:g}, expected some {:g} on this level. Commands "
+             "that set types leave masses as they are: set ... mass",
+             who, atom->tag[i], t, m, usual);
 }
 
 // of this group, and a level of its fluid
