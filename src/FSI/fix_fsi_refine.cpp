@@ -228,7 +228,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   double all[NTOTAL];
   MPI_Allreduce(mine, all, NTOTAL, MPI_DOUBLE, MPI_SUM, world);
   for (int k = 0; k < WAITING; k++) total[k] += all[k];
-  total[WAITING] = all[WAITING];
+  if (may_merge) total[WAITING] = all[WAITING];
   if (may_split) last_event = update->ntimestep;
   if (all[SPLITS] == 0.0 && all[MERGES] == 0.0) return;
 

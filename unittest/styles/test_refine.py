@@ -135,6 +135,8 @@ def test_pairs_are_mutual_and_nearest_first():
         go(s, 1)
         assert list(s.get("type")) == [2, 1, 2] and outputs(s)[WAITING] == 2
         assert s.get("x")[1, 0] == pytest.approx(0.5 * (at[1] + at[2]), abs=1e-9)
+        go(s, 0)    # which is no event
+        assert outputs(s)[WAITING] == 2
         go(s, 5)
         assert s.n == 3
 
