@@ -537,6 +537,18 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
   return list;
 }
 
+// has a segment of a mirror wall one on each side?
+static bool are_apart(const Walls &walls, const double *x, const double *y)
+{
+  return std::any_of(walls.wall.begin(), walls.wall.end(), [&](const Wall &wall) {
+    const double a = wall.distance(x), b = wall.distance(y);
+    if (!wall.finite || a * b > 0.0 || a == b) return false;
+    double at[3];
+    for (int d = 0; d < 3; d++) at[d] = x[d] + a / (a - b) * (y[d] - x[d]);
+    return wall.spans(at, 0.0);
+  });
+}
+
 /* ----------------------------------------------------------------------
    Merging: pairs of which each is the other's best partner, by distance, then by a hash of both
    IDs, which knows no direction; then among those that are left. Whole numbers, the same on all
@@ -552,6 +564,7 @@ void FixFSIRefine::choose_partners()
   const auto wants = [&](int i) {
     return (carried[i] & MERGE) != 0;
   };
+  const bool segments = fix_fsi->walls.finite();
   const Cells cells(atom->x, nall, fix_fsi->dim, FAR_REACH * fix_fsi->dx_of(types[1]), wants);
   for (int round = 0; round < ROUNDS; round++) {
     for (int i = 0; i < atom->nlocal; i++) {
@@ -561,6 +574,7 @@ void FixFSIRefine::choose_partners()
       chosen[i] = -1;
       cells.around(atom->x[i], [&](int j, double rsq) {
         if (tag[j] == tag[i] || partner[j] < 0 || atom->type[j] != atom->type[i]) return;
+        if (segments && are_apart(fix_fsi->walls, atom->x[i], atom->x[j])) return;
         const double q = std::sqrt(rsq) * per_dx;
         if (q >= ((carried[i] | carried[j]) & EAGER ? FAR_REACH : REACH)) return;
         const int late = (carried[i] | carried[j]) & EAGER ? 0 : LATER;

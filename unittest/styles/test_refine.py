@@ -243,6 +243,20 @@ def test_settling_at_mirror_walls(dim):
     assert rest[30] < rest[0] / 3
 
 
+def test_no_pair_merges_through_a_segment():
+    """Two segments of mirror walls back to back, a baffle, with fine fluid on both sides: nobody comes to lie in it, but beyond its ends some do in its plane."""
+    fine, n = DX * FINER[2], 34
+    size, middle, ends = n * fine, 17 * fine, f"range y {8 * fine!r} {26 * fine!r}"
+    with box_scene(lattice((n, n), fine), 0.0, 2, size=[size, size, 0], boundary="f f p", zone="block 5 6 5 6 INF INF", every=1, dt=1e-9,
+                   commands=(f"fix baffle all fsi/wall/mirror xlo {middle!r} {ends} xhi {middle!r} {ends}",)) as s:
+        go(s, 1)
+        y = s.get("x")
+        assert outputs(s)[MERGES] > 400
+        in_plane = np.abs(y[:, 0] - middle) < 0.4 * fine
+        beside = np.abs(y[:, 1] - 17 * fine) < 9 * fine
+        assert not (in_plane & beside).any() and (in_plane & ~beside).any()
+
+
 def test_nobody_stays_fine_behind_the_zone():
     """Who finds no partner where fluid leaves the zone, one in ten, comes first next time, while there are others: ten spacings behind it all have
     merged (without that 3 % of the particles there are still fine)."""
