@@ -248,7 +248,8 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   const auto events = gather(changed, world);
   renew_ghosts();
   std::vector<char> moves(atom->nlocal);
-  for (int i = 0; i < atom->nlocal; i++) moves[i] = level(i) >= 0 && !in_open_end(i, 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    moves[i] = level(i) >= 0 && !in_open_end(i, 0) && fix_fsi->is_moved(i);
   Settling(lmp, *fix_fsi, moves, events).run(settle_steps);
 }
 

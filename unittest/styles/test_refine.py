@@ -243,6 +243,18 @@ def test_settling_at_mirror_walls(dim):
     assert rest[30] < rest[0] / 3
 
 
+def test_held_fluid_does_not_settle():
+    """What no fix moves stays where it is, beside events, too."""
+    x, _ = cloud((24, 24), DX, jitter=0.1)
+    held, found = x[:, 1] < 0.3, {}
+    for settle in (0, 30):
+        with box_scene(x, held=held, zone="block 0.3 0.9 0.31 0.9 INF INF", refine=f"region zone settle {settle}") as s:
+            go(s, 0)
+            found[settle] = s.get("x")
+    moved = np.linalg.norm(found[30] - found[0], axis=1)
+    assert moved[:len(x)][held].max() == 0.0 and moved.max() > 0.01 * DX
+
+
 def test_no_pair_merges_through_a_segment():
     """Two segments of mirror walls back to back, a baffle, with fine fluid on both sides: nobody comes to lie in it, but beyond its ends some do in its plane."""
     fine, n = DX * FINER[2], 34
