@@ -523,6 +523,7 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
   });
   choose_directions(which, cells);
   for (const int i : which) {
+    if (heading[i] == 0) continue;    // no room: next time
     Division two;
     two.i = i;
     const double distance = split_distance(fix_fsi->dim) * fix_fsi->dx_of(atom->type[i]);

@@ -414,6 +414,17 @@ def test_ranks(tmp_path, dim, steps):
                 assert difference(a, b, quantity) < 1e-11, (name, quantity)
 
 
+def test_corner_without_room():
+    """A particle nearer to both mirror walls of a corner than any of its halves would be to one waits until it has room: no half behind a wall."""
+    x = lattice((24, 24), DX)
+    x[0, :2] = 0.12 * DX
+    with box_scene(x, zone="block INF INF INF INF INF INF", boundary="f f p", room=0.2, commands=("fix walls all fsi/wall/mirror xlo 0 ylo 0",)) as s:
+        go(s, 0)
+        assert s.get("x")[:, :2].min() > 0 and s.n == 2 * len(x) - 1
+        go(s, 30)
+        assert s.get("x")[:, :2].min() > 0 and s.n == 2 * len(x)
+
+
 @pytest.mark.parametrize("first", ["refine", "balance"])
 def test_balance(tmp_path, first):
     """Ranks that take and give particles in the steps in which these split and merge, by either fix first: the same to round-off."""
