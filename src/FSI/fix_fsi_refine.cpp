@@ -141,6 +141,7 @@ void FixFSIRefine::init()
   if (facts_of_fluids(lmp).density_at_surfaces)
     error->all(FLERR, "{} does not support density/surface of pair_style fsi/fluid", who);
   check_types();
+  check_others();
   zones->init(*fix_fsi, types);
   open_ends.clear();
   for (const char *style : {"^fsi/inlet$", "^fsi/outlet$"})
@@ -188,6 +189,26 @@ void FixFSIRefine::check_types() const
                  "{}: atom types {} and {} have spacings of {:g} and {:g}: expected {:g} of the "
                  "second, 2^(-1/{}) of the first, for particles of half the mass: fix fsi spacing",
                  who, types[k - 1], types[k], coarse, fine, expected * coarse, fix_fsi->dim);
+  }
+}
+
+// what one splits in its zone another would merge again, outside of its own, and so on for ever
+void FixFSIRefine::check_others() const
+{
+  for (const auto &fix : modify->get_fix_by_style("^fsi/refine$")) {
+    const auto *const other = dynamic_cast<FixFSIRefine *>(fix);
+    const bool same = std::any_of(types.begin(), types.end(), [other](int t) {
+      return other->level_of[t] >= 0;
+    });
+    if (other == this || !same) continue;
+    const auto both = find_particles(atom, world, [&](int i) {
+      return level(i) >= 0 && (atom->mask[i] & other->groupbit);
+    });
+    if (both.count)
+      error->all(FLERR,
+                 "{}: fix {} and fix {} both have levels of {} particles, the first of them atom "
+                 "{}: expected one fix, with regions that are unions of others",
+                 who, id, other->id, both.count, both.first);
   }
 }
 

@@ -538,6 +538,7 @@ BAD = {
     "10 types 1 4 region one": r"atom types 1 and 4 have the density 1000 and 900: expected one fluid",
     "10 types 1 5 region one": r"atom type 5 is no fluid: its material is a wall",
     "10 types 1 2 3 region one two": r"is not in the zone of type 2, but only 0.\d+ from atom \d+, which is in that of type 3 \(one and two\)",
+    "10 types 1 2 region one\nfix more wet fsi/refine 20 types 2 3 region two": r"fix ref and fix more both have levels of 240 particles, the first of them atom 6: expected one fix",
     "10 types 1 2 region ends": r"is in the buffer of fix out, and in the zone of a finer level: keep open ends in the coarsest level",
 }
 
@@ -557,6 +558,8 @@ create_atoms 1 region water
 create_atoms 5 region wall
 group wall type 5
 group fluid type 1 2 3 4
+region wet block 0.25 1 INF INF INF INF units box
+group wet region wet
 pair_style fsi/fluid sound 15
 pair_coeff * * water.fsi water water water oil wall
 fix sph fluid fsi 0.05 wendland 1.5 spacing 2 0.0353553 spacing 3 0.025 spacing 4 0.0353553
