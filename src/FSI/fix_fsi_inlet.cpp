@@ -37,6 +37,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -401,7 +402,10 @@ void FixFSIInlet::fill_buffer()
                    "should go on along the buffer, to {} = {:g}",
                    who, id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
   renew_ends(has_some);
-  if (all[BEHIND] > 0) check_slices(slices);
+  if (all[BEHIND] > 0) {
+    slices.back() += find_last_of_rows();
+    check_slices(slices);
+  }
   if (all[BEHIND] == 0 && all[AHEAD] > 0) {
     const auto copies = go_on_behind();
     fix_fsi->population.begin();
@@ -446,6 +450,54 @@ void FixFSIInlet::check_slices(std::vector<int> &mine) const
                  "is not there will not come in. Fill it to {} = {:g}, or leave it empty",
                  who, id, *few, "xyz"[axis], from, from - side * fix_fsi->dx, most, "xyz"[axis],
                  position - side * length);
+}
+
+/* ----------------------------------------------------------------------
+   In a buffer of a fix before this one: who is last of a row is to be followed, also if he has come
+   a spacing from the end meanwhile, and the one behind him would have been made with the next list.
+   How many those are on this rank
+------------------------------------------------------------------------- */
+
+int FixFSIInlet::find_last_of_rows()
+{
+  typedef std::array<double, 3> Point;
+  const int a = axis == 0 ? 1 : 0;
+  const double nobody = fix_fsi->dx - length, low = nobody + neighbor->skin,
+               reach = OCCUPIED * fix_fsi->dx;
+  int missing = 0;
+  std::vector<Point> own, all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const x = atom->x[i];
+    if (of_buffer[i] && inside(x) <= low) own.push_back({x[0], x[1], x[2]});
+  }
+  if (ends != MPI_COMM_NULL) all = gather(own, ends);
+  std::sort(all.begin(), all.end(), [a](const Point &b, const Point &c) {
+    return b[a] < c[a];
+  });
+  const auto is_last = [&](const double *x) {
+    for (int image = -domain->periodicity[a]; image <= domain->periodicity[a]; image++) {
+      const double from = x[a] + image * domain->prd[a] - reach;
+      auto y = std::lower_bound(all.begin(), all.end(), from, [a](const Point &b, double at) {
+        return b[a] < at;
+      });
+      for (; y != all.end() && (*y)[a] < from + 2.0 * reach; y++) {
+        double d[3] = {(*y)[0] - x[0], (*y)[1] - x[1], (*y)[2] - x[2]};
+        const bool behind = side * d[axis] < 0.0;
+        domain->minimum_image(d);
+        d[axis] = 0.0;
+        if (behind && d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) return false;
+      }
+    }
+    return true;
+  };
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double s = inside(atom->x[i]);
+    if (!of_buffer[i] || s > low) continue;
+    if (s > nobody && !(side * atom->v[i][axis] > 0.0 && is_last(atom->x[i]))) continue;
+    of_buffer[i] = LAST;
+    missing += s > nobody;
+  }
+  return missing;
 }
 
 /* ----------------------------------------------------------------------

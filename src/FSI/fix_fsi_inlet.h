@@ -163,6 +163,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void fill_buffer();
   int number_of_slices() const, slice(double distance) const, full_slices() const;
   void check_slices(std::vector<int> &mine) const;
+  int find_last_of_rows();
   std::vector<FSI::Particle> go_on_behind() const;
   std::vector<Column> columns_at_plane() const;
   const FSI::State &softest() const;

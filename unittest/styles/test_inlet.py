@@ -466,6 +466,23 @@ def test_body_near_a_plane_does_not_starve_it(tmp_path):
     assert came == pytest.approx(1, abs=0.02) and members == pytest.approx(100, abs=20)    # a column of twenty comes at a time
 
 
+@pytest.mark.parametrize("lateral", [4, 5], ids=["2D", "3D"])
+def test_given_again_between_runs(lateral):
+    """Whenever that is, also while the next column is due with the next list: a lattice that moves as one goes on being one. A column takes 29 steps, its
+    successor is due after 15, lists are built every five."""
+    dx, U, n = 0.1, 1.0, (8, lateral) if lateral == 4 else (8, lateral, lateral)
+    dt = 0.25 * 1.5 * dx / 11
+    inlet = f"fix i all fsi/inlet xlo 0 velocity {U} 0 0"
+    for first in range(12, 20) if lateral == 4 else (16,):
+        with open_box(n, dx, 0, inlet, f"fix o all fsi/outlet xhi {n[0] * dx}", v=(U, 0, 0), dt=dt) as s:
+            go_on(s, first)
+            s.run_lines("unfix i", inlet)
+            go_on(s, 200)
+            x = np.unique(np.round(s.get("x")[:, 0], 6))
+            across = np.prod(n[1:])
+            assert np.allclose(np.diff(x), dx, atol=1e-5) and len(s.get("id")) == len(x) * across and x[0] < -0.4 + 1e-6 and x[-1] > 1.2, first
+
+
 def test_buffer_with_a_gap_is_told(tmp_path):
     """What the script has put there stays, gap or not."""
     start = ATOMS.replace("create_atoms 1 region water", "region buffer block -0.5 -0.2 0 1 INF INF units box\ncreate_atoms 1 region water\ncreate_atoms 1 region buffer")
