@@ -425,6 +425,47 @@ def test_corner_without_room():
         assert s.get("x")[:, :2].min() > 0 and s.n == 2 * len(x)
 
 
+SETTLED = """units si
+dimension 2
+boundary p f p
+atom_style fsi
+processors {grid}
+region box block 0 1.2 -0.3 1.2 -0.025 0.025
+create_box 3 box
+lattice sq 0.05 origin 0.5 0.5 0
+region water block INF INF 0 1.15 INF INF units box
+create_atoms 1 region water
+region wall block INF INF -0.25 0 INF INF units box
+create_atoms {below} region wall
+group water type 1
+group wall type 3
+reset_atoms id sort yes
+displace_atoms water random 0.01 0.01 0 7 units box
+pair_style fsi/fluid sound 15
+pair_coeff * * water.fsi water water {material}
+fix sph water fsi 0.05 wendland 1.5 spacing 2 0.035355339
+region zone block 0.3 0.9 0.2 0.8 INF INF units box
+fix ref water fsi/refine 10 types 1 2 region zone
+{walls}
+neighbor {neighbor}
+{balance}
+"""
+
+
+@pytest.mark.parametrize("below, grid, neighbor, balance", [("wall", "1 2 1", "0.015 bin", "y 0.3"), ("water", "2 1 1", "0.002 multi\ncomm_modify mode multi", "x 0.85")], ids=["body", "event"])
+def test_settling_looks_further_than_ghosts(tmp_path, below, grid, neighbor, balance):
+    """How far particles may move is a matter of bodies up to the support and a spacing away, and of events within it, also where neither is among the ghosts of a
+    rank. Its edge is 0.175 from the wall here, whose ghosts reach 0.165, or 0.132 from halves that ghosts of 0.13 do not reach."""
+    frames = []
+    for ranks, of_ranks, line in ((1, "* * *", ""), (2, grid, "balance 1.0 " + balance)):
+        walls, kind = ("fix walls wall fsi/wall/particle", 3) if below == "wall" else ("", 1)
+        text = SETTLED.format(grid=of_ranks, neighbor=neighbor, balance=line, below=kind, walls=walls, material=below)
+        frames += run(tmp_path / str(ranks), text + watch(every=1) + "run 0\n", ranks, water_fsi=MATERIALS + "wall wall rho 1000\n").frames()
+    one, two = frames
+    assert np.array_equal(one["type"], two["type"]) and (one["type"] == 2).sum() == 288
+    assert difference(one, two, "x") < 1e-12
+
+
 @pytest.mark.parametrize("first", ["refine", "balance"])
 def test_balance(tmp_path, first):
     """Ranks that take and give particles in the steps in which these split and merge, by either fix first: the same to round-off."""
