@@ -213,11 +213,13 @@ void FixFSIRefine::check_others() const
 }
 
 /* ----------------------------------------------------------------------
-   Before the first step, if it is one of those: all that is too coarse
+   Before the first step, if it is one of those: all that is too coarse. Open ends begin with what
+   is coarse, whichever fix comes first
 ------------------------------------------------------------------------- */
 
 void FixFSIRefine::setup_pre_exchange()
 {
+  for (auto *end : open_ends) end->setup_pre_exchange();
   const bool due = update->ntimestep % every == 0 && last_event != update->ntimestep;
   for (int k = 0; k < (due ? finest() : 1); k++) event(due, false);
 }

@@ -183,6 +183,14 @@ def test_restart_keeps_the_buffer(tmp_path, inlet):
     assert inlet == INLET or "the restart file has its plane at 0 with a buffer of 0.5, here it is 0" in done.errors[0]
 
 
+def test_skin_between_runs_keeps_the_buffer(tmp_path):
+    """A longer one would lack a slice, and nobody would follow the last row. Its length is the support, 0.3, a spacing, 0.1, and half the skin, in whole spacings."""
+    text = deck(ATOMS.replace("-0.6 3.6", "-1.2 4.2")) + "run 1\nneighbor {} bin\nrun 1\n"
+    run(tmp_path, text.format(0.15), **FILES)
+    done = lammps(tmp_path, text.format(0.25), **FILES)
+    assert done.status and "the last run has its plane at 0 with a buffer of 0.5, here it is 0 with 0.6" in done.errors[0]
+
+
 @OPEN
 @pytest.mark.parametrize("ranks, newton", [(2, "on"), (4, "off")])
 def test_ranks_agree(tmp_path, ranks, newton, background):
