@@ -37,6 +37,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -58,6 +59,7 @@ static constexpr double FAR = 0.1;    // of rho c^2: a pressure that is not one 
                                       // hardly compressed
 static constexpr double SPARSE = 0.75;       // of the particles at the plane: a slice with fewer is
                                              // not full
+static constexpr double FEW_FINER = 0.25;    // of a buffer, that are alone
 static constexpr double AT_SURFACE = 0.9;    // of the density: m psi of a particle at a free
                                              // surface is less
 static constexpr double EXCESS = 0.02;       // of the mass near the plane that is worth a word
@@ -212,10 +214,11 @@ void FixFSIInlet::init()
       (std::fabs(position - made[0]) > 1.0e-6 * fix_fsi->dx ||
        std::fabs(length - made[1]) > 1.0e-6 * fix_fsi->dx))
     error->all(FLERR,
-               "{} {}: the restart file has its plane at {:g} with a buffer of {:g}, here it is "
-               "{:g} with {:g}: expected the same, since the buffer is full. Give keyword buffer "
-               "if the skin has changed",
-               who, id, made[0], made[1], position, length);
+               "{} {}: {} has its plane at {:g} with a buffer of {:g}, here it is {:g} with {:g}: "
+               "expected the same, since the buffer is full. Give keyword buffer if the skin has "
+               "changed",
+               who, id, of_file ? "the restart file" : "the last run", made[0], made[1], position,
+               length);
   check_plane();
   find_region();
   given->find();
@@ -339,21 +342,28 @@ void FixFSIInlet::setup_pre_exchange()
       error->all(FLERR, "{} {}: the mirror wall {}{} at {} closes it", who, id, "xyz"[axis],
                  w.side > 0.0 ? "lo" : "hi", w.position);
   }
-  if (region) region->prematch();
-  check_levels();
-  if (filled) return;
+  const bool has_one = filled;
   filled = true;
+  made = {position, length};
+  of_file = false;
+  if (has_one) return;
+  if (region) region->prematch();
   fill_buffer();
 }
 
-// its slices are those of dx, the coarsest fluid's spacing
-void FixFSIInlet::check_levels() const
+// Its slices are those of dx, the coarsest fluid's spacing. In a buffer that is there some may be
+// who have found no partner on their way out
+void FixFSIInlet::check_levels(bool is_empty) const
 {
-  const auto finer = find_particles(atom, world, [this](int i) {
-    return is_fluid(i) && fix_fsi->level_of[atom->type[i]] > 0 && in_patch(atom->x[i]) &&
-        std::fabs(inside(atom->x[i])) < length;
-  });
-  if (finer.count)
+  const auto is_there = [this, is_empty](int i) {
+    const double s = inside(atom->x[i]);
+    return is_fluid(i) && in_patch(atom->x[i]) && s > -length && s < (is_empty ? length : 0.0);
+  };
+  const auto all = find_particles(atom, world, is_there),
+             finer = find_particles(atom, world, [&](int i) {
+               return fix_fsi->level_of[atom->type[i]] > 0 && is_there(i);
+             });
+  if (finer.count > (is_empty ? 0.0 : FEW_FINER * all.count))
     error->all(FLERR,
                "{} {}: {} particles of fluid finer than dx, {:g}, the first of them atom {}, are "
                "within {:g} of its plane: the fluid that comes and goes is the coarsest",
@@ -400,8 +410,12 @@ void FixFSIInlet::fill_buffer()
                    "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls "
                    "should go on along the buffer, to {} = {:g}",
                    who, id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
+  check_levels(all[BEHIND] == 0);
   renew_ends(has_some);
-  if (all[BEHIND] > 0) check_slices(slices);
+  if (all[BEHIND] > 0) {
+    slices.back() += find_last_of_rows();
+    check_slices(slices);
+  }
   if (all[BEHIND] == 0 && all[AHEAD] > 0) {
     const auto copies = go_on_behind();
     fix_fsi->population.begin();
@@ -446,6 +460,54 @@ void FixFSIInlet::check_slices(std::vector<int> &mine) const
                  "is not there will not come in. Fill it to {} = {:g}, or leave it empty",
                  who, id, *few, "xyz"[axis], from, from - side * fix_fsi->dx, most, "xyz"[axis],
                  position - side * length);
+}
+
+/* ----------------------------------------------------------------------
+   In a buffer of a fix before this one: who is last of a row is to be followed, also if he has come
+   a spacing from the end meanwhile, and the one behind him would have been made with the next list.
+   How many those are on this rank
+------------------------------------------------------------------------- */
+
+int FixFSIInlet::find_last_of_rows()
+{
+  typedef std::array<double, 3> Point;
+  const int a = axis == 0 ? 1 : 0;
+  const double nobody = fix_fsi->dx - length, low = nobody + neighbor->skin,
+               reach = OCCUPIED * fix_fsi->dx;
+  int missing = 0;
+  std::vector<Point> own, all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const x = atom->x[i];
+    if (of_buffer[i] && inside(x) <= low) own.push_back({x[0], x[1], x[2]});
+  }
+  if (ends != MPI_COMM_NULL) all = gather(own, ends);
+  std::sort(all.begin(), all.end(), [a](const Point &b, const Point &c) {
+    return b[a] < c[a];
+  });
+  const auto is_last = [&](const double *x) {
+    for (int image = -domain->periodicity[a]; image <= domain->periodicity[a]; image++) {
+      const double from = x[a] + image * domain->prd[a] - reach;
+      auto y = std::lower_bound(all.begin(), all.end(), from, [a](const Point &b, double at) {
+        return b[a] < at;
+      });
+      for (; y != all.end() && (*y)[a] < from + 2.0 * reach; y++) {
+        double d[3] = {(*y)[0] - x[0], (*y)[1] - x[1], (*y)[2] - x[2]};
+        const bool behind = side * d[axis] < 0.0;
+        domain->minimum_image(d);
+        d[axis] = 0.0;
+        if (behind && d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) return false;
+      }
+    }
+    return true;
+  };
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double s = inside(atom->x[i]);
+    if (!of_buffer[i] || s > low) continue;
+    if (s > nobody && !(side * atom->v[i][axis] > 0.0 && is_last(atom->x[i]))) continue;
+    of_buffer[i] = LAST;
+    missing += s > nobody;
+  }
+  return missing;
 }
 
 /* ----------------------------------------------------------------------
@@ -1236,6 +1298,7 @@ void FixFSIInlet::restart(char *buf)
   filled = numbers[0] != 0.0;
   served = numbers[1];
   if (record.has("buffer")) made = record.numbers("buffer");
+  of_file = true;
   numbers = record.numbers("absorption");
   wave = numbers[0];
   before = numbers[1];

@@ -101,7 +101,9 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double absorb;      // 1/time; < 0: of the domain's length
   bool driven;        // has an open end of the scene a given velocity?
   double given_length, length;
-  std::vector<double> made;    // of a restart file: plane and length of its buffer
+  // plane and length of its buffer in the last run; is that one of a restart file?
+  std::vector<double> made;
+  bool of_file = false;
   class Region *region;
   class FixFSI *fix_fsi;
 
@@ -159,10 +161,11 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     double at[2] = {};    // along the plane
   };
   Column along(const double *x) const { return {{x[axis == 0 ? 1 : 0], x[axis == 2 ? 1 : 2]}}; }
-  void check_levels() const;
+  void check_levels(bool is_empty) const;
   void fill_buffer();
   int number_of_slices() const, slice(double distance) const, full_slices() const;
   void check_slices(std::vector<int> &mine) const;
+  int find_last_of_rows();
   std::vector<FSI::Particle> go_on_behind() const;
   std::vector<Column> columns_at_plane() const;
   const FSI::State &softest() const;

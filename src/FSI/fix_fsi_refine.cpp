@@ -24,6 +24,7 @@
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_others.h"
 #include "fsi_population.h"
 #include "fsi_record.h"
 #include "fsi_settling.h"
@@ -140,6 +141,7 @@ void FixFSIRefine::init()
   if (facts_of_fluids(lmp).density_at_surfaces)
     error->all(FLERR, "{} does not support density/surface of pair_style fsi/fluid", who);
   check_types();
+  check_others();
   zones->init(*fix_fsi, types);
   open_ends.clear();
   for (const char *style : {"^fsi/inlet$", "^fsi/outlet$"})
@@ -190,12 +192,34 @@ void FixFSIRefine::check_types() const
   }
 }
 
+// what one splits in its zone another would merge again, outside of its own, and so on for ever
+void FixFSIRefine::check_others() const
+{
+  for (const auto &fix : modify->get_fix_by_style("^fsi/refine$")) {
+    const auto *const other = dynamic_cast<FixFSIRefine *>(fix);
+    const bool same = std::any_of(types.begin(), types.end(), [other](int t) {
+      return other->level_of[t] >= 0;
+    });
+    if (other == this || !same) continue;
+    const auto both = find_particles(atom, world, [&](int i) {
+      return level(i) >= 0 && (atom->mask[i] & other->groupbit);
+    });
+    if (both.count)
+      error->all(FLERR,
+                 "{}: fix {} and fix {} both have levels of {} particles, the first of them atom "
+                 "{}: expected one fix, with regions that are unions of others",
+                 who, id, other->id, both.count, both.first);
+  }
+}
+
 /* ----------------------------------------------------------------------
-   Before the first step, if it is one of those: all that is too coarse
+   Before the first step, if it is one of those: all that is too coarse. Open ends begin with what
+   is coarse, whichever fix comes first
 ------------------------------------------------------------------------- */
 
 void FixFSIRefine::setup_pre_exchange()
 {
+  for (auto *end : open_ends) end->setup_pre_exchange();
   const bool due = update->ntimestep % every == 0 && last_event != update->ntimestep;
   for (int k = 0; k < (due ? finest() : 1); k++) event(due, false);
 }
@@ -227,7 +251,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   double all[NTOTAL];
   MPI_Allreduce(mine, all, NTOTAL, MPI_DOUBLE, MPI_SUM, world);
   for (int k = 0; k < WAITING; k++) total[k] += all[k];
-  total[WAITING] = all[WAITING];
+  if (may_merge) total[WAITING] = all[WAITING];
   if (may_split) last_event = update->ntimestep;
   if (all[SPLITS] == 0.0 && all[MERGES] == 0.0) return;
 
@@ -247,7 +271,8 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   const auto events = gather(changed, world);
   renew_ghosts();
   std::vector<char> moves(atom->nlocal);
-  for (int i = 0; i < atom->nlocal; i++) moves[i] = level(i) >= 0 && !in_open_end(i, 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    moves[i] = level(i) >= 0 && !in_open_end(i, 0) && fix_fsi->is_moved(i);
   Settling(lmp, *fix_fsi, moves, events).run(settle_steps);
 }
 
@@ -296,14 +321,12 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
 void FixFSIRefine::check_mass(int i) const
 {
   const int t = atom->type[i];
-  const double m = atom->rmass[i],
-               usual = fix_fsi->state[t].rho0 * std::pow(fix_fsi->dx_of(t), fix_fsi->dim);
+  const double m = atom->rmass[i], usual = Others::lattice_mass(*fix_fsi, t);
   if (m > 0.6 * usual && m < 1.6 * usual) return;
   error->one(FLERR,
-             "{}: atom {} of type {} has mass {:g}, expected some {:g} on this level, its density "
-             "times its spacing to the power of {}. Commands that set types leave masses as they "
-             "are: set ... mass",
-             who, atom->tag[i], t, m, usual, fix_fsi->dim);
+             "{}: atom {} of type {} has mass {:g}, expected some {:g} on this level. Commands "
+             "that set types leave masses as they are: set ... mass",
+             who, atom->tag[i], t, m, usual);
 }
 
 // of this group, and a level of its fluid
@@ -523,6 +546,7 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
   });
   choose_directions(which, cells);
   for (const int i : which) {
+    if (heading[i] == 0) continue;    // no room: next time
     Division two;
     two.i = i;
     const double distance = split_distance(fix_fsi->dim) * fix_fsi->dx_of(atom->type[i]);
@@ -536,6 +560,18 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
     for (int d = 0; d < 3; d++) mine[SPIN + d] -= m * spin[d];
   }
   return list;
+}
+
+// has a segment of a mirror wall one on each side?
+static bool are_apart(const Walls &walls, const double *x, const double *y)
+{
+  return std::any_of(walls.wall.begin(), walls.wall.end(), [&](const Wall &wall) {
+    const double a = wall.distance(x), b = wall.distance(y);
+    if (!wall.finite || a * b > 0.0 || a == b) return false;
+    double at[3];
+    for (int d = 0; d < 3; d++) at[d] = x[d] + a / (a - b) * (y[d] - x[d]);
+    return wall.spans(at, 0.0);
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -553,6 +589,7 @@ void FixFSIRefine::choose_partners()
   const auto wants = [&](int i) {
     return (carried[i] & MERGE) != 0;
   };
+  const bool segments = fix_fsi->walls.finite();
   const Cells cells(atom->x, nall, fix_fsi->dim, FAR_REACH * fix_fsi->dx_of(types[1]), wants);
   for (int round = 0; round < ROUNDS; round++) {
     for (int i = 0; i < atom->nlocal; i++) {
@@ -562,6 +599,7 @@ void FixFSIRefine::choose_partners()
       chosen[i] = -1;
       cells.around(atom->x[i], [&](int j, double rsq) {
         if (tag[j] == tag[i] || partner[j] < 0 || atom->type[j] != atom->type[i]) return;
+        if (segments && are_apart(fix_fsi->walls, atom->x[i], atom->x[j])) return;
         const double q = std::sqrt(rsq) * per_dx;
         if (q >= ((carried[i] | carried[j]) & EAGER ? FAR_REACH : REACH)) return;
         const int late = (carried[i] | carried[j]) & EAGER ? 0 : LATER;

@@ -89,6 +89,7 @@ class FixFSIRefine : public Fix {
   int level(int i) const;
   void read_types(const std::vector<std::string> &);
   void check_types() const;
+  void check_others() const;
 
   void event(bool may_split, bool may_merge);
   void renew_ghosts();

@@ -48,8 +48,13 @@ void Others::give_defaults(int i) const
   const State &s = scene.state[type];
   if (s.species == NONE) return give_density(i);
   if (atom->rmass[i] == 0.0 || has_mass_of_new_sphere(i))
-    atom->rmass[i] = s.rho0 / scene.resolution[type].psi_bulk;
+    atom->rmass[i] = lattice_mass(scene, type);
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
+}
+
+double Others::lattice_mass(const Scene &scene, int type)
+{
+  return scene.state[type].rho0 / scene.resolution[type].psi_bulk;
 }
 
 // one number for the checks of all densities: mass over volume

@@ -28,6 +28,8 @@ namespace FSI {
    public:
     Others(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), spins(false) {}
     void init();
+    // mass of a particle of this type's stress-free lattice
+    static double lattice_mass(const Scene &, int type);
     // mass and density, where there are none
     void give_defaults(int i) const;
     void turn(double dt) const;    // kicks angular velocities of those with a radius

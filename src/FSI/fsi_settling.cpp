@@ -18,6 +18,7 @@
 #include "fsi_cells.h"
 #include "fsi_kernel.h"
 #include "fsi_scene.h"
+#include "fsi_zones.h"
 #include "math_extra.h"
 
 #include <algorithm>
@@ -45,11 +46,10 @@ Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
 
 void Settling::find_mobilities(const std::vector<char> &moves, const std::vector<tagint> &changed)
 {
-  const int nall = atom->nlocal + atom->nghost, dim = scene.dim;
-  const Cells events(atom->x, nall, dim, scene.cut, [&](int j) {
+  const Everywhere events(lmp, scene.cut, [&](int j) {
     return std::binary_search(changed.begin(), changed.end(), atom->tag[j]);
   });
-  const Cells bodies(atom->x, nall, dim, scene.cut + scene.dx, [&](int j) {
+  const Everywhere bodies(lmp, scene.cut + scene.dx, [&](int j) {
     const int species = scene.state[atom->type[j]].species;
     return species == SOLID || species == RIGID;
   });
@@ -58,15 +58,9 @@ void Settling::find_mobilities(const std::vector<char> &moves, const std::vector
     if (!moves[i]) continue;
     const double *const x = atom->x[i];
     const double cut = scene.resolution[atom->type[i]].cut, dx = scene.dx_of(atom->type[i]);
-    double event = cut * cut, body = (cut + dx) * (cut + dx);
-    events.around(x, [&](int, double rsq) {
-      event = std::min(event, rsq);
-    });
+    const double event = events.nearest(x);
     if (event >= cut * cut) continue;
-    bodies.around(x, [&](int, double rsq) {
-      body = std::min(body, rsq);
-    });
-    body = std::sqrt(body);
+    double body = std::sqrt(std::min((cut + dx) * (cut + dx), bodies.nearest(x)));
     for (const auto &wall : scene.walls.wall)
       if (wall.finite && wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
     mobility[i] =

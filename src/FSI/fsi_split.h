@@ -88,13 +88,13 @@ namespace FSI {
   }
 
   // Which of the directions has the least crowded ends; extra(offset): what else crowds one, walls.
-  // In units in which round-off does not decide between equals
+  // In units in which round-off does not decide between equals. -1: none has room, in a corner
   template <class Extra>
   int split_direction(const std::vector<std::array<double, 3>> &directions,
                       const std::vector<SplitNeighbor> &around, double distance, Extra extra)
   {
     constexpr double FINE = 1.0e6, MOST = 1.0e9;
-    long long least = 0;
+    long long least = std::llround(FINE * MOST);
     int best = -1;
     for (size_t k = 0; k < directions.size(); k++) {
       const auto &e = directions[k];
@@ -104,7 +104,7 @@ namespace FSI {
         sum += crowding(around, offset) + extra(offset);
       }
       const long long score = std::llround(FINE * std::min(sum, MOST));
-      if (best >= 0 && score >= least) continue;
+      if (score >= least) continue;
       least = score;
       best = (int) k;
     }

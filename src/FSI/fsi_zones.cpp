@@ -16,12 +16,12 @@
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
-#include "fsi_cells.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_scene.h"
 #include "fsi_split.h"
 #include "group.h"
+#include "lammps.h"
 #include "region.h"
 
 #include <algorithm>
@@ -107,41 +107,59 @@ void Zones::find(const Scene &scene, double beyond)
 {
   for (auto *region : regions) region->prematch();
   if (!body_bit) return;
-  const double reach = distances[0] + beyond;
-  const auto body = find_body(scene.dim, reach);
-  std::vector<const double *> x;
-  for (const auto &p : body) x.push_back(p.data());
-  const Cells cells(x.data(), x.size(), scene.dim, reach);
+  const Everywhere body(lmp, distances[0] + beyond, [this](int i) {
+    return (atom->mask[i] & body_bit) != 0;
+  });
+  if (body.empty()) error->all(FLERR, "{} distance: there are no atoms in group {}", who, body_id);
   away.assign(atom->nlocal, Cells::LARGE);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (scene.state[atom->type[i]].species != FLUID) continue;
-    double least = Cells::LARGE;
-    cells.around(atom->x[i], [&](int, double rsq) {
-      least = std::min(least, rsq);
-    });
-    away[i] = std::sqrt(least);
-  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if (scene.state[atom->type[i]].species == FLUID) away[i] = std::sqrt(body.nearest(atom->x[i]));
 }
 
-// all particles of the body, which each rank has for that, and their images across periods
-std::vector<std::array<double, 3>> Zones::find_body(int dim, double reach) const
+/* ---------------------------------------------------------------------- */
+
+Everywhere::Everywhere(LAMMPS *lmp, double reach, const std::function<bool(int)> &is) :
+    places(find(lmp, reach, is)), x(rows()),
+    cells(x.data(), (int) x.size(), lmp->domain->dimension, reach)
 {
+}
+
+std::vector<std::array<double, 3>> Everywhere::find(LAMMPS *lmp, double reach,
+                                                    const std::function<bool(int)> &is)
+{
+  const Atom *const atom = lmp->atom;
+  const Domain *const domain = lmp->domain;
   std::vector<std::array<double, 3>> own;
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & body_bit) own.push_back({atom->x[i][0], atom->x[i][1], atom->x[i][2]});
-  auto body = gather(own, world);
-  if (body.empty()) error->all(FLERR, "{} distance: there are no atoms in group {}", who, body_id);
-  for (int d = 0; d < dim; d++) {
+    if (is(i)) own.push_back({atom->x[i][0], atom->x[i][1], atom->x[i][2]});
+  auto all = gather(own, lmp->world);
+  for (int d = 0; d < domain->dimension; d++) {
     if (!domain->periodicity[d]) continue;
-    for (size_t k = 0, n = body.size(); k < n; k++)
+    for (size_t k = 0, n = all.size(); k < n; k++)
       for (const int side : {-1, 1}) {
-        auto image = body[k];
+        auto image = all[k];
         image[d] += side * domain->prd[d];
         if (image[d] > domain->boxlo[d] - reach && image[d] < domain->boxhi[d] + reach)
-          body.push_back(image);
+          all.push_back(image);
       }
   }
-  return body;
+  return all;
+}
+
+std::vector<const double *> Everywhere::rows() const
+{
+  std::vector<const double *> list;
+  for (const auto &place : places) list.push_back(place.data());
+  return list;
+}
+
+double Everywhere::nearest(const double *to) const
+{
+  double least = Cells::LARGE;
+  cells.around(to, [&](int, double rsq) {
+    least = std::min(least, rsq);
+  });
+  return least;
 }
 
 /* ----------------------------------------------------------------------

@@ -17,9 +17,11 @@
 #ifndef LMP_FSI_ZONES_H
 #define LMP_FSI_ZONES_H
 
+#include "fsi_cells.h"
 #include "pointers.h"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,23 @@ class Region;
 
 namespace FSI {
   class Scene;
+
+  // The particles of all ranks that is(i) holds for, and their images across periods within a reach
+  // of the box, for questions about the nearest one: ghosts may not go as far
+  class Everywhere {
+   public:
+    Everywhere(LAMMPS *, double reach, const std::function<bool(int)> &is);
+    bool empty() const { return x.empty(); }
+    double nearest(const double *to) const;    // squared distance; large where none is in reach
+
+   private:
+    std::vector<std::array<double, 3>> places;
+    std::vector<const double *> x;
+    Cells cells;
+    static std::vector<std::array<double, 3>> find(LAMMPS *, double reach,
+                                                   const std::function<bool(int)> &is);
+    std::vector<const double *> rows() const;
+  };
 
   class Zones : protected Pointers {
    public:
@@ -51,7 +70,6 @@ namespace FSI {
     std::vector<double> distances, away;    // of zones; per local particle, from the body
     bool can_move;
     std::vector<std::array<double, 3>> directions;    // in which a region grows
-    std::vector<std::array<double, 3>> find_body(int dim, double reach) const;
   };
 
 }    // namespace FSI

@@ -183,6 +183,14 @@ def test_restart_keeps_the_buffer(tmp_path, inlet):
     assert inlet == INLET or "the restart file has its plane at 0 with a buffer of 0.5, here it is 0" in done.errors[0]
 
 
+def test_skin_between_runs_keeps_the_buffer(tmp_path):
+    """A longer one would lack a slice, and nobody would follow the last row. Its length is the support, 0.3, a spacing, 0.1, and half the skin, in whole spacings."""
+    text = deck(ATOMS.replace("-0.6 3.6", "-1.2 4.2")) + "run 1\nneighbor {} bin\nrun 1\n"
+    run(tmp_path, text.format(0.15), **FILES)
+    done = lammps(tmp_path, text.format(0.25), **FILES)
+    assert done.status and "the last run has its plane at 0 with a buffer of 0.5, here it is 0 with 0.6" in done.errors[0]
+
+
 @OPEN
 @pytest.mark.parametrize("ranks, newton", [(2, "on"), (4, "off")])
 def test_ranks_agree(tmp_path, ranks, newton, background):
@@ -464,6 +472,23 @@ def test_body_near_a_plane_does_not_starve_it(tmp_path):
               oil_fsi="# UNITS: si CITATION: none\nfluid fluid rho 1000 viscosity 1\nwall wall rho 1000\n").output
     came, members = map(float, re.search(r"^came (\S+) (\S+)", out, re.M).groups())
     assert came == pytest.approx(1, abs=0.02) and members == pytest.approx(100, abs=20)    # a column of twenty comes at a time
+
+
+@pytest.mark.parametrize("lateral", [4, 5], ids=["2D", "3D"])
+def test_given_again_between_runs(lateral):
+    """Whenever that is, also while the next column is due with the next list: a lattice that moves as one goes on being one. A column takes 29 steps, its
+    successor is due after 15, lists are built every five."""
+    dx, U, n = 0.1, 1.0, (8, lateral) if lateral == 4 else (8, lateral, lateral)
+    dt = 0.25 * 1.5 * dx / 11
+    inlet = f"fix i all fsi/inlet xlo 0 velocity {U} 0 0"
+    for first in range(12, 20) if lateral == 4 else (16,):
+        with open_box(n, dx, 0, inlet, f"fix o all fsi/outlet xhi {n[0] * dx}", v=(U, 0, 0), dt=dt) as s:
+            go_on(s, first)
+            s.run_lines("unfix i", inlet)
+            go_on(s, 200)
+            x = np.unique(np.round(s.get("x")[:, 0], 6))
+            across = np.prod(n[1:])
+            assert np.allclose(np.diff(x), dx, atol=1e-5) and len(s.get("id")) == len(x) * across and x[0] < -0.4 + 1e-6 and x[-1] > 1.2, first
 
 
 def test_buffer_with_a_gap_is_told(tmp_path):
