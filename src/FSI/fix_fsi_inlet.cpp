@@ -71,8 +71,6 @@ static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 // that is sheared or bent shows of one; and the range, where particles stay a fluid
 static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15;
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"),
     keywords(lmp, keywords_name()), given(new Values(lmp, keywords_name(), NVALUES)),
@@ -139,8 +137,6 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   register_fields();
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIInlet::~FixFSIInlet()
 {
   forget_ends();
@@ -170,8 +166,6 @@ double FixFSIInlet::value(int k, int i) const
                atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given->see(k));
   return x;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIInlet::init()
 {
@@ -242,10 +236,7 @@ void FixFSIInlet::init()
   forget_ends();
 }
 
-/* ----------------------------------------------------------------------
-   plane and buffer are inside the box
-------------------------------------------------------------------------- */
-
+// plane and buffer are inside the box
 void FixFSIInlet::check_plane()
 {
   // a number in a script may be that of the box but for its last digits
@@ -263,10 +254,7 @@ void FixFSIInlet::check_plane()
                who, id, "xyz"[axis], position, end, half_skin, lo, hi);
 }
 
-/* ----------------------------------------------------------------------
-   the part of the plane that is open
-------------------------------------------------------------------------- */
-
+// the part of the plane that is open
 void FixFSIInlet::find_region()
 {
   region = nullptr;
@@ -289,10 +277,7 @@ void FixFSIInlet::find_region()
   }
 }
 
-/* ----------------------------------------------------------------------
-   the fluid that a pressure compresses most; is a pressure out of its range?
-------------------------------------------------------------------------- */
-
+// the fluid that a pressure compresses most; is a pressure out of its range?
 const State &FixFSIInlet::softest() const
 {
   const State *soft = nullptr;
@@ -306,8 +291,6 @@ bool FixFSIInlet::is_far(double p) const
   const State &soft = softest();
   return soft.species == FLUID && std::fabs(p - soft.p0) > FAR * soft.rho0 * soft.csq;
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool FixFSIInlet::is_fluid(int i) const
 {
@@ -330,10 +313,7 @@ bool FixFSIInlet::holds(const double *x) const
   return s <= 0.0 && s > -2.0 * length && in_patch(x);
 }
 
-/* ----------------------------------------------------------------------
-   Before the first run: in an empty buffer the fluid before it goes on
-------------------------------------------------------------------------- */
-
+// Before the first run: in an empty buffer the fluid before it goes on
 void FixFSIInlet::setup_pre_exchange()
 {
   for (const auto &w : fix_fsi->walls.wall) {
@@ -430,10 +410,7 @@ void FixFSIInlet::fill_buffer()
         if (given->given(d)) atom->v[i][d] = value(d, i);
 }
 
-/* ----------------------------------------------------------------------
-   Slices of a spacing, counted from the plane
-------------------------------------------------------------------------- */
-
+// Slices of a spacing, counted from the plane
 int FixFSIInlet::number_of_slices() const
 {
   return static_cast<int>(std::round(length / fix_fsi->dx));
@@ -462,12 +439,9 @@ void FixFSIInlet::check_slices(std::vector<int> &mine) const
                  position - side * length);
 }
 
-/* ----------------------------------------------------------------------
-   In a buffer of a fix before this one: who is last of a row is to be followed, also if he has come
-   a spacing from the end meanwhile, and the one behind him would have been made with the next list.
-   How many those are on this rank
-------------------------------------------------------------------------- */
-
+// In a buffer of a fix before this one: who is last of a row is to be followed, also if he has come
+// a spacing from the end meanwhile, and the one behind him would have been made with the next list.
+// How many those are on this rank
 int FixFSIInlet::find_last_of_rows()
 {
   typedef std::array<double, 3> Point;
@@ -510,12 +484,9 @@ int FixFSIInlet::find_last_of_rows()
   return missing;
 }
 
-/* ----------------------------------------------------------------------
-   Copies of the fluid at the plane that fill the buffer: of as many slices as are full, again and
-   again, so that its lattice goes on. A slice is not where the fluid ends, or where a body stands
-   in the way of the fluid at the plane.
-------------------------------------------------------------------------- */
-
+// Copies of the fluid at the plane that fill the buffer: of as many slices as are full, again and
+// again, so that its lattice goes on. A slice is not where the fluid ends, or where a body stands
+// in the way of the fluid at the plane.
 std::vector<Particle> FixFSIInlet::go_on_behind() const
 {
   const int most = number_of_slices(), full = full_slices();
@@ -598,10 +569,7 @@ int FixFSIInlet::full_slices() const
   return std::min(full, all);
 }
 
-/* ----------------------------------------------------------------------
-   sorts copies along the plane; is there somebody already where they will be?
-------------------------------------------------------------------------- */
-
+// sorts copies along the plane; is there somebody already where they will be?
 std::vector<int> FixFSIInlet::find_occupied(std::vector<Particle> &copies, bool at_start)
 {
   double low = inside(copies[0].x), high = low;
@@ -647,11 +615,8 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Particle> &copies, bool 
   return occupied;
 }
 
-/* ----------------------------------------------------------------------
-   Makes copies: IDs in the order of those of the parents, whatever rank has them. Fluid that is in
-   the place keeps it.
-------------------------------------------------------------------------- */
-
+// Makes copies: IDs in the order of those of the parents, whatever rank has them. Fluid that is in
+// the place keeps it.
 void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
 {
   std::vector<Particle> all, copies;
@@ -669,10 +634,7 @@ void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
   for (int i = first; i < atom->nlocal; i++) of_buffer[i] = MEMBER;
 }
 
-/* ----------------------------------------------------------------------
-   when lists are built: who has passed the plane, or the end of the buffer
-------------------------------------------------------------------------- */
-
+// when lists are built: who has passed the plane, or the end of the buffer
 void FixFSIInlet::pre_exchange()
 {
   if (region) region->prematch();
@@ -732,11 +694,8 @@ void FixFSIInlet::pre_exchange()
   population.end();
 }
 
-/* ----------------------------------------------------------------------
-   behind the plane, and no fluid that this end lets pass: LAMMPS would say of it that it is lost,
-   and no more
-------------------------------------------------------------------------- */
-
+// behind the plane, and no fluid that this end lets pass: LAMMPS would say of it that it is lost,
+// and no more
 void FixFSIInlet::stranger(int i)
 {
   const double *const x = atom->x[i];
@@ -763,13 +722,10 @@ void FixFSIInlet::stranger(int i)
                  what);
 }
 
-/* ----------------------------------------------------------------------
-   The last of a row has come a spacing from the end: another follows it, from the next list on, but
-   where it would be had it been made now, so that it does not matter when lists are built. The
-   spacing is that at which particles have the room of their density (Copies made a buffer's length
-   behind those that pass the plane would bring each gap again and again.)
-------------------------------------------------------------------------- */
-
+// The last of a row has come a spacing from the end: another follows it, from the next list on, but
+// where it would be had it been made now, so that it does not matter when lists are built. The
+// spacing is that at which particles have the room of their density (Copies made a buffer's length
+// behind those that pass the plane would bring each gap again and again.)
 void FixFSIInlet::follow(int i, double s)
 {
   const double spacing = column * fix_fsi->dx;
@@ -780,11 +736,8 @@ void FixFSIInlet::follow(int i, double s)
   behind[i][axis] -= side * spacing;
 }
 
-/* ----------------------------------------------------------------------
-   Fluid at the plane and in the buffer, of this rank: from one list to the next. Variables are
-   evaluated for a group: it gets one of its own.
-------------------------------------------------------------------------- */
-
+// Fluid at the plane and in the buffer, of this rank: from one list to the next. Variables are
+// evaluated for a group: it gets one of its own.
 void FixFSIInlet::find_places()
 {
   places.clear();
@@ -834,18 +787,16 @@ void FixFSIInlet::forget_ends()
   ends = MPI_COMM_NULL;
 }
 
-/* ----------------------------------------------------------------------
-   Pressure or normal velocity of the fluid at the nodes of a lattice in the plane: a fit, quadratic
-   along the plane, of the fluid within the kernel's support, which is on one side only. (A linear
-   one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the
-   pressure, too.) Terms that the fluid there cannot tell from
-   lower ones are left out.
-   Where pressure is given the profile of the velocity is that of the fluid a buffer's length before
-   the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi 2010,
-   Comput. Fluids 39, 553), and only its mean is that at the plane. A profile taken at the plane
-   keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes the
-   particle before it follows what it pushes. (Half as far away some of it was left.)
-------------------------------------------------------------------------- */
+// Pressure or normal velocity of the fluid at the nodes of a lattice in the plane: a fit, quadratic
+// along the plane, of the fluid within the kernel's support, which is on one side only. (A linear
+// one takes 12 U sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the
+// pressure, too.) Terms that the fluid there cannot tell from
+// lower ones are left out.
+// Where pressure is given the profile of the velocity is that of the fluid a buffer's length before
+// the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi 2010,
+// Comput. Fluids 39, 553), and only its mean is that at the plane. A profile taken at the plane
+// keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes the
+// particle before it follows what it pushes. (Half as far away some of it was left.)
 
 // the row of a fit's inverse that gives its value at the node: terms 1, x, xx; 1, x, y, xx, xy, yy
 template <int TERMS> static void value_weights(const double *moment, double *row)
@@ -881,8 +832,6 @@ void FixFSIInlet::fit_nodes(int nmoment, int nfit, int nfields)
     c[0] = 1.0;
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 // f[0] times monomials of y: 1, x, xx, ...; 1, x, y, xx, xy, yy, ...; up to the fourth degree
 static void times_monomials(bool plane, const double *y, double *f)
@@ -1007,16 +956,13 @@ bool FixFSIInlet::at_plane(const double *x, double *values) const
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   The density of the buffer is that of its pressure: the fluid's at the plane with the weight of
-   what lies between, or as given. Sound that leaves meets its own impedance: to a change of the
-   fluid's velocity the pressure at the plane answers with rho c times that, or the velocity to one
-   of its pressure, and goes back to what is given at the rate of absorption. Of the mean over the
-   plane: vortices that pass do not change it. A pressure that is given is that of the plane; along
-   the buffer it goes on as the mean of the fluid does, or the fluid would be pushed by less than
-   its gradient for as long as it sees the buffer. What is slower than sound through the box counts.
-------------------------------------------------------------------------- */
-
+// The density of the buffer is that of its pressure: the fluid's at the plane with the weight of
+// what lies between, or as given. Sound that leaves meets its own impedance: to a change of the
+// fluid's velocity the pressure at the plane answers with rho c times that, or the velocity to one
+// of its pressure, and goes back to what is given at the rate of absorption. Of the mean over the
+// plane: vortices that pass do not change it. A pressure that is given is that of the plane; along
+// the buffer it goes on as the mean of the fluid does, or the fluid would be pushed by less than
+// its gradient for as long as it sees the buffer. What is slower than sound through the box counts.
 void FixFSIInlet::advance(bool advance)
 {
   if (neighbor->ago == 0) find_places();
@@ -1090,11 +1036,8 @@ void FixFSIInlet::set_density(int i, double rho)
   if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
 }
 
-/* ----------------------------------------------------------------------
-   What has a given velocity goes without the fluid where that does not follow, and has nothing to
-   come back with
-------------------------------------------------------------------------- */
-
+// What has a given velocity goes without the fluid where that does not follow, and has nothing to
+// come back with
 void FixFSIInlet::check_supply()
 {
   if (served == 0.0) served = mean[BUFFER];
@@ -1118,12 +1061,9 @@ void FixFSIInlet::check_supply()
              id, served, "xyz"[axis], position, mean[BUFFER], why);
 }
 
-/* ----------------------------------------------------------------------
-   Shifting carries nobody through the plane: the buffer, which moves as it is told to, could not
-   give back what comes. Along the axis it fades over the kernel's support before the plane; what is
-   left there is less than the distance from it.
-------------------------------------------------------------------------- */
-
+// Shifting carries nobody through the plane: the buffer, which moves as it is told to, could not
+// give back what comes. Along the axis it fades over the kernel's support before the plane; what is
+// left there is less than the distance from it.
 void FixFSIInlet::hold_shift(const Place &place)
 {
   double *const *const velocity = fix_fsi->shift_velocity;
@@ -1140,16 +1080,13 @@ void FixFSIInlet::hold_shift(const Place &place)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Is there as much fluid as there is room? Continuity keeps rho - m psi of a particle, density less
-   that of its number. But what comes in through the plane has the density that is given, and the
-   neighbors with which it went out when pressure was another: where flow reverses each time adds to
-   their number, since it goes out when pressure is higher. And diffusion passes between fluid and
-   buffer what has no volume. So mass is compared with density times room, 1/psi, of the fluid
-   before the plane. Particles at a free surface do not count; where there is one, a lack says
-   nothing.
-------------------------------------------------------------------------- */
-
+// Is there as much fluid as there is room? Continuity keeps rho - m psi of a particle, density less
+// that of its number. But what comes in through the plane has the density that is given, and the
+// neighbors with which it went out when pressure was another: where flow reverses each time adds to
+// their number, since it goes out when pressure is higher. And diffusion passes between fluid and
+// buffer what has no volume. So mass is compared with density times room, 1/psi, of the fluid
+// before the plane. Particles at a free surface do not count; where there is one, a lack says
+// nothing.
 void FixFSIInlet::end_state(bool advance)
 {
   if (advance ? update->ntimestep % LOOK_EVERY : fill > 0.0) return;
@@ -1192,11 +1129,8 @@ void FixFSIInlet::warn_of_fill(bool full)
           : "Nothing holds their number without keyword background of pair_style fsi/fluid");
 }
 
-/* ----------------------------------------------------------------------
-   Where fluid fills the box: too many particles before the plane get a density that presses them
-   out, and those that come in follow each other at another spacing
-------------------------------------------------------------------------- */
-
+// Where fluid fills the box: too many particles before the plane get a density that presses them
+// out, and those that come in follow each other at another spacing
 void FixFSIInlet::keep_full()
 {
   const State &soft = softest();
@@ -1217,11 +1151,8 @@ void FixFSIInlet::keep_full()
   }
 }
 
-/* ----------------------------------------------------------------------
-   forces that give the buffer its velocity at the end of the step; where there is no fluid at the
-   plane it keeps what it has
-------------------------------------------------------------------------- */
-
+// forces that give the buffer its velocity at the end of the step; where there is no fluid at the
+// plane it keeps what it has
 void FixFSIInlet::prescribe()
 {
   std::fill_n(push_sum, 4, 0.0);
@@ -1276,8 +1207,6 @@ double FixFSIInlet::compute_vector(int n)
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIInlet::write_restart(FILE *fp)
 {
   Record record(lmp, style);
@@ -1316,8 +1245,6 @@ void FixFSIInlet::restart(char *buf)
   mass_in = numbers[2];
   fields.read(record);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixFSIInlet::memory_usage()
 {

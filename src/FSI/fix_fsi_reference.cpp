@@ -56,8 +56,6 @@ static constexpr double WITHIN = 1.0 - 1.0e-9;
 // of the spacing: neighbors are no further from where a lattice has them
 static constexpr double NEAR = 0.05;
 
-/* ---------------------------------------------------------------------- */
-
 struct FixFSIReference::Members {
   Swaps swaps;
   Clamps clamps;
@@ -84,8 +82,6 @@ FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
   atom->add_callback(Atom::RESTART);
   for (int i = 0; i < atom->nlocal; i++) set_arrays(i);
 }
-
-/* ---------------------------------------------------------------------- */
 
 FixFSIReference::~FixFSIReference()
 {
@@ -117,8 +113,6 @@ void FixFSIReference::post_integrate()
 {
   if (clamps.any()) clamps.to_middle();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIReference::init()
 {
@@ -179,8 +173,6 @@ bool FixFSIReference::any() const
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIReference::setup_post_neighbor()
 {
   if (resting) return;
@@ -206,8 +198,6 @@ void FixFSIReference::post_neighbor()
   look_for_passing();
 }
 
-/* ---------------------------------------------------------------------- */
-
 // without there is one of each particle
 bool FixFSIReference::is_periodic() const
 {
@@ -221,12 +211,9 @@ bool FixFSIReference::is_solid(int i) const
   return fix_fsi->state[atom->type[i]].species == SOLID;
 }
 
-/* ----------------------------------------------------------------------
-   What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless
-   told not to: each bonded atom knows its old one. Bonds to those that are gone are cut, as by
-   damage. Solids cannot become something else, nor the reverse.
-------------------------------------------------------------------------- */
-
+// What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless
+// told not to: each bonded atom knows its old one. Bonds to those that are gone are cut, as by
+// damage. Solids cannot become something else, nor the reverse.
 void FixFSIReference::follow_commands()
 {
   const tagint *const tag = atom->tag;
@@ -326,10 +313,7 @@ void FixFSIReference::refuse_split_bodies() const
     }
 }
 
-/* ----------------------------------------------------------------------
-   solids without a reference take the positions of now
-------------------------------------------------------------------------- */
-
+// solids without a reference take the positions of now
 void FixFSIReference::take()
 {
   std::vector<int> bare;
@@ -368,14 +352,12 @@ void FixFSIReference::take()
   }
 }
 
-/* ----------------------------------------------------------------------
-   The energy is an integral over particles in the middle of their cells: the midpoint rule,
-   which lacks 1/n^2 of the bending stiffness of a plate n particles across. With its end
-   corrections, 13/12, 7/8, 25/24 for the first three layers from a face (Press et al., Numerical
-   Recipes, eq. 4.1.18), quadratic integrands are exact. They apply along each axis of the body's
-   lattice; a body thinner than three layers, or not on a lattice, keeps plain volumes there.
-   Masses do not change.
-------------------------------------------------------------------------- */
+// The energy is an integral over particles in the middle of their cells: the midpoint rule,
+// which lacks 1/n^2 of the bending stiffness of a plate n particles across. With its end
+// corrections, 13/12, 7/8, 25/24 for the first three layers from a face (Press et al., Numerical
+// Recipes, eq. 4.1.18), quadratic integrands are exact. They apply along each axis of the body's
+// lattice; a body thinner than three layers, or not on a lattice, keeps plain volumes there.
+// Masses do not change.
 
 // a bond (numbers BOND_BLOCK apart) along a direction
 template <int D> static double along(const double *X, const double *e)
@@ -733,8 +715,6 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIReference::break_bonds(double stretch, const Energy &energy)
 {
   if (domain->dimension == 2)
@@ -845,10 +825,7 @@ template <int D> bool FixFSIReference::renew(int i)
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   where the partners of each bond are: after atoms or ghosts have changed
-------------------------------------------------------------------------- */
-
+// where the partners of each bond are: after atoms or ghosts have changed
 void FixFSIReference::resolve()
 {
   const tagint *const tag = atom->tag;
@@ -904,10 +881,7 @@ void FixFSIReference::resolve()
     find_self_pairs<3>();
 }
 
-/* ----------------------------------------------------------------------
-   contact of a body with itself
-------------------------------------------------------------------------- */
-
+// contact of a body with itself
 bool FixFSIReference::bonded(int i, int j) const
 {
   const tagint *const first = &partner[(size_t) slot[i] * maxbond];
@@ -958,11 +932,8 @@ template <int D> void FixFSIReference::find_self_pairs()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Without contact parts of one body pass through each other. Looked for rarely: it takes long, and
-   nothing depends on it but a warning.
-------------------------------------------------------------------------- */
-
+// Without contact parts of one body pass through each other. Looked for rarely: it takes long, and
+// nothing depends on it but a warning.
 void FixFSIReference::look_for_passing()
 {
   static constexpr int EVERY = 200;      // steps
@@ -1004,8 +975,6 @@ void FixFSIReference::look_for_passing()
                    pair[0], pair[1], pair[2], least.r, update->ntimestep);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIReference::move_bond(int s, int from, int to)
 {
   const size_t first = (size_t) s * maxbond;
@@ -1031,10 +1000,7 @@ void FixFSIReference::complete(int s)
   }
 }
 
-/* ----------------------------------------------------------------------
-   every slot holds n bonds: one size, so that a freed slot serves any atom
-------------------------------------------------------------------------- */
-
+// every slot holds n bonds: one size, so that a freed slot serves any atom
 void FixFSIReference::reserve(int n)
 {
   if (n <= maxbond) return;
@@ -1091,8 +1057,6 @@ int FixFSIReference::new_slot(int n)
   return s;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIReference::grow_arrays(int n)
 {
   memory->grow(slot, n, "FSI_REFERENCE:slot");
@@ -1106,10 +1070,7 @@ void FixFSIReference::copy_arrays(int i, int j, int delflag)
   slot[j] = slot[i];
 }
 
-/* ----------------------------------------------------------------------
-   number of bonds, then partner and values of each
-------------------------------------------------------------------------- */
-
+// number of bonds, then partner and values of each
 int FixFSIReference::pack(int i, double *buf) const
 {
   int m = 0;
@@ -1217,8 +1178,6 @@ int FixFSIReference::size_restart(int i)
 {
   return slot[i] < 0 ? 2 : 3 + nbond[slot[i]] * (nvalue + nwhole()) + nplace();
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixFSIReference::memory_usage()
 {

@@ -58,8 +58,6 @@ static constexpr size_t MAX_LEVELS = 12;
 static constexpr double SAME = 1.0e-12;      // what comes from one material
 static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of a body it meets
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), who("Fix fsi/refine"), every(0), settle_steps(30),
     zones(new Zones(lmp, who)), fix_fsi(nullptr), total{}, last_event(-1), told(false),
@@ -119,14 +117,10 @@ void FixFSIRefine::read_types(const std::vector<std::string> &words)
     error->all(FLERR, "{} types: there are {}, expected {} at most", who, types.size(), MAX_LEVELS);
 }
 
-/* ---------------------------------------------------------------------- */
-
 int FixFSIRefine::setmask()
 {
   return PRE_EXCHANGE;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIRefine::init()
 {
@@ -152,10 +146,7 @@ void FixFSIRefine::init()
   fix_fsi->population.leave_an_id_free();
 }
 
-/* ----------------------------------------------------------------------
-   levels are of one fluid, and each has half the mass of the one before
-------------------------------------------------------------------------- */
-
+// levels are of one fluid, and each has half the mass of the one before
 void FixFSIRefine::check_types() const
 {
   const double expected = std::pow(2.0, -1.0 / fix_fsi->dim);
@@ -212,11 +203,8 @@ void FixFSIRefine::check_others() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   Before the first step, if it is one of those: all that is too coarse. Open ends begin with what
-   is coarse, whichever fix comes first
-------------------------------------------------------------------------- */
-
+// Before the first step, if it is one of those: all that is too coarse. Open ends begin with what
+// is coarse, whichever fix comes first
 void FixFSIRefine::setup_pre_exchange()
 {
   for (auto *end : open_ends) end->setup_pre_exchange();
@@ -230,8 +218,6 @@ void FixFSIRefine::pre_exchange()
   next_reneighbor = update->ntimestep + every;
   event(true, true);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIRefine::event(bool may_split, bool may_merge)
 {
@@ -289,11 +275,8 @@ void FixFSIRefine::renew_ghosts()
   comm->borders();
 }
 
-/* ----------------------------------------------------------------------
-   Of each particle: the zones that it is in, and what it is to do. A particle merges a coarse
-   spacing outside of its zone, so that one that moves to and fro at the edge does not change.
-------------------------------------------------------------------------- */
-
+// Of each particle: the zones that it is in, and what it is to do. A particle merges a coarse
+// spacing outside of its zone, so that one that moves to and fro at the edge does not change.
 void FixFSIRefine::look(bool may_split, bool may_merge)
 {
   zones->find(*fix_fsi, FAR * fix_fsi->dx_of(types[0]));
@@ -351,11 +334,8 @@ bool FixFSIRefine::in_open_end(int i, int wish) const
   return false;
 }
 
-/* ----------------------------------------------------------------------
-   Between the zone of a level and the end of that of the one before: at least the support of the
-   coarser one's kernel. As far as there is fluid.
-------------------------------------------------------------------------- */
-
+// Between the zone of a level and the end of that of the one before: at least the support of the
+// coarser one's kernel. As far as there is fluid.
 void FixFSIRefine::check_zones() const
 {
   const int nall = atom->nlocal + atom->nghost;
@@ -380,10 +360,7 @@ void FixFSIRefine::check_zones() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   bodies and walls meet fluid of their own spacing
-------------------------------------------------------------------------- */
-
+// bodies and walls meet fluid of their own spacing
 void FixFSIRefine::warn_of_bodies()
 {
   if (told) return;
@@ -419,11 +396,8 @@ static uint64_t hash_of(tagint a, tagint b)
   return hash;
 }
 
-/* ----------------------------------------------------------------------
-   Splitting. Halves must not come nearer to a mirror wall than particles of their spacing are, and
-   not leave the box
-------------------------------------------------------------------------- */
-
+// Splitting. Halves must not come nearer to a mirror wall than particles of their spacing are, and
+// not leave the box
 double FixFSIRefine::crowd_of_walls(const double *x, double dx) const
 {
   double sum = 0.0;
@@ -511,11 +485,8 @@ int FixFSIRefine::choose_direction(int i, const Cells &cells) const
   });
 }
 
-/* ----------------------------------------------------------------------
-   Many may split at once, next to each other: they choose again when they know what their
-   neighbors have chosen, half of them at a time, lest two step aside into each other's way
-------------------------------------------------------------------------- */
-
+// Many may split at once, next to each other: they choose again when they know what their
+// neighbors have chosen, half of them at a time, lest two step aside into each other's way
 void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells &cells)
 {
   heading.assign(atom->nlocal + atom->nghost, 0);
@@ -574,12 +545,9 @@ static bool are_apart(const Walls &walls, const double *x, const double *y)
   });
 }
 
-/* ----------------------------------------------------------------------
-   Merging: pairs of which each is the other's best partner, by distance, then by a hash of both
-   IDs, which knows no direction; then among those that are left. Whole numbers, the same on all
-   ranks.
-------------------------------------------------------------------------- */
-
+// Merging: pairs of which each is the other's best partner, by distance, then by a hash of both
+// IDs, which knows no direction; then among those that are left. Whole numbers, the same on all
+// ranks.
 void FixFSIRefine::choose_partners()
 {
   const int nall = atom->nlocal + atom->nghost;
@@ -653,8 +621,6 @@ std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gon
   return list;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIRefine::unite(const std::vector<Union> &unions)
 {
   double *const account = fix_fsi->account(FixFSI::LEVELS);
@@ -719,8 +685,6 @@ void FixFSIRefine::unpack_forward_comm(int n, int first, double *buf)
 {
   for (int k = 0; k < n; k++) (*message)[first + k] = (tagint) ubuf(buf[k]).i;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixFSIRefine::compute_vector(int n)
 {

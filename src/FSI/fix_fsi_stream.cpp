@@ -35,8 +35,6 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"),
     velocity(new Values(lmp, "fix fsi/stream", 3)), low(0.0), high(0.0), region(nullptr),
@@ -76,8 +74,6 @@ FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
 
 FixFSIStream::~FixFSIStream() = default;
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIStream::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/stream");
@@ -113,8 +109,6 @@ void FixFSIStream::init()
     zone_group = group->find_or_create(("fsi_stream_" + std::string(id)).c_str());
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixFSIStream::setup(int vflag)
 {
   step = -1;
@@ -131,11 +125,8 @@ void FixFSIStream::setup(int vflag)
   post_force(vflag);
 }
 
-/* ----------------------------------------------------------------------
-   Fluid that may be in the zone before the next list. Variables are evaluated for a group: it gets
-   one of its own.
-------------------------------------------------------------------------- */
-
+// Fluid that may be in the zone before the next list. Variables are evaluated for a group: it gets
+// one of its own.
 void FixFSIStream::find_zone()
 {
   zone.clear();
@@ -170,11 +161,8 @@ double FixFSIStream::in_zone(int i) const
       : -1.0;
 }
 
-/* ----------------------------------------------------------------------
-   sin^2 along the axis: smooth, 0 at the ends. Solids would be torn by what drives the fluid around
-   them
-------------------------------------------------------------------------- */
-
+// sin^2 along the axis: smooth, 0 at the ends. Solids would be torn by what drives the fluid around
+// them
 void FixFSIStream::find_weights()
 {
   if (step == update->ntimestep) return;
@@ -187,10 +175,7 @@ void FixFSIStream::find_weights()
   }
 }
 
-/* ----------------------------------------------------------------------
-   d rho/dt = -k w (rho - mean), the mean with the same weights, of each type: the mean stays
-------------------------------------------------------------------------- */
-
+// d rho/dt = -k w (rho - mean), the mean with the same weights, of each type: the mean stays
 void FixFSIStream::advance(bool advance)
 {
   if (!advance) return;
@@ -218,10 +203,7 @@ void FixFSIStream::advance(bool advance)
   }
 }
 
-/* ----------------------------------------------------------------------
-   the force that brings v to u(1 - a) + a v in this step, a = exp(-k w dt): stable for any rate
-------------------------------------------------------------------------- */
-
+// the force that brings v to u(1 - a) + a v in this step, a = exp(-k w dt): stable for any rate
 void FixFSIStream::post_force(int)
 {
   find_weights();    // in setup
@@ -250,8 +232,6 @@ void FixFSIStream::post_force(int)
   if (update->ntimestep > update->firststep) work += dt * given[3];
 }
 
-/* ---------------------------------------------------------------------- */
-
 double FixFSIStream::compute_scalar()
 {
   double all;
@@ -265,8 +245,6 @@ double FixFSIStream::compute_vector(int n)
   MPI_Allreduce(&given[n], &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixFSIStream::write_restart(FILE *fp)
 {
@@ -288,8 +266,6 @@ void FixFSIStream::restart(char *buf)
     error->warning(FLERR, "Fix fsi/stream: velocity was {} {}, and is {} now", before,
                    Keywords::OF_RESTART, velocity->text());
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixFSIStream::memory_usage()
 {

@@ -78,8 +78,6 @@ FixRigidSmall *small(Fix *fix)
 }
 }    // namespace
 
-/* ---------------------------------------------------------------------- */
-
 // what moves its bodies in another way is left to its own: pair_style fsi/solid/tl refuses it
 void Clamps::find(const Scene &scene, const Fix *fix_fsi)
 {
@@ -174,11 +172,8 @@ void Clamps::find_members()
   });
 }
 
-/* ----------------------------------------------------------------------
-   state of a body here and there; fix rigid has all on each rank, fix rigid/small has each on the
-   rank of one of its atoms, and copies where others are
-------------------------------------------------------------------------- */
-
+// state of a body here and there; fix rigid has all on each rank, fix rigid/small has each on the
+// rank of one of its atoms, and copies where others are
 std::vector<Clamps::State> Clamps::states(Fix *fix) const
 {
   std::vector<State> mine;
@@ -286,11 +281,8 @@ void Clamps::follow(Body &b) const
   MathExtra::angmom_to_omega(b.L, b.ex, b.ey, b.ez, b.inertia, b.omega);
 }
 
-/* ----------------------------------------------------------------------
-   free flight: turned about the angular velocity of half the time, exact in 2D and else of second
-   order
-------------------------------------------------------------------------- */
-
+// free flight: turned about the angular velocity of half the time, exact in 2D and else of second
+// order
 void Clamps::drift(Body &b, double t) const
 {
   const auto turn = [](double *q, const double *omega, double time) {
@@ -322,10 +314,6 @@ void Clamps::kick(Body &b, double t, const double *force_and_torque) const
   }
   follow(b);
 }
-
-/* ----------------------------------------------------------------------
-   particles of bodies
-------------------------------------------------------------------------- */
 
 // from the center of its body
 void Clamps::arm(const Member &m, double *r) const
@@ -383,8 +371,6 @@ void Clamps::add_own(const Body &b, double *force_and_torque) const
   if (domain->dimension == 2) force_and_torque[2] = force_and_torque[3] = force_and_torque[4] = 0.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Clamps::begin()
 {
   with_states([](Body &b, const State &s) {
@@ -407,11 +393,8 @@ void Clamps::to_start()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Fix rigid has taken half a kick and a whole drift, as velocity Verlet does. Here the velocities
-   are already those of the start of the step, and forces are those of its middle.
-------------------------------------------------------------------------- */
-
+// Fix rigid has taken half a kick and a whole drift, as velocity Verlet does. Here the velocities
+// are already those of the start of the step, and forces are those of its middle.
 void Clamps::to_middle()
 {
   to_start();
@@ -434,8 +417,6 @@ void Clamps::follow_boundary()
     }
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Clamps::begin_substeps(const std::vector<int> &solids)
 {
@@ -496,12 +477,9 @@ void Clamps::take_step()
   finish();
 }
 
-/* ----------------------------------------------------------------------
-   Fix rigid takes half a kick more, by which its velocities are those at the end of the step. Its
-   angular momentum is that of the sub-steps, not that of the mean force where a particle is in
-   the end.
-------------------------------------------------------------------------- */
-
+// Fix rigid takes half a kick more, by which its velocities are those at the end of the step. Its
+// angular momentum is that of the sub-steps, not that of the mean force where a particle is in
+// the end.
 void Clamps::finish()
 {
   sum(members, atom->f);

@@ -26,8 +26,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 Population::Population(LAMMPS *lmp, const Scene &scene) :
     Pointers(lmp), net(0), scene(scene), last_id(0), made(0), removed(0), wanted(0)
 {
@@ -47,12 +45,9 @@ double Population::energy(int i) const
       scene.stored(i);
 }
 
-/* ----------------------------------------------------------------------
-   Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps
-   that sort), before any is made, and as many may come as leave: so one is left free, below the
-   largest of a fluid.
-------------------------------------------------------------------------- */
-
+// Where IDs are 1 to N LAMMPS takes them for ones that stay so (Atom::tag_consecutive() in dumps
+// that sort), before any is made, and as many may come as leave: so one is left free, below the
+// largest of a fluid.
 void Population::leave_an_id_free()
 {
   if (!atom->tag_consecutive()) return;
@@ -74,10 +69,7 @@ void Population::renew_map()
   atom->map_set();
 }
 
-/* ----------------------------------------------------------------------
-   Ghosts go, as in Comm::exchange(), which comes next: new atoms take their places
-------------------------------------------------------------------------- */
-
+// Ghosts go, as in Comm::exchange(), which comes next: new atoms take their places
 void Population::begin()
 {
   if (atom->map_style != Atom::MAP_NONE) atom->map_clear();
@@ -135,11 +127,8 @@ void Population::make(const std::vector<Particle> &all, const std::string &who, 
   wanted += n;
 }
 
-/* ----------------------------------------------------------------------
-   Where particles come and go all the time, IDs that are free again come first: so the largest, and
-   LAMMPS' map of IDs, does not grow without end. Commands between runs may have given them, too.
-------------------------------------------------------------------------- */
-
+// Where particles come and go all the time, IDs that are free again come first: so the largest, and
+// LAMMPS' map of IDs, does not grow without end. Commands between runs may have given them, too.
 std::vector<tagint> Population::ids(int n, const std::string &who)
 {
   std::vector<tagint> list;
@@ -188,8 +177,6 @@ void Population::release(const std::vector<tagint> &mine)
   std::sort(free_ids.begin(), free_ids.end());
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Population::end()
 {
   bigint own[] = {made, removed};    // not const: LAMMPS' MPI for one process takes no other
@@ -204,8 +191,6 @@ void Population::end()
   net += all[0] - all[1];
   renew_map();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Population::write(Record &record) const
 {

@@ -33,8 +33,6 @@ static constexpr double STRENGTH = 0.15, LONGEST = 0.05;
 static constexpr double SURFACE = 0.9, INSIDE = 0.95;
 static constexpr double SKIN = 1.0;    // of rows, in spacings
 
-/* ---------------------------------------------------------------------- */
-
 Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
                    std::vector<tagint> changed) :
     Pointers(lmp),
@@ -67,8 +65,6 @@ void Settling::find_mobilities(const std::vector<char> &moves, const std::vector
         std::min(1.0, 2.0 - 2.0 * std::sqrt(event) / cut) * std::max(0.0, (body - cut) / dx);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Settling::find_rows()
 {

@@ -30,8 +30,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 Zones::Zones(LAMMPS *lmp, const std::string &who) :
     Pointers(lmp), who(who), body_bit(0), can_move(false),
     directions(split_directions(domain->dimension))
@@ -101,8 +99,6 @@ std::string Zones::names(int k) const
   return regions.empty() ? "" : fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Zones::find(const Scene &scene, double beyond)
 {
   for (auto *region : regions) region->prematch();
@@ -115,8 +111,6 @@ void Zones::find(const Scene &scene, double beyond)
   for (int i = 0; i < atom->nlocal; i++)
     if (scene.state[atom->type[i]].species == FLUID) away[i] = std::sqrt(body.nearest(atom->x[i]));
 }
-
-/* ---------------------------------------------------------------------- */
 
 Everywhere::Everywhere(LAMMPS *lmp, double reach, const std::function<bool(int)> &is) :
     places(find(lmp, reach, is)), x(rows()),
@@ -162,10 +156,7 @@ double Everywhere::nearest(const double *to) const
   return least;
 }
 
-/* ----------------------------------------------------------------------
-   A zone grown by a distance: is any place as far away, in a number of directions, inside?
-------------------------------------------------------------------------- */
-
+// A zone grown by a distance: is any place as far away, in a number of directions, inside?
 bool Zones::has(int k, int i, double grown) const
 {
   if (regions.empty()) return away[i] < distances[k - 1] + grown;

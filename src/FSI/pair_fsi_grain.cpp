@@ -41,8 +41,6 @@ template <int D> struct Sums {
   static constexpr int N = PX + D;
 };
 
-/* ---------------------------------------------------------------------- */
-
 PairFSIGrain::PairFSIGrain(LAMMPS *lmp) : Pair(lmp), fix_fsi(nullptr), least_floor(0.0)
 {
   restartinfo = 1;      // there is nothing to keep, and a hybrid style keeps its names
@@ -58,8 +56,6 @@ PairFSIGrain::~PairFSIGrain()
   memory->destroy(setflag);
   memory->destroy(cutsq);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSIGrain::allocate()
 {
@@ -91,8 +87,6 @@ void PairFSIGrain::coeff(int narg, char **arg)
     for (int j = from; j <= to; j++) setflag[std::min(i, j)][std::max(i, j)] = 1;
   fix_fsi = nullptr;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSIGrain::init_style()
 {
@@ -135,8 +129,6 @@ void PairFSIGrain::check_radii(int type) const
           atom->tag[k], type, 2.0 * atom->radius[k], fix_fsi->cut, type);
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<Part::Effect> PairFSIGrain::effects() const
 {
   return {{"grains: pressure gradient and drag of Schiller and Naumann", "fsi/grain", true}};
@@ -147,8 +139,6 @@ void PairFSIGrain::add_costs(Costs &costs) const
   costs.forward++;
   if (force->newton_pair) costs.back++;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSIGrain::compute(int eflag, int vflag)
 {
@@ -189,10 +179,7 @@ void PairFSIGrain::find_grains()
   given.assign(grains.size() * dim, 0.0);
 }
 
-/* ----------------------------------------------------------------------
-   over the pairs of the neighbor list, in which either may be the grain
-------------------------------------------------------------------------- */
-
+// over the pairs of the neighbor list, in which either may be the grain
 template <class K> void PairFSIGrain::sum_up(const K &kernel)
 {
   constexpr int D = K::DIM;
@@ -231,12 +218,9 @@ template <class K> void PairFSIGrain::sum_up(const K &kernel)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Pressure and its gradient at the grain are those of the plane that fits best, which walls and
-   surfaces on one side do not bend. In 2D a grain is as many spheres to a unit of depth as have
-   together the volume pi r^2: it sinks as one of them does.
-------------------------------------------------------------------------- */
-
+// Pressure and its gradient at the grain are those of the plane that fits best, which walls and
+// surfaces on one side do not bend. In 2D a grain is as many spheres to a unit of depth as have
+// together the volume pi r^2: it sinks as one of them does.
 template <int D> void PairFSIGrain::forces()
 {
   using Of = Sums<D>;
@@ -280,10 +264,7 @@ template <int D> void PairFSIGrain::forces()
   }
 }
 
-/* ----------------------------------------------------------------------
-   drag acts with the velocities of the start of a step, which must not turn around in it
-------------------------------------------------------------------------- */
-
+// drag acts with the velocities of the start of a step, which must not turn around in it
 void PairFSIGrain::check_step(int i, double drag, double dt) const
 {
   if (drag * dt <= atom->rmass[i] || !fix_fsi->is_moved(i)) return;
@@ -313,11 +294,8 @@ template <int D> void PairFSIGrain::give_back()
   }
 }
 
-/* ----------------------------------------------------------------------
-   the energy ledger is that of fluids and solids: what grains have taken, with velocities of the
-   middle of the step
-------------------------------------------------------------------------- */
-
+// the energy ledger is that of fluids and solids: what grains have taken, with velocities of the
+// middle of the step
 void PairFSIGrain::prescribe()
 {
   if (!fix_fsi->ledger) return;
@@ -337,10 +315,7 @@ void PairFSIGrain::prescribe()
   fix_fsi->tally(FixFSI::COUPLING, power);
 }
 
-/* ----------------------------------------------------------------------
-   of grains alone: sums come home, what they give goes to ghosts
-------------------------------------------------------------------------- */
-
+// of grains alone: sums come home, what they give goes to ghosts
 int PairFSIGrain::pack_forward_comm(int n, int *listed, double *buf, int, int *)
 {
   const int dim = fix_fsi->dim;
@@ -376,8 +351,6 @@ void PairFSIGrain::unpack_reverse_comm(int n, int *listed, double *buf)
     if (number[listed[k]] >= 0)
       for (int c = 0; c < row; c++) sums[number[listed[k]] * row + c] += *buf++;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double PairFSIGrain::memory_usage()
 {

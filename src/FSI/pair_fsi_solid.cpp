@@ -43,8 +43,6 @@ using namespace FSI;
 // together to half its length.
 static constexpr double FAR = 2.0;
 
-/* ---------------------------------------------------------------------- */
-
 struct PairFSISolid::Members {
   Fields fields;
   RowList own, others, own_images[2], other_images[2];
@@ -71,8 +69,6 @@ PairFSISolid::PairFSISolid(LAMMPS *lmp) :
 
 PairFSISolid::~PairFSISolid() = default;
 
-/* ---------------------------------------------------------------------- */
-
 State PairFSISolid::make_state(const Material &m) const
 {
   const auto *const stress = FixFSIStress::find(lmp);
@@ -80,8 +76,6 @@ State PairFSISolid::make_state(const Material &m) const
   s.form = UPDATED_LAGRANGIAN;
   return s;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSISolid::init_style()
 {
@@ -103,11 +97,8 @@ double PairFSISolid::artificial_stress() const
   return epsilon == 0.0 && fix_fsi->article ? 0.3 : epsilon;
 }
 
-/* ----------------------------------------------------------------------
-   calls f(are pairs packed, kernel, terms of the gradient) with the types and constants that loops
-   are compiled for: those of quadratic gradients, and pairs one by one, for any kernel
-------------------------------------------------------------------------- */
-
+// calls f(are pairs packed, kernel, terms of the gradient) with the types and constants that loops
+// are compiled for: those of quadratic gradients, and pairs one by one, for any kernel
 template <class F> void PairFSISolid::with_loops(F f) const
 {
   const int kind = fix_fsi->kernel, dim = fix_fsi->dim;
@@ -141,15 +132,11 @@ template <class F> void PairFSISolid::with_loops(F f) const
 
 template <bool PACKED> using Numbers = std::conditional_t<PACKED, Pack, double>;
 
-/* ---------------------------------------------------------------------- */
-
 int PairFSISolid::terms() const
 {
   const int dim = domain->dimension;
   return gradient == PLAIN ? 0 : gradient == CORRECTED_LINEAR ? dim : dim * (dim + 3) / 2;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void *PairFSISolid::extract(const char *name, int &dim_of_extract)
 {
@@ -166,8 +153,6 @@ Facts PairFSISolid::facts() const
   facts.corrected_gradients = gradient != PLAIN;
   return facts;
 }
-
-/* ---------------------------------------------------------------------- */
 
 int PairFSISolid::ngrad() const
 {
@@ -208,8 +193,6 @@ void PairFSISolid::find_idle(const Census &all, const Idle &nothing) const
             "pair_style fsi/solid is elastic or plastic; pair_style fsi/solid/tl law viscoelastic "
             "relaxes");
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSISolid::begin_state(bool)
 {
@@ -253,12 +236,9 @@ void PairFSISolid::find_rows()
   others.end();
 }
 
-/* ----------------------------------------------------------------------
-   Planes of symmetry (fsi_images.h): particles before them have the images of their neighbors, and
-   of themselves. Each pair has one row: what i and the image of j do to each other, j and the image
-   of i do, too, mirrored.
-------------------------------------------------------------------------- */
-
+// Planes of symmetry (fsi_images.h): particles before them have the images of their neighbors, and
+// of themselves. Each pair has one row: what i and the image of j do to each other, j and the image
+// of i do, too, mirrored.
 void PairFSISolid::find_image_rows()
 {
   images.find_planes(fix_fsi->walls, fix_fsi->wall_forces);
@@ -410,8 +390,6 @@ void PairFSISolid::add_image_forces(const K &kernel, Laws laws, const RowList (&
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool PairFSISolid::add_rates(bool advance)
 {
   fields.grow();
@@ -438,10 +416,7 @@ void PairFSISolid::advance(bool advance)
   if (advance && has_hourglass()) advance_hourglass(update->dt);
 }
 
-/* ----------------------------------------------------------------------
-   velocity gradient L from its sums; stress and, in continuity mode, density from L
-------------------------------------------------------------------------- */
-
+// velocity gradient L from its sums; stress and, in continuity mode, density from L
 template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
 {
   double *rho = atom->rho;
@@ -490,8 +465,6 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSISolid::go_back()
 {
   if (fix_fsi->density_solid != FixFSI::CONTINUITY) return;
@@ -503,8 +476,6 @@ void PairFSISolid::go_back()
     atom->rho[i] *= (1.0 + 0.5 * dt * div) / (1.0 - 0.5 * dt * div);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSISolid::velocity_gradient(double dt)
 {
@@ -552,10 +523,7 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
   });
 }
 
-/* ----------------------------------------------------------------------
-   hourglass control (fsi_hourglass.h)
-------------------------------------------------------------------------- */
-
+// hourglass control (fsi_hourglass.h)
 void PairFSISolid::advance_hourglass(double dt)
 {
   const int dim = fix_fsi->dim;
@@ -632,8 +600,6 @@ void PairFSISolid::unpack_reverse_comm(int n, int *listed, double *buf)
   });
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSISolid::add_number_density(double *psi, bool all_bodies)
 {
   double **x = atom->x;
@@ -670,8 +636,6 @@ void PairFSISolid::add_number_density(double *psi, bool all_bodies)
     }
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSISolid::compute(int eflag, int vflag)
 {
@@ -738,8 +702,6 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
   });
 }
 
-/* ---------------------------------------------------------------------- */
-
 template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const K &kernel)
 {
   using namespace SolidFlag;
@@ -794,8 +756,6 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<PairFSI::Effect> PairFSISolid::effects() const
 {
   static const char *const orders[] = {"plain", "exact for linear fields",
@@ -806,8 +766,6 @@ std::vector<PairFSI::Effect> PairFSISolid::effects() const
       {fmt::format("updated-Lagrangian solid, gradients {}", orders[gradient]), "gradient", true});
   return list;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double PairFSISolid::memory_usage()
 {

@@ -47,8 +47,6 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-/* ---------------------------------------------------------------------- */
-
 struct PairFSISolidTL::Members {
   SolidLaws laws;
   VolumetricStrain smoothed;
@@ -99,8 +97,6 @@ PairFSISolidTL *PairFSISolidTL::find(LAMMPS *lmp)
   return dynamic_cast<PairFSISolidTL *>(lmp->force->pair_match("fsi/solid/tl", 1));
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSISolidTL::check_settings()
 {
   laws.choose(law);
@@ -121,16 +117,12 @@ void PairFSISolidTL::check_settings()
                "would make energy: expected auto or local");
 }
 
-/* ---------------------------------------------------------------------- */
-
 State PairFSISolidTL::make_state(const Material &m) const
 {
   State s = solid_state(m, plane_stress);
   s.form = TOTAL_LAGRANGIAN;
   return s;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSISolidTL::init_style()
 {
@@ -164,8 +156,6 @@ void PairFSISolidTL::init_style()
   changes_seen = -1;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSISolidTL::make_laws()
 {
   smoothed = VolumetricStrain();
@@ -195,11 +185,8 @@ const double *const *PairFSISolidTL::history() const
   return fix_history ? fix_history->of : fix_stress ? fix_stress->stress : nullptr;
 }
 
-/* ----------------------------------------------------------------------
-   With sub-steps forces inside the solid come after all fixes have seen those from outside. What
-   adds to these, as fix addforce, is right; what sets or projects the whole force is not.
-------------------------------------------------------------------------- */
-
+// With sub-steps forces inside the solid come after all fixes have seen those from outside. What
+// adds to these, as fix addforce, is right; what sets or projects the whole force is not.
 bool PairFSISolidTL::takes_substeps() const
 {
   auto dt = modify->get_fix_by_style("^fsi/dt$");
@@ -230,11 +217,8 @@ void PairFSISolidTL::refuse_constraints() const
     }
 }
 
-/* ----------------------------------------------------------------------
-   A rigid part of an elastic body that another style than fix rigid or rigid/small moves is kicked
-   once in a step, by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
-------------------------------------------------------------------------- */
-
+// A rigid part of an elastic body that another style than fix rigid or rigid/small moves is kicked
+// once in a step, by forces that the sub-steps do not see: a beam with a rigid tip gains energy.
 void PairFSISolidTL::refuse_rigid_parts() const
 {
   for (auto &fix : modify->get_fix_list()) {
@@ -258,18 +242,13 @@ void PairFSISolidTL::refuse_rigid_parts() const
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 const std::vector<int> &PairFSISolidTL::solids() const
 {
   return reference->solids;
 }
 
-/* ----------------------------------------------------------------------
-   with sub-steps the forces act inside fix fsi's last half of the step, not here; but in setup
-   forces, energy and virial are seen
-------------------------------------------------------------------------- */
-
+// with sub-steps the forces act inside fix fsi's last half of the step, not here; but in setup
+// forces, energy and virial are seen
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
@@ -281,8 +260,6 @@ void PairFSISolidTL::compute(int eflag, int vflag)
   for (const int i : reference->solids)
     for (int d = 0; d < fix_fsi->dim; d++) f[i][d] += fsolid[i][d];
 }
-
-/* ---------------------------------------------------------------------- */
 
 template <class Call> auto PairFSISolidTL::with_law(Call call) const
 {
@@ -328,8 +305,6 @@ void PairFSISolidTL::internal_forces()
   });
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSISolidTL::find_rows()
 {
   const int *const type = atom->type, *const mask = atom->mask, groupbit = fix_fsi->groupbit;
@@ -365,8 +340,6 @@ void PairFSISolidTL::find_rows()
   };
   nmoving = std::stable_partition(rows.begin(), rows.end(), moves) - rows.begin();
 }
-
-/* ---------------------------------------------------------------------- */
 
 // points, and forces of zero
 template <int D> void PairFSISolidTL::gather_points()
@@ -417,11 +390,8 @@ template <int D> void PairFSISolidTL::gather_points()
       });
 }
 
-/* ----------------------------------------------------------------------
-   nearly incompressible solids (fsi_volumetric.h). Strains of all rows, also of those whose forces
-   are not wanted now: that of a held particle may count for one that moves.
-------------------------------------------------------------------------- */
-
+// nearly incompressible solids (fsi_volumetric.h). Strains of all rows, also of those whose forces
+// are not wanted now: that of a held particle may count for one that moves.
 bool PairFSISolidTL::is_smoothed(const Material &m) const
 {
   if (m.species != SOLID || volumetric == LOCAL || plane_stress || damage > 0.0) return false;
@@ -471,10 +441,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
   return energy;
 }
 
-/* ----------------------------------------------------------------------
-   fsi_bond_rows.h
-------------------------------------------------------------------------- */
-
+// fsi_bond_rows.h
 template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
 {
   using namespace BondFlag;
@@ -511,9 +478,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
 
-/* ----------------------------------------------------------------------
-   planes of symmetry (fsi_images.h)
-------------------------------------------------------------------------- */
+// planes of symmetry (fsi_images.h)
 
 // of atoms and images
 const int *PairFSISolidTL::types() const
@@ -569,10 +534,7 @@ void PairFSISolidTL::push_image(int i, int j, const Walls::Reflection &s, double
   strain_energy += (both ? 1.0 : 0.5) * contact.energy(rsq, Ki, Kj);
 }
 
-/* ----------------------------------------------------------------------
-   particles of different bodies (fsi_contact.h)
-------------------------------------------------------------------------- */
-
+// particles of different bodies (fsi_contact.h)
 template <int D> void PairFSISolidTL::contact_forces()
 {
   double **x = atom->x;
@@ -636,8 +598,6 @@ void PairFSISolidTL::push(int i, int j, const double *xij, double rsq, const Con
   strain_energy += part * contact.energy(rsq, Ki, Kj);
 }
 
-/* ---------------------------------------------------------------------- */
-
 template <int D> void PairFSISolidTL::deformation(int i, double *F) const
 {
   double **x = reference->images.positions(atom->x);
@@ -648,8 +608,6 @@ template <int D> void PairFSISolidTL::deformation(int i, double *F) const
       for (int c = 0; c < D; c++) F[a * D + c] += (xj[a] - x[i][a]) * G[c * BOND_BLOCK];
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSISolidTL::advance_stress(double dt)
 {
@@ -691,10 +649,7 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
   if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::INELASTIC] += dissipated;
 }
 
-/* ----------------------------------------------------------------------
-   L = F' F^-1 at the time of the velocities, half a step before the positions
-------------------------------------------------------------------------- */
-
+// L = F' F^-1 at the time of the velocities, half a step before the positions
 template <int D> void PairFSISolidTL::advance_rates(double dt)
 {
   reference->images.update(atom->x, atom->v);
@@ -726,8 +681,6 @@ template <int D> void PairFSISolidTL::advance_rates(double dt)
     if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::INELASTIC] += work * atom->rmass[i] / s.rho0;
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairFSISolidTL::break_bonds()
 {
@@ -770,10 +723,7 @@ double PairFSISolidTL::volume_ratio(int i) const
   return determinant<3>(F);
 }
 
-/* ----------------------------------------------------------------------
-   Cauchy stress: P F^T/J
-------------------------------------------------------------------------- */
-
+// Cauchy stress: P F^T/J
 void PairFSISolidTL::begin_stress()
 {
   forward_positions();    // ghosts still stand where they were in the middle of the step
@@ -823,10 +773,7 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
   return s;
 }
 
-/* ----------------------------------------------------------------------
-   ghosts: positions (and velocities) out, forces back; of solids only
-------------------------------------------------------------------------- */
-
+// ghosts: positions (and velocities) out, forces back; of solids only
 void PairFSISolidTL::forward_positions()
 {
   exchange(fix_fsi->profile, comm, [this]() {
@@ -897,13 +844,10 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
   });
 }
 
-/* ----------------------------------------------------------------------
-   Stiff solids: from the state at the start of the step on, position Verlet with a step that
-   many times shorter. What acts on them from outside (f: fluid, gravity, ...), taken at the
-   middle of the step, is held: what the fluid has lost in momentum, the solid gains, to
-   round-off.
-------------------------------------------------------------------------- */
-
+// Stiff solids: from the state at the start of the step on, position Verlet with a step that
+// many times shorter. What acts on them from outside (f: fluid, gravity, ...), taken at the
+// middle of the step, is held: what the fluid has lost in momentum, the solid gains, to
+// round-off.
 void PairFSISolidTL::integrate_substeps()
 {
   Profile *const profile = fix_fsi->profile;
@@ -983,16 +927,12 @@ void PairFSISolidTL::go_back()
   if (reference->clamps.any()) reference->clamps.go_back();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void PairFSISolidTL::advance(bool advance)
 {
   if (!advance) return;
   break_bonds();
   if (fix_fsi->substeps == 1) advance_stress(update->dt);
 }
-
-/* ---------------------------------------------------------------------- */
 
 Facts PairFSISolidTL::facts() const
 {
@@ -1028,8 +968,6 @@ void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
             relaxes ? "pair_style fsi/solid/tl has another law" : "no material has a Prony series");
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
 {
   auto list = keywords.effects();
@@ -1044,8 +982,6 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
     list.push_back({"sub-steps of rigid parts of solids, with fix rigid", "substeps", true});
   return list;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double PairFSISolidTL::memory_usage()
 {
