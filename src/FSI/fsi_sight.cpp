@@ -283,9 +283,12 @@ bool Sight::find_face(Face &face) const
   return back > 0.0;
 }
 
-// in the part in which the body hides the place that is as far behind it as x is before it
+// In the part in which the body hides the place that is as far behind it as x is before it. Not
+// where the rest of a half space pulls: the sharper kernel is negative at its end, and what is
+// missing may be as much as what is there.
 Sight::Fill Sight::fill(const Face &face) const
 {
+  static constexpr double MOST = 20.0;    // x in the plane of a layer, which pushes to no side
   const Fill all = beyond(face.type, face.distance),
              missing = beyond(face.type, face.distance + face.thickness);
   if (missing.weight == 0.0) return {1.0, 1.0};
@@ -294,7 +297,8 @@ Sight::Fill Sight::fill(const Face &face) const
   for (int d = 0; d < 3; d++) y[d] = from[d] + across * face.normal[d];
   const double there = 1.0 - visible(y);
   const auto over = [&](double whole, double rest) {
-    return whole > rest ? 1.0 + there * rest / (whole - rest) : 1.0;
+    if (rest <= 0.0 || whole <= rest) return 1.0;
+    return std::min(1.0 + there * rest / (whole - rest), MOST);
   };
   return {over(all.force, missing.force), over(all.weight, missing.weight)};
 }

@@ -183,6 +183,38 @@ def blade(skin, thin="thin 2"):
         return s.get("x")
 
 
+def pushes(layers, dim, places, wide=21, aside=0.0):
+    """Of a fluid particle of spacing 0.1 at these distances before the first of so many layers of a wall of a third of that: its force along the normal"""
+    dx, ds = 0.1, 0.1 / 3
+    plate = lattice([layers] + [wide] * (dim - 1), ds)
+    plate -= [plate[0, 0], *plate[:, 1:].mean(0)]
+    x = np.concatenate([np.zeros((1, 3)), np.pad(plate, ((0, 0), (0, 3 - plate.shape[1])))])
+    solid = np.arange(len(x)) > 0
+    found = []
+    with Scene(x, dim=dim, dx=dx, kernel="quintic", hdx=1.0, type=1 + solid, mol=1 + solid, held=solid, materials=(WATER, WALL), density=f"spacing 2 {ds!r} thin 2",
+               fluid="tension yes solid/guard 0 background 1000", commands=["fix w held fsi/wall/particle"]) as s:
+        for place in places:
+            s.put("x", np.concatenate([[[-place, aside, 0]], x[1:]]))
+            s.run()
+            found.append(-s.get("f")[0, 0])
+    return np.array(found)
+
+
+@pytest.mark.parametrize("layers, dim", [(1, 2), (2, 2), (2, 3)])
+def test_a_fluid_particle_at_every_distance(layers, dim):
+    """A plate that hides what is behind it pushes as one that is thicker than the support, wherever the fluid particle is before it: within 2 % of
+    the largest push, which what is smeared over layers allows; nearer than half a layer, where a layer hardly pushes, by no more. Beside its edge it
+    pushes less, and nowhere by a multiple: the sharper kernel of its finer lattice changes its sign at its end"""
+    places = 0.3 * np.linspace(0.02, 1.0, 50 if dim == 3 else 1000)
+    thick, thin = pushes(10, dim, places), pushes(layers, dim, places)
+    apart, most = np.abs(thin - thick)[places > 0.5 * 0.1 / 3].max() / thick.max(), 0.0
+    if dim == 2:
+        far = 0.3 * np.linspace(0.7, 1.0, 3001)
+        most = max(np.abs(pushes(layers, dim, far, 5, aside)).max() for aside in (0.0, 0.05, 0.1, 0.15)) / thick.max()
+    print(f"{layers} layers, {dim}D: apart by {apart:.3f}, nearest {thin[0] / thick.max():.3g}, far at an edge at most {most:.3f}")
+    assert apart < 0.02 and np.abs(thin).max() < 1.02 * thick.max() and most < 0.01
+
+
 def test_lists_do_not_matter():
     """Who is hidden is asked in every step: lists that are built more or less often change nothing but round-off, which grows by some 1e3 in this time"""
     often, rarely = blade(0.002), blade(0.006)
