@@ -25,7 +25,7 @@ HEADLINES = (
     ("Plate under 2 m of water", "hydrostatic_plate", r".*", "11_across"),
     ("Dam break on an elastic plate, 3D", "dam_break_elastic", r".*", "plate"),
     ("Elastic plate alone", "oscillating_plate", r".*", "tl_10"),
-    ("Rigid cylinder in a channel, Re = 20 and 100", "cylinder_channel", r".*", "re_100_28"))
+    ("Rigid cylinder in a channel, Re = 20 and 100", "cylinder_channel", r".*", "re_100_14_to_40"))
 WORDS = (  # of names of figures, for readers who do not know them; the first that fits
     (r"(ux|uy)_fsi1", "displacement of the tip"), (r"uy_amplitude", "amplitude of the tip"), (r"drag_amplitude", "amplitude of the drag"),
     (r"lift_amplitude", "amplitude of the lift"), (r"drag", "drag"), (r"lift", "lift"), (r"strouhal", "Strouhal number"), (r"frequency", "frequency"),
