@@ -4,6 +4,7 @@
 main reads series.csv, particles.dump and log.lammps of one run; study compares the runs of cases.json with linear theory (theory.py).
 """
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -82,6 +83,8 @@ def study(folder, cases):
     """Heave and pitch in waves against linear theory; sub-steps against none."""
     folder = Path(folder)
     summary = Summary(folder)
+    if "flap_10" in cases:
+        shutil.copyfile(Path(cases["flap_10"]) / "snapshots.png", folder / "snapshots.png")
     runs = {name: read(path) for name, path in cases.items()}
     waves = {values["dx"]: abs(amplitude(s.time, s["level2"], values["T"])) for name, (values, s) in runs.items() if name.startswith("waves")}
     for dx, height in waves.items():
