@@ -619,7 +619,7 @@ BAD = [
     ("closed", {"more": "fix end all fsi/wall/mirror xlo 0"}, r"Fix fsi/inlet i: the mirror wall xlo at 0 closes it"),
     ("corner", {"start": ATOMS.replace("-0.5 1.5", "-0.6 1.5").replace("0 3 0 1", "0 3 -0.5 1"), "more": "unfix walls", "inlet": "fix j all fsi/inlet ylo 0 velocity 0 0 0\n" + INLET},
      r"Atom \d+ at \S+ \S+ 0 is in the buffers of fix j and fix i"),
-    ("summation", {"more": "unfix sph\nfix sph all fsi 0.1 wendland 1.5 fluid summation"}, r"requires fix fsi with fluid continuity"),
+    ("summation", {"more": "unfix sph\nfix sph all fsi 0.1 wendland 1.5 fluid summation"}, r"requires density by continuity, as fix fsi scheme standard has it"),
     ("a wall in the way", {"start": ATOMS + "region bed block -0.3 -0.2 0.3 0.6 INF INF units box\ncreate_atoms 2 region bed\ngroup bed type 2\ngroup oil type 1",
                            "materials": "oil bed", "moving": "oil", "more": "fix b bed fsi/wall/particle"}, r"Fix fsi/inlet i: atom \d+ of a wall at -0\.\d+ .* is where fluid of its buffer should be"),
     ("a solid in the buffer", {"start": ATOMS + "region solid block 3.2 3.5 0.3 0.6 INF INF units box\ncreate_atoms 2 region solid\nset type 2 mol 1",

@@ -142,10 +142,10 @@ def test_cases_of_the_scene_are_taken(plate, tmp_path, monkeypatch):
     monkeypatch.setattr(scene, "cases", lambda _: {"three": {"variables": settings, "ranks": 1, "deck": None, "may_fail": False}})
     monkeypatch.setattr(scene, "commit", lambda: "0123456789")
     assert scene.run("oscillating_plate", tmp_path / "oscillating_plate" / "three", 1, settings, "three") == 0
-    found = sweep.Store(tmp_path / "points", store.deck, store.measure, source=store.source)
+    found = sweep.Store(tmp_path / "points", store.deck, store.measure)
     accuracy_cost.take_cases(found, "oscillating_plate", [{"settings": settings}])
     monkeypatch.setattr(sweep.Store, "_simulate", lambda *_: pytest.fail("ran again"))
-    taken, own = found.make(settings), store.get(settings)
+    taken, own = found.make(settings), sweep.Store(store.folder, store.deck, store.measure).get(settings)
     of_run = {"cpu_seconds": 0, "particle_steps_per_second": 0, "bytes_per_particle": 0}
     assert taken["figures"] | of_run == pytest.approx(own["figures"] | of_run)
     for name in ("settings", "source", "status", "dx", "particles", "steps", "particle_steps", "pair_visits"):
