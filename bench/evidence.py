@@ -15,7 +15,7 @@ COMPARED = {
     "elastic_gate": ("TL, water twice as coarse", "UL plain", "updated Lagrangian,\none run, not converged"),
     "hydrostatic_plate": ("quadratic", "linear", "linear gradients"),
     "oscillating_plate": ("TL quadratic, clamp at the face", "UL plain", "updated Lagrangian"),
-    "turek_hron_fsi": ("four spacings, 2 to 8 across", "flag twice as fine as the water", "water of one spacing"),
+    "turek_hron_fsi": ("four spacings, 2 to 8 particles", "flag twice as fine as the water", "water of one spacing"),
     "standing_wave": ("quintic 1.0", "cubic 1.3", "cubic spline"),
     "taylor_green": ("shifting, quintic 1.0", "no shifting, quintic 1.0", "no shifting"),
     "still_water": ("quintic 0.94", "cubic 1.3", "cubic spline")}
