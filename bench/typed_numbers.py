@@ -34,10 +34,6 @@ class Typed:
     row: str        # the line that it is in
     beside: tuple   # all numbers of that line
 
-    @property
-    def value(self):
-        return spread(self.text)[0]
-
     def fits(self, kind, value):
         """Whether this is that value of the data, rounded to its own digits"""
         number, off = spread(self.text)
@@ -52,7 +48,7 @@ class Typed:
     def said(self, value):
         """That value as this number would be written"""
         number, _ = spread(self.text)
-        mantissa, power, exponent = self.text.replace(",", "").partition("e")
+        mantissa, power, _ = self.text.replace(",", "").partition("e")
         scale = min((100.0, 1 / 60, *SCALES), key=lambda s: abs(number - s * abs(value)))
         digits = len(mantissa.partition(".")[2])
         return f"{scale * abs(value):.{digits}e}" if power else f"{scale * abs(value):,.{digits}f}" if "," in self.text else f"{scale * abs(value):.{digits}f}"
