@@ -5,6 +5,8 @@ import numpy as np
 # 97.5 % quantiles of Student's t by degrees of freedom
 _STUDENT = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
 
+SCHEME = 2.0  # order of what is sound in SPH and in time
+
 
 def order(h, error):
     """(order, half width of its 95 % confidence interval, constant) of |error| = constant h^order, least squares in logarithms.
@@ -27,9 +29,10 @@ def order(h, error):
 def extrapolate(h, value):
     """(limit, order, uncertainty) of value = limit + constant h^order by Richardson's extrapolation.
 
-    Least squares over orders of 0.3 to 6. The uncertainty is the distance between the limit and the finest value's own neighbour
-    estimate: the larger of the change when the coarsest point is left out and a quarter of the last step to the limit. None
-    where the values do not approach a limit: fewer than three, differences that grow, or a limit less certain than the values.
+    Least squares over orders of 0.3 to 6. The uncertainty is the largest of three: the change when the coarsest point is left out,
+    a quarter of the last step to the limit, and the distance to the limit with order 2, where the order found is above that of
+    the schemes (a coarsest run far off looks like a high order). None where the values do not approach a limit: fewer than
+    three, differences that grow, or a limit less certain than the values.
     """
     h, value = (np.asarray(a, float) for a in (h, value))
     by_size = np.argsort(h)[::-1]
@@ -42,7 +45,8 @@ def extrapolate(h, value):
         return None
     limit, power = _fit(h, value)
     change = abs(_fit(h[1:], value[1:])[0] - limit) if len(h) > 3 else 0.0
-    uncertainty = max(change, 0.25 * abs(limit - value[-1]))
+    of_second = value[-1] + steps[1] / ((h[-2] / h[-1])**SCHEME - 1.0)
+    uncertainty = max(change, 0.25 * abs(limit - value[-1]), abs(of_second - limit) if power > SCHEME else 0.0)
     return (limit, power, uncertainty) if uncertainty <= 2.0 * abs(steps[1]) else None
 
 

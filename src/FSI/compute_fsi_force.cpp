@@ -19,11 +19,19 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_keywords.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
 
 using namespace LAMMPS_NS;
+
+static bool has_period(const Domain *domain, int dim)
+{
+  return std::any_of(domain->periodicity, domain->periodicity + dim, [](int p) {
+    return p;
+  });
+}
 
 ComputeFSIForce::ComputeFSIForce(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), sum{}, origin{}, reduced(false), fix_fsi(nullptr)
@@ -55,8 +63,8 @@ bool ComputeFSIForce::counts(int i) const
   return (atom->mask[i] & groupbit) && (species == FSI::SOLID || species == FSI::RIGID);
 }
 
-// a point inside the body: where its first particle is; later its center of mass when it was last
-// asked for
+// a point inside the body: where its first particle is when lists are new, since it may go far
+// until the torque is asked for; then its center of mass
 void ComputeFSIForce::find_body()
 {
   tagint mine = MAXTAGINT, first;
@@ -93,7 +101,7 @@ void ComputeFSIForce::tally(double sign)
   const int nlocal = atom->nlocal, nall = nlocal + (force->newton_pair ? atom->nghost : 0);
   if (sign < 0.0) {
     std::fill_n(sum, (int) NSUM, 0.0);
-    if (update->setupflag) find_body();
+    if (update->setupflag || (neighbor->ago == 0 && has_period(domain, fix_fsi->dim))) find_body();
     reduced = false;
   }
   for (int i = 0; i < nall; i++) {

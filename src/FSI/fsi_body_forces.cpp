@@ -103,10 +103,13 @@ double BodyForces::work(const std::vector<State> &state, int groupbit) const
     if (!field.varies) continue;
     for (int i = 0; i < atom->nlocal; i++)
       if ((atom->mask[i] & field.mask) && state[atom->type[i]].species != RIGID &&
-          state[atom->type[i]].species != NONE)
+          state[atom->type[i]].species != NONE) {
+        double x[3];
+        domain->unmap(atom->x[i], atom->image[i], x);
         for (int d = 0; d < domain->dimension; d++)
           sum += atom->rmass[i] * field.change[d] *
-              (atom->x[i][d] - (atom->mask[i] & groupbit ? dth * atom->v[i][d] : 0.0));
+              (x[d] - (atom->mask[i] & groupbit ? dth * atom->v[i][d] : 0.0));
+      }
   }
   return sum;
 }

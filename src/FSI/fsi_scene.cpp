@@ -14,6 +14,7 @@
 #include "fsi_scene.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
@@ -164,11 +165,14 @@ double Scene::density_ratio(int i) const
   return instance->atom->rho[i] / state[instance->atom->type[i]].rho0;
 }
 
+// gravity may pull through a periodic face
 double Scene::potential(int i) const
 {
-  const double *x = instance->atom->x[i];
+  const Atom *const atom = instance->atom;
+  double x[3];
+  instance->domain->unmap(atom->x[i], atom->image[i], x);
   const auto g = body_forces.on(i);
-  return -instance->atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
+  return -atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
 }
 
 double Scene::stored(int i) const

@@ -39,6 +39,9 @@ def test_extrapolation_finds_the_limit():
     assert precision.extrapolate(H[:2], [1.0, 1.1]) is None
     # a coarse run far off, then hardly any change: with and without it the limits differ by more than the last step
     assert precision.extrapolate([2.5, 1.667, 1.25, 1.0], [30.97, 36.32, 36.75, 37.07]) is None
+    # three runs, the coarsest far off: order 5.5 is no order of a scheme, and of order 2 the limit would be 0.66 further
+    limit, power, uncertainty = precision.extrapolate([2.5, 5 / 3, 1.25], [37.40, 44.087, 44.734])
+    assert power > 5.0 and uncertainty == pytest.approx(44.734 + 0.647 / ((4 / 3)**2 - 1.0) - limit, rel=1e-6) and uncertainty > 0.6
 
 
 def test_front_bounds_and_changes_of_sign():
