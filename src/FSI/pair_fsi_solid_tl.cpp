@@ -34,6 +34,7 @@
 #include "fsi_swaps.h"
 #include "fsi_viscosity_artificial.h"
 #include "fsi_volumetric.h"
+#include "math_extra.h"
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -860,13 +861,16 @@ void PairFSISolidTL::integrate_substeps()
   const double *const rmass = atom->rmass;
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
   std::vector<int> moving, held;
+  std::vector<std::pair<int, std::array<double, 3>>> carried;    // where they are in the middle
   Clamps &clamps = reference->clamps;
   if (clamps.any()) clamps.begin_substeps(solids());
   for (const int i : solids())
     if (atom->mask[i] & fix_fsi->groupbit)
       moving.push_back(i);
-    else if (profile && !clamps.has(i))
-      held.push_back(i);
+    else if (!clamps.has(i)) {
+      if (profile) held.push_back(i);
+      if (MathExtra::lensq3(v[i]) > 0.0) carried.push_back({i, {x[i][0], x[i][1], x[i][2]}});
+    }
   const auto hold = [&](double t) {
     for (const int i : held)
       for (int d = 0; d < dim; d++) profile->impulse_held[d] += t * fs[i][d];
@@ -876,6 +880,11 @@ void PairFSISolidTL::integrate_substeps()
     for (const int i : moving)
       for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
   };
+  // held particles that another fix moves: else bodies would be shaken in the rhythm of the steps
+  const auto carry = [&](double t) {
+    for (const auto &[i, middle] : carried)
+      for (int d = 0; d < dim; d++) x[i][d] = middle[d] + t * v[i][d];
+  };
   fix_fsi->set_tally(dt);
   fix_fsi->check.before_substeps(solids());
   only_moving = !fix_fsi->ledger;
@@ -883,6 +892,7 @@ void PairFSISolidTL::integrate_substeps()
   for (int n = 0; n < substeps; n++) {
     if (n + 1 == substeps) only_moving = false;
     drift(dth);
+    carry(back + n * dt + dth);
     if (clamps.any()) clamps.drift(dth);
     forward_positions();
     advance_stress(dt);
@@ -899,6 +909,7 @@ void PairFSISolidTL::integrate_substeps()
     clamps.kick(dt, fs);
     clamps.drift(dth);
   }
+  carry(0.0);
   fix_fsi->check.after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
   if (clamps.any()) clamps.average(substeps, fs);

@@ -230,3 +230,16 @@ def test_not_what_fix_fsi_moves(tmp_path):
     scene = dam_gate(2)
     done = lammps(tmp_path, scene.text() + "fix drive all fsi/move linear 1 0 0 units box\nrun 1\n", scene_data=scene.data())
     assert done.status != 0 and any("Particles of fix fsi/move drive are also in the group of fix fsi" in error for error in done.errors)
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+def test_a_strip_rides_on_its_clamp(dim):
+    """Uniform motion of a strip and of the clamp that fix fsi/move gives it: at rest in their frame, whatever the number of sub-steps. A clamp that
+    waits in the middle of the step strains the strip by U dt/2 dx = 0.02 of its length, in the rhythm of the steps."""
+    x = lattice((4, 8) if dim == 2 else (3, 6, 3), DX)
+    held = x[:, 1] < 3 * DX
+    with Scene(x, np.tile([0.5, 0.0, 0.0], (len(x), 1)), dim=dim, dx=DX, materials=("solid rho 1000 young 1e6 poisson 0.3",), held=held, dt=0.08 * DX,
+               density="substeps 8", solid_style="fsi/solid/tl", commands=["fix m held fsi/move linear 0.5 0 0 units box"]) as s:
+        s.run(20)
+        move = s.get("x") - x
+        assert np.abs(move - move[0]).max() < 1e-12 * DX * 20 and np.abs(s.get("v")[:, 1:]).max() < 1e-10
