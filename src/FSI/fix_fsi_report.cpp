@@ -321,6 +321,9 @@ std::string FixFSIReport::what_to_change(double loop, const double *mean, double
     add("density", mean[Profile::DENSITY], 0.3, "shifting in every step: shift/every 4");
   if (fix_fsi->kernel == QUINTIC)
     add("force of fluid", mean[Profile::FLUID_FORCES], 0.3, "kernel quintic: wendland is faster");
+  if (skin > 1.5)
+    add("force of fluid", mean[Profile::FLUID_FORCES], 0.3,
+        fmt::format("a skin of {:.3g} dx: neighbor {:.2g} bin", skin, 0.3 * fix_fsi->dx));
   std::sort(hints.begin(), hints.end(), [](const Hint &a, const Hint &b) {
     return a.share > b.share;
   });
