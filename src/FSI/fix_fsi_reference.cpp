@@ -211,13 +211,10 @@ bool FixFSIReference::is_solid(int i) const
   return fix_fsi->state[atom->type[i]].species == SOLID;
 }
 
-// What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless
-// told not to: each bonded atom knows its old one. Bonds to those that are gone are cut, as by
-// damage. Solids cannot become something else, nor the reverse.
-void FixFSIReference::follow_commands()
+// Solids cannot become something else between runs, nor the reverse.
+void FixFSIReference::refuse_other_materials() const
 {
   const tagint *const tag = atom->tag;
-  int mine = 0, any;
   for (int i = 0; i < atom->nlocal; i++) {
     if (slot[i] == FOREIGN && is_solid(i))
       error->one(FLERR,
@@ -237,7 +234,20 @@ void FixFSIReference::follow_commands()
                  "Solid atom {} has the mass of a material of density {:g}, but that of its type "
                  "{} has {:g} now: make the body anew",
                  tag[i], rho, atom->type[i], rho0);
-    if (owner[slot[i]] != tag[i]) mine = 1;
+  }
+}
+
+// What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless
+// told not to: each bonded atom knows its old one. Bonds to those that are gone are cut, as by
+// damage.
+void FixFSIReference::follow_commands()
+{
+  refuse_other_materials();
+  const tagint *const tag = atom->tag;
+  int mine = 0, any;
+  for (int i = 0; i < atom->nlocal && !mine; i++) {
+    if (slot[i] < 0) continue;
+    mine = owner[slot[i]] != tag[i];
     for (int k = 0; k < nbond[slot[i]] && !mine; k++) {
       const tagint t = partner[(size_t) slot[i] * maxbond + k];
       mine = t > atom->map_tag_max || atom->map(t) < 0;

@@ -145,6 +145,7 @@ class FixFSIReference : public Fix {
                        // were named
   size_t expected;     // slots, while bodies are bonded
 
+  void refuse_other_materials() const;
   void follow_commands();
   void refuse_split_bodies() const;
   void take();

@@ -198,10 +198,8 @@ void FixFSIReport::post_run()
   }
   MPI_Allreduce(&loop, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
   loop = sum / comm->nprocs;
-  bigint mine = atom->nlocal, now;
-  MPI_Allreduce(&mine, &now, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   const double time = Clock::now(update) - first_time;
-  const bigint lost = natoms - particles();
+  const bigint left = particles(), now = left + fix_fsi->population.net, lost = natoms - left;
   lines.clear();
   enter_line("first_step", first_step);
   enter_line("last_step", update->ntimestep);

@@ -29,7 +29,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -55,7 +54,7 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
   for (int k = 4; k < narg; k++)
-    if (strcmp(arg[k], "reflected") == 0)
+    if (std::string(arg[k]) == "reflected")
       error->all(FLERR,
                  "Fix fsi/watch has no keyword reflected: fix fsi/wall/mirror counts reflections, "
                  "f_ID, for fix halt");
