@@ -14,6 +14,7 @@
 #include "fix_fsi_stress.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
@@ -25,13 +26,14 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
 FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), stress(nullptr), hourglass(nullptr), keywords(lmp, "fix fsi/stress"),
-    ns(domain->dimension == 2 ? 3 : 6), strain(nullptr)
+    ns(domain->dimension == 2 ? 3 : 6), start(nullptr), strain(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stress requires atom_style fsi");
 
@@ -47,6 +49,7 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
   if (plastic && plane_stress)
     error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
   restart_global = 1;
+  comm_forward = domain->dimension;
   choose_fields();
   register_fields();
 }
@@ -65,8 +68,11 @@ FixFSIStress *FixFSIStress::find(LAMMPS *lmp)
 void FixFSIStress::choose_fields()
 {
   const Facts facts = facts_of_solids(lmp);
+  const bool updated = facts.style == Facts::OF_SOLIDS;
   fields.set("stress", Fields::RESTART, true, stress, ns);
   fields.set("plastic strain", Fields::RESTART, plastic, strain);
+  fields.set("place at the start", Fields::RESTART, updated && facts.self_contact, start,
+             domain->dimension + 1);
   fields.set("hourglass force", Fields::RESTART, facts.hourglass, hourglass, domain->dimension);
 }
 
@@ -88,6 +94,15 @@ void FixFSIStress::init()
                  solid ? " now and was none" : " any more, as it was");
     if (!solid) first = FOREIGN;
   }
+  bool yields = false;
+  for (const auto &s : fix_fsi->state) yields = yields || s.yield > 0.0;
+  if (comm->me == 0 && plastic && !yields)
+    error->warning(FLERR,
+                   "Fix fsi/stress plastic has nothing to act on: no material has a yield stress");
+  if (comm->me == 0 && yields && !plastic)
+    error->warning(
+        FLERR,
+        "A material has a yield stress, but stays elastic: fix fsi/stress lacks keyword plastic");
 }
 
 template <int D>
@@ -104,6 +119,32 @@ double FixFSIStress::advance_stress(int i, const double *L, double dt, const Sta
 
 template double FixFSIStress::advance_stress<2>(int, const double *, double, const State &);
 template double FixFSIStress::advance_stress<3>(int, const double *, double, const State &);
+
+// Where solids were when they were first seen, for contact of a body with itself; ghosts are told.
+void FixFSIStress::enter_start(const std::vector<State> &state)
+{
+  const int dim = domain->dimension;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (state[atom->type[i]].species != SOLID || start[i][dim] != 0.0) continue;
+    std::copy_n(atom->x[i], dim, start[i]);
+    start[i][dim] = 1.0;
+  }
+  Message places(lmp, state);
+  places.add(start, 0, dim, {NONE, FLUID, SOLID, RIGID});
+  sent = &places;
+  comm->forward_comm(this);
+}
+
+double FixFSIStress::distance_at_start(int i, int j) const
+{
+  double sum = 0.0;
+  for (int a = 0; a < domain->dimension; a++) {
+    double d = start[i][a] - start[j][a];
+    if (domain->periodicity[a]) d -= domain->prd[a] * std::round(d / domain->prd[a]);
+    sum += d * d;
+  }
+  return std::sqrt(sum);
+}
 
 // V S:S/(4G), with S_zz of plane strain
 double FixFSIStress::shear_energy(int i, double shear) const
@@ -129,11 +170,6 @@ void FixFSIStress::find_idle(const Census &all, const Idle &nothing) const
     nothing("Fix fsi/stress", "no solid is hypoelastic");
   else if (all.solids == 0)
     nothing("Fix fsi/stress", "no particle is a solid");
-  const auto &states = FixFSI::there(lmp)->state;
-  if (plastic && std::none_of(states.begin(), states.end(), [](const State &s) {
-        return s.yield > 0.0;
-      }))
-    nothing("Fix fsi/stress plastic", "no material has a yield stress");
 }
 
 void FixFSIStress::write_restart(FILE *fp)

@@ -46,14 +46,20 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
                          // hourglass control
   int plane_stress;
   int plastic;    // materials yield
+  double *hourglass_force(int i) { return hourglass[i]; }
+  // keyword self of pair_style fsi/solid: enters the places of those that have none yet, then tells
+  // ghosts; how far two of them were apart
+  void enter_start(const std::vector<FSI::State> &);
+  double distance_at_start(int i, int j) const;
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between
-  // (fsi_jaumann.h); returns the plastic work per volume
+  // (fsi_jaumann.h) returns the plastic work per volume
   template <int D>
   double advance_stress(int i, const double *L, double dt, const FSI::State &material);
 
   // equivalent plastic strain of atom i
   double plastic_strain(int i) const { return plastic ? strain[i] : 0.0; }
+  // von Mises stress of atom i with pressure p
   double shear_energy(int i, double shear) const;    // of atom i with this shear modulus
 
  private:
@@ -61,7 +67,8 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   static constexpr double FOREIGN = -1.0e300;    // first entry of an atom that was no solid when a
                                                  // run began
   int ns;                                        // components of the deviator
-  double *strain;                                // equivalent plastic strain; null without plastic
+  double **start;    // places, and whether there is one; null without keyword self
+  double *strain;    // equivalent plastic strain; null without plastic
   void choose_fields();
 };
 

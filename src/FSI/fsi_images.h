@@ -32,6 +32,9 @@ namespace FSI {
 
   class Images {
    public:
+    // with the bits of planes: only its partner counts, since a particle and its own image are a
+    // pair of its own, or since another rank does the same for the original
+    static constexpr int HALF = 1 << 30;
     Walls planes;                     // in the order of their names
     std::vector<WallForce> forces;    // on each of them
     bool joins(const int *mask, int i) const { return mask[i] & group; }
@@ -70,7 +73,7 @@ namespace FSI {
       const auto found = number.emplace((int64_t) j << 32 | bits, first + (int) all.size());
       if (found.second)
         for (const auto &s : planes.reflections)
-          if (s.mask == bits) all.push_back({j, bits, Mirror(planes, s)});
+          if (s.mask == (bits & ~HALF)) all.push_back({j, bits, Mirror(planes, s)});
       return found.first->second;
     }
     bool any() const { return !all.empty(); }
@@ -80,21 +83,22 @@ namespace FSI {
     {
       return any() && j >= first && all[j - first].mirror.sign[axis] < 0.0;
     }
-    // every image: call(number, original, its Mirror)
+    // every image: call(number, original, its Mirror, whether it counts)
     template <class Call> void for_each(Call call) const
     {
-      for (size_t k = 0; k < all.size(); k++) call(first + (int) k, all[k].of, all[k].mirror);
+      for (size_t k = 0; k < all.size(); k++)
+        call(first + (int) k, all[k].of, all[k].mirror, !(all[k].bits & HALF));
     }
     // f of images to their originals; part: of the force on the planes
     template <int D> void fold(double (*f)[row_of_forces(D)], double part) const
     {
       for (size_t k = 0; k < all.size(); k++) {
         const Image &image = all[k];
-        const double *const on = f[first + k];
-        for (int d = 0; d < D; d++) f[image.of][d] += image.mirror.sign[d] * on[d];
+        const double *const on = f[first + k], both = image.bits & HALF ? 1.0 : 2.0;
+        for (int d = 0; d < D && both == 2.0; d++) f[image.of][d] += image.mirror.sign[d] * on[d];
         for (size_t p = 0; p < planes.wall.size(); p++)
           if (image.bits & 1 << p)
-            forces[p][planes.wall[p].axis] += part * 2.0 * on[planes.wall[p].axis];
+            forces[p][planes.wall[p].axis] += part * both * on[planes.wall[p].axis];
       }
     }
 

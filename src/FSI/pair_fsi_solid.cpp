@@ -21,6 +21,7 @@
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_fields.h"
+#include "fsi_images.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
 #include "fsi_rows.h"
@@ -38,17 +39,22 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
+// Supports of the kernel. What was nearer at the start stays one material: a body may be pressed
+// together to half its length.
+static constexpr double FAR = 2.0;
+
 struct PairFSISolid::Members {
   Fields fields;
-  RowList own, others;
-  std::unique_ptr<Message> gradients, rates;    // of hourglass control: to ghosts, and back
+  RowList own, others, own_images[2], other_images[2];
+  Images images;
   explicit Members(LAMMPS *lmp) : fields(lmp) {}
 };
 
 PairFSISolid::PairFSISolid(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/solid"), members(new Members(lmp)), fix_stress(nullptr),
-    fields(members->fields), grad(nullptr), hourglass_rate(nullptr), any_gradient(false),
-    packs(have_packs()), own(members->own), others(members->others)
+    fields(members->fields), grad(nullptr), any_gradient(false), packs(have_packs()),
+    own(members->own), others(members->others), images(members->images),
+    own_images(members->own_images), other_images(members->other_images)
 {
   artificial_row("solid");
   keywords.key("artificial/stress")
@@ -75,10 +81,6 @@ void PairFSISolid::init_style()
 {
   PairFSI::init_style();
   check_contact();
-  if (self_contact)
-    error->all(FLERR,
-               "Pair style fsi/solid self yes: use pair_style fsi/solid/tl, which knows what was "
-               "apart in the reference");
   fix_stress = FixFSIStress::find(lmp);
   if (!fix_stress)
     error->all(
@@ -158,15 +160,9 @@ int PairFSISolid::ngrad() const
   return n == 0 ? dim * dim : dim * n + 2 * packed_size(n);
 }
 
-void PairFSISolid::set_fields(Scene &scene)
+void PairFSISolid::set_fields(Scene &)
 {
-  const int dim = scene.dim;
   fields.set("velocity gradient", Fields::STEP, true, grad, fours(ngrad()));
-  fields.set("hourglass rate", Fields::STEP, has_hourglass(), hourglass_rate, row_of_forces(dim));
-  members->gradients = std::make_unique<Message>(lmp, scene.state);
-  members->gradients->add(grad, 0, dim * dim, {SOLID});
-  members->rates = std::make_unique<Message>(lmp, scene.state);
-  members->rates->add(hourglass_rate, 0, dim, {SOLID});
 }
 
 void PairFSISolid::add_messages(Message &to_ghosts, Message &back)
@@ -203,19 +199,20 @@ void PairFSISolid::begin_state(bool)
   if (neighbor->ago == 0) find_rows();
 }
 
-// Pairs that share their stress, of one body; and those of different bodies, which only push.
+// Pairs that share their stress, and those that only push: of different bodies and, with contact of
+// a body with itself, those of one that were further apart than that at the start.
 void PairFSISolid::find_rows()
 {
-  if (update->setupflag)
-    for (const Wall &wall : fix_fsi->walls.wall)
-      if (wall.joins)
-        error->all(FLERR,
-                   "Fix fsi/wall/mirror symmetry yes: use pair_style fsi/solid/tl, bodies of "
-                   "pair_style fsi/solid have no images");
   const tagint *const molecule = atom->molecule;
+  const double far = FAR * fix_fsi->cut;
+  if (self_contact) fix_stress->enter_start(fix_fsi->state);
+  const auto one = [=](int i, int j) {
+    return molecule[i] == molecule[j] &&
+        !(self_contact && fix_stress->distance_at_start(i, j) >= far);
+  };
   own.clear();
   others.clear();
-  const bool whole = !bodies && !atom->molecular;
+  const bool whole = !bodies && !self_contact && !atom->molecular;
   std::vector<int> unmasked;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], n = list->numneigh[i], *const neighbors = list->firstneigh[i];
@@ -226,16 +223,171 @@ void PairFSISolid::find_rows()
     unmasked.resize(n);
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
     own.add(i, unmasked.data(), n, false, false, [=](int j) {
-      return molecule[i] == molecule[j];
+      return one(i, j);
     });
-    if (bodies)
+    if (bodies || self_contact)
       others.add(i, unmasked.data(), n, false, false, [=](int j) {
-        return molecule[i] != molecule[j];
+        return !one(i, j);
       });
   }
+  find_image_rows();
   if (whole) return;
   own.end();
   others.end();
+}
+
+// Planes of symmetry (fsi_images.h): particles before them have the images of their neighbors, and
+// of themselves. Each pair has one row: what i and the image of j do to each other, j and the image
+// of i do, too, mirrored.
+void PairFSISolid::find_image_rows()
+{
+  images.find_planes(fix_fsi->walls, fix_fsi->wall_forces);
+  images.begin(atom->nlocal + atom->nghost);
+  if (!images.planes.any()) return;
+  if (update->setupflag) check_planes();
+  double **x = atom->x;
+  const int *const mask = atom->mask, nlocal = atom->nlocal;
+  const double most = fix_fsi->cut + neighbor->skin;
+  std::vector<int> found[2][2];    // of other bodies, by half
+  for (auto *rows : {&own_images, &other_images})
+    for (RowList &list_ : *rows) list_.clear();
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii], near = images.planes.near(x[i], most);
+    if (!near || !images.joins(mask, i)) continue;
+    for (auto &of : found) of[0].clear(), of[1].clear();
+    const auto add = [&](int j, double rsq, bool half) {
+      const bool other = atom->molecule[i] != atom->molecule[j];
+      images.planes.images(near & images.planes.near(x[j], most), rsq, x[i], x[j], most * most,
+                           [&](const Walls::Reflection &s, double, const double *) {
+                             const int bits = s.mask | (half ? Images::HALF : 0);
+                             found[other][half].push_back(images.find(j, bits));
+                           });
+    };
+    add(i, 0.0, true);
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+      double rsq = 0.0;
+      for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+      if (images.joins(mask, j)) add(j, rsq, !force->newton_pair && j >= nlocal);
+    }
+    const auto all = [](int) {
+      return true;
+    };
+    for (const int half : {0, 1}) {
+      own_images[half].add(i, found[0][half].data(), found[0][half].size(), false, false, all);
+      other_images[half].add(i, found[1][half].data(), found[1][half].size(), false, false, all);
+    }
+  }
+  for (auto *rows : {&own_images, &other_images})
+    for (RowList &list_ : *rows) list_.end();
+  types_with_images.assign(atom->type, atom->type + images.end());
+  images.for_each([this](int k, int of, const Mirror &, bool) {
+    types_with_images[k] = atom->type[of];
+  });
+}
+
+void PairFSISolid::check_planes() const
+{
+  if (self_contact)
+    error->all(FLERR,
+               "Pair style fsi/solid self yes does not go with symmetry yes of fix "
+               "fsi/wall/mirror: a body would not meet its own image");
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (material[atom->type[i]].species != SOLID || !images.joins(atom->mask, i)) continue;
+    for (const Wall &plane : images.planes.wall)
+      if (plane.distance(atom->x[i]) < 0.0)
+        error->one(FLERR,
+                   "Solid atom {} of body {} is behind the plane of symmetry at {} = {}: expected "
+                   "half a spacing before it, or more",
+                   atom->tag[i], atom->molecule[i], "xyz"[plane.axis], plane.position);
+  }
+}
+
+// a matrix of D x n, by rows, whose columns change with these signs
+template <int D> static void mirror_matrix(const Mirror &m, int n, const double *columns, double *a)
+{
+  for (int d = 0; d < D; d++)
+    for (int k = 0; k < n; k++) a[d * n + k] *= m.sign[d] * columns[k];
+}
+
+template <int D> static void mirror_tensor(const Mirror &m, double *s)
+{
+  for (int a = 0; a < D; a++)
+    for (int b = a; b < D; b++) s[Sym<D>::id(a, b)] *= m.sign[a] * m.sign[b];
+}
+
+// what the terms of the gradient's basis change by
+template <int D, int TERMS> static void mirror_basis(const Mirror &m, double *signs)
+{
+  if constexpr (TERMS == 0)
+    std::copy_n(m.sign, D, signs);
+  else
+    gradient_basis<D, TERMS>(m.sign, signs);
+}
+
+template <class T, class K, int TERMS>
+void PairFSISolid::add_image_gradients(const K &kernel, double half)
+{
+  constexpr int D = K::DIM, N = GradientSums<D, TERMS>::N, ROW = GradientSums<D, TERMS>::ROW;
+  constexpr int COLUMNS = TERMS ? TERMS : D, MOMENTS = packed_size(TERMS);
+  image_sums.assign((size_t) ROW * images.end(), 0.0);
+  auto *const sums = reinterpret_cast<double(*)[ROW]>(image_sums.data());
+  for (const RowList &list_ : own_images)
+    run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+      gradient_rows<decltype(number), K, TERMS>(list_.rows.data(), list_.rows.size(), kernel,
+                                                rate_records.data(), half, sums);
+    });
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+    for (int k = 0; k < N; k++) grad[i][k] += sums[i][k];
+  images.for_each([&](int k, int of, const Mirror &m, bool counts) {
+    if (!counts) return;
+    double signs[COLUMNS], *s = sums[k];
+    mirror_basis<D, TERMS>(m, signs);
+    mirror_matrix<D>(m, COLUMNS, signs, s);
+    s += D * COLUMNS;
+    for (int of_both = 0; of_both < 2 && TERMS; of_both++)
+      for (int a = 0; a < TERMS; a++)
+        for (int b = 0; b <= a; b++)
+          s[of_both * MOMENTS + packed_size(a) + b] *= signs[a] * signs[b];
+    for (int n = 0; n < N; n++) grad[of][n] += sums[k][n];
+  });
+}
+
+template <class T, class K, int TERMS> void PairFSISolid::add_image_hourglass(const K &kernel)
+{
+  constexpr int D = K::DIM, ROW = GradientSums<D, TERMS>::ROW;
+  const int nall = atom->nlocal + atom->nghost;
+  image_sums.assign((size_t) ROW * images.end(), 0.0);
+  std::copy_n(grad[0], (size_t) ROW * nall, image_sums.data());
+  images.for_each([&](int k, int of, const Mirror &m, bool) {
+    std::copy_n(grad[of], D * D, &image_sums[(size_t) ROW * k]);
+    mirror_matrix<D>(m, D, m.sign, &image_sums[(size_t) ROW * k]);
+  });
+  auto *const rate = reinterpret_cast<double(*)[row_of_forces(D)]>(hourglass_rate.data());
+  for (const RowList &list_ : own_images)
+    run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+      hourglass_rows<decltype(number), K, ROW>(list_.rows.data(), list_.rows.size(), kernel,
+                                               rate_records.data(), image_sums.data(),
+                                               Hourglass{xi}, rate);
+    });
+  images.for_each([&](int k, int of, const Mirror &m, bool counts) {
+    for (int d = 0; d < D && counts; d++) rate[of][d] += m.sign[d] * rate[k][d];
+  });
+}
+
+// forces of images are folded when all are there
+template <class T, int TERMS, int FLAGS, class K, class Laws>
+void PairFSISolid::add_image_forces(const K &kernel, Laws laws, const RowList (&lists)[2])
+{
+  auto *const f = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(forces.data());
+  laws.type = types_with_images.data();
+  for (const int half : {0, 1}) {
+    laws.newton = !half;    // what counts by half, images being no local atoms
+    run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+      force_rows<decltype(number), K, TERMS, FLAGS>(
+          lists[half].rows.data(), lists[half].rows.size(), kernel, force_records.data(), laws, f);
+    });
+  }
 }
 
 bool PairFSISolid::add_rates(bool advance)
@@ -331,9 +483,10 @@ void PairFSISolid::velocity_gradient(double dt)
     fill_rate_records<2>(0.5 * dt);
   else
     fill_rate_records<3>(0.5 * dt);
-  if (own.rows.empty()) return;
+  if (own.rows.empty() && !images.any()) return;
   with_loops([&](auto packed, const auto &kernel, auto terms) {
     using K = std::decay_t<decltype(kernel)>;
+    if (images.any()) add_image_gradients<Numbers<packed()>, K, terms()>(kernel, 0.5 * dt);
     auto *const sums = reinterpret_cast<double(*)[GradientSums<K::DIM, terms()>::ROW]>(grad[0]);
     run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
       gradient_rows<decltype(number), K, terms()>(own.rows.data(), own.rows.size(), kernel,
@@ -347,8 +500,8 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
   using At = RateRecord<D>;
   const State *const state = fix_fsi->state.data();
   const int nall = atom->nlocal + atom->nghost;
-  if (rate_records.size() < (size_t) At::N * nall)
-    rate_records.assign((size_t) At::N * atom->nmax, 0.0);
+  if (rate_records.size() < (size_t) At::N * images.end())
+    rate_records.assign((size_t) At::N * std::max(atom->nmax, images.end()), 0.0);
   for (int i = 0; i < nall; i++) {
     const State &s = state[atom->type[i]];
     if (s.species != SOLID) continue;
@@ -360,18 +513,27 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
     record[At::VOL] = atom->rmass[i] * s.inv_rho0;
     record[At::SHEAR] = s.shear;
   }
+  images.for_each([&](int k, int of, const Mirror &m, bool) {
+    double *const record = &rate_records[(size_t) At::N * k];
+    std::copy_n(&rate_records[(size_t) At::N * of], (int) At::N, record);
+    for (int d = 0; d < D; d++) {
+      record[At::X + d] = m.x[d] + m.sign[d] * record[At::X + d];
+      record[At::V + d] *= m.sign[d];
+    }
+  });
 }
 
 // hourglass control (fsi_hourglass.h)
 void PairFSISolid::advance_hourglass(double dt)
 {
-  const int dim = fix_fsi->dim, nall = atom->nlocal + atom->nghost;
+  const int dim = fix_fsi->dim;
   forward_comm(fix_fsi->profile, comm, this);
-  if (nall) std::fill_n(hourglass_rate[0], (size_t) nall * row_of_forces(dim), 0.0);
-  if (!own.rows.empty())
+  hourglass_rate.assign((size_t) images.end() * row_of_forces(dim), 0.0);
+  if (!own.rows.empty() || images.any())
     with_loops([&](auto packed, const auto &kernel, auto terms) {
       using K = std::decay_t<decltype(kernel)>;
-      auto *const rate = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(hourglass_rate[0]);
+      if (images.any()) add_image_hourglass<Numbers<packed()>, K, terms()>(kernel);
+      auto *const rate = reinterpret_cast<double(*)[row_of_forces(K::DIM)]>(hourglass_rate.data());
       run_loop<Numbers<packed()>>([&](auto number) FSI_INLINE_LAMBDA {
         hourglass_rows<decltype(number), K, GradientSums<K::DIM, terms()>::ROW>(
             own.rows.data(), own.rows.size(), kernel, rate_records.data(), grad[0], Hourglass{xi},
@@ -390,7 +552,8 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
   for (int i = 0; i < atom->nlocal; i++) {
     if (material[atom->type[i]].species != SOLID) continue;
     double Q[D * D], half_turned[D], turned[D] = {};
-    double *const q = fix_stress->hourglass[i], *const rate = hourglass_rate[i];
+    double *const q = fix_stress->hourglass_force(i),
+                  *const rate = &hourglass_rate[(size_t) i * row_of_forces(D)];
     rotation<D>(grad[i], 0.5 * dt, Q);
     for (int a = 0; a < D; a++) {
       half_turned[a] = dt * rate[a];
@@ -404,22 +567,37 @@ template <int D> void PairFSISolid::rotate_hourglass(double dt)
 
 int PairFSISolid::pack_forward_comm(int n, int *listed, double *buf, int, int *)
 {
-  return members->gradients->pack(n, listed, buf);
+  double *const first = buf;
+  for_solids(n, listed, 0, [&](int i) {
+    buf = std::copy_n(grad[i], comm_forward, buf);
+  });
+  return buf - first;
 }
 
 void PairFSISolid::unpack_forward_comm(int n, int first, double *buf)
 {
-  members->gradients->unpack(n, first, buf);
+  for_solids(n, nullptr, first, [&](int i) {
+    std::copy_n(buf, comm_forward, grad[i]);
+    buf += comm_forward;
+  });
 }
 
 int PairFSISolid::pack_reverse_comm(int n, int first, double *buf)
 {
-  return members->rates->pack_back(n, first, buf);
+  int m = 0;
+  for_solids(n, nullptr, first, [&](int i) {
+    for (int k = 0; k < comm_reverse; k++)
+      buf[m++] = hourglass_rate[(size_t) i * row_of_forces(comm_reverse) + k];
+  });
+  return m;
 }
 
 void PairFSISolid::unpack_reverse_comm(int n, int *listed, double *buf)
 {
-  members->rates->add_up(n, listed, buf);
+  for_solids(n, listed, 0, [&](int i) {
+    for (int k = 0; k < comm_reverse; k++)
+      hourglass_rate[(size_t) i * row_of_forces(comm_reverse) + k] += *buf++;
+  });
 }
 
 void PairFSISolid::add_number_density(double *psi, bool all_bodies)
@@ -439,6 +617,23 @@ void PairFSISolid::add_number_density(double *psi, bool all_bodies)
           psi[j] += w;
         }
     }
+    if (!images.any()) return;
+    images.update(atom->x, atom->v);
+    double **const at = images.positions(atom->x);
+    for (auto *lists : {&own_images, &other_images}) {
+      if (lists == &other_images && !all_bodies) continue;
+      for (const int half : {0, 1})
+        for (const Row &row : (*lists)[half].rows)
+          for (int k = 0; k < row.n; k++) {
+            double rsq = 0.0;
+            for (int d = 0; d < 3; d++)
+              rsq += (x[row.i][d] - at[row.j[k]][d]) * (x[row.i][d] - at[row.j[k]][d]);
+            if (rsq >= kernel.cutsq) continue;
+            const double w = kernel.W(std::sqrt(rsq));
+            psi[row.i] += w;
+            if (!half) psi[images.original(row.j[k])] += w;
+          }
+    }
   });
 }
 
@@ -454,7 +649,7 @@ void PairFSISolid::compute(int eflag, int vflag)
     double **f = atom->f;
     for (int i = 0; i < atom->nlocal; i++) {
       if (material[atom->type[i]].species != SOLID) continue;
-      const double *q = fix_stress->hourglass[i];
+      const double *q = fix_stress->hourglass_force(i);
       for (int d = 0; d < fix_fsi->dim; d++) f[i][d] += q[d];
     }
   }
@@ -467,8 +662,8 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
   const State *const state = fix_fsi->state.data();
   const int nall = atom->nlocal + atom->nghost;
   const ArtificialStress artificial(artificial_stress(), fix_fsi->wdx);
-  if (force_records.size() < (size_t) At::N * nall)
-    force_records.assign((size_t) At::N * atom->nmax, 0.0);
+  if (force_records.size() < (size_t) At::N * images.end())
+    force_records.assign((size_t) At::N * std::max(atom->nmax, images.end()), 0.0);
   for (int i = 0; i < nall; i++) {
     const State &s = state[atom->type[i]];
     if (s.species != SOLID) continue;
@@ -493,6 +688,18 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
     if (!TERMS) stress.store(record + At::STRESS);
     if (artificial_stress() > 0.0) artificial(stress).store(record + At::ARTIFICIAL);
   }
+  images.for_each([&](int k, int of, const Mirror &m, bool) {
+    double *const record = &force_records[(size_t) At::N * k], signs[TERMS ? TERMS : D];
+    std::copy_n(&force_records[(size_t) At::N * of], (int) At::N, record);
+    for (int d = 0; d < D; d++) {
+      record[At::X + d] = m.x[d] + m.sign[d] * record[At::X + d];
+      record[At::V + d] *= m.sign[d];
+    }
+    mirror_tensor<D>(m, record + At::STRESS);
+    mirror_tensor<D>(m, record + At::ARTIFICIAL);
+    mirror_basis<D, TERMS>(m, signs);
+    mirror_matrix<D>(m, TERMS, signs, record + At::FIT);
+  });
 }
 
 template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const K &kernel)
@@ -502,7 +709,7 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
   const int nall = atom->nlocal + atom->nghost;
   const bool newton = force->newton_pair, tally_pairs = evflag && !vflag_fdotr;    // newton off
   fill_force_records<D, TERMS>();
-  forces.assign((size_t) ROW * nall, 0.0);
+  forces.assign((size_t) ROW * images.end(), 0.0);
   auto *const of_rows = reinterpret_cast<double(*)[ROW]>(forces.data());
   SolidSums sums;
   const SolidLaws laws = {ArtificialViscosity(alpha, beta, fix_fsi->h),
@@ -522,6 +729,7 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
   with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {
     if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D)
                          : flags() == ALL) {
+      if (images.any()) add_image_forces<Numbers<PACKED>, TERMS, flags()>(kernel, laws, own_images);
       run_loop<Numbers<PACKED>>([&](auto number) FSI_INLINE_LAMBDA {
         force_rows<decltype(number), K, TERMS, flags()>(own.rows.data(), own.rows.size(), kernel,
                                                         force_records.data(), laws, of_rows);
@@ -532,6 +740,11 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
     force_rows<double, AnyKernel<D>, TERMS, CONTACT | VISCOSITY | SUMS>(
         others.rows.data(), others.rows.size(), AnyKernel<D>(fix_fsi->kernel, fix_fsi->h),
         force_records.data(), laws, of_rows);
+  if (images.any()) {
+    add_image_forces<double, TERMS, CONTACT | VISCOSITY | SUMS>(
+        AnyKernel<D>(fix_fsi->kernel, fix_fsi->h), laws, other_images);
+    images.fold<D>(of_rows, 1.0);
+  }
 
   double **const f = atom->f;
   for (int i = 0; i < (newton ? nall : atom->nlocal); i++)
@@ -557,6 +770,7 @@ std::vector<PairFSI::Effect> PairFSISolid::effects() const
 double PairFSISolid::memory_usage()
 {
   return fields.memory_usage() + own.memory_usage() + others.memory_usage() +
-      (double) (rate_records.capacity() + force_records.capacity() + forces.capacity()) *
+      (double) (rate_records.capacity() + force_records.capacity() + forces.capacity() +
+                hourglass_rate.capacity()) *
       sizeof(double);
 }

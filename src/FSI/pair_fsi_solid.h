@@ -28,6 +28,7 @@ PairStyle(fsi/solid,PairFSISolid);
 namespace LAMMPS_NS {
 namespace FSI {
   class Fields;
+  class Images;
   class RowList;
 }    // namespace FSI
 
@@ -79,7 +80,6 @@ class PairFSISolid : public PairFSI {
   // local and ghost: sums of the velocity gradient, afterwards L and the coefficients of its
   // weights (fsi_gradient.h)
   double **grad;
-  double **hourglass_rate;    // rows of row_of_forces; null without hourglass control
   int ngrad() const;
   bool any_gradient;    // in this step: coefficients are needed by forces, so in setup, too
   // adds to grad, over the own body, at the positions dt/2 ago, to which the velocities belong:
@@ -100,7 +100,18 @@ class PairFSISolid : public PairFSI {
   FSI::RowList &own, &others;
   void find_rows();
 
-  std::vector<double> forces;    // local and ghost, rows of row_of_forces
+  // planes of symmetry: rows of images in the own body and of others, counted fully and by half
+  FSI::Images &images;
+  FSI::RowList (&own_images)[2], (&other_images)[2];
+  std::vector<int> types_with_images;
+  std::vector<double> image_sums;
+  void find_image_rows();
+  void check_planes() const;
+  template <class T, class K, int TERMS> void add_image_gradients(const K &, double half);
+  template <class T, class K, int TERMS> void add_image_hourglass(const K &);
+  template <class T, int TERMS, int FLAGS, class K, class Laws>
+  void add_image_forces(const K &, Laws, const FSI::RowList (&)[2]);
+  std::vector<double> hourglass_rate, forces;    // local and ghost, rows of row_of_forces
   template <int D> void rotate_hourglass(double);
 
   // of local and ghost solids (fsi_solid_rows.h)

@@ -260,39 +260,45 @@ void PairFSISolidTL::compute(int eflag, int vflag)
     for (int d = 0; d < fix_fsi->dim; d++) f[i][d] += fsolid[i][d];
 }
 
-template <class Call> auto PairFSISolidTL::with_dimension(Call call) const
-{
-  if (fix_fsi->dim == 2) return call(std::integral_constant<int, 2>());
-  return call(std::integral_constant<int, 3>());
-}
-
 template <class Call> auto PairFSISolidTL::with_law(Call call) const
 {
   return laws([&](const auto *law_of) {
-    return with_dimension([&](auto dimension) {
-      return call(law_of, dimension);
-    });
+    if (fix_fsi->dim == 2) return call(law_of, std::integral_constant<int, 2>());
+    return call(law_of, std::integral_constant<int, 3>());
   });
 }
 
 void PairFSISolidTL::internal_forces()
 {
-  with_dimension([this](auto dimension) {
-    gather_points<decltype(dimension)::value>();
-  });
+  if (fix_fsi->dim == 2)
+    gather_points<2>();
+  else
+    gather_points<3>();
   const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
   with_law([&](const auto *law_of, auto dimension) {
     bond_forces<std::decay_t<decltype(*law_of)>, decltype(dimension)::value>(law_of);
   });
   strain_energy += volumetric_energy;
-  with_dimension([this](auto dimension) {
-    constexpr int D = decltype(dimension)::value;
-    if (list) contact_forces<D>();
+  if (list) {
+    if (fix_fsi->dim == 2)
+      contact_forces<2>();
+    else
+      contact_forces<3>();
+  }
+  if (reference->images.planes.any() && fsolid) {
     // in sub-steps, which add up to the force of a step
-    if (reference->images.planes.any() && fsolid)
-      fold_images<D>(update->setupflag ? 1.0 : 1.0 / fix_fsi->substeps);
-    if (!reference->near_itself.empty()) self_contact_forces<D>();
-  });
+    const double part = update->setupflag ? 1.0 : 1.0 / fix_fsi->substeps;
+    if (fix_fsi->dim == 2)
+      fold_images<2>(part);
+    else
+      fold_images<3>(part);
+  }
+  if (!reference->near_itself.empty()) {
+    if (fix_fsi->dim == 2)
+      self_contact_forces<2>();
+    else
+      self_contact_forces<3>();
+  }
   exchange(fix_fsi->profile, comm, [this]() {
     reference->swaps.reverse(this);
   });
@@ -314,7 +320,7 @@ void PairFSISolidTL::find_rows()
   }
   const Images &images = reference->images;
   if (images.any()) types_with_images.assign(type, type + images.end());
-  images.for_each([this, type](int k, int of, const Mirror &) {
+  images.for_each([this, type](int k, int of, const Mirror &, bool) {
     types_with_images[k] = type[of];
   });
   rows.clear();
@@ -356,7 +362,7 @@ template <int D> void PairFSISolidTL::gather_points()
       }
   if (images.any()) {
     images.update(atom->x, atom->v);
-    images.for_each([&](int k, int of, const Mirror &m) {
+    images.for_each([&](int k, int of, const Mirror &m, bool) {
       for (int d = 0; d < D; d++) {
         points[NP * k + d] = m.x[d] + m.sign[d] * points[NP * of + d];
         points[NP * k + D + d] = m.sign[d] * points[NP * of + D + d];
@@ -383,14 +389,14 @@ template <int D> void PairFSISolidTL::gather_points()
       });
 }
 
+// nearly incompressible solids (fsi_volumetric.h). Strains of all rows, also of those whose forces
+// are not wanted now: that of a held particle may count for one that moves.
 bool PairFSISolidTL::is_smoothed(const Material &m) const
 {
   if (m.species != SOLID || volumetric == LOCAL || plane_stress || damage > 0.0) return false;
   return volumetric == SMOOTHED || m.poisson > VolumetricStrain::LOCKS_ABOVE + 1.0e-9;
 }
 
-// nearly incompressible solids (fsi_volumetric.h). Strains of all rows, also of those whose forces
-// are not wanted now: that of a held particle may count for one that moves.
 double PairFSISolidTL::smooth_strains(bool of_all)
 {
   Profile *const profile = fix_fsi->profile;
@@ -416,12 +422,12 @@ double PairFSISolidTL::smooth_strains(bool of_all)
     });
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
-    images.for_each([&](int k, int of, const Mirror &) {
+    images.for_each([&](int k, int of, const Mirror &, bool) {
       smoothed.strain[k] = smoothed.strain[of];
       smoothed.force[k] = 0.0;
     });
     have_packs() ? run_loop<Pack>(smooth) : run_loop<double>(smooth);
-    images.for_each([&](int k, int of, const Mirror &) {
+    images.for_each([&](int k, int of, const Mirror &, bool) {
       smoothed.force[of] += smoothed.force[k];
     });
     exchange(profile, comm, [&]() {
@@ -479,22 +485,6 @@ const int *PairFSISolidTL::types() const
   return reference->images.any() ? types_with_images.data() : atom->type;
 }
 
-const Contact &PairFSISolidTL::contact_of(int i, int j) const
-{
-  return contacts[atom->type[i] * (atom->ntypes + 1) + atom->type[j]];
-}
-
-// of two places, and its square
-template <int D> static double separation(const double *xi, const double *xj, double *xij)
-{
-  double rsq = 0.0;
-  for (int d = 0; d < D; d++) {
-    xij[d] = xi[d] - xj[d];
-    rsq += xij[d] * xij[d];
-  }
-  return rsq;
-}
-
 // Also bodies that meet across a plane: i and the image of j, and what this does to j
 template <int D> void PairFSISolidTL::fold_images(double part)
 {
@@ -502,7 +492,7 @@ template <int D> void PairFSISolidTL::fold_images(double part)
   images.fold<D>(reinterpret_cast<double(*)[row_of_forces(D)]>(fsolid[0]), part);
   if (!list) return;
   double **x = atom->x;
-  const int *const mask = atom->mask;
+  const int *const type = atom->type, *const mask = atom->mask;
   const double most = contact_range * fix_fsi->largest_cut;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], near = images.planes.near(x[i], most);
@@ -510,9 +500,9 @@ template <int D> void PairFSISolidTL::fold_images(double part)
     for (int jj = 0; jj < list->numneigh[i]; jj++) {
       const int j = list->firstneigh[i][jj] & NEIGHMASK;
       if (atom->molecule[i] == atom->molecule[j] || !images.joins(mask, j)) continue;
-      const double reachsq = contact_of(i, j).reachsq;
-      double apart[D];
-      const double rsq = separation<D>(x[i], x[j], apart);
+      const double reachsq = contacts[type[i] * (atom->ntypes + 1) + type[j]].reachsq;
+      double rsq = 0.0;
+      for (int d = 0; d < D; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
       if (rsq >= reachsq) continue;
       images.planes.images(near & images.planes.near(x[j], most), rsq, x[i], x[j], reachsq,
                            [&](const Walls::Reflection &s, double image_rsq, const double *xij) {
@@ -527,7 +517,7 @@ void PairFSISolidTL::push_image(int i, int j, const Walls::Reflection &s, double
                                 const double *xij, double part)
 {
   const Images &images = reference->images;
-  const Contact &contact = contact_of(i, j);
+  const Contact &contact = contacts[atom->type[i] * (atom->ntypes + 1) + atom->type[j]];
   const State &si = fix_fsi->state[atom->type[i]], &sj = fix_fsi->state[atom->type[j]];
   const double Ki = si.csq * si.rho0, Kj = sj.csq * sj.rho0, f = contact(rsq, Ki, Kj);
   const Mirror mirror(images.planes, s);
@@ -547,19 +537,23 @@ void PairFSISolidTL::push_image(int i, int j, const Walls::Reflection &s, double
 template <int D> void PairFSISolidTL::contact_forces()
 {
   double **x = atom->x;
+  const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
+  const int ntypes = atom->ntypes, nlocal = atom->nlocal;
   const bool newton = force->newton_pair;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii];
     for (int jj = 0; jj < list->numneigh[i]; jj++) {
       const int j = list->firstneigh[i][jj] & NEIGHMASK;
       if (molecule[i] == molecule[j]) continue;
-      double xij[D];
-      const double rsq = separation<D>(x[i], x[j], xij);
-      const Contact &contact = contact_of(i, j);
+      double xij[D], rsq = 0.0;
+      for (int d = 0; d < D; d++) {
+        xij[d] = x[i][d] - x[j][d];
+        rsq += xij[d] * xij[d];
+      }
+      const Contact &contact = contacts[type[i] * (ntypes + 1) + type[j]];
       // without newton the other rank does its own particle
-      if (rsq < contact.reachsq)
-        push<D>(i, j, xij, rsq, contact, newton || j < atom->nlocal ? 1.0 : 0.0);
+      if (rsq < contact.reachsq) push<D>(i, j, xij, rsq, contact, newton || j < nlocal ? 1.0 : 0.0);
     }
   }
 }
@@ -567,12 +561,18 @@ template <int D> void PairFSISolidTL::contact_forces()
 // A pair of a body without a bond is seen from both sides, each of which counts half.
 template <int D> void PairFSISolidTL::self_contact_forces()
 {
+  double **x = atom->x;
+  const int *const type = atom->type;
   for (const auto &pair : reference->near_itself) {
-    double xij[D];
-    const double rsq = separation<D>(atom->x[pair.i], atom->x[pair.j], xij);
+    double xij[D], rsq = 0.0;
+    for (int d = 0; d < D; d++) {
+      xij[d] = x[pair.i][d] - x[pair.j][d];
+      rsq += xij[d] * xij[d];
+    }
     if (rsq >= pair.reach * pair.reach || (pair.torn && reference->bonded(pair.i, pair.j)))
       continue;
-    push<D>(pair.i, pair.j, xij, rsq, contact_of(pair.i, pair.j).within(pair.reach), 0.5);
+    push<D>(pair.i, pair.j, xij, rsq,
+            contacts[type[pair.i] * (atom->ntypes + 1) + type[pair.j]].within(pair.reach), 0.5);
   }
 }
 
@@ -713,12 +713,13 @@ int PairFSISolidTL::bonds(int i) const
 double PairFSISolidTL::volume_ratio(int i) const
 {
   if (reference->count(i) == 0) return 1.0;
-  return with_dimension([&](auto dimension) {
-    constexpr int D = decltype(dimension)::value;
-    double F[D * D];
-    deformation<D>(i, F);
-    return determinant<D>(F);
-  });
+  double F[9];
+  if (fix_fsi->dim == 2) {
+    deformation<2>(i, F);
+    return determinant<2>(F);
+  }
+  deformation<3>(i, F);
+  return determinant<3>(F);
 }
 
 // Cauchy stress: P F^T/J
@@ -727,9 +728,10 @@ void PairFSISolidTL::begin_stress()
   forward_positions();    // ghosts still stand where they were in the middle of the step
   reference->images.update(atom->x, atom->v);
   if (!smoothed.on()) return;
-  with_dimension([this](auto dimension) {
-    gather_points<decltype(dimension)::value>();
-  });
+  if (fix_fsi->dim == 2)
+    gather_points<2>();
+  else
+    gather_points<3>();
   smooth_strains(true);
 }
 
@@ -778,53 +780,66 @@ void PairFSISolidTL::forward_positions()
   });
 }
 
-// strains, or positions (and velocities) of atom i; use(number, its axis if the box shifts it)
-template <class Use> void PairFSISolidTL::each_sent(int i, Use use)
-{
-  const int dim = fix_fsi->dim;
-  if (sends_strains) return use(smoothed.strain[i], -1);
-  for (int d = 0; d < dim; d++) use(atom->x[i][d], d);
-  for (int d = 0; d < comm_forward - dim; d++) use(atom->v[i][d], -1);
-}
-
-double *PairFSISolidTL::returned(int i)
-{
-  return sends_strains ? &smoothed.force[i] : fsolid[i];
-}
-
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
 {
-  double *const first = buf;
-  for_solids(n, listed, 0, [&](int i) {
-    each_sent(i, [&](double number, int axis) {
-      *buf++ = axis < 0 ? number : number + (pbc_flag ? pbc[axis] * domain->prd[axis] : 0.0);
+  const int dim = fix_fsi->dim;
+  const bool velocities = comm_forward > dim;
+  const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0,
+                           pbc_flag ? pbc[1] * domain->yprd : 0.0,
+                           pbc_flag ? pbc[2] * domain->zprd : 0.0};
+  int m = 0;
+  if (sends_strains) {
+    for_solids(n, listed, 0, [&](int i) {
+      buf[m++] = smoothed.strain[i];
     });
+    return m;
+  }
+  for_solids(n, listed, 0, [&](int i) {
+    for (int d = 0; d < dim; d++) buf[m++] = atom->x[i][d] + shift[d];
+    if (velocities)
+      for (int d = 0; d < dim; d++) buf[m++] = atom->v[i][d];
   });
-  return buf - first;
+  return m;
 }
 
 void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
-  for_solids(n, nullptr, first, [&](int i) {
-    each_sent(i, [&](double &number, int) {
-      number = *buf++;
+  const int dim = fix_fsi->dim;
+  const bool velocities = comm_forward > dim;
+  if (sends_strains)
+    return for_solids(n, nullptr, first, [&](int i) {
+      smoothed.strain[i] = *buf++;
     });
+  for_solids(n, nullptr, first, [&](int i) {
+    for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
+    if (velocities)
+      for (int d = 0; d < dim; d++) atom->v[i][d] = *buf++;
   });
 }
 
 int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 {
-  double *const begin = buf;
+  int m = 0;
+  if (sends_strains) {
+    for_solids(n, nullptr, first, [&](int i) {
+      buf[m++] = smoothed.force[i];
+    });
+    return m;
+  }
   for_solids(n, nullptr, first, [&](int i) {
-    buf = std::copy_n(returned(i), comm_reverse, buf);
+    for (int d = 0; d < fix_fsi->dim; d++) buf[m++] = fsolid[i][d];
   });
-  return buf - begin;
+  return m;
 }
 
 void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
+  if (sends_strains)
+    return for_solids(n, listed, 0, [&](int i) {
+      smoothed.force[i] += *buf++;
+    });
   for_solids(n, listed, 0, [&](int i) {
-    for (int d = 0; d < comm_reverse; d++) returned(i)[d] += *buf++;
+    for (int d = 0; d < fix_fsi->dim; d++) fsolid[i][d] += *buf++;
   });
 }
 

@@ -129,14 +129,10 @@ class PairFSISolidTL : public PairFSI {
   bool sends_strains;    // what messages carry: these, or positions and forces
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
-  template <class Use> void each_sent(int i, Use);
-  double *returned(int i);    // from ghosts: forces on strains, or on particles
-  // what call(constant with the dimension) returns, or call(laws per type, that constant)
-  template <class Call> auto with_dimension(Call call) const;
+  // what call(laws per type, constant with the dimension) returns
   template <class Call> auto with_law(Call call) const;
   template <class L, int D> void bond_forces(const L *law_of);
   std::vector<FSI::Contact> contacts;    // by both types
-  const FSI::Contact &contact_of(int i, int j) const;
   template <int D> void contact_forces();
   template <int D> void self_contact_forces();
   template <int D> void fold_images(double part);
