@@ -65,7 +65,7 @@ def deck(page, example):
         return grains + "set type 2 diameter 0.004\nset type 2 density/disc 2500\n" + example + "\n" + FIX + "run 1\n"
     if page.startswith("pair"):
         return SETUP + example + "\n" + FIX + (STRESS if re.search(r"fsi/solid(?!/)", example) else "") + "run 1\n"
-    sub = "substeps" in example or "symmetry" in example    # total-Lagrangian alone
+    sub = "substeps" in example
     pairs = lagrangian(PAIRS) if sub else PAIRS
     if page == "fix_fsi_wall_particle":
         walls = SETUP.replace("create_box 2", "create_box 3").replace("group water", "region wall block -0.04 0 -0.04 0.1 INF INF units box\n"
