@@ -51,7 +51,6 @@ class FixFSIDt : public Fix, public FSI::Part {
   void start_step() override;
   FSI::Facts facts() const override;
   void find_idle(const Census &, const Idle &) const override;
-  bool chooses_substeps() const { return automatic; }
 
  private:
   enum CheckAction { NO_CHECK, WARN, STOP };

@@ -211,13 +211,10 @@ bool FixFSIReference::is_solid(int i) const
   return fix_fsi->state[atom->type[i]].species == SOLID;
 }
 
-// What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless
-// told not to: each bonded atom knows its old one. Bonds to those that are gone are cut, as by
-// damage. Solids cannot become something else, nor the reverse.
-void FixFSIReference::follow_commands()
+// Solids cannot become something else between runs, nor the reverse.
+void FixFSIReference::refuse_other_materials() const
 {
   const tagint *const tag = atom->tag;
-  int mine = 0, any;
   for (int i = 0; i < atom->nlocal; i++) {
     if (slot[i] == FOREIGN && is_solid(i))
       error->one(FLERR,
@@ -237,7 +234,20 @@ void FixFSIReference::follow_commands()
                  "Solid atom {} has the mass of a material of density {:g}, but that of its type "
                  "{} has {:g} now: make the body anew",
                  tag[i], rho, atom->type[i], rho0);
-    if (owner[slot[i]] != tag[i]) mine = 1;
+  }
+}
+
+// What commands between runs have done to bodies. Delete_atoms gives all atoms new IDs unless
+// told not to: each bonded atom knows its old one. Bonds to those that are gone are cut, as by
+// damage.
+void FixFSIReference::follow_commands()
+{
+  refuse_other_materials();
+  const tagint *const tag = atom->tag;
+  int mine = 0, any;
+  for (int i = 0; i < atom->nlocal && !mine; i++) {
+    if (slot[i] < 0) continue;
+    mine = owner[slot[i]] != tag[i];
     for (int k = 0; k < nbond[slot[i]] && !mine; k++) {
       const tagint t = partner[(size_t) slot[i] * maxbond + k];
       mine = t > atom->map_tag_max || atom->map(t) < 0;
@@ -285,10 +295,7 @@ void FixFSIReference::follow_commands()
     std::vector<int> of_them;
     for (int i = 0; i < atom->nlocal; i++)
       if (slot[i] >= 0 && changed.count(atom->molecule[i])) of_them.push_back(i);
-    if (domain->dimension == 2)
-      find_quadrature<2>(of_them);
-    else
-      find_quadrature<3>(of_them);
+    find_quadrature(of_them);
   }
   if (comm->me == 0)
     utils::logmesg(lmp,
@@ -344,12 +351,7 @@ void FixFSIReference::take()
     take_reference<2>(bare);
   else
     take_reference<3>(bare);
-  if (end_corrected) {
-    if (domain->dimension == 2)
-      find_quadrature<2>(bare);
-    else
-      find_quadrature<3>(bare);
-  }
+  if (end_corrected) find_quadrature(bare);
 }
 
 // The energy is an integral over particles in the middle of their cells: the midpoint rule,
@@ -360,58 +362,59 @@ void FixFSIReference::take()
 // Masses do not change.
 
 // a bond (numbers BOND_BLOCK apart) along a direction
-template <int D> static double along(const double *X, const double *e)
+static double along(int dim, const double *X, const double *e)
 {
   double s = 0.0;
-  for (int a = 0; a < D; a++) s += X[a * BOND_BLOCK] * e[a];
+  for (int a = 0; a < dim; a++) s += X[a * BOND_BLOCK] * e[a];
   return s;
 }
 
-template <int D> static bool nearest(const double *X, double dx)
+static bool nearest(int dim, const double *X, double dx)
 {
   double rsq = 0.0;
-  for (int a = 0; a < D; a++) rsq += X[a * BOND_BLOCK] * X[a * BOND_BLOCK];
+  for (int a = 0; a < dim; a++) rsq += X[a * BOND_BLOCK] * X[a * BOND_BLOCK];
   return std::fabs(std::sqrt(rsq) - dx) < NEAR * dx;
 }
 
 // axes of the lattice that i is on, from its nearest neighbors; false if these are too few
-template <int D> bool FixFSIReference::find_axes(int i, Axes &axes) const
+bool FixFSIReference::find_axes(int i, Axes &axes) const
 {
+  const int dim = domain->dimension;
   const double dx = fix_fsi->dx_of(atom->type[i]);
   double(*const e)[3] = axes.e;
   int k = 0;
   axes = {atom->molecule[i], atom->tag[i], {}};
-  for (int b = 0; b < count(i) && k < D - 1; b++) {
-    const double *const X = bond(i, b) + D * BOND_BLOCK;
-    if (!nearest<D>(X, dx) || (k && std::fabs(along<D>(X, e[0])) > NEAR * dx)) continue;
-    for (int a = 0; a < D; a++) e[k][a] = X[a * BOND_BLOCK] / dx;
+  for (int b = 0; b < count(i) && k < dim - 1; b++) {
+    const double *const X = bond(i, b) + dim * BOND_BLOCK;
+    if (!nearest(dim, X, dx) || (k && std::fabs(along(dim, X, e[0])) > NEAR * dx)) continue;
+    for (int a = 0; a < dim; a++) e[k][a] = X[a * BOND_BLOCK] / dx;
     k++;
   }
-  if (D == 3) {
+  if (dim == 3) {
     MathExtra::cross3(e[0], e[1], e[2]);
   } else {
     e[1][0] = -e[0][1];
     e[1][1] = e[0][0];
   }
-  return k == D - 1;
+  return k == dim - 1;
 }
 
 // whether all nearest neighbors of i lie along them, none of them behind a plane of symmetry
-template <int D> bool FixFSIReference::fits(int i, const Axes &axes) const
+bool FixFSIReference::fits(int i, const Axes &axes) const
 {
+  const int dim = domain->dimension;
   const double dx = fix_fsi->dx_of(atom->type[i]);
   for (int b = 0; b < count(i); b++) {
-    const double *const X = bond(i, b) + D * BOND_BLOCK;
+    const double *const X = bond(i, b) + dim * BOND_BLOCK;
     int across = 0;
-    for (int k = 0; k < D; k++) across += std::fabs(along<D>(X, axes.e[k])) < NEAR * dx;
-    if (nearest<D>(X, dx) && across < D - 1) return false;
+    for (int k = 0; k < dim; k++) across += std::fabs(along(dim, X, axes.e[k])) < NEAR * dx;
+    if (nearest(dim, X, dx) && across < dim - 1) return false;
     if (keeps_images && through[(size_t) slot[i] * maxbond + b]) return false;
   }
   return true;
 }
 
 // axes of the lattices that are turned against the axes of the box, by body
-template <int D>
 std::map<tagint, FixFSIReference::Axes>
 FixFSIReference::turned_lattices(const std::vector<int> &bare) const
 {
@@ -422,7 +425,7 @@ FixFSIReference::turned_lattices(const std::vector<int> &bare) const
     if (a.tag < at->second.tag) at->second = a;
   };
   for (const int i : bare)
-    if (find_axes<D>(i, axes)) enter(axes);
+    if (find_axes(i, axes)) enter(axes);
   std::vector<Axes> mine;
   for (const auto &body : first) mine.push_back(body.second);
   for (const auto &a : gather(mine, world)) enter(a);
@@ -436,23 +439,24 @@ FixFSIReference::turned_lattices(const std::vector<int> &bare) const
   std::set<tagint> no_lattice;
   for (const int i : bare) {
     const auto body = turned.find(atom->molecule[i]);
-    if (body != turned.end() && !fits<D>(i, body->second)) no_lattice.insert(body->first);
+    if (body != turned.end() && !fits(i, body->second)) no_lattice.insert(body->first);
   }
   for (const tagint body : gather(no_lattice, world)) turned.erase(body);
   return turned;
 }
 
-template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &bare)
+void FixFSIReference::find_quadrature(const std::vector<int> &bare)
 {
   static constexpr double correction[4] = {0.0, 1.0 / 12.0, -1.0 / 8.0, 1.0 / 24.0};
+  const int dim = domain->dimension;
   resolve();
-  std::vector<double> layers((size_t) atom->nmax * 2 * D, 0.0);
+  std::vector<double> layers((size_t) atom->nmax * 2 * dim, 0.0);
   layer = layers.data();
-  const auto turned = turned_lattices<D>(bare);
+  const auto turned = turned_lattices(bare);
   const Axes box = {0, 0, {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
 
   // per particle, partners one spacing away along directions 2 axis + (positive side), or -1
-  std::vector<std::array<int, 2 * D>> ahead;
+  std::vector<std::array<int, 6>> ahead;
   for (const int i : bare) {
     ahead.emplace_back();
     ahead.back().fill(-1);
@@ -460,37 +464,37 @@ template <int D> void FixFSIReference::find_quadrature(const std::vector<int> &b
     const Axes &axes = it == turned.end() ? box : it->second;
     const double dx = fix_fsi->dx_of(atom->type[i]), near = NEAR * dx;
     for (int b = 0; b < count(i); b++) {
-      const double *const X = bond(i, b) + D * BOND_BLOCK;
+      const double *const X = bond(i, b) + dim * BOND_BLOCK;
       int direction = -1, others = 0;
-      for (int a = 0; a < D; a++) {
-        const double s = along<D>(X, axes.e[a]);
+      for (int a = 0; a < dim; a++) {
+        const double s = along(dim, X, axes.e[a]);
         if (std::fabs(s) <= near)
           others++;
         else if (std::fabs(std::fabs(s) - dx) <= near)
           direction = 2 * a + (s > 0.0);
       }
-      if (others < D - 1 || direction < 0 || ahead.back()[direction] >= 0) continue;
+      if (others < dim - 1 || direction < 0 || ahead.back()[direction] >= 0) continue;
       ahead.back()[direction] = partners(i)[b];
     }
   }
   // that of an image is that of its original, seen in the mirror
   const auto layer_of = [&](int j, int k) {
-    return layer[images.original(j) * 2 * D + (images.mirrors(j, k / 2) ? k ^ 1 : k)];
+    return layer[images.original(j) * 2 * dim + (images.mirrors(j, k / 2) ? k ^ 1 : k)];
   };
   // layer 1 has nobody ahead, layer m has layer m-1 ahead; 0 = deeper than what has been found so
   // far
   for (int m = 1; m <= 3; m++) {
     for (size_t n = 0; n < bare.size(); n++)
-      for (int i = bare[n], k = 0; k < 2 * D; k++) {
+      for (int i = bare[n], k = 0; k < 2 * dim; k++) {
         const int j = ahead[n][k];
-        if (m == 1 ? j < 0 : (j >= 0 && layer_of(j, k) == m - 1)) layer[i * 2 * D + k] = m;
+        if (m == 1 ? j < 0 : (j >= 0 && layer_of(j, k) == m - 1)) layer[i * 2 * dim + k] = m;
       }
     comm->forward_comm(this);
   }
   for (const int i : bare) {
     double w = 1.0;
-    for (int a = 0; a < D; a++) {
-      const int lo = (int) layer[i * 2 * D + 2 * a], hi = (int) layer[i * 2 * D + 2 * a + 1];
+    for (int a = 0; a < dim; a++) {
+      const int lo = (int) layer[i * 2 * dim + 2 * a], hi = (int) layer[i * 2 * dim + 2 * a + 1];
       // fewer than three layers: no correction along this axis
       if ((lo && hi && lo + hi < 4)) continue;
       w *= 1.0 + correction[lo] + correction[hi];
@@ -875,10 +879,7 @@ void FixFSIReference::resolve()
   swaps.find([this](int i) {
     return is_solid(i);
   });
-  if (domain->dimension == 2)
-    find_self_pairs<2>();
-  else
-    find_self_pairs<3>();
+  find_self_pairs();
 }
 
 // contact of a body with itself
@@ -888,22 +889,23 @@ bool FixFSIReference::bonded(int i, int j) const
   return std::find(first, first + count(i), atom->tag[j]) != first + count(i);
 }
 
-template <int D> void FixFSIReference::find_self_pairs()
+void FixFSIReference::find_self_pairs()
 {
   near_itself.clear();
   if (self_range == 0.0) return;
+  const int dim = domain->dimension;
   const double *const *const x = atom->x;
   std::vector<double> places((size_t) atom->nmax * comm_forward);
   layer = places.data();
   double widest = 0.0;
   for (const int i : solids) {
-    std::copy_n(&place[(size_t) slot[i] * D], D, layer + (size_t) i * comm_forward);
+    std::copy_n(&place[(size_t) slot[i] * dim], dim, layer + (size_t) i * comm_forward);
     widest = std::max(widest, fix_fsi->dx_of(atom->type[i]));
   }
   comm->forward_comm(this);
   layer = nullptr;
 
-  const Cells cells(x, atom->nlocal + atom->nghost, D, self_range * widest + neighbor->skin,
+  const Cells cells(x, atom->nlocal + atom->nghost, dim, self_range * widest + neighbor->skin,
                     [this](int i) {
                       return is_solid(i);
                     });
@@ -914,7 +916,7 @@ template <int D> void FixFSIReference::find_self_pairs()
     cells.around(x[i], [&](int j, double rsq) {
       if (j == i || atom->molecule[j] != atom->molecule[i]) return;
       double Rsq = 0.0;
-      for (int a = 0; a < D; a++) {
+      for (int a = 0; a < dim; a++) {
         double X = places[(size_t) j * comm_forward + a] - places[(size_t) i * comm_forward + a];
         if (domain->periodicity[a]) X -= domain->prd[a] * std::round(X / domain->prd[a]);
         Rsq += X * X;
@@ -944,9 +946,8 @@ void FixFSIReference::look_for_passing()
   for (const int i : solids) widest = std::max(widest, fix_fsi->dx_of(atom->type[i]));
   struct {
     double r;
-    int rank;
-  } mine = {NEAR, comm->me}, least;
-  tagint pair[3] = {0, 0, 0};
+    tagint a, b, body;
+  } mine = {NEAR, 0, 0, 0};
   if (!solids.empty()) {
     const Cells cells(atom->x, atom->nlocal + atom->nghost, domain->dimension, NEAR * widest,
                       [this](int i) {
@@ -956,23 +957,20 @@ void FixFSIReference::look_for_passing()
       cells.around(atom->x[i], [&](int j, double rsq) {
         const double r = std::sqrt(rsq) / fix_fsi->dx_of(atom->type[i]);
         if (r >= mine.r || j == i || atom->molecule[j] != atom->molecule[i] || bonded(i, j)) return;
-        mine.r = r;
-        pair[0] = std::min(atom->tag[i], atom->tag[j]);
-        pair[1] = std::max(atom->tag[i], atom->tag[j]);
-        pair[2] = atom->molecule[i];
+        mine = {r, std::min(atom->tag[i], atom->tag[j]), std::max(atom->tag[i], atom->tag[j]),
+                atom->molecule[i]};
       });
   }
-  MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+  const auto least = of_least(mine.r, mine, world);
   if (least.r >= NEAR) return;
   next_look = MAXBIGINT;
-  MPI_Bcast(pair, 3, MPI_LMP_TAGINT, least.rank, world);
   if (comm->me == 0)
     error->warning(FLERR,
                    "Pair style fsi/solid/tl: atoms {} and {} of body {} have no bond and are "
                    "{:.2g} spacings apart at step {}: parts of one body pass through each other. "
                    "If they are two bodies, give each a molecule ID; for contact of a body with "
                    "itself contact 2 self yes",
-                   pair[0], pair[1], pair[2], least.r, update->ntimestep);
+                   least.a, least.b, least.body, least.r, update->ntimestep);
 }
 
 void FixFSIReference::move_bond(int s, int from, int to)
@@ -1000,6 +998,15 @@ void FixFSIReference::complete(int s)
   }
 }
 
+// what slots have of each bond: the lists, and how many numbers
+template <class Call> void FixFSIReference::each_list(Call call)
+{
+  call(local, 1);
+  call(partner, 1);
+  if (keeps_images) call(through, 1);
+  call(data, nvalue);
+}
+
 // every slot holds n bonds: one size, so that a freed slot serves any atom
 void FixFSIReference::reserve(int n)
 {
@@ -1007,7 +1014,7 @@ void FixFSIReference::reserve(int n)
   const int old = maxbond, slots = nbond.size();
   maxbond = whole_blocks(n);
   maxexchange = 3 + maxbond * (nvalue + nwhole()) + nplace();
-  const auto widen = [&](auto &list, int width) {
+  each_list([&](auto &list, int width) {
     std::decay_t<decltype(list)> wider;
     wider.reserve(std::max((size_t) slots, expected) * maxbond * width);
     wider.resize((size_t) slots * maxbond * width);
@@ -1015,20 +1022,15 @@ void FixFSIReference::reserve(int n)
       std::copy_n(list.begin() + (size_t) s * old * width, (size_t) whole_blocks(nbond[s]) * width,
                   wider.begin() + (size_t) s * maxbond * width);
     list.swap(wider);
-  };
-  widen(local, 1);
-  widen(partner, 1);
-  if (keeps_images) widen(through, 1);
-  widen(data, nvalue);
+  });
 }
 
 // room for so many slots: bodies are large, and lists that grow are there twice while they do
 void FixFSIReference::hold(size_t n)
 {
-  local.reserve(n * maxbond);
-  partner.reserve(n * maxbond);
-  if (keeps_images) through.reserve(n * maxbond);
-  data.reserve(n * maxbond * nvalue);
+  each_list([&](auto &list, int width) {
+    list.reserve(n * maxbond * width);
+  });
   moment.reserve(n * packed_size(domain->dimension));
 }
 
@@ -1042,11 +1044,9 @@ int FixFSIReference::new_slot(int n)
     owner.push_back(0);
     quadrature.push_back(1.0);
     if (keeps_places) place.resize(nbond.size() * domain->dimension);
-    const size_t size = (size_t) nbond.size() * maxbond;
-    local.resize(size);
-    partner.resize(size);
-    if (keeps_images) through.resize(size);
-    data.resize(size * nvalue);
+    each_list([&](auto &list, int width) {
+      list.resize(nbond.size() * maxbond * width);
+    });
     moment.resize(nbond.size() * packed_size(domain->dimension));
   } else {
     s = unused.back();

@@ -145,6 +145,7 @@ class FixFSIReference : public Fix {
                        // were named
   size_t expected;     // slots, while bodies are bonded
 
+  void refuse_other_materials() const;
   void follow_commands();
   void refuse_split_bodies() const;
   void take();
@@ -165,12 +166,12 @@ class FixFSIReference : public Fix {
     tagint body, tag;    // of the particle they were found at
     double e[3][3];      // rows
   };
-  template <int D> bool find_axes(int i, Axes &) const;
-  template <int D> bool fits(int i, const Axes &) const;
-  template <int D> std::map<tagint, Axes> turned_lattices(const std::vector<int> &) const;
-  template <int D> void find_quadrature(const std::vector<int> &);
+  bool find_axes(int i, Axes &) const;
+  bool fits(int i, const Axes &) const;
+  std::map<tagint, Axes> turned_lattices(const std::vector<int> &) const;
+  void find_quadrature(const std::vector<int> &);
   void resolve();
-  template <int D> void find_self_pairs();
+  void find_self_pairs();
   void look_for_passing();
   bool is_solid(int i) const;
   bool is_periodic() const;
@@ -181,6 +182,7 @@ class FixFSIReference : public Fix {
   void move_bond(int s, int from, int to);
   void complete(int s);
   int nplace() const;    // numbers of one
+  template <class Call> void each_list(Call);
   void reserve(int n);
   void hold(size_t n);
   int new_slot(int n);

@@ -198,10 +198,8 @@ void FixFSIReport::post_run()
   }
   MPI_Allreduce(&loop, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
   loop = sum / comm->nprocs;
-  bigint mine = atom->nlocal, now;
-  MPI_Allreduce(&mine, &now, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   const double time = Clock::now(update) - first_time;
-  const bigint lost = natoms - particles();
+  const bigint left = particles(), now = left + fix_fsi->population.net, lost = natoms - left;
   lines.clear();
   enter_line("first_step", first_step);
   enter_line("last_step", update->ntimestep);
@@ -321,6 +319,9 @@ std::string FixFSIReport::what_to_change(double loop, const double *mean, double
     add("density", mean[Profile::DENSITY], 0.3, "shifting in every step: shift/every 4");
   if (fix_fsi->kernel == QUINTIC)
     add("force of fluid", mean[Profile::FLUID_FORCES], 0.3, "kernel quintic: wendland is faster");
+  if (skin > 1.5)
+    add("force of fluid", mean[Profile::FLUID_FORCES], 0.3,
+        fmt::format("a skin of {:.3g} dx: neighbor {:.2g} bin", skin, 0.3 * fix_fsi->dx));
   std::sort(hints.begin(), hints.end(), [](const Hint &a, const Hint &b) {
     return a.share > b.share;
   });

@@ -13,9 +13,7 @@
 
 #include "fix_fsi_spectrum.h"
 
-#include "arg_info.h"
 #include "comm.h"
-#include "compute.h"
 #include "error.h"
 #include "fsi_clock.h"
 #include "fsi_keywords.h"
@@ -42,9 +40,7 @@ using namespace FSI;
 
 static constexpr int LEAST = 8;    // samples that make a spectrum
 
-FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), input_kind(0), input_index(0), input_variable(-1), input_compute(nullptr),
-    input_fix(nullptr), last(-1)
+FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), last(-1)
 {
 #if !defined(FSI_HAS_FFTW)
   error->all(FLERR,
@@ -62,7 +58,11 @@ FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("file").word(file, "");
   keywords.parse(narg - 3, arg + 3);
   peaks.resize(npeaks);
-  find_input();
+  if (!utils::strmatch(argument, "^[vcf]_"))
+    error->all(FLERR,
+               "Fix fsi/spectrum input {}: expected v_name of an equal-style variable, or a number "
+               "of a compute or fix, c_ID, c_ID[i], f_ID or f_ID[i]",
+               argument);
   if (!file.empty() && comm->me == 0) {    // not only at the end of the run
     FILE *fp = fopen(file.c_str(), "a");
     if (!fp)
@@ -80,74 +80,16 @@ FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) :
   modify->addstep_compute_all(((update->ntimestep + nevery - 1) / nevery) * nevery);
 }
 
-void FixFSISpectrum::find_input()
-{
-  ArgInfo info(argument);
-  input_kind = info.get_type();
-  input_index = info.get_index1();
-  const char *const name = info.get_name();
-  if ((input_kind != ArgInfo::COMPUTE && input_kind != ArgInfo::FIX &&
-       input_kind != ArgInfo::VARIABLE) ||
-      info.get_dim() > 1 || (input_kind == ArgInfo::VARIABLE && input_index))
-    error->all(FLERR,
-               "Fix fsi/spectrum input {}: expected v_name, c_ID, c_ID[i], f_ID or f_ID[i] (an "
-               "entry of an array: through an equal-style variable)",
-               argument);
-  const auto check = [&](const char *what, const auto *source) {
-    if (!source)
-      error->all(FLERR, "Fix fsi/spectrum input {}: there is no {} {}", argument, what, name);
-    if (input_index ? !source->vector_flag : !source->scalar_flag)
-      error->all(FLERR, "Fix fsi/spectrum input {}: {} {} has no global {}", argument, what, name,
-                 input_index ? "vector" : "scalar");
-    if (input_index > 0 && input_index > source->size_vector)
-      error->all(FLERR, "Fix fsi/spectrum input {}: the vector of {} {} has {} entries", argument,
-                 what, name, source->size_vector);
-  };
-  if (input_kind == ArgInfo::COMPUTE) {
-    input_compute = modify->get_compute_by_id(name);
-    check("compute", input_compute);
-  } else if (input_kind == ArgInfo::FIX) {
-    input_fix = modify->get_fix_by_id(name);
-    check("fix", input_fix);
-    if (nevery % input_fix->global_freq)
-      error->all(FLERR, "Fix fsi/spectrum input {}: fix {} has values every {} steps, Nevery is {}",
-                 argument, name, input_fix->global_freq, nevery);
-  } else {
-    input_variable = input->variable->find(name);
-    if (input_variable < 0)
-      error->all(FLERR, "Fix fsi/spectrum input {}: there is no variable {}", argument, name);
-    if (!input->variable->equalstyle(input_variable))
-      error->all(FLERR, "Fix fsi/spectrum input {}: variable {} is not equal-style", argument,
-                 name);
-  }
-}
-
 void FixFSISpectrum::end_of_step()
 {
   const bigint step = update->ntimestep;
   if (step % nevery || step <= last) return;    // the last step of a run is the first of the next
   last = step;
   modify->clearstep_compute();
-  value.push_back(sample());
+  value.push_back(input->variable->compute_equal(argument));    // as in a formula
   time.push_back(FSI::Clock::now(update));
   modify->addstep_compute(step + nevery);
   if (analyze_every && value.size() % analyze_every == 0) analyze();
-}
-
-double FixFSISpectrum::sample()
-{
-  if (input_kind == ArgInfo::VARIABLE) return input->variable->compute_equal(input_variable);
-  if (input_kind == ArgInfo::FIX)
-    return input_index ? input_fix->compute_vector(input_index - 1) : input_fix->compute_scalar();
-  const int flag = input_index ? Compute::INVOKED_VECTOR : Compute::INVOKED_SCALAR;
-  if (!(input_compute->invoked_flag & flag)) {
-    if (input_index)
-      input_compute->compute_vector();
-    else
-      input_compute->compute_scalar();
-    input_compute->invoked_flag |= flag;
-  }
-  return input_index ? input_compute->vector[input_index - 1] : input_compute->scalar;
 }
 
 void FixFSISpectrum::post_run()

@@ -33,7 +33,6 @@ class FixFSISpectrum : public Fix {
  public:
   FixFSISpectrum(class LAMMPS *, int, char **);
   int setmask() override { return FixConst::END_OF_STEP | FixConst::POST_RUN; }
-  void init() override { find_input(); }
   void setup(int) override { end_of_step(); }
   void end_of_step() override;
   void post_run() override;
@@ -54,18 +53,12 @@ class FixFSISpectrum : public Fix {
     double frequency = 0.0, amplitude = 0.0;
   };
   std::string argument, file;    // the input as in the script
-  int input_kind, input_index, input_variable;
-  class Compute *input_compute;
-  class Fix *input_fix;
-
-  int order;    // of the window sin^(2 order)
+  int order;                     // of the window sin^(2 order)
   int detrend, analyze_every;
   std::vector<Peak> peaks;
   bigint last;    // step of the last sample
   std::vector<double> time, value;
 
-  void find_input();
-  double sample();
   void analyze();
   std::vector<double> prepare(double &) const;
 };

@@ -21,7 +21,6 @@
 #include "fsi_keywords.h"
 #include "fsi_stop.h"
 #include "group.h"
-#include "modify.h"
 #include "neigh_list.h"
 #include "output.h"
 #include "pair_fsi_solid_tl.h"
@@ -45,16 +44,20 @@ static constexpr Description about[] = {    // from DISTANCE on
     {"distance", "distance over particle spacing"},
     {"density", "density error |rho/rho0-1|"},
     {"energy", "growth of the kinetic energy"},
-    {"lost", "number of lost particles"},
-    {"reflected", "number of reflections at mirror walls"}};
+    {"lost", "number of lost particles"}};
 // clang-format on
 
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), fix_fsi(nullptr), halt(new Stop(lmp, "Fix fsi/watch")), limit(NTROUBLE),
-    worst(NTROUBLE), total(NTROUBLE), seen(NTROUBLE, 0.0), energy_before(-1.0),
-    reflected_before(-1.0), warned(0), violations(0)
+    worst(NTROUBLE), total(NTROUBLE), seen(NTROUBLE, 0.0), energy_before(-1.0), warned(0),
+    violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
+  for (int k = 4; k < narg; k++)
+    if (std::string(arg[k]) == "reflected")
+      error->all(FLERR,
+                 "Fix fsi/watch has no keyword reflected: fix fsi/wall/mirror counts reflections, "
+                 "f_ID, for fix halt");
   static constexpr double FOLLOWS = -1.0;    // the scene, see allowed()
   Keywords keywords(lmp, "fix fsi/watch");
   keywords.argument("interval").integer(interval, 1, 1);
@@ -65,7 +68,6 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
   row(DENSITY, 0.3, Range::above(0.0));
   row(ENERGY, 10.0, Range::above(1.0));
   row(LOST, FOLLOWS, Range::from(0.0));
-  row(REFLECTED, BIG, Range::from(0.0));
   keywords.key("action").choice(warn, 0, {"stop", "warn"});
   keywords.parse(narg - 3, arg + 3);
   distances = limit[DISTANCE] != FOLLOWS;
@@ -102,7 +104,7 @@ void FixFSIWatch::find_idle(const Census &, const Idle &nothing) const
 
 void FixFSIWatch::setup(int)
 {
-  energy_before = reflected_before = -1.0;
+  energy_before = -1.0;
   look(true);
 }
 
@@ -207,11 +209,6 @@ void FixFSIWatch::look(bool at_start)
   total[ENERGY] = energy_before >= 0.0 && scale > 0.0 ? all[0] / scale : 0.0;
   energy_before = all[0];
   total[LOST] = (double) atom->natoms - all[2];
-  double reflected = 0.0;
-  for (auto *fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
-    reflected += fix->compute_scalar();
-  total[REFLECTED] = reflected_before >= 0.0 ? reflected - reflected_before : 0.0;
-  reflected_before = reflected;
 
   double own[NTROUBLE];
   for (int q = 0; q < NTROUBLE; q++)

@@ -57,13 +57,13 @@ class FixFSIWatch : public Fix, public FSI::Part {
   // of each trouble (fsi_stop.h)
   std::vector<double> limit;          // BIG, for DISTANCE 0, = off
   std::vector<FSI::Finding> worst;    // on this rank
-  std::vector<double> total;          // of all ranks: ENERGY, LOST, REFLECTED
+  std::vector<double> total;          // of all ranks: ENERGY, LOST
   std::vector<double> seen;           // of all ranks at the last check: the output
   int warn;
   bool distances;    // found, whether there is a limit or not
   bool loses;        // does the script say how many?
 
-  double energy_before, reflected_before;
+  double energy_before;
   int warned;    // bits of quantities
   bigint violations;
 

@@ -19,7 +19,6 @@
 #include "error.h"
 #include "fix.h"
 #include "fsi_cells.h"
-#include "fsi_contact.h"
 #include "fsi_gather.h"
 #include "fsi_limits.h"
 #include "fsi_part.h"
@@ -27,14 +26,13 @@
 #include "fsi_sight.h"
 #include "group.h"
 #include "modify.h"
-#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -68,12 +66,11 @@ class Adviser : protected Pointers {
     const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, 1.25 * coarsest(), ours);
     if (spacing(cells) && solids.style) {
       if (update->ntimestep == 0) contact(solids.contact);
-      held_bodies();
       cut_by_walls();
       yields();
     }
+    held();
     if (fluids.style) {
-      idle_fluid();
       nothing_acts();
       torn_streams();
       speeds();
@@ -114,6 +111,8 @@ class Adviser : protected Pointers {
     return v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0;
   }
 
+  template <class Is> Found find(Is is) const { return find_particles(atom, world, is); }
+
   void warn(const std::string &text) const
   {
     if (comm->me == 0) error->warning(FLERR, "Fix fsi: " + text);
@@ -151,21 +150,6 @@ class Adviser : protected Pointers {
                          "support {:g}: particles see the same "
                          "neighbor on both sides",
                          domain->prd[d], "xyz"[d], scene.cut));
-    double mine = 1.0, least;
-    const double ghost = *std::max_element(comm->cutghost, comm->cutghost + scene.dim);
-    for (int d = 0; d < scene.dim; d++)
-      if (comm->procgrid[d] > 1)
-        mine = std::min(mine, (domain->subhi[d] - domain->sublo[d]) / ghost);
-    MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE, MPI_MIN, world);
-    if (least < 1.0)
-      warn(fmt::format("a sub-domain is thinner than what it needs of its neighbors ({:.2g} of "
-                       "{:g}), so messages travel over several "
-                       "ranks: use fewer ranks, or processors and balance along the longer sides",
-                       least, ghost));
-    if (fluids.style && neighbor->skin > 1.5 * scene.dx)
-      warn(fmt::format(
-          "the skin {:g} is {:.1f} spacings wide, which only costs time: neighbor {:g} bin",
-          neighbor->skin, neighbor->skin / scene.dx, 0.3 * scene.dx));
   }
 
   /* the particles' distance is the spacing that they were said to have (returned), and nobody sits
@@ -243,7 +227,7 @@ class Adviser : protected Pointers {
   }
 
   /* Bodies that begin within each other's range of contact are pushed apart with its energy at
-     once: that of all of them, and the nearest two. */
+     once. */
 
   void contact(double range) const
   {
@@ -252,36 +236,28 @@ class Adviser : protected Pointers {
       double apart;
       tagint a, b;
     } mine = {BIG, 0, 0};
-    double energy = 0.0, total;
     const Cells cells(atom->x, atom->nlocal + atom->nghost, scene.dim, range * coarsest(),
                       [this](int i) {
                         return solid(i);
                       });
     for (int i = 0; i < atom->nlocal; i++) {
       if (!solid(i)) continue;
+      const tagint body = atom->molecule[i];
       cells.around(atom->x[i], [&](int j, double rsq) {
-        const double spacing = 0.5 * (dx(i) + dx(j)), reach = (1.0 - LITTLE) * range * spacing;
-        if (rsq >= reach * reach || atom->molecule[j] == atom->molecule[i] ||
+        const double apart = std::sqrt(rsq) / (0.5 * (dx(i) + dx(j)));
+        const tagint other = atom->molecule[j];
+        if (apart >= std::min(mine.apart, (1.0 - LITTLE) * range) || other == body ||
             !(moves(i) || moves(j)))
           return;
-        const State &a = scene.state[atom->type[i]], &b = scene.state[atom->type[j]];
-        energy += 0.5 *
-            Contact(scene.dim, spacing, range)
-                .energy(rsq, a.csq * a.rho0, b.csq * b.rho0);    // each sees the other
-        const double apart = std::sqrt(rsq) / spacing;
-        if (apart < mine.apart)
-          mine = {apart, std::min(atom->molecule[i], atom->molecule[j]),
-                  std::max(atom->molecule[i], atom->molecule[j])};
+        mine = {apart, std::min(body, other), std::max(body, other)};
       });
     }
-    MPI_Allreduce(&energy, &total, 1, MPI_DOUBLE, MPI_SUM, world);
     const auto all = of_least(mine.apart, mine, world);
     if (all.apart == BIG) return;
     warn(fmt::format(
-        "bodies {} and {} {} {:.2g} spacings apart at the start, and contact reaches "
-        "{:.3g}: contact energy {:.4g} at once. Move them apart{}",
+        "bodies {} and {} {} {:.2g} spacings apart at the start, and contact reaches {:.3g}: it "
+        "pushes at once. Move them apart{}",
         all.a, all.b, all.apart < OVERLAP ? "overlap, with particles" : "begin", all.apart, range,
-        total,
         all.apart < 1.0 - 1.0e-6
             ? ""
             : fmt::format(", or contact {:.3g}", std::floor(10.0 * all.apart + 1.0e-6) / 10.0)));
@@ -304,7 +280,7 @@ class Adviser : protected Pointers {
       });
       return found;
     };
-    const auto bad = find_particles(atom, world, [&](int i) {
+    const auto bad = find([&](int i) {
       return fluid(i) && any(i, [&](int j) {
                return scene.state[atom->type[j]].species != NONE && !fluid(j) &&
                    (dx(j) > ROUND * COARSEST * dx(i) || ROUND * FINEST * dx(j) < dx(i));
@@ -317,7 +293,7 @@ class Adviser : protected Pointers {
                  "spacing there",
                  bad.count, bad.first, COARSEST, FINEST);
     if (update->ntimestep > 0) return;
-    const auto jumps = find_particles(atom, world, [&](int i) {
+    const auto jumps = find([&](int i) {
       return fluid(i) && any(i, [&](int j) {
                return fluid(j) && dx(i) > JUMP * dx(j);
              });
@@ -373,20 +349,28 @@ class Adviser : protected Pointers {
     }
   }
 
-  /* elastic bodies, none of which moves */
+  /* fluid, or all elastic bodies, that nobody moves */
 
-  void held_bodies() const
+  void held() const
   {
-    const auto all = find_particles(atom, world, [&](int i) {
+    const auto say = [this](const char *all, const Found &found, const char *what) {
+      warn(fmt::format(
+          "{}{} {}, the first of them atom {}, are not in group {} of fix {}: they stay "
+          "where they are",
+          all, found.count, what, found.first, group->names[scene.mover->igroup], scene.mover->id));
+    };
+    const auto fluid_held = find([this](int i) {
+      return fluid(i) && !scene.is_moved(i);
+    });
+    const auto bodies = find([this](int i) {
       return solid(i);
     });
-    const auto moving = find_particles(atom, world, [&](int i) {
+    const auto moving = find([this](int i) {
       return solid(i) && (scene.is_moved(i) || goes(i));
     });
-    if (all.count && !moving.count)
-      warn(fmt::format("all {} particles of elastic bodies, the first of them atom {}, are held, "
-                       "since none is in group {} of fix {}: is this group meant?",
-                       all.count, all.first, group->names[scene.mover->igroup], scene.mover->id));
+    if (fluid_held.count) say("", fluid_held, "fluid particles");
+    if (solids.style && bodies.count && !moving.count)
+      say("all ", bodies, "particles of elastic bodies");
   }
 
   /* A body that ends at a mirror wall is free there: mirror walls act on fluid. Not where weight
@@ -395,45 +379,37 @@ class Adviser : protected Pointers {
 
   void cut_by_walls() const
   {
-    static constexpr double FAR = -0.75;
+    static constexpr double NEAR = 0.75;
     const auto &walls = scene.walls.wall;
-    // body, wall: least distance over the spacing, with the sign changed, if it is near
-    std::map<std::array<tagint, 2>, double> mine, all;
+    std::vector<std::set<tagint>> ends(walls.size()), through(walls.size());    // bodies
     for (int i = 0; i < atom->nlocal; i++) {
       if (!moves(i) || !weighs(i)) continue;
       const auto g = scene.body_forces.on(i);
       for (size_t k = 0; k < walls.size(); k++) {
-        const double at = -walls[k].distance(atom->x[i]) / dx(i);
-        if (walls[k].noslip || atom->mask[i] & walls[k].joins || at <= FAR ||
+        const double apart = walls[k].distance(atom->x[i]) / dx(i);
+        if (walls[k].noslip || atom->mask[i] & walls[k].joins || apart >= NEAR ||
             g[walls[k].axis] != 0.0 || !walls[k].spans(atom->x[i], 0.0))
           continue;
-        double &nearest =
-            mine.emplace(std::array<tagint, 2>{atom->molecule[i], (tagint) k}, at).first->second;
-        nearest = std::max(nearest, at);
+        (apart > 0.0 ? ends : through)[k].insert(atom->molecule[i]);
       }
     }
-    std::vector<double> numbers;
-    for (const auto &m : mine)
-      numbers.insert(numbers.end(), {(double) m.first[0], (double) m.first[1], m.second});
-    numbers = gather(numbers, world);
-    for (auto n = numbers.begin(); n != numbers.end(); n += 3) {
-      double &nearest =
-          all.emplace(std::array<tagint, 2>{(tagint) n[0], (tagint) n[1]}, n[2]).first->second;
-      nearest = std::max(nearest, n[2]);
+    for (size_t k = 0; k < walls.size(); k++) {
+      ends[k] = gather(ends[k], world);
+      for (const tagint body : gather(through[k], world)) ends[k].erase(body);
     }
-    for (const auto &[of, at] : all) {
-      const auto &wall = walls[of[1]];
-      bool both = false;
-      for (const auto &[other, there] : all)
-        both |= other[0] == of[0] && walls[other[1]].axis == wall.axis &&
-            walls[other[1]].side != wall.side && there < 0.0;
-      if (at >= 0.0 || both) continue;
-      warn(fmt::format("body {} ends at the mirror wall at {} = {:g}, and its face there is free, "
-                       "since these walls act on fluid alone: a body cut by a plane of symmetry "
-                       "needs symmetry yes, or must be held there",
-                       of[0], "xyz"[wall.axis], wall.position));
-      return;
-    }
+    for (size_t k = 0; k < walls.size(); k++)
+      for (const tagint body : ends[k]) {
+        bool both = false;
+        for (size_t n = 0; n < walls.size(); n++)
+          both |= walls[n].axis == walls[k].axis && walls[n].side != walls[k].side &&
+              ends[n].count(body);
+        if (both) continue;
+        return warn(fmt::format(
+            "body {} ends at the mirror wall at {} = {:g}, and its face there is free, since these "
+            "walls act on fluid alone: a body cut by a plane of symmetry needs symmetry yes, or "
+            "must be held there",
+            body, "xyz"[walls[k].axis], walls[k].position));
+      }
   }
 
   /* what weighs nothing while other particles do */
@@ -445,14 +421,14 @@ class Adviser : protected Pointers {
     const auto falls = [&](int i) {
       return fluid(i) ? scene.is_moved(i) : solid(i) ? moves(i) : (atom->mask[i] & rigid) != 0;
     };
-    if (!find_particles(atom, world, [&](int i) {
+    if (!find([&](int i) {
            return falls(i) && weighs(i);
          }).count)
       return;
     const std::pair<Species, const char *> kinds[] = {
         {FLUID, "fluids"}, {SOLID, "elastic bodies"}, {RIGID, "rigid bodies"}};
     for (const auto &[species, what] : kinds) {
-      const auto found = find_particles(atom, world, [&, kind = species](int i) {
+      const auto found = find([&, kind = species](int i) {
         return falls(i) && scene.state[atom->type[i]].species == kind && !weighs(i);
       });
       if (found.count)
@@ -478,7 +454,7 @@ class Adviser : protected Pointers {
             return strncmp(fix->style, s, strlen(s)) == 0;
           }))
         return;
-    const auto found = find_particles(atom, world, [&](int i) {
+    const auto found = find([&](int i) {
       if (goes(i)) return true;
       if (!scene.is_moved(i)) return false;
       const double *const f = atom->f[i];
@@ -500,7 +476,7 @@ class Adviser : protected Pointers {
   void torn_streams() const
   {
     if (!scene.has_open_ends() && modify->get_fix_by_style("^fsi/stream$").empty()) return;
-    const auto found = find_particles(atom, world, [&](int i) {
+    const auto found = find([&](int i) {
       return fluid(i) && scene.is_moved(i) && scene.state[atom->type[i]].floor == 0.0 && !weighs(i);
     });
     if (found.count)
@@ -509,11 +485,13 @@ class Adviser : protected Pointers {
            "being its largest speed, and tension yes");
   }
 
-  /* fix fsi/stress says so of itself; law svk and neohookean do without it */
+  /* law svk and neohookean know no yield stress, and fix fsi/stress only where it is told to */
 
   void yields() const
   {
-    if (!modify->get_fix_by_style("^fsi/stress$").empty()) return;
+    for (const auto *part : scene.parts)
+      for (const auto &effect : part->effects())
+        if (effect.keyword == "fix fsi/stress plastic" && effect.on && solids.by_rate) return;
     for (int t = 1; t <= atom->ntypes; t++)
       if (present[t] && scene.state[t].species == SOLID && scene.state[t].yield > 0.0)
         warn(fmt::format("the material of type {} has a yield stress, but stays elastic: it acts "
@@ -522,77 +500,69 @@ class Adviser : protected Pointers {
                          t));
   }
 
-  /* fluid that nobody moves */
+  /* of the fluid along a direction, from face to face */
 
-  void idle_fluid() const
+  double extent(const std::array<double, 3> &e) const
   {
-    const auto found = find_particles(atom, world, [&](int i) {
-      return fluid(i) && !scene.is_moved(i);
-    });
-    if (found.count)
-      warn(fmt::format("{} fluid particles, the first of them atom {}, are not in group {} of fix "
-                       "{}: they stay where they are",
-                       found.count, found.first, group->names[scene.mover->igroup],
-                       scene.mover->id));
+    double mine[2] = {-BIG, -BIG}, ends[2];
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!fluid(i)) continue;
+      double s = 0.0;
+      for (int d = 0; d < scene.dim; d++) s += e[d] * atom->x[i][d];
+      mine[0] = std::max(mine[0], s);
+      mine[1] = std::max(mine[1], -s);
+    }
+    MPI_Allreduce(mine, ends, 2, MPI_DOUBLE, MPI_MAX, world);
+    return ends[0] + ends[1] + scene.dx;
   }
 
   /* speed of sound against what the fluid has, or gets by falling through its own height */
 
   void speeds() const
   {
-    std::array<double, 3> gravity = {0.0, 0.0, 0.0};
-    double g = 0.0;
-    for (int t = atom->ntypes; t > 0; t--)
-      if (present[t] && scene.state[t].species == FLUID) gravity = scene.body_forces.of_type[t];
-    for (int d = 0; d < scene.dim; d++) g += gravity[d] * gravity[d];
-    g = std::sqrt(g);
-    for (int d = 0; d < scene.dim; d++)
-      if (gravity[d] != 0.0 && domain->periodicity[d]) g = 0.0;    // drives a flow in a channel
-    // speed, both ends along gravity, upper ends, lower ends with the sign changed
-    double mine[9] = {0.0, -BIG, -BIG, -BIG, -BIG, -BIG, -BIG, -BIG, -BIG}, most[9];
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!fluid(i)) continue;
-      const double *const x = atom->x[i], *const v = atom->v[i];
-      mine[0] = std::max(mine[0], std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-      for (int d = 0; d < scene.dim; d++) {
-        mine[3 + d] = std::max(mine[3 + d], x[d]);
-        mine[6 + d] = std::max(mine[6 + d], -x[d]);
-      }
-      if (g == 0.0) continue;
-      const double z =
-          (x[0] * gravity[0] + x[1] * gravity[1] + (scene.dim == 3 ? x[2] * gravity[2] : 0.0)) / g;
-      mine[1] = std::max(mine[1], z);
-      mine[2] = std::max(mine[2], -z);
-    }
-    MPI_Allreduce(mine, most, 9, MPI_DOUBLE, MPI_MAX, world);
-    const double height = g > 0.0 && most[1] > -BIG ? most[1] + most[2] + scene.dx : 0.0;
-    const double falls = std::sqrt(2.0 * g * height), expected = std::max(most[0], falls);
-    for (int t = 1; t <= atom->ntypes; t++) {
-      const State &s = scene.state[t];
-      if (!present[t] || s.species != FLUID || expected == 0.0) continue;
-      if (s.c > 50.0 * expected) {
-        warn(fmt::format("the speed of sound {:g} of the fluid is {:.2g} times the speed {:.3g} "
-                         "that there is or falling gives: 10 times is "
-                         "enough. If the fluid should be faster: velocity ... units box (its "
-                         "default are lattice units per time)",
-                         s.c, s.c / expected, expected));
-        break;
-      }
-      if (s.c >= (7.0 - 1.0e-3) * expected) continue;
-      warn(fmt::format("the speed of sound {:g} of the fluid is {:.1f} times {}, {:.3g}: it should "
-                       "be 7 to 10 times the fastest flow, "
-                       "sound {:.3g}",
-                       s.c, s.c / expected,
-                       most[0] > falls ? std::string("its speed at the start")
-                                       : fmt::format("sqrt(2gH) of its height H = {:.3g}", height),
-                       expected, 10.0 * expected));
-      break;
-    }
-    double length = BIG;
-    for (int d = 0; d < scene.dim; d++)
-      length = std::min(length, most[3 + d] + most[6 + d] + scene.dx);
+    std::vector<int> types;    // of fluids
     for (int t = 1; t <= atom->ntypes; t++)
-      if (present[t] && scene.state[t].species == FLUID) viscosity(t, expected, length);
+      if (present[t] && scene.state[t].species == FLUID) types.push_back(t);
+    if (types.empty()) return;
+    std::array<double, 3> down = scene.body_forces.of_type[types[0]];
+    double g = 0.0, mine = 0.0, fastest, width = BIG;
+    for (int d = 0; d < scene.dim; d++) g += down[d] * down[d];
+    g = std::sqrt(g);
+    for (double &c : down) c /= g > 0.0 ? g : 1.0;
+    for (int d = 0; d < scene.dim; d++)
+      if (down[d] != 0.0 && domain->periodicity[d]) g = 0.0;    // drives a flow in a channel
+    for (int i = 0; i < atom->nlocal; i++) {
+      const double *const v = atom->v[i];
+      if (fluid(i)) mine = std::max(mine, std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    }
+    MPI_Allreduce(&mine, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
+    const double height = g > 0.0 ? extent(down) : 0.0, falls = std::sqrt(2.0 * g * height),
+                 expected = std::max(fastest, falls);
+    for (int d = 0; d < scene.dim; d++) {
+      std::array<double, 3> axis = {};
+      axis[d] = 1.0;
+      width = std::min(width, extent(axis));
+    }
+    bool said = expected == 0.0;
+    for (const int t : types) {
+      const double c = scene.state[t].c;
+      if (!said && c > 50.0 * expected)
+        warn(fmt::format("the speed of sound {:g} of the fluid is {:.2g} times the speed {:.3g} "
+                         "that there is or falling gives: 10 times is enough. If the fluid should "
+                         "be faster: velocity ... units box (its default are lattice units per "
+                         "time)",
+                         c, c / expected, expected));
+      else if (!said && c < (7.0 - 1.0e-3) * expected)
+        warn(fmt::format("the speed of sound {:g} of the fluid is {:.1f} times {}, {:.3g}: it "
+                         "should be 7 to 10 times the fastest flow, sound {:.3g}",
+                         c, c / expected,
+                         fastest > falls
+                             ? std::string("its speed at the start")
+                             : fmt::format("sqrt(2gH) of its height H = {:.3g}", height),
+                         expected, 10.0 * expected));
+      said = said || c > 50.0 * expected || c < (7.0 - 1.0e-3) * expected;
+      viscosity(t, expected, width);
+    }
   }
 
   /* what artificial viscosity is worth: half of alpha h c/2(d+2), since it acts on approach only

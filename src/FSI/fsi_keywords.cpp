@@ -86,7 +86,7 @@ static std::string sentence(const std::string &command)
 {
   std::string text = command;
   text[0] = toupper(text[0]);
-  std::replace(text.begin(), text.begin() + text.find(' '), '_', ' ');
+  std::replace(text.begin(), std::find(text.begin(), text.end(), ' '), '_', ' ');
   return text;
 }
 

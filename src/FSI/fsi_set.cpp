@@ -26,7 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <string>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -45,39 +45,37 @@ using namespace FSI;
 void FSISet::command(int narg, char **arg)
 {
   if (domain->box_exist == 0) error->all(FLERR, "Fsi/set command before simulation box is defined");
-  if (narg != 3)
-    error->all(FLERR,
-               "Fsi/set expects group-ID, density, pressure, hydrostatic or volume, and a value");
-
-  const int igroup = group->find(arg[0]);
-  if (igroup == -1) error->all(FLERR, "Fsi/set group-ID {} does not exist", arg[0]);
+  enum { DENSITY, PRESSURE, HYDROSTATIC, VOLUME };
+  static const std::vector<std::string> names = {"density", "pressure", "hydrostatic", "volume"};
+  std::string group_name, given;
+  int what;
+  Keywords keywords(lmp, "fsi/set");
+  keywords.argument("group-ID").word(group_name, "");
+  keywords.argument("keyword").choice(what, DENSITY, names);
+  keywords.argument("value").word(given, "");
+  keywords.parse(narg, arg);
+  const int igroup = group->find(group_name);
+  if (igroup == -1) error->all(FLERR, "Fsi/set group-ID {} does not exist", group_name);
   const int groupbit = group->bitmask[igroup];
-  const bool hydrostatic = strcmp(arg[1], "hydrostatic") == 0;
-  const bool pressure = strcmp(arg[1], "pressure") == 0;
-  const bool volume = strcmp(arg[1], "volume") == 0;
-  if (!hydrostatic && !pressure && !volume && strcmp(arg[1], "density") != 0)
-    error->all(FLERR,
-               "Unknown fsi/set keyword {}: expected density, pressure, hydrostatic or volume",
-               arg[1]);
   int variable = -1;
-  if (utils::strmatch(arg[2], "^v_") && !hydrostatic) {
-    variable = input->variable->find(arg[2] + 2);
+  if (utils::strmatch(given, "^v_") && what != HYDROSTATIC) {
+    variable = input->variable->find(given.c_str() + 2);
     if (variable < 0 || !input->variable->atomstyle(variable))
-      error->all(FLERR, "Fsi/set {} {} is not an atom-style variable", arg[1], arg[2]);
+      error->all(FLERR, "Fsi/set {} {} is not an atom-style variable", names[what], given);
   }
-  const double number = variable < 0 ? numeric(lmp, std::string("Fsi/set ") + arg[1], arg[2]) : 0.0;
+  const double number = variable < 0 ? numeric(lmp, "Fsi/set " + names[what], given) : 0.0;
 
   FixFSI *fix_fsi = FixFSI::find(lmp, "Fsi/set");
   if (update->ntimestep > 0 && comm->me == 0)
     error->warning(FLERR,
                    "Fsi/set {} {} after {} steps: masses change with densities, which is meant "
                    "before the first run",
-                   arg[0], arg[1], update->ntimestep);
+                   group_name, names[what], update->ntimestep);
 
   // materials, masses and gravity are entered in init()
   lmp->init();
   fix_fsi->body_forces.evaluate();
-  if (hydrostatic &&
+  if (what == HYDROSTATIC &&
       std::none_of(fix_fsi->body_forces.all.begin(), fix_fsi->body_forces.all.end(),
                    [](const BodyForces::Field &f) {
                      return f.mask;
@@ -92,7 +90,7 @@ void FSISet::command(int narg, char **arg)
     if (!(atom->mask[i] & groupbit)) continue;
     const State &s = fix_fsi->state[atom->type[i]];
     const double value = each[i];
-    if (volume) {
+    if (what == VOLUME) {
       if (!(value > 0.0)) error->one(FLERR, "Fsi/set volume {} must be > 0", value);
       atom->rmass[i] = atom->rho[i] * value;
       count++;
@@ -101,7 +99,7 @@ void FSISet::command(int narg, char **arg)
     if (s.species == NONE || s.species == RIGID) continue;    // walls: from the fluid
     if (s.form == TOTAL_LAGRANGIAN) continue;                 // density from its strain
     double rho = value;
-    if (hydrostatic) {
+    if (what == HYDROSTATIC) {
       const auto g = fix_fsi->body_forces.on(i);
       const double *x = atom->x[i], size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
       if (size == 0.0)
@@ -109,11 +107,11 @@ void FSISet::command(int narg, char **arg)
       const double height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
       if (height > value) continue;
       rho = s.density(s.rho0 * size * (value - height) + s.p0);
-    } else if (pressure)
+    } else if (what == PRESSURE)
       rho = s.density(value);
     if (!(rho > 0.0 && rho < Range::LARGEST))
       error->one(FLERR, "Fsi/set {} {} must be > 0",
-                 pressure || hydrostatic ? std::string(arg[1]) + ": density" : "density", rho);
+                 what == DENSITY ? "density" : names[what] + ": density", rho);
     atom->rmass[i] *= rho / atom->rho[i];
     atom->rho[i] = rho;
     count++;
@@ -121,7 +119,8 @@ void FSISet::command(int narg, char **arg)
   bigint all;
   MPI_Allreduce(&count, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all == 0 && comm->me == 0)
-    error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", arg[0], arg[1], arg[2]);
+    error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", group_name, names[what], given);
   if (comm->me == 0)
-    utils::logmesg(lmp, "  fsi/set: {} of {} particles\n", volume ? "mass" : "density", all);
+    utils::logmesg(lmp, "  fsi/set: {} of {} particles\n", what == VOLUME ? "mass" : "density",
+                   all);
 }

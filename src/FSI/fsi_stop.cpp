@@ -194,7 +194,33 @@ static std::string shorter_step(const Scene &scene, double number, bool fluid, b
   return tip + fmt::format("a smaller cfl/{} of fix fsi/dt", fluid ? "fluid" : "solid");
 }
 
-// what to try that is not on already
+// What to try: against what, for whom (NONE: all), the keyword of an effect that must be off for it
+// to help, or null.
+static const struct Tip {
+  Trouble trouble;
+  Species of;
+  const char *off, *text;
+} TIPS[] = {
+    // clang-format off
+    {FINITE, NONE, nullptr, "a look at what pushes this particle"},
+    {FINITE, SOLID, "hourglass", "hourglass"},
+    {MACH, FLUID, nullptr, "a higher speed of sound, if the flow is meant to be that fast"},
+    {MACH, FLUID, "artificial/visc", "artificial/visc 0.02 0"},
+    {MACH, SOLID, "artificial/visc", "artificial/visc 0.1 0"},
+    {MACH, SOLID, "hourglass", "hourglass"},
+    {DISTANCE, NONE, "artificial/visc", "artificial/visc 0.02 0"},
+    {DISTANCE, NONE, "shift", "shift"},
+    {DISTANCE, NONE, "background", "a background pressure, if there is no free surface"},
+    {DENSITY, FLUID, nullptr, "a higher speed of sound"},
+    {DENSITY, NONE, "density/diffusion", "density/diffusion 0.1"},
+    {DENSITY, SOLID, "hourglass", "hourglass"},
+    {ENERGY, NONE, nullptr, "a look at this, the fastest particle"},
+    {ENERGY, FLUID, "artificial/visc", "artificial/visc 0.02 0"},
+    {ENERGY, SOLID, "artificial/visc", "artificial/visc 0.1 0"},
+    {LOST, NONE, nullptr, "walls where particles escape, or a larger box; if they are meant to "
+                          "leave, thermo_modify lost ignore"}};
+// clang-format on
+
 std::string Stop::advice(const Scene &scene, const Finding &all, When when,
                          const Neighbor &body) const
 {
@@ -208,60 +234,23 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when,
     return false;
   };
   std::vector<std::string> tips;
-  const auto missing = [&](const char *keyword, const char *tip) {
-    if (off(keyword)) tips.emplace_back(tip);
-  };
-  const auto shorter = [&]() {
+  const bool starts = when == START, near = all.trouble == DISTANCE;
+  if (too_near(scene, body)) tips.emplace_back(advice(body, when));
+  if (starts && all.trouble == MACH)
+    tips.emplace_back("velocity ... units box (its default are lattice units per time)");
+  if (starts && near) tips.emplace_back("a look for overlapping particles");
+  if (near && scene.kernel != WENDLAND) tips.emplace_back("kernel wendland");
+  for (const Tip &tip : TIPS)
+    if (tip.trouble == all.trouble && (tip.of == NONE || (tip.of == FLUID) == fluid) &&
+        (!tip.off || off(tip.off)))
+      tips.emplace_back(tip.text);
+  if (all.trouble == DENSITY && fluid && pair && !off("tension"))
+    tips.emplace_back("tension no, if there is a free surface");
+  if (all.trouble != LOST && when != BEFORE && !(starts && near)) {
     const double number = all.tag ? courant(scene, all.type) : 0.0;
     const bool solid_tl = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
     const auto tip = shorter_step(scene, number, fluid, solid_tl);
     tips.insert(number > SUSPECT * usual_courant(fluid) ? tips.begin() : tips.end(), tip);
-  };
-
-  if (too_near(scene, body)) tips.emplace_back(advice(body, when));
-  switch (all.trouble) {
-    case FINITE:
-      tips.emplace_back("a look at what pushes this particle");
-      if (!fluid) missing("hourglass", "hourglass");
-      if (when != BEFORE) shorter();
-      break;
-    case MACH:
-      if (when == START)
-        tips.emplace_back("velocity ... units box (its default are lattice units per time)");
-      if (fluid) tips.emplace_back("a higher speed of sound, if the flow is meant to be that fast");
-      missing("artificial/visc", fluid ? "artificial/visc 0.02 0" : "artificial/visc 0.1 0");
-      if (!fluid) missing("hourglass", "hourglass");
-      shorter();
-      break;
-    case DISTANCE:
-      if (when == START) tips.emplace_back("a look for overlapping particles");
-      if (scene.kernel != WENDLAND) tips.emplace_back("kernel wendland");
-      missing("artificial/visc", "artificial/visc 0.02 0");
-      missing("shift", "shift");
-      missing("background", "a background pressure, if there is no free surface");
-      if (when != START) shorter();
-      break;
-    case DENSITY:
-      if (fluid) tips.emplace_back("a higher speed of sound");
-      missing("density/diffusion", "density/diffusion 0.1");
-      if (fluid && pair && !off("tension"))
-        tips.emplace_back("tension no, if there is a free surface");
-      if (!fluid) missing("hourglass", "hourglass");
-      shorter();
-      break;
-    case ENERGY:
-      tips.emplace_back("a look at this, the fastest particle");
-      missing("artificial/visc", fluid ? "artificial/visc 0.02 0" : "artificial/visc 0.1 0");
-      shorter();
-      break;
-    case LOST:
-      tips.emplace_back("walls where particles escape, or a larger box; if they are meant to "
-                        "leave, thermo_modify lost ignore");
-      break;
-    default:
-      tips.emplace_back("a larger distance from the wall at the start");
-      missing("artificial/visc", "artificial/visc 0.02 0");
-      shorter();
   }
   std::string text;
   for (size_t k = 0; k < tips.size(); k++) text += (k ? "; " : "") + tips[k];

@@ -26,7 +26,7 @@ namespace FSI {
   class Scene;
 
   // what can be wrong
-  enum Trouble { FINITE, MACH, DISTANCE, DENSITY, ENERGY, LOST, REFLECTED, NTROUBLE };
+  enum Trouble { FINITE, MACH, DISTANCE, DENSITY, ENERGY, LOST, NTROUBLE };
   constexpr double HUGE_SQUARE = 1.0e200;    // of a speed: nothing finite gets there
 
   // with whom

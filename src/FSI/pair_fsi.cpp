@@ -214,7 +214,6 @@ Facts PairFSI::facts() const
   Facts facts;
   facts.alpha = alpha;
   facts.contact = contact_range;
-  facts.self_contact = self_contact;
   return facts;
 }
 

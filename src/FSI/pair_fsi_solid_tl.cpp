@@ -18,7 +18,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "fix_fsi_dt.h"
 #include "fix_fsi_history.h"
 #include "fix_fsi_reference.h"
 #include "fix_fsi_stress.h"
@@ -190,9 +189,9 @@ const double *const *PairFSISolidTL::history() const
 // adds to these, as fix addforce, is right; what sets or projects the whole force is not.
 bool PairFSISolidTL::takes_substeps() const
 {
-  auto dt = modify->get_fix_by_style("^fsi/dt$");
+  const auto dt = modify->get_fix_by_style("^fsi/dt$");
   return fix_fsi->substeps > 1 ||
-      (!dt.empty() && dynamic_cast<FixFSIDt *>(dt[0])->chooses_substeps());
+      (!dt.empty() && dynamic_cast<Part *>(dt[0])->facts().chooses_substeps);
 }
 
 void PairFSISolidTL::refuse_constraints() const

@@ -28,7 +28,7 @@ COMMANDS = [
     "fix particles all fsi/wall/particle slip no guard 0.9",
     "fix walls all fsi/wall/mirror xlo 0 range y 0 INF velocity 0.1 0 0 slip no ylo EDGE guard 0.2",
     "fix dt all fsi/dt 10 cfl 0.9 min 1e-9 max 1e-3 growth 1.2 substeps auto check no",
-    "fix watch all fsi/watch 10 distance 0.2 density off energy 5 lost 0 reflected 9 action warn",
+    "fix watch all fsi/watch 10 distance 0.2 density off energy 5 lost 0 action warn",
     "fsi/set all hydrostatic 0.1",
     "fsi/set all density 1000",
     "compute c all fsi/atom p rho vonmises sxx",

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from scenes import dam_gate, differing, fluid_box, run, watch
+from scenes import DX, dam_gate, differing, fluid_box, run, watch
 
 from fsi import log
 from test_dt import total_lagrangian
@@ -117,13 +117,14 @@ def hints(done):
 USUAL = {"communication": 25.0, "neighbor lists": 20.0, "output": 10.0, "force of solids": 40.0, "density": 30.0, "force of fluid": 30.0}  # per cent
 
 
-@pytest.mark.parametrize("case, named", [("calm", ()), ("output", ("output",)), ("lists", ("neighbor lists",)), ("alone", ("waiting",))])
+@pytest.mark.parametrize("case, named", [("calm", ()), ("output", ("output",)), ("lists", ("neighbor lists",)), ("skin", ()), ("alone", ("waiting",))])
 def test_what_to_change_is_what_took_the_time(tmp_path, case, named):
     """Each part above its usual share, with the share of the table, the dearest first: for what takes nearly all the time, and nothing else."""
     scene = fluid_box(2)
     more = {"calm": "", "output": "thermo 1\n" + "".join(f"dump {k} all custom 1 d{k} id x y z vx vy vz fx fy fz\n" for k in range(6)),
             # bins so small that lists take three quarters of the time on an idle machine
             "lists": "neigh_modify delay 0 every 1 check no binsize 0.001\n",
+            "skin": f"neighbor {2 * DX} bin\n",
             # the other rank has no particle
             "alone": "comm_style brick\nbalance 1.0 x 0.999\n"}[case]
     done = run(tmp_path, scene.text() + more + "fix report all fsi/report\nrun 80\n", 2 if case == "alone" else 1, scene_data=scene.data())
@@ -139,6 +140,8 @@ def test_what_to_change_is_what_took_the_time(tmp_path, case, named):
     if case != "alone":
         for part in ("neighbor lists", "output"):
             assert (part in [p for p, _, _ in found]) == (100.0 * report[f"share_{part.replace(' ', '_')}"] > USUAL[part])
+    if case == "skin":
+        assert (f"a skin of 2 dx: neighbor {0.3 * DX:.2g} bin" in [t for _, _, t in found]) == (100.0 * report["share_force_of_fluid"] > USUAL["force of fluid"])
     if case == "lists":
         assert "new ones every 1 steps: a larger skin" in dict((p, t) for p, _, t in found)["neighbor lists"]
 

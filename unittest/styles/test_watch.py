@@ -16,7 +16,7 @@ CAUSES = r"Mach number|distance over particle spacing|density|kinetic energy|not
 
 
 def seen(scene):
-    return np.array([scene.lmp.extract_fix("watch", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, k) for k in range(5)])
+    return np.array([scene.lmp.extract_fix("watch", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, k) for k in range(4)])
 
 
 def error(done):
@@ -122,14 +122,6 @@ def test_lost(tmp_path, ranks):
     run(tmp_path / "off", text.replace(" lost 0", ""), ranks, scene_data=scene.data())
 
 
-def test_reflected(tmp_path):
-    scene = fluid_box(2)
-    scene.walls[0] = (0, 1, 0.0, "velocity 1 0 0 guard 0.45")
-    text = scene.text() + "fix watch all fsi/watch 5 energy off reflected 0\nrun 40\n"
-    assert re.search(r"reflections at mirror walls \d+ is above the limit 0 on step", error(lammps(tmp_path, text, scene_data=scene.data())))
-    run(tmp_path, text.replace("reflected 0", "reflected off"), scene_data=scene.data())
-
-
 def test_spray_lives(tmp_path):
     """Torn water: light, thin, and one particle almost on another. Without tension there is no pressure in it and no harm."""
     scene = fluid_box(2)
@@ -193,7 +185,7 @@ def test_group(tmp_path):
 def test_off(tmp_path):
     scene = fluid_box(2)
     scene.rho[57] = 1350.0
-    run(tmp_path, scene.text() + "fix watch all fsi/watch 1 distance off density off energy off lost off reflected off\nrun 5\n", scene_data=scene.data())
+    run(tmp_path, scene.text() + "fix watch all fsi/watch 1 distance off density off energy off lost off\nrun 5\n", scene_data=scene.data())
 
 
 BAD = [
@@ -207,6 +199,7 @@ BAD = [
     ("fix watch all fsi/watch 10 energy 1", r"energy 1 must be > 1"),
     ("fix watch all fsi/watch 10 action cry", r"action cry: expected stop or warn"),
     ("fix watch all fsi/watch 10 color red", r"keyword color"),
+    ("fix watch all fsi/watch 10 reflected 5", r"no keyword reflected: fix fsi/wall/mirror counts reflections, f_ID, for fix halt"),
     ("unfix sph\nfix watch all fsi/watch 10", r"requires fix fsi"),
 ]
 
