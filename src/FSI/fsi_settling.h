@@ -20,6 +20,7 @@
 #ifndef LMP_FSI_SETTLING_H
 #define LMP_FSI_SETTLING_H
 
+#include "fsi_everywhere.h"
 #include "pointers.h"
 
 #include <vector>
@@ -30,8 +31,10 @@ namespace FSI {
 
   class Settling : protected Pointers {
    public:
-    // moves: per local particle, may it be moved? Ghosts are where these are, and follow
-    Settling(LAMMPS *, Scene &, const std::vector<char> &moves, std::vector<tagint> changed);
+    // moves: per local particle, may it be moved? Ghosts are where these are, and follow. Changed:
+    // where something did, of this rank
+    Settling(LAMMPS *, Scene &, const std::vector<char> &moves,
+             const std::vector<Position> &changed);
     void run(int sweeps);
 
    private:
@@ -43,7 +46,6 @@ namespace FSI {
     std::vector<Row> rows;
     std::vector<int> neighbors;
 
-    void find_mobilities(const std::vector<char> &moves, const std::vector<tagint> &changed);
     void find_rows();
     bool rows_hold() const;
     template <class K> void sweep(const std::vector<K> &of_types);
