@@ -6,7 +6,7 @@ from pathlib import Path
 
 import cost_report
 import numpy as np
-from tool import say
+from tool import figures_of, left, say
 
 from fsi import log, paths, scene, series, sweep
 from fsi.command import Refusal, split, start
@@ -85,14 +85,6 @@ def work(definition, settings):
     return fineness**(definition.get("dimension", 2) + 1) * sound / 10.0 / float(settings.get("cfl", BASE_CFL))
 
 
-def take_cases(store, name, wanted):
-    """Stores the points that are cases of the scene and that tools/run left: these are not run again."""
-    keys = {store.path(point["settings"]) for point in wanted}
-    for case, run in scene.cases(name).items():
-        if not run["deck"] and store.path(run["variables"]) in keys and (folder := scene.left(name, case)):
-            store.take(run["variables"], folder, figures_of(folder))
-
-
 def analysed(name):
     """What turns the folder of a scene's run into its figures: the scene's own analysis."""
     module = scene.analysis(name)
@@ -101,13 +93,6 @@ def analysed(name):
         module.main(folder)
         return figures_of(folder)
     return measure
-
-
-def figures_of(folder):
-    """{figure: its value} of an analysed run, references included."""
-    figures = json.loads((folder / "summary.json").read_text())["figures"]
-    references = {f"{f['name']} reference": f["reference"] for f in figures if f["reference"]}
-    return {f["name"]: f["value"] for f in figures} | references
 
 
 def printed(name):
@@ -228,8 +213,9 @@ def main(arguments):
 
     store = sweep.Store(folder / "points", deck, measure, files, options["limit"] or 600.0, options["repeats"], options.get("source"))
     if options.get("draw") is None:
-        if bundled:
-            take_cases(store, name, wanted)
+        for settings in (point["settings"] for point in wanted if bundled):
+            if there := left(deck, name, settings):  # what tools/run left is not run again
+                store.take(settings, there, figures_of(there))
         complete = sweep.sweep(store, [(p["label"], p["settings"], work(definition, p["settings"])) for p in wanted],
                                say, options["budget"])
         if complete:

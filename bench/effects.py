@@ -203,7 +203,7 @@ def draw(path, rows):
 
 
 def page(rows, variants):
-    """The page's text; variants: rows of tools/cost solids, of which the same in three dimensions."""
+    """The page's text; variants: rows of tools/cost solids, of which the same in three dimensions; none while those are not there."""
     lines = ["# What each effect costs", "",
              "An effect that a script does not name is not computed, stored or sent. This is what naming it adds to a step.", "",
              "![Instructions that each effect adds](effects.png)", "",
@@ -218,7 +218,7 @@ def page(rows, variants):
             three = solid_variants.added(variants, 3, name, r["effect"])
             lines.append(f"| {title} | {r['effect']} | {r['instructions']:+.1%} | {'' if three is None else f'{three:+.1%}'} | {r['time']:+.0%} ± {r['spread']:.0%} | "
                          f"{r['memory']:+.0f} | {r['messages']:+.2g} | {r['bytes']:+.1f} | {r['collectives']:+.2g} |")
-    for what, (variant, over) in solid_variants.FORMS.items():
+    for what, (variant, over) in solid_variants.FORMS.items() if variants else ():
         two, three = (solid_variants.ratio(variants, dim, variant, over) - 1.0 for dim in (2, 3))
         lines.append(f"| Solid | {what} | {two:+.1%} | {three:+.1%} | | | | | |")
     return "\n".join(lines) + "\n"

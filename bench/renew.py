@@ -52,20 +52,28 @@ def run():
 
 # ---- data ----
 
+def tables():
+    """{cost/NAME or hard: {a file in results: its place in doc}}, beside the data of scenes."""
+    made = paths.RESULTS / "cost"
+    found = {f"cost/{name}": {made / name / file: PAGE / f"{name}.{end}" for file, end in (("points.csv", "csv"), ("summary.json", "json"))} for name in sweeps()}
+    found |= {f"cost/{name}": {made / name / f"{name}.csv": PAGE / f"{name}.csv"} for name in TOOLS}
+    return found | {"cost/robustness": {made / "robustness" / "robustness.csv": evidence.HARD / "robustness.csv"},
+                    "hard": {paths.RESULTS / "hard" / name: evidence.HARD / name for name in ("hard.json", "hard.csv", "thumbnails.png")}}
+
+
+def checked(wanted):
+    """These files, all there and of a commit."""
+    if missing := [str(path.relative_to(paths.ROOT)) for path in wanted if not path.exists()]:
+        raise Refusal(f"{', '.join(missing)}: not there; tools/run and tools/cost make them")
+    if unclear := [str(path.relative_to(paths.ROOT)) for path in wanted if path.suffix != ".png" and not stamp(path)]:
+        raise Refusal(f"{', '.join(unclear)}: of no commit without changes")
+    return wanted
+
+
 def collect():
     """Takes to doc what the runs left in results."""
     found = results.collect(paths.RESULTS)
-    made = paths.RESULTS / "cost"
-    wanted = {made / name / file: PAGE / f"{name}.{end}" for name in sweeps() for file, end in (("points.csv", "csv"), ("summary.json", "json"))}
-    wanted |= {made / name / f"{name}.csv": PAGE / f"{name}.csv" for name in TOOLS}
-    wanted |= {made / "robustness" / "robustness.csv": evidence.HARD / "robustness.csv"}
-    wanted |= {paths.RESULTS / "hard" / name: evidence.HARD / name for name in ("hard.json", "hard.csv", "thumbnails.png")}
-    missing = [str(path.relative_to(paths.ROOT)) for path in wanted if not path.exists()]
-    if missing:
-        raise Refusal(f"{', '.join(missing)}: not there; tools/renew without {WORDS[0]} makes them")
-    stamps = {path: stamp(path) for path in wanted if path.suffix != ".png"}
-    if unclear := [str(path.relative_to(paths.ROOT)) for path, found in stamps.items() if not found]:
-        raise Refusal(f"{', '.join(unclear)}: of no commit without changes")
+    wanted = checked({path: target for files in tables().values() for path, target in files.items()})
     (paths.PAGE / "results.json").write_text(results.packed(found))
     for path, target in wanted.items():
         shutil.copyfile(path, target)
@@ -80,16 +88,19 @@ def take_pictures(name):
 
 
 def take(wanted):
-    """Takes to doc what results have of these scenes, SCENE or SCENE/CASE, each of one commit; all other data stay as they are."""
+    """Takes to doc what results have of these: SCENE or SCENE/CASE, cost/NAME, hard, each of one commit; all other data stay as they are."""
     page = paths.PAGE / "results.json"
     found = json.loads(page.read_text())
     for what in wanted:
+        files = checked(tables().get(what, {}))
+        for path, target in files.items():
+            shutil.copyfile(path, target)
         name, _, case = what.partition("/")
-        path = paths.RESULTS / what / "summary.json"
-        if name not in paths.scenes() or not path.exists():
-            raise Refusal(f"{path.relative_to(paths.ROOT)}: not there; tools/run makes it")
-        if not stamp(path):
-            raise Refusal(f"{path.relative_to(paths.ROOT)}: of no commit without changes")
+        if name not in paths.scenes():
+            if not files:
+                raise Refusal(f"'{what}' is neither a scene, SCENE/CASE, nor one of {', '.join(tables())}")
+            continue
+        path, = checked([paths.RESULTS / what / "summary.json"])
         summary = json.loads(path.read_text())
         if case:
             add_case(found["scenes"][name]["summary"], name, case, summary)
@@ -194,7 +205,7 @@ def main(arguments):
     """tools/renew"""
     only = arguments[1:] if arguments[:1] == ["--only"] else []
     if not only and (len(arguments) > 1 or any(word not in WORDS for word in arguments)):
-        raise Refusal(f"'{' '.join(arguments)}' is not one of {', '.join(WORDS)}, --only SCENE[/CASE] ...")
+        raise Refusal(f"'{' '.join(arguments)}' is not one of {', '.join(WORDS)}, --only SCENE[/CASE] or cost/NAME ...")
     failed = [] if arguments else run()
     if only:
         take(only)

@@ -4,11 +4,9 @@ Five bundled scenes, coarse, at 10, 20 and 40 times their largest speed of flow 
 differs from row to row, and the time step with it. doc/choosing.md shows its table, which is in doc/cost. What has been run is not run again.
 """
 
-import json
+from tool import Job, figures_of, left, say
 
-from tool import Job, say
-
-from fsi import scene
+from fsi import scene, sweep
 from fsi.command import Refusal, start
 
 # scene: what it is, its settings, the variable and its value at 10 times the speed of flow, ratios, {figure: what it is}
@@ -30,12 +28,14 @@ TARGET = 0.03  # of a figure from 10 to 20
 
 
 def measured(folder, name, value):
-    """{figure: value} of a run with this speed of sound, and its CPU seconds."""
+    """{figure: value} of a run with this speed of sound, its CPU seconds included: of the scene's own case where that is it."""
     _, settings, variable, *_ = SCENES[name]
-    if scene.run(name, folder, 1, {k: str(v) for k, v in (settings | {variable: value}).items()}, borrowed=name):
+    settings = {k: str(v) for k, v in (settings | {variable: value}).items()}
+    if there := left(sweep.Deck(scene.deck(name)), name, settings):
+        return figures_of(there)
+    if scene.run(name, folder, 1, settings, borrowed=name):
         raise Refusal(f"{name} failed: {folder}")
-    summary = json.loads((folder / "summary.json").read_text())
-    return {f["name"]: f["value"] for f in summary["figures"]}
+    return figures_of(folder)
 
 
 def rows_of(name, found):

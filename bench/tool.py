@@ -36,6 +36,20 @@ class Kept:
         return measure.Pair(**self.get(["pair", *map(str, arguments)], lambda: vars(measure.pair(*arguments))))
 
 
+def left(deck, name, settings):
+    """The folder in which tools/run left a case of a scene with these settings of its deck, of this commit; None if it did not."""
+    wanted = deck.normal(settings)
+    found = (scene.left(name, case) for case, run in scene.cases(name).items() if not run["deck"] and deck.normal(run["variables"]) == wanted)
+    return next(filter(None, found), None)
+
+
+def figures_of(folder):
+    """{figure: its value} of an analyzed run, references included."""
+    figures = json.loads((folder / "summary.json").read_text())["figures"]
+    references = {f"{f['name']} reference": f["reference"] for f in figures if f["reference"]}
+    return {f["name"]: f["value"] for f in figures} | references
+
+
 def write_csv(path, command, columns, rows, digits=None):
     """Columns of some rows, {column: value}, below a line that says what wrote them; digits: of all floating-point numbers."""
     with open(path, "w", newline="", encoding="utf-8") as file:

@@ -61,16 +61,6 @@ def add(summary, folder, suffix="", judged=False):
     return time, {name: series.smooth(time, c, 0.5) for name, c in found.items()}
 
 
-def vorticity(water, dx):
-    """Vorticity at particles, of their neighbors within 2.5 spacings of their own; type 1 is the coarsest level, type 3 the next."""
-    spin = np.zeros(len(water["x"]))
-    for kind in np.unique(water["type"]):
-        level = max(0, kind - 2)
-        near = geometry.vorticity(*(water[name] for name in ("x", "y", "vx", "vy")), 2.5 * dx / 2**(level / 2))
-        spin = np.where(water["type"] == kind, near, spin)
-    return spin
-
-
 def label(folder):
     """Of a curve: Reynolds number and resolution of a run."""
     values = log.read(Path(folder) / "log.lammps").values
@@ -91,7 +81,7 @@ def main(folder):
     values = summary.log.values
     last = dump.read(folder / "particles.dump")[-1]
     last = last.select(last["type"] != 2)
-    spin = vorticity(last, values["dx"]) * DIAMETER / values["velocity"]
+    spin = geometry.vorticity_of_levels(last, values["dx"]) * DIAMETER / values["velocity"]
     x, y = last["x"] / DIAMETER, last["y"] / DIAMETER
     plot.clouds(folder / "vorticity.png", [(f"t U/D = {last.time * values['velocity'] / DIAMETER:.0f}", x, y, spin)],
                 values["dx"] / DIAMETER, ((x.min(), x.max()), (-4, 4)), "vorticity D/U", (-3.0, 3.0), axis_labels=("x/D", "y/D"), panel_width=7.0, colours="RdBu_r")

@@ -16,7 +16,7 @@ from fsi.summary import Summary  # noqa: E402
 
 SOURCE = "Clift, Grace & Weber 1978"
 DIAMETER = 0.1
-COLORS = (plot.GREY, plot.BLUE, plot.ORANGE)
+COLORS = (plot.GREY, plot.BLUE, plot.ORANGE, plot.GREEN, plot.RED)
 
 
 def reference(re):
@@ -55,8 +55,9 @@ def curve(folder):
 
 def draw(folder, cases):
     curves = [(*curve(path), name.replace("_", " "), color) for (name, path), color in zip(cases.items(), COLORS)]
-    re = read(next(iter(cases.values())))[0]["Re"]
-    plot.lines(folder / "drag.png", "t U/D", "drag coefficient, means of 0.5 D/U", curves, levels=[(reference(re), SOURCE)])
+    numbers = dict.fromkeys(read(path)[0]["Re"] for path in cases.values())
+    plot.lines(folder / "drag.png", "t U/D", "drag coefficient, means of 0.5 D/U", curves,
+               levels=[(reference(re), f"{SOURCE}, Re = {re:g}") for re in numbers])
 
 
 def picture(path, folder):

@@ -71,8 +71,8 @@ def main(folder):
     values, time, place = add(summary, folder)
     plot.lines(folder / "place.png", "t U/D", "place y/D", [(time, place, f"reduced velocity {values['reduced']:g}", plot.BLUE)])
     last = dump.read(folder / "particles.dump")[-1]
-    water, body = last.of_types(1), last.of_types(2)
-    spin = geometry.vorticity(*(water[name] for name in ("x", "y", "vx", "vy")), 2.5 * values["dx"]) * DIAMETER / values["velocity"]
+    water, body = last.of_types(1, *range(3, 8)), last.of_types(2)
+    spin = geometry.vorticity_of_levels(water, values["dx"]) * DIAMETER / values["velocity"]
     x, y = water["x"] / DIAMETER, water["y"] / DIAMETER
     # the cylinder's particles in the middle of the color scale, grey would be the water's zero
     x, y = np.append(x, body["x"] / DIAMETER), np.append(y, body["y"] / DIAMETER)
@@ -89,14 +89,15 @@ def study(folder, cases):
     finest = {round(read(path)[0]["reduced"]): name for name, path in cases.items()}  # they are in the order of resolution
     for name, path in cases.items():
         values, time, place = add(summary, path, f"_{name}", name in finest.values())
-        found.setdefault(values["across"], []).append((values["reduced"], 0.5 * np.ptp(place[time >= time[-1] - LATE])))
+        found.setdefault((values["across"], values["finest"]), []).append((values["reduced"], 0.5 * np.ptp(place[time >= time[-1] - LATE])))
         curves.append((name, time, place))
     with plot.picture(folder / "amplitude.png", 9.0, 3.6) as figure:
         left, right = figure.subplots(1, 2)
         for k, (label, mark) in enumerate((("Ahn & Kallinderis 2006", "s"), ("Borazjani et al. 2008", "o"))):
             left.plot(list(CODES), [pair[k] for pair in CODES.values()], mark, markersize=6, markerfacecolor="white", color="black", label=label)
-        for (across, points), color, line in zip(sorted(found.items()), (plot.BLUE, plot.ORANGE), "-:"):
-            left.plot(*np.array(sorted(points)).T, line, marker="o", markersize=4, color=color, label=f"{across:g} particles per diameter")
+        for ((across, most), points), color, line in zip(sorted(found.items(), key=lambda item: item[0][1]), (plot.BLUE, plot.ORANGE, plot.GREEN), "-::"):
+            label = f"{across:.0f}" if round(most) == across else f"{across:.0f} to {most:.0f}"
+            left.plot(*np.array(sorted(points)).T, line, marker="o", markersize=4, color=color, label=f"{label} particles per diameter")
         left.axhline(EDGE, color=plot.GREY, linestyle="--", linewidth=1.0)
         left.set(xlabel="reduced velocity", ylabel="amplitude / D", ylim=(0, 0.7))
         for (name, time, place), color in zip([c for c in curves if c[0] in ("4_8", "8_8")], (plot.BLUE, plot.ORANGE)):

@@ -58,6 +58,17 @@ def vorticity(x, y, u, v, reach):
     return np.where(enough, (yy * xv - xy * yv - xx * yu + xy * xu) / np.where(enough, size, 1.0), 0.0)
 
 
+def vorticity_of_levels(water, dx):
+    """The same of a frame whose fluid has levels, each of its neighbors within 2.5 spacings of its own: type 1 is the coarsest, of spacing dx,
+    type 3 the next, each of 1/sqrt(2) of the one before."""
+    spin = np.zeros(len(water["x"]))
+    for kind in np.unique(water["type"]):
+        level = max(0, kind - 2)
+        near = vorticity(*(water[name] for name in ("x", "y", "vx", "vy")), 2.5 * dx / 2**(level / 2))
+        spin = np.where(water["type"] == kind, near, spin)
+    return spin
+
+
 def project_on_polyline(points, line):
     """Nearest points on a polyline in the plane.
 

@@ -17,10 +17,12 @@
 #include "comm.h"
 #include "fsi_cells.h"
 #include "fsi_kernel.h"
+#include "fsi_rows.h"
 #include "fsi_scene.h"
 #include "math_extra.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -30,7 +32,8 @@ using namespace FSI;
 static constexpr double STRENGTH = 0.15, LONGEST = 0.05;
 // Sums of V W: particles with the first are at a surface and stay, with the second move as others
 static constexpr double SURFACE = 0.9, INSIDE = 0.95;
-static constexpr double SKIN = 1.0;    // of rows, in spacings
+static constexpr int POINT = 4;    // of points: position and volume
+static constexpr double SKIN = 0.5;    // of rows, in spacings of the two
 
 Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
                    const std::vector<Position> &changed) :
@@ -62,21 +65,31 @@ Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
 void Settling::find_rows()
 {
   const int nall = atom->nlocal + atom->nghost;
-  const double skin = SKIN * scene.dx;
-  const Cells cells(atom->x, nall, scene.dim, scene.cut + skin, [&](int j) {
-    return scene.state[atom->type[j]].species != NONE;
+  const int *const type = atom->type;
+  const Cells cells(atom->x, nall, scene.dim, 0.25 * scene.cut, [&](int j) {
+    return scene.state[type[j]].species != NONE;
   });
+  const auto reach_of = [&](int t) {
+    return 0.5 * (scene.resolution[t].cut + SKIN * scene.dx_of(t));
+  };
+  double widest = 0.0;
+  for (int t = 1; t <= atom->ntypes; t++) widest = std::max(widest, reach_of(t));
   rows.clear();
   neighbors.clear();
   for (int i = 0; i < atom->nlocal; i++) {
     if (mobility[i] <= 0.0) continue;
-    const int first = (int) neighbors.size();
-    const double own = scene.resolution[atom->type[i]].cut;
-    cells.around(atom->x[i], [&](int j, double rsq) {
-      const double reach = 0.5 * (own + scene.resolution[atom->type[j]].cut) + skin;
-      if (j != i && rsq < reach * reach) neighbors.push_back(j);
+    const size_t first = neighbors.size();
+    const double own = reach_of(type[i]);
+    cells.around(atom->x[i], own + widest, [&](int j, double rsq) {
+      const double reach = own + reach_of(type[j]);
+      if (rsq < reach * reach) neighbors.push_back(j);
     });
-    rows.push_back({i, first, (int) neighbors.size()});
+    rows.push_back({i, (int) (neighbors.size() - first), nullptr});
+  }
+  const int *of_row = neighbors.data();
+  for (auto &row : rows) {
+    row.j = of_row;
+    of_row += row.n;
   }
   start.resize(3 * nall);
   for (int i = 0; i < nall; i++) MathExtra::copy3(atom->x[i], &start[3 * i]);
@@ -84,16 +97,20 @@ void Settling::find_rows()
 
 bool Settling::rows_hold() const
 {
-  const double most = 0.5 * SKIN * scene.dx;
-  for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+  for (int i = 0; i < atom->nlocal + atom->nghost; i++) {
+    const double most = 0.5 * SKIN * scene.dx_of(atom->type[i]);
     if (MathExtra::distsq3(atom->x[i], &start[3 * i]) > most * most) return false;
+  }
   return true;
 }
 
 void Settling::run(int sweeps)
 {
-  volume.resize(atom->nlocal + atom->nghost);
-  for (size_t j = 0; j < volume.size(); j++) volume[j] = atom->rmass[j] / atom->rho[j];
+  const int nall = atom->nlocal + atom->nghost;
+  points.resize(POINT * nall);
+  for (int j = 0; j < nall; j++) points[POINT * j + 3] = atom->rmass[j] / atom->rho[j];
+  mirrors.assign(1, Mirror(scene.walls, {}));
+  for (const auto &s : scene.walls.reflections) mirrors.emplace_back(scene.walls, s);
   with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &kernel) {
     using K = std::decay_t<decltype(kernel)>;
     std::vector<K> of_types;
@@ -102,57 +119,97 @@ void Settling::run(int sweeps)
         of_types.emplace_back(0.5 * (scene.h_of(a) + scene.h_of(b)));
     for (int k = 0; k < sweeps; k++) {
       if (k == 0 || !rows_hold()) find_rows();
-      sweep(of_types);
+      for (int j = 0; j < nall; j++) std::copy_n(atom->x[j], 3, &points[POINT * j]);
+      have_packs() ? sweep<Pack>(of_types) : sweep<double>(of_types);
       comm->forward_comm();
     }
   });
 }
 
-template <class K> void Settling::sweep(const std::vector<K> &of_types)
+// Adds the sum of V grad W over images of a row's particles to the first DIM of sums, and that of
+// V W to the last. Kernels vanish where they end, and the gradient of a particle's own is zero.
+template <class T, class K>
+FSI_INLINE static void add_images(const Row &row, const double *points, const int *type,
+                                  const K *with, const Mirror &mirror, double *sums)
 {
+  const double *const own = points + POINT * row.i;
+  T sum[K::DIM + 1];
+  for (auto &s : sum) s = T(0.0);
+  for_neighbors<T, false>(row, [&](const int *j, const T &there) FSI_INLINE_LAMBDA {
+    const auto of = [&](int n) FSI_INLINE_LAMBDA {
+      return Lanes<T>::make([&](int k) FSI_INLINE_LAMBDA {
+        return points[POINT * j[k] + n];
+      });
+    };
+    T away[K::DIM], rsq = T(0.0);
+    for (int a = 0; a < K::DIM; a++) {
+      away[a] = own[a] - mirror.x[a] - mirror.sign[a] * of(a);
+      rsq += away[a] * away[a];
+    }
+    const T hinv = Lanes<T>::make([&](int k) FSI_INLINE_LAMBDA {
+      return with[type[j[k]]].hinv;
+    });
+    const T norm = Lanes<T>::make([&](int k) FSI_INLINE_LAMBDA {
+      return with[type[j[k]]].norm;
+    });
+    const T q = root(rsq) * hinv, vol = there * of(3) * norm, g = vol * hinv * hinv * K::dwq(q);
+    for (int a = 0; a < K::DIM; a++) sum[a] += g * away[a];
+    sum[K::DIM] += vol * K::w(q);
+  });
+  for (int n = 0; n <= K::DIM; n++) sums[n] += Lanes<T>::sum(sum[n]);
+}
+
+template <class T, class K> void Settling::sweep(const std::vector<K> &of_types)
+{
+  constexpr int FILLED = K::DIM;
+  const Walls &walls = scene.walls;
+  const std::vector<Walls::Reflection> &reflections = walls.reflections;
   double *const *const x = atom->x, *const account = scene.account(Ledger::LEVELS);
   const int *const type = atom->type;
-  std::vector<double> steps(3 * rows.size());
-  for (size_t r = 0; r < rows.size(); r++) {
-    const auto &row = rows[r];
-    const int i = row.i;
-    const K *const with = &of_types[type[i] * (atom->ntypes + 1)];
-    double *const d = &steps[3 * r], filled = volume[i] * with[type[i]].W(0.0);
-    const int walls = scene.walls.near(x[i], scene.cut);
-    const auto add = [&](const K &kernel, int j, double rsq, const double *away) {
-      const double distance = std::sqrt(rsq), g = volume[j] * kernel.gradient(distance);
-      for (int a = 0; a < K::DIM; a++) d[a] += g * away[a];
-      filled += volume[j] * kernel.W(distance);
-    };
-    const auto add_images = [&](const K &kernel, int j, double rsq) {
-      scene.walls.images(walls, rsq, x[i], x[j], kernel.cutsq,
-                         [&](const Walls::Reflection &, double rsq_image, const double *away) {
-                           add(kernel, j, rsq_image, away);
-                         });
-    };
-    if (walls) add_images(with[type[i]], i, 0.0);
-    for (int n = row.first; n < row.end; n++) {
-      const int j = neighbors[n];
-      const K &kernel = with[type[j]];
-      double away[3] = {}, rsq = 0.0;
-      for (int a = 0; a < K::DIM; a++) {
-        away[a] = x[i][a] - x[j][a];
-        rsq += away[a] * away[a];
-      }
-      if (rsq >= kernel.cutsq) continue;    // images are further away
-      add(kernel, j, rsq, away);
-      if (walls) add_images(kernel, j, rsq);
+  std::vector<std::array<double, 4>> found(rows.size());
+  std::vector<std::pair<size_t, int>> at_walls;    // rows, and bits of the walls that they see
+  run_loop<T>([&](const auto &number) FSI_INLINE_LAMBDA {
+    using Number = std::decay_t<decltype(number)>;
+    for (size_t r = 0; r < rows.size(); r++) {
+      const Row &row = rows[r];
+      const K *const with = &of_types[type[row.i] * (atom->ntypes + 1)];
+      double *const sums = found[r].data();
+      add_images<Number>(row, points.data(), type, with, mirrors[0], sums);
+      const int near = walls.near(x[row.i], 0.5 * (scene.resolution[type[row.i]].cut + scene.cut));
+      if (near) at_walls.emplace_back(r, near);
+      for (size_t s = 0; near && s < reflections.size(); s++)
+        if ((reflections[s].mask & near) == reflections[s].mask && !walls.finite(reflections[s]))
+          add_images<Number>(row, points.data(), type, with, mirrors[s + 1], sums);
     }
-    const double dx = scene.dx_of(type[i]),
-                 full = std::clamp((filled - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
-    MathExtra::scale3(-STRENGTH * dx * dx * mobility[i] * full, d);
-    const double length = MathExtra::len3(d);
-    if (length > LONGEST * dx) MathExtra::scale3(LONGEST * dx / length, d);
+  });
+  for (const auto &[r, near] : at_walls) {    // segments hide some of what is behind them
+    if (!walls.finite()) break;
+    const int i = rows[r].i;
+    double *const sums = found[r].data();
+    for (int n = 0; n < rows[r].n; n++) {
+      const int j = rows[r].j[n];
+      const K &kernel = of_types[type[i] * (atom->ntypes + 1) + type[j]];
+      walls.images(near, MathExtra::distsq3(x[i], x[j]), x[i], x[j], kernel.cutsq,
+                   [&](const Walls::Reflection &s, double rsq, const double *away) {
+                     if (!walls.finite(s)) return;
+                     const double distance = std::sqrt(rsq), volume = points[POINT * j + 3],
+                                  g = volume * kernel.gradient(distance);
+                     for (int a = 0; a < K::DIM; a++) sums[a] += g * away[a];
+                     sums[FILLED] += volume * kernel.W(distance);
+                   });
+    }
   }
   for (size_t r = 0; r < rows.size(); r++) {
     const int i = rows[r].i;
+    double d[3] = {};
+    std::copy_n(found[r].data(), K::DIM, d);
+    const double dx = scene.dx_of(type[i]),
+                 full = std::clamp((found[r][FILLED] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
+    MathExtra::scale3(-STRENGTH * dx * dx * mobility[i] * full, d);
+    const double length = MathExtra::len3(d);
+    if (length > LONGEST * dx) MathExtra::scale3(LONGEST * dx / length, d);
     if (account) *account += scene.potential(i);
-    for (int a = 0; a < K::DIM; a++) x[i][a] += steps[3 * r + a];
+    for (int a = 0; a < K::DIM; a++) x[i][a] += d[a];
     if (account) *account -= scene.potential(i);
   }
 }

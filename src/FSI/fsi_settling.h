@@ -21,6 +21,8 @@
 #define LMP_FSI_SETTLING_H
 
 #include "fsi_everywhere.h"
+#include "fsi_rows.h"
+#include "fsi_walls.h"
 #include "pointers.h"
 
 #include <vector>
@@ -38,17 +40,16 @@ namespace FSI {
     void run(int sweeps);
 
    private:
-    struct Row {    // a particle that is moved, and its neighbors
-      int i, first, end;
-    };
     Scene &scene;
-    std::vector<double> mobility, volume, start;    // start: positions that the rows are for
-    std::vector<Row> rows;
-    std::vector<int> neighbors;
+    std::vector<double> mobility, start;    // start: positions that the rows are for
+    std::vector<double> points;             // position and volume of each particle
+    std::vector<Row> rows;                  // particles that are moved, and themselves among others
+    std::vector<Mirror> mirrors;            // none, then those of the walls' reflections
+    std::vector<int> neighbors;             // of the rows
 
     void find_rows();
     bool rows_hold() const;
-    template <class K> void sweep(const std::vector<K> &of_types);
+    template <class T, class K> void sweep(const std::vector<K> &of_types);
   };
 
 }    // namespace FSI

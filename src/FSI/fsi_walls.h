@@ -99,6 +99,13 @@ namespace FSI {
       return false;
     }
 
+    bool finite(const Reflection &s) const
+    {
+      for (int k = 0; k < s.n; k++)
+        if (wall[s.w[k]].finite) return true;
+      return false;
+    }
+
     void find_reflections()
     {
       reflections.clear();

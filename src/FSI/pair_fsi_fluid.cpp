@@ -481,6 +481,41 @@ void PairFSIFluid::advance(bool advance)
   if (fix_fsi->shifts) displacements(update->dt * shift_every);
 }
 
+// the sums of find_fades over some rows
+template <class T, class K>
+void PairFSIFluid::add_fades(const K &kernel, const std::vector<Row> &rows)
+{
+  constexpr int D = K::DIM;
+  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const double *const volume = volumes.data();
+  double *const sums = fade;
+  run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+    using Number = decltype(number);
+    for (const Row &row : rows) {
+      const double *const xi = x[row.i], *const vi = v[row.i];
+      Number sum = 0.0;
+      for_neighbors<Number, false>(row, [&](const int *j, const Number &there) FSI_INLINE_LAMBDA {
+        Number rsq = 0.0, vx = 0.0;
+        for (int d = 0; d < D; d++) {
+          const auto of = [&](const auto *rows, double own) FSI_INLINE_LAMBDA {
+            return own - Lanes<Number>::make([&](int k) FSI_INLINE_LAMBDA {
+                     return rows[j[k]][d];
+                   });
+          };
+          const Number away = of(x, xi[d]);
+          rsq += away * away;
+          vx += away * of(v, vi[d]);
+        }
+        // no direction where both are at one place
+        const Number w = there * kernel.W(root(rsq)) * (vx * vx / greater(rsq, Number(1.0e-300)));
+        sum += Lanes<Number>::read(volume, j) * w;
+        Lanes<Number>::add(volume[row.i] * w, sums, j);
+      });
+      sums[row.i] += Lanes<Number>::sum(sum);
+    }
+  });
+}
+
 // Shifting's factor 1 + 0.2 (W_ij/W(dx))^4 gives it another state of rest than the force of
 // pressure has. Where particles stand on one lattice both are at rest; where two lattices meet they
 // would work against each other without end. Where the flow distorts the order of particles the
@@ -489,26 +524,14 @@ void PairFSIFluid::advance(bool advance)
 void PairFSIFluid::find_fades()
 {
   static constexpr double SLOW = 0.003;    // u0 over the speed of sound (doc/notes/levels.md)
-  const int dim = fix_fsi->dim, nlocal = atom->nlocal, *const type = atom->type;
-  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
-  const double *const rho = atom->rho, *const rmass = atom->rmass;
-  std::fill_n(fade, nlocal + atom->nghost, 0.0);
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, *const type = atom->type;
+  std::fill_n(fade, nall, 0.0);
+  volumes.resize(nall);
+  for (int i = 0; i < nall; i++) volumes[i] = atom->rmass[i] / atom->rho[i];
   for (const auto &m : meetings) {
     if (m.what != FLUIDS) continue;
-    with_kernel(fix_fsi->kernel, dim, m.h, [&](const auto &kernel) {
-      for (const Row &row : m.rows.rows)
-        for (int k = 0; k < row.n; k++) {
-          const int i = row.i, j = row.j[k];
-          double rsq = 0.0, vx = 0.0;
-          for (int d = 0; d < dim; d++) {
-            rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
-            vx += (x[i][d] - x[j][d]) * (v[i][d] - v[j][d]);
-          }
-          if (rsq >= kernel.cutsq || rsq == 0.0) continue;
-          const double w = kernel.W(std::sqrt(rsq)) * (vx * vx / rsq);
-          fade[i] += rmass[j] / rho[j] * w;
-          fade[j] += rmass[i] / rho[i] * w;
-        }
+    with_kernel(fix_fsi->kernel, fix_fsi->dim, m.h, [&](const auto &kernel) {
+      have_packs() ? add_fades<Pack>(kernel, m.rows.rows) : add_fades<double>(kernel, m.rows.rows);
     });
   }
   fix_fsi->add_ghosts(fade);

@@ -142,7 +142,9 @@ class PairFSIFluid : public PairFSI {
   struct Shares;                 // how bodies count at fluid particles
   std::vector<Shares> shares;    // per level
   double *fade;    // of fluids of several levels: what is left of shifting's factor; or null
+  std::vector<double> volumes;
   void find_fades();
+  template <class T, class K> void add_fades(const K &, const std::vector<FSI::Row> &);
   double *fill, *fill_weight;    // per particle, by how much more thin bodies count (fsi_sight.h);
                                  // null: there are none
   // fluid particles that may have a thin body beside them before lists are built again, and their

@@ -218,8 +218,6 @@ def test_quoted(page, words, numbers):
 
 # ---- no number without a command ----
 
-# {scene: {how a row begins: the case that makes it, which the data do not have yet}}
-AWAITED = {}
 # Numbers in the text of results and deviations that are no figures of a run: settings, lengths, places; closed forms and what others computed;
 # what tests or reference data give; what follows from numbers of the page. Nothing compares these.
 NOT_COMPARED = {
@@ -246,13 +244,9 @@ def unknown(number, data):
 
 @pytest.mark.parametrize("scene", PAGES)
 def test_numbers_have_a_command(scene):
-    """Each figure in a table of results, and each per cent and decimal in the text, is one of those that commands wrote; a row of a case that is new
-    waits for its run."""
-    cases = ROOT / "examples" / scene / "cases.json"
-    waiting = {start for start, case in AWAITED.get(scene, {}).items()
-               if case in json.loads(cases.read_text()) and case not in summary_of(scene)["cases"]}
+    """Each figure in a table of results, and each per cent and decimal in the text, is one of those that commands wrote."""
     data = data_of(scene, here) + (data_of("gate_static", here) if scene == "elastic_gate" else [])
-    wrong = [(n.line, n.text, n.row) for n in in_tables(page(scene)) if unknown(n, data) and not any(n.row.startswith(start) for start in waiting)]
+    wrong = [(n.line, n.text, n.row) for n in in_tables(page(scene)) if unknown(n, data)]
     assert not wrong, f"no command made these numbers: {wrong}"
     strange = [n.text for n in in_prose(page(scene)) if unknown(n, data)]
     assert strange == NOT_COMPARED.get(scene, "").split(), f"no command made those of {strange} that are not in NOT_COMPARED"

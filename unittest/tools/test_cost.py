@@ -17,6 +17,7 @@ sys.path.insert(0, str(paths.ROOT / "bench"))
 import accuracy_cost  # noqa: E402
 import cost_report  # noqa: E402
 import open_ends  # noqa: E402
+from tool import figures_of, left  # noqa: E402
 
 H = np.array([0.1, 0.05, 0.025, 0.0125])
 
@@ -135,7 +136,7 @@ def test_nothing_is_run_twice(plate, monkeypatch):
 
 
 def test_cases_of_the_scene_are_taken(plate, tmp_path, monkeypatch):
-    """A point that tools/run left as a case is the point of a sweep, cost and figures alike; one of another commit is run."""
+    """A run that tools/run left as a case is the point of a sweep, cost and figures alike; one of another commit or with other settings is run."""
     _, _, _, store, jobs = plate
     settings = next(settings for label, settings, _ in jobs if label == "TL linear, n = 3")
     monkeypatch.setattr(paths, "RESULTS", tmp_path)
@@ -143,15 +144,17 @@ def test_cases_of_the_scene_are_taken(plate, tmp_path, monkeypatch):
     monkeypatch.setattr(scene, "commit", lambda: "0123456789")
     assert scene.run("oscillating_plate", tmp_path / "oscillating_plate" / "three", 1, settings, "three") == 0
     found = sweep.Store(tmp_path / "points", store.deck, store.measure)
-    accuracy_cost.take_cases(found, "oscillating_plate", [{"settings": settings}])
+    there = left(store.deck, "oscillating_plate", {**settings, "vf": "0.01"})  # the deck's own default
+    found.take(settings, there, figures_of(there))
     monkeypatch.setattr(sweep.Store, "_simulate", lambda *_: pytest.fail("ran again"))
     taken, own = found.make(settings), sweep.Store(store.folder, store.deck, store.measure).get(settings)
     of_run = {"cpu_seconds": 0, "particle_steps_per_second": 0, "bytes_per_particle": 0}
     assert taken["figures"] | of_run == pytest.approx(own["figures"] | of_run)
     for name in ("settings", "source", "status", "dx", "particles", "steps", "particle_steps", "pair_visits"):
         assert taken[name] == own[name], name
+    assert left(store.deck, "oscillating_plate", {**settings, "vf": "0.02"}) is None
     monkeypatch.setattr(scene, "commit", lambda: "9876543210")
-    assert scene.left("oscillating_plate", "three") is None
+    assert left(store.deck, "oscillating_plate", settings) is None
 
 
 def test_defaults_that_a_recipe_changes_are_given():

@@ -120,6 +120,17 @@ def test_what_is_not_whole_is_refused(runs, spoil, says):
     assert not list(runs.glob("doc/*/*"))
 
 
+def test_takes_one_table(runs):
+    """A table of tools/cost alone; all else stays."""
+    renew.collect()
+    before = {path: path.read_bytes() for path in runs.glob("doc/*/*")}
+    path = paths.RESULTS / "cost/peers/peers.csv"
+    path.write_text(path.read_text() + "another row\n")
+    renew.take(["cost/peers"])
+    changed = {path.name for path, text in before.items() if path.read_bytes() != text}
+    assert changed == {"peers.csv"} and (renew.PAGE / "peers.csv").read_text().endswith("another row\n")
+
+
 def test_takes_one_scene_and_one_case(runs, monkeypatch):
     """A scene is replaced. A case joins those of before, in the order of cases.json, with its own commit; a figure keeps its target, a new one has none."""
     renew.collect()
@@ -157,7 +168,7 @@ def test_takes_one_scene_and_one_case(runs, monkeypatch):
     assert {k: v for k, v in after.items() if k not in ("beam", name)} == {k: v for k, v in before.items() if k not in ("beam", name)}
 
 
-@pytest.mark.parametrize("wanted, says", [("beam/none", "not there"), ("nonsense", "not there"), ("droplet", "of no commit")])
+@pytest.mark.parametrize("wanted, says", [("beam/none", "not there"), ("nonsense", "neither a scene"), ("cost/beam", "neither a scene"), ("droplet", "of no commit")])
 def test_what_cannot_be_taken_is_refused(runs, wanted, says):
     renew.collect()
     path = paths.RESULTS / "droplet/summary.json"

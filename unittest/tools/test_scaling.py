@@ -44,6 +44,7 @@ def test_pages_hold_their_rows():
     variants = [{"dimension": dim, "variant": name, "instructions": n} for dim in (2, 3) for name, n in counts.items()]
     text = effects.page([row, solid], variants)
     assert "| Water | shifting | +25.0% |  | +50% ± 1% | +40 | +0 | +8.0 | +0 |" in text and "{" not in text
+    assert "| artificial stress | +25.0% |  |" in effects.page([row, solid], [])  # what tools/cost effects shows alone
     assert "| artificial stress | +25.0% | +50.0% |" in text and text.count("| Solid | ") == len(solid_variants.FORMS)
     text = scaling.page([{"what": "compute", "value": 1e-6, "unit": "s"}, {"what": "bytes", "value": 98.0, "unit": "B"}], [PEER, ALONE, {**ALONE, "ratio": None}])
     assert "| compute | 1 us |" in text and "| bytes | 98 B |" in text and text.count("2 ranks over 1, water, by the clock | 1.70 ± 0.10 |") == 1
