@@ -26,7 +26,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -40,44 +39,20 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
                                                  "vz", "fill", "level", "wet"};
   int iarg = 3;
   while (iarg < narg) {
-    const auto it = std::find(names.begin(), names.end(), arg[iarg]);
-    const auto need = [&](int n) {
-      if (iarg + n >= narg)
-        utils::missing_cmd_args(FLERR, fmt::format("compute fsi/probe {}", arg[iarg]), error);
-    };
-    if (it != names.end()) {
+    const std::string word = arg[iarg++];
+    const auto it = std::find(names.begin(), names.end(), word);
+    if (it != names.end())
       quantity.push_back(it - names.begin());
-      iarg++;
-    } else if (strcmp(arg[iarg], "extrapolate") == 0) {
-      need(1);
-      extrapolate = utils::logical(FLERR, arg[iarg + 1], false, lmp);
-      iarg += 2;
-    } else if (strcmp(arg[iarg], "point") == 0 || strcmp(arg[iarg], "patch") == 0 ||
-               strcmp(arg[iarg], "line") == 0) {
-      const bool point = strcmp(arg[iarg], "point") == 0;
-      const int n = point ? 3 : 6;
-      need(n);
-      Place place = {};
-      place.line = strcmp(arg[iarg], "line") == 0;
-      double length = 0.0;
-      for (int d = 0; d < domain->dimension; d++) {
-        const auto what = std::string("Compute fsi/probe ") + arg[iarg];
-        place.from[d] = numeric(lmp, what, arg[iarg + 1 + d]);
-        place.to[d] = point ? place.from[d] : numeric(lmp, what, arg[iarg + 4 + d]);
-        if (!place.line && place.to[d] < place.from[d])
-          error->all(FLERR, "Compute fsi/probe patch ends at {} = {} below its start {}", "xyz"[d],
-                     arg[iarg + 4 + d], arg[iarg + 1 + d]);
-        length += std::fabs(place.to[d] - place.from[d]);
-      }
-      if (!point && length == 0.0)
-        error->all(FLERR, "Compute fsi/probe {} has no extent: use point", arg[iarg]);
-      places.push_back(place);
-      iarg += n + 1;
+    else if (word == "point" || word == "patch" || word == "line")
+      iarg += read_place(word, narg - iarg, arg + iarg);
+    else if (word == "extrapolate") {
+      if (iarg == narg) utils::missing_cmd_args(FLERR, "compute fsi/probe extrapolate", error);
+      extrapolate = utils::logical(FLERR, arg[iarg++], false, lmp);
     } else
       error->all(FLERR,
                  "Unknown compute fsi/probe argument {}: expected p, rho, vx, vy, vz, fill, level, "
                  "wet, point, patch, line or extrapolate",
-                 arg[iarg]);
+                 word);
   }
   if (quantity.empty())
     error->all(FLERR, "Compute fsi/probe needs a quantity: p, rho, vx, vy, vz, fill, level or wet");
@@ -104,6 +79,30 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
     size_array_cols = columns;
     memory->create(array, rows, columns, "fsi/probe:array");
   }
+}
+
+// returns how many of the words that follow it has taken
+int ComputeFSIProbe::read_place(const std::string &kind, int narg, char **arg)
+{
+  const bool point = kind == "point";
+  const int n = std::min(narg, point ? 3 : 6);
+  Place place;
+  place.line = kind == "line";
+  Keywords words(lmp, "compute fsi/probe " + kind);
+  for (double &x : place.from) words.argument("at").number(x, 0.0);
+  for (double &x : place.to)
+    if (!point) words.argument("to").number(x, 0.0);
+  words.parse(n, arg);
+  if (point) std::copy_n(place.from, 3, place.to);
+  if (domain->dimension == 2) place.from[2] = place.to[2] = 0.0;
+  for (int d = 0; d < 3; d++)
+    if (!place.line && place.to[d] < place.from[d])
+      error->all(FLERR, "Compute fsi/probe patch ends at {} = {} below its start {}", "xyz"[d],
+                 place.to[d], place.from[d]);
+  if (!point && std::equal(place.from, place.from + 3, place.to))
+    error->all(FLERR, "Compute fsi/probe {} has no extent: use point", kind);
+  places.push_back(place);
+  return n;
 }
 
 ComputeFSIProbe::~ComputeFSIProbe()

@@ -22,6 +22,7 @@ ComputeStyle(fsi/probe,ComputeFSIProbe);
 
 #include "compute.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -71,6 +72,7 @@ class ComputeFSIProbe : public Compute {
 
   class FixFSI *fix_fsi;
 
+  int read_place(const std::string &kind, int narg, char **arg);
   void find_near();
   double volume_at(const double *x, int i, const FSI::Walls &) const;
   std::vector<int> walls_near(const FSI::Walls &, std::vector<double> &at) const;

@@ -25,63 +25,20 @@
 #include "fsi_value.h"
 #include "lattice.h"
 #include "math_const.h"
+#include "math_extra.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-// the words of the command, one after the other
-class FixFSIMove::Words : protected Pointers {
- public:
-  Words(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp), word(arg, arg + narg), at(0)
-  {
-    motion = next();
-  }
-  std::string motion;
-
-  bool any() const { return at < word.size(); }
-  bool skip_null()
-  {
-    const bool null = any() && word[at] == "NULL";
-    at += null;
-    return null;
-  }
-  std::string next()
-  {
-    if (!any())
-      utils::missing_cmd_args(FLERR, "fix fsi/move" + (motion.empty() ? "" : " " + motion), error);
-    return word[at++];
-  }
-  double number()
-  {
-    const auto text = next();
-    const double x = utils::numeric(FLERR, text, false, lmp);
-    if (!std::isfinite(x)) error->all(FLERR, "Fix fsi/move {} {} must be finite", motion, text);
-    return x;
-  }
-  double period()
-  {
-    const double t = number();
-    if (t <= 0.0) error->all(FLERR, "Fix fsi/move {} period {} must be > 0", motion, word[at - 1]);
-    return t;
-  }
-  std::string variable()    // without v_; empty: NULL
-  {
-    if (skip_null()) return "";
-    const auto text = next();
-    if (!utils::strmatch(text, "^v_"))
-      error->all(FLERR, "Fix fsi/move variable {} must be NULL or v_name", text);
-    return text.substr(2);
-  }
-
- private:
-  std::vector<std::string> word;
-  size_t at;
-};
+// as in the command, in the order of Motion
+static const char *const MOTIONS[] = {"linear", "wiggle", "rotate", "transrot", "variable"};
+static constexpr double FREE = HUGE_VAL;    // stands for NULL
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), rate{}, point{}, axis{}, omega(0.0), driven{},
@@ -89,11 +46,19 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
     original(nullptr), begun(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
-  Words words(lmp, narg - 3, arg + 3);
-  read_motion(words);
-  read_units(words);
+  if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/move", error);
+  const auto found = std::find(std::begin(MOTIONS), std::end(MOTIONS), std::string(arg[3]));
+  if (found == std::end(MOTIONS))
+    error->all(
+        FLERR,
+        "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable",
+        arg[3]);
+  motion = static_cast<int>(found - MOTIONS);
+  Keywords words(lmp, std::string("fix fsi/move ") + *found);
+  motion == VARIABLE ? read_variables(words, narg - 4, arg + 4)
+                     : read_motion(words, narg - 4, arg + 4);
   if (domain->dimension == 2 && (rate[2] != 0.0 || (motion == VARIABLE && sets_velocity(2))))
-    error->all(FLERR, "Fix fsi/move {} cannot move along z in 2D", words.motion);
+    error->all(FLERR, "Fix fsi/move {} cannot move along z in 2D", *found);
 
   time_integrate = time_depend = restart_global = 1;
   fields.set("place before the motion", Fields::RESTART, true, original, 3);
@@ -101,72 +66,33 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
   for (int i = 0; i < atom->nlocal; i++) domain->unmap(atom->x[i], atom->image[i], original[i]);
 }
 
-void FixFSIMove::read_motion(Words &words)
+void FixFSIMove::read_motion(Keywords &words, int narg, char **arg)
 {
-  const auto components = [&]() {
-    for (int k = 0; k < 3; k++) {
-      if (words.skip_null()) continue;
-      rate[k] = words.number();
-      driven[k] = true;
-    }
-  };
-  const auto turn = [&]() {
-    for (double &p : point) p = words.number();
-    for (double &a : axis) a = words.number();
-    const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+  const bool turns = motion == ROTATE || motion == TRANSROT;
+  double period = 0.0;
+  int lattice;
+  for (int k = 0; k < 3 && motion != ROTATE; k++) {
+    words.argument(std::string("along ") + "xyz"[k]).number(rate[k], 0.0);
+    if (motion != TRANSROT) words.or_word("NULL", FREE);
+  }
+  for (int k = 0; k < 3 && turns; k++) words.argument("point").number(point[k], 0.0);
+  for (int k = 0; k < 3 && turns; k++) words.argument("axis").number(axis[k], 0.0);
+  if (motion != LINEAR) words.argument("period").number(period, 1.0, Range::above(0.0));
+  words.key("units").choice(lattice, 1, {"box", "lattice"});
+  words.parse(narg, arg);
+
+  for (int k = 0; k < 3; k++) {
+    driven[k] = rate[k] != FREE;
+    if (!driven[k]) rate[k] = 0.0;
+  }
+  if (motion != LINEAR) omega = MathConst::MY_2PI / period;
+  if (turns) {
+    const double length = MathExtra::len3(axis);
     if (length == 0.0)
-      error->all(FLERR, "Fix fsi/move {} axis must not be of length 0", words.motion);
+      error->all(FLERR, "Fix fsi/move {} axis must not be of length 0", MOTIONS[motion]);
     for (double &a : axis) a /= length;
     if (domain->dimension == 2 && (axis[0] != 0.0 || axis[1] != 0.0))
-      error->all(FLERR, "Fix fsi/move {} axis must be z in 2D", words.motion);
-    std::fill_n(driven, 3, true);
-    omega = MathConst::MY_2PI / words.period();
-  };
-
-  if (words.motion == "linear") {
-    motion = LINEAR;
-    components();
-  } else if (words.motion == "wiggle") {
-    motion = WIGGLE;
-    components();
-    omega = MathConst::MY_2PI / words.period();
-  } else if (words.motion == "rotate") {
-    motion = ROTATE;
-    turn();
-  } else if (words.motion == "transrot") {
-    motion = TRANSROT;
-    for (double &r : rate) r = words.number();
-    turn();
-  } else if (words.motion == "variable") {
-    motion = VARIABLE;
-    for (int k = 0; k < 2 * VELOCITY; k++) {
-      const auto name = words.variable();
-      if (!name.empty()) given->set_variable(k, name);
-      if (k < VELOCITY)
-        driven[k] = !name.empty();
-      else if (name.empty() && driven[k - VELOCITY])
-        error->all(FLERR,
-                   "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels "
-                   "how fast a wall moves",
-                   given->name(k - VELOCITY));
-    }
-  } else
-    error->all(
-        FLERR,
-        "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable",
-        words.motion);
-}
-
-void FixFSIMove::read_units(Words &words)
-{
-  bool lattice = motion != VARIABLE;
-  while (words.any()) {
-    const auto key = words.next();
-    if (key != "units") error->all(FLERR, "Unknown fix fsi/move keyword {}: expected units", key);
-    const auto value = words.next();
-    if (value != "box" && value != "lattice")
-      error->all(FLERR, "Unknown fix fsi/move units {}: expected box or lattice", value);
-    lattice = motion != VARIABLE && value == "lattice";
+      error->all(FLERR, "Fix fsi/move {} axis must be z in 2D", MOTIONS[motion]);
   }
   if (!lattice) return;
   const double scale[] = {domain->lattice->xlattice, domain->lattice->ylattice,
@@ -174,6 +100,29 @@ void FixFSIMove::read_units(Words &words)
   for (int k = 0; k < 3; k++) {
     rate[k] *= scale[k];
     point[k] *= scale[k];
+  }
+}
+
+void FixFSIMove::read_variables(Keywords &words, int narg, char **arg)
+{
+  std::string name[2 * VELOCITY];
+  int lattice;    // variables are in units of the box
+  for (auto &n : name) words.argument("v_name").word(n, "").or_word("NULL");
+  words.key("units").choice(lattice, 1, {"box", "lattice"});
+  words.parse(narg, arg);
+  for (int k = 0; k < 2 * VELOCITY; k++) {
+    if (name[k].empty()) continue;
+    if (!utils::strmatch(name[k], "^v_"))
+      error->all(FLERR, "Fix fsi/move variable {} must be NULL or v_name", name[k]);
+    given->set_variable(k, name[k].substr(2));
+    if (k >= VELOCITY) continue;
+    driven[k] = true;
+    if (name[VELOCITY + k].empty())
+      error->all(
+          FLERR,
+          "Fix fsi/move variable {} needs the variable of its velocity, too: fluid feels how "
+          "fast a wall moves",
+          given->name(k));
   }
 }
 
@@ -215,13 +164,14 @@ void FixFSIMove::refuse_free_walls(const FixFSI *fix_fsi) const
 {
   for (int k = 0; k < domain->dimension; k++) {
     if (sets_velocity(k)) continue;
+    const char name = "xyz"[k];
     for (int i = 0; i < atom->nlocal; i++)
       if ((atom->mask[i] & groupbit) && fix_fsi->state[atom->type[i]].species == RIGID)
         error->one(
             FLERR,
             "Fix fsi/move {} leaves {} of atom {} free, which is of a wall: forces would take each "
             "wall particle its own way. Write 0 instead of NULL to hold that component{}",
-            id, "xyz"[k], atom -> tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
+            id, name, atom->tag[i], motion == VARIABLE ? ", a variable that is 0" : "");
   }
 }
 
@@ -363,8 +313,7 @@ double FixFSIMove::memory_usage()
 
 std::string FixFSIMove::text() const
 {
-  static const char *const names[] = {"linear", "wiggle", "rotate", "transrot", "variable"};
-  std::string words = names[motion];
+  std::string words = MOTIONS[motion];
   if (motion == VARIABLE) return words + " " + given->text();
   for (int k = 0; k < 3; k++) words += driven[k] ? fmt::format(" {}", rate[k]) : " NULL";
   if (motion == ROTATE || motion == TRANSROT)

@@ -27,8 +27,9 @@ FixStyle(fsi/move,FixFSIMove);
 
 namespace LAMMPS_NS {
 namespace FSI {
+  class Keywords;
   class Values;
-}
+}    // namespace FSI
 
 // Prescribed motion of walls and held solids as a function of time: fix move of LAMMPS for time
 // steps that change, with positions at the middle of the step where fix fsi has its forces.
@@ -56,9 +57,8 @@ class FixFSIMove : public FSI::FixFields {
   void set_arrays(int) override;
 
  private:
-  class Words;
-  void read_motion(Words &);
-  void read_units(Words &);
+  void read_motion(FSI::Keywords &, int narg, char **arg);
+  void read_variables(FSI::Keywords &, int narg, char **arg);
   enum Motion { LINEAR, WIGGLE, ROTATE, TRANSROT, VARIABLE };
   int motion;
   double rate[3];    // velocity, or amplitude of wiggle

@@ -127,13 +127,6 @@ void FixFSIRefine::init()
   fix_fsi = FixFSI::find(lmp, who);
   if (!force->pair_match("fsi/fluid", 1))
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
-  if (fix_fsi->density_fluid != FixFSI::CONTINUITY)
-    error->all(FLERR,
-               "{} requires fix fsi with fluid continuity: a density that is summed would jump "
-               "where particles split",
-               who);
-  if (facts_of_fluids(lmp).density_at_surfaces)
-    error->all(FLERR, "{} does not support density/surface of pair_style fsi/fluid", who);
   check_types();
   check_others();
   zones->init(*fix_fsi, types);
@@ -243,18 +236,23 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
 
   unite(unions);
   fix_fsi->population.begin();
-  std::vector<tagint> changed, released;
-  for (const auto &one : unions) changed.push_back(atom->tag[one.i]);
+  std::vector<Position> events;
+  const auto add_event = [&](int i) {
+    Position x = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+    domain->remap(x.data());
+    events.push_back(x);
+  };
+  for (const auto &one : unions) add_event(one.i);
   const int before = atom->nlocal;
   divide(divisions);
-  for (const auto &two : divisions) changed.push_back(atom->tag[two.i]);
-  for (int i = before; i < atom->nlocal; i++) changed.push_back(atom->tag[i]);
+  for (const auto &two : divisions) add_event(two.i);
+  for (int i = before; i < atom->nlocal; i++) add_event(i);
+  std::vector<tagint> released;
   for (const int i : gone) released.push_back(atom->tag[i]);
   fix_fsi->population.remove(gone, nullptr);
   fix_fsi->population.release(released);
   fix_fsi->population.end();
   if (settle_steps == 0) return;
-  const auto events = gather(changed, world);
   renew_ghosts();
   std::vector<char> moves(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++)
@@ -533,16 +531,23 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
   return list;
 }
 
-// has a segment of a mirror wall one on each side?
+// Has a segment of a mirror wall one on each side? Who is before it sees the other where it would
+// see the image of one on its own side.
 static bool are_apart(const Walls &walls, const double *x, const double *y)
 {
-  return std::any_of(walls.wall.begin(), walls.wall.end(), [&](const Wall &wall) {
+  bool apart = false;
+  for (size_t k = 0; k < walls.wall.size(); k++) {
+    const Wall &wall = walls.wall[k];
     const double a = wall.distance(x), b = wall.distance(y);
-    if (!wall.finite || a * b > 0.0 || a == b) return false;
-    double at[3];
-    for (int d = 0; d < 3; d++) at[d] = x[d] + a / (a - b) * (y[d] - x[d]);
-    return wall.spans(at, 0.0);
-  });
+    if (!wall.finite || a * b > 0.0 || a == b) continue;
+    const double *const from = a > b ? x : y, *const to = a > b ? y : x;
+    double original[3] = {to[0], to[1], to[2]};
+    original[wall.axis] = 2.0 * wall.position - to[wall.axis];
+    walls.images(1 << k, 0.0, from, original, HUGE_VAL, [&](const auto &...) {
+      apart = true;
+    });
+  }
+  return apart;
 }
 
 // Merging: pairs of which each is the other's best partner, by distance, then by a hash of both

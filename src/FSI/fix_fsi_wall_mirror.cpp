@@ -26,14 +26,14 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 #include <map>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-static constexpr double BIG = 1.0e300;
+static constexpr double BIG = 1.0e300, EDGE = HUGE_VAL;    // stand for INF, EDGE
 
 static std::string face(const Wall &w)
 {
@@ -45,53 +45,46 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/mirror requires atom_style fsi");
 
+  // one keyword at a time, and the values that follow it
+  static const std::vector<std::string> faces = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"},
+                                        others = {"range", "velocity", "slip", "symmetry", "guard"};
+  const auto is_in = [](const std::vector<std::string> &list, const std::string &word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+  };
+  double place, low, high, velocity[3], distance;
+  int axis, slip, joins;
+  Keywords words(lmp, "fix fsi/wall/mirror");
+  for (const auto &name : faces) words.key(name).number(place, 0.0).or_word("EDGE", EDGE);
+  words.key("range").choice(axis, 0, {"x", "y", "z"}, "axis");
+  words.number(low, 0.0).or_word("INF", -BIG).number(high, 0.0).or_word("INF", BIG);
+  words.key("velocity");
+  for (double &v : velocity) words.number(v, 0.0);
+  words.key("slip").logical(slip, true);
+  words.key("symmetry").logical(joins, false);
+  words.key("guard").number(distance, guard, Range::between(0.0, 0.45));
+
   std::vector<bool> slip_said;    // of each wall
-  int iarg = 3;
-  while (iarg < narg) {
+  for (int iarg = 3, next; iarg < narg; iarg = next) {
     const std::string key = arg[iarg];
-    const auto values = [&](int n) {
-      if (iarg + n >= narg) utils::missing_cmd_args(FLERR, "fix fsi/wall/mirror " + key, error);
-      char **const first = arg + iarg + 1;
-      iarg += n + 1;
-      return first;
-    };
-    const auto number = [&](const char *value, const Range &range = {}) {
-      return numeric(lmp, "Fix fsi/wall/mirror " + key, value, range, false,
-                     key == "guard" || key == "velocity" ? "" : "EDGE");
-    };
-    const auto of_wall = [&](int n) {
-      char **const first = values(n);
-      if (walls.empty())
-        error->all(FLERR, "Fix fsi/wall/mirror {} must follow the wall that it belongs to", key);
-      return first;
-    };
-    if (key.size() == 3 && strchr("xyz", key[0]) &&
-        (key.substr(1) == "lo" || key.substr(1) == "hi")) {
-      const char *const place = values(1)[0];
-      add_wall(key);
-      Wall &w = walls.back();
-      if (strcmp(place, "EDGE") == 0)
-        w.position = key[1] == 'l' ? domain->boxlo[w.axis] : domain->boxhi[w.axis];
-      else
-        w.position = number(place);
+    next = iarg + 1;
+    while (next < narg && !is_in(faces, arg[next]) && !is_in(others, arg[next])) next++;
+    words.parse(next - iarg, arg + iarg);
+    if (is_in(faces, key)) {
+      add_wall(key, place);
       slip_said.push_back(false);
-    } else if (key == "range") {
-      parse_range(of_wall(3));
-    } else if (key == "velocity") {
-      char **const v = of_wall(3);
-      for (int b = 0; b < 3; b++) walls.back().velocity[b] = number(v[b]);
-    } else if (key == "slip") {
-      walls.back().noslip = !utils::logical(FLERR, of_wall(1)[0], false, lmp);
-      slip_said.back() = true;
-    } else if (key == "symmetry") {
-      walls.back().joins = utils::logical(FLERR, of_wall(1)[0], false, lmp) ? groupbit : 0;
     } else if (key == "guard") {
-      guard = number(values(1)[0], Range::between(0.0, 0.45));
+      guard = distance;
+    } else if (walls.empty()) {
+      error->all(FLERR, "Fix fsi/wall/mirror {} must follow the wall that it belongs to", key);
+    } else if (key == "range") {
+      add_range(walls.back(), axis, low, high);
+    } else if (key == "velocity") {
+      std::copy_n(velocity, 3, walls.back().velocity);
+    } else if (key == "slip") {
+      walls.back().noslip = !slip;
+      slip_said.back() = true;
     } else
-      error->all(FLERR,
-                 "Unknown fix fsi/wall/mirror keyword {}: expected xlo, xhi, ylo, yhi, zlo, zhi, "
-                 "range, velocity, slip, symmetry or guard",
-                 key);
+      walls.back().joins = joins ? groupbit : 0;
   }
   if (walls.empty())
     error->all(FLERR, "Fix fsi/wall/mirror needs at least one of xlo, xhi, ylo, yhi, zlo, zhi");
@@ -112,7 +105,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
 }
 
 // key: xlo to zhi
-void FixFSIWallMirror::add_wall(const std::string &key)
+void FixFSIWallMirror::add_wall(const std::string &key, double place)
 {
   Wall w = {};
   w.axis = key[0] - 'x';
@@ -122,30 +115,20 @@ void FixFSIWallMirror::add_wall(const std::string &key)
   if (domain->periodicity[w.axis])
     error->all(FLERR, "Cannot use fix fsi/wall/mirror {} in periodic dimension {}", key,
                "xyz"[w.axis]);
-  for (int b = 0; b < 3; b++) {
-    w.lo[b] = -BIG;
-    w.hi[b] = BIG;
-  }
+  w.position = place != EDGE ? place : w.side > 0.0 ? domain->boxlo[w.axis] : domain->boxhi[w.axis];
+  std::fill_n(w.lo, 3, -BIG);
+  std::fill_n(w.hi, 3, BIG);
   walls.push_back(w);
 }
 
-// extent of the last wall along another axis
-void FixFSIWallMirror::parse_range(char **arg)
+// extent along another axis
+void FixFSIWallMirror::add_range(Wall &w, int along, double low, double high) const
 {
-  const auto number = [&](const char *value) {
-    return numeric(lmp, "Fix fsi/wall/mirror range", value, Range(), false, "INF");
-  };
-  Wall &w = walls.back();
-  const char *axes = "xyz", *a = strchr(axes, arg[0][0]);
-  if (strlen(arg[0]) != 1 || !a)
-    error->all(FLERR, "Unknown fix fsi/wall/mirror range axis {}: expected x, y or z", arg[0]);
-  const int b = a - axes;
-  if (b == w.axis)
-    error->all(FLERR, "Fix fsi/wall/mirror range axis {} is the normal of its wall", arg[0]);
-  if (strcmp(arg[1], "INF") != 0) w.lo[b] = number(arg[1]);
-  if (strcmp(arg[2], "INF") != 0) w.hi[b] = number(arg[2]);
-  if (w.lo[b] >= w.hi[b])
-    error->all(FLERR, "Fix fsi/wall/mirror range {} {} is empty", arg[1], arg[2]);
+  if (along == w.axis)
+    error->all(FLERR, "Fix fsi/wall/mirror range axis {} is the normal of its wall", "xyz"[along]);
+  if (low >= high) error->all(FLERR, "Fix fsi/wall/mirror range {} {} is empty", low, high);
+  w.lo[along] = low;
+  w.hi[along] = high;
   w.finite = true;
 }
 
@@ -192,9 +175,8 @@ void FixFSIWallMirror::setup(int)
     if (!(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID) continue;
     for (const auto &w : walls)
       if (!w.finite && w.distance(x[i]) < -fix_fsi->dx)
-        error->one(FLERR, "Fluid atom {} at {} {} {} is behind the {}{} wall of fix {}",
-                   atom->tag[i], x[i][0], x[i][1], x[i][2], "xyz"[w.axis],
-                   w.side > 0.0 ? "lo" : "hi", id);
+        error->one(FLERR, "Fluid atom {} at {} {} {} is behind the {} wall of fix {}", atom->tag[i],
+                   x[i][0], x[i][1], x[i][2], face(w), id);
   }
 }
 

@@ -56,8 +56,8 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
  private:
   std::vector<double> start;    // positions in the command
   std::string settings(int) const, faces() const;
-  void add_wall(const std::string &key);
-  void parse_range(char **arg);
+  void add_wall(const std::string &key, double place);
+  void add_range(FSI::Wall &, int along, double low, double high) const;
   void check_symmetry() const;
   void warn_of_slip(const std::vector<bool> &slip_said) const;
   double guard;    // smallest distance to a wall, in spacings

@@ -286,7 +286,7 @@ void Clamps::follow(Body &b) const
 void Clamps::drift(Body &b, double t) const
 {
   const auto turn = [](double *q, const double *omega, double time) {
-    const double rate = std::sqrt(omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2]);
+    const double rate = MathExtra::len3(omega);
     if (rate == 0.0) return;
     const double axis[3] = {omega[0] / rate, omega[1] / rate, omega[2] / rate};
     double by[4], turned[4];
@@ -327,14 +327,13 @@ void Clamps::place(const std::vector<Member> &list) const
 {
   for (const Member &m : list) {
     const Body &b = bodies[m.body];
-    const imageint image = b.image[m.i];
-    const int box[3] = {int(image & IMGMASK) - IMGMAX, int(image >> IMGBITS & IMGMASK) - IMGMAX,
-                        int(image >> IMG2BITS) - IMGMAX};
-    double r[3], around[3];
+    double r[3], x[3], around[3];
     arm(m, r);
+    MathExtra::add3(b.x, r, x);
+    domain->unmap_inv(x, b.image[m.i]);
     MathExtra::cross3(b.omega, r, around);
     for (int d = 0; d < domain->dimension; d++) {
-      atom->x[m.i][d] = b.x[d] + r[d] - box[d] * domain->prd[d];
+      atom->x[m.i][d] = x[d];
       atom->v[m.i][d] = b.v[d] + around[d];
     }
   }
@@ -375,20 +374,14 @@ void Clamps::begin()
 {
   with_states([](Body &b, const State &s) {
     static_cast<State &>(b) = s;
-    std::copy_n(b.x, 3, b.x0);
-    std::copy_n(b.v, 3, b.v0);
-    std::copy_n(b.q, 4, b.q0);
-    std::copy_n(b.L, 3, b.L0);
+    b.start = s;
   });
 }
 
 void Clamps::to_start()
 {
   for (Body &b : bodies) {
-    std::copy_n(b.x0, 3, b.x);
-    std::copy_n(b.v0, 3, b.v);
-    std::copy_n(b.q0, 4, b.q);
-    std::copy_n(b.L0, 3, b.L);
+    static_cast<Motion &>(b) = b.start;
     follow(b);
   }
 }
@@ -412,7 +405,7 @@ void Clamps::follow_boundary()
 {
   with_states([](Body &b, const State &s) {
     for (int d = 0; d < 3; d++) {
-      b.x0[d] += s.x[d] - b.middle[d];
+      b.start.x[d] += s.x[d] - b.middle[d];
       b.middle[d] = s.x[d];
     }
   });

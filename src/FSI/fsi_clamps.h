@@ -52,9 +52,11 @@ namespace FSI {
     void go_back();      // from the middle of the step to its start
 
    private:
-    struct State {
-      tagint id;    // index in fix rigid, bodytag in fix rigid/small
+    struct Motion {
       double x[3], v[3], q[4], L[3];
+    };
+    struct State : Motion {
+      tagint id;    // index in fix rigid, bodytag in fix rigid/small
       double mass, inertia[3];
     };
     struct Body : State {    // state of now
@@ -63,7 +65,7 @@ namespace FSI {
       double free[6];                          // 0: components of force and torque left out
       const double *const *displace;           // of atoms, from the center in the body's axes
       const imageint *image;                   // of atoms
-      double x0[3], v0[3], q0[4], L0[3];       // at the start of the step
+      Motion start;                            // of the step
       double middle[3];                        // x, in the middle of the step
       double ex[3], ey[3], ez[3], omega[3];    // follow from the orientation
       double outside[6];                       // force and torque of what is no solid, in this step

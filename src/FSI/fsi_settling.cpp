@@ -19,7 +19,6 @@
 #include "fsi_kernel.h"
 #include "fsi_rows.h"
 #include "fsi_scene.h"
-#include "fsi_zones.h"
 #include "math_extra.h"
 
 #include <algorithm>
@@ -37,22 +36,16 @@ static constexpr int POINT = 4;    // of points: position and volume
 static constexpr double SKIN = 0.5;    // of rows, in spacings of the two
 
 Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
-                   std::vector<tagint> changed) :
+                   const std::vector<Position> &changed) :
     Pointers(lmp),
     scene(scene)
 {
-  std::sort(changed.begin(), changed.end());
-  find_mobilities(moves, changed);
-}
-
-void Settling::find_mobilities(const std::vector<char> &moves, const std::vector<tagint> &changed)
-{
-  const Everywhere events(lmp, scene.cut, [&](int j) {
-    return std::binary_search(changed.begin(), changed.end(), atom->tag[j]);
-  });
-  const Everywhere bodies(lmp, scene.cut + scene.dx, [&](int j) {
+  const double of_body = scene.cut + scene.dx, beyond = scene.cut + 1.1 * of_body;
+  const Everywhere events(lmp, beyond, changed);
+  // the others hold nobody off: who moves is within the support of an event
+  const auto bodies = everywhere(lmp, of_body, [&](int j) {
     const int species = scene.state[atom->type[j]].species;
-    return species == SOLID || species == RIGID;
+    return (species == SOLID || species == RIGID) && events.nearest(atom->x[j]) < beyond * beyond;
   });
   mobility.assign(atom->nlocal, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {

@@ -20,6 +20,7 @@
 #ifndef LMP_FSI_SETTLING_H
 #define LMP_FSI_SETTLING_H
 
+#include "fsi_everywhere.h"
 #include "fsi_rows.h"
 #include "fsi_walls.h"
 #include "pointers.h"
@@ -32,8 +33,10 @@ namespace FSI {
 
   class Settling : protected Pointers {
    public:
-    // moves: per local particle, may it be moved? Ghosts are where these are, and follow
-    Settling(LAMMPS *, Scene &, const std::vector<char> &moves, std::vector<tagint> changed);
+    // moves: per local particle, may it be moved? Ghosts are where these are, and follow. Changed:
+    // where something did, of this rank
+    Settling(LAMMPS *, Scene &, const std::vector<char> &moves,
+             const std::vector<Position> &changed);
     void run(int sweeps);
 
    private:
@@ -44,7 +47,6 @@ namespace FSI {
     std::vector<Mirror> mirrors;            // none, then those of the walls' reflections
     std::vector<int> neighbors;             // of the rows
 
-    void find_mobilities(const std::vector<char> &moves, const std::vector<tagint> &changed);
     void find_rows();
     bool rows_hold() const;
     template <class T, class K> void sweep(const std::vector<K> &of_types);

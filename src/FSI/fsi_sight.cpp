@@ -16,6 +16,7 @@
 #include "atom.h"
 #include "fsi_kernel.h"
 #include "fsi_scene.h"
+#include "math_extra.h"
 #include "neighbor.h"
 
 #include <algorithm>
@@ -243,19 +244,13 @@ double Sight::visible(const double *y) const
     weight += w;
     for (int k = 0; k < scene.dim; k++) place[k] += w * (s.x[k] - t * d[k]);
   }
-  const double beside = std::sqrt(place[0] * place[0] + place[1] * place[1] + place[2] * place[2]);
-  const double lean = weight > 0.0 ? beside / (AT_EDGE * radius * weight) : 0.0;
+  const double lean = weight > 0.0 ? MathExtra::len3(place) / (AT_EDGE * radius * weight) : 0.0;
   return 1.0 -
       smooth((sum - MISSES) / (MEETS - MISSES)) * smooth((OUTSIDE - lean) / (OUTSIDE - INSIDE));
 }
 
 // The body is as thick as it is along its normal through x, which is the mean of what is on the
 // side of the nearest particle. What is seen beyond the support tells that it is thicker.
-static double dot(const double *a, const double *b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 bool Sight::find_face(Face &face) const
 {
   const double cutsq = scene.cut * scene.cut;
@@ -265,16 +260,16 @@ bool Sight::find_face(Face &face) const
   if (!nearest) return false;
   double normal[3] = {};
   for (const auto &s : seen)
-    if (s.thin && s.rsq < cutsq && dot(s.x, nearest->x) > 0.0) {
+    if (s.thin && s.rsq < cutsq && MathExtra::dot3(s.x, nearest->x) > 0.0) {
       const double rest = 1.0 - s.rsq / cutsq;
       for (int d = 0; d < 3; d++) normal[d] += rest * rest * rest * s.x[d];
     }
-  const double length = std::sqrt(dot(normal, normal)), dx = nearest->dx, tube = 0.75 * dx;
+  const double length = MathExtra::len3(normal), dx = nearest->dx, tube = 0.75 * dx;
   if (length == 0.0) return false;
   for (double &e : normal) e /= length;
   double front = scene.cut, back = 0.0;
   for (const auto &s : seen) {
-    const double depth = dot(s.x, normal);
+    const double depth = MathExtra::dot3(s.x, normal);
     if (!s.thin || depth <= 0.0 || s.rsq - depth * depth > tube * tube) continue;
     front = std::min(front, depth);
     back = std::max(back, depth);

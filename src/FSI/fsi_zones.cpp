@@ -16,7 +16,7 @@
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
-#include "fsi_gather.h"
+#include "fsi_everywhere.h"
 #include "fsi_keywords.h"
 #include "fsi_scene.h"
 #include "fsi_split.h"
@@ -103,57 +103,13 @@ void Zones::find(const Scene &scene, double beyond)
 {
   for (auto *region : regions) region->prematch();
   if (!body_bit) return;
-  const Everywhere body(lmp, distances[0] + beyond, [this](int i) {
+  const auto body = everywhere(lmp, distances[0] + beyond, [this](int i) {
     return (atom->mask[i] & body_bit) != 0;
   });
   if (body.empty()) error->all(FLERR, "{} distance: there are no atoms in group {}", who, body_id);
   away.assign(atom->nlocal, Cells::LARGE);
   for (int i = 0; i < atom->nlocal; i++)
     if (scene.state[atom->type[i]].species == FLUID) away[i] = std::sqrt(body.nearest(atom->x[i]));
-}
-
-Everywhere::Everywhere(LAMMPS *lmp, double reach, const std::function<bool(int)> &is) :
-    places(find(lmp, reach, is)), x(rows()),
-    cells(x.data(), (int) x.size(), lmp->domain->dimension, reach)
-{
-}
-
-std::vector<std::array<double, 3>> Everywhere::find(LAMMPS *lmp, double reach,
-                                                    const std::function<bool(int)> &is)
-{
-  const Atom *const atom = lmp->atom;
-  const Domain *const domain = lmp->domain;
-  std::vector<std::array<double, 3>> own;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (is(i)) own.push_back({atom->x[i][0], atom->x[i][1], atom->x[i][2]});
-  auto all = gather(own, lmp->world);
-  for (int d = 0; d < domain->dimension; d++) {
-    if (!domain->periodicity[d]) continue;
-    for (size_t k = 0, n = all.size(); k < n; k++)
-      for (const int side : {-1, 1}) {
-        auto image = all[k];
-        image[d] += side * domain->prd[d];
-        if (image[d] > domain->boxlo[d] - reach && image[d] < domain->boxhi[d] + reach)
-          all.push_back(image);
-      }
-  }
-  return all;
-}
-
-std::vector<const double *> Everywhere::rows() const
-{
-  std::vector<const double *> list;
-  for (const auto &place : places) list.push_back(place.data());
-  return list;
-}
-
-double Everywhere::nearest(const double *to) const
-{
-  double least = Cells::LARGE;
-  cells.around(to, [&](int, double rsq) {
-    least = std::min(least, rsq);
-  });
-  return least;
 }
 
 // A zone grown by a distance: is any place as far away, in a number of directions, inside?

@@ -17,11 +17,9 @@
 #ifndef LMP_FSI_ZONES_H
 #define LMP_FSI_ZONES_H
 
-#include "fsi_cells.h"
 #include "pointers.h"
 
 #include <array>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,23 +28,6 @@ class Region;
 
 namespace FSI {
   class Scene;
-
-  // The particles of all ranks that is(i) holds for, and their images across periods within a reach
-  // of the box, for questions about the nearest one: ghosts may not go as far
-  class Everywhere {
-   public:
-    Everywhere(LAMMPS *, double reach, const std::function<bool(int)> &is);
-    bool empty() const { return x.empty(); }
-    double nearest(const double *to) const;    // squared distance; large where none is in reach
-
-   private:
-    std::vector<std::array<double, 3>> places;
-    std::vector<const double *> x;
-    Cells cells;
-    static std::vector<std::array<double, 3>> find(LAMMPS *, double reach,
-                                                   const std::function<bool(int)> &is);
-    std::vector<const double *> rows() const;
-  };
 
   class Zones : protected Pointers {
    public:

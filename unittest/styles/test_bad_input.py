@@ -395,6 +395,8 @@ NUMBERS = [
     *[(f"watch {word}", RUN, f"fix w all fsi/watch {keyword}\nunfix w\nrun 0") for word, keyword in (
         ("interval", "{}"), *[(q, f"10 {q} {{}}") for q in ("distance", "density", "energy", "lost")])],
     *[(word, *spectrum(keyword)) for word, keyword in (("Nevery", "{} v_x"), ("peaks", "10 v_x peaks {}"), ("every", "10 v_x every {}"))],
+    *[(f"fsi/move {word}", RUN, f"fix m all fsi/move {keyword} units box\nunfix m\nrun 0") for word, keyword in (
+        ("linear along x", "linear {} 0 0"), ("wiggle period", "wiggle 1 0 0 {}"), ("rotate point", "rotate {} 0 0 0 0 1 1"), ("rotate axis", "rotate 0 0 0 0 0 {} 1"))],
     *[(f"probe {keyword.split()[1]}", *probe(keyword)) for keyword in ("p point {} 0 0", "p patch 0 0 0 {} 1 0", "level line 0 0 0 0 {} 0")],
     *[(f"{rule} threshold", RUN, f"compute c all fsi/surface/atom {rule} {{}}\nrun 0") for rule in ("number/density", "divergence")],
     *[(f"Fsi/set {what}", RUN, f"fsi/set all {what} {{}}\nrun 0") for what in ("density", "pressure", "hydrostatic")],

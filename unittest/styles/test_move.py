@@ -204,7 +204,7 @@ BAD = [
     ("linear 1 0", r"fix fsi/move linear command: missing"),
     ("linear fast 0 0", r"fast"),
     ("linear 1 0 0 color red", r"keyword color: expected units"),
-    ("linear 1 0 0 units", r"fix fsi/move linear command: missing"),
+    ("linear 1 0 0 units", r"fix fsi/move linear units command: missing"),
     ("linear 1 0 0 units metre", r"units metre: expected box or lattice"),
     ("linear 0 0 1", r"linear cannot move along z in 2D"),
     ("wiggle 1 0 0 0", r"wiggle period 0 must be > 0"),
