@@ -46,6 +46,7 @@ namespace FSI {
     int shift_every = 0;                   // steps from one shift to the next; 0: none
     // of solids
     double contact = 0.0;    // range over dx
+    bool self_contact = false;
     bool hourglass = false;
     bool by_rate = false;    // the stress is integrated: fix fsi/stress has it
     bool corrected_gradients = false;

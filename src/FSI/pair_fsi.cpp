@@ -214,6 +214,7 @@ Facts PairFSI::facts() const
   Facts facts;
   facts.alpha = alpha;
   facts.contact = contact_range;
+  facts.self_contact = self_contact;
   return facts;
 }
 
