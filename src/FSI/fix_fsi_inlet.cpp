@@ -29,6 +29,7 @@
 #include "fsi_shift.h"
 #include "fsi_value.h"
 #include "group.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
@@ -72,13 +73,9 @@ static constexpr int LOOK_EVERY = 20, LOOKS = 20;
 static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15;
 
 FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
-    FixFields(lmp, narg, arg), who(std::string("Fix ") + style), outlet(who == "Fix fsi/outlet"),
-    keywords(lmp, keywords_name()), given(new Values(lmp, keywords_name(), NVALUES)),
-    background(false), length(0.0), region(nullptr), fix_fsi(nullptr), of_buffer(nullptr),
-    behind(nullptr), nodes_held(new Nodes(lmp)), nodes(*nodes_held), nbounds(0), mean{},
-    filled(false), wave(0.0), before(0.0), gradient(0.0), served(0.0), has_before(false),
-    passed_in(0.0), passed_out(0.0), mass_in(0.0), fill(0.0), mean_fill(1.0), column(1.0),
-    last_buffer(-1.0), told{}, push_sum{}, ends(MPI_COMM_NULL)
+    FixFields(lmp, narg, arg), who(std::string("Fix ") + style), name(who + " " + id),
+    outlet(who == "Fix fsi/outlet"), keywords(lmp, keywords_name()),
+    given(new Values(lmp, keywords_name(), NVALUES)), nodes_held(new Nodes(lmp)), nodes(*nodes_held)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 5) utils::missing_cmd_args(FLERR, keywords_name(), error);
@@ -121,8 +118,6 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   }
   if (p == "free" && absorb > 0.0)
     error->all(FLERR, "{} absorb is not for pressure free, which has no value to go back to", who);
-  if (!region_id.empty() && !domain->get_region_by_id(region_id))
-    error->all(FLERR, "Region {} of {} does not exist", region_id, keywords_name());
 
   force_reneighbor = 1;
   next_reneighbor = -1;    // whenever lists are built
@@ -161,7 +156,7 @@ double FixFSIInlet::value(int k, int i) const
 {
   const double x = (*given)(k, i);
   if (!std::isfinite(x))
-    error->one(FLERR, "{} {}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", who, id,
+    error->one(FLERR, "{}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", name,
                k == PRESSURE ? "pressure" : fmt::format("velocity along {}", "xyz"[k]), x,
                atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given->see(k));
   return x;
@@ -173,17 +168,17 @@ void FixFSIInlet::init()
   if (!force->pair_match("fsi/fluid", 1))
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
   if (fix_fsi->density_fluid != FixFSI::CONTINUITY)
-    error->all(
-        FLERR,
-        "{} requires fix fsi with fluid continuity: a density that is summed cannot be prescribed",
-        who);
+    error->all(FLERR,
+               "{} requires density by continuity, as fix fsi scheme standard has it: a sum cannot "
+               "be prescribed",
+               who);
   if (!neighbor->dist_check)
     error->all(FLERR,
                "{} requires neigh_modify check yes: particles are made and deleted when lists are "
                "built, before they have moved far",
                who);
   if (domain->periodicity[axis])
-    error->all(FLERR, "{} {} is in periodic dimension {}: its boundary must be fixed (f)", who, id,
+    error->all(FLERR, "{} is in periodic dimension {}: its boundary must be fixed (f)", name,
                "xyz"[axis]);
 
   // lists hold for half a skin; a place that becomes free at the end is filled when a column has
@@ -208,10 +203,10 @@ void FixFSIInlet::init()
       (std::fabs(position - made[0]) > 1.0e-6 * fix_fsi->dx ||
        std::fabs(length - made[1]) > 1.0e-6 * fix_fsi->dx))
     error->all(FLERR,
-               "{} {}: {} has its plane at {:g} with a buffer of {:g}, here it is {:g} with {:g}: "
+               "{}: {} has its plane at {:g} with a buffer of {:g}, here it is {:g} with {:g}: "
                "expected the same, since the buffer is full. Give keyword buffer if the skin has "
                "changed",
-               who, id, of_file ? "the restart file" : "the last run", made[0], made[1], position,
+               name, of_file ? "the restart file" : "the last run", made[0], made[1], position,
                length);
   check_plane();
   find_region();
@@ -227,9 +222,9 @@ void FixFSIInlet::init()
     const State &soft = softest();
     const double away = std::fabs(given->number(PRESSURE) - soft.p0);
     error->all(FLERR,
-               "{} {}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
+               "{}: pressure {:g} is {:.3g} rho c^2 from the background, {:g}: expected {:g} at "
                "most. Is it in units {}? Else take sound {:.3g} or more in pair_style fsi/fluid",
-               who, id, given->number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
+               name, given->number(PRESSURE), away / (soft.rho0 * soft.csq), soft.p0, FAR,
                update->unit_style, std::sqrt(away / (FAR * soft.rho0)));
   }
   fix_fsi->population.leave_an_id_free();
@@ -243,15 +238,15 @@ void FixFSIInlet::check_plane()
   const double end = position - side * length, little = 1.0e-9 * domain->prd[axis],
                lo = domain->boxlo[axis], hi = domain->boxhi[axis];
   if (position < lo - little || position > hi + little)
-    error->all(FLERR, "{} {}: its plane at {} = {} is outside the box, from {} to {}", who, id,
-               "xyz"[axis], position, lo, hi);
+    error->all(FLERR, "{}: its plane at {} is outside the box, from {} to {}", name, at(position),
+               lo, hi);
   // what has passed the end of the buffer is deleted with the next list
   const double half_skin = 0.5 * neighbor->skin, last = end - side * half_skin;
   if (domain->boundary[axis][side < 0.0] == 1 && (last < lo - little || last > hi + little))
     error->all(FLERR,
-               "{} {}: its buffer, {} = {:g} to {:g}, and half the neighbor skin, {:g}, must be "
-               "inside the box, from {} to {}",
-               who, id, "xyz"[axis], position, end, half_skin, lo, hi);
+               "{}: its buffer, {} to {:g}, and half the neighbor skin, {:g}, must be inside the "
+               "box, from {} to {}",
+               name, at(position), end, half_skin, lo, hi);
 }
 
 // the part of the plane that is open
@@ -317,9 +312,9 @@ bool FixFSIInlet::holds(const double *x) const
 void FixFSIInlet::setup_pre_exchange()
 {
   for (const auto &w : fix_fsi->walls.wall) {
-    const double at = side * (w.position - position);
-    if (w.axis == axis && !w.finite && at < 0.5 * fix_fsi->dx && at > -length)
-      error->all(FLERR, "{} {}: the mirror wall {}{} at {} closes it", who, id, "xyz"[axis],
+    const double s = side * (w.position - position);
+    if (w.axis == axis && !w.finite && s < 0.5 * fix_fsi->dx && s > -length)
+      error->all(FLERR, "{}: the mirror wall {}{} at {} closes it", name, "xyz"[axis],
                  w.side > 0.0 ? "lo" : "hi", w.position);
   }
   const bool has_one = filled;
@@ -345,9 +340,9 @@ void FixFSIInlet::check_levels(bool is_empty) const
              });
   if (finer.count > (is_empty ? 0.0 : FEW_FINER * all.count))
     error->all(FLERR,
-               "{} {}: {} particles of fluid finer than dx, {:g}, the first of them atom {}, are "
+               "{}: {} particles of fluid finer than dx, {:g}, the first of them atom {}, are "
                "within {:g} of its plane: the fluid that comes and goes is the coarsest",
-               who, id, finer.count, fix_fsi->dx, finer.first, length);
+               name, finer.count, fix_fsi->dx, finer.first, length);
 }
 
 void FixFSIInlet::fill_buffer()
@@ -373,23 +368,23 @@ void FixFSIInlet::fill_buffer()
     }
   }
   MPI_Allreduce(own, all, NCOUNT, MPI_LMP_BIGINT, MPI_SUM, world);
-  const double end = position - side * length;
+  const auto end = at(position - side * length);
   if (all[BEHIND] == 0 && all[AHEAD] == 0 && !outlet)
     error->all(FLERR,
-               "{} {}: there is no fluid of group {} at its plane {} = {}: fill the buffer, to {} "
-               "= {:g}, or what is before it",
-               who, id, group->names[igroup], "xyz"[axis], position, "xyz"[axis], end);
+               "{}: there is no fluid of group {} at its plane {}: fill the buffer, to {}, or what "
+               "is before it",
+               name, group->names[igroup], at(position), end);
   if (all[BEYOND] > 0)
     error->all(FLERR,
-               "{} {}: {} particles of fluid are beyond the end of its buffer, {} = {:g}: {}{} has "
-               "the fluid at {} {} {}",
-               who, id, all[BEYOND], "xyz"[axis], end, "xyz"[axis], side > 0.0 ? "lo" : "hi",
-               "xyz"[axis], side > 0.0 ? ">" : "<", position);
+               "{}: {} particles of fluid are beyond the end of its buffer, {}: {}{} has the fluid "
+               "at {} {} {}",
+               name, all[BEYOND], end, "xyz"[axis], side > 0.0 ? "lo" : "hi", "xyz"[axis],
+               side > 0.0 ? ">" : "<", position);
   if (all[WALLS_AHEAD] > 0 && 2 * all[WALLS_BEHIND] < all[WALLS_AHEAD] && comm->me == 0)
     error->warning(FLERR,
-                   "{} {}: {} wall particles are within {:g} before its plane, {} behind it: walls "
-                   "should go on along the buffer, to {} = {:g}",
-                   who, id, all[WALLS_AHEAD], length, all[WALLS_BEHIND], "xyz"[axis], end);
+                   "{}: {} wall particles are within {:g} before its plane, {} behind it: walls "
+                   "should go on along the buffer, to {}",
+                   name, all[WALLS_AHEAD], length, all[WALLS_BEHIND], end);
   check_levels(all[BEHIND] == 0);
   renew_ends(has_some);
   if (all[BEHIND] > 0) {
@@ -433,10 +428,38 @@ void FixFSIInlet::check_slices(std::vector<int> &mine) const
   if (few == all.end() || comm->me) return;
   const double from = position - side * (few - all.begin()) * fix_fsi->dx;
   error->warning(FLERR,
-                 "{} {}: its buffer has {} particles from {} = {:g} to {:g} and {} elsewhere: what "
-                 "is not there will not come in. Fill it to {} = {:g}, or leave it empty",
-                 who, id, *few, "xyz"[axis], from, from - side * fix_fsi->dx, most, "xyz"[axis],
-                 position - side * length);
+                 "{}: its buffer has {} particles from {} to {:g} and {} elsewhere: what is not "
+                 "there will not come in. Fill it to {}, or leave it empty",
+                 name, *few, at(from), from - side * fix_fsi->dx, most,
+                 at(position - side * length));
+}
+
+// Calls visit(particle, offset from x) for those of a list, sorted by the plane's first axis, that
+// are as near along it as who takes a place; images, too
+template <class Visit>
+void FixFSIInlet::beside(const std::vector<Particle> &sorted, const double *x, Visit visit) const
+{
+  const int a = first_axis(), periodic = domain->periodicity[a];
+  const double reach = OCCUPIED * fix_fsi->dx;
+  for (int image = -periodic; image <= periodic; image++) {
+    const double from = x[a] + image * domain->prd[a] - reach;
+    auto p = std::lower_bound(sorted.begin(), sorted.end(), from, [a](const Particle &b, double y) {
+      return b.x[a] < y;
+    });
+    for (; p != sorted.end() && p->x[a] < from + 2.0 * reach; p++) {
+      double d[3] = {p->x[0] - x[0], p->x[1] - x[1], p->x[2] - x[2]};
+      domain->minimum_image(d);
+      visit(*p, d);
+    }
+  }
+}
+
+void FixFSIInlet::sort_along_plane(std::vector<Particle> &list) const
+{
+  const int a = first_axis();
+  std::sort(list.begin(), list.end(), [a](const Particle &b, const Particle &c) {
+    return b.x[a] < c.x[a] || (b.x[a] == c.x[a] && b.parent < c.parent);
+  });
 }
 
 // In a buffer of a fix before this one: who is last of a row is to be followed, also if he has come
@@ -444,35 +467,22 @@ void FixFSIInlet::check_slices(std::vector<int> &mine) const
 // How many those are on this rank
 int FixFSIInlet::find_last_of_rows()
 {
-  typedef std::array<double, 3> Point;
-  const int a = axis == 0 ? 1 : 0;
   const double nobody = fix_fsi->dx - length, low = nobody + neighbor->skin,
                reach = OCCUPIED * fix_fsi->dx;
   int missing = 0;
-  std::vector<Point> own, all;
-  for (int i = 0; i < atom->nlocal; i++) {
-    const double *const x = atom->x[i];
-    if (of_buffer[i] && inside(x) <= low) own.push_back({x[0], x[1], x[2]});
-  }
+  std::vector<Particle> own, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (of_buffer[i] && inside(atom->x[i]) <= low) own.push_back(fix_fsi->population.copy_of(i));
   if (ends != MPI_COMM_NULL) all = gather(own, ends);
-  std::sort(all.begin(), all.end(), [a](const Point &b, const Point &c) {
-    return b[a] < c[a];
-  });
+  sort_along_plane(all);
   const auto is_last = [&](const double *x) {
-    for (int image = -domain->periodicity[a]; image <= domain->periodicity[a]; image++) {
-      const double from = x[a] + image * domain->prd[a] - reach;
-      auto y = std::lower_bound(all.begin(), all.end(), from, [a](const Point &b, double at) {
-        return b[a] < at;
-      });
-      for (; y != all.end() && (*y)[a] < from + 2.0 * reach; y++) {
-        double d[3] = {(*y)[0] - x[0], (*y)[1] - x[1], (*y)[2] - x[2]};
-        const bool behind = side * d[axis] < 0.0;
-        domain->minimum_image(d);
-        d[axis] = 0.0;
-        if (behind && d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) return false;
-      }
-    }
-    return true;
+    bool last = true;
+    beside(all, x, [&](const Particle &, double *d) {
+      const bool behind = side * d[axis] < 0.0;
+      d[axis] = 0.0;
+      if (behind && MathExtra::lensq3(d) < reach * reach) last = false;
+    });
+    return last;
   };
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
@@ -492,10 +502,9 @@ std::vector<Particle> FixFSIInlet::go_on_behind() const
   const int most = number_of_slices(), full = full_slices();
   if (full == 0 && !outlet)
     error->all(FLERR,
-               "{} {}: there is fluid of group {} before its plane {} = {}, but none within a "
-               "spacing of it: fill what is between, or the buffer, to {} = {:g}",
-               who, id, group->names[igroup], "xyz"[axis], position, "xyz"[axis],
-               position - side * length);
+               "{}: there is fluid of group {} before its plane {}, but none within a spacing of "
+               "it: fill what is between, or the buffer, to {}",
+               name, group->names[igroup], at(position), at(position - side * length));
   std::vector<Particle> copies;
   if (full == 0) return copies;
   const double period = fix_fsi->dx * full;
@@ -511,7 +520,7 @@ std::vector<Particle> FixFSIInlet::go_on_behind() const
   return copies;
 }
 
-// places along the plane of the fluid within a spacing of it, by the first coordinate
+// places along the plane of the fluid within a spacing of it
 std::vector<FixFSIInlet::Column> FixFSIInlet::columns_at_plane() const
 {
   std::vector<Column> own;
@@ -519,12 +528,7 @@ std::vector<FixFSIInlet::Column> FixFSIInlet::columns_at_plane() const
     const double *const x = atom->x[i], s = inside(x);
     if (s > 0.0 && slice(s) == 0 && is_fluid(i) && in_patch(x)) own.push_back(along(x));
   }
-  std::vector<Column> columns;
-  if (ends != MPI_COMM_NULL) columns = gather(own, ends);
-  std::sort(columns.begin(), columns.end(), [](const Column &a, const Column &b) {
-    return a.at[0] < b.at[0];
-  });
-  return columns;
+  return ends == MPI_COMM_NULL ? std::vector<Column>() : gather(own, ends);
 }
 
 int FixFSIInlet::full_slices() const
@@ -549,20 +553,19 @@ int FixFSIInlet::full_slices() const
     const Column here = along(atom->x[i]);
     bool below = false, above = false;    // is there fluid on the same line?
     for (const Column &c : columns) {
-      if (std::fabs(c.at[1] - here.at[1]) >= 0.5 * dx) continue;
-      below = below || c.at[0] < here.at[0];
-      above = above || c.at[0] > here.at[0];
-      if (std::fabs(c.at[0] - here.at[0]) < 0.5 * dx)
+      if (std::fabs(c[1] - here[1]) >= 0.5 * dx) continue;
+      below = below || c[0] < here[0];
+      above = above || c[0] > here[0];
+      if (std::fabs(c[0] - here[0]) < 0.5 * dx)
         limit = std::min(limit,
                          static_cast<int>((s - 0.5 * fix_fsi->dx_of(atom->type[i])) / dx + 1.0e-6));
     }
     if (state.species == SOLID && slice(s) == 0 && below && above && !hole++)
       error->warning(FLERR,
-                     "{} {}: atom {} of a solid is within a spacing of its plane {} = {}: behind "
-                     "it the buffer has a hole, and what is not there will not come in. Move the "
-                     "solid or the plane, or fill the buffer, to {} = {:g}",
-                     who, id, atom->tag[i], "xyz"[axis], position, "xyz"[axis],
-                     position - side * length);
+                     "{}: atom {} of a solid is within a spacing of its plane {}: behind it the "
+                     "buffer has a hole, and what is not there will not come in. Move the solid or "
+                     "the plane, or fill the buffer, to {}",
+                     name, atom->tag[i], at(position), at(position - side * length));
   }
   limit = std::max(limit, 1);
   MPI_Allreduce(&limit, &all, 1, MPI_INT, MPI_MIN, world);
@@ -579,37 +582,22 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Particle> &copies, bool 
     high = std::max(high, inside(c.x));
   }
 
-  // along the lateral axis, then the distance
-  const int a = axis == 0 ? 1 : 0;
+  sort_along_plane(copies);
   const double reach = OCCUPIED * fix_fsi->dx;
-  std::sort(copies.begin(), copies.end(), [&](const Particle &b, const Particle &c) {
-    return b.x[a] < c.x[a] || (b.x[a] == c.x[a] && b.parent < c.parent);
-  });
   std::vector<int> is_occupied(copies.size(), 0), occupied(copies.size());
   for (int i = 0; i < atom->nlocal; i++) {
-    const double s = inside(atom->x[i]);
+    const double *const x = atom->x[i], s = inside(x);
     if (s < low - reach || s > high + reach) continue;
     const int species = fix_fsi->state[atom->type[i]].species;
     if (species != FLUID && !at_start) continue;    // as near as its parent is in front
-    for (int image = -domain->periodicity[a]; image <= domain->periodicity[a]; image++) {
-      const double from = atom->x[i][a] + image * domain->prd[a] - reach;
-      auto c =
-          std::lower_bound(copies.begin(), copies.end(), from, [&](const Particle &b, double x) {
-            return b.x[a] < x;
-          });
-      for (; c != copies.end() && c->x[a] < from + 2.0 * reach; c++) {
-        double d[3] = {c->x[0] - atom->x[i][0], c->x[1] - atom->x[i][1], c->x[2] - atom->x[i][2]};
-        domain->minimum_image(d);
-        if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] >= reach * reach) continue;
-        if (species != FLUID)
-          error->one(
-              FLERR,
-              "{} {}: atom {} of a {} at {:g} {:g} {:g} is where fluid of its buffer should be",
-              who, id, atom->tag[i], species == RIGID ? "wall" : "solid", atom->x[i][0],
-              atom->x[i][1], atom->x[i][2]);
-        is_occupied[c - copies.begin()] = 1;
-      }
-    }
+    beside(copies, x, [&](const Particle &c, double *d) {
+      if (MathExtra::lensq3(d) >= reach * reach) return;
+      if (species != FLUID)
+        error->one(FLERR,
+                   "{}: atom {} of a {} at {:g} {:g} {:g} is where fluid of its buffer should be",
+                   name, atom->tag[i], species == RIGID ? "wall" : "solid", x[0], x[1], x[2]);
+      is_occupied[&c - copies.data()] = 1;
+    });
   }
   MPI_Allreduce(is_occupied.data(), occupied.data(), occupied.size(), MPI_INT, MPI_MAX, ends);
   return occupied;
@@ -629,8 +617,7 @@ void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
     return b.parent < c.parent || (b.parent == c.parent && inside(b.x) > inside(c.x));
   });
   const int first = atom->nlocal;
-  fix_fsi->population.make(copies, fmt::format("{} {}", who, id),
-                           at_start ? nullptr : fix_fsi->account(FixFSI::FIELDS));
+  fix_fsi->population.make(copies, name, at_start ? nullptr : fix_fsi->account(FixFSI::FIELDS));
   for (int i = first; i < atom->nlocal; i++) of_buffer[i] = MEMBER;
 }
 
@@ -705,7 +692,7 @@ void FixFSIInlet::stranger(int i)
     error->one(FLERR, "Atom {} of a solid is in the buffer of {} {}, which is for fluid alone",
                atom->tag[i], keywords_name(), id);
   const std::string what = fmt::format(
-      "{} {}: atom {} of type {}, {},", who, id, atom->tag[i], atom->type[i],
+      "{}: atom {} of type {}, {},", name, atom->tag[i], atom->type[i],
       species == FLUID       ? fmt::format("a fluid that is not of group {}", group->names[igroup])
           : species == SOLID ? "of a solid"
           : species == NONE  ? "without a material"
@@ -996,10 +983,10 @@ void FixFSIInlet::advance(bool advance)
 
   if (mean[TOO_FAR] > 0.0 && !told.far && comm->me == 0)
     error->warning(FLERR,
-                   "{} {}: pressure of variable {} is more than {} rho c^2 from the background: "
-                   "the fluid is no longer hardly compressed. Is it in units {}? Else a higher "
+                   "{}: pressure of variable {} is more than {} rho c^2 from the background: the "
+                   "fluid is no longer hardly compressed. Is it in units {}? Else take a higher "
                    "sound in pair_style fsi/fluid",
-                   who, id, given->name(PRESSURE), FAR, update->unit_style);
+                   name, given->name(PRESSURE), FAR, update->unit_style);
   told.far = told.far || mean[TOO_FAR] > 0.0;
   check_supply();
 
@@ -1037,18 +1024,24 @@ void FixFSIInlet::set_density(int i, double rho)
 }
 
 // What has a given velocity goes without the fluid where that does not follow, and has nothing to
-// come back with
+// come back with. A given pressure may let the fluid run dry, which is worth a word.
 void FixFSIInlet::check_supply()
 {
-  if (served == 0.0) served = mean[BUFFER];
+  // with a given velocity it may begin without any
+  if (served < 0.0 || (served == 0.0 && !has_own_velocity())) served = mean[BUFFER];
   const bool begins = update->ntimestep == update->firststep + 1;
   if (begins && last_buffer > 0.0) taken = std::max(0.0, last_buffer - mean[BUFFER]);
   last_buffer = mean[BUFFER];
-  if (has_own_velocity() || mean[BUFFER] >= STARVED * served) return;
+  if (mean[BUFFER] >= STARVED * served || told.empty) return;
   std::string why;
-  if (taken > 0.1 * served)
+  if (taken > STARVED * served)
     why = fmt::format("{} were deleted, or have left group {}, between the runs", taken,
                       group->names[igroup]);
+  else if (has_own_velocity() && mean[WEIGHT] == 0.0)
+    why = "There is no fluid within the kernel's support before it either";
+  else if (has_own_velocity())
+    why = fmt::format("Fluid before it, which comes in with {:g} in the mean, meets nothing there",
+                      average(SPEED));
   else if (softest().floor == 0.0 && softest().p0 <= 0.0)
     why = "The fluid does not follow the velocity that is given: it tears under suction, without "
           "keyword tension yes or background of pair_style fsi/fluid";
@@ -1057,8 +1050,12 @@ void FixFSIInlet::check_supply()
                       "support it comes in with {:g} in the mean, so there is too little of it, or "
                       "what is given goes out where none is",
                       average(SPEED));
-  error->all(FLERR, "{} {} starves: of {} particles behind its plane {} = {} there are {}. {}", who,
-             id, served, "xyz"[axis], position, mean[BUFFER], why);
+  const auto text = fmt::format("{} {}: of {} particles behind its plane {} there are {}. {}", name,
+                                has_own_velocity() ? "runs empty" : "starves", served, at(position),
+                                mean[BUFFER], why);
+  if (!has_own_velocity()) error->all(FLERR, text);
+  told.empty = true;
+  if (comm->me == 0) error->warning(FLERR, text);
 }
 
 // Shifting carries nobody through the plane: the buffer, which moves as it is told to, could not
@@ -1086,30 +1083,39 @@ void FixFSIInlet::hold_shift(const Place &place)
 // their number, since it goes out when pressure is higher. And diffusion passes between fluid and
 // buffer what has no volume. So mass is compared with density times room, 1/psi, of the fluid
 // before the plane. Particles at a free surface do not count; where there is one, a lack says
-// nothing.
+// nothing. Of fluid of several spacings it is the coarsest that is there: where two meet, numbers
+// are those of neither lattice.
 void FixFSIInlet::end_state(bool advance)
 {
   if (advance ? update->ntimestep % LOOK_EVERY : fill > 0.0) return;
   enum { MASS, ROOM, MEMBERS, SURFACE, NSUM };
-  double own[NSUM] = {}, all[NSUM];
+  std::vector<std::array<double, NSUM>> own(fix_fsi->levels.size()), all(own.size());
   std::vector<double> psi(atom->nmax);
   fix_fsi->number_density.find(psi.data());
   for (const auto &place : places) {
-    const int i = place.i;
+    const int i = place.i, type = atom->type[i];
     const double s = inside(atom->x[i]), m = atom->rmass[i], rho = atom->rho[i];
     // those that do not see the buffer, whose particles may be as near to each other as they like
     if (s <= fix_fsi->cut || s >= zone()) continue;
-    const bool at_surface = m * psi[i] < AT_SURFACE * rho;
-    own[at_surface ? SURFACE : MEMBERS]++;
+    const double n = psi[i] * (fix_fsi->resolution[type].psi_bulk / fix_fsi->psi_bulk);
+    auto &sum = own[fix_fsi->level_of[type]];
+    const bool at_surface = m * n < AT_SURFACE * rho;
+    sum[at_surface ? SURFACE : MEMBERS]++;
     if (at_surface) continue;
-    own[MASS] += m;
-    own[ROOM] += rho / psi[i];
+    sum[MASS] += m;
+    sum[ROOM] += rho / n;
   }
-  MPI_Allreduce(own, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(own.data(), all.data(), (int) own.size() * NSUM, MPI_DOUBLE, MPI_SUM, world);
   const bool first = fill == 0.0;
-  fill = all[ROOM] > 0.0 ? all[MASS] / all[ROOM] : 1.0;
+  fill = 1.0;
+  double members = 0.0, at_surface = 0.0;
+  for (const auto &sum : all) {
+    if (members == 0.0 && sum[MEMBERS] > 0.0) fill = sum[MASS] / sum[ROOM];
+    members += sum[MEMBERS];
+    at_surface += sum[SURFACE];
+  }
   mean_fill += (fill - mean_fill) / (first ? 1 : LOOKS);
-  warn_of_fill(all[SURFACE] < EXCESS * all[MEMBERS]);
+  warn_of_fill(at_surface < EXCESS * members);
 }
 
 void FixFSIInlet::warn_of_fill(bool full)
@@ -1119,9 +1125,9 @@ void FixFSIInlet::warn_of_fill(bool full)
   told.fill = true;
   error->warning(
       FLERR,
-      "{} {}: within {:g} before its plane there is {:.2g} % {} mass than the fluid's density has "
+      "{}: within {:g} before its plane there is {:.2g} % {} mass than the fluid's density has "
       "room for, at step {}: particles {}. {}",
-      who, id, zone(), 100.0 * std::fabs(mean_fill - 1.0), few ? "less" : "more", update->ntimestep,
+      name, zone(), 100.0 * std::fabs(mean_fill - 1.0), few ? "less" : "more", update->ntimestep,
       few ? "are missing" : "pile up",
       softest().p0 > 0.0
           ? "Vortices, bodies or a valve near the plane do so: move it away from them, or take a "

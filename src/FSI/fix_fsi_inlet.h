@@ -24,6 +24,7 @@ FixStyle(fsi/outlet,FixFSIInlet);
 #include "fsi_fields.h"
 #include "fsi_part.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -89,28 +90,28 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
     NMEAN
   };
 
-  const std::string who;    // Fix fsi/inlet
+  const std::string who, name;    // Fix fsi/inlet; with its ID
   const bool outlet;
   FSI::Keywords keywords;
   int axis;
   double side, position;    // +1: the fluid is above the plane
   std::string words[4], region_id;
   const std::unique_ptr<FSI::Values>
-      given;          // velocity and pressure; the other one is that of the fluid
-  bool background;    // is the pressure that of the background?
-  double absorb;      // 1/time; < 0: of the domain's length
-  bool driven;        // has an open end of the scene a given velocity?
-  double given_length, length;
+      given;                  // velocity and pressure; the other one is that of the fluid
+  bool background = false;    // is the pressure that of the background?
+  double absorb;              // 1/time; < 0: of the domain's length
+  bool driven;                // has an open end of the scene a given velocity?
+  double given_length, length = 0.0;
   // plane and length of its buffer in the last run; is that one of a restart file?
   std::vector<double> made;
   bool of_file = false;
-  class Region *region;
-  class FixFSI *fix_fsi;
+  class Region *region = nullptr;
+  class FixFSI *fix_fsi = nullptr;
 
   // LAST of a row; FOLLOWED by one that the next list has
   static constexpr double NOT = 0.0, MEMBER = 1.0, LAST = 2.0, FOLLOWED = 3.0;
-  double *of_buffer;    // per atom
-  double **behind;      // of one that is followed: where who follows would be now
+  double *of_buffer = nullptr;    // per atom
+  double **behind = nullptr;      // of one that is followed: where who follows would be now
   std::vector<Place> places;
   int zone_group;    // that of the places
 
@@ -118,28 +119,29 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   // and the negative least velocity
   const std::unique_ptr<FSI::Nodes> nodes_held;
   FSI::Nodes &nodes;
-  int nbounds;
-  double mean[NMEAN];
+  int nbounds = 0;
+  double mean[NMEAN] = {};
 
   // what is kept
-  bool filled;
-  double wave, before;    // of absorption: velocity or pressure over impedance that it adds; the
-                          // mean from which it has that
-  double gradient;    // of the fluid's pressure beyond that given, into the fluid: mean over the
-                      // plane and some time
-  double served;      // particles near the plane at first
-  bool has_before;
-  double passed_in, passed_out, mass_in;
+  bool filled = false;
+  // of absorption: velocity or pressure over impedance that it adds; the mean from which it has
+  // that, and is there one?
+  double wave = 0.0, before = 0.0;
+  bool has_before = false;
+  // of the fluid's pressure beyond that given, into the fluid: mean over the plane and some time
+  double gradient = 0.0;
+  double served = -1.0;    // particles near the plane at first; < 0: not known yet
+  double passed_in = 0.0, passed_out = 0.0, mass_in = 0.0;
   // mass of the fluid near the plane over what its density has room for (0: not known yet); its
   // mean of late
-  double fill, mean_fill;
-  double column;                      // spacing along the axis of what comes in, in dx
-  double last_buffer, taken = 0.0;    // particles behind the plane in the last step; that went
-                                      // between two runs
+  double fill = 0.0, mean_fill = 1.0;
+  double column = 1.0;    // spacing along the axis of what comes in, in dx
+  // particles behind the plane in the last step; that went between two runs
+  double last_buffer = -1.0, taken = 0.0;
   struct {
-    bool far, stranger, fill;
-  } told;                // warnings of this run
-  double push_sum[4];    // force on the buffer and its power, this rank's part
+    bool far, stranger, fill, empty;
+  } told = {};                // warnings of this run
+  double push_sum[4] = {};    // force on the buffer and its power, this rank's part
 
   double average(int sum, int weight = WEIGHT) const    // at the plane; 0 where there is no fluid
   {
@@ -157,10 +159,13 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void find_region();
   std::vector<int> find_occupied(std::vector<FSI::Particle> &copies, bool at_start);
   void fit_nodes(int nmoment, int nfit, int nfields);
-  struct Column {
-    double at[2] = {};    // along the plane
-  };
-  Column along(const double *x) const { return {{x[axis == 0 ? 1 : 0], x[axis == 2 ? 1 : 2]}}; }
+  typedef std::array<double, 2> Column;    // along the plane
+  int first_axis() const { return axis == 0 ? 1 : 0; }
+  Column along(const double *x) const { return {x[first_axis()], x[axis == 2 ? 1 : 2]}; }
+  std::string at(double place) const { return fmt::format("{} = {:g}", "xyz"[axis], place); }
+  void sort_along_plane(std::vector<FSI::Particle> &) const;
+  template <class Visit>
+  void beside(const std::vector<FSI::Particle> &sorted, const double *x, Visit) const;
   void check_levels(bool is_empty) const;
   void fill_buffer();
   int number_of_slices() const, slice(double distance) const, full_slices() const;
@@ -178,7 +183,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void make(const std::vector<FSI::Particle> &, bool at_start);
   void follow(int i, double s);
   void find_places();
-  MPI_Comm ends;    // of the ranks that this end is a matter of; null on others
+  MPI_Comm ends = MPI_COMM_NULL;    // of the ranks that this end is a matter of; null on others
   void renew_ends(bool has_some);
   void forget_ends();
   double reach_of_nodes() const;

@@ -62,8 +62,6 @@ FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
         "Fix fsi/stream requires keyword rate: of the fluid's approach to the velocity, 1/time");
   if (along >= domain->dimension)
     error->all(FLERR, "Fix fsi/stream along z: there is no flow along z in 2D");
-  if (!domain->get_region_by_id(region_id))
-    error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
 
   scalar_flag = vector_flag = 1;
   size_vector = 4;
@@ -81,16 +79,17 @@ void FixFSIStream::init()
     error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
   if (density_rate > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR,
-               "Fix fsi/stream density requires fix fsi with fluid continuity: a density that is "
-               "summed cannot be damped");
+               "Fix fsi/stream density requires density by continuity, as fix fsi scheme standard "
+               "has it: a sum cannot be damped");
   region = domain->get_region_by_id(region_id);
   if (!region) error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
   if (region->dynamic_check())
     error->all(FLERR, "Region {} of fix fsi/stream must not move nor change", region_id);
+  const char name = "xyz"[along];
   if (!region->bboxflag)
     error->all(FLERR,
                "Region {} of fix fsi/stream must be inside of its faces: it has no ends along {}",
-               region_id, "xyz"[along]);
+               region_id, name);
   const double lo[] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const double hi[] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   low = lo[along];
@@ -101,7 +100,7 @@ void FixFSIStream::init()
     error->all(FLERR,
                "Region {} of fix fsi/stream, from {} to {} along {}, must be inside the box, from "
                "{} to {}",
-               region_id, low, high, "xyz"[along], domain -> boxlo[along], domain -> boxhi[along]);
+               region_id, low, high, name, domain->boxlo[along], domain->boxhi[along]);
 
   velocity->find();
   zone_group = igroup;
@@ -218,9 +217,11 @@ void FixFSIStream::post_force(int)
     for (int d = 0; d < 3; d++) {
       if (!velocity->given(d)) continue;
       const double u = (*velocity)(d, i);
-      if (!std::isfinite(u))
-        error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u,
-                   "xyz"[d], atom -> tag[i], velocity -> see(d));
+      if (!std::isfinite(u)) {
+        const char name = "xyz"[d];
+        error->one(FLERR, "Fix fsi/stream: velocity {} along {} of atom {} is no number{}", u, name,
+                   atom->tag[i], velocity->see(d));
+      }
       const double push = m * part * (u - v[d]) / (dt * force->ftm2v);
       f[d] += push;
       given[d] += push;

@@ -579,6 +579,19 @@ def test_what_starved_an_end_is_named(tmp_path):
     assert result.status and re.search(r"Fix fsi/inlet i starves: of 30 .* there are 6\. 24 were deleted, or have left group all, between the runs", result.errors[0]), result.errors
 
 
+@pytest.mark.parametrize("way", ["dry", "deleted"])
+def test_pressure_end_that_runs_empty_is_told(tmp_path, way):
+    """A given velocity would stop the run. Fluid that leaves with 1 m/s, six columns of ten and the five of the buffer, is gone from the support behind the
+    plane, 0.3 m, after 0.9 s, 300 steps."""
+    start, more = ATOMS, "run 10\nregion most block 3 3.5 0.2 1 INF INF units box\ngroup most region most\ndelete_atoms group most compress no\nrun 10\n"
+    why = r"are 6\. 24 were deleted, or have left group all, between the runs"
+    if way == "dry":
+        start, more = ATOMS.replace("water block 0 3", "water block 2.4 3"), "velocity all set 1 0 0 units box\nrun 320\n"
+        why = r"are \d\. There is no fluid within the kernel's support before it either"
+    out = run(tmp_path, deck(start=start, inlet="", outlet=OUTLET + " pressure free").replace("laminar/visc ", "") + more, **FILES).output
+    assert len(re.findall(rf"WARNING: Fix fsi/outlet o runs empty: of 30 particles behind its plane x = 3 there {why}", out)) in (1, 2)    # and the log
+
+
 SOLID = ("region solid block {} 0.3 0.6 INF INF units box\n{}", "pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2")
 BAD = [
     ("face", {"inlet": INLET.replace("xlo", "left")}, r"Unknown fix fsi/inlet face left: expected xlo, xhi, ylo, yhi, zlo or zhi"),
@@ -619,7 +632,7 @@ BAD = [
     ("closed", {"more": "fix end all fsi/wall/mirror xlo 0"}, r"Fix fsi/inlet i: the mirror wall xlo at 0 closes it"),
     ("corner", {"start": ATOMS.replace("-0.5 1.5", "-0.6 1.5").replace("0 3 0 1", "0 3 -0.5 1"), "more": "unfix walls", "inlet": "fix j all fsi/inlet ylo 0 velocity 0 0 0\n" + INLET},
      r"Atom \d+ at \S+ \S+ 0 is in the buffers of fix j and fix i"),
-    ("summation", {"more": "unfix sph\nfix sph all fsi 0.1 wendland 1.5 fluid summation"}, r"requires density by continuity, as fix fsi scheme standard has it"),
+    ("summation", {"more": "unfix sph\nfix sph all fsi 0.1 wendland 1.5 fluid summation"}, r"Fix fsi/inlet requires density by continuity, as fix fsi scheme standard has it: a sum cannot be prescribed"),
     ("a wall in the way", {"start": ATOMS + "region bed block -0.3 -0.2 0.3 0.6 INF INF units box\ncreate_atoms 2 region bed\ngroup bed type 2\ngroup oil type 1",
                            "materials": "oil bed", "moving": "oil", "more": "fix b bed fsi/wall/particle"}, r"Fix fsi/inlet i: atom \d+ of a wall at -0\.\d+ .* is where fluid of its buffer should be"),
     ("a solid in the buffer", {"start": ATOMS + "region solid block 3.2 3.5 0.3 0.6 INF INF units box\ncreate_atoms 2 region solid\nset type 2 mol 1",
@@ -633,6 +646,8 @@ def test_bad_input(tmp_path, name, change, message):
     text = deck(**change)
     if name == "starves":
         text = text.replace("tension yes", "tension no")
+    if name == "summation":
+        text = text.replace(" density/diffusion 0.1 shift 0.2", "")
     if "rubber" in str(change):
         text = text.replace("pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1 shift 0.2",
                             "pair_style hybrid fsi/fluid sound 10 tension yes laminar/visc fsi/solid/tl"

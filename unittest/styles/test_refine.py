@@ -689,3 +689,16 @@ def test_zone_at_a_plane():
             assert (s.get("type")[s.get("x")[:, 0] < 0] == 1).all() and abs(s.get("rho") / 1000 - 1).max() < 0.01
             states.append((s.get("type"), s.get("x")))
     assert np.array_equal(states[0][0], states[1][0]) and np.abs(states[0][1] - states[1][1]).max() < 1e-11
+
+
+def test_open_end_counts_finer_fluid():
+    """Where there is none of the coarsest within two buffer lengths before a plane: particles three per cent too heavy for their lattice, as finer ones, too."""
+    m = 1.03 * 1000 / Kernel("wendland", 2, 1.5 * DX).lattice_sum(DX, 2)
+    ends = (f"set group all mass {m!r}", "fix i all fsi/inlet xlo 0 velocity 0 0 0", "fix o all fsi/outlet xhi 1.6")
+    for zone in ("5 6", "0 1.2"):
+        with box_scene(lattice((32, 8), DX), size=[2.0, 0.4, 0], boundary="f p p", zone=f"block {zone} INF INF INF INF", refine="region zone settle 0", room=0.4,
+                       fluid="density/diffusion 0.1 background 500", before=ends) as s:
+            go(s, 0)
+            fill = s.lmp.extract_fix("i", 0, 1, 10)
+            print(zone, fill)
+            assert fill == pytest.approx(1.03, abs=1e-4)

@@ -41,6 +41,7 @@ TESTS = {
     "fsi_check.cpp": "stop", "fsi_set.cpp": "density", "fsi_material_command.cpp": "materials", "compute_fsi_energy.cpp": "energy solid_tl", "compute_fsi_force.cpp": "force",
     "compute_fsi_probe.cpp": "probe", "compute_fsi_surface_atom.cpp": "surface", "compute_fsi_atom.cpp": "density solid",
     "fsi_volumetric.h": "solid_volumetric", "fsi_changes.*": "redefine", "fsi_value.*": "redefine move stream", "fsi_cells.h": "advice self_contact",
+    "fsi_everywhere.h": "refine",
     "fsi_advice.cpp": "advice", "fsi_stop.cpp": "stop watch",
 }
 SWAPS = {"+": "-", "-": "+", "*": "/", "/": "*", "+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "<": ">", ">": "<", "<=": ">", ">=": "<", "==": "!=",
