@@ -84,7 +84,7 @@ def add(summary, folder, suffix="", finest=False):
         summary.add(f"drag_scatter{suffix}", scatter)
         summary.add(f"lift_scatter{suffix}", lift_scatter)
     else:
-        for name, value, reference, target in zip(("drag_max", "lift_max", "strouhal"), vortices(folder), (DRAG_MAX, LIFT_MAX, STROUHAL), (0.03, 0.07, 0.02)):
+        for name, value, reference, target in zip(("drag_max", "lift_max", "strouhal"), vortices(folder), (DRAG_MAX, LIFT_MAX, STROUHAL), (0.015, 0.03, 0.01)):
             summary.add(name + suffix, value, "", reference, UNSTEADY, target if finest else None)
 
 

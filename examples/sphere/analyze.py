@@ -28,9 +28,7 @@ def read(folder):
     """(values of the log, time in D/U, drag coefficient)"""
     values = log.read(Path(folder) / "log.lammps").values
     s = series.read(Path(folder) / "series.csv")
-    speed = values["velocity"]
-    area = 0.25 * np.pi * DIAMETER**2
-    return values, s.time * speed / DIAMETER, values["parts"] * s["drag"] / (500 * speed**2 * area)
+    return values, s.time * values["velocity"] / DIAMETER, s["drag"]
 
 
 def add(summary, folder, suffix="", judged=True):

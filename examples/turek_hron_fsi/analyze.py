@@ -26,9 +26,9 @@ REFERENCE = {
 }
 UNITS = {"ux": "mm", "uy": "mm", "drag": "N/m", "lift": "N/m"}
 TARGETS = {("fsi1", "uy"): 0.05, ("fsi1", "drag"): 0.03, ("cfd1", "drag"): 0.02, ("cfd2", "drag"): 0.02,
-           ("fsi2", "uy_amplitude"): 0.03, ("fsi2", "frequency"): 0.03, ("fsi2", "drag_mean"): 0.03, ("fsi2", "drag_amplitude"): 0.1,
-           ("fsi2", "lift_amplitude"): 0.1, ("fsi3", "uy_amplitude"): 0.05, ("fsi3", "frequency"): 0.03, ("fsi3", "drag_mean"): 0.03,
-           ("fsi3", "lift_amplitude"): 0.1}
+           ("fsi2", "uy_amplitude"): 0.03, ("fsi2", "frequency"): 0.02, ("fsi2", "drag_mean"): 0.03, ("fsi2", "drag_amplitude"): 0.08,
+           ("fsi2", "lift_amplitude"): 0.08, ("fsi3", "uy_amplitude"): 0.04, ("fsi3", "frequency"): 0.02, ("fsi3", "drag_mean"): 0.03,
+           ("fsi3", "drag_amplitude"): 0.1, ("fsi3", "lift_amplitude"): 0.1}
 PERIODS, GROUPS = 3, 3  # figures are means over so many successive groups of the last periods: flags at Re = 200 swing unevenly
 SHOWN = 3  # periods in the picture of the study
 COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, plot.GREY)
