@@ -94,6 +94,9 @@ QUOTED = [
     ("doc/choosing.md", "{} % of the amplitude", lambda: curve("turek_hron_fsi", "flag twice", 2)),
     ("doc/choosing.md", "{}, {}, {} % of the drag", lambda: figures("cylinder_channel", "drag_max_re_100_14", "drag_max_re_100_20", "drag_max_re_100_28")),
     ("doc/choosing.md", "14, 20, 28 per diameter | {}, {}, {} min", lambda: minutes("cylinder_channel", "re_100_14", "re_100_20", "re_100_28")),
+    ("doc/choosing.md", "{} % of the amplitude, {} % of the drag | 40 per diameter there | {}, {} min", lambda: [
+        *figures("turek_hron_fsi", "uy_amplitude_fsi2_2_to_8"), *figures("cylinder_channel", "drag_max_re_100_14_to_40"),
+        *minutes("turek_hron_fsi", "fsi2_2_to_8"), *minutes("cylinder_channel", "re_100_14_to_40")]),
     ("doc/choosing.md", "{}, {} % of the speed", lambda: curve("taylor_green", "shifting, quintic", 0.04, 0.025)),
     ("doc/choosing.md", "{}, {} % of the period | 10, 20 rows", lambda: curve("standing_wave", "quintic 1.0", 0.05, 0.025)),
     ("doc/choosing.md", "{}, {} % of the pressure", lambda: curve("still_water", "quintic 0.94", 0.05, 0.025)),
@@ -183,8 +186,10 @@ SCENES = [
      lambda scene, coarse, fine: figures(scene, coarse) + mixed(scene, fine), ["lift_amplitude_fsi3_2", "lift_amplitude_fsi3_4"]),
     ("twisting_column", "top | {} turns", sizes, ["largest_twist"]),
     ("twisting_column", "over the first | {} |", sizes, ["twist_the_other_way"]),
-    *((("vortex_induced", f"| {u} | {{}} (-{{}} %) | {{}} (-{{}} %) |", mixed, [f"amplitude_{u}_8", f"amplitude_{u}_12"])) for u in (4, 6)),
-    *((("vortex_induced", f"| {u} | {{}} (-{{}} %) | - |", mixed, [f"amplitude_{u}_8"])) for u in (5, 7)),
+    *((("vortex_induced", f"| {u} | {{}} (-{{}} %) | {{}} (-{{}} %) | {{}} ({sign}{{}} %) |", mixed, [f"amplitude_{u}_{n}" for n in ("8", "12", "7_to_28")]))
+      for u, sign in ((4, "-"), (6, "+"))),
+    ("vortex_induced", "| 5 | {} (-{} %) | - |", mixed, ["amplitude_5_8"]),
+    ("vortex_induced", "| 7 | {} (-{} %) | - | {} (-{} %) |", mixed, ["amplitude_7_8", "amplitude_7_7_to_28"]),
     *((("vortex_induced", f"| {u} | {{}} (", sizes, [f"amplitude_{u}_8"])) for u in (3, 8)),
     ("vortex_induced", "{} D and {} D in the last two spans", sizes, ["amplitude_8_8", "amplitude_before_8_8"]),
     *((("wedge_entry", f"{beta} degrees | force / (rho V^3 t) | {{}} | {{}} | {{}} (-{{}} %)",
