@@ -4,6 +4,7 @@
 main reads series.csv, particles.dump and log.lammps of one run; study compares the runs of cases.json.
 """
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -91,6 +92,9 @@ def study(folder, cases):
         values, time, place = add(summary, path, f"_{name}", name in finest.values())
         found.setdefault((values["across"], values["finest"]), []).append((values["reduced"], 0.5 * np.ptp(place[time >= time[-1] - LATE])))
         curves.append((name, time, place))
+    shown = cases.get(finest.get(4), folder) / "vorticity.png"  # the page's picture
+    if shown.exists() and shown.parent != folder:
+        shutil.copyfile(shown, folder / shown.name)
     with plot.picture(folder / "amplitude.png", 9.0, 3.6) as figure:
         left, right = figure.subplots(1, 2)
         for k, (label, mark) in enumerate((("Ahn & Kallinderis 2006", "s"), ("Borazjani et al. 2008", "o"))):
