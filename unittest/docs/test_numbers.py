@@ -132,6 +132,7 @@ QUOTED = [
     ("doc/choosing.md", "frequency [rad/s] | {} | {} | {} |", lambda: sound("ring_annulus", "frequency")),
     ("doc/choosing.md", "peak pressure / (rho V^2/2) | {}; {} | {}; {} | {}; {} |", lambda: sound("wedge_entry", "force", "peak_pressure")),
     ("doc/src/fix_fsi_wall_particle.rst", "scatters by {} % instead of {} %", lambda: figures("wedge_entry", "force_scatter_30_25", "force_scatter_30_25_lattice")),
+    ("README.md", "drag is {} % and lift {} % off", lambda: figures("cylinder_free", "drag_re_200", "lift_re_200")),
     ("doc/src/Howto_peers.rst", "here {} to {} % off", lambda: figures("turek_hron_fsi", "uy_amplitude_fsi3_2_to_8", "uy_amplitude_fsi3_4")),
     ("unittest/hard/README.md", "obstacle is {} % off", lambda: hard("obstacle")[-1:]),
     ("examples/oscillating_plate/README.md", "without it too soft by {} % with 5 particles", lambda: run_of("oscillating_plate", "hourglass control, TL = 0")),
