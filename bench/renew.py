@@ -90,15 +90,15 @@ def take_pictures(name):
 def take(wanted):
     """Takes to doc what results have of these: SCENE or SCENE/CASE, cost/NAME, hard, each of one commit; all other data stay as they are."""
     page = paths.PAGE / "results.json"
-    found = json.loads(page.read_text())
+    found, known = json.loads(page.read_text()), tables()
     for what in wanted:
-        files = checked(tables().get(what, {}))
+        files = checked(known.get(what, {}))
         for path, target in files.items():
             shutil.copyfile(path, target)
         name, _, case = what.partition("/")
         if name not in paths.scenes():
             if not files:
-                raise Refusal(f"'{what}' is neither a scene, SCENE/CASE, nor one of {', '.join(tables())}")
+                raise Refusal(f"'{what}' is neither a scene, SCENE/CASE, nor one of {', '.join(known)}")
             continue
         path, = checked([paths.RESULTS / what / "summary.json"])
         summary = json.loads(path.read_text())

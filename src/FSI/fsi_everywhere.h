@@ -17,6 +17,7 @@
 #ifndef LMP_FSI_EVERYWHERE_H
 #define LMP_FSI_EVERYWHERE_H
 
+#include "atom.h"
 #include "domain.h"
 #include "fsi_cells.h"
 #include "fsi_gather.h"
