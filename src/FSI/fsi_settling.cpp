@@ -167,6 +167,7 @@ template <class T, class K> void Settling::sweep(const std::vector<K> &of_types)
   double *const *const x = atom->x, *const account = scene.account(Ledger::LEVELS);
   const int *const type = atom->type;
   std::vector<std::array<double, 4>> found(rows.size());
+  const bool segments = walls.finite();
   std::vector<std::pair<size_t, int>> at_walls;    // rows, and bits of the walls that they see
   run_loop<T>([&](const auto &number) FSI_INLINE_LAMBDA {
     using Number = std::decay_t<decltype(number)>;
@@ -176,14 +177,13 @@ template <class T, class K> void Settling::sweep(const std::vector<K> &of_types)
       double *const sums = found[r].data();
       add_images<Number>(row, points.data(), type, with, mirrors[0], sums);
       const int near = walls.near(x[row.i], 0.5 * (scene.resolution[type[row.i]].cut + scene.cut));
-      if (near) at_walls.emplace_back(r, near);
+      if (near && segments) at_walls.emplace_back(r, near);
       for (size_t s = 0; near && s < reflections.size(); s++)
         if ((reflections[s].mask & near) == reflections[s].mask && !walls.finite(reflections[s]))
           add_images<Number>(row, points.data(), type, with, mirrors[s + 1], sums);
     }
   });
   for (const auto &[r, near] : at_walls) {    // segments hide some of what is behind them
-    if (!walls.finite()) break;
     const int i = rows[r].i;
     double *const sums = found[r].data();
     for (int n = 0; n < rows[r].n; n++) {
