@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_clock.h"
+#include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "fsi_value.h"
@@ -146,11 +147,10 @@ double FixFSIMove::now() const
 void FixFSIMove::init()
 {
   const auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/move");
-  int mine = 0, any;
+  bool mine = false;
   for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit)) mine = 1;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any)
+    mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit);
+  if (anywhere(mine, world))
     error->all(FLERR,
                "Particles of fix fsi/move {} are also in the group of fix fsi, which moves them, "
                "too: leave them out",

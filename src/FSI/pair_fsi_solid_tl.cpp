@@ -31,7 +31,7 @@
 #include "fsi_profile.h"
 #include "fsi_solid_laws.h"
 #include "fsi_swaps.h"
-#include "fsi_viscosity_artificial.h"
+#include "fsi_viscosity.h"
 #include "fsi_volumetric.h"
 #include "math_extra.h"
 #include "memory.h"
@@ -40,8 +40,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
@@ -271,37 +269,22 @@ template <class Call> auto PairFSISolidTL::with_law(Call call) const
 
 void PairFSISolidTL::internal_forces()
 {
-  if (fix_fsi->dim == 2)
-    gather_points<2>();
-  else
-    gather_points<3>();
+  fix_fsi->dim == 2 ? gather_points<2>() : gather_points<3>();
   const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
   with_law([&](const auto *law_of, auto dimension) {
     bond_forces<std::decay_t<decltype(*law_of)>, decltype(dimension)::value>(law_of);
   });
   strain_energy += volumetric_energy;
-  if (list) {
-    if (fix_fsi->dim == 2)
-      contact_forces<2>();
-    else
-      contact_forces<3>();
-  }
+  if (list) fix_fsi->dim == 2 ? contact_forces<2>() : contact_forces<3>();
   if (reference->images.planes.any() && fsolid) {
     // in sub-steps, which add up to the force of a step
     const double part = update->setupflag ? 1.0 : 1.0 / fix_fsi->substeps;
-    if (fix_fsi->dim == 2)
-      fold_images<2>(part);
-    else
-      fold_images<3>(part);
+    fix_fsi->dim == 2 ? fold_images<2>(part) : fold_images<3>(part);
   }
-  if (!reference->near_itself.empty()) {
-    if (fix_fsi->dim == 2)
-      self_contact_forces<2>();
-    else
-      self_contact_forces<3>();
-  }
+  if (!reference->near_itself.empty())
+    fix_fsi->dim == 2 ? self_contact_forces<2>() : self_contact_forces<3>();
   exchange(fix_fsi->profile, comm, [this]() {
-    reference->swaps.reverse(this);
+    reference->swaps.reverse<Pair>(this);
   });
 }
 
@@ -419,7 +402,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
     };
     have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
     exchange(profile, comm, [&]() {
-      swaps.forward(this);
+      swaps.forward<Pair>(this);
     });
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
@@ -432,7 +415,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
       smoothed.force[of] += smoothed.force[k];
     });
     exchange(profile, comm, [&]() {
-      swaps.reverse(this);
+      swaps.reverse<Pair>(this);
     });
   });
   comm_forward = forward;
@@ -729,10 +712,7 @@ void PairFSISolidTL::begin_stress()
   forward_positions();    // ghosts still stand where they were in the middle of the step
   reference->images.update(atom->x, atom->v);
   if (!smoothed.on()) return;
-  if (fix_fsi->dim == 2)
-    gather_points<2>();
-  else
-    gather_points<3>();
+  fix_fsi->dim == 2 ? gather_points<2>() : gather_points<3>();
   smooth_strains(true);
 }
 
@@ -777,7 +757,7 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
 void PairFSISolidTL::forward_positions()
 {
   exchange(fix_fsi->profile, comm, [this]() {
-    reference->swaps.forward(this);
+    reference->swaps.forward<Pair>(this);
   });
 }
 
