@@ -38,7 +38,8 @@ using namespace FixConst;
 using namespace FSI;
 
 // as in the command, in the order of Motion
-static const char *const MOTIONS[] = {"linear", "wiggle", "rotate", "transrot", "variable"};
+static const std::vector<std::string> MOTIONS = {"linear", "wiggle", "rotate", "transrot",
+                                                 "variable"};
 static constexpr double FREE = HUGE_VAL;    // stands for NULL
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
@@ -48,14 +49,11 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/move", error);
-  const auto found = std::find(std::begin(MOTIONS), std::end(MOTIONS), std::string(arg[3]));
-  if (found == std::end(MOTIONS))
-    error->all(
-        FLERR,
-        "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable",
-        arg[3]);
-  motion = static_cast<int>(found - MOTIONS);
-  Keywords words(lmp, std::string("fix fsi/move ") + *found);
+  const auto found = std::find(MOTIONS.begin(), MOTIONS.end(), arg[3]);
+  if (found == MOTIONS.end())
+    error->all(FLERR, "Unknown fix fsi/move style {}: expected {}", arg[3], list_of(MOTIONS));
+  motion = static_cast<int>(found - MOTIONS.begin());
+  Keywords words(lmp, "fix fsi/move " + *found);
   motion == VARIABLE ? read_variables(words, narg - 4, arg + 4)
                      : read_motion(words, narg - 4, arg + 4);
   if (domain->dimension == 2 && (rate[2] != 0.0 || (motion == VARIABLE && sets_velocity(2))))

@@ -132,6 +132,7 @@ void FixFSIStress::enter_start(const std::vector<State> &state)
   places.add(start, 0, dim, {NONE, FLUID, SOLID, RIGID});
   sent = &places;
   comm->forward_comm(this);
+  sent = nullptr;
 }
 
 double FixFSIStress::distance_at_start(int i, int j) const

@@ -251,9 +251,9 @@ namespace FSI {
   //
   // A fluid strained without a change of area (3D: volume) keeps its density. The number density
   // psi = sum W of its particles, which is what continuity follows and pressure works on, does not:
-  // on a square or simple cubic lattice psi(e) = psi (1 + s e^2/2 + ...), and the work p dpsi/psi is
-  // that of a solid with the modulus s p. s > 0 stiffens a flow (waves are too fast); where s < 0 a
-  // lattice under pressure gives way by itself. It is an error that does not fall with dx.
+  // on a square or simple cubic lattice psi(e) = psi (1 + s e^2/2 + ...), and the work p dpsi/psi
+  // is that of a solid with the modulus s p. s > 0 stiffens a flow (waves are too fast); where
+  // s < 0 a lattice under pressure gives way by itself. It is an error that does not fall with dx.
   //
   // s is a sum over the neighbors of second derivatives of W(|F x|), g = W'/r:
   //   stretch, F = diag(exp e, exp -e):   sum (W'' - g) (x^2 - y^2)^2/r^2 + 2 g (x^2 + y^2)

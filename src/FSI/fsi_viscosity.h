@@ -49,9 +49,9 @@ namespace FSI {
   //     F_ij = V_i V_j (d + 2)(eta_i + eta_j) (v_ij.x_ij)/r^2 grad_i W_ij
   // Both papers add 0.01 h^2 to r^2, which makes the viscosity 0.6 % smaller; but nothing is
   // singular here: grad_i W_ij = g x_ij, g is finite. Both are the Laplacian of an incompressible
-  // flow. The plain one takes eta |grad v|^2 from the flow, the central one 2 eta e:e, e the rate of
-  // strain: only that is right at a free surface (Colagrossi, Antuono, Souto-Iglesias and Le Touze
-  // 2011), and only that keeps angular momentum; the plain one is quieter in shear.
+  // flow. The plain one takes eta |grad v|^2 from the flow, the central one 2 eta e:e, e the rate
+  // of strain: only that is right at a free surface (Colagrossi, Antuono, Souto-Iglesias and Le
+  // Touze 2011), and only that keeps angular momentum; the plain one is quieter in shear.
   template <int D> struct LaminarViscosity {
     double tiny;    // for places that hold i itself
     bool central;

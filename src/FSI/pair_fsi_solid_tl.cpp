@@ -768,59 +768,44 @@ int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_f
   const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0,
                            pbc_flag ? pbc[1] * domain->yprd : 0.0,
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
-  int m = 0;
-  if (sends_strains) {
-    for_solids(n, listed, 0, [&](int i) {
-      buf[m++] = smoothed.strain[i];
-    });
-    return m;
-  }
+  double *const begin = buf;
   for_solids(n, listed, 0, [&](int i) {
-    for (int d = 0; d < dim; d++) buf[m++] = atom->x[i][d] + shift[d];
-    if (velocities)
-      for (int d = 0; d < dim; d++) buf[m++] = atom->v[i][d];
+    if (sends_strains) return void(*buf++ = smoothed.strain[i]);
+    for (int d = 0; d < dim; d++) *buf++ = atom->x[i][d] + shift[d];
+    if (velocities) buf = std::copy_n(atom->v[i], dim, buf);
   });
-  return m;
+  return buf - begin;
 }
 
 void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
   const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
-  if (sends_strains)
-    return for_solids(n, nullptr, first, [&](int i) {
-      smoothed.strain[i] = *buf++;
-    });
   for_solids(n, nullptr, first, [&](int i) {
+    if (sends_strains) return void(smoothed.strain[i] = *buf++);
     for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
-    if (velocities)
-      for (int d = 0; d < dim; d++) atom->v[i][d] = *buf++;
+    for (int d = 0; velocities && d < dim; d++) atom->v[i][d] = *buf++;
   });
+}
+
+double *PairFSISolidTL::carried_back(int i)
+{
+  return sends_strains ? &smoothed.force[i] : fsolid[i];
 }
 
 int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 {
-  int m = 0;
-  if (sends_strains) {
-    for_solids(n, nullptr, first, [&](int i) {
-      buf[m++] = smoothed.force[i];
-    });
-    return m;
-  }
+  double *const begin = buf;
   for_solids(n, nullptr, first, [&](int i) {
-    for (int d = 0; d < fix_fsi->dim; d++) buf[m++] = fsolid[i][d];
+    buf = std::copy_n(carried_back(i), comm_reverse, buf);
   });
-  return m;
+  return buf - begin;
 }
 
 void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
-  if (sends_strains)
-    return for_solids(n, listed, 0, [&](int i) {
-      smoothed.force[i] += *buf++;
-    });
   for_solids(n, listed, 0, [&](int i) {
-    for (int d = 0; d < fix_fsi->dim; d++) fsolid[i][d] += *buf++;
+    for (int d = 0; d < comm_reverse; d++) carried_back(i)[d] += *buf++;
   });
 }
 
