@@ -260,8 +260,8 @@ def side_by_side(rows):
     return list(found.items())
 
 
-def page(rows, pairs):
-    """The page's text; pairs: rows of tools/cost peers, of which those of two ranks."""
+def page(rows, pairs, more=()):
+    """The page's text; pairs: rows of tools/cost peers, of which those of two ranks; more: points of its list."""
     lines = ["# Several ranks", "",
              "The package runs on any number of MPI ranks, as LAMMPS does, and gives the same forces to round-off.",
              "Two ranks were timed. Of more ranks work and messages were counted, not timed.", "",
@@ -274,7 +274,7 @@ def page(rows, pairs):
              "- Bytes and exchanges are what *fix fsi* prints; `unittest/tools/test_pay.py` checks them around the MPI calls.",
              "- Balance: a dam break in a tank that is half empty, 1,250 particles, two ranks, 0.5 s.",
              "- With the box cut in halves one rank has nearly all particles, and two ranks gain little: use `fix balance all balance 20 1.05 shift x 20 1.02`.",
-             "- Two ranks are timed by `tools/cost peers`, the rest by `tools/cost scaling`.", "", "| quantity | value |", "|---|---:|"]
+             *more, "- Two ranks are timed by `tools/cost peers`, the rest by `tools/cost scaling`.", "", "| quantity | value |", "|---|---:|"]
     lines += [f"| {r['what']} | {r['ratio']:.2f} ± {r['spread']:.2f} |" for r in pairs if r["what"].startswith("2 ranks") and r["ratio"] is not None]
     for what, values in side_by_side(rows):
         lines.append(f"| {what} | {'; '.join(map(in_words, values))} |")

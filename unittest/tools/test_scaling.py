@@ -10,6 +10,7 @@ from fsi.command import Refusal
 
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import effects  # noqa: E402
+import largest  # noqa: E402
 import peers  # noqa: E402
 import scaling  # noqa: E402
 import solid_variants  # noqa: E402
@@ -52,6 +53,21 @@ def test_pages_hold_their_rows():
 
 def test_largest_scene_is_memory_over_the_peak_of_the_larger_run():
     assert scaling.largest({"small": {"peak": 1.0}, "large": {"peak": 2.0**30}}) == 24.0
+
+
+def test_largest_run_keeps_its_log(tmp_path):
+    """A small one: 12^3 particles, of which each has its volume in the restart file and 3 steps are run."""
+    log = tmp_path / "largest.log"
+    found = largest.measured(12, log)
+    assert found["particles"] == (1728, "") and "Loop time" in log.read_text() and 0.01 < found["peak of the memory"][0] < 1
+    assert 1728 * 80 < found["restart file"][0] * 2**30 < 1728 * 200  # position, velocity, density, type and more, 112 bytes in large ones
+    row = [{"what": "particles", "value": 27e6}, {"what": "peak of the memory", "value": 19.0}]
+    assert "27 million particles on one rank, 19.0 GB" in largest.line(row)
+
+
+def test_largest_refuses_nonsense():
+    with pytest.raises(Refusal, match="edge=none"):
+        largest.main(["edge=none"])
 
 
 def test_still_decks_move_nothing():
