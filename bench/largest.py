@@ -32,9 +32,9 @@ def measured(edge, kept_log):
 
 def main(arguments):
     """tools/cost largest [edge=300]"""
-    options, rest = split(arguments, ("edge", "out"), "edge=N or out=FOLDER", more=False)
+    options, _ = split(arguments, ("edge", "out"), "edge=N or out=FOLDER", more=False)
     edge = whole("edge", options.pop("edge", "300"))
-    job = Job("largest", [f"{name}={value}" for name, value in options.items()] + rest)
+    job = Job("largest", [f"{name}={value}" for name, value in options.items()])
     found = measured(edge, job.folder / "largest.log")
     rows = [{"what": what, "value": value, "unit": unit} for what, (value, unit) in found.items()]
     job.write(("what", "value", "unit"), rows, 4, line(rows) + "\n")
