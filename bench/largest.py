@@ -31,9 +31,9 @@ def measured(edge, kept_log):
 
 
 def main(arguments):
-    """tools/cost largest [edge=300]"""
+    """tools/cost largest [edge=311]"""
     options, _ = split(arguments, ("edge", "out"), "edge=N or out=FOLDER", more=False)
-    edge = whole("edge", options.pop("edge", "300"))
+    edge = whole("edge", options.pop("edge", "311"))
     job = Job("largest", [f"{name}={value}" for name, value in options.items()])
     found = measured(edge, job.folder / "largest.log")
     rows = [{"what": what, "value": value, "unit": unit} for what, (value, unit) in found.items()]

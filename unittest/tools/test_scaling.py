@@ -51,8 +51,9 @@ def test_pages_hold_their_rows():
     assert "| compute | 1 us |" in text and "| bytes | 98 B |" in text and text.count("2 ranks over 1, water, by the clock | 1.70 ± 0.10 |") == 1
 
 
-def test_largest_scene_is_memory_over_the_peak_of_the_larger_run():
-    assert scaling.largest({"small": {"peak": 1.0}, "large": {"peak": 2.0**30}}) == 24.0
+def test_cubes_of_water_have_a_shell_of_ghosts():
+    """10^3 particles on each of 8 ranks, a shell of 2 around them: 14^3 - 10^3 ghosts."""
+    assert scaling.cubes({"tau": 1e-6, "w": 2, "bytes": 100}, 8e3, 8) == pytest.approx((1e-3, 1.744, 174400))
 
 
 def test_largest_run_keeps_its_log(tmp_path):
