@@ -29,6 +29,13 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
+// LAMMPS numbers fixes as they are made, and shows that to classes derived from them only
+namespace {
+struct Numbered : public Fix {
+  static constexpr auto number = &Numbered::instance_me;
+};
+}    // namespace
+
 // Who is where in the arrays of this rank, and of what type: FNV-1a of it
 uint64_t Changes::fingerprint() const
 {
@@ -74,10 +81,11 @@ std::vector<std::uintptr_t> Changes::present() const
     list.push_back(part && part->is_set_up());
   }
   for (auto &region : domain->get_region_list()) add(region);
-  for (auto &fix : modify->get_fix_list()) add(fix);
+  // a new one may be at the address of that in whose place it came
+  for (auto &fix : modify->get_fix_list()) list.push_back(fix->*Numbered::number);
   for (auto &compute : modify->get_compute_list()) {
     add(compute);
-    list.push_back(compute->is_initialized());    // another one may be at the same address
+    list.push_back(compute->is_initialized());
   }
   return list;
 }
