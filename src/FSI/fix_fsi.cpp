@@ -276,7 +276,7 @@ void FixFSI::pre_exchange()
 // paper eq. 15: drift to the middle of the step
 void FixFSI::initial_integrate(int)
 {
-  if (update->ntimestep - 1 == update->firststep) changes.check_pre_no();
+  changes.check_pre_no();
   for (auto *p : parts) p->start_step();
   members->frame.move();
   if (fresh_start()) {

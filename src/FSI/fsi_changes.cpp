@@ -17,7 +17,7 @@
 #include "compute.h"
 #include "domain.h"
 #include "error.h"
-#include "fix.h"
+#include "fix_fsi.h"
 #include "force.h"
 #include "fsi_part.h"
 #include "modify.h"
@@ -90,10 +90,26 @@ std::vector<std::uintptr_t> Changes::present() const
   return list;
 }
 
+static bool in_first_step(const Update *update)
+{
+  return update->ntimestep - 1 == update->firststep;
+}
+
+static void refuse(Error *error)
+{
+  error->all(FLERR,
+             "Run with pre no: fixes, computes, regions or pair styles are others than when the "
+             "last run was set up. Leave out pre no");
+}
+
 void Changes::check_pre_no() const
 {
-  if (there != present())
-    error->all(FLERR,
-               "Run with pre no: fixes, computes, regions or pair styles are others than when the "
-               "last run was set up. Leave out pre no");
+  if (in_first_step(update) && there != present()) refuse(error);
+}
+
+void Changes::check_pre_no(LAMMPS *lmp, const FixFSI *fix_fsi)
+{
+  if (!in_first_step(lmp->update)) return;
+  if (!fix_fsi || fix_fsi != FixFSI::there(lmp) || fix_fsi->changes.there.empty())
+    refuse(lmp->error);
 }

@@ -23,6 +23,7 @@
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_bond_rows.h"
+#include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clamps.h"
 #include "fsi_contact.h"
@@ -251,6 +252,7 @@ const std::vector<int> &PairFSISolidTL::solids() const
 // forces, energy and virial are seen
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
+  Changes::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();

@@ -25,8 +25,8 @@ class Maker:
         self.rng = random.Random(seed)
         self.scene = self.rng.choice(("tank", "tank", "updated", "open", "stream", "levels", "levels"))
         self.now = dict(SCENES[self.scene][0])
-        # bodies whose density is summed are in tension at their faces, and tear
-        self.others = {name: {t: r for t, r in texts.items() if "solid summation" not in t} for (scene, name), texts in OTHER.items() if scene == self.scene}
+        # bodies whose density is that of their neighbors are in tension at faces and holes, and tear
+        self.others = {name: {t: r for t, r in texts.items() if "solid summation" not in t and "solid ratio" not in t} for (scene, name), texts in OTHER.items() if scene == self.scene}
         self.gone, self.spots, self.files = [], 0, 0
         for name in self.rng.sample(sorted(self.others), self.rng.choice((0, 0, 1, 2))):
             self.choose(name)

@@ -334,7 +334,8 @@ AGAIN = {  # scene, what comes between, what is said: an error, or a warning and
     "another compute of the same ID": ("tank", "uncompute force\ncompute force beam fsi/force\nrun 2 pre no", "ERROR: Run with pre no"),
     "a fix that is new": ("tank", "fix more all fsi/watch 7\nrun 2 pre no", "ERROR: Run with pre no"),
     **{f"another {name} in its place": (scene, f"{part(scene, name)}run 2 pre no", "ERROR: Run with pre no") for scene, name in
-       [("tank", "dt"), ("tank", "move"), ("open", "mirror"), ("open", "inlet"), ("levels", "refine"), ("stream", "stream")]},
+       [("tank", "dt"), ("tank", "move"), ("tank", "pair"), ("open", "mirror"), ("open", "inlet"), ("levels", "refine"), ("stream", "stream")]},
+    "another fix fsi": ("stream", "unfix fsi\n" + part("stream", "fsi") + "run 2 pre no", "ERROR: Run with pre no"),
     "a type that is another": ("tank", "region w block 0 0.03 0 0.03 INF INF units box\nset region w type 2\n" + dump("x"), "ERROR: Compute fsi/atom needs a run before it"),
     "as many new atoms as old ones": ("tank", "group g region beam\ndelete_atoms group g compress no\ncreate_atoms 2 region beam\n" + dump("x"),
                                       "ERROR: Compute fsi/atom needs a run before it"),
