@@ -119,14 +119,18 @@ def take(wanted):
 
 def add_case(data, name, case, summary):
     """Puts one case in the data of a scene whose others were run before: figures that the study has with it and not without, next to what
-    else results have of this commit. They are judged if those of their names were."""
-    there = [k for k in scene.cases(name) if k == case or commit_of(paths.RESULTS / name / k) == summary["commit"]]
+    else results have of this commit. A finer case takes over the targets of the one that was the finest of those in results, of whichever
+    commit they are; else figures are judged if those of their names were."""
+    have = [k for k in scene.cases(name) if commit_of(paths.RESULTS / name / k)]
+    there = [k for k in have if k == case or commit_of(paths.RESULTS / name / k) == summary["commit"]]
     without = [f["name"] for f in studied(name, [k for k in there if k != case])]
     new = [f for f in studied(name, there) if f["name"] not in [*without, *results.COST]]
     old = {f["name"]: f for f in data["figures"]}
-    for figure in new:
-        if (old.get(figure["name"]) or {"target": None})["target"] is None:
-            figure |= {"target": None, "met": None}
+    judged = {f["name"] for f in studied(name, have) if f.get("target") is not None}
+    over = [f["name"] for f in studied(name, [k for k in have if k != case]) if f.get("target") is not None and f["name"] not in judged]
+    over = [n for n in over if n in old and old[n]["target"] is not None]
+    for figure in [old[n] for n in over] + [f for f in new if not over and (old.get(f["name"]) or {"target": None})["target"] is None]:
+        figure |= {"target": None, "met": None}
     names = [f["name"] for f in new]
     data["figures"] = [f for f in data["figures"] if f["name"] not in names]
     at = next(k for k, f in enumerate(data["figures"]) if f["name"] in results.COST)

@@ -24,10 +24,10 @@
 #include "fsi_check.h"
 #include "fsi_clock.h"
 #include "fsi_frame.h"
+#include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
-#include "fsi_order.h"
 #include "fsi_others.h"
 #include "fsi_part.h"
 #include "fsi_population.h"
@@ -173,10 +173,9 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
 {
   FixFSI *const fix_fsi = find(lmp, who);
   fix_fsi->find_parts();    // commands since the last run may have changed them
-  int mine = fix_fsi->changes.of_atoms(), any = 0;
+  bool mine = fix_fsi->changes.of_atoms();
   for (const auto *p : fix_fsi->parts) mine |= !p->is_set_up();
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
-  if (any)
+  if (anywhere(mine, lmp->world))
     lmp->error->all(FLERR,
                     "{} needs a run before it, if only run 0, and after atoms are made, "
                     "deleted or changed, or a pair style is given",

@@ -18,7 +18,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "force.h"
 #include "fsi_bond_rows.h"
 #include "fsi_cells.h"
 #include "fsi_changes.h"
@@ -164,13 +163,11 @@ void FixFSIReference::find_planes()
 
 bool FixFSIReference::any() const
 {
-  int mine = std::any_of(slot, slot + atom->nlocal,
-                         [](int s) {
-                           return s >= 0;
-                         }),
-      all;
-  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
-  return all;
+  return anywhere(std::any_of(slot, slot + atom->nlocal,
+                              [](int s) {
+                                return s >= 0;
+                              }),
+                  world);
 }
 
 void FixFSIReference::setup_post_neighbor()
@@ -244,7 +241,7 @@ void FixFSIReference::follow_commands()
 {
   refuse_other_materials();
   const tagint *const tag = atom->tag;
-  int mine = 0, any;
+  bool mine = false;
   for (int i = 0; i < atom->nlocal && !mine; i++) {
     if (slot[i] < 0) continue;
     mine = owner[slot[i]] != tag[i];
@@ -253,8 +250,7 @@ void FixFSIReference::follow_commands()
       mine = t > atom->map_tag_max || atom->map(t) < 0;
     }
   }
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) return;
+  if (!anywhere(mine, world)) return;
 
   std::vector<tagint> ids;    // old and new
   for (int i = 0; i < atom->nlocal; i++)
@@ -326,10 +322,7 @@ void FixFSIReference::take()
   std::vector<int> bare;
   for (int i = 0; i < atom->nlocal; i++)
     if (slot[i] < 0 && is_solid(i)) bare.push_back(i);
-  bigint mine = bare.size();
-  bigint all;
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all == 0) return;
+  if (!anywhere(!bare.empty(), world)) return;
 
   // a body is bonded at once
   std::set<tagint> bonded;
@@ -347,10 +340,7 @@ void FixFSIReference::take()
   // from now on its strain says what it is
   for (const int i : bare) atom->rho[i] = fix_fsi->state[atom->type[i]].rho0;
   if (images.planes.any()) check_planes(bare);
-  if (domain->dimension == 2)
-    take_reference<2>(bare);
-  else
-    take_reference<3>(bare);
+  domain->dimension == 2 ? take_reference<2>(bare) : take_reference<3>(bare);
   if (end_corrected) find_quadrature(bare);
 }
 
@@ -721,10 +711,8 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
 
 void FixFSIReference::break_bonds(double stretch, const Energy &energy)
 {
-  if (domain->dimension == 2)
-    break_bonds_of_all<2>(stretch, energy);
-  else
-    break_bonds_of_all<3>(stretch, energy);
+  domain->dimension == 2 ? break_bonds_of_all<2>(stretch, energy)
+                         : break_bonds_of_all<3>(stretch, energy);
 }
 
 // Nobody of this rank's solids moves relative to anybody else by more than the diagonal of the box

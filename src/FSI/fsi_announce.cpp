@@ -19,7 +19,6 @@
 #include "fix.h"
 #include "force.h"
 #include "fsi_kernel.h"
-#include "fsi_lattice.h"
 #include "fsi_part.h"
 #include "fsi_scene.h"
 #include "lammps.h"

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_part.h"
 #include "modify.h"
 #include "pair.h"
@@ -62,9 +63,7 @@ bool Changes::any_mass() const
   const auto has_mass = [](double m) {
     return m != 0.0;
   };
-  int mine = std::any_of(atom->rmass, atom->rmass + atom->nlocal, has_mass), any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  return any;
+  return anywhere(std::any_of(atom->rmass, atom->rmass + atom->nlocal, has_mass), world);
 }
 
 std::vector<std::uintptr_t> Changes::present() const

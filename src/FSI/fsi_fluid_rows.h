@@ -29,8 +29,7 @@
 #include "fsi_rows.h"
 #include "fsi_shift.h"
 #include "fsi_tensor.h"
-#include "fsi_viscosity_artificial.h"
-#include "fsi_viscosity_laminar.h"
+#include "fsi_viscosity.h"
 
 #include <type_traits>
 

@@ -116,8 +116,8 @@ class PairFSIFluid : public PairFSI {
   bool has_rows_with_walls() const;
   bool has_all_pairs() const;
   bigint images_step;
-  template <class Position> void find_images(const FSI::Walls &, Position);
-  template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
+  void find_images(const FSI::Walls &, const double *places);
+  template <class Loop> void for_images(const FSI::Walls &, const double *places, Loop);
   // The loop of rates sorts near pairs out when particles may have moved by the margin since it
   // last did. Before the lists are used by a second force evaluation at other positions they are
   // not known.

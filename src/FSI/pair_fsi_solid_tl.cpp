@@ -32,7 +32,7 @@
 #include "fsi_profile.h"
 #include "fsi_solid_laws.h"
 #include "fsi_swaps.h"
-#include "fsi_viscosity_artificial.h"
+#include "fsi_viscosity.h"
 #include "fsi_volumetric.h"
 #include "math_extra.h"
 #include "memory.h"
@@ -41,8 +41,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
@@ -273,37 +271,22 @@ template <class Call> auto PairFSISolidTL::with_law(Call call) const
 
 void PairFSISolidTL::internal_forces()
 {
-  if (fix_fsi->dim == 2)
-    gather_points<2>();
-  else
-    gather_points<3>();
+  fix_fsi->dim == 2 ? gather_points<2>() : gather_points<3>();
   const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
   with_law([&](const auto *law_of, auto dimension) {
     bond_forces<std::decay_t<decltype(*law_of)>, decltype(dimension)::value>(law_of);
   });
   strain_energy += volumetric_energy;
-  if (list) {
-    if (fix_fsi->dim == 2)
-      contact_forces<2>();
-    else
-      contact_forces<3>();
-  }
+  if (list) fix_fsi->dim == 2 ? contact_forces<2>() : contact_forces<3>();
   if (reference->images.planes.any() && fsolid) {
     // in sub-steps, which add up to the force of a step
     const double part = update->setupflag ? 1.0 : 1.0 / fix_fsi->substeps;
-    if (fix_fsi->dim == 2)
-      fold_images<2>(part);
-    else
-      fold_images<3>(part);
+    fix_fsi->dim == 2 ? fold_images<2>(part) : fold_images<3>(part);
   }
-  if (!reference->near_itself.empty()) {
-    if (fix_fsi->dim == 2)
-      self_contact_forces<2>();
-    else
-      self_contact_forces<3>();
-  }
+  if (!reference->near_itself.empty())
+    fix_fsi->dim == 2 ? self_contact_forces<2>() : self_contact_forces<3>();
   exchange(fix_fsi->profile, comm, [this]() {
-    reference->swaps.reverse(this);
+    reference->swaps.reverse<Pair>(this);
   });
 }
 
@@ -421,7 +404,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
     };
     have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
     exchange(profile, comm, [&]() {
-      swaps.forward(this);
+      swaps.forward<Pair>(this);
     });
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
@@ -434,7 +417,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
       smoothed.force[of] += smoothed.force[k];
     });
     exchange(profile, comm, [&]() {
-      swaps.reverse(this);
+      swaps.reverse<Pair>(this);
     });
   });
   comm_forward = forward;
@@ -731,10 +714,7 @@ void PairFSISolidTL::begin_stress()
   forward_positions();    // ghosts still stand where they were in the middle of the step
   reference->images.update(atom->x, atom->v);
   if (!smoothed.on()) return;
-  if (fix_fsi->dim == 2)
-    gather_points<2>();
-  else
-    gather_points<3>();
+  fix_fsi->dim == 2 ? gather_points<2>() : gather_points<3>();
   smooth_strains(true);
 }
 
@@ -779,7 +759,7 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
 void PairFSISolidTL::forward_positions()
 {
   exchange(fix_fsi->profile, comm, [this]() {
-    reference->swaps.forward(this);
+    reference->swaps.forward<Pair>(this);
   });
 }
 
@@ -790,59 +770,44 @@ int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_f
   const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0,
                            pbc_flag ? pbc[1] * domain->yprd : 0.0,
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
-  int m = 0;
-  if (sends_strains) {
-    for_solids(n, listed, 0, [&](int i) {
-      buf[m++] = smoothed.strain[i];
-    });
-    return m;
-  }
+  double *const begin = buf;
   for_solids(n, listed, 0, [&](int i) {
-    for (int d = 0; d < dim; d++) buf[m++] = atom->x[i][d] + shift[d];
-    if (velocities)
-      for (int d = 0; d < dim; d++) buf[m++] = atom->v[i][d];
+    if (sends_strains) return void(*buf++ = smoothed.strain[i]);
+    for (int d = 0; d < dim; d++) *buf++ = atom->x[i][d] + shift[d];
+    if (velocities) buf = std::copy_n(atom->v[i], dim, buf);
   });
-  return m;
+  return buf - begin;
 }
 
 void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
   const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
-  if (sends_strains)
-    return for_solids(n, nullptr, first, [&](int i) {
-      smoothed.strain[i] = *buf++;
-    });
   for_solids(n, nullptr, first, [&](int i) {
+    if (sends_strains) return void(smoothed.strain[i] = *buf++);
     for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
-    if (velocities)
-      for (int d = 0; d < dim; d++) atom->v[i][d] = *buf++;
+    for (int d = 0; velocities && d < dim; d++) atom->v[i][d] = *buf++;
   });
+}
+
+double *PairFSISolidTL::carried_back(int i)
+{
+  return sends_strains ? &smoothed.force[i] : fsolid[i];
 }
 
 int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 {
-  int m = 0;
-  if (sends_strains) {
-    for_solids(n, nullptr, first, [&](int i) {
-      buf[m++] = smoothed.force[i];
-    });
-    return m;
-  }
+  double *const begin = buf;
   for_solids(n, nullptr, first, [&](int i) {
-    for (int d = 0; d < fix_fsi->dim; d++) buf[m++] = fsolid[i][d];
+    buf = std::copy_n(carried_back(i), comm_reverse, buf);
   });
-  return m;
+  return buf - begin;
 }
 
 void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
-  if (sends_strains)
-    return for_solids(n, listed, 0, [&](int i) {
-      smoothed.force[i] += *buf++;
-    });
   for_solids(n, listed, 0, [&](int i) {
-    for (int d = 0; d < fix_fsi->dim; d++) fsolid[i][d] += *buf++;
+    for (int d = 0; d < comm_reverse; d++) carried_back(i)[d] += *buf++;
   });
 }
 

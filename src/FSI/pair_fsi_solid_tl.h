@@ -127,6 +127,7 @@ class PairFSISolidTL : public PairFSI {
   template <int D> void gather_points();
   FSI::VolumetricStrain &smoothed;
   bool sends_strains;    // what messages carry: these, or positions and forces
+  double *carried_back(int i);
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
   // what call(laws per type, constant with the dimension) returns

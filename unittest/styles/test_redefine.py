@@ -421,9 +421,6 @@ def test_another_motion_after_a_restart_begins_there(tmp_path, motion):
     assert 0 < moved.min() and moved.max() < limit + (0.001 if motion == "variables" else 0)
 
 
-WALLS_AND_REST = {"": "", "sorted": "atom_modify sort 0 0.0\n"}
-
-
 def column(tmp_path, extra="", between="", ranks=1, steps=60):
     """A column of water whose density follows surfaces, a perfect lattice: {id: density, forces}"""
     text = HEAD.format(**{**BOX, "types": 1}).replace("atom_modify map yes\n", "atom_modify map yes\n" + extra) + f"""
