@@ -15,6 +15,9 @@ from fsi import dump, log, plot, series  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
 SOURCE = "Clift, Grace & Weber 1978"
+# {Reynolds number: figures} of spheres that shed vortices, which a half can and a quarter cannot
+UNSTEADY = {300: {"drag": 0.656, "lift": 0.069, "strouhal": 0.137}}
+UNSTEADY_SOURCE = "Johnson & Patel 1999"
 DIAMETER = 0.1
 COLORS = (plot.GREY, plot.BLUE, plot.ORANGE, plot.GREEN, plot.RED)
 
@@ -24,27 +27,43 @@ def reference(re):
     return 24 / re * (1 + 0.1935 * re**0.6305)
 
 
+def published(re):
+    """(drag coefficient, whose)"""
+    return (UNSTEADY[re]["drag"], UNSTEADY_SOURCE) if re in UNSTEADY else (reference(re), SOURCE)
+
+
 def read(folder):
-    """(values of the log, time in D/U, drag coefficient)"""
+    """(values of the log, time in D/U, coefficients by name)"""
     values = log.read(Path(folder) / "log.lammps").values
     s = series.read(Path(folder) / "series.csv")
-    return values, s.time * values["velocity"] / DIAMETER, s["drag"]
+    return values, s.time * values["velocity"] / DIAMETER, s
 
 
 def add(summary, folder, suffix="", judged=True):
-    """The figures of one run: means over its last fifth."""
-    values, time, drag = read(folder)
-    late = time >= 0.8 * time[-1]
-    half = time >= 0.9 * time[-1]
-    summary.add("drag" + suffix, drag[late].mean(), "", reference(values["Re"]), SOURCE, 0.03 if judged else None)
-    if judged:
+    """The figures of one run: means over its last fifth; of one that may shed vortices over its last half, with lift and frequency."""
+    values, time, s = read(folder)
+    drag = s["drag"]
+    sheds = values["Re"] in UNSTEADY and values["part"] != "quarter"
+    late = time >= (0.5 if sheds else 0.8) * time[-1]
+    half = time >= 0.5 * (time[late][0] + time[-1])
+    summary.add("drag" + suffix, drag[late].mean(), "", *published(values["Re"]), 0.03 if judged else None)
+    if sheds:
+        # events make sound that is faster; its means over a quarter of a period are none
+        lift = series.smooth(time, s["lift"], 2.0)[late]
+        rate = series.frequency(time[late], lift)
+        of = UNSTEADY[values["Re"]]
+        summary.add("strouhal" + suffix, rate, "", of["strouhal"], UNSTEADY_SOURCE, 0.03 if judged else None)
+        summary.add("lift" + suffix, abs(lift.mean()), "", of["lift"], UNSTEADY_SOURCE)
+        summary.add("lift_amplitude" + suffix, series.swing(time[late], s["lift"][late], rate)[1])
+    elif judged:
         summary.add("drag_drift" + suffix, drag[half].mean() / drag[late & ~half].mean() - 1, "between the halves of the last fifth")
         summary.add("drag_scatter" + suffix, drag[late].std())
 
 
 def curve(folder):
     """Drag coefficient over time, means of 0.5 D/U"""
-    _, time, drag = read(folder)
+    _, time, s = read(folder)
+    drag = s["drag"]
     edges = np.arange(0, time[-1] + 1e-9, 0.5)
     which = np.digitize(time, edges)
     kept = [k for k in range(1, len(edges)) if (which == k).any()]
@@ -54,8 +73,8 @@ def curve(folder):
 def draw(folder, cases):
     curves = [(*curve(path), name.replace("_", " "), color) for (name, path), color in zip(cases.items(), COLORS)]
     numbers = dict.fromkeys(read(path)[0]["Re"] for path in cases.values())
-    plot.lines(folder / "drag.png", "t U/D", "drag coefficient, means of 0.5 D/U", curves,
-               levels=[(reference(re), f"{SOURCE}, Re = {re:g}") for re in numbers])
+    levels = [(published(re)[0], f"{published(re)[1]}, Re = {re:g}") for re in numbers]
+    plot.lines(folder / "drag.png", "t U/D", "drag coefficient, means of 0.5 D/U", curves, levels=levels)
 
 
 def picture(path, folder):
