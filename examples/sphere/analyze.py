@@ -20,6 +20,8 @@ UNSTEADY = {300: {"drag": 0.656, "lift": 0.069, "strouhal": 0.137}}
 UNSTEADY_SOURCE = "Johnson & Patel 1999"
 DIAMETER = 0.1
 COLORS = (plot.GREY, plot.BLUE, plot.ORANGE, plot.GREEN, plot.RED)
+SHOWN = "16_levels_wide"  # in the picture of the speed
+NOT_DRAWN = ("5_uniform", "8_levels", "re_300_8_levels")
 
 
 def reference(re):
@@ -40,15 +42,15 @@ def read(folder):
 
 
 def add(summary, folder, suffix="", judged=True):
-    """The figures of one run: means over its last fifth; of one that may shed vortices over its last half, with lift and frequency."""
+    """The figures of one run: means over its last fifth; of one that may shed vortices over its last two thirds, with lift and frequency."""
     values, time, s = read(folder)
     drag = s["drag"]
     sheds = values["Re"] in UNSTEADY and values["part"] != "quarter"
-    late = time >= (0.5 if sheds else 0.8) * time[-1]
+    late = time >= (1 / 3 if sheds else 0.8) * time[-1]
     half = time >= 0.5 * (time[late][0] + time[-1])
     summary.add("drag" + suffix, drag[late].mean(), "", *published(values["Re"]), 0.03 if judged else None)
     if sheds:
-        # events make sound that is faster; its means over a quarter of a period are none
+        # without the sound of events, which is faster
         lift = series.smooth(time, s["lift"], 2.0)[late]
         rate = series.frequency(time[late], lift)
         of = UNSTEADY[values["Re"]]
@@ -71,6 +73,7 @@ def curve(folder):
 
 
 def draw(folder, cases):
+    cases = {name: path for name, path in cases.items() if name not in NOT_DRAWN}
     curves = [(*curve(path), name.replace("_", " "), color) for (name, path), color in zip(cases.items(), COLORS)]
     numbers = dict.fromkeys(read(path)[0]["Re"] for path in cases.values())
     levels = [(published(re)[0], f"{published(re)[1]}, Re = {re:g}") for re in numbers]
@@ -78,15 +81,16 @@ def draw(folder, cases):
 
 
 def picture(path, folder):
-    """The slice next to a plane of symmetry by the speed, mirrored in the other one: each particle as large as its level says."""
+    """The slice next to a plane of symmetry by the speed, that of a quarter mirrored in the other one: each particle as large as its level says."""
     values = read(folder)[0]
     last = dump.read(Path(folder) / "particles.dump")[-1]
     level = np.where(last["type"] == 1, 0, np.where(last["type"] == 2, values["levels"], last["type"] - 2))
     dx = values["dx"] * 2 ** (-level / 3)
     cut = (last["z"] > 0) & (last["z"] < dx) & (last["type"] != 2)
-    x, y, dx = (np.concatenate([a[cut]] * 2) for a in (last["x"], last["y"], dx))
+    sides = 2 if values["part"] == "quarter" else 1
+    x, y, dx = (np.tile(a[cut], sides) for a in (last["x"], last["y"], dx))
     y[cut.sum():] *= -1
-    speed = np.tile(np.sqrt(last["vx"]**2 + last["vy"]**2 + last["vz"]**2)[cut], 2) / values["velocity"]
+    speed = np.tile(np.sqrt(last["vx"]**2 + last["vy"]**2 + last["vz"]**2)[cut], sides) / values["velocity"]
     order = np.argsort(-dx)
     half = 0.5 * values["width"] * DIAMETER
     plot.clouds(path, [(f"t U/D = {last.time * values['velocity'] / DIAMETER:.0f}", x[order], y[order], speed[order])], dx[order],
@@ -107,11 +111,10 @@ def study(folder, cases):
     """Figures of all cases."""
     folder = Path(folder)
     summary = Summary(folder)
-    finest = list(cases)[-1]
     for name, path in cases.items():
         add(summary, path, f"_{name}", name != "5_uniform")
     draw(folder, cases)
-    picture(folder / "speed.png", cases[finest])
+    picture(folder / "speed.png", cases.get(SHOWN, list(cases.values())[-1]))
     return summary.write()
 
 
