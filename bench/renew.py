@@ -12,6 +12,7 @@ import cost_report
 import effects
 import evidence
 import hard_pages
+import largest
 import peers
 import robustness
 import scaling
@@ -61,11 +62,16 @@ def tables():
                     "hard": {paths.RESULTS / "hard" / name: evidence.HARD / name for name in ("hard.json", "hard.csv", "thumbnails.png")}}
 
 
+def by_name():
+    """As tables(), of what is run and taken by its name alone: the largest run needs 21 GB."""
+    return {"cost/largest": {paths.RESULTS / "cost/largest" / name: PAGE / name for name in ("largest.csv", "largest.log")}}
+
+
 def checked(wanted):
     """These files, all there and of a commit."""
     if missing := [str(path.relative_to(paths.ROOT)) for path in wanted if not path.exists()]:
         raise Refusal(f"{', '.join(missing)}: not there; tools/run and tools/cost make them")
-    if unclear := [str(path.relative_to(paths.ROOT)) for path in wanted if path.suffix != ".png" and not stamp(path)]:
+    if unclear := [str(path.relative_to(paths.ROOT)) for path in wanted if path.suffix in (".csv", ".json") and not stamp(path)]:
         raise Refusal(f"{', '.join(unclear)}: of no commit without changes")
     return wanted
 
@@ -90,7 +96,7 @@ def take_pictures(name):
 def take(wanted):
     """Takes to doc what results have of these: SCENE or SCENE/CASE, cost/NAME, hard, each of one commit; all other data stay as they are."""
     page = paths.PAGE / "results.json"
-    found, known = json.loads(page.read_text()), tables()
+    found, known = json.loads(page.read_text()), tables() | by_name()
     for what in wanted:
         files = checked(known.get(what, {}))
         for path, target in files.items():
@@ -182,7 +188,7 @@ def texts():
         pages[PAGE / f"{name}.md"] = cost_report.page(summary, f"{name}.png", f"{name}.csv")
     tables = {name: read_csv(PAGE / f"{name}.csv") for name in TOOLS}
     pages |= {PAGE / "effects.md": effects.page(tables["effects"], tables["solids"]), PAGE / "peers.md": peers.page(tables["peers"]),
-              PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"]),
+              PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"], [largest.line(read_csv(PAGE / "largest.csv"))]),
               evidence.HARD / "README.md": hard_pages.hard_page(), evidence.HARD / "robustness.md": hard_pages.robustness_page(),
               paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page()}
     readme = paths.ROOT / "README.md"

@@ -22,6 +22,7 @@
 #include "fsi_announce.h"
 #include "fsi_changes.h"
 #include "fsi_check.h"
+#include "fsi_clamps.h"
 #include "fsi_clock.h"
 #include "fsi_frame.h"
 #include "fsi_gather.h"
@@ -56,14 +57,15 @@ struct FixFSI::Members {
   Changes changes;
   Population population;
   NumberDensity number_density;
+  Clamps clamps;
   SurfaceRoom surface_room;
   Others others;
   Frame frame;
 
   Members(LAMMPS *lmp, FixFSI &fix, const std::function<void(double *)> &add_ghosts) :
       keywords(lmp, "fix fsi"), clock(lmp), check(lmp, fix), changes(lmp), population(lmp, fix),
-      number_density(lmp, fix, add_ghosts), surface_room(lmp, fix, number_density, add_ghosts),
-      others(lmp, fix), frame(lmp, fix)
+      number_density(lmp, fix, add_ghosts), clamps(lmp, fix),
+      surface_room(lmp, fix, number_density, add_ghosts), others(lmp, fix), frame(lmp, fix)
   {
   }
 };
@@ -74,8 +76,8 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     members(new Members(lmp, *this, [this](double *n) { add_ghosts(n); })),
     keywords(members->keywords), clock(members->clock), check(members->check),
     changes(members->changes), population(members->population),
-    number_density(members->number_density), forward(lmp, state), back(lmp, state),
-    scalar(lmp, state), carried(nullptr)
+    number_density(members->number_density), clamps(members->clamps), forward(lmp, state),
+    back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -185,7 +187,7 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
 
 int FixFSI::setmask()
 {
-  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;
+  return INITIAL_INTEGRATE | POST_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;
 }
 
 void FixFSI::post_run()
@@ -209,6 +211,7 @@ void FixFSI::init()
     if (auto *counters = p->counters()) profile = counters;
     p->set_fields(*this);
   }
+  clamps.find();
   gather_walls();
   set_fields();
   register_fields();
@@ -243,6 +246,7 @@ void FixFSI::find_parts()
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
   parts.push_back(&members->surface_room);
+  parts.push_back(&members->clamps);
   std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->rank() < b->rank();
   });
@@ -275,7 +279,7 @@ void FixFSI::pre_exchange()
 // paper eq. 15: drift to the middle of the step
 void FixFSI::initial_integrate(int)
 {
-  if (update->ntimestep - 1 == update->firststep) changes.check_pre_no();
+  changes.check_pre_no();
   for (auto *p : parts) p->start_step();
   members->frame.move();
   if (fresh_start()) {
@@ -283,6 +287,12 @@ void FixFSI::initial_integrate(int)
     domain->pbc();
   }
   dim == 2 ? drift<2>() : drift<3>();
+}
+
+// after fix rigid has moved its bodies
+void FixFSI::post_integrate()
+{
+  if (clamps.any()) clamps.to_middle();
 }
 
 template <int D> void FixFSI::drift()
@@ -302,6 +312,7 @@ void FixFSI::final_integrate()
   check.before_kick();
   if (substeps > 1)
     for (auto *p : parts) p->integrate_substeps();
+  if (clamps.any()) clamps.take_step();
   dim == 2 ? kick<2>() : kick<3>();
 }
 

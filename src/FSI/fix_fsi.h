@@ -31,6 +31,7 @@ namespace LAMMPS_NS {
 namespace FSI {
   class Changes;
   class Check;
+  class Clamps;
   class Clock;
   class Keywords;
   class NumberDensity;
@@ -64,6 +65,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void setup(int) override;
   void setup_pre_force(int) override { update_state(false); }
   void initial_integrate(int) override;
+  void post_integrate() override;
   void pre_exchange() override;
   void pre_force(int) override { update_state(true); }
   void final_integrate() override;
@@ -78,6 +80,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::Changes &changes;    // since the last run
   FSI::Population &population;
   FSI::NumberDensity &number_density;
+  FSI::Clamps &clamps;           // rigid bodies
   void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
   void send_to_ghosts(double *n);
 

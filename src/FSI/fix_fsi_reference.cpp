@@ -21,7 +21,6 @@
 #include "fsi_bond_rows.h"
 #include "fsi_cells.h"
 #include "fsi_changes.h"
-#include "fsi_clamps.h"
 #include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
@@ -57,17 +56,16 @@ static constexpr double NEAR = 0.05;
 
 struct FixFSIReference::Members {
   Swaps swaps;
-  Clamps clamps;
   Images images;
-  explicit Members(LAMMPS *lmp) : swaps(lmp), clamps(lmp) {}
+  explicit Members(LAMMPS *lmp) : swaps(lmp) {}
 };
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), members(new Members(lmp)), quadratic(true), end_corrected(true),
     nvalue(2 * domain->dimension + 2), self_range(0.0), tears(false), changes(0),
-    swaps(members->swaps), clamps(members->clamps), images(members->images), fix_fsi(nullptr),
-    slot(nullptr), maxbond(0), nmoment(packed_size(domain->dimension)), keeps_images(false),
-    keeps_places(false), apart(0.0), layer(nullptr), next_look(0), expected(0)
+    swaps(members->swaps), images(members->images), fix_fsi(nullptr), slot(nullptr), maxbond(0),
+    nmoment(packed_size(domain->dimension)), keeps_images(false), keeps_places(false), apart(0.0),
+    layer(nullptr), next_look(0), expected(0)
 {
   has_record = resting = false;
   restart_peratom = restart_global = 1;
@@ -107,18 +105,12 @@ int FixFSIReference::nplace() const
   return keeps_places ? domain->dimension : 0;
 }
 
-// after fix rigid has moved its bodies
-void FixFSIReference::post_integrate()
-{
-  if (clamps.any()) clamps.to_middle();
-}
-
 void FixFSIReference::init()
 {
   // has a script put in its place what is not of this package?
   resting = facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   images.clear_planes();
-  if (resting) return clamps.clear();
+  if (resting) return;
   fix_fsi = FixFSI::find(lmp, "Fix FSI_REFERENCE");
   find_planes();
   if (!any()) {

@@ -23,6 +23,8 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class FixFSI;
+
 namespace FSI {
 
   class Changes : protected Pointers {
@@ -39,7 +41,9 @@ namespace FSI {
 
     // what a run points to
     void set_up() { there = present(); }
-    void check_pre_no() const;    // at its first step: an error if it is another one
+    // in its first step: an error if it is another one; of pairs: if there is another fix fsi
+    void check_pre_no() const;
+    static void check_pre_no(LAMMPS *, const FixFSI *);
 
    private:
     int nlocal;

@@ -23,6 +23,7 @@
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_bond_rows.h"
+#include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clamps.h"
 #include "fsi_contact.h"
@@ -143,9 +144,6 @@ void PairFSISolidTL::init_style()
   comm_forward = has_artificial() || laws.by_rate() ? 2 * dim : dim;
   comm_reverse = dim;
 
-  reference->clamps.clear();
-  if (takes_substeps()) reference->clamps.find(*fix_fsi, fix_fsi);
-
   contacts.clear();
   for (const auto &a : fix_fsi->resolution)
     for (const auto &b : fix_fsi->resolution)
@@ -221,7 +219,7 @@ void PairFSISolidTL::refuse_rigid_parts() const
 {
   for (auto &fix : modify->get_fix_list()) {
     if (!utils::strmatch(fix->style, "^rigid") && !utils::strmatch(fix->style, "^poems")) continue;
-    if (reference->clamps.known(fix)) continue;
+    if (fix_fsi->clamps.known(fix)) continue;
     for (const BondRow &row : rows) {
       const auto elastic = [&](int i) {
         return atom->mask[i] & fix_fsi->groupbit;
@@ -249,6 +247,7 @@ const std::vector<int> &PairFSISolidTL::solids() const
 // forces, energy and virial are seen
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
+  Changes::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
@@ -826,8 +825,9 @@ void PairFSISolidTL::integrate_substeps()
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
   std::vector<int> moving, held;
   std::vector<std::pair<int, std::array<double, 3>>> carried;    // where they are in the middle
-  Clamps &clamps = reference->clamps;
-  if (clamps.any()) clamps.begin_substeps(solids());
+  Clamps &clamps = fix_fsi->clamps;
+  const bool clamped = clamps.any_elastic();
+  if (clamped) clamps.begin_substeps(solids());
   for (const int i : solids())
     if (atom->mask[i] & fix_fsi->groupbit)
       moving.push_back(i);
@@ -857,7 +857,7 @@ void PairFSISolidTL::integrate_substeps()
     if (n + 1 == substeps) only_moving = false;
     drift(dth);
     carry(back + n * dt + dth);
-    if (clamps.any()) clamps.drift(dth);
+    if (clamped) clamps.drift(dth);
     forward_positions();
     advance_stress(dt);
     std::fill_n(virial, 6, 0.0);
@@ -869,37 +869,21 @@ void PairFSISolidTL::integrate_substeps()
     }
     hold(dt);
     drift(dth);
-    if (!clamps.any()) continue;
+    if (!clamped) continue;
     clamps.kick(dt, fs);
     clamps.drift(dth);
   }
   carry(0.0);
   fix_fsi->check.after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
-  if (clamps.any()) clamps.average(substeps, fs);
+  if (clamped) clamps.average(substeps, fs);
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up
   // already
   if (force->pair != this)
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   for (const int i : solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
-  if (clamps.any()) clamps.finish();
-}
-
-// rigid bodies with elastic parts (fsi_clamps.h)
-void PairFSISolidTL::start_step()
-{
-  if (reference->clamps.any()) reference->clamps.begin();
-}
-
-void PairFSISolidTL::prescribe()
-{
-  if (fix_fsi->substeps == 1 && reference->clamps.any()) reference->clamps.take_step();
-}
-
-void PairFSISolidTL::go_back()
-{
-  if (reference->clamps.any()) reference->clamps.go_back();
+  if (clamped) clamps.finish();
 }
 
 void PairFSISolidTL::advance(bool advance)
@@ -926,8 +910,6 @@ void PairFSISolidTL::add_costs(Costs &costs) const
                                n * (1 + strains));
   else
     costs.solids = strains ? "; 1 forward and 2 back for solids" : "; 1 back for solid forces";
-  if (reference->clamps.any())
-    costs.solids += fmt::format("; {} sums over all ranks for rigid parts of solids", n + 2);
 }
 
 void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
@@ -953,7 +935,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   if (smoothed.on())
     list.push_back(
         {"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});
-  if (reference && reference->clamps.any())
+  if (fix_fsi && fix_fsi->clamps.any_elastic())
     list.push_back({"sub-steps of rigid parts of solids, with fix rigid", "substeps", true});
   return list;
 }

@@ -58,9 +58,6 @@ class PairFSISolidTL : public PairFSI {
   void unpack_reverse_comm(int, int *, double *) override;
   FSI::Facts facts() const override;
   std::vector<Effect> effects() const override;
-  void start_step() override;
-  void prescribe() override;
-  void go_back() override;
   void advance(bool) override;
   // Stiff solids: after the kick of what acts from outside is known, with a step that many times
   // shorter

@@ -100,7 +100,7 @@ def test_collects_data_and_pictures(runs):
         (paths.RESULTS / "elastic_gate" / case).mkdir()
         (paths.RESULTS / "elastic_gate" / case / picture).write_text(text)
     renew.collect()
-    for path in DATA:
+    for path in (path for path in DATA if path.stem != "largest"):  # taken by name alone
         assert (runs / path.relative_to(root)).read_bytes() == path.read_bytes(), path
     assert {entry["summary"]["commit"] for entry in results.scenes_of(paths.PAGE).values() if entry["summary"]} == {"0123456789"}
     assert (paths.EXAMPLES / "elastic_gate" / picture).read_text() == "large"  # where the study left none, the largest case's
