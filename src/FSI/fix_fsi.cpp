@@ -185,6 +185,12 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
   return fix_fsi;
 }
 
+void FixFSI::check_pre_no(LAMMPS *lmp, const FixFSI *known)
+{
+  if (!Changes::in_first_step(lmp->update)) return;
+  Changes::check_pre_no(lmp, known && known == there(lmp) ? &known->changes : nullptr);
+}
+
 int FixFSI::setmask()
 {
   return INITIAL_INTEGRATE | POST_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;

@@ -57,6 +57,8 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   // the same, for who needs what the setup of a run finds: an error if there was none since atoms
   // were made, deleted or changed, or pair styles given
   static FixFSI *ready(class LAMMPS *, const std::string &who);
+  // of pairs in the first step of a run with pre no: an error if there is another fix fsi, or none
+  static void check_pre_no(class LAMMPS *, const FixFSI *known);
   // once, before the first run after a restart file was read: what the file keeps for fixes that go
   // by another ID now
   bool ids_checked = false;

@@ -17,7 +17,7 @@
 #include "compute.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_fsi.h"
+#include "fix.h"
 #include "force.h"
 #include "fsi_gather.h"
 #include "fsi_part.h"
@@ -89,7 +89,7 @@ std::vector<std::uintptr_t> Changes::present() const
   return list;
 }
 
-static bool in_first_step(const Update *update)
+bool Changes::in_first_step(const Update *update)
 {
   return update->ntimestep - 1 == update->firststep;
 }
@@ -106,9 +106,7 @@ void Changes::check_pre_no() const
   if (in_first_step(update) && there != present()) refuse(error);
 }
 
-void Changes::check_pre_no(LAMMPS *lmp, const FixFSI *fix_fsi)
+void Changes::check_pre_no(LAMMPS *lmp, const Changes *known)
 {
-  if (!in_first_step(lmp->update)) return;
-  if (!fix_fsi || fix_fsi != FixFSI::there(lmp) || fix_fsi->changes.there.empty())
-    refuse(lmp->error);
+  if (!known || known->there.empty()) refuse(lmp->error);
 }

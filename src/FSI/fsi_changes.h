@@ -23,8 +23,6 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixFSI;
-
 namespace FSI {
 
   class Changes : protected Pointers {
@@ -41,9 +39,10 @@ namespace FSI {
 
     // what a run points to
     void set_up() { there = present(); }
-    // in its first step: an error if it is another one; of pairs: if there is another fix fsi
+    // in its first step: an error if it is another one; of pairs: if theirs are not known
     void check_pre_no() const;
-    static void check_pre_no(LAMMPS *, const FixFSI *);
+    static void check_pre_no(LAMMPS *, const Changes *);
+    static bool in_first_step(const class Update *);
 
    private:
     int nlocal;

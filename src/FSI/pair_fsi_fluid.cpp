@@ -20,7 +20,6 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
-#include "fsi_changes.h"
 #include "fsi_contact.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_fields.h"
@@ -1158,7 +1157,7 @@ void PairFSIFluid::extrapolate_velocities()
 
 void PairFSIFluid::compute(int eflag, int vflag)
 {
-  Changes::check_pre_no(lmp, fix_fsi);
+  FixFSI::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::FLUID_FORCES);
   ev_init(eflag, vflag);
   check_tally();

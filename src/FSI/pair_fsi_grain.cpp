@@ -18,7 +18,6 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
-#include "fsi_changes.h"
 #include "fsi_drag.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
@@ -143,7 +142,7 @@ void PairFSIGrain::add_costs(Costs &costs) const
 
 void PairFSIGrain::compute(int eflag, int vflag)
 {
-  Changes::check_pre_no(lmp, fix_fsi);
+  FixFSI::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::FLUID_FORCES);
   ev_init(eflag, vflag);
   find_grains();

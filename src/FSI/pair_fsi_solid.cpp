@@ -20,7 +20,6 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
-#include "fsi_changes.h"
 #include "fsi_fields.h"
 #include "fsi_images.h"
 #include "fsi_kernel.h"
@@ -622,7 +621,7 @@ void PairFSISolid::add_number_density(double *psi, bool all_bodies)
 
 void PairFSISolid::compute(int eflag, int vflag)
 {
-  Changes::check_pre_no(lmp, fix_fsi);
+  FixFSI::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();

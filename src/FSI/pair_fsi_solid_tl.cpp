@@ -23,7 +23,6 @@
 #include "fix_fsi_stress.h"
 #include "force.h"
 #include "fsi_bond_rows.h"
-#include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clamps.h"
 #include "fsi_contact.h"
@@ -247,7 +246,7 @@ const std::vector<int> &PairFSISolidTL::solids() const
 // forces, energy and virial are seen
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
-  Changes::check_pre_no(lmp, fix_fsi);
+  FixFSI::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
