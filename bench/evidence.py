@@ -4,7 +4,7 @@ import json
 import re
 
 import numpy as np
-from cost_report import cheapest, curves_of, few_labels, one_curve, seconds, size_of
+from cost_report import cheapest, curves_of, few_labels, one_curve, seconds
 from tool import PAGE, read_csv
 
 from fsi import paths, plot

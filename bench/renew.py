@@ -12,6 +12,7 @@ import cost_report
 import effects
 import evidence
 import hard_pages
+import largest
 import peers
 import robustness
 import scaling
@@ -61,11 +62,16 @@ def tables():
                     "hard": {paths.RESULTS / "hard" / name: evidence.HARD / name for name in ("hard.json", "hard.csv", "thumbnails.png")}}
 
 
+def by_name():
+    """As tables(), of what is run and taken by its name alone: the largest run needs 21 GB."""
+    return {"cost/largest": {paths.RESULTS / "cost/largest" / name: PAGE / name for name in ("largest.csv", "largest.log")}}
+
+
 def checked(wanted):
     """These files, all there and of a commit."""
     if missing := [str(path.relative_to(paths.ROOT)) for path in wanted if not path.exists()]:
         raise Refusal(f"{', '.join(missing)}: not there; tools/run and tools/cost make them")
-    if unclear := [str(path.relative_to(paths.ROOT)) for path in wanted if path.suffix != ".png" and not stamp(path)]:
+    if unclear := [str(path.relative_to(paths.ROOT)) for path in wanted if path.suffix in (".csv", ".json") and not stamp(path)]:
         raise Refusal(f"{', '.join(unclear)}: of no commit without changes")
     return wanted
 
@@ -90,7 +96,7 @@ def take_pictures(name):
 def take(wanted):
     """Takes to doc what results have of these: SCENE or SCENE/CASE, cost/NAME, hard, each of one commit; all other data stay as they are."""
     page = paths.PAGE / "results.json"
-    found, known = json.loads(page.read_text()), tables()
+    found, known = json.loads(page.read_text()), tables() | by_name()
     for what in wanted:
         files = checked(known.get(what, {}))
         for path, target in files.items():
@@ -113,14 +119,18 @@ def take(wanted):
 
 def add_case(data, name, case, summary):
     """Puts one case in the data of a scene whose others were run before: figures that the study has with it and not without, next to what
-    else results have of this commit. They are judged if those of their names were."""
-    there = [k for k in scene.cases(name) if k == case or commit_of(paths.RESULTS / name / k) == summary["commit"]]
+    else results have of this commit. A finer case takes over the targets of the one that was the finest of those in results, of whichever
+    commit they are; else figures are judged if those of their names were."""
+    have = [k for k in scene.cases(name) if commit_of(paths.RESULTS / name / k)]
+    there = [k for k in have if k == case or commit_of(paths.RESULTS / name / k) == summary["commit"]]
     without = [f["name"] for f in studied(name, [k for k in there if k != case])]
     new = [f for f in studied(name, there) if f["name"] not in [*without, *results.COST]]
     old = {f["name"]: f for f in data["figures"]}
-    for figure in new:
-        if (old.get(figure["name"]) or {"target": None})["target"] is None:
-            figure |= {"target": None, "met": None}
+    judged = {f["name"] for f in studied(name, have) if f.get("target") is not None}
+    over = [f["name"] for f in studied(name, [k for k in have if k != case]) if f.get("target") is not None and f["name"] not in judged]
+    over = [n for n in over if n in old and old[n]["target"] is not None]
+    for figure in [old[n] for n in over] + [f for f in new if not over and (old.get(f["name"]) or {"target": None})["target"] is None]:
+        figure |= {"target": None, "met": None}
     names = [f["name"] for f in new]
     data["figures"] = [f for f in data["figures"] if f["name"] not in names]
     at = next(k for k, f in enumerate(data["figures"]) if f["name"] in results.COST)
@@ -178,7 +188,7 @@ def texts():
         pages[PAGE / f"{name}.md"] = cost_report.page(summary, f"{name}.png", f"{name}.csv")
     tables = {name: read_csv(PAGE / f"{name}.csv") for name in TOOLS}
     pages |= {PAGE / "effects.md": effects.page(tables["effects"], tables["solids"]), PAGE / "peers.md": peers.page(tables["peers"]),
-              PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"]),
+              PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"], [largest.line(read_csv(PAGE / "largest.csv"))]),
               evidence.HARD / "README.md": hard_pages.hard_page(), evidence.HARD / "robustness.md": hard_pages.robustness_page(),
               paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page()}
     readme = paths.ROOT / "README.md"

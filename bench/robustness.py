@@ -9,7 +9,6 @@ import math
 import re
 import resource
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 

@@ -115,7 +115,6 @@ variable end timer
 print "FSI read $(v_end-v_start)"
 """
 SIZES = {"1 million": 100, "2 million": 126}  # particles of a cube of water along its edge
-MEMORY = 24 * 2**30
 OTHERS = "LAMMPS' atoms and images at walls"
 
 
@@ -143,9 +142,11 @@ def size(kept):
     return found
 
 
-def largest(found):
-    """Particles that MEMORY holds, by the peak of the larger run: a model, lists and arrays being in proportion."""
-    return MEMORY / list(found.values())[-1]["peak"]
+def cubes(m, particles, ranks):
+    """A model: what a rank has in a step if each has a cube of water: seconds of compute, ghosts over particles, bytes. m: measured()."""
+    edge = (particles / ranks) ** (1 / 3)
+    ghosts = (edge + 2 * m["w"]) ** 3 - edge**3
+    return m["tau"] * edge**3, ghosts / edge**3, m["bytes"] * ghosts
 
 
 BODY = """
@@ -252,7 +253,7 @@ def side_by_side(rows):
         what, size, _ = row["what"].partition(" million")
         if size:
             what = f"{what.rpartition(', ')[0]}, 1 and 2 million"
-        elif what in ("messages", "bytes sent", "the same, largest"):
+        elif what in ("messages", "bytes sent") or what.startswith("the same, "):
             found[last].append(row)
             continue
         last = what.replace(": mean", ": mean, largest").replace(": ghosts over particles", "")
@@ -260,21 +261,21 @@ def side_by_side(rows):
     return list(found.items())
 
 
-def page(rows, pairs):
-    """The page's text; pairs: rows of tools/cost peers, of which those of two ranks."""
+def page(rows, pairs, more=()):
+    """The page's text; pairs: rows of tools/cost peers, of which those of two ranks; more: points of its list."""
     lines = ["# Several ranks", "",
              "The package runs on any number of MPI ranks, as LAMMPS does, and gives the same forces to round-off.",
-             "Two ranks were timed. Of more ranks work and messages were counted, not timed.", "",
+             "Two ranks are timed (`tools/cost peers`). Of more, work and messages are counted (`tools/cost scaling`).", "",
              "![Bytes of a particle](scaling.png)", "",
              "- Bytes of a particle are those of still water in 3D, Wendland 1.5, skin 0.3 dx, in a cube with five walls, on one rank.",
              "- For a while: the peak of the process less the other parts. It is reached when the restart file is written.",
-             "- The largest scene is a model: memory over the peak of a particle in the larger run.",
+             "- Model: a cube of particles on each rank; compute, ghosts over particles, bytes in a step. Ghosts limit it.",
              "- Set-up: CPU time from the start of the program to the first step, with all checks. Restart files: wall-clock time.",
              "- Last rows: ghosts over particles, messages, bytes sent; the largest of any rank, in a step without new lists.",
              "- Bytes and exchanges are what *fix fsi* prints; `unittest/tools/test_pay.py` checks them around the MPI calls.",
              "- Balance: a dam break in a tank that is half empty, 1,250 particles, two ranks, 0.5 s.",
              "- With the box cut in halves one rank has nearly all particles, and two ranks gain little: use `fix balance all balance 20 1.05 shift x 20 1.02`.",
-             "- Two ranks are timed by `tools/cost peers`, the rest by `tools/cost scaling`.", "", "| quantity | value |", "|---|---:|"]
+             *more, "", "| quantity | value |", "|---|---:|"]
     lines += [f"| {r['what']} | {r['ratio']:.2f} ± {r['spread']:.2f} |" for r in pairs if r["what"].startswith("2 ranks") and r["ratio"] is not None]
     for what, values in side_by_side(rows):
         lines.append(f"| {what} | {'; '.join(map(in_words, values))} |")
@@ -295,7 +296,8 @@ def main(arguments):
         rows += [(f"bytes of a particle, for a while, {label}", of["peak"] - sum(of[part] for part in known), "B"),
                  (f"restart file, bytes of a particle, {label}", of["restart file"], "B")]
         rows += [(f"{word}, {label}", of[what], "s") for what, word in (("setup", "set-up"), ("write", "write_restart"), ("read", "read_restart"))]
-    rows.append(("particles that 24 GB hold (model)", largest(sizes), ""))
+    seconds, ghosts, sent = cubes(m, 1e9, 1e4)
+    rows += [("10^9 particles of 3D water on 10^4 ranks, model: compute", seconds, "s"), ("the same, ghosts over particles", ghosts, ""), ("the same, bytes", sent, "B")]
     solid = body(job.kept)
     rows += [(f"set-up of a total-Lagrangian body of {BODY_EDGE**3:,} particles in 3D", solid["setup"], "s"), ("bytes of a particle of this body, at the peak", solid["peak"], "B")]
     for label, of in shared(job.kept).items():

@@ -86,11 +86,13 @@ class Scene:
     held                    per particle: left out of fix fsi's group, so that it does not move
     box, boundary           ((xlo, ylo, zlo), (xhi, yhi, zhi)); default: far from all particles, fixed
     id_map                  LAMMPS' map of atom IDs, whether the styles need one or not
+    atom_style              fsi, or a hybrid with it
     commands                run before the first run, after all else
     """
 
     def __init__(self, x, v=None, *, dim=2, dx=1.0, kernel="wendland", hdx=1.5, type=1, mol=1, materials=(WATER,),
-                 fluid="", solid="", density="", stress="", solid_style="fsi/solid", held=None, box=None, boundary=None, dt=1e-3, skin=0.3, id_map=True, commands=()):
+                 fluid="", solid="", density="", stress="", solid_style="fsi/solid", held=None, box=None, boundary=None, dt=1e-3, skin=0.3, id_map=True, atom_style="fsi",
+                 commands=()):
         x = np.asarray(x, float)
         self.n, self.dim, self.dx = len(x), dim, dx
         self.kernel = Kernel(kernel, dim, hdx * dx)
@@ -111,7 +113,7 @@ class Scene:
             self.run_lines(f"""units si
                 dimension {dim}
                 boundary {boundary or ('f f p' if dim == 2 else 'f f f')}
-                atom_style fsi
+                atom_style {atom_style}
                 atom_modify {'map array ' if id_map else ''}sort 0 0
                 newton on
                 region box block {lo[0]} {hi[0]} {lo[1]} {hi[1]} {lo[2]} {hi[2]}

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Figures and pictures of the dam break onto a box.   usage: analyze.py FOLDER
 
-Reads history.csv, particles.dump and log.lammps in FOLDER, which tools/run makes; writes summary.json, gauges.png and
-snapshots.png there.
+main reads history.csv, peaks.csv, particles.dump and log.lammps in FOLDER, which tools/run makes, and writes summary.json, gauges.png
+and snapshots.png there; study compares the peaks of the runs of cases.json, of which the first is the page's.
 """
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -15,11 +16,12 @@ import numpy as np  # noqa: E402
 from matplotlib.cm import ScalarMappable  # noqa: E402
 from matplotlib.colors import Normalize  # noqa: E402
 
-from fsi import dump, plot, series  # noqa: E402
+from fsi import dump, log, plot, series  # noqa: E402
 from fsi.leaks import Leaks  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
 SNAPSHOT_TIMES = (0.0, 0.4, 0.6, 0.9, 1.3, 1.8)  # [s]
+MEANS = (1, 2, 5)  # [ms]: the peak as gauges would see it that average over so long
 STEADY = (3.0, 7.0)  # t sqrt(g/H): after the impact, before the wave comes back from the far wall
 EXPERIMENT = "experiment, Kleefsman et al. 2005"
 GAUGES = {1: plot.BLUE, 3: plot.ORANGE}
@@ -39,6 +41,27 @@ def first_above(times, values, level):
     if not values[k] > level:
         return None
     return float(np.interp(level, values[k - 1:k + 1], times[k - 1:k + 1]) if k else times[0])
+
+
+def largest_mean(times, values, width):
+    """The largest mean over `width`, of values that are linear between the times given; windows begin at each and at twenty places between."""
+    fine = np.unique(np.concatenate([times, np.linspace(times[0], times[-1], 20 * len(times))]))
+    values = np.interp(fine, times, values)
+    whole = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(fine))])
+    ends = fine[fine <= fine[-1] - width] + width
+    k = np.searchsorted(fine, ends, side="right") - 1
+    until = whole[k] + 0.5 * (values[k] + np.interp(ends, fine, values)) * (ends - fine[k])
+    return float((until - whole[:ends.size]).max() / width)
+
+
+def add_peaks(summary, folder, suffix=""):
+    """P1's largest value of all steps and its largest means."""
+    history = series.read(Path(folder) / "peaks.csv")
+    measured = series.read(HERE / "experiment.csv")
+    reference = float(measured["pressure"][measured["gauge"] == 1].max()), EXPERIMENT
+    summary.add(f"P1_sharpest{suffix}", float(history["P1"].max()), "rho g H", *reference)
+    for width in MEANS:
+        summary.add(f"P1_sharpest_{width}_ms{suffix}", largest_mean(history.time, history["P1"], 1e-3 * width), "rho g H", *reference)
 
 
 def count_leaks(frames, tank, log):
@@ -86,11 +109,9 @@ def picture(path, frames, tank):
         figure.colorbar(ScalarMappable(norm, "viridis"), cax=bar, label="speed [m/s]", extend="max")
 
 
-def main(folder):
-    """Analyses the run in `folder`; returns the summary."""
-    folder = Path(folder)
-    summary = Summary(folder)
-    tank = summary.log.values
+def add(summary, folder):
+    """Figures of both gauges in one run and their picture."""
+    tank = log.read(folder / "log.lammps").values
     history = series.read(folder / "history.csv")
     measured = series.read(HERE / "experiment.csv")
     times = history.time * np.sqrt(tank["g"] / tank["H"])
@@ -105,11 +126,31 @@ def main(folder):
         summary.add(f"P{gauge}_steady", mean(times, mine, STEADY), "rho g H", mean(when, pressure, STEADY), EXPERIMENT)
         shown = when <= times[-1]
         panels.append((f"p/(rho g H) at P{gauge}", [(times, mine, "computed", colour)], [(when[shown], pressure[shown], "experiment", plot.GREY)], ()))
-    plot.noisy(folder / "gauges.png", "t sqrt(g/H)", panels, 0.2)
+    plot.noisy(summary.folder / "gauges.png", "t sqrt(g/H)", panels, 0.2)
 
+
+def main(folder):
+    """Analyses the run in `folder`; returns the summary."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    add(summary, folder)
+    add_peaks(summary, folder)
     frames = dump.read(folder / "particles.dump")
-    summary.add("particles_leaked", count_leaks(frames, tank, summary.log))
-    picture(folder / "snapshots.png", dump.nearest(frames, SNAPSHOT_TIMES, tolerance=0.05), tank)
+    summary.add("particles_leaked", count_leaks(frames, summary.log.values, summary.log))
+    picture(folder / "snapshots.png", dump.nearest(frames, SNAPSHOT_TIMES, tolerance=0.05), summary.log.values)
+    return summary.write()
+
+
+def study(folder, cases):
+    """The first case, and how sharp the peak at P1 is in all."""
+    folder = Path(folder)
+    summary = Summary(folder)
+    first = next(iter(cases))
+    add(summary, cases[first])
+    for name, path in cases.items():
+        add_peaks(summary, path, f"_{name}")
+    summary.add("particles_leaked", next(figure["value"] for figure in summary.cases[first]["figures"] if figure["name"] == "particles_leaked"))
+    shutil.copyfile(cases[first] / "snapshots.png", folder / "snapshots.png")
     return summary.write()
 
 

@@ -110,12 +110,3 @@ def response(omega, width, depth, draft, rho, mass, inertia, center, axis):
         A, B = box.added_mass(odd)
         out.append(rho * box.exciting(odd) / (stiffness - omega**2 * (own + rho * A) - 1j * omega * rho * B) / scale)
     return out
-
-
-def heave_frequency(width, depth, draft, rho):
-    """omega of a box that floats by itself: C = omega^2 (m + A(omega))"""
-    omega = 4.0
-    for _ in range(60):
-        A, _ = Box(omega, width / 2, depth, draft, depth).added_mass(False)
-        omega = 0.5 * (omega + np.sqrt(GRAVITY * width / (width * draft + A)))
-    return omega

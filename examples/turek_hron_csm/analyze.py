@@ -20,7 +20,6 @@ SOURCE = "finite elements, Turek & Hron 2006"
 STATIC = {"ux": -7.187, "uy": -66.10}  # [mm], CSM1
 SWING = {"ux": (-14.305, 14.305), "uy": (-63.607, 65.160)}  # [mm] mean and amplitude, CSM3
 FREQUENCY = 1.0995  # [Hz], CSM3
-OTHER_FREQUENCY = 1.0948  # [Hz] of finite elements (9-node quadrilaterals) of the same problem with a straight clamp
 
 
 def swing(tip, name):

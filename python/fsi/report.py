@@ -50,7 +50,7 @@ def write(folder=".", out=None, log_name=None):
     if found is None and not summary:
         raise ValueError(f"{folder} has neither log.lammps nor summary.json, nor another log.*: log=FILE names one")
     name = record.get("scene") or summary.get("scene") or folder.resolve().name
-    parts = [_head(name, found, record, summary), _messages(found), _figures(summary, found), _pictures(folder, found), _curves(folder, found),
+    parts = [_head(name, found, record, summary), _messages(found), _figures(summary, found), _pictures(folder), _curves(folder, found),
              _price(found), _cases(folder, summary)]
     out = Path(out) if out else folder / OUT
     out.write_text(f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
@@ -121,7 +121,7 @@ def _image(data, alt):
     return f'<img alt="{escape(alt)}" src="data:image/png;base64,{base64.b64encode(data).decode()}">'
 
 
-def _pictures(folder, found):
+def _pictures(folder):
     """Those that the analysis or dump image left; if there are none, snapshots of a dump."""
     images = sorted(folder.glob("*.png"))
     numbered = [path for path in images if re.search(r"\.\d{3,}\.png$", path.name)]  # of dump image

@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
+#include "fsi_keywords.h"
 #include "fsi_number_density.h"
 #include "fsi_tensor.h"
 #include "memory.h"
@@ -39,10 +40,8 @@ ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
   for (int iarg = 3; iarg < narg; iarg++) {
     const auto it = std::find(names.begin(), names.end(), arg[iarg]);
     if (it == names.end())
-      error->all(FLERR,
-                 "Unknown compute fsi/atom quantity {}: expected p, rho, psi, volume, vonmises, "
-                 "sxx, syy, szz, sxy, sxz, syz, plastic/strain or bonds",
-                 arg[iarg]);
+      error->all(FLERR, "Unknown compute fsi/atom quantity {}: expected {}", arg[iarg],
+                 list_of(names));
     quantity.push_back(it - names.begin());
     tensor |= quantity.back() >= VONMISES && quantity.back() <= SYZ;
   }

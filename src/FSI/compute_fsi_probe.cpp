@@ -48,14 +48,13 @@ ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
     else if (word == "extrapolate") {
       if (iarg == narg) utils::missing_cmd_args(FLERR, "compute fsi/probe extrapolate", error);
       extrapolate = utils::logical(FLERR, arg[iarg++], false, lmp);
-    } else
-      error->all(FLERR,
-                 "Unknown compute fsi/probe argument {}: expected p, rho, vx, vy, vz, fill, level, "
-                 "wet, point, patch, line or extrapolate",
-                 word);
+    } else {
+      auto known = names;
+      known.insert(known.end(), {"point", "patch", "line", "extrapolate"});
+      error->all(FLERR, "Unknown compute fsi/probe argument {}: expected {}", word, list_of(known));
+    }
   }
-  if (quantity.empty())
-    error->all(FLERR, "Compute fsi/probe needs a quantity: p, rho, vx, vy, vz, fill, level or wet");
+  if (quantity.empty()) error->all(FLERR, "Compute fsi/probe needs a quantity: {}", list_of(names));
   if (places.empty()) error->all(FLERR, "Compute fsi/probe needs a place: point, patch or line");
   for (const int q : quantity)
     for (const auto &place : places)

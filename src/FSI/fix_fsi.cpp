@@ -22,12 +22,13 @@
 #include "fsi_announce.h"
 #include "fsi_changes.h"
 #include "fsi_check.h"
+#include "fsi_clamps.h"
 #include "fsi_clock.h"
 #include "fsi_frame.h"
+#include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
-#include "fsi_order.h"
 #include "fsi_others.h"
 #include "fsi_part.h"
 #include "fsi_population.h"
@@ -56,14 +57,15 @@ struct FixFSI::Members {
   Changes changes;
   Population population;
   NumberDensity number_density;
+  Clamps clamps;
   SurfaceRoom surface_room;
   Others others;
   Frame frame;
 
   Members(LAMMPS *lmp, FixFSI &fix, const std::function<void(double *)> &add_ghosts) :
       keywords(lmp, "fix fsi"), clock(lmp), check(lmp, fix), changes(lmp), population(lmp, fix),
-      number_density(lmp, fix, add_ghosts), surface_room(lmp, fix, number_density, add_ghosts),
-      others(lmp, fix), frame(lmp, fix)
+      number_density(lmp, fix, add_ghosts), clamps(lmp, fix),
+      surface_room(lmp, fix, number_density, add_ghosts), others(lmp, fix), frame(lmp, fix)
   {
   }
 };
@@ -74,8 +76,8 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     members(new Members(lmp, *this, [this](double *n) { add_ghosts(n); })),
     keywords(members->keywords), clock(members->clock), check(members->check),
     changes(members->changes), population(members->population),
-    number_density(members->number_density), forward(lmp, state), back(lmp, state),
-    scalar(lmp, state), carried(nullptr)
+    number_density(members->number_density), clamps(members->clamps), forward(lmp, state),
+    back(lmp, state), scalar(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -173,10 +175,9 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
 {
   FixFSI *const fix_fsi = find(lmp, who);
   fix_fsi->find_parts();    // commands since the last run may have changed them
-  int mine = fix_fsi->changes.of_atoms(), any = 0;
+  bool mine = fix_fsi->changes.of_atoms();
   for (const auto *p : fix_fsi->parts) mine |= !p->is_set_up();
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
-  if (any)
+  if (anywhere(mine, lmp->world))
     lmp->error->all(FLERR,
                     "{} needs a run before it, if only run 0, and after atoms are made, "
                     "deleted or changed, or a pair style is given",
@@ -184,9 +185,15 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
   return fix_fsi;
 }
 
+void FixFSI::check_pre_no(LAMMPS *lmp, const FixFSI *known)
+{
+  if (!Changes::in_first_step(lmp->update)) return;
+  Changes::check_pre_no(lmp, known && known == there(lmp) ? &known->changes : nullptr);
+}
+
 int FixFSI::setmask()
 {
-  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;
+  return INITIAL_INTEGRATE | POST_INTEGRATE | PRE_EXCHANGE | PRE_FORCE | FINAL_INTEGRATE | POST_RUN;
 }
 
 void FixFSI::post_run()
@@ -210,6 +217,7 @@ void FixFSI::init()
     if (auto *counters = p->counters()) profile = counters;
     p->set_fields(*this);
   }
+  clamps.find();
   gather_walls();
   set_fields();
   register_fields();
@@ -244,6 +252,7 @@ void FixFSI::find_parts()
   for (auto &fix : modify->get_fix_list())
     if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
   parts.push_back(&members->surface_room);
+  parts.push_back(&members->clamps);
   std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->rank() < b->rank();
   });
@@ -276,7 +285,7 @@ void FixFSI::pre_exchange()
 // paper eq. 15: drift to the middle of the step
 void FixFSI::initial_integrate(int)
 {
-  if (update->ntimestep - 1 == update->firststep) changes.check_pre_no();
+  changes.check_pre_no();
   for (auto *p : parts) p->start_step();
   members->frame.move();
   if (fresh_start()) {
@@ -284,6 +293,12 @@ void FixFSI::initial_integrate(int)
     domain->pbc();
   }
   dim == 2 ? drift<2>() : drift<3>();
+}
+
+// after fix rigid has moved its bodies
+void FixFSI::post_integrate()
+{
+  if (clamps.any()) clamps.to_middle();
 }
 
 template <int D> void FixFSI::drift()
@@ -303,6 +318,7 @@ void FixFSI::final_integrate()
   check.before_kick();
   if (substeps > 1)
     for (auto *p : parts) p->integrate_substeps();
+  if (clamps.any()) clamps.take_step();
   dim == 2 ? kick<2>() : kick<3>();
 }
 

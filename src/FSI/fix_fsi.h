@@ -31,6 +31,7 @@ namespace LAMMPS_NS {
 namespace FSI {
   class Changes;
   class Check;
+  class Clamps;
   class Clock;
   class Keywords;
   class NumberDensity;
@@ -56,6 +57,8 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   // the same, for who needs what the setup of a run finds: an error if there was none since atoms
   // were made, deleted or changed, or pair styles given
   static FixFSI *ready(class LAMMPS *, const std::string &who);
+  // of pairs in the first step of a run with pre no: an error if there is another fix fsi, or none
+  static void check_pre_no(class LAMMPS *, const FixFSI *known);
   // once, before the first run after a restart file was read: what the file keeps for fixes that go
   // by another ID now
   bool ids_checked = false;
@@ -64,6 +67,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   void setup(int) override;
   void setup_pre_force(int) override { update_state(false); }
   void initial_integrate(int) override;
+  void post_integrate() override;
   void pre_exchange() override;
   void pre_force(int) override { update_state(true); }
   void final_integrate() override;
@@ -78,6 +82,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::Changes &changes;    // since the last run
   FSI::Population &population;
   FSI::NumberDensity &number_density;
+  FSI::Clamps &clamps;           // rigid bodies
   void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
   void send_to_ghosts(double *n);
 

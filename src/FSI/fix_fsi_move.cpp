@@ -20,6 +20,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_clock.h"
+#include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "fsi_value.h"
@@ -37,7 +38,8 @@ using namespace FixConst;
 using namespace FSI;
 
 // as in the command, in the order of Motion
-static const char *const MOTIONS[] = {"linear", "wiggle", "rotate", "transrot", "variable"};
+static const std::vector<std::string> MOTIONS = {"linear", "wiggle", "rotate", "transrot",
+                                                 "variable"};
 static constexpr double FREE = HUGE_VAL;    // stands for NULL
 
 FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
@@ -47,14 +49,11 @@ FixFSIMove::FixFSIMove(LAMMPS *lmp, int narg, char **arg) :
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/move requires atom_style fsi");
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/move", error);
-  const auto found = std::find(std::begin(MOTIONS), std::end(MOTIONS), std::string(arg[3]));
-  if (found == std::end(MOTIONS))
-    error->all(
-        FLERR,
-        "Unknown fix fsi/move style {}: expected linear, wiggle, rotate, transrot or variable",
-        arg[3]);
-  motion = static_cast<int>(found - MOTIONS);
-  Keywords words(lmp, std::string("fix fsi/move ") + *found);
+  const auto found = std::find(MOTIONS.begin(), MOTIONS.end(), arg[3]);
+  if (found == MOTIONS.end())
+    error->all(FLERR, "Unknown fix fsi/move style {}: expected {}", arg[3], list_of(MOTIONS));
+  motion = static_cast<int>(found - MOTIONS.begin());
+  Keywords words(lmp, "fix fsi/move " + *found);
   motion == VARIABLE ? read_variables(words, narg - 4, arg + 4)
                      : read_motion(words, narg - 4, arg + 4);
   if (domain->dimension == 2 && (rate[2] != 0.0 || (motion == VARIABLE && sets_velocity(2))))
@@ -146,11 +145,10 @@ double FixFSIMove::now() const
 void FixFSIMove::init()
 {
   const auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/move");
-  int mine = 0, any;
+  bool mine = false;
   for (int i = 0; i < atom->nlocal; i++)
-    if ((atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit)) mine = 1;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any)
+    mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit);
+  if (anywhere(mine, world))
     error->all(FLERR,
                "Particles of fix fsi/move {} are also in the group of fix fsi, which moves them, "
                "too: leave them out",

@@ -18,11 +18,9 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "force.h"
 #include "fsi_bond_rows.h"
 #include "fsi_cells.h"
 #include "fsi_changes.h"
-#include "fsi_clamps.h"
 #include "fsi_contact.h"
 #include "fsi_fields.h"
 #include "fsi_gather.h"
@@ -58,17 +56,16 @@ static constexpr double NEAR = 0.05;
 
 struct FixFSIReference::Members {
   Swaps swaps;
-  Clamps clamps;
   Images images;
-  explicit Members(LAMMPS *lmp) : swaps(lmp), clamps(lmp) {}
+  explicit Members(LAMMPS *lmp) : swaps(lmp) {}
 };
 
 FixFSIReference::FixFSIReference(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), members(new Members(lmp)), quadratic(true), end_corrected(true),
     nvalue(2 * domain->dimension + 2), self_range(0.0), tears(false), changes(0),
-    swaps(members->swaps), clamps(members->clamps), images(members->images), fix_fsi(nullptr),
-    slot(nullptr), maxbond(0), nmoment(packed_size(domain->dimension)), keeps_images(false),
-    keeps_places(false), apart(0.0), layer(nullptr), next_look(0), expected(0)
+    swaps(members->swaps), images(members->images), fix_fsi(nullptr), slot(nullptr), maxbond(0),
+    nmoment(packed_size(domain->dimension)), keeps_images(false), keeps_places(false), apart(0.0),
+    layer(nullptr), next_look(0), expected(0)
 {
   has_record = resting = false;
   restart_peratom = restart_global = 1;
@@ -108,18 +105,12 @@ int FixFSIReference::nplace() const
   return keeps_places ? domain->dimension : 0;
 }
 
-// after fix rigid has moved its bodies
-void FixFSIReference::post_integrate()
-{
-  if (clamps.any()) clamps.to_middle();
-}
-
 void FixFSIReference::init()
 {
   // has a script put in its place what is not of this package?
   resting = facts_of_solids(lmp).style != Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   images.clear_planes();
-  if (resting) return clamps.clear();
+  if (resting) return;
   fix_fsi = FixFSI::find(lmp, "Fix FSI_REFERENCE");
   find_planes();
   if (!any()) {
@@ -164,13 +155,11 @@ void FixFSIReference::find_planes()
 
 bool FixFSIReference::any() const
 {
-  int mine = std::any_of(slot, slot + atom->nlocal,
-                         [](int s) {
-                           return s >= 0;
-                         }),
-      all;
-  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
-  return all;
+  return anywhere(std::any_of(slot, slot + atom->nlocal,
+                              [](int s) {
+                                return s >= 0;
+                              }),
+                  world);
 }
 
 void FixFSIReference::setup_post_neighbor()
@@ -244,7 +233,7 @@ void FixFSIReference::follow_commands()
 {
   refuse_other_materials();
   const tagint *const tag = atom->tag;
-  int mine = 0, any;
+  bool mine = false;
   for (int i = 0; i < atom->nlocal && !mine; i++) {
     if (slot[i] < 0) continue;
     mine = owner[slot[i]] != tag[i];
@@ -253,8 +242,7 @@ void FixFSIReference::follow_commands()
       mine = t > atom->map_tag_max || atom->map(t) < 0;
     }
   }
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) return;
+  if (!anywhere(mine, world)) return;
 
   std::vector<tagint> ids;    // old and new
   for (int i = 0; i < atom->nlocal; i++)
@@ -326,10 +314,7 @@ void FixFSIReference::take()
   std::vector<int> bare;
   for (int i = 0; i < atom->nlocal; i++)
     if (slot[i] < 0 && is_solid(i)) bare.push_back(i);
-  bigint mine = bare.size();
-  bigint all;
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all == 0) return;
+  if (!anywhere(!bare.empty(), world)) return;
 
   // a body is bonded at once
   std::set<tagint> bonded;
@@ -347,10 +332,7 @@ void FixFSIReference::take()
   // from now on its strain says what it is
   for (const int i : bare) atom->rho[i] = fix_fsi->state[atom->type[i]].rho0;
   if (images.planes.any()) check_planes(bare);
-  if (domain->dimension == 2)
-    take_reference<2>(bare);
-  else
-    take_reference<3>(bare);
+  domain->dimension == 2 ? take_reference<2>(bare) : take_reference<3>(bare);
   if (end_corrected) find_quadrature(bare);
 }
 
@@ -721,10 +703,8 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
 
 void FixFSIReference::break_bonds(double stretch, const Energy &energy)
 {
-  if (domain->dimension == 2)
-    break_bonds_of_all<2>(stretch, energy);
-  else
-    break_bonds_of_all<3>(stretch, energy);
+  domain->dimension == 2 ? break_bonds_of_all<2>(stretch, energy)
+                         : break_bonds_of_all<3>(stretch, energy);
 }
 
 // Nobody of this rank's solids moves relative to anybody else by more than the diagonal of the box

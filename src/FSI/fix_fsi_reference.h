@@ -31,7 +31,6 @@ FixStyle(FSI_REFERENCE,FixFSIReference);
 namespace LAMMPS_NS {
 namespace FSI {
   class Cells;
-  class Clamps;
   class Images;
   class Swaps;
 }    // namespace FSI
@@ -49,8 +48,7 @@ class FixFSIReference : public Fix {
   static constexpr char ID[] = "FSI_REFERENCE";
   FixFSIReference(class LAMMPS *, int, char **);
   ~FixFSIReference() override;
-  int setmask() override { return FixConst::POST_INTEGRATE | FixConst::POST_NEIGHBOR; }
-  void post_integrate() override;
+  int setmask() override { return FixConst::POST_NEIGHBOR; }
   void init() override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
@@ -114,7 +112,6 @@ class FixFSIReference : public Fix {
   // local solid atoms, and ghosts of solid atoms
   std::vector<int> solids, ghosts;
   FSI::Swaps &swaps;      // those of solids
-  FSI::Clamps &clamps;    // rigid bodies that take sub-steps with them
   FSI::Images &images;    // partners across planes of symmetry
 
  private:

@@ -504,9 +504,7 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
   std::vector<int> which;
   for (int i = 0; i < atom->nlocal; i++)
     if (carried[i] & SPLIT) which.push_back(i);
-  int own = which.size(), any;
-  MPI_Allreduce(&own, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) return list;
+  if (!anywhere(!which.empty(), world)) return list;
   std::sort(which.begin(), which.end(), [&](int a, int b) {
     return atom->tag[a] < atom->tag[b];
   });

@@ -21,6 +21,7 @@
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
 #include "fsi_clock.h"
+#include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_population.h"
@@ -113,9 +114,7 @@ void FixFSIReport::begin()
 // that there are, less those that inlets and outlets have made
 bigint FixFSIReport::particles() const
 {
-  bigint mine = atom->nlocal, all;
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  return all - fix_fsi->population.net;
+  return count_of(atom->nlocal, world) - fix_fsi->population.net;
 }
 
 // this rank's impulses of this step
@@ -190,14 +189,13 @@ void FixFSIReport::post_run()
 {
   if (update->whichflag != 1 || update->ntimestep == first_step) return;
 
-  double loop = timer->get_wall(Timer::TOTAL), sum;
+  double loop = timer->get_wall(Timer::TOTAL);
   if (!timer->has_loop()) {
     profile->enter(Profile::OUTSIDE);
     loop = 0.0;
     for (const double s : profile->seconds) loop += s;
   }
-  MPI_Allreduce(&loop, &sum, 1, MPI_DOUBLE, MPI_SUM, world);
-  loop = sum / comm->nprocs;
+  loop = sum_of(loop, world) / comm->nprocs;
   const double time = Clock::now(update) - first_time;
   const bigint left = particles(), now = left + fix_fsi->population.net, lost = natoms - left;
   lines.clear();

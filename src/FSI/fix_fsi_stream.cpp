@@ -18,12 +18,12 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "fsi_value.h"
 #include "group.h"
 #include "math_const.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "region.h"
 #include "update.h"
@@ -112,13 +112,10 @@ void FixFSIStream::setup(int vflag)
 {
   step = -1;
   find_weights();
-  int mine = std::any_of(zone.begin(), zone.end(),
-                         [](const Member &m) {
-                           return m.weight > 0.0;
-                         }),
-      any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any)
+  const auto acts = [](const Member &m) {
+    return m.weight > 0.0;
+  };
+  if (!anywhere(std::any_of(zone.begin(), zone.end(), acts), world))
     error->all(FLERR, "Region {} of fix fsi/stream has no fluid of group {}", region_id,
                group->names[igroup]);
   post_force(vflag);
@@ -235,16 +232,12 @@ void FixFSIStream::post_force(int)
 
 double FixFSIStream::compute_scalar()
 {
-  double all;
-  MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of(work, world);
 }
 
 double FixFSIStream::compute_vector(int n)
 {
-  double all;
-  MPI_Allreduce(&given[n], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of(given[n], world);
 }
 
 void FixFSIStream::write_restart(FILE *fp)

@@ -19,8 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_changes.h"
-#include "fsi_jaumann.h"
-#include "fsi_plasticity.h"
+#include "fsi_hypoelastic.h"
 #include "fsi_record.h"
 #include "modify.h"
 #include "update.h"
@@ -133,6 +132,7 @@ void FixFSIStress::enter_start(const std::vector<State> &state)
   places.add(start, 0, dim, {NONE, FLUID, SOLID, RIGID});
   sent = &places;
   comm->forward_comm(this);
+  sent = nullptr;
 }
 
 double FixFSIStress::distance_at_start(int i, int j) const

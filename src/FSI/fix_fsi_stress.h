@@ -53,13 +53,12 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   double distance_at_start(int i, int j) const;
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between
-  // (fsi_jaumann.h) returns the plastic work per volume
+  // (fsi_hypoelastic.h) returns the plastic work per volume
   template <int D>
   double advance_stress(int i, const double *L, double dt, const FSI::State &material);
 
   // equivalent plastic strain of atom i
   double plastic_strain(int i) const { return plastic ? strain[i] : 0.0; }
-  // von Mises stress of atom i with pressure p
   double shear_energy(int i, double shear) const;    // of atom i with this shear modulus
 
  private:

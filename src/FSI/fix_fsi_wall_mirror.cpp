@@ -291,17 +291,13 @@ void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
 // number of reflections since the fix was defined
 double FixFSIWallMirror::compute_scalar()
 {
-  bigint all;
-  MPI_Allreduce(&reflected, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  return static_cast<double>(all);
+  return static_cast<double>(count_of(reflected, world));
 }
 
 // force of the fluid on wall i
 double FixFSIWallMirror::compute_array(int i, int j)
 {
-  double all;
-  MPI_Allreduce(&force_on[i][j], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of(force_on[i][j], world);
 }
 
 // restart: count of reflections and where the walls are; a wall that the command puts elsewhere

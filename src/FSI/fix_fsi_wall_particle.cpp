@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_move.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_levels.h"
 #include "fsi_profile.h"
@@ -222,7 +223,7 @@ void FixFSIWallParticle::sum_up()
   sent = from_ghosts.get();
   if (force->newton_pair)
     exchange(fix_fsi->profile, comm, [this]() {
-      swaps->reverse(this);
+      swaps->reverse<Fix>(this);
     });
 }
 
@@ -283,7 +284,7 @@ void FixFSIWallParticle::end_state(bool advance)
   }
   sent = to_ghosts.get();
   exchange(fix_fsi->profile, comm, [this]() {
-    swaps->forward(this);
+    swaps->forward<Fix>(this);
   });
 }
 
@@ -299,9 +300,7 @@ void FixFSIWallParticle::pre_reverse(int, int)
 
 double FixFSIWallParticle::compute_vector(int n)
 {
-  double all;
-  MPI_Allreduce(&force_on[n], &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of(force_on[n], world);
 }
 
 // pairs of fluid and wall within the guard's distance
@@ -309,7 +308,7 @@ double FixFSIWallParticle::compute_scalar()
 {
   // before the first run, or with a new fix fsi
   if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
-  double counted = 0.0, all;
+  double counted = 0.0;
   for (size_t level = 0; level < fix_fsi->levels.size(); level++)
     for_pairs(level, [&](int w, int j) {
       double rsq = 0.0;
@@ -322,8 +321,7 @@ double FixFSIWallParticle::compute_scalar()
       if (rsq < limit * limit)
         counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;
     });
-  MPI_Allreduce(&counted, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of(counted, world);
 }
 
 void FixFSIWallParticle::write_restart(FILE *fp)

@@ -18,8 +18,8 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_kernel.h"
-#include "fsi_lattice.h"
 #include "fsi_part.h"
 #include "fsi_scene.h"
 #include "lammps.h"
@@ -143,8 +143,13 @@ void FSI::announce(LAMMPS *lmp, Scene &scene)
   std::string text;
   say_effects(lmp, scene, text);
   say_costs(lmp, scene, text);
-  if (text == scene.announced) return;
-  scene.announced = text;
+  // commands may have made fluid that nobody moves
+  const auto held = find_particles(lmp->atom, lmp->world, [&](int i) {
+    return scene.state[lmp->atom->type[i]].species == FLUID && !scene.is_moved(i);
+  });
+  const auto now = fmt::format("{}{}", text, held.count);
+  if (now == scene.announced) return;
+  scene.announced = now;
   if (lmp->comm->me == 0) utils::logmesg(lmp, text);
   advise(lmp, scene);
   warn_idle(lmp, scene);

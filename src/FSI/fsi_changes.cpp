@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_part.h"
 #include "modify.h"
 #include "pair.h"
@@ -28,6 +29,13 @@
 
 using namespace LAMMPS_NS;
 using namespace FSI;
+
+// LAMMPS numbers fixes as they are made, and shows that to classes derived from them only
+namespace {
+struct Numbered : public Fix {
+  static constexpr auto number = &Numbered::instance_me;
+};
+}    // namespace
 
 // Who is where in the arrays of this rank, and of what type: FNV-1a of it
 uint64_t Changes::fingerprint() const
@@ -55,9 +63,7 @@ bool Changes::any_mass() const
   const auto has_mass = [](double m) {
     return m != 0.0;
   };
-  int mine = std::any_of(atom->rmass, atom->rmass + atom->nlocal, has_mass), any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  return any;
+  return anywhere(std::any_of(atom->rmass, atom->rmass + atom->nlocal, has_mass), world);
 }
 
 std::vector<std::uintptr_t> Changes::present() const
@@ -74,18 +80,33 @@ std::vector<std::uintptr_t> Changes::present() const
     list.push_back(part && part->is_set_up());
   }
   for (auto &region : domain->get_region_list()) add(region);
-  for (auto &fix : modify->get_fix_list()) add(fix);
+  // a new one may be at the address of that in whose place it came
+  for (auto &fix : modify->get_fix_list()) list.push_back(fix->*Numbered::number);
   for (auto &compute : modify->get_compute_list()) {
     add(compute);
-    list.push_back(compute->is_initialized());    // another one may be at the same address
+    list.push_back(compute->is_initialized());
   }
   return list;
 }
 
+bool Changes::in_first_step(const Update *update)
+{
+  return update->ntimestep - 1 == update->firststep;
+}
+
+static void refuse(Error *error)
+{
+  error->all(FLERR,
+             "Run with pre no: fixes, computes, regions or pair styles are others than when the "
+             "last run was set up. Leave out pre no");
+}
+
 void Changes::check_pre_no() const
 {
-  if (there != present())
-    error->all(FLERR,
-               "Run with pre no: fixes, computes, regions or pair styles are others than when the "
-               "last run was set up. Leave out pre no");
+  if (in_first_step(update) && there != present()) refuse(error);
+}
+
+void Changes::check_pre_no(LAMMPS *lmp, const Changes *known)
+{
+  if (!known || known->there.empty()) refuse(lmp->error);
 }

@@ -39,7 +39,10 @@ namespace FSI {
 
     // what a run points to
     void set_up() { there = present(); }
-    void check_pre_no() const;    // at its first step: an error if it is another one
+    // in its first step: an error if it is another one; of pairs: if theirs are not known
+    void check_pre_no() const;
+    static void check_pre_no(LAMMPS *, const Changes *);
+    static bool in_first_step(const class Update *);
 
    private:
     int nlocal;

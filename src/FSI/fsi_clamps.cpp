@@ -33,6 +33,7 @@
 #if __has_include("fix_rigid.h")
 #include "fix_rigid.h"
 #include "fix_rigid_small.h"
+#include "rigid_const.h"
 #define LMP_FSI_HAS_RIGID
 #endif
 
@@ -45,7 +46,8 @@ using namespace FSI;
 namespace {
 struct Rigid : public FixRigid {
   static constexpr auto early = &Rigid::earlyflag, count = &Rigid::nbody;
-  static constexpr auto of_atom = &Rigid::body;
+  static constexpr auto of_atom = &Rigid::body, flags = &Rigid::eflags;
+  static constexpr auto have_sizes = &Rigid::extended;
   static constexpr auto images = &Rigid::xcmimage;
   static constexpr auto mass = &Rigid::masstotal;
   static constexpr auto place = &Rigid::displace, center = &Rigid::xcm, velocity = &Rigid::vcm,
@@ -60,7 +62,8 @@ struct Small : public FixRigidSmall {
   static constexpr auto early = &Small::earlyflag, own = &Small::nlocal_body,
                         ghosts = &Small::nghost_body, thermal = &Small::langflag;
   static constexpr auto of_atom = &Small::bodytag;
-  static constexpr auto owned = &Small::bodyown;
+  static constexpr auto owned = &Small::bodyown, flags = &Small::eflags;
+  static constexpr auto have_sizes = &Small::extended;
   static constexpr auto images = &Small::xcmimage;
   static constexpr auto place = &Small::displace;
   static constexpr auto bodies = &Small::body;
@@ -78,23 +81,39 @@ FixRigidSmall *small(Fix *fix)
 }
 }    // namespace
 
-// what moves its bodies in another way is left to its own: pair_style fsi/solid/tl refuses it
-void Clamps::find(const Scene &scene, const Fix *fix_fsi)
+// What moves its bodies in another way is left to its own, half a step ahead. With sub-steps that
+// is refused, here or by pair_style fsi/solid/tl.
+void Clamps::find()
 {
   bodies.clear();
-  mover = fix_fsi;
+  elastic = false;
   for (auto &fix : modify->get_fix_by_style("^rigid")) {
     Body body = {};
     body.fix = fix;
     body.small = utils::strmatch(fix->style, "^rigid/small$");
     if (!body.small && !utils::strmatch(fix->style, "^rigid$")) continue;
     std::set<tagint> mine;
+    int solids = 0, in_substeps = 0;
     for (int i = 0; i < atom->nlocal; i++) {
       const tagint b = id_of(body, i);
-      if (b >= 0 && scene.is_total_lagrangian(i) && !(atom->mask[i] & mover->groupbit))
-        mine.insert(b);
+      if (b < 0 || scene.state[atom->type[i]].species == NONE ||
+          atom->mask[i] & scene.mover->groupbit)
+        continue;
+      mine.insert(b);
+      solids = solids || scene.is_total_lagrangian(i);
     }
-    for (const tagint id : gather(mine, world)) {
+    solids = solids && takes_substeps();
+    MPI_Allreduce(&solids, &in_substeps, 1, MPI_INT, MPI_MAX, world);
+    const auto ids = gather(mine, world);
+    const auto expected = expected_of(fix);
+    if (in_substeps && !expected.empty())
+      error->all(FLERR,
+                 "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected {}",
+                 fix->id, fix->style, expected);
+    if (ids.empty() || !expected.empty()) continue;
+    if (body.small) refuse_new_ids(fix);
+    elastic = elastic || in_substeps;
+    for (const tagint id : ids) {
       body.id = id;
       for (int d = 0; d < 6; d++)
         body.free[d] = body.small ? 1.0
@@ -102,7 +121,6 @@ void Clamps::find(const Scene &scene, const Fix *fix_fsi)
                                   : (large(fix)->*Rigid::free_torque)[id][d - 3];
       bodies.push_back(body);
     }
-    if (known(fix)) refuse(fix);
   }
   sums.resize(6 * bodies.size());
 }
@@ -114,26 +132,26 @@ bool Clamps::known(const Fix *fix) const
   });
 }
 
-void Clamps::refuse(Fix *fix) const
+bool Clamps::takes_substeps() const
+{
+  return scene.substeps > 1 ||
+      std::any_of(scene.parts.begin(), scene.parts.end(), [](const Part *p) {
+           return p->facts().chooses_substeps;
+         });
+}
+
+// for its bodies to be moved here; empty: they are
+std::string Clamps::expected_of(Fix *fix) const
 {
   const bool is_small = utils::strmatch(fix->style, "small$");
   const auto &all = modify->get_fix_list();
-  if (std::find(all.begin(), all.end(), fix) < std::find(all.begin(), all.end(), mover))
-    error->all(FLERR,
-               "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected after "
-               "fix {}, whose sub-steps find the forces on them",
-               fix->id, fix->style, mover->id);
-  if (is_small) refuse_new_ids(fix);
-  if (is_small && small(fix)->*Small::thermal)
-    error->all(FLERR,
-               "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected no "
-               "keyword langevin, or fix rigid",
-               fix->id, fix->style);
+  if (std::find(all.begin(), all.end(), fix) < std::find(all.begin(), all.end(), scene.mover))
+    return fmt::format("after fix {}, whose sub-steps find the forces on them", scene.mover->id);
+  if (is_small && small(fix)->*Small::thermal) return "no keyword langevin, or fix rigid";
   if (is_small ? small(fix)->*Small::early : large(fix)->*Rigid::early)
-    error->all(FLERR,
-               "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected "
-               "bodyforces late in fix_modify, since fix {} finds the forces on them later",
-               fix->id, fix->style, mover->id);
+    return fmt::format("bodyforces late in fix_modify, since fix {} finds the forces on them later",
+                       scene.mover->id);
+  return {};
 }
 
 // fix rigid/small knows its bodies by the ID of an atom, which delete_atoms changes
@@ -164,9 +182,14 @@ void Clamps::find_members()
       Body &b = bodies[k];
       b.displace = b.small ? small(b.fix)->*Small::place : large(b.fix)->*Rigid::place;
       b.image = b.small ? small(b.fix)->*Small::images : large(b.fix)->*Rigid::images;
+      b.flags = b.small ? small(b.fix)->*Small::flags : large(b.fix)->*Rigid::flags;
+      if (!(b.small ? small(b.fix)->*Small::have_sizes : large(b.fix)->*Rigid::have_sizes))
+        b.flags = nullptr;
     }
     for (int i = 0; i < atom->nlocal; i++) {
-      const auto at = of.find(id_of(bodies[first], i));
+      const tagint id = id_of(bodies[first], i);
+      if (id < 0) continue;
+      const auto at = of.find(id);
       if (at != of.end()) members.push_back({i, (int) at->second});
     }
   });
@@ -339,8 +362,8 @@ void Clamps::place(const std::vector<Member> &list) const
   }
 }
 
-// force and torque of each body, of all ranks
-void Clamps::sum(const std::vector<Member> &list, const double *const *f)
+// Force and torque of each body, of all ranks. Whole: with what has torques of its own.
+void Clamps::sum(const std::vector<Member> &list, const double *const *f, bool whole)
 {
   std::vector<double> mine(sums.size(), 0.0);
   for (const Member &m : list) {
@@ -348,6 +371,9 @@ void Clamps::sum(const std::vector<Member> &list, const double *const *f)
     for (int d = 0; d < domain->dimension; d++) one[d] = f[m.i][d];
     arm(m, r);
     MathExtra::cross3(r, one, torque);
+    const int *const flags = bodies[m.body].flags;
+    if (whole && flags && flags[m.i] & RigidConst::TORQUE)
+      MathExtra::add3(torque, atom->torque[m.i], torque);
     for (int d = 0; d < 3; d++) {
       mine[6 * m.body + d] += one[d];
       mine[6 * m.body + 3 + d] += torque[d];
@@ -370,7 +396,7 @@ void Clamps::add_own(const Body &b, double *force_and_torque) const
   if (domain->dimension == 2) force_and_torque[2] = force_and_torque[3] = force_and_torque[4] = 0.0;
 }
 
-void Clamps::begin()
+void Clamps::start_step()
 {
   with_states([](Body &b, const State &s) {
     static_cast<State &>(b) = s;
@@ -415,14 +441,14 @@ void Clamps::begin_substeps(const std::vector<int> &solids)
 {
   find_members();
   clamp.assign(atom->nlocal, 0);
-  for (const int i : solids) clamp[i] = !(atom->mask[i] & mover->groupbit);
+  for (const int i : solids) clamp[i] = !(atom->mask[i] & scene.mover->groupbit);
   clamps.clear();
   for (const Member &m : members)
     if (clamp[m.i]) clamps.push_back(m);
   clamp.assign(atom->nlocal, 0);
   for (const Member &m : clamps) clamp[m.i] = 1;
   impulse.assign(3 * clamps.size(), 0.0);
-  sum(members, atom->f);
+  sum(members, atom->f, true);
   for (size_t k = 0; k < bodies.size(); k++) {
     Body &b = bodies[k];
     std::copy_n(&sums[6 * k], 6, b.outside);
@@ -443,7 +469,7 @@ void Clamps::kick(double t, const double *const *f)
   double *to = impulse.data();
   for (const Member &m : clamps)
     for (int d = 0; d < 3; d++) *to++ += d < domain->dimension ? f[m.i][d] : 0.0;
-  sum(clamps, f);
+  sum(clamps, f, false);
   for (size_t k = 0; k < bodies.size(); k++) {
     for (int d = 0; d < 6; d++) sums[6 * k + d] += bodies[k].outside[d];
     kick(bodies[k], t, &sums[6 * k]);
@@ -461,6 +487,7 @@ void Clamps::average(int substeps, double **f) const
 
 void Clamps::take_step()
 {
+  if (elastic && scene.substeps > 1) return;
   begin_substeps({});
   for (Body &b : bodies) {
     drift(b, 0.5 * update->dt);
@@ -475,7 +502,7 @@ void Clamps::take_step()
 // the end.
 void Clamps::finish()
 {
-  sum(members, atom->f);
+  sum(members, atom->f, true);
   for (size_t k = 0; k < bodies.size(); k++) {
     Body &b = bodies[k];
     add_own(b, &sums[6 * k]);
@@ -485,8 +512,10 @@ void Clamps::finish()
   place(members);
 }
 
+// from the middle of the step to its start
 void Clamps::go_back()
 {
+  if (!any()) return;
   find_members();
   follow_boundary();
   to_start();
@@ -494,14 +523,20 @@ void Clamps::go_back()
   place(members);
 }
 
+void Clamps::add_costs(Costs &costs) const
+{
+  const int substeps = elastic && scene.substeps > 1 ? scene.substeps : 0;
+  if (any()) costs.solids += fmt::format("; {} sums over all ranks for rigid bodies", substeps + 2);
+}
+
 #else
 
-void Clamps::find(const Scene &, const Fix *) {}
+void Clamps::find() {}
 bool Clamps::known(const Fix *) const
 {
   return false;
 }
-void Clamps::begin() {}
+void Clamps::start_step() {}
 void Clamps::to_middle() {}
 void Clamps::begin_substeps(const std::vector<int> &) {}
 void Clamps::drift(double) {}
@@ -510,5 +545,6 @@ void Clamps::average(int, double **) const {}
 void Clamps::take_step() {}
 void Clamps::finish() {}
 void Clamps::go_back() {}
+void Clamps::add_costs(Costs &) const {}
 
 #endif

@@ -14,6 +14,7 @@
 #ifndef LMP_FSI_CLAMPS_H
 #define LMP_FSI_CLAMPS_H
 
+#include "fsi_part.h"
 #include "pointers.h"
 
 #include <string>
@@ -27,29 +28,31 @@ namespace FSI {
 
   class Scene;
 
-  // Rigid bodies of fix rigid or rigid/small with particles of total-Lagrangian solids in them,
-  // which take sub-steps: the rigid body takes them, too, with the same position Verlet. The fix
-  // keeps mass, inertia and state, and has them at the end of the step; its particles have the
-  // force averaged over the sub-steps, which it sums as ever.
-  class Clamps : protected Pointers {
+  // Rigid bodies of fix rigid or rigid/small with particles of walls or solids in them. The fix has
+  // them at the end of the step when forces are found, half a step ahead of the fluid. Here they
+  // take the position Verlet of all, in sub-steps where total-Lagrangian solids do. The fix keeps
+  // mass, inertia and state; its particles have the force averaged over the sub-steps, which it
+  // sums as ever.
+  class Clamps : public Part, protected Pointers {
    public:
-    explicit Clamps(LAMMPS *lmp) : Pointers(lmp) {}
-    void find(const Scene &, const Fix *fix_fsi);    // before a run
-    void clear() { bodies.clear(); }
+    Clamps(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene) {}
+    void find();    // before a run
     bool any() const { return !bodies.empty(); }
-    bool known(const Fix *) const;    // is it one of theirs?
+    bool any_elastic() const { return elastic; }    // are there some that sub-steps act on?
+    bool known(const Fix *) const;                  // is it one of theirs?
     // local atom i, in sub-steps
-    bool has(int i) const { return any() && clamp[i]; }
+    bool has(int i) const { return elastic && clamp[i]; }
 
-    void begin();        // of the step, before fix rigid moves what it has
-    void to_middle();    // after that
+    void start_step() override;                             // before fix rigid moves what it has
+    void to_middle();                                       // after that
     void begin_substeps(const std::vector<int> &solids);    // and back to the start of the step
     void drift(double t);
     void kick(double t, const double *const *f);    // f: of one sub-step
     void average(int substeps, double **f) const;
-    void take_step();    // without sub-steps: from the middle on, by atom->f
+    void take_step();    // from the middle on, by atom->f, if it was not in sub-steps
     void finish();       // atom->f is what fix rigid will see
-    void go_back();      // from the middle of the step to its start
+    void go_back() override;
+    void add_costs(Costs &) const override;
 
    private:
     struct Motion {
@@ -65,6 +68,7 @@ namespace FSI {
       double free[6];                          // 0: components of force and torque left out
       const double *const *displace;           // of atoms, from the center in the body's axes
       const imageint *image;                   // of atoms
+      const int *flags;                        // of atoms, if some have sizes, or null
       Motion start;                            // of the step
       double middle[3];                        // x, in the middle of the step
       double ex[3], ey[3], ez[3], omega[3];    // follow from the orientation
@@ -78,8 +82,10 @@ namespace FSI {
     std::vector<char> clamp;                // is an atom one?
     std::vector<double> impulse;            // of clamps, over the last sub-steps' length
     std::vector<double> sums;               // force and torque of each body
-    const Fix *mover = nullptr;
-    void refuse(Fix *) const;
+    const Scene &scene;
+    bool elastic = false;
+    bool takes_substeps() const;
+    std::string expected_of(Fix *) const;
     void refuse_new_ids(Fix *) const;
     void find_members();
     void follow(Body &) const;
@@ -88,7 +94,7 @@ namespace FSI {
     void arm(const Member &, double *) const;
     tagint id_of(const Body &, int i) const;
     void place(const std::vector<Member> &) const;
-    void sum(const std::vector<Member> &, const double *const *f);
+    void sum(const std::vector<Member> &, const double *const *f, bool whole);
     void add_own(const Body &, double *force_and_torque) const;
     std::vector<State> states(Fix *) const;    // of all its bodies
     template <class Use> void of_fixes(Use) const;

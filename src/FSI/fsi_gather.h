@@ -65,6 +65,28 @@ namespace FSI {
     return mine;
   }
 
+  // is it so on any of them?
+  inline bool anywhere(bool mine, MPI_Comm world)
+  {
+    int own = mine, any;
+    MPI_Allreduce(&own, &any, 1, MPI_INT, MPI_MAX, world);
+    return any;
+  }
+
+  inline double sum_of(double mine, MPI_Comm world)
+  {
+    double all;
+    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+    return all;
+  }
+
+  inline bigint count_of(bigint mine, MPI_Comm world)
+  {
+    bigint all;
+    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    return all;
+  }
+
   // how many particles there are that is(i) holds for, and the least of their tags
   struct Found {
     bigint count = 0;

@@ -68,8 +68,7 @@ int FSI::integer(LAMMPS *lmp, const std::string &what, const std::string &value,
   return static_cast<int>(x);
 }
 
-// one, two or three
-static std::string list_of(const std::vector<std::string> &words)
+std::string FSI::list_of(const std::vector<std::string> &words)
 {
   std::string text;
   for (size_t k = 0; k < words.size(); k++)

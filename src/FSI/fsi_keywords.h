@@ -58,6 +58,9 @@ namespace FSI {
   int integer(LAMMPS *, const std::string &what, const std::string &value, int least,
               int most = MAXSMALLINT);
 
+  // one, two or three
+  std::string list_of(const std::vector<std::string> &words);
+
   class Keywords : protected Pointers {
    public:
     Keywords(LAMMPS *, const std::string &command);    // as a user writes it

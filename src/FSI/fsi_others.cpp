@@ -17,6 +17,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_gather.h"
 #include "fsi_scene.h"
 #include "math_const.h"
 
@@ -26,18 +27,17 @@ using MathConst::MY_PI;
 
 void Others::init()
 {
-  int mine = 0, any = 0;
+  bool mine = false;
   for (int i = 0; i < atom->nlocal; i++) {
     if (scene.state[atom->type[i]].species != NONE) continue;
-    mine = 1;
+    mine = true;
     if (atom->rmass[i] <= 0.0)
       error->one(FLERR,
                  "Atom {} is of type {}, which has no material, and has no mass: give it a "
                  "material in pair_coeff, or, if it is a particle of another pair style, a mass",
                  atom->tag[i], atom->type[i]);
   }
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  spins = any && atom->radius_flag && atom->omega_flag && atom->torque_flag;
+  spins = anywhere(mine, world) && atom->radius_flag && atom->omega_flag && atom->torque_flag;
 }
 
 // an atom that was never given a mass or a density gets those of the stress-free lattice

@@ -50,11 +50,8 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
     return r;
   };
   const Resolution fluid = resolution_of(dx);
-  h = fluid.h;
-  cut = largest_cut = fluid.cut;
-  psi_bulk = fluid.psi_bulk;
-  wdx = fluid.wdx;
-  w0 = fluid.w0;
+  static_cast<Resolution &>(*this) = fluid;
+  largest_cut = cut;
   levels = {fluid};
   level_of.assign(spacing.size(), 0);
   resolution.clear();

@@ -20,7 +20,6 @@
 
 #include "fsi_body_forces.h"
 #include "fsi_material.h"
-#include "fsi_resolution.h"
 #include "fsi_walls.h"
 
 #include <memory>
@@ -36,18 +35,31 @@ namespace FSI {
   class Profile;
   class Sight;
 
-  // Constant from init() on.
-  struct Discretization {
+  // How finely an atom type is resolved: the spacing of its lattice, and what follows from it. The
+  // smoothing length over the spacing is the same for all types. Fluids of two spacings meet with
+  // the kernel of their mean, fluids and others with the fluid's, each with its own volume.
+  struct Resolution {
+    double dx = 0.0, h = 0.0;      // spacing of the initial lattice, smoothing length
+    double cut = 0.0;              // support radius of the kernel
+    double psi_bulk = 0.0;         // number density inside the lattice: the volume of a particle is
+                                   // 1/psi_bulk
+    double wdx = 0.0, w0 = 0.0;    // W(dx), W(0)
+  };
+
+  // distance of neighbors of two lattices that face each other, cell by cell
+  inline double spacing_between(const Resolution &a, const Resolution &b)
+  {
+    return 0.5 * (a.dx + b.dx);
+  }
+
+  // Constant from init() on. Of itself the resolution of the coarsest fluid.
+  struct Discretization : Resolution {
     int article;    // the article's scheme: what it sets where a style says nothing else
     enum Density { CONTINUITY, SUMMATION, RATIO };
     static std::vector<std::string> density_names(int species);    // of these
     int density_fluid, density_solid;                              // Density
     int dim;
-    int kernel;         // KernelKind
-    double dx, h;       // spacing of the initial lattice, smoothing length
-    double cut;         // support radius of the kernel
-    double psi_bulk;    // number density inside the lattice: the volume of a particle is 1/psi_bulk
-    double wdx, w0;     // W(dx), W(0)
+    int kernel;                            // KernelKind
     std::vector<Resolution> resolution;    // per atom type
     double largest_cut;                    // support of the coarsest
     double dx_of(int type) const { return resolution[type].dx; }

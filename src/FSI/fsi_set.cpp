@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
+#include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "group.h"
 #include "input.h"
@@ -116,8 +117,7 @@ void FSISet::command(int narg, char **arg)
     atom->rho[i] = rho;
     count++;
   }
-  bigint all;
-  MPI_Allreduce(&count, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  const bigint all = count_of(count, world);
   if (all == 0 && comm->me == 0)
     error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", group_name, names[what], given);
   if (comm->me == 0)

@@ -30,7 +30,7 @@
 #include "fsi_rows.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_tensor.h"
-#include "fsi_viscosity_artificial.h"
+#include "fsi_viscosity.h"
 
 #include <type_traits>
 

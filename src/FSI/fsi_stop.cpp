@@ -26,7 +26,6 @@
 #include "fsi_part.h"
 #include "fsi_scene.h"
 #include "lmptype.h"
-#include "modify.h"
 #include "pair.h"
 #include "universe.h"
 #include "update.h"
@@ -284,13 +283,12 @@ void Stop::go_back(const Scene &scene)
 // restart file, and what to say of it
 std::string Stop::write_state(const Scene &scene)
 {
-  int mine = 1, writable;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (not_finite(i, false).tag) mine = 0;
-  MPI_Allreduce(&mine, &writable, 1, MPI_INT, MPI_MIN, world);
-  if (!writable) return ". No restart file: the state is not finite any more";
+  bool lost = false;
+  for (int i = 0; i < atom->nlocal; i++) lost |= not_finite(i, false).tag != 0;
+  if (anywhere(lost, world)) return ". No restart file: the state is not finite any more";
 
   // an error of write_restart would hide what this is about
+  int writable = 0;
   if (comm->me == 0) {
     FILE *fp = fopen(restart_file.c_str(), "wb");
     writable = fp != nullptr;
@@ -300,8 +298,7 @@ std::string Stop::write_state(const Scene &scene)
   if (!writable)
     return fmt::format(". Restart file {} cannot be written: {}", restart_file,
                        utils::getsyserror());
-  bigint n = atom->nlocal;
-  MPI_Allreduce(&n, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  atom->natoms = count_of(atom->nlocal, world);
   domain->pbc();
   domain->reset_box();
   // what has left a fixed box since the last reneighboring would be missing when the file is read

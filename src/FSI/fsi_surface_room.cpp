@@ -16,6 +16,7 @@
 #include "atom.h"
 #include "force.h"
 #include "fsi_fields.h"
+#include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_number_density.h"
 #include "fsi_part.h"
@@ -156,10 +157,9 @@ void SurfaceRoom::begin()
   const auto is_new = [&](int i) {
     return scene.state[type[i]].species == FLUID && room[i][0] == 0.0;
   };
-  int mine = 0, any;
+  bool mine = false;
   for (int i = 0; i < nlocal; i++) mine |= is_new(i);
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) return;
+  if (!anywhere(mine, world)) return;
   std::vector<double> psi(nlocal + atom->nghost);
   number_density.find(psi.data());
   const auto asymmetry = gradients();

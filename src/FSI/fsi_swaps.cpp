@@ -68,7 +68,7 @@ double *Swaps::pass(int to, int n, int from, int most)
   return in.data();
 }
 
-template <class Who> void Swaps::forward_of(Who *who)
+template <class Who> void Swaps::forward(Who *who)
 {
   if (!chosen) return comm->forward_comm(who);
   const int size = who->comm_forward;
@@ -79,7 +79,7 @@ template <class Who> void Swaps::forward_of(Who *who)
   }
 }
 
-template <class Who> void Swaps::reverse_of(Who *who)
+template <class Who> void Swaps::reverse(Who *who)
 {
   if (!chosen) return comm->reverse_comm(who);
   const int size = who->comm_reverse;
@@ -91,19 +91,7 @@ template <class Who> void Swaps::reverse_of(Who *who)
   }
 }
 
-void Swaps::forward(Pair *pair)
-{
-  forward_of(pair);
-}
-void Swaps::forward(Fix *fix)
-{
-  forward_of(fix);
-}
-void Swaps::reverse(Pair *pair)
-{
-  reverse_of(pair);
-}
-void Swaps::reverse(Fix *fix)
-{
-  reverse_of(fix);
-}
+template void Swaps::forward(Pair *);
+template void Swaps::forward(Fix *);
+template void Swaps::reverse(Pair *);
+template void Swaps::reverse(Fix *);

@@ -20,9 +20,6 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-class Fix;
-class Pair;
-
 namespace FSI {
 
   // LAMMPS' exchanges with ghosts, without those that carry none of the chosen particles: both ends
@@ -33,10 +30,8 @@ namespace FSI {
     explicit Swaps(LAMMPS *lmp) : Pointers(lmp), chosen(false) {}
     void find(const std::function<bool(int)> &is_chosen);    // whenever ghosts are new
     // for a pair style or a fix, which packs and unpacks the chosen particles only
-    void forward(Pair *);
-    void forward(Fix *);
-    void reverse(Pair *);
-    void reverse(Fix *);
+    template <class Who> void forward(Who *);
+    template <class Who> void reverse(Who *);
 
    private:
     struct Swap {
@@ -47,8 +42,6 @@ namespace FSI {
     bool chosen;
     std::vector<Swap> swaps;
     std::vector<double> out, in;
-    template <class Who> void forward_of(Who *);
-    template <class Who> void reverse_of(Who *);
     double *pass(int to, int n, int from, int most);
   };
 

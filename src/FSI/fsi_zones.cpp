@@ -24,7 +24,6 @@
 #include "lammps.h"
 #include "region.h"
 
-#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;

@@ -52,7 +52,7 @@ class PairFSI : public Pair, public FSI::Part {
   FSI::Keywords keywords;                 // of settings()
   class FixFSI *fix_fsi;                  // null: not since settings() or coeff()
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
-  double alpha, beta;                     // artificial/visc (fsi_viscosity_artificial.h)
+  double alpha, beta;                     // artificial/visc (fsi_viscosity.h)
   double contact_range;                   // of solids, over dx (fsi_contact.h)
   int self_contact;                       // of a body with itself
 

@@ -459,12 +459,8 @@ bool PairFSIFluid::add_rates(bool advance)
   if (fix_fsi->shifts && nall) std::fill_n(fix_fsi->shift[0], nall * nshift(), 0.0);
   const Phase phase(fix_fsi->profile, Profile::DENSITY);
   if (fix_fsi->shifts && fade) find_fades();
-  if (rate && advance) {
-    if (fix_fsi->dim == 2)
-      add_density_rate<2>(update->dt);
-    else
-      add_density_rate<3>(update->dt);
-  }
+  if (rate && advance)
+    fix_fsi->dim == 2 ? add_density_rate<2>(update->dt) : add_density_rate<3>(update->dt);
   if (beyond) {
     if (nall) std::fill_n(beyond[0], nall * (fix_fsi->dim + 1), 0.0);
     add_velocities_at_solids();
@@ -478,7 +474,12 @@ void PairFSIFluid::advance(bool advance)
   if (beyond) extrapolate_velocities();
   if (!rate || !advance) return;
   advance_density();
-  if (fix_fsi->shifts) displacements(update->dt * shift_every);
+  if (!fix_fsi->shifts) return;
+  const double dt = update->dt * shift_every;
+  if (fix_fsi->dim == 2)
+    fills() ? displacements<2, true>(dt) : displacements<2, false>(dt);
+  else
+    fills() ? displacements<3, true>(dt) : displacements<3, false>(dt);
 }
 
 // the sums of find_fades over some rows
@@ -834,14 +835,19 @@ void PairFSIFluid::find_rows_with_others(const std::vector<std::array<int, 2>> &
 // rows of images, one list per reflection: of local fluid particles themselves, and of the
 // neighbors that are near its walls, too, both together not farther than the support; segments of
 // walls reflect a pair only if the line between them passes
-// through. position(i) says where particles are
-template <class Position> void PairFSIFluid::find_images(const Walls &walls, Position position)
+// through. places: where particles are, null: at atom->x
+void PairFSIFluid::find_images(const Walls &walls, const double *places)
 {
   const int *const wmask = fix_fsi->wmask, *const type = atom->type, nlocal = atom->nlocal;
   const auto *const x = FixFSI::rows(atom->x);
   const double cutsq = fix_fsi->cut * fix_fsi->cut;
   const int n = walls.reflections.size();
   const bool finite = walls.finite();
+  const auto position = [&](int i) -> std::array<double, 3> {
+    if (!places) return {x[i][0], x[i][1], x[i][2]};
+    return fix_fsi->dim == 2 ? reinterpret_cast<const Point<2> *>(places)[i].position(x[i])
+                             : reinterpret_cast<const Point<3> *>(places)[i].position(x[i]);
+  };
   const auto sees = [&](int i, int j, int k) {
     const auto xi = position(i), xj = position(j);
     double rsq = 0.0;
@@ -899,11 +905,11 @@ template <class Position> void PairFSIFluid::find_images(const Walls &walls, Pos
 
 // calls loop(meeting, number of reflection, mirror) for all rows of images; without extent of walls
 // they are the same in all of a step's loops, but that of rates leaves only what is within reach
-template <class Position, class Loop>
-void PairFSIFluid::for_images(const Walls &walls, Position position, Loop loop)
+template <class Loop>
+void PairFSIFluid::for_images(const Walls &walls, const double *places, Loop loop)
 {
   if (!fix_fsi->wmask || !walls.any()) return;
-  if (images_step != update->ntimestep || walls.finite()) find_images(walls, position);
+  if (images_step != update->ntimestep || walls.finite()) find_images(walls, places);
   images_step = update->ntimestep;
   for (size_t k = 0; k < walls.reflections.size(); k++) {
     const Mirror mirror(walls, walls.reflections[k]);
@@ -1021,17 +1027,11 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
     loop(m, sorts || hidden ? m.rows.rows : m.near, visible, nullptr, within(m) + margin,
          sorts && !hidden ? &m.near : nullptr);
   }
-  const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
-  for_images(
-      walls,
-      [&](int i) {
-        return point[i].position(x[i]);
-      },
-      [&](Meeting &m, int k, const Mirror *mirror) {
-        loop(m, m.images[k].rows, visible_images[k], mirror, m.reach,
-             m.what == HIDDEN ? nullptr : &near_images);
-        if (m.what != HIDDEN) m.images[k].rows.swap(near_images);
-      });
+  for_images(walls, particles.points, [&](Meeting &m, int k, const Mirror *mirror) {
+    loop(m, m.images[k].rows, visible_images[k], mirror, m.reach,
+         m.what == HIDDEN ? nullptr : &near_images);
+    if (m.what != HIDDEN) m.images[k].rows.swap(near_images);
+  });
   near_known = true;
   const int of_shift = nshift(), last = shift_sums();
   for (int i = 0; shift && i < atom->nlocal + atom->nghost; i++)
@@ -1040,7 +1040,13 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   fix_fsi->tally(FixFSI::WALLS, sums.walls);
 }
 
-void PairFSIFluid::displacements(double dt)
+// as the last loop had it
+template <int D> double PairFSIFluid::volume_of(int i) const
+{
+  return reinterpret_cast<const Point<D> *>(points.data())[i].vol;
+}
+
+template <int D, bool FILLS> void PairFSIFluid::displacements(double dt)
 {
   double *const *const velocity = velocity_of_shifting();
   const int *const type = atom->type;
@@ -1050,12 +1056,9 @@ void PairFSIFluid::displacements(double dt)
     if (s.species != FLUID) continue;
     // lattices overshoot from 0.51 h on (theory.rst)
     const double most = std::min(shifting * s.c * dt, 0.5 * s.h);
-    if (fix_fsi->dim == 2)
-      Shift<2>::displacement(sums[i], fills(), most * s.h, 0.25 * most);
-    else
-      Shift<3>::displacement(sums[i], fills(), most * s.h, 0.25 * most);
+    Shift<D>::template displacement<FILLS>(sums[i], volume_of<D>(i), most * s.h, 0.25 * most);
     if (velocity && dt > 0.0)
-      for (int d = 0; d < fix_fsi->dim; d++) velocity[d][i] = sums[i][d] / dt;
+      for (int d = 0; d < D; d++) velocity[d][i] = sums[i][d] / dt;
   }
 }
 
@@ -1070,15 +1073,9 @@ void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particle
     sum(m, which.rows, both, mirror, of_rows(particles, m, which.rows, parts_of));
   };
   for (const auto &m : meetings) one(m, m.rows, visible, nullptr);
-  double **x = atom->x;
-  for_images(
-      fix_fsi->walls,
-      [x](int i) {
-        return std::array<double, 3>{x[i][0], x[i][1], x[i][2]};
-      },
-      [&](const Meeting &m, int k, const Mirror *mirror) {
-        one(m, m.images[k], visible_images[k], mirror);
-      });
+  for_images(fix_fsi->walls, nullptr, [&](const Meeting &m, int k, const Mirror *mirror) {
+    one(m, m.images[k], visible_images[k], mirror);
+  });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
@@ -1105,10 +1102,7 @@ void PairFSIFluid::add_position_divergence(double *div)
 
 void PairFSIFluid::add_gradient_sum(double *s)
 {
-  if (fix_fsi->dim == 2)
-    add_gradients<2>(s);
-  else
-    add_gradients<3>(s);
+  fix_fsi->dim == 2 ? add_gradients<2>(s) : add_gradients<3>(s);
 }
 
 // the plain sums of particle shifting, all volumes those of the lattice
@@ -1127,7 +1121,7 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
                   m.loops->shifts(m.kind, which, mirror, in, m.wdx, sums.data());
                 });
   for (size_t i = 0; i < nall; i++)
-    for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d];
+    for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d] / -volume_of<D>(i);
 }
 
 void PairFSIFluid::add_velocities_at_solids()
@@ -1163,6 +1157,7 @@ void PairFSIFluid::extrapolate_velocities()
 
 void PairFSIFluid::compute(int eflag, int vflag)
 {
+  FixFSI::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::FLUID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
@@ -1182,7 +1177,6 @@ void PairFSIFluid::compute(int eflag, int vflag)
 template <int D> void PairFSIFluid::compute_forces()
 {
   constexpr int ROW = row_of_forces(D);
-  double **x = atom->x;
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
   // newton off, or a hybrid style with solids that need it, or images, which are no particles: like
   // LAMMPS' own walls they do not count in the virial, and forces times positions would have them
@@ -1220,23 +1214,17 @@ template <int D> void PairFSIFluid::compute_forces()
     loop(m, near_known && m.what != HIDDEN ? m.near : m.rows.rows, visible, nullptr, nullptr);
 
   const Walls &walls = fix_fsi->walls;
-  const auto *const point = reinterpret_cast<const Point<D> *>(particles.points);
-  for_images(
-      walls,
-      [&](int i) {
-        return point[i].position(x[i]);
-      },
-      [&](const Meeting &m, int reflection, const Mirror *mirror) {
-        const auto &s = walls.reflections[reflection];
-        double total[D] = {};
-        loop(m, m.images[reflection].rows, visible_images[reflection], mirror, total);
-        for (int d = 0; d < D; d++) {
-          int w = s.w[0];
-          for (int k = 1; k < s.n; k++)
-            if (walls.wall[s.w[k]].axis == d) w = s.w[k];
-          fix_fsi->add_wall_force(w, d, total[d]);
-        }
-      });
+  for_images(walls, particles.points, [&](const Meeting &m, int reflection, const Mirror *mirror) {
+    const auto &s = walls.reflections[reflection];
+    double total[D] = {};
+    loop(m, m.images[reflection].rows, visible_images[reflection], mirror, total);
+    for (int d = 0; d < D; d++) {
+      int w = s.w[0];
+      for (int k = 1; k < s.n; k++)
+        if (walls.wall[s.w[k]].axis == d) w = s.w[k];
+      fix_fsi->add_wall_force(w, d, total[d]);
+    }
+  });
 
   split_forces<D>(particles, laws);
   near_known = false;    // a second force evaluation at other positions must not use these lists
@@ -1277,18 +1265,13 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
     if (m.what == WALLS || m.what == SOLIDS)
       m.of_forces->forces(m.kind, m.rows.rows, nullptr, of_rows(particles, m, m.rows.rows, visible),
                           laws, viscous_forces.data(), nullptr, nullptr);
-  for_images(
-      fix_fsi->walls,
-      [&](int i) {
-        return point[i].position(atom->x[i]);
-      },
-      [&](const Meeting &m, int k, const Mirror *mirror) {
-        double unused[D] = {};
-        if (m.what == SOLIDS)
-          m.of_forces->forces(m.kind, m.images[k].rows, mirror,
-                              of_rows(particles, m, m.rows.rows, visible), laws,
-                              viscous_forces.data(), unused, nullptr);
-      });
+  for_images(fix_fsi->walls, particles.points, [&](const Meeting &m, int k, const Mirror *mirror) {
+    double unused[D] = {};
+    if (m.what == SOLIDS)
+      m.of_forces->forces(m.kind, m.images[k].rows, mirror,
+                          of_rows(particles, m, m.rows.rows, visible), laws, viscous_forces.data(),
+                          unused, nullptr);
+  });
   for (auto *measure : force_computes)
     if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
 }

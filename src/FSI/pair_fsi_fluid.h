@@ -116,8 +116,8 @@ class PairFSIFluid : public PairFSI {
   bool has_rows_with_walls() const;
   bool has_all_pairs() const;
   bigint images_step;
-  template <class Position> void find_images(const FSI::Walls &, Position);
-  template <class Position, class Loop> void for_images(const FSI::Walls &, Position, Loop);
+  void find_images(const FSI::Walls &, const double *places);
+  template <class Loop> void for_images(const FSI::Walls &, const double *places, Loop);
   // The loop of rates sorts near pairs out when particles may have moved by the margin since it
   // last did. Before the lists are used by a second force evaluation at other positions they are
   // not known.
@@ -162,6 +162,7 @@ class PairFSIFluid : public PairFSI {
   FSI::FluidParticles of_rows(const FSI::FluidParticles &, const Meeting &,
                               const std::vector<FSI::Row> &, const std::vector<double> &visible);
   FSI::FluidParticles particles_at(const double *points);
+  template <int D> double volume_of(int i) const;
   // positions a time t later; what else a loop needs is up to complete(i, point)
   template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions
@@ -181,6 +182,7 @@ class PairFSIFluid : public PairFSI {
   void extrapolate_velocities();
   template <int D> void add_density_rate(double dt);
   void advance_density();
+  template <int D, bool FILLS>
   void displacements(double dt);    // turns the sums of particle shifting of local fluid atoms into
                                     // displacements
   template <int D> void add_gradients(double *);

@@ -142,6 +142,7 @@ void PairFSIGrain::add_costs(Costs &costs) const
 
 void PairFSIGrain::compute(int eflag, int vflag)
 {
+  FixFSI::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::FLUID_FORCES);
   ev_init(eflag, vflag);
   find_grains();

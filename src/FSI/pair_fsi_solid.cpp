@@ -26,7 +26,6 @@
 #include "fsi_profile.h"
 #include "fsi_rows.h"
 #include "fsi_solid_rows.h"
-#include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "update.h"
@@ -479,10 +478,7 @@ void PairFSISolid::go_back()
 
 void PairFSISolid::velocity_gradient(double dt)
 {
-  if (fix_fsi->dim == 2)
-    fill_rate_records<2>(0.5 * dt);
-  else
-    fill_rate_records<3>(0.5 * dt);
+  fix_fsi->dim == 2 ? fill_rate_records<2>(0.5 * dt) : fill_rate_records<3>(0.5 * dt);
   if (own.rows.empty() && !images.any()) return;
   with_loops([&](auto packed, const auto &kernel, auto terms) {
     using K = std::decay_t<decltype(kernel)>;
@@ -541,10 +537,7 @@ void PairFSISolid::advance_hourglass(double dt)
       });
     });
   if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
-  if (dim == 2)
-    rotate_hourglass<2>(dt);
-  else
-    rotate_hourglass<3>(dt);
+  dim == 2 ? rotate_hourglass<2>(dt) : rotate_hourglass<3>(dt);
 }
 
 template <int D> void PairFSISolid::rotate_hourglass(double dt)
@@ -602,43 +595,33 @@ void PairFSISolid::unpack_reverse_comm(int n, int *listed, double *buf)
 
 void PairFSISolid::add_number_density(double *psi, bool all_bodies)
 {
+  images.update(atom->x, atom->v);
   double **x = atom->x;
+  double **const at = images.positions(atom->x);
   with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, [&](const auto &kernel) {
-    for (const auto *pairs : {&own, &others}) {
-      if (pairs == &others && !all_bodies) continue;
-      for (const Row &row : pairs->rows)
+    const auto add = [&](const RowList &pairs, bool both) {
+      for (const Row &row : pairs.rows)
         for (int k = 0; k < row.n; k++) {
           const int i = row.i, j = row.j[k];
           double rsq = 0.0;
-          for (int d = 0; d < 3; d++) rsq += (x[i][d] - x[j][d]) * (x[i][d] - x[j][d]);
+          for (int d = 0; d < 3; d++) rsq += (x[i][d] - at[j][d]) * (x[i][d] - at[j][d]);
           if (rsq >= kernel.cutsq) continue;
           const double w = kernel.W(std::sqrt(rsq));
           psi[i] += w;
-          psi[j] += w;
+          if (both) psi[images.original(j)] += w;
         }
-    }
-    if (!images.any()) return;
-    images.update(atom->x, atom->v);
-    double **const at = images.positions(atom->x);
-    for (auto *lists : {&own_images, &other_images}) {
-      if (lists == &other_images && !all_bodies) continue;
+    };
+    add(own, true);
+    if (all_bodies) add(others, true);
+    for (auto *lists : {&own_images, &other_images})
       for (const int half : {0, 1})
-        for (const Row &row : (*lists)[half].rows)
-          for (int k = 0; k < row.n; k++) {
-            double rsq = 0.0;
-            for (int d = 0; d < 3; d++)
-              rsq += (x[row.i][d] - at[row.j[k]][d]) * (x[row.i][d] - at[row.j[k]][d]);
-            if (rsq >= kernel.cutsq) continue;
-            const double w = kernel.W(std::sqrt(rsq));
-            psi[row.i] += w;
-            if (!half) psi[images.original(row.j[k])] += w;
-          }
-    }
+        if (images.any() && (lists == &own_images || all_bodies)) add((*lists)[half], !half);
   });
 }
 
 void PairFSISolid::compute(int eflag, int vflag)
 {
+  FixFSI::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();

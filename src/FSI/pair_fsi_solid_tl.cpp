@@ -31,7 +31,7 @@
 #include "fsi_profile.h"
 #include "fsi_solid_laws.h"
 #include "fsi_swaps.h"
-#include "fsi_viscosity_artificial.h"
+#include "fsi_viscosity.h"
 #include "fsi_volumetric.h"
 #include "math_extra.h"
 #include "memory.h"
@@ -40,8 +40,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
@@ -145,9 +143,6 @@ void PairFSISolidTL::init_style()
   comm_forward = has_artificial() || laws.by_rate() ? 2 * dim : dim;
   comm_reverse = dim;
 
-  reference->clamps.clear();
-  if (takes_substeps()) reference->clamps.find(*fix_fsi, fix_fsi);
-
   contacts.clear();
   for (const auto &a : fix_fsi->resolution)
     for (const auto &b : fix_fsi->resolution)
@@ -223,7 +218,7 @@ void PairFSISolidTL::refuse_rigid_parts() const
 {
   for (auto &fix : modify->get_fix_list()) {
     if (!utils::strmatch(fix->style, "^rigid") && !utils::strmatch(fix->style, "^poems")) continue;
-    if (reference->clamps.known(fix)) continue;
+    if (fix_fsi->clamps.known(fix)) continue;
     for (const BondRow &row : rows) {
       const auto elastic = [&](int i) {
         return atom->mask[i] & fix_fsi->groupbit;
@@ -251,6 +246,7 @@ const std::vector<int> &PairFSISolidTL::solids() const
 // forces, energy and virial are seen
 void PairFSISolidTL::compute(int eflag, int vflag)
 {
+  FixFSI::check_pre_no(lmp, fix_fsi);
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
@@ -271,37 +267,22 @@ template <class Call> auto PairFSISolidTL::with_law(Call call) const
 
 void PairFSISolidTL::internal_forces()
 {
-  if (fix_fsi->dim == 2)
-    gather_points<2>();
-  else
-    gather_points<3>();
+  fix_fsi->dim == 2 ? gather_points<2>() : gather_points<3>();
   const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
   with_law([&](const auto *law_of, auto dimension) {
     bond_forces<std::decay_t<decltype(*law_of)>, decltype(dimension)::value>(law_of);
   });
   strain_energy += volumetric_energy;
-  if (list) {
-    if (fix_fsi->dim == 2)
-      contact_forces<2>();
-    else
-      contact_forces<3>();
-  }
+  if (list) fix_fsi->dim == 2 ? contact_forces<2>() : contact_forces<3>();
   if (reference->images.planes.any() && fsolid) {
     // in sub-steps, which add up to the force of a step
     const double part = update->setupflag ? 1.0 : 1.0 / fix_fsi->substeps;
-    if (fix_fsi->dim == 2)
-      fold_images<2>(part);
-    else
-      fold_images<3>(part);
+    fix_fsi->dim == 2 ? fold_images<2>(part) : fold_images<3>(part);
   }
-  if (!reference->near_itself.empty()) {
-    if (fix_fsi->dim == 2)
-      self_contact_forces<2>();
-    else
-      self_contact_forces<3>();
-  }
+  if (!reference->near_itself.empty())
+    fix_fsi->dim == 2 ? self_contact_forces<2>() : self_contact_forces<3>();
   exchange(fix_fsi->profile, comm, [this]() {
-    reference->swaps.reverse(this);
+    reference->swaps.reverse<Pair>(this);
   });
 }
 
@@ -419,7 +400,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
     };
     have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
     exchange(profile, comm, [&]() {
-      swaps.forward(this);
+      swaps.forward<Pair>(this);
     });
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
@@ -432,7 +413,7 @@ double PairFSISolidTL::smooth_strains(bool of_all)
       smoothed.force[of] += smoothed.force[k];
     });
     exchange(profile, comm, [&]() {
-      swaps.reverse(this);
+      swaps.reverse<Pair>(this);
     });
   });
   comm_forward = forward;
@@ -729,10 +710,7 @@ void PairFSISolidTL::begin_stress()
   forward_positions();    // ghosts still stand where they were in the middle of the step
   reference->images.update(atom->x, atom->v);
   if (!smoothed.on()) return;
-  if (fix_fsi->dim == 2)
-    gather_points<2>();
-  else
-    gather_points<3>();
+  fix_fsi->dim == 2 ? gather_points<2>() : gather_points<3>();
   smooth_strains(true);
 }
 
@@ -777,7 +755,7 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
 void PairFSISolidTL::forward_positions()
 {
   exchange(fix_fsi->profile, comm, [this]() {
-    reference->swaps.forward(this);
+    reference->swaps.forward<Pair>(this);
   });
 }
 
@@ -788,59 +766,44 @@ int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_f
   const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0,
                            pbc_flag ? pbc[1] * domain->yprd : 0.0,
                            pbc_flag ? pbc[2] * domain->zprd : 0.0};
-  int m = 0;
-  if (sends_strains) {
-    for_solids(n, listed, 0, [&](int i) {
-      buf[m++] = smoothed.strain[i];
-    });
-    return m;
-  }
+  double *const begin = buf;
   for_solids(n, listed, 0, [&](int i) {
-    for (int d = 0; d < dim; d++) buf[m++] = atom->x[i][d] + shift[d];
-    if (velocities)
-      for (int d = 0; d < dim; d++) buf[m++] = atom->v[i][d];
+    if (sends_strains) return void(*buf++ = smoothed.strain[i]);
+    for (int d = 0; d < dim; d++) *buf++ = atom->x[i][d] + shift[d];
+    if (velocities) buf = std::copy_n(atom->v[i], dim, buf);
   });
-  return m;
+  return buf - begin;
 }
 
 void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
   const int dim = fix_fsi->dim;
   const bool velocities = comm_forward > dim;
-  if (sends_strains)
-    return for_solids(n, nullptr, first, [&](int i) {
-      smoothed.strain[i] = *buf++;
-    });
   for_solids(n, nullptr, first, [&](int i) {
+    if (sends_strains) return void(smoothed.strain[i] = *buf++);
     for (int d = 0; d < dim; d++) atom->x[i][d] = *buf++;
-    if (velocities)
-      for (int d = 0; d < dim; d++) atom->v[i][d] = *buf++;
+    for (int d = 0; velocities && d < dim; d++) atom->v[i][d] = *buf++;
   });
+}
+
+double *PairFSISolidTL::carried_back(int i)
+{
+  return sends_strains ? &smoothed.force[i] : fsolid[i];
 }
 
 int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 {
-  int m = 0;
-  if (sends_strains) {
-    for_solids(n, nullptr, first, [&](int i) {
-      buf[m++] = smoothed.force[i];
-    });
-    return m;
-  }
+  double *const begin = buf;
   for_solids(n, nullptr, first, [&](int i) {
-    for (int d = 0; d < fix_fsi->dim; d++) buf[m++] = fsolid[i][d];
+    buf = std::copy_n(carried_back(i), comm_reverse, buf);
   });
-  return m;
+  return buf - begin;
 }
 
 void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
-  if (sends_strains)
-    return for_solids(n, listed, 0, [&](int i) {
-      smoothed.force[i] += *buf++;
-    });
   for_solids(n, listed, 0, [&](int i) {
-    for (int d = 0; d < fix_fsi->dim; d++) fsolid[i][d] += *buf++;
+    for (int d = 0; d < comm_reverse; d++) carried_back(i)[d] += *buf++;
   });
 }
 
@@ -861,8 +824,9 @@ void PairFSISolidTL::integrate_substeps()
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
   std::vector<int> moving, held;
   std::vector<std::pair<int, std::array<double, 3>>> carried;    // where they are in the middle
-  Clamps &clamps = reference->clamps;
-  if (clamps.any()) clamps.begin_substeps(solids());
+  Clamps &clamps = fix_fsi->clamps;
+  const bool clamped = clamps.any_elastic();
+  if (clamped) clamps.begin_substeps(solids());
   for (const int i : solids())
     if (atom->mask[i] & fix_fsi->groupbit)
       moving.push_back(i);
@@ -892,7 +856,7 @@ void PairFSISolidTL::integrate_substeps()
     if (n + 1 == substeps) only_moving = false;
     drift(dth);
     carry(back + n * dt + dth);
-    if (clamps.any()) clamps.drift(dth);
+    if (clamped) clamps.drift(dth);
     forward_positions();
     advance_stress(dt);
     std::fill_n(virial, 6, 0.0);
@@ -904,37 +868,21 @@ void PairFSISolidTL::integrate_substeps()
     }
     hold(dt);
     drift(dth);
-    if (!clamps.any()) continue;
+    if (!clamped) continue;
     clamps.kick(dt, fs);
     clamps.drift(dth);
   }
   carry(0.0);
   fix_fsi->check.after_substeps();
   hold(-update->dt);    // that of the last one is in f from here on
-  if (clamps.any()) clamps.average(substeps, fs);
+  if (clamped) clamps.average(substeps, fs);
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up
   // already
   if (force->pair != this)
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   for (const int i : solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
-  if (clamps.any()) clamps.finish();
-}
-
-// rigid bodies with elastic parts (fsi_clamps.h)
-void PairFSISolidTL::start_step()
-{
-  if (reference->clamps.any()) reference->clamps.begin();
-}
-
-void PairFSISolidTL::prescribe()
-{
-  if (fix_fsi->substeps == 1 && reference->clamps.any()) reference->clamps.take_step();
-}
-
-void PairFSISolidTL::go_back()
-{
-  if (reference->clamps.any()) reference->clamps.go_back();
+  if (clamped) clamps.finish();
 }
 
 void PairFSISolidTL::advance(bool advance)
@@ -961,8 +909,6 @@ void PairFSISolidTL::add_costs(Costs &costs) const
                                n * (1 + strains));
   else
     costs.solids = strains ? "; 1 forward and 2 back for solids" : "; 1 back for solid forces";
-  if (reference->clamps.any())
-    costs.solids += fmt::format("; {} sums over all ranks for rigid parts of solids", n + 2);
 }
 
 void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
@@ -988,7 +934,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   if (smoothed.on())
     list.push_back(
         {"smoothed volumetric strain of nearly incompressible solids", "volumetric", true});
-  if (reference && reference->clamps.any())
+  if (fix_fsi && fix_fsi->clamps.any_elastic())
     list.push_back({"sub-steps of rigid parts of solids, with fix rigid", "substeps", true});
   return list;
 }

@@ -58,9 +58,6 @@ class PairFSISolidTL : public PairFSI {
   void unpack_reverse_comm(int, int *, double *) override;
   FSI::Facts facts() const override;
   std::vector<Effect> effects() const override;
-  void start_step() override;
-  void prescribe() override;
-  void go_back() override;
   void advance(bool) override;
   // Stiff solids: after the kick of what acts from outside is known, with a step that many times
   // shorter
@@ -127,6 +124,7 @@ class PairFSISolidTL : public PairFSI {
   template <int D> void gather_points();
   FSI::VolumetricStrain &smoothed;
   bool sends_strains;    // what messages carry: these, or positions and forces
+  double *carried_back(int i);
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
   // what call(laws per type, constant with the dimension) returns

@@ -140,10 +140,14 @@ def test_piston_makes_the_waves_that_are_asked_for(tmp_path):
         return np.abs(levels - both @ heights).max(), k, 2 * np.abs(heights)
 
     exact = wave_number(omega, 0.2)
-    _, k, (height, reflected) = min((split(loss + 1j * number) for loss in np.linspace(0, 0.1, 11) for number in np.linspace(0.95, 1.05, 101) * exact),
+    _, k, (height, reflected) = min((split(loss + 1j * number) for loss in np.linspace(0, 0.1, 41) for number in np.linspace(0.95, 1.05, 101) * exact),
                                     key=lambda fit: fit[0])
     assert height == pytest.approx(0.0199, abs=0.00005) and height == pytest.approx(0.02, rel=0.01) and reflected < 0.015 * height
     assert 2 * np.pi / k.imag == pytest.approx(1.227, abs=0.005) and k.imag == pytest.approx(exact, rel=0.015)
+    lost = 100 * (1 - np.exp(-2 * np.pi * k.real / k.imag))
+    print(f"piston: {lost:.2f} % lost in a wave length, {100 * reflected / height:.2f} % reflected")
+    page = re.search(r"loss of height in a wave length; reflected height\s+- (\d+) %; (\d+) %", (PAGES / "Howto_piston.rst").read_text())
+    assert [float(number) for number in page.groups()] == pytest.approx([lost, 100 * reflected / height], abs=0.7)    # a digit, and how finely k is tried
 
 
 def test_solitary_wave(tmp_path):

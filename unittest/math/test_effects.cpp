@@ -14,8 +14,7 @@
 #include "fsi_drag.h"
 #include "fsi_kernel.h"
 #include "fsi_stress_artificial.h"
-#include "fsi_viscosity_artificial.h"
-#include "fsi_viscosity_laminar.h"
+#include "fsi_viscosity.h"
 #include "reference.h"
 
 using namespace LAMMPS_NS::FSI;

@@ -7,7 +7,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_lattice.h"
+#include "fsi_kernel.h"
 
 #include "gtest/gtest.h"
 

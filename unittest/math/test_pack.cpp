@@ -16,8 +16,7 @@
 #include "fsi_density_diffusion.h"
 #include "fsi_kernel.h"
 #include "fsi_pack.h"
-#include "fsi_viscosity_artificial.h"
-#include "fsi_viscosity_laminar.h"
+#include "fsi_viscosity.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,7 +1,10 @@
 """Short forms of the dam breaks, judged by the figures of their own analysis."""
 
+import numpy as np
 import pytest
 from scenes import run_scene
+
+from fsi import scene
 
 
 @pytest.fixture(scope="module")
@@ -46,3 +49,13 @@ def test_wave_meets_the_box(tmp_path):
     figures = run_scene(tmp_path, "dam_break_3d", dx=0.055, tend=0.7)
     assert abs(figures["P1_arrival"] - 1.64) < 0.2
     assert figures["particles_leaked"] == 0
+
+
+def test_largest_mean():
+    """A triangle of height 6 that is 2 wide: the largest mean over w is 6 (1 - w/4) up to its width, beyond it 6/w. Few windows begin at a time that is given."""
+    largest_mean = scene.analysis("dam_break_3d").largest_mean
+    widths = 0.5, 1.0, 1.7, 4.2
+    times = np.linspace(0, 10, 41)
+    values = np.maximum(0, 6 * (1 - abs(times - 5)))
+    for width in widths:
+        assert largest_mean(times, values, width) == pytest.approx(6 * (1 - width / 4) if width <= 2 else 6 / width, rel=2e-3)

@@ -46,7 +46,7 @@ def test_still_water_stays_still(tmp_path):
 
 def test_still_water_never_wakes(tmp_path):
     # Where a lattice is soft under pressure, round-off grows: with the quintic and h = dx the kinetic energy is 1e-6 of the potential one
-    # after 13.7 s (fsi_lattice.h). The deck's kernel leaves what the start gave, 2e-9 after 2 s, which decays.
+    # after 13.7 s (fsi_kernel.h). The deck's kernel leaves what the start gave, 2e-9 after 2 s, which decays.
     run_scene(tmp_path, "still_water", dx=0.05, tend=18, cfl=1.0, frames=2)
     history = series.read(tmp_path / "series.csv")
     assert np.max((history["ke"] / history["pe"])[history.time > 2]) < 1e-8

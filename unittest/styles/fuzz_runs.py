@@ -23,10 +23,10 @@ class Maker:
 
     def __init__(self, seed):
         self.rng = random.Random(seed)
-        self.scene = self.rng.choice(("tank", "tank", "updated", "open", "stream"))
+        self.scene = self.rng.choice(("tank", "tank", "updated", "open", "stream", "levels", "levels"))
         self.now = dict(SCENES[self.scene][0])
-        # bodies whose density is summed are in tension at their faces, and tear
-        self.others = {name: {t: r for t, r in texts.items() if "solid summation" not in t} for (scene, name), texts in OTHER.items() if scene == self.scene}
+        # bodies whose density is that of their neighbors are in tension at faces and holes, and tear
+        self.others = {name: {t: r for t, r in texts.items() if "solid summation" not in t and "solid ratio" not in t} for (scene, name), texts in OTHER.items() if scene == self.scene}
         self.gone, self.spots, self.files = [], 0, 0
         for name in self.rng.sample(sorted(self.others), self.rng.choice((0, 0, 1, 2))):
             self.choose(name)
@@ -98,7 +98,7 @@ class Maker:
         file = f"file{self.files}.restart"
         self.files += 1
         commands = [self.now[n] for n in self.now if n not in ("make", "gone") and n not in self.gone]
-        variables = "\n".join(line for line in self.now["make"].splitlines() if line.startswith(("variable", "region zone")))
+        variables = "\n".join(line for line in self.now["make"].splitlines() if line.startswith(("variable", "region zone", "region near")))
         style = self.scene in ("tank", "updated")
         self.lines += [f"write_restart {file}", "clear", f"read_restart {file}", variables + "\nvariable zero equal 0", *commands]
         if not style and self.rng.random() < 0.5:
@@ -117,10 +117,12 @@ class Maker:
     def create(self):
         kind = self.rng.choice(range(1, SCENES[self.scene][1]["types"] + 1))
         spot = self.spot(0.17 if self.rng.random() < 0.7 else 0.0)
-        self.lines.append(f"lattice sq 0.01 origin 0.5 0.5 0\ncreate_atoms {kind} region {spot} overlap 0.008")
+        number, seed = self.rng.choice((1, 5, 20)), self.rng.randrange(1, 10000)
+        apart = 1.2 if kind == 2 else 0.8    # not squeezed into a body
+        self.lines.append(f"lattice sq 0.01 origin 0.5 0.5 0\ncreate_atoms {kind} random {number} {seed} {spot} overlap {apart} maxtry 100")
         if self.rng.random() < 0.5:
             self.lines.append(f"set region {spot} mol {self.rng.choice((0, 1, 7))}")
-        groups = {1: "water", 2: "beam", 3: "piston"}
+        groups = {1: "water", 2: "water" if self.scene == "levels" else "beam", 3: "piston"}
         if self.rng.random() < 0.8:
             self.lines.append(f"group {groups[kind]} type {kind}")
             if self.scene in ("tank", "updated") and kind < 3:

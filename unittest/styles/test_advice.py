@@ -32,6 +32,15 @@ run 0
 MATERIALS = "# UNITS: si\nwater_inviscid fluid rho 1000\nplate solid rho {rho} young {young} poisson 0.4\n"
 
 
+def test_fluid_made_between_runs(tmp_path):
+    """It is in no group that fix fsi moves: said where it is new, and once."""
+    new = "create_atoms 1 single {} 0.12 0 units box\nrun 0\n"
+    text = DECK.replace("fix sph all", "group moving union all\nfix sph moving") + new.format(0.02) + "run 0\n" + new.format(0.04)
+    found = [line for line in run(tmp_path, text).output.splitlines() if "are not in group" in line]
+    assert [re.search(r"(\d+) fluid particles, the first of them atom (\d+), are not in group moving of fix sph", line).groups() for line in found] == [
+        ("1", "65"), ("2", "65")]
+
+
 def mine(**what):
     return [("materials.fsi", "mine.fsi")], MATERIALS.format(**{"rho": 1000, "young": 2e6, **what})
 

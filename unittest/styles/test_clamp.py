@@ -1,4 +1,4 @@
-"""Elastic bodies with a rigid part that fix rigid moves, and sub-steps."""
+"""Rigid bodies of wall particles, and elastic bodies with a rigid part, that fix rigid moves with the steps of fix fsi."""
 
 import numpy as np
 import pytest
@@ -125,8 +125,7 @@ def test_tether():
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_same_motion_as_without_substeps(dim):
-    """Substeps 1, where fix rigid moves the part itself, with the short step; velocity Verlet of the rigid part and position Verlet of the rest
-    stand half a step apart there. 1 % of the displacement."""
+    """Substeps 1 with the short step. 1 % of the displacement."""
     n, ends = [20, 4] if dim == 2 else [12, 3, 3], []
     for substeps in (1, 12):
         s, _ = beam(n, 5, substeps, 1e-5 * substeps, rigid="force * on on off torque * off off on" if dim == 2 else "")
@@ -252,6 +251,154 @@ def test_steps_without_substeps_between():
             s.run_lines("unfix step")
 
 
+# ---- in water, without sub-steps ----------------------------------------------------------------------------------------------
+
+PLANE = "force * on on off torque * off off on"
+
+
+def in_water(dt, n=(20, 16), half=3, kind="wall", fix=f"rigid single {PLANE}", fluid="sound 10 tension yes", commands=(), **more):
+    """A square in a periodic box of water, both at rest: (scene, who is rigid)."""
+    x = lattice(n, DX)
+    body = (np.abs(x[:, 0] - n[0] / 2 * DX) < half * DX) & (np.abs(x[:, 1] - n[1] / 2 * DX) < half * DX)
+    of = dict(materials=("fluid rho 1000", "wall rho 2000")) if kind == "wall" else dict(
+        materials=("fluid rho 1000", f"solid rho 2000 young {E} poisson 0.3"), solid_style="fsi/solid/tl")
+    box = ((0, 0), (n[0] * DX, n[1] * DX))
+    return Scene(x, dx=DX, type=1 + body, mol=1 + body, held=body, dt=dt, fluid=fluid, boundary="p p p", box=box, skin=1.0, **of, **more,
+                 commands=["comm_modify cutoff 0.08", "fix wp held fsi/wall/particle" if kind == "wall" else "", f"fix r held {fix}", *commands]), body
+
+
+@pytest.mark.parametrize("kind", ["solid", "wall"])
+def test_order_in_time(kind):
+    """A body that forces push through water: what a step and half of it make different falls by 4. Moved half a step ahead of the water it falls by
+    2, and is 4e-7 m with 1e-4 s. The pressure at walls has the acceleration of the last step, which leaves a sixtieth of that."""
+    ends = []
+    for n in (100, 200, 400, 800):
+        s, body = in_water(0.02 / n, kind=kind, commands=["variable f equal 0.18*sin(300*(time-0.5*dt))", "fix push held addforce v_f 0.11 0"])
+        with s:
+            ends.append(s.run().run(n).get("x")[body])
+    apart = np.array([np.abs(a - b).max() for a, b in zip(ends, ends[1:])])
+    slopes = np.log2(apart[:-1] / apart[1:])
+    print(f"body of {kind}: {apart} m, order {slopes}")
+    if kind == "solid":
+        assert np.abs(slopes - 2).max() < 0.1
+    assert apart[1] < 2e-8
+
+
+@pytest.mark.parametrize("fix, before, late", [
+    (f"rigid single {PLANE}", False, "late"), ("rigid/small molecule", False, "late"), ("rigid/nve single", False, ""),
+    ("rigid/nve/small molecule", False, ""), ("rigid/small molecule langevin 1e-9 1e-9 1 4711", False, "late"), (f"rigid single {PLANE}", False, "early"),
+    (f"rigid single {PLANE}", True, "late")])
+def test_where_bodies_are_when_forces_are_found(fix, before, late):
+    """Seen by a force that is the place: in the middle of the step, or at its end where the body is moved in another way, which is accepted."""
+    plain = fix.split()[0] in ("rigid", "rigid/small") and "langevin" not in fix and not before and late != "early"
+    dt, lines = 1e-4, [f"fix_modify r bodyforces {late}"] if late else []
+    if before:
+        lines += ["run 0", "unfix sph", f"fix sph moving fsi {DX} wendland 1.5"]
+    s, body = in_water(dt, fix=fix, fluid="sound 10", commands=[*lines, "velocity held set 1 0 0", "group water type 1", "delete_atoms group water compress no",
+                                                                "variable x atom 1e-6*x", "fix see held addforce v_x 0 0"])
+    s.n = body.sum()
+    with s:
+        s.run().run(5)
+        ahead = (s.get("f")[:, 0] / 1e-6 - s.get("x")[:, 0]) / (dt * s.get("v")[:, 0])
+        assert np.abs(ahead - (-0.5 if plain else 0.0)).max() < 1e-6
+
+
+def test_torques_of_particles():
+    """Of a body whose particles have a radius: as fix rigid itself counts them."""
+    spins = []
+    for before in (False, True):
+        lines = ["thermo_style custom step", "run 0", "unfix sph", f"fix sph moving fsi {DX} wendland 1.5"] if before else ["thermo_style custom step"]
+        s, body = in_water(1e-4, fluid="sound 10", atom_style="hybrid fsi sphere", commands=[*lines, "group water type 1", "delete_atoms group water compress no",
+                                                                                              "fix twist held external pf/callback 1 1"])
+        s.n = body.sum()
+
+        def twist(lmp, step, nlocal, tag, x, f):
+            lmp.numpy.extract_atom("torque")[:nlocal, 2] = 10.0
+            f[:] = 0.0
+            fast.append(np.linalg.norm(lmp.numpy.extract_atom("v")[:nlocal], axis=1).max())
+
+        fast = []
+        with s:
+            s.lmp.set_fix_external_callback("twist", twist, s.lmp)
+            s.run().run(22)
+        spins.append(np.array(fast[-1] - fast[2]))    # setup and the first step have no such torque in fix rigid itself
+    assert spins[0] > 1e-3 and abs(spins[0] - spins[1]) < 1e-12 * spins[0]
+
+
+def floats_data():
+    """Two squares in water that fills the box."""
+    x = lattice([30, 30], DX)
+    kind = np.where(np.abs(x[:, 1] - 0.15) > 0.03, 0, (np.abs(x[:, 0] - 0.08) < 0.03) + 2 * (np.abs(x[:, 0] - 0.22) < 0.03))
+    lines = ["two floats", "", "900 atoms", "2 atom types", "", "0 0.3 xlo xhi", "0 0.3 ylo yhi", "-0.005 0.005 zlo zhi", "", "Atoms # fsi", ""]
+    return "\n".join(lines + [f"{k + 1} {kind[k]} {1 + (kind[k] > 0)} 0 0 {p[0]!r} {p[1]!r} 0" for k, p in enumerate(x.tolist())]) + "\n"
+
+
+WATER_DECK = """
+units si
+dimension 2
+boundary p p p
+atom_style fsi
+atom_modify map array
+newton {newton}
+processors {grid}
+read_data floats.data
+group bodies type 2
+group water type 1
+velocity bodies set 2 1 0 units box
+""", """
+pair_style fsi/fluid sound 20 artificial/visc 0.05 0 tension yes background 2000
+pair_coeff * * walls.fsi water body
+neighbor 0.005 bin
+comm_modify cutoff 0.1
+fix sph water fsi 0.01 wendland 1.5
+fix wall bodies fsi/wall/particle
+fix move bodies {fix}
+timestep 1e-4
+"""
+WALLS = {"floats_data": floats_data(), "walls_fsi": "# DATE: 2026-01-01 UNITS: si CITATION: none\nwater fluid rho 1000\nbody wall rho 2000\n"}
+BODIES = f"rigid molecule {PLANE}"
+
+
+def floats(newton="on", grid="* * *", fix=BODIES):
+    return "".join(WATER_DECK).format(newton=newton, grid=grid, fix=fix)
+
+
+@pytest.fixture(scope="module")
+def in_one_rank(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("floats"), floats() + watch(every=200) + "run 400", **WALLS).frames()
+
+
+@pytest.mark.parametrize("ranks, grid, newton, fix", [(2, "2 1 1", "off", BODIES), (4, "2 2 1", "on", BODIES), (4, "2 2 1", "off", "rigid/small molecule"),
+                                                      (1, "1 1 1", "on", "rigid/small molecule")])
+def test_walls_on_ranks(tmp_path, in_one_rank, ranks, grid, newton, fix):
+    """Two bodies of walls stir water and cross the box and borders of ranks: as on one rank, to round-off that the flow has grown."""
+    got = run(tmp_path, floats(newton, grid, fix) + watch(every=200) + "run 400", ranks, **WALLS).frames()
+    for a, b in zip(in_one_rank, got, strict=True):
+        x, v = apart(a, b, (0.3, 0.3, 0.01))
+        print(f"{ranks} ranks, {fix}: {x:.1e} m, {v:.1e} m/s")
+        assert x < 1e-10 and v < 1e-7
+
+
+def test_walls_go_on_from_a_restart_file(tmp_path, in_one_rank):
+    """To round-off, as elastic ones (test_restart)"""
+    run(tmp_path / "first", floats() + "run 200\nwrite_restart state.restart", **WALLS)
+    text = "units si\nread_restart ../first/state.restart\n" + WATER_DECK[1].format(fix=BODIES)
+    got = run(tmp_path / "second", text + watch(every=200) + "run 200", **WALLS).frames()
+    x, v = apart(in_one_rank[-1], got[-1], (0.3, 0.3, 0.01))
+    print(f"restart: {x:.1e} m, {v:.1e} m/s")
+    assert x < 1e-10 and v < 1e-7
+
+
+def test_walls_of_a_run_that_is_stopped(tmp_path):
+    """They are left where they were when the step began, with the water."""
+    done = run_lammps(tmp_path, floats() + watch(every=1) + "run 20\nfix push water addforce 1e6 0 0\nrun 20", **WALLS)
+    assert done.status != 0 and (tmp_path / "fsi_stop.restart").exists(), done.output[-2000:]
+    run(tmp_path, "units si\nread_restart fsi_stop.restart\nwrite_dump all custom left.dump id x y z modify sort id time yes format float %.17g")
+    d = done.frames("left.dump")[0].vector() - done.frames()[-1].vector()
+    box = np.array([0.3, 0.3, 0.01])
+    assert np.abs(d - np.round(d / box) * box).max() < 1e-13
+
+
 # ---- whole programs -----------------------------------------------------------------------------------------------------------
 
 DECK = """
@@ -304,9 +451,9 @@ def one_rank(tmp_path_factory):
     return run(tmp_path_factory.mktemp("one"), deck() + watch(every=500) + "run 1500", **FILES).frames()
 
 
-def apart(a, b):
+def apart(a, b, box=(0.4, 0.3, 0.01)):
     """largest difference of positions, up to periodic images, and of velocities"""
-    box = np.array([0.4, 0.3, 0.01])
+    box = np.array(box)
     d = a.vector() - b.vector()
     return np.abs(d - np.round(d / box) * box).max(), np.abs(a.vector(("vx", "vy", "vz")) - b.vector(("vx", "vy", "vz"))).max()
 

@@ -111,8 +111,28 @@ variable u2 atom 1.0+y""",
     "state": "compute state all fsi/atom rho p vonmises",
     "settings": "timestep 1e-4\nneighbor 0.003 bin\nthermo_modify norm no lost error",
 }
+LEVELS = {
+    "make": """region channel block 0 0.3 0 0.1 INF INF units box
+create_atoms 1 region channel
+group water type 1
+displace_atoms water random 0.0005 0.0005 0 7 units box
+velocity water set 0.5 0 0 units box
+region near block 0.13 0.2 -0.01 0.11 INF INF units box
+region near2 block 0.1 0.18 -0.01 0.11 INF INF units box""",
+    "pair": "pair_style fsi/fluid sound 10 background 500 tension yes density/diffusion 0.1",
+    "coeff": "pair_coeff * * m.fsi water water",
+    "fsi": "fix fsi water fsi 0.01 wendland 1.5 spacing 2 0.0070711",
+    "mirror": "fix mirror water fsi/wall/mirror ylo 0 yhi 0.1",
+    "inlet": "fix inlet water fsi/inlet xlo 0 velocity 0.5 0 0",
+    "outlet": "fix outlet water fsi/outlet xhi 0.3",
+    "refine": "fix refine water fsi/refine 5 types 1 2 region near",
+    "energy": "compute energy all fsi/energy",
+    "state": "compute state all fsi/atom rho p vonmises",
+    "settings": "timestep 1e-4\nneighbor 0.003 bin\nthermo_modify norm no lost error",
+}
 BOX = {"boundary": "f", "lo": -0.05, "hi": 0.35, "low": -0.05, "high": 0.35, "types": 3}
 SCENES = {"tank": (TANK, BOX), "updated": (UPDATED, BOX), "open": (OPEN, {**BOX, "lo": -0.08, "hi": 0.28, "types": 1}),
+          "levels": (LEVELS, {**BOX, "lo": -0.08, "hi": 0.38, "types": 2}),
           "stream": (STREAM, {**BOX, "boundary": "p", "lo": 0, "hi": 0.2, "low": 0, "high": 0.1, "types": 1})}
 
 
@@ -173,7 +193,7 @@ def again(scene, name, text=None):
 ORDER = {("tank", "un", "fsi"): r"must be defined after fix fsi|cannot|requires"}
 KEEPS = {  # a state that begins anew where the fix does: the run is another one
     ("tank", "move"): "the motion begins there", ("tank", "dt"): "the step grows anew", ("open", "inlet"): "the buffer's particles are the new fix's",
-    ("open", "outlet"): "likewise", ("updated", "stress"): "the stress is that of the fix", ("tank", "un", "spectrum"): ""}
+    ("open", "outlet"): "likewise", ("levels", "inlet"): "likewise", ("levels", "outlet"): "likewise", ("updated", "stress"): "the stress is that of the fix", ("tank", "un", "spectrum"): ""}
 SAME = [(scene, name, way) for scene, (commands, _) in SCENES.items() for name in commands if name not in ("make", "settings")
         for way in again(scene, name) if (scene, name) not in KEEPS]
 
@@ -247,11 +267,17 @@ OTHER = {  # scene, name: other commands, each with what an error says if it is 
                        ("shift 0.2", "laminar/visc", "density/diffusion 0.2 artificial/visc 0.1 0", "shift 0.2 shift/every 2")},
     ("open", "fsi"): {"fix fsi water fsi 0.01 wendland 1.5 mach 0.5": "", "fix fsi water fsi 0.01 quintic 1.0": OLD_KERNEL},
     ("open", "mirror"): {"fix mirror water fsi/wall/mirror ylo 0 yhi 0.1 slip no": ""},
+    ("levels", "pair"): {f"pair_style fsi/fluid sound 10 background 500 tension yes {words}": "" for words in
+                         ("shift 0.2", "laminar/visc", "density/diffusion 0.2 artificial/visc 0.1 0", "shift 0.2 shift/every 2")},
+    ("levels", "fsi"): {"fix fsi water fsi 0.01 wendland 1.5 spacing 2 0.0070711 mach 0.5": ""},
+    ("levels", "mirror"): {"fix mirror water fsi/wall/mirror ylo 0 yhi 0.1 slip no": ""},
+    ("levels", "refine"): {f"fix refine water fsi/refine {words}": "" for words in
+                           ("5 types 1 2 region near settle 0", "10 types 1 2 region near", "5 types 1 2 region near2")},
     ("stream", "pair"): {f"pair_style fsi/fluid sound 10 background 500 tension yes {words}": "" for words in ("shift 0.2", "density/diffusion 0.1 laminar/visc")},
     ("stream", "stream"): {f"fix stream water fsi/stream {words}": "" for words in
                            ("v_u2 NULL NULL region zone rate 20", "0.5 0 NULL region zone2 rate 10 density 20", "v_u 0 NULL region zone2 rate 20 along y")},
 }
-CASES = [(scene, name, text, refused, way) for (scene, name), others in OTHER.items() for text, refused in others.items()
+CASES = [(scene, name, text, refused, way) for (scene, name), others in OTHER.items() for text, refused in others.items() if name != "refine"    # splits in run 0: fuzz_runs.py has it
          # taken away first, where that is possible: of the same, both are tried
          for way in (list(again(scene, name, text))[-1:] if (scene, "un", name) not in ORDER else [""])]
 IDS = [f"{scene} {way}{text}".replace("\n", " ") for scene, name, text, refused, way in CASES]
@@ -307,6 +333,9 @@ AGAIN = {  # scene, what comes between, what is said: an error, or a warning and
     "a compute that is gone": ("tank", "uncompute force\nrun 2 pre no", "ERROR: Run with pre no: fixes, computes, regions or pair styles are others"),
     "another compute of the same ID": ("tank", "uncompute force\ncompute force beam fsi/force\nrun 2 pre no", "ERROR: Run with pre no"),
     "a fix that is new": ("tank", "fix more all fsi/watch 7\nrun 2 pre no", "ERROR: Run with pre no"),
+    **{f"another {name} in its place": (scene, f"{part(scene, name)}run 2 pre no", "ERROR: Run with pre no") for scene, name in
+       [("tank", "dt"), ("tank", "move"), ("tank", "pair"), ("open", "mirror"), ("open", "inlet"), ("levels", "refine"), ("stream", "stream")]},
+    "another fix fsi": ("stream", "unfix fsi\n" + part("stream", "fsi") + "run 2 pre no", "ERROR: Run with pre no"),
     "a type that is another": ("tank", "region w block 0 0.03 0 0.03 INF INF units box\nset region w type 2\n" + dump("x"), "ERROR: Compute fsi/atom needs a run before it"),
     "as many new atoms as old ones": ("tank", "group g region beam\ndelete_atoms group g compress no\ncreate_atoms 2 region beam\n" + dump("x"),
                                       "ERROR: Compute fsi/atom needs a run before it"),
@@ -390,9 +419,6 @@ def test_another_motion_after_a_restart_begins_there(tmp_path, motion):
     moved = (frame(done)["x"] - frame(done, "start")["x"])[held]
     limit = 1.1 * {"linear 0.2 0 0": 0.2, "wiggle": 0.02 * 2 * np.pi / 0.2, "variables": 0.3}[motion] * STEPS * 1e-4
     assert 0 < moved.min() and moved.max() < limit + (0.001 if motion == "variables" else 0)
-
-
-WALLS_AND_REST = {"": "", "sorted": "atom_modify sort 0 0.0\n"}
 
 
 def column(tmp_path, extra="", between="", ranks=1, steps=60):

@@ -7,8 +7,8 @@ import pytest
 from fsi import paths
 
 SOURCES = paths.ROOT / "src" / "FSI"
-LAWS = ["contact", "density_diffusion", "drag", "elastic", "gradient", "hourglass", "jaumann", "kernel", "lattice", "pack", "plasticity", "shift", "stress_artificial",
-        "tensor", "viscoelastic", "viscosity_artificial", "viscosity_laminar"]
+LAWS = ["contact", "density_diffusion", "drag", "elastic", "gradient", "hourglass", "hypoelastic", "kernel", "pack", "shift", "stress_artificial",
+        "tensor", "viscoelastic", "viscosity"]
 
 
 def includes(name):

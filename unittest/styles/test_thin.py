@@ -1,5 +1,6 @@
 """Bodies and walls thinner than the kernel's support (fix fsi thin): fluids on their two sides do not see each other."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +8,13 @@ import pytest
 from scenes import DX, RUBBER, WATER, Scene, close, cloud, lattice, pairs, sum_over
 from test_spacing import agree_on_ranks, beside, fine_gate, goes_on_bit_for_bit
 
+from fsi import paths
+
 WALL = "wall rho 1000"
+
+
+PAGE = {name: [float(n) for n in numbers.replace("%", "").split()] for name, numbers in re.findall(
+    r"^(\S.*?)  +((?:-?[\d.]+ % *)+)$", (paths.ROOT / "doc/src/Howto_thin.rst").read_text(), re.M)}
 
 
 def two_levels(kind, layers, ratio, dim=2, thin=True):
@@ -61,18 +68,25 @@ LONG = [("plate", 2, 2, 2), ("wall", 1, 2, 3)]
 
 @pytest.mark.parametrize("kind, layers, ratio, dim", [pytest.param(*case, marks=[pytest.mark.slow] * (case in LONG)) for case in CASES])
 def test_two_levels(kind, layers, ratio, dim):
-    """Load and moment within 2 % of hydrostatics, pressures at both faces within 2 % of that of the depth, nothing leaks"""
+    """Load and moment within 2 % of hydrostatics, pressures at both faces within 2 % of that of the depth, nothing leaks. In 2D, one
+    particle thick, load and pressures as the page says"""
     load, p, leaked = two_levels(kind, layers, ratio, dim)
     print(f"{kind} {layers} thick, {ratio} times finer, {dim}D: load {load[0]:.4f}, moment {load[1]:.4f}, pressures {p:.4f}, leaked {leaked}")
     assert np.abs(load - 1).max() < 0.02 and p < 0.02 and leaked == 0
+    if (kind, layers, dim) == ("wall", 1, 2) and ratio >= 1:
+        of_load, of_pressure = PAGE["*thin*, 1 to 3 times finer"]
+        assert 100 * abs(load[0] - 1) < of_load + 0.05 and 100 * p < of_pressure + 0.05
+    if kind == "plate":
+        assert 100 * abs(load[0] - 1) < PAGE["*thin*, elastic, *extrapolate*"][0] + 0.05
 
 
-@pytest.mark.parametrize("layers, ratio", [(1, 1), (1, 3)])
-def test_without(layers, ratio):
-    """What the keyword is for: pressures mix through the wall, which carries 5 % less"""
+@pytest.mark.parametrize("layers, ratio, row", [(1, 1, "without *thin*"), (1, 3, "without *thin*, 3 times finer")])
+def test_without(layers, ratio, row):
+    """What the keyword is for: pressures mix through the wall, which carries 5 % less; as the page says, to its digits"""
     load, p, _ = two_levels("wall", layers, ratio, thin=False)
     print(f"wall {layers} thick, {ratio} times finer, not said to be thin: load {load[0]:.4f}, pressures {p:.4f}")
     assert load[0] < 0.96 and p > 0.1
+    assert PAGE[row] == pytest.approx([100 * (load[0] - 1), 100 * p], abs=0.55)
 
 
 # ---- which pairs ----

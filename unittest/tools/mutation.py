@@ -24,10 +24,10 @@ SOURCES = ROOT / "src" / "FSI"
 
 # files with numerics, by pattern (the first that fits): the tests that look at them, test_NAME.py, or ctest
 TESTS = {
-    "fsi_kernel.h": "ctest", "fsi_lattice.h": "ctest lattice", "fsi_tensor.h": "ctest", "fsi_jaumann.h": "ctest", "fsi_walls.h": "ctest walls",
-    "fsi_gradient.h": "ctest", "fsi_elastic.h": "ctest", "fsi_contact.h": "ctest contact self_contact", "fsi_plasticity.h": "ctest plasticity", "fsi_pack.h": "ctest",
+    "fsi_kernel.h": "ctest lattice", "fsi_tensor.h": "ctest", "fsi_hypoelastic.h": "ctest plasticity", "fsi_walls.h": "ctest walls",
+    "fsi_gradient.h": "ctest", "fsi_elastic.h": "ctest", "fsi_contact.h": "ctest contact self_contact", "fsi_pack.h": "ctest",
     "fsi_stress_artificial.h": "ctest solid", "fsi_hourglass.h": "ctest solid_tl", "fsi_density_diffusion.h": "ctest density",
-    "fsi_viscosity_*": "ctest viscosity walls", "fsi_material.*": "ctest density solid", "fsi_shift.h": "shift", "fsi_sight.cpp": "thin", "fsi_surface_room.*": "surface density restart",
+    "fsi_viscosity.h": "ctest viscosity walls", "fsi_material.*": "ctest density solid", "fsi_shift.h": "shift", "fsi_sight.cpp": "thin", "fsi_surface_room.*": "surface density restart",
     "fsi_fluid_*": "density momentum walls surface interface viscosity wall_particles shift spacing",
     "pair_fsi_fluid.cpp": "density integrator dt interface surface wall_particles shift",
     "pair_fsi_solid.*": "solid integrator energy momentum", "pair_fsi_solid_tl.*": "solid_tl energy report contact",

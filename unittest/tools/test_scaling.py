@@ -10,6 +10,7 @@ from fsi.command import Refusal
 
 sys.path.insert(0, str(paths.ROOT / "bench"))
 import effects  # noqa: E402
+import largest  # noqa: E402
 import peers  # noqa: E402
 import scaling  # noqa: E402
 import solid_variants  # noqa: E402
@@ -50,8 +51,24 @@ def test_pages_hold_their_rows():
     assert "| compute | 1 us |" in text and "| bytes | 98 B |" in text and text.count("2 ranks over 1, water, by the clock | 1.70 ± 0.10 |") == 1
 
 
-def test_largest_scene_is_memory_over_the_peak_of_the_larger_run():
-    assert scaling.largest({"small": {"peak": 1.0}, "large": {"peak": 2.0**30}}) == 24.0
+def test_cubes_of_water_have_a_shell_of_ghosts():
+    """10^3 particles on each of 8 ranks, a shell of 2 around them: 14^3 - 10^3 ghosts."""
+    assert scaling.cubes({"tau": 1e-6, "w": 2, "bytes": 100}, 8e3, 8) == pytest.approx((1e-3, 1.744, 174400))
+
+
+def test_largest_run_keeps_its_log(tmp_path):
+    """A small one: 12^3 particles, of which each has its volume in the restart file and 3 steps are run."""
+    log = tmp_path / "largest.log"
+    found = largest.measured(12, log)
+    assert found["particles"] == (1728, "") and "Loop time" in log.read_text() and 0.01 < found["peak of the memory"][0] < 1
+    assert 1728 * 80 < found["restart file"][0] * 2**30 < 1728 * 200  # position, velocity, density, type and more, 112 bytes in large ones
+    row = [{"what": "particles", "value": 27e6}, {"what": "peak of the memory", "value": 19.0}]
+    assert "27 million particles on one rank, 19.0 GB" in largest.line(row)
+
+
+def test_largest_refuses_nonsense():
+    with pytest.raises(Refusal, match="edge=none"):
+        largest.main(["edge=none"])
 
 
 def test_still_decks_move_nothing():
