@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_cells.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
@@ -1083,8 +1084,8 @@ void FixFSIInlet::hold_shift(const Place &place)
 // their number, since it goes out when pressure is higher. And diffusion passes between fluid and
 // buffer what has no volume. So mass is compared with density times room, 1/psi, of the fluid
 // before the plane. Particles at a free surface do not count; where there is one, a lack says
-// nothing. Of fluid of several spacings it is the coarsest that is there: where two meet, numbers
-// are those of neither lattice.
+// nothing. Of fluid of several spacings it is the coarsest that is there, but for those that see
+// another: where two meet, numbers are those of neither lattice.
 void FixFSIInlet::end_state(bool advance)
 {
   if (advance ? update->ntimestep % LOOK_EVERY : fill > 0.0) return;
@@ -1092,11 +1093,28 @@ void FixFSIInlet::end_state(bool advance)
   std::vector<std::array<double, NSUM>> own(fix_fsi->levels.size()), all(own.size());
   std::vector<double> psi(atom->nmax);
   fix_fsi->number_density.find(psi.data());
+  const auto level = [this](int i) {
+    return fix_fsi->level_of[atom->type[i]];
+  };
+  const bool one_level = !fix_fsi->has_levels();
+  const Cells near_zone(atom->x, one_level ? 0 : atom->nlocal + atom->nghost, fix_fsi->dim,
+                        fix_fsi->cut, [&](int i) {
+                          return is_fluid(i) && inside(atom->x[i]) < zone() + fix_fsi->cut;
+                        });
+  const auto sees_another = [&](int i) {
+    bool sees = false;
+    near_zone.around(atom->x[i], [&](int j, double rsq) {
+      const double cut =
+          fix_fsi->resolution[atom->type[i]].cut + fix_fsi->resolution[atom->type[j]].cut;
+      sees = sees || (level(j) != level(i) && 4.0 * rsq < cut * cut);
+    });
+    return sees;
+  };
   for (const auto &place : places) {
     const int i = place.i, type = atom->type[i];
     const double s = inside(atom->x[i]), m = atom->rmass[i], rho = atom->rho[i];
     // those that do not see the buffer, whose particles may be as near to each other as they like
-    if (s <= fix_fsi->cut || s >= zone()) continue;
+    if (s <= fix_fsi->cut || s >= zone() || (!one_level && sees_another(i))) continue;
     const double n = psi[i] * (fix_fsi->resolution[type].psi_bulk / fix_fsi->psi_bulk);
     auto &sum = own[fix_fsi->level_of[type]];
     const bool at_surface = m * n < AT_SURFACE * rho;
