@@ -673,13 +673,43 @@ void FixFSIInlet::pre_exchange()
   if (all[3] == 0.0 && all[4] == 0.0) return;
 
   auto &population = fix_fsi->population;
+  std::vector<Particle> left;
+  for (const int i : gone) left.push_back(population.copy_of(i));
   population.begin();
   population.remove(gone, fix_fsi->account(FixFSI::FIELDS));
-  if (all[3] > 0.0) {
-    renew_ends(has_some);
-    make(copies, false);
-  }
+  renew_ends(has_some);
+  if (all[3] > 0.0) make(copies, false);
   population.end();
+  if (all[4] > 0.0) find_next_of_rows(left);
+}
+
+// Before those that have left at the end: where flow turns before the next one of a row has come a
+// spacing from the end, it is that one which another follows
+void FixFSIInlet::find_next_of_rows(const std::vector<Particle> &gone)
+{
+  if (ends == MPI_COMM_NULL) return;
+  auto all = gather(gone, ends);
+  sort_along_plane(all);
+  const double reach = OCCUPIED * fix_fsi->dx, far = 2.0 * fix_fsi->dx;
+  std::vector<double> mine(all.size(), far), nearest(all.size());
+  // visit(distance along the axis, to which one) for who is before such a one
+  const auto before = [&](int i, const auto &visit) {
+    if (!of_buffer[i] || inside(atom->x[i]) > far - length) return;
+    beside(all, atom->x[i], [&](const Particle &p, double *d) {
+      const double ahead = -side * d[axis];
+      d[axis] = 0.0;
+      if (ahead > 0.0 && MathExtra::lensq3(d) < reach * reach) visit(ahead, &p - all.data());
+    });
+  };
+  for (int i = 0; i < atom->nlocal; i++)
+    before(i, [&](double ahead, size_t k) {
+      mine[k] = std::min(mine[k], ahead);
+    });
+  MPI_Allreduce(mine.data(), nearest.data(), (int) mine.size(), MPI_DOUBLE, MPI_MIN, ends);
+  for (int i = 0; i < atom->nlocal; i++)
+    before(i, [&](double ahead, size_t k) {
+      if (of_buffer[i] == MEMBER && ahead == nearest[k]) of_buffer[i] = NEXT_OF_ROW;
+    });
 }
 
 // behind the plane, and no fluid that this end lets pass: LAMMPS would say of it that it is lost,
@@ -717,8 +747,9 @@ void FixFSIInlet::stranger(int i)
 void FixFSIInlet::follow(int i, double s)
 {
   const double spacing = column * fix_fsi->dx;
-  if (of_buffer[i] == MEMBER && s <= spacing - length) of_buffer[i] = LAST;
-  if (of_buffer[i] != LAST || s <= spacing - length) return;
+  const bool at_end = s <= spacing - length, is_next = of_buffer[i] == NEXT_OF_ROW;
+  if (at_end && (is_next || of_buffer[i] == MEMBER)) of_buffer[i] = LAST;
+  if (at_end || !(of_buffer[i] == LAST || (is_next && side * atom->v[i][axis] > 0.0))) return;
   of_buffer[i] = FOLLOWED;
   std::copy_n(atom->x[i], 3, behind[i]);
   behind[i][axis] -= side * spacing;
