@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_cells.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
@@ -672,13 +673,43 @@ void FixFSIInlet::pre_exchange()
   if (all[3] == 0.0 && all[4] == 0.0) return;
 
   auto &population = fix_fsi->population;
+  std::vector<Particle> left;
+  for (const int i : gone) left.push_back(population.copy_of(i));
   population.begin();
   population.remove(gone, fix_fsi->account(FixFSI::FIELDS));
-  if (all[3] > 0.0) {
-    renew_ends(has_some);
-    make(copies, false);
-  }
+  renew_ends(has_some);
+  if (all[3] > 0.0) make(copies, false);
   population.end();
+  if (all[4] > 0.0) find_next_of_rows(left);
+}
+
+// Before those that have left at the end: where flow turns before the next one of a row has come a
+// spacing from the end, it is that one which another follows
+void FixFSIInlet::find_next_of_rows(const std::vector<Particle> &gone)
+{
+  if (ends == MPI_COMM_NULL) return;
+  auto all = gather(gone, ends);
+  sort_along_plane(all);
+  const double reach = OCCUPIED * fix_fsi->dx, far = 2.0 * fix_fsi->dx;
+  std::vector<double> mine(all.size(), far), nearest(all.size());
+  // visit(distance along the axis, to which one) for who is before such a one
+  const auto before = [&](int i, const auto &visit) {
+    if (!of_buffer[i] || inside(atom->x[i]) > far - length) return;
+    beside(all, atom->x[i], [&](const Particle &p, double *d) {
+      const double ahead = -side * d[axis];
+      d[axis] = 0.0;
+      if (ahead > 0.0 && MathExtra::lensq3(d) < reach * reach) visit(ahead, &p - all.data());
+    });
+  };
+  for (int i = 0; i < atom->nlocal; i++)
+    before(i, [&](double ahead, size_t k) {
+      mine[k] = std::min(mine[k], ahead);
+    });
+  MPI_Allreduce(mine.data(), nearest.data(), (int) mine.size(), MPI_DOUBLE, MPI_MIN, ends);
+  for (int i = 0; i < atom->nlocal; i++)
+    before(i, [&](double ahead, size_t k) {
+      if (of_buffer[i] == MEMBER && ahead == nearest[k]) of_buffer[i] = NEXT_OF_ROW;
+    });
 }
 
 // behind the plane, and no fluid that this end lets pass: LAMMPS would say of it that it is lost,
@@ -716,8 +747,9 @@ void FixFSIInlet::stranger(int i)
 void FixFSIInlet::follow(int i, double s)
 {
   const double spacing = column * fix_fsi->dx;
-  if (of_buffer[i] == MEMBER && s <= spacing - length) of_buffer[i] = LAST;
-  if (of_buffer[i] != LAST || s <= spacing - length) return;
+  const bool at_end = s <= spacing - length, is_next = of_buffer[i] == NEXT_OF_ROW;
+  if (at_end && (is_next || of_buffer[i] == MEMBER)) of_buffer[i] = LAST;
+  if (at_end || !(of_buffer[i] == LAST || (is_next && side * atom->v[i][axis] > 0.0))) return;
   of_buffer[i] = FOLLOWED;
   std::copy_n(atom->x[i], 3, behind[i]);
   behind[i][axis] -= side * spacing;
@@ -1083,8 +1115,8 @@ void FixFSIInlet::hold_shift(const Place &place)
 // their number, since it goes out when pressure is higher. And diffusion passes between fluid and
 // buffer what has no volume. So mass is compared with density times room, 1/psi, of the fluid
 // before the plane. Particles at a free surface do not count; where there is one, a lack says
-// nothing. Of fluid of several spacings it is the coarsest that is there: where two meet, numbers
-// are those of neither lattice.
+// nothing. Of fluid of several spacings it is the coarsest that is there, but for those that see
+// another: where two meet, numbers are those of neither lattice.
 void FixFSIInlet::end_state(bool advance)
 {
   if (advance ? update->ntimestep % LOOK_EVERY : fill > 0.0) return;
@@ -1092,11 +1124,28 @@ void FixFSIInlet::end_state(bool advance)
   std::vector<std::array<double, NSUM>> own(fix_fsi->levels.size()), all(own.size());
   std::vector<double> psi(atom->nmax);
   fix_fsi->number_density.find(psi.data());
+  const auto level = [this](int i) {
+    return fix_fsi->level_of[atom->type[i]];
+  };
+  const bool one_level = !fix_fsi->has_levels();
+  const Cells near_zone(atom->x, one_level ? 0 : atom->nlocal + atom->nghost, fix_fsi->dim,
+                        fix_fsi->cut, [&](int i) {
+                          return is_fluid(i) && inside(atom->x[i]) < zone() + fix_fsi->cut;
+                        });
+  const auto sees_another = [&](int i) {
+    bool sees = false;
+    near_zone.around(atom->x[i], [&](int j, double rsq) {
+      const double cut =
+          fix_fsi->resolution[atom->type[i]].cut + fix_fsi->resolution[atom->type[j]].cut;
+      sees = sees || (level(j) != level(i) && 4.0 * rsq < cut * cut);
+    });
+    return sees;
+  };
   for (const auto &place : places) {
     const int i = place.i, type = atom->type[i];
     const double s = inside(atom->x[i]), m = atom->rmass[i], rho = atom->rho[i];
     // those that do not see the buffer, whose particles may be as near to each other as they like
-    if (s <= fix_fsi->cut || s >= zone()) continue;
+    if (s <= fix_fsi->cut || s >= zone() || (!one_level && sees_another(i))) continue;
     const double n = psi[i] * (fix_fsi->resolution[type].psi_bulk / fix_fsi->psi_bulk);
     auto &sum = own[fix_fsi->level_of[type]];
     const bool at_surface = m * n < AT_SURFACE * rho;

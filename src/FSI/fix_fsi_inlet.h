@@ -108,8 +108,9 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   class Region *region = nullptr;
   class FixFSI *fix_fsi = nullptr;
 
-  // LAST of a row; FOLLOWED by one that the next list has
-  static constexpr double NOT = 0.0, MEMBER = 1.0, LAST = 2.0, FOLLOWED = 3.0;
+  // LAST of a row; FOLLOWED by one that the next list has; NEXT to one that has left, not yet where
+  // it is the last
+  static constexpr double NOT = 0.0, MEMBER = 1.0, LAST = 2.0, FOLLOWED = 3.0, NEXT_OF_ROW = 4.0;
   double *of_buffer = nullptr;    // per atom
   double **behind = nullptr;      // of one that is followed: where who follows would be now
   std::vector<Place> places;
@@ -181,6 +182,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void keep_full();
   void set_density(int i, double rho);
   void make(const std::vector<FSI::Particle> &, bool at_start);
+  void find_next_of_rows(const std::vector<FSI::Particle> &gone);
   void follow(int i, double s);
   void find_places();
   MPI_Comm ends = MPI_COMM_NULL;    // of the ranks that this end is a matter of; null on others

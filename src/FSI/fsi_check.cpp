@@ -42,6 +42,9 @@ static constexpr double SOLID_OVER_FLUID = 10.0;
 static constexpr int BLOCK = 256;
 static constexpr double COMPRESSED =
     1.2;    // density over that at rest: Mach numbers of the limit make it in head-on impacts
+// Of densities, relative to those at rest: their standard deviation where the pressure changes
+// linearly by 0.1 rho c^2. An impact has so much in few particles only.
+static constexpr double SOFT = 0.03;
 
 // Is no number of these larger than that? A comparison that NaN fails. In a form that compilers
 // turn into vector instructions.
@@ -66,7 +69,7 @@ static bool all_below(int n, const double *a, double most)
 
 Check::Check(LAMMPS *lmp, const Scene &scene) :
     Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0),
-    lightest(0.0), substepped(nullptr), densest{}, told_dense(false), found{}
+    lightest(0.0), substepped(nullptr), densest{}, told_dense(false), told_soft(false), found{}
 {
 }
 
@@ -297,8 +300,9 @@ void Check::init()
   dense.assign(atom->ntypes + 1, OFF);
   for (int t = 1; t <= atom->ntypes; t++)
     if (scene.state[t].species == FLUID) dense[t] = COMPRESSED * scene.state[t].rho0;
-  told_dense = false;
+  told_dense = told_soft = false;
   densest = {};
+  deviations.assign(2 * dense.size(), 0.0);
 
   found = {};
   for (int i = 0; i < atom->nlocal; i++) enter(stop.not_finite(i, false));
@@ -381,22 +385,57 @@ void Check::look(bool closely, double kick)
       for (int k = i; k < i + m; k++) examine(k, kick);
   }
   inside_out();
-  if (closely && !told_dense) look_at_densities();
+  if (closely && !(told_dense && told_soft)) look_at_densities();
 }
 
 // What is pressed together far more than sound allows for is no fluid of this method: a pressure
-// in wrong units, two inlets against each other, a force that holds particles where others come.
-// It goes on, but not without a word.
+// in wrong units, two inlets against each other, a force that holds particles where others come; or
+// sound that is too slow for the pressures. It goes on, but not without a word.
 void Check::look_at_densities()
 {
   const double *const rho = atom->rho;
   const int *const type = atom->type;
   densest = {};
+  std::fill(deviations.begin(), deviations.end(), 0.0);
   double most = 1.0;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (rho[i] <= most * dense[type[i]]) continue;
+    const int t = type[i];
+    if (dense[t] == OFF) continue;
+    const double beyond = rho[i] * (COMPRESSED / dense[t]) - 1.0;
+    // torn fluid without tension has any density
+    if (beyond > 0.0 || scene.state[t].floor < 0.0) deviations[2 * t] += beyond * beyond;
+    deviations[2 * t + 1] += 1.0;
+    if (rho[i] <= most * dense[t]) continue;
     most = rho[i] / dense[type[i]];
     densest = stop.finding(DENSITY, i, rho[i]);
+  }
+}
+
+bool Check::any_soft() const
+{
+  for (size_t k = 0; k < deviations.size(); k += 2)
+    if (deviations[k] > SOFT * SOFT * deviations[k + 1]) return !told_soft;
+  return false;
+}
+
+// where it holds for the particles of all ranks
+void Check::warn_of_sound()
+{
+  std::vector<double> all(deviations.size());
+  MPI_Allreduce(deviations.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, world);
+  std::fill(deviations.begin(), deviations.end(), 0.0);    // until the next look
+  for (size_t t = 0; t < dense.size() && !told_soft; t++) {
+    const double square = all[2 * t + 1] > 0.0 ? all[2 * t] / all[2 * t + 1] : 0.0;
+    if (square <= SOFT * SOFT) continue;
+    told_soft = true;
+    const double c = scene.state[t].c, p = std::sqrt(12.0 * square);    // over rho c^2
+    if (comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix fsi: densities of the fluid of type {} differ from that at rest by {:.2g} "
+          "% (standard deviation) at step {}: its pressures are too large for the speed "
+          "of sound {:g}. Expected sound {:.2g}, 10 times sqrt(p/rho)",
+          t, 100.0 * std::sqrt(square), update->ntimestep, c, 10.0 * std::sqrt(p) * c);
   }
 }
 
@@ -404,7 +443,7 @@ void Check::warn_of_density()
 {
   const Finding worst =
       stop.worst(densest, densest.tag ? densest.value / dense[densest.type] : 0.0);
-  told_dense = true;
+  told_dense = told_soft = true;
   if (comm->me) return;
   const double rest = dense[worst.type] / COMPRESSED;
   error->warning(FLERR,
@@ -468,9 +507,14 @@ void Check::enter(const Finding &one)
 // all ranks stop together
 void Check::judge(Stop::When when)
 {
-  enum { CALM, DENSE, LOST_MEANING };
-  int mine = found.tag ? LOST_MEANING : densest.tag && !told_dense ? DENSE : CALM, all;
+  enum { CALM, PRESSED, DENSE, LOST_MEANING };
+  int mine = found.tag             ? LOST_MEANING
+      : densest.tag && !told_dense ? DENSE
+      : any_soft()                 ? PRESSED
+                                   : CALM,
+      all;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
+  if (all == PRESSED) warn_of_sound();
   if (all == DENSE) warn_of_density();
   if (all != LOST_MEANING) return;
   // back to before the sub-steps, if there were any

@@ -56,7 +56,10 @@ namespace FSI {
     std::vector<double> dense;             // per type: density over which a fluid is far compressed
     Finding densest;                       // particle beyond that, of this rank; no tag: none
     bool told_dense;                       // in this run
-    Finding found;    // the first thing that is not finite, or the worst of this rank
+    // per fluid type: sum of (rho/rho0 - 1)^2 over this rank's particles, and how many they are
+    std::vector<double> deviations;
+    bool told_soft;    // in this run: sound is too slow for the pressures
+    Finding found;     // the first thing that is not finite, or the worst of this rank
 
     void require(const std::string &what, bool met, const char *setting, const char *reason) const;
     void spacings() const;
@@ -70,7 +73,9 @@ namespace FSI {
     void inside_out();
     void look(bool closely, double kick);
     void look_at_densities();
+    bool any_soft() const;
     void warn_of_density();
+    void warn_of_sound();
     void judge(Stop::When);
   };
 

@@ -120,7 +120,9 @@ void Settling::run(int sweeps)
     for (int k = 0; k < sweeps; k++) {
       if (k == 0 || !rows_hold()) find_rows();
       for (int j = 0; j < nall; j++) std::copy_n(atom->x[j], 3, &points[POINT * j]);
-      have_packs() ? sweep<Pack>(of_types) : sweep<double>(of_types);
+      have_packs() ? sum_up<Pack>(of_types) : sum_up<double>(of_types);
+      if (scene.walls.finite()) add_images_of_segments(of_types);
+      displace<K::DIM>();
       comm->forward_comm();
     }
   });
@@ -159,33 +161,40 @@ FSI_INLINE static void add_images(const Row &row, const double *points, const in
   for (int n = 0; n <= K::DIM; n++) sums[n] += Lanes<T>::sum(sum[n]);
 }
 
-template <class T, class K> void Settling::sweep(const std::vector<K> &of_types)
+template <class T, class K> void Settling::sum_up(const std::vector<K> &of_types)
 {
-  constexpr int FILLED = K::DIM;
   const Walls &walls = scene.walls;
   const std::vector<Walls::Reflection> &reflections = walls.reflections;
-  double *const *const x = atom->x, *const account = scene.account(Ledger::LEVELS);
+  const double *const *const x = atom->x;
   const int *const type = atom->type;
-  std::vector<std::array<double, 4>> found(rows.size());
   const bool segments = walls.finite();
-  std::vector<std::pair<size_t, int>> at_walls;    // rows, and bits of the walls that they see
+  sums.assign(rows.size(), {});
+  at_walls.clear();
   run_loop<T>([&](const auto &number) FSI_INLINE_LAMBDA {
     using Number = std::decay_t<decltype(number)>;
     for (size_t r = 0; r < rows.size(); r++) {
       const Row &row = rows[r];
       const K *const with = &of_types[type[row.i] * (atom->ntypes + 1)];
-      double *const sums = found[r].data();
-      add_images<Number>(row, points.data(), type, with, mirrors[0], sums);
+      double *const own = sums[r].data();
+      add_images<Number>(row, points.data(), type, with, mirrors[0], own);
       const int near = walls.near(x[row.i], 0.5 * (scene.resolution[type[row.i]].cut + scene.cut));
       if (near && segments) at_walls.emplace_back(r, near);
       for (size_t s = 0; near && s < reflections.size(); s++)
         if ((reflections[s].mask & near) == reflections[s].mask && !walls.finite(reflections[s]))
-          add_images<Number>(row, points.data(), type, with, mirrors[s + 1], sums);
+          add_images<Number>(row, points.data(), type, with, mirrors[s + 1], own);
     }
   });
-  for (const auto &[r, near] : at_walls) {    // segments hide some of what is behind them
+}
+
+// they hide some of what is behind them
+template <class K> void Settling::add_images_of_segments(const std::vector<K> &of_types)
+{
+  const Walls &walls = scene.walls;
+  const double *const *const x = atom->x;
+  const int *const type = atom->type;
+  for (const auto &[r, near] : at_walls) {
     const int i = rows[r].i;
-    double *const sums = found[r].data();
+    double *const own = sums[r].data();
     for (int n = 0; n < rows[r].n; n++) {
       const int j = rows[r].j[n];
       const K &kernel = of_types[type[i] * (atom->ntypes + 1) + type[j]];
@@ -194,22 +203,27 @@ template <class T, class K> void Settling::sweep(const std::vector<K> &of_types)
                      if (!walls.finite(s)) return;
                      const double distance = std::sqrt(rsq), volume = points[POINT * j + 3],
                                   g = volume * kernel.gradient(distance);
-                     for (int a = 0; a < K::DIM; a++) sums[a] += g * away[a];
-                     sums[FILLED] += volume * kernel.W(distance);
+                     for (int a = 0; a < K::DIM; a++) own[a] += g * away[a];
+                     own[K::DIM] += volume * kernel.W(distance);
                    });
     }
   }
+}
+
+template <int D> void Settling::displace()
+{
+  double *const *const x = atom->x, *const account = scene.account(Ledger::LEVELS);
   for (size_t r = 0; r < rows.size(); r++) {
     const int i = rows[r].i;
     double d[3] = {};
-    std::copy_n(found[r].data(), K::DIM, d);
-    const double dx = scene.dx_of(type[i]),
-                 full = std::clamp((found[r][FILLED] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
+    std::copy_n(sums[r].data(), D, d);
+    const double dx = scene.dx_of(atom->type[i]),
+                 full = std::clamp((sums[r][D] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
     MathExtra::scale3(-STRENGTH * dx * dx * mobility[i] * full, d);
     const double length = MathExtra::len3(d);
     if (length > LONGEST * dx) MathExtra::scale3(LONGEST * dx / length, d);
     if (account) *account += scene.potential(i);
-    for (int a = 0; a < K::DIM; a++) x[i][a] += d[a];
+    for (int a = 0; a < D; a++) x[i][a] += d[a];
     if (account) *account -= scene.potential(i);
   }
 }

@@ -25,6 +25,8 @@
 #include "fsi_walls.h"
 #include "pointers.h"
 
+#include <array>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -46,10 +48,16 @@ namespace FSI {
     std::vector<Row> rows;                  // particles that are moved, and themselves among others
     std::vector<Mirror> mirrors;            // none, then those of the walls' reflections
     std::vector<int> neighbors;             // of the rows
+    // of each row: sum of V grad W, and behind it that of V W; and rows that see walls, with the
+    // bits of these
+    std::vector<std::array<double, 4>> sums;
+    std::vector<std::pair<size_t, int>> at_walls;
 
     void find_rows();
     bool rows_hold() const;
-    template <class T, class K> void sweep(const std::vector<K> &of_types);
+    template <class T, class K> void sum_up(const std::vector<K> &of_types);
+    template <class K> void add_images_of_segments(const std::vector<K> &of_types);
+    template <int D> void displace();
   };
 
 }    // namespace FSI

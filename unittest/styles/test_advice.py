@@ -41,6 +41,37 @@ def test_fluid_made_between_runs(tmp_path):
         ("1", "65"), ("2", "65")]
 
 
+@pytest.mark.parametrize("push, ranks", [(15.0, 1), (15.0, 2), (1.0, 1)])
+def test_sound_too_slow_for_the_pressures(tmp_path, push, ranks):
+    """A closed box of viscous fluid that a force presses to one side: p = push * 0.2 m * rho at its other end is 0.15 rho c^2 there, or 0.01. The
+    advice is 10 sqrt(p/rho) = 17 m/s, here from the first 3 % that sound makes, which goes to and fro."""
+    text = f"""units si
+dimension 2
+boundary p f p
+atom_style fsi
+region box block 0 0.1 -0.05 0.25 -0.005 0.005
+create_box 1 box
+lattice sq 0.01 origin 0.5 0.5 0
+region fluid block INF INF 0 0.2 INF INF units box
+create_atoms 1 region fluid
+pair_style fsi/fluid sound 4.5 tension yes laminar/visc artificial/visc 0.5 0
+pair_coeff * * mine.fsi sirup
+fix sph all fsi 0.01 wendland 1.5
+fix walls all fsi/wall/mirror ylo 0 yhi 0.2
+variable f equal {push}*0.1
+fix push all addforce 0 v_f 0
+timestep 2e-4
+neighbor 0.003 bin
+run 500
+"""
+    output = run(tmp_path, text, ranks, mine_fsi="# UNITS: si\nsirup fluid rho 1000 viscosity 1\n").output
+    found = re.findall(r"WARNING: Fix fsi: densities of the fluid of type 1 differ .* by (\S+) % .* speed of sound 4.5. Expected sound (\S+), 10 times", output)
+    print(found)
+    assert len(found) == (push == 15.0)
+    for by, sound in found:
+        assert 3 <= float(by) < 4 and 13 < float(sound) < 18
+
+
 def mine(**what):
     return [("materials.fsi", "mine.fsi")], MATERIALS.format(**{"rho": 1000, "young": 2e6, **what})
 

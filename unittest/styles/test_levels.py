@@ -216,6 +216,18 @@ def test_inlet_is_for_the_coarsest(tmp_path):
             s.run()
 
 
+def test_room_before_a_plane_beside_a_jump():
+    """Water at rest, finer from 0.8 on before an outlet's plane: the mass near it, within 1.0, is what there is room for. Where two lattices meet
+    number densities are those of neither."""
+    x = np.vstack([lattice((8, 5), 0.1), lattice((14, 7), 0.5 / 7) - [1.0, 0, 0]])
+    with Scene(x, type=1 + (x[:, 0] < 0), fluid="tension yes background 5", **levels(1.4), box=((-1.2, 0), (1.6, 0.5)), boundary="f p p",
+               commands=["fix o all fsi/outlet xhi 0.8"]) as s:
+        s.run()
+        room = s.lmp.extract_fix("o", 0, 1, 10)
+        print(f"mass over room: {room}")
+        assert abs(room - 1) < 1e-9
+
+
 @pytest.mark.parametrize("ratio, warned", [(1.4, False), (2, True)])
 def test_jump_is_named(tmp_path, ratio, warned):
     scene = gate(2, ratio)
