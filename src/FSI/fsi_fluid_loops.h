@@ -142,10 +142,10 @@ namespace FSI {
     virtual ~FluidLoops() = default;
 
     // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting, times
-    // -V_i, to shift, rows of Shift<D>::row(laws.fills), where rates of neighbors are behind the sums;
-    // mirror: the rows' neighbors are images in it; shift, sums: or null; near: becomes the rows of
-    // what is within laws.reach, which are the first of each row from then on, of images its only
-    // ones; or null
+    // -V_i, to shift, rows of Shift<D>::row(laws.fills), where rates of neighbors are behind the
+    // sums; mirror: the rows' neighbors are images in it; shift, sums: or null; near: becomes the
+    // rows of what is within laws.reach, which are the first of each row from then on, of images
+    // its only ones; or null
     virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror,
                        const FluidParticles &, const RateLaws &, double *rate, double *shift,
                        PairSums *sums, std::vector<Row> *near) const = 0;

@@ -155,6 +155,16 @@ namespace FSI {
     of_j = 1.0 + Lanes<T>::read(in.fade, j) * (weight - 1.0);
   }
 
+  // W, which shifting alone needs, and g = W'/r
+  template <int FLAGS, class K, class T>
+  FSI_INLINE void of_kernel(const K &kernel, const T &r, T &w, T &g)
+  {
+    if constexpr (FLAGS & Flag::SHIFT)
+      kernel.both(r, w, g);
+    else
+      g = kernel.gradient(r);
+  }
+
   // The sums of particle shifting that a row adds to those of i and, if BOTH are shifted, of its
   // neighbors, with their rates of density where there are all of the sums. Solids and walls count,
   // but are not shifted.
@@ -168,6 +178,7 @@ namespace FSI {
     T both[L::totals(N + 1)], of_i[N];
 
    public:
+    static constexpr bool TAKES_RATES = (FLAGS & Flag::SHIFT) && N > D;
     FSI_INLINE explicit ShiftOfRow(const Mirror &mirror_in) : mirror(mirror_in)
     {
       for (int k = 0; k < ROW; k++)
@@ -185,13 +196,13 @@ namespace FSI {
       for (T &s : of_i) s = 0.0;
     }
     // g: V_i V_j W'/r; v: difference of velocities
-    FSI_INLINE void take(const T &weight_i, const T &weight_j, const T &rsq, const T &g,
+    FSI_INLINE void take(const T &weight, const FluidParticles &in, int i, const T &rsq, const T &g,
                          const T (&x)[D], const T *v, const T *rate_j, const int *j,
                          double (*const shift)[ROW])
     {
-      T part[N + 1], back[D];
-      for (int d = 0; d < D; d++)
-        back[d] = IMAGES ? mirror.sign[d] * x[d] : x[d];
+      T part[N + 1], back[D], weight_i, weight_j;
+      weigh<FLAGS>(weight, in, i, j, weight_i, weight_j);
+      for (int d = 0; d < D; d++) back[d] = IMAGES ? mirror.sign[d] * x[d] : x[d];
       Shift<D>::template of_pair<EDGES>(part, g, weight_j, rsq, back);
       if constexpr (!BOTH) {
         for (int k = 0; k < N; k++) of_i[k] += part[k];
@@ -259,7 +270,6 @@ namespace FSI {
     constexpr bool IMAGE = FLAGS & Flag::IMAGES,
                    CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL),
                    UNLIKE = KIND == WITH_FLUID && (FLAGS & Flag::UNEQUAL);
-    constexpr bool TOGETHER = (FLAGS & Flag::SHIFT) && shift_sums<D>(FLAGS) > D;    // shifting takes the rate along
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
@@ -286,18 +296,13 @@ namespace FSI {
         difference(pi.v, pj.v, v);
         const T rsq = product(x, x), r = root(rsq);
         T w, g;
-        if constexpr (FLAGS & Flag::SHIFT)
-          kernel.both(r, w, g);
-        else
-          g = kernel.gradient(r);
+        of_kernel<FLAGS>(kernel, r, w, g);
         if (IMAGE) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         const auto shift_pair = [&](const T &along, const T *rate_j) FSI_INLINE_LAMBDA {
           const T vol_j = (FLAGS & Flag::UNEQUAL) ? fill * pj.vol : pj.vol;
-          T of_i, of_j;
-          weigh<FLAGS>(law.weight(w), in, i, j, of_i, of_j);
-          shift_of.take(of_i, of_j, rsq, pi.vol * vol_j * along, x, v, rate_j, j, shift);
+          shift_of.take(law.weight(w), in, i, rsq, pi.vol * vol_j * along, x, v, rate_j, j, shift);
         };
         if constexpr ((FLAGS & Flag::SHIFT) && KIND != WITH_FLUID) shift_pair(g, nullptr);
         if ((FLAGS & Flag::UNEQUAL) && !UNLIKE) {
@@ -320,7 +325,7 @@ namespace FSI {
                 (T(laws.pressure_over_density[i]) - L::read(laws.pressure_over_density, j));
         }
         if constexpr (FLAGS & Flag::SHIFT) shift_pair(g, &rate_j);
-        if (!TOGETHER) L::add(rate_j, rate, j);
+        if (!shift_of.TAKES_RATES) L::add(rate_j, rate, j);
         return rsq;
       };
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
@@ -720,9 +725,8 @@ namespace FSI {
         if (IMAGE) g = weight * g;
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         const T no_rate = 0.0;
-        const T of_both = law.weight(kernel.W(r));
-        shift_of.take(of_both, of_both, rsq, pi.vol * (fill * pj.vol) * g, x, nullptr, &no_rate, j,
-                      shift);
+        shift_of.take(law.weight(kernel.W(r)), in, i, rsq, pi.vol * (fill * pj.vol) * g, x, nullptr,
+                      &no_rate, j, shift);
       });
       shift_of.close(shift[i]);
     }

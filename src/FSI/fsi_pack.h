@@ -391,7 +391,10 @@ namespace FSI {
       for (int d = FOURS; d < n; d++) a[d] += x[d].sum();
     }
 
-    static constexpr int totals(int n) { return (n + 3) / 4; }
+    static constexpr int totals(int n)
+    {
+      return (n + 3) / 4;
+    }
     template <int n, int N>
     FSI_INLINE static void add_to_all(const Pack (&x)[n], double (*a)[N], const int *j,
                                       Pack (&total)[totals(n)])

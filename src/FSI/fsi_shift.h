@@ -70,8 +70,8 @@ namespace FSI {
       return 1.0 + 0.2 * (qq * qq);
     }
 
-    // Loops find sums times -V_i: then what a pair is in them is the same for both, but for the sign
-    // of vectors. This is that of j; g: V_i V_j W'/r; T: double or Pack
+    // Loops find sums times -V_i: then what a pair is in them is the same for both, but for the
+    // sign of vectors. This is that of j; g: V_i V_j W'/r; T: double or Pack
     template <bool WITH_EDGES, class T>
     FSI_INLINE static void of_pair(T *part, const T &g, const T &weight, const T &rsq,
                                    const T *x_ij)
@@ -97,8 +97,8 @@ namespace FSI {
     }
 
     // The sums of a particle of volume V become the displacement, in their first D places, and the
-    // change of velocity, in the next; FILLS: the fluid has no surface; scale = C c h dt, most = C c
-    // dt/4
+    // change of velocity, in the next; FILLS: the fluid has no surface; scale = C c h dt, most =
+    // C c dt/4
     template <bool FILLS>
     static void displacement(double *sum, double vol, double scale, double most)
     {
