@@ -141,11 +141,11 @@ namespace FSI {
    public:
     virtual ~FluidLoops() = default;
 
-    // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting to
-    // shift, rows of Shift<D>::row(laws.fills), where rates of neighbors are behind the sums;
-    // mirror: the rows' neighbors are images in it; shift, sums: or null; near: becomes the rows of
-    // what is within laws.reach, which are the first of each row from then on, of images its only
-    // ones; or null
+    // adds m_i dpsi_i/dt, with density diffusion, to rate, and the sums of particle shifting, times
+    // -V_i, to shift, rows of Shift<D>::row(laws.fills), where rates of neighbors are behind the
+    // sums; mirror: the rows' neighbors are images in it; shift, sums: or null; near: becomes the
+    // rows of what is within laws.reach, which are the first of each row from then on, of images
+    // its only ones; or null
     virtual void rates(PairKind, const std::vector<Row> &, const Mirror *mirror,
                        const FluidParticles &, const RateLaws &, double *rate, double *shift,
                        PairSums *sums, std::vector<Row> *near) const = 0;
@@ -154,7 +154,7 @@ namespace FSI {
     virtual void forces(PairKind, const std::vector<Row> &, const Mirror *mirror,
                         const FluidParticles &, const ForceLaws &, double *force, double *total,
                         PairSums *sums) const = 0;
-    // adds the sums of particle shifting alone, to rows of Shift<D>::row(false)
+    // adds the sums of particle shifting alone, times -V_i, to rows of Shift<D>::row(false)
     virtual void shifts(PairKind, const std::vector<Row> &, const Mirror *mirror,
                         const FluidParticles &, double wdx, double *shift) const = 0;
     // adds W_ij, by the neighbors' share, to sum; of the neighbors only if both

@@ -156,31 +156,75 @@ namespace FSI {
     of_j = 1.0 + Lanes<T>::read(in.fade, j) * (weight - 1.0);
   }
 
-  // Adds a pair's part to the sums of particle shifting of i and, if it is shifted, too, of j, with
-  // the rate of density of j where there are all of the sums. Solids and walls count, but are not
-  // shifted. v: difference of velocities
-  template <class T, bool BOTH, int FLAGS, int D, int N>
-  FSI_INLINE void add_shift(const Mirror &mirror, const T &weight_i, const T &weight_j,
-                            const T &rsq, const T &g, const T &vol_i, const T &vol_j,
-                            const T (&x)[D], const T *v, const T *rate_j, const int *j, T (&sum)[N],
-                            double (*const shift)[shift_row<D>(FLAGS)])
+  // W, which shifting alone needs, and g = W'/r
+  template <int FLAGS, class K, class T>
+  FSI_INLINE void of_kernel(const K &kernel, const T &r, T &w, T &g)
   {
-    constexpr bool EDGES = FLAGS & Flag::EDGES, SLOPES = FLAGS & Flag::SLOPES;
-    T of_i[N], of_j[N + 1];
-    Shift<D>::template of_neighbor<EDGES>(of_i, vol_j, g, weight_i, rsq, x);
-    if (BOTH) {
-      T back[D];
-      for (int d = 0; d < D; d++) back[d] = (FLAGS & Flag::IMAGES) ? -mirror.sign[d] * x[d] : -x[d];
-      Shift<D>::template of_neighbor<EDGES>(of_j, vol_i, g, weight_j, rsq, back);
-      if constexpr (SLOPES) Shift<D>::slopes_of_pair(of_i, of_j, vol_i, vol_j, g, x, v);
-      if constexpr (EDGES || SLOPES)
-        of_j[N] = *rate_j;
-      else
-        of_j[N] = 0.0;
-      Lanes<T>::add_rows(of_j, shift, j);
-    }
-    for (int m = 0; m < N; m++) sum[m] += of_i[m];
+    if constexpr (FLAGS & Flag::SHIFT)
+      kernel.both(r, w, g);
+    else
+      g = kernel.gradient(r);
   }
+
+  // The sums of particle shifting that a row adds to those of i and, if BOTH are shifted, of its
+  // neighbors, with their rates of density where there are all of the sums. Solids and walls count,
+  // but are not shifted.
+  template <class T, int D, bool BOTH, int FLAGS> class ShiftOfRow {
+    static constexpr bool EDGES = FLAGS & Flag::EDGES, SLOPES = FLAGS & Flag::SLOPES,
+                          FADES = FLAGS & Flag::FADES, IMAGES = FLAGS & Flag::IMAGES;
+    static constexpr int N = shift_sums<D>(FLAGS), ROW = shift_row<D>(FLAGS);
+    using L = Lanes<T>;
+    const Mirror mirror;
+    double factors[ROW], own_factors[D];    // of what a pair adds to j, to have what i has of it
+    T both[L::totals(N + 1)], of_i[N];
+
+   public:
+    static constexpr bool TAKES_RATES = (FLAGS & Flag::SHIFT) && N > D;
+    FSI_INLINE explicit ShiftOfRow(const Mirror &mirror_in) : mirror(mirror_in)
+    {
+      for (int k = 0; k < ROW; k++)
+        factors[k] = k >= N                  ? 0.0
+            : !Shift<D>::is_vector(k, EDGES) ? 1.0
+            : IMAGES                         ? -mirror.sign[k % D]
+                                             : -1.0;
+      // of what fades each has its own sum
+      for (int d = 0; d < D; d++) own_factors[d] = factors[d];
+      for (int d = 0; FADES && d < D; d++) factors[d] = 0.0;
+    }
+    FSI_INLINE void open()
+    {
+      for (T &s : both) s = 0.0;
+      for (T &s : of_i) s = 0.0;
+    }
+    // g: V_i V_j W'/r; v: difference of velocities
+    FSI_INLINE void take(const T &weight, const FluidParticles &in, int i, const T &rsq, const T &g,
+                         const T (&x)[D], const T *v, const T *rate_j, const int *j,
+                         double (*const shift)[ROW])
+    {
+      T part[N + 1], back[D], weight_i, weight_j;
+      weigh<FLAGS>(weight, in, i, j, weight_i, weight_j);
+      for (int d = 0; d < D; d++) back[d] = IMAGES ? mirror.sign[d] * x[d] : x[d];
+      Shift<D>::template of_pair<EDGES>(part, g, weight_j, rsq, back);
+      if constexpr (!BOTH) {
+        for (int k = 0; k < N; k++) of_i[k] += part[k];
+      } else {
+        if constexpr (SLOPES) Shift<D>::slopes_of_pair(part, g, x, v);
+        if constexpr (EDGES || SLOPES)
+          part[N] = *rate_j;
+        else
+          part[N] = 0.0;
+        if (FADES)
+          for (int d = 0; d < D; d++) of_i[d] += g * weight_i * back[d];
+        L::add_to_all(part, shift, j, both);
+      }
+    }
+    FSI_INLINE void close(double *shift_i) const
+    {
+      if (BOTH) L::template add_totals<N + 1>(both, factors, shift_i);
+      for (int k = 0; k < (BOTH ? FADES * D : N); k++)
+        shift_i[k] += (k < D ? own_factors[k] : factors[k]) * L::sum(of_i[k]);
+    }
+  };
 
   // sum_j W_ij d part_j/dt over solids that come out of walls. To rho_i they add m_i of it, and to
   // the energy of i m_i p_i/rho_i^2 of that, which no force on them does. A loop of its own: with
@@ -223,16 +267,16 @@ namespace FSI {
                             double *const rate, double (*const shift)[shift_row<K::DIM>(FLAGS)],
                             PairSums *const sums, std::vector<Row> *const near)
   {
-    constexpr int D = K::DIM, N = shift_sums<D>(FLAGS);
+    constexpr int D = K::DIM;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES,
                    CUT = KIND == WITH_SOLID && (FLAGS & Flag::UNEQUAL),
                    UNLIKE = KIND == WITH_FLUID && (FLAGS & Flag::UNEQUAL);
-    constexpr bool TOGETHER = (FLAGS & Flag::SHIFT) && N > D;    // shifting takes the rate along
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(laws.wdx);
     T reachsq = laws.reach * laws.reach, by_diffusion = 0.0;
     Sieve<T, !IMAGE> sieve;
+    ShiftOfRow<T, D, KIND == WITH_FLUID, FLAGS> shift_of(mirror);
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
       if (row.n == 0) continue;
@@ -242,8 +286,8 @@ namespace FSI {
       const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0,
                    fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0,
                    back = UNLIKE ? 1.0 / in.share[type_j].volume : 1.0;
-      T sum = 0.0, flux = 0.0, displacement[N];
-      for (T &s : displacement) s = 0.0;
+      T sum = 0.0, flux = 0.0;
+      if (FLAGS & Flag::SHIFT) shift_of.open();
       if (near) sieve.open(row);
       const auto pair = [&](const int *j, const T &weight) FSI_INLINE_LAMBDA -> T {
         Particle<T, D> pj(point, j);
@@ -252,16 +296,14 @@ namespace FSI {
         difference(pi.x, pj.x, x);
         difference(pi.v, pj.v, v);
         const T rsq = product(x, x), r = root(rsq);
-        T g = kernel.gradient(r);
+        T w, g;
+        of_kernel<FLAGS>(kernel, r, w, g);
         if (IMAGE) g = weight * g;
         if (CUT) g = cut_off(in, j, g);
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         const auto shift_pair = [&](const T &along, const T *rate_j) FSI_INLINE_LAMBDA {
           const T vol_j = (FLAGS & Flag::UNEQUAL) ? fill * pj.vol : pj.vol;
-          T of_i, of_j;
-          weigh<FLAGS>(law.weight(kernel.W(r)), in, i, j, of_i, of_j);
-          add_shift<T, KIND == WITH_FLUID, FLAGS>(mirror, of_i, of_j, rsq, along, pi.vol, vol_j, x,
-                                                  v, rate_j, j, displacement, shift);
+          shift_of.take(law.weight(w), in, i, rsq, pi.vol * vol_j * along, x, v, rate_j, j, shift);
         };
         if constexpr ((FLAGS & Flag::SHIFT) && KIND != WITH_FLUID) shift_pair(g, nullptr);
         if ((FLAGS & Flag::UNEQUAL) && !UNLIKE) {
@@ -284,7 +326,7 @@ namespace FSI {
                 (T(laws.pressure_over_density[i]) - L::read(laws.pressure_over_density, j));
         }
         if constexpr (FLAGS & Flag::SHIFT) shift_pair(g, &rate_j);
-        if (!TOGETHER) L::add(rate_j, rate, j);
+        if (!shift_of.TAKES_RATES) L::add(rate_j, rate, j);
         return rsq;
       };
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
@@ -298,7 +340,7 @@ namespace FSI {
         if (in.cut && sums && (in.newton || i < in.nlocal))
           sums->walls -= laws.pressure_over_density[i] * point[i].rho * volume * point[i].vol *
               point[i].vol * coming_out<T, K, IMAGE>(row, mirror, kernel, in, sharper);
-      if constexpr (FLAGS & Flag::SHIFT) L::add_sums(displacement, shift[i]);
+      if constexpr (FLAGS & Flag::SHIFT) shift_of.close(shift[i]);
     }
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);
   }
@@ -659,11 +701,12 @@ namespace FSI {
                              const K kernel, const FluidParticles in, const double wdx,
                              double (*const shift)[shift_row<K::DIM>(Flag::EDGES)])
   {
-    constexpr int D = K::DIM, N = Shift<D>::EDGES;
+    constexpr int D = K::DIM, WITH = (FLAGS & Flag::IMAGES) | Flag::EDGES;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES;
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(wdx);
+    ShiftOfRow<T, D, (FLAGS & Flag::BOTH) != 0, WITH> shift_of(mirror);
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
       if (row.n == 0) continue;
@@ -671,8 +714,7 @@ namespace FSI {
       const Particle<T, D> pi(point[i]);
       const double fill = !(FLAGS & Flag::BOTH) && in.thin ? fill_of(in, i, in.type[row.j[0]])
                                                            : 1.0;
-      T sum[N];
-      for (T &s : sum) s = 0.0;
+      shift_of.open();
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
         Particle<T, D> pj(point, j);
         if (IMAGE) pj.reflect(mirror);
@@ -684,12 +726,10 @@ namespace FSI {
         if (IMAGE) g = weight * g;
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         const T no_rate = 0.0;
-        const T of_both = law.weight(kernel.W(r));
-        add_shift<T, (FLAGS & Flag::BOTH) != 0, (FLAGS & Flag::IMAGES) | Flag::EDGES>(
-            mirror, of_both, of_both, rsq, g, pi.vol, fill * pj.vol, x, nullptr, &no_rate, j, sum,
-            shift);
+        shift_of.take(law.weight(kernel.W(r)), in, i, rsq, pi.vol * (fill * pj.vol) * g, x, nullptr,
+                      &no_rate, j, shift);
       });
-      L::add_sums(sum, shift[i]);
+      shift_of.close(shift[i]);
     }
   }
 

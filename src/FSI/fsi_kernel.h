@@ -53,6 +53,12 @@ namespace FSI {
     {
       return gnorm * Shape::dwq(r * hinv);
     }
+    template <class T> FSI_INLINE void both(const T &r, T &w, T &g) const
+    {
+      const T q = r * hinv;
+      g = gnorm * Shape::dwq(q);
+      w = norm * Shape::w(q);
+    }
     // For neighbors on a lattice finer than that of i (coarser: e < 0), the kernel less its
     // Laplacian times e h^2, and the same factor of its gradient: the mean of it over a cell of i's
     // lattice is what a neighbor in the middle of this cell has (theory.rst). Bounded where they
@@ -199,6 +205,11 @@ namespace FSI {
       return kind == CUBIC  ? cubic.gradient(r)
           : kind == QUINTIC ? quintic.gradient(r)
                             : wendland.gradient(r);
+    }
+    template <class T> FSI_INLINE void both(const T &r, T &w, T &g) const
+    {
+      w = W(r);
+      g = gradient(r);
     }
     double sharper(double r, double e) const
     {

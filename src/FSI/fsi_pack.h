@@ -116,9 +116,10 @@ namespace FSI {
       transpose(load(a), load(b), load(c), load(d), out);
     }
 
-    // the inverse: adds the nth numbers of x, y, z, w to the four doubles at a, b, c, d
+    // the inverse: adds the nth numbers of x, y, z, w to the four doubles at a, b, c, d, and their
+    // sums to total, or null
     FSI_INLINE static void add_rows(const Pack &x, const Pack &y, const Pack &z, const Pack &w,
-                                    double *a, double *b, double *c, double *d)
+                                    double *a, double *b, double *c, double *d, Pack *total)
     {
       Pack row[WIDTH];
       transpose(x, y, z, w, row);
@@ -126,6 +127,17 @@ namespace FSI {
       store(b, load(b) + row[1]);
       store(c, load(c) + row[2]);
       store(d, load(d) + row[3]);
+      if (total) *total += (row[0] + row[1]) + (row[2] + row[3]);
+    }
+
+    // adds these four, or the two that both halves are parts of, each times its factor, to numbers
+    // at a
+    FSI_INLINE void add_times(const double *factors, bool halves, double *a) const
+    {
+      if (halves)
+        add(a, (half<0>(*this) + half<2>(*this)) * load_half(factors));
+      else
+        store(a, load(a) + *this * load(factors));
     }
 
     // adds sum() of each to the four doubles at a
@@ -137,15 +149,16 @@ namespace FSI {
       store(a, load(a) + ((row[0] + row[1]) + (row[2] + row[3])));
     }
 
-    // likewise x, y to the two doubles at a, b, c, d
+    // likewise x, y to the two doubles at a, b, c, d; of the total to both halves of it
     FSI_INLINE static void add_rows(const Pack &x, const Pack &y, double *a, double *b, double *c,
-                                    double *d)
+                                    double *d, Pack *total)
     {
       const Pack low = shuffle<0, 4, 2, 6>(x, y), high = shuffle<1, 5, 3, 7>(x, y);
       add(a, half<0>(low));
       add(b, half<0>(high));
       add(c, half<2>(low));
       add(d, half<2>(high));
+      if (total) *total += low + high;
     }
 
     // the two doubles at each of a, b, c, d
@@ -284,6 +297,25 @@ namespace FSI {
     {
       for (int d = 0; d < n; d++) a[d] += x[d];
     }
+    // sums over all places of n numbers, in as many T
+    static constexpr int totals(int n) { return n; }
+    // add_rows(), and to totals
+    template <int n, int N>
+    FSI_INLINE static void add_to_all(const double (&x)[n], double (*a)[N], const int *j,
+                                      double (&total)[totals(n)])
+    {
+      for (int d = 0; d < n; d++) {
+        a[*j][d] += x[d];
+        total[d] += x[d];
+      }
+    }
+    // adds the totals, each times its factor, to the numbers at a; room for fours is at both
+    template <int n>
+    FSI_INLINE static void add_totals(const double (&total)[totals(n)], const double *factors,
+                                      double *a)
+    {
+      for (int d = 0; d < n; d++) a[d] += factors[d] * total[d];
+    }
   };
 #if FSI_PACKS
   template <> struct Lanes<Pack> {
@@ -348,9 +380,9 @@ namespace FSI {
     {
       static_assert(N == 2 || N % 4 == 0, "a row is two or fours of numbers");
       if constexpr (N == 2)
-        Pack::add_rows(x[0], x[1], a[j[0]], a[j[1]], a[j[2]], a[j[3]]);
+        Pack::add_rows(x[0], x[1], a[j[0]], a[j[1]], a[j[2]], a[j[3]], nullptr);
       else
-        add_fours<0>(x, a, j);
+        add_fours<0>(x, a[j[0]], a[j[1]], a[j[2]], a[j[3]], nullptr);
     }
     template <int n> FSI_INLINE static void add_sums(const Pack (&x)[n], double *a)
     {
@@ -359,20 +391,39 @@ namespace FSI {
       for (int d = FOURS; d < n; d++) a[d] += x[d].sum();
     }
 
+    static constexpr int totals(int n)
+    {
+      return (n + 3) / 4;
+    }
+    template <int n, int N>
+    FSI_INLINE static void add_to_all(const Pack (&x)[n], double (*a)[N], const int *j,
+                                      Pack (&total)[totals(n)])
+    {
+      static_assert(N % 4 == 0, "a row is fours of numbers");
+      add_fours<0>(x, a[j[0]], a[j[1]], a[j[2]], a[j[3]], total);
+    }
+    template <int n>
+    FSI_INLINE static void add_totals(const Pack (&total)[totals(n)], const double *factors,
+                                      double *a)
+    {
+      for (int k = 0; k < n; k += 4) total[k / 4].add_times(factors + k, k + 2 == n, a + k);
+    }
+
    private:
     // from number K on; what x lacks in its last four is zero
-    template <int K, int n, int N>
-    FSI_INLINE static void add_fours(const Pack (&x)[n], double (*a)[N], const int *j)
+    template <int K, int n>
+    FSI_INLINE static void add_fours(const Pack (&x)[n], double *a, double *b, double *c, double *d,
+                                     Pack *total)
     {
       const auto at = [&](int k) FSI_INLINE_LAMBDA {
         return k < n ? x[k < n ? k : 0] : Pack(0.0);
       };
+      Pack *const own = total ? total + K / 4 : nullptr;
       if constexpr (K + 2 == n)
-        Pack::add_rows(x[K], x[K + 1], a[j[0]] + K, a[j[1]] + K, a[j[2]] + K, a[j[3]] + K);
+        Pack::add_rows(x[K], x[K + 1], a + K, b + K, c + K, d + K, own);
       else
-        Pack::add_rows(x[K], at(K + 1), at(K + 2), at(K + 3), a[j[0]] + K, a[j[1]] + K, a[j[2]] + K,
-                       a[j[3]] + K);
-      if constexpr (K + 4 < n) add_fours<K + 4>(x, a, j);
+        Pack::add_rows(x[K], at(K + 1), at(K + 2), at(K + 3), a + K, b + K, c + K, d + K, own);
+      if constexpr (K + 4 < n) add_fours<K + 4>(x, a, b, c, d, total);
     }
   };
 #endif

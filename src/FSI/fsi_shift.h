@@ -70,49 +70,48 @@ namespace FSI {
       return 1.0 + 0.2 * (qq * qq);
     }
 
-    // what neighbor j of volume V_j is in the first sums of i; g: grad_i W_ij = g x_ij; T: double
-    // or Pack
+    // Loops find sums times -V_i: then what a pair is in them is the same for both, but for the
+    // sign of vectors. This is that of j; g: V_i V_j W'/r; T: double or Pack
     template <bool WITH_EDGES, class T>
-    FSI_INLINE static void of_neighbor(T *part, const T &vol, const T &g, const T &weight,
-                                       const T &rsq, const T *x_ij)
+    FSI_INLINE static void of_pair(T *part, const T &g, const T &weight, const T &rsq,
+                                   const T *x_ij)
     {
-      const T vg = vol * g, weighted = vg * weight;
+      const T weighted = g * weight;
       for (int d = 0; d < D; d++) part[d] = weighted * x_ij[d];
       if (!WITH_EDGES) return;
-      for (int d = 0; d < D; d++) part[D + d] = vg * x_ij[d];
-      part[2 * D] = -vg * rsq;
+      for (int d = 0; d < D; d++) part[D + d] = g * x_ij[d];
+      part[2 * D] = g * rsq;
     }
+    static constexpr bool is_vector(int k, bool with_edges) { return k < (with_edges ? 2 * D : D); }
 
     // what two fluid particles are in the sums that the gradient of the velocity comes of; v_ij:
     // v_i - v_j
     template <class T>
-    FSI_INLINE static void slopes_of_pair(T *of_i, T *of_j, const T &vol_i, const T &vol_j,
-                                          const T &g, const T *x_ij, const T *v_ij)
+    FSI_INLINE static void slopes_of_pair(T *part, const T &g, const T *x_ij, const T *v_ij)
     {
-      const auto put = [&](int k, const T &product) FSI_INLINE_LAMBDA {
-        of_i[k] = -vol_j * product;
-        of_j[k] = -vol_i * product;
-      };
       for (int a = 0; a < D; a++) {
         const T gx = g * x_ij[a], gv = g * v_ij[a];
-        for (int b = a; b < D; b++) put(D + Sym<D>::id(a, b), gx * x_ij[b]);
-        for (int b = 0; b < D; b++) put(D + Sym<D>::N + a * D + b, gv * x_ij[b]);
+        for (int b = a; b < D; b++) part[D + Sym<D>::id(a, b)] = gx * x_ij[b];
+        for (int b = 0; b < D; b++) part[D + Sym<D>::N + a * D + b] = gv * x_ij[b];
       }
     }
 
-    // The sums become the displacement, in their first D places, and the change of velocity, in the
-    // next; fills: the fluid has no surface; scale = C c h dt, most = C c dt/4
-    static void displacement(double *sum, bool fills, double scale, double most)
+    // The sums of a particle of volume V become the displacement, in their first D places, and the
+    // change of velocity, in the next; FILLS: the fluid has no surface; scale = C c h dt, most =
+    // C c dt/4
+    template <bool FILLS>
+    static void displacement(double *sum, double vol, double scale, double most)
     {
-      if (fills) {
-        find_slopes(sum);
-        for (int d = 0; d < D; d++) sum[d] *= -scale;
-      } else
-        along_surface(sum, scale);
-      const double size = std::sqrt(dot(sum, sum));
-      if (size > most)
-        for (int d = 0; d < D; d++) sum[d] *= most / size;
-      change_of_velocity(sum, fills);
+      const double inverse = -1.0 / vol;
+      if (FILLS)
+        find_slopes(sum, inverse);
+      else
+        take_normal_out(sum, inverse);
+      for (int d = 0; d < D; d++) sum[d] *= -scale * inverse;
+      const double sq = dot(sum, sum);
+      if (sq > most * most)
+        for (int d = 0; d < D; d++) sum[d] *= most / std::sqrt(sq);
+      change_of_velocity(sum, FILLS);
     }
 
     // Only a part of the displacement along an axis is left, and the change of velocity is that of
@@ -128,14 +127,14 @@ namespace FSI {
 
     // the sums of v (x) g become the gradient of the velocity: none where neighbors do not span the
     // space
-    static void find_slopes(double *sum)
+    static void find_slopes(double *sum, double inverse_vol)
     {
-      const auto m = Sym<D>::load(sum + D);
+      const auto inverse = spanned_inverse(Sym<D>::load(sum + D), inverse_vol);
       for (int a = 0; a < D; a++) {
         double *const row = sum + GRADIENT + a * D;
         double slope[D];
-        const double share = solve(m, row, slope);
-        for (int b = 0; b < D; b++) row[b] = share > 0.0 ? share * slope[b] : 0.0;
+        FSI::dot(inverse, row, slope);
+        for (int b = 0; b < D; b++) row[b] = slope[b];
       }
     }
 
@@ -144,20 +143,21 @@ namespace FSI {
       for (int a = 0; a < D; a++) sum[D + a] = fills ? dot(sum + GRADIENT + a * D, sum) : 0.0;
     }
 
-    static void along_surface(double *sum, double scale)
+    static void take_normal_out(double *sum, double inverse_vol)
     {
-      const double missing = D - sum[2 * D];
+      const double missing = D - inverse_vol * sum[2 * D];
       const double *const n = sum + D;
       const double nn = dot(n, n);
       // shares of the tangential and of the normal part: the latter from the second or third row on
       const double along = share(missing, 0.9, 1.0), across = share(missing, 0.04, 0.16);
       const double normal = nn > 0.0 ? (1.0 - across) * dot(sum, n) / nn : 0.0;
-      for (int d = 0; d < D; d++) sum[d] = -scale * along * (sum[d] - normal * n[d]);
+      for (int d = 0; d < D; d++) sum[d] = along * (sum[d] - normal * n[d]);
     }
 
-    // y = m^-1 x, and the share it has: none where neighbors do not span the space. The determinant
-    // of m is 1 inside, about 1/2 at a face and 1/4 or 1/8 in a corner
-    static double solve(const Sym<D> &m, const double *x, double *y)
+    // m^-1, times the share it has: none where neighbors do not span the space. The determinant of
+    // the sums in m, which are m times inverse_vol, is 1 inside, about 1/2 at a face and 1/4 or 1/8
+    // in a corner
+    static Sym<D> spanned_inverse(const Sym<D> &m, double inverse_vol)
     {
       Sym<D> adjoint;
       if constexpr (D == 2) {
@@ -170,13 +170,12 @@ namespace FSI {
             const int p = (a + 1) % 3, q = (a + 2) % 3, r = (b + 1) % 3, s = (b + 2) % 3;
             adjoint(a, b) = m(p, r) * m(q, s) - m(p, s) * m(q, r);
           }
-      FSI::dot(adjoint, x, y);
       double det = 0.0;
       for (int b = 0; b < D; b++) det += m(0, b) * adjoint(0, b);
-      const double spanned = share(-det, -0.1, -0.02);
-      if (spanned == 0.0) return 0.0;
-      for (int d = 0; d < D; d++) y[d] /= det;
-      return spanned;
+      double of_sums = det;
+      for (int d = 0; d < D; d++) of_sums *= inverse_vol;
+      const double spanned = share(-of_sums, -0.1, -0.02);
+      return adjoint *= spanned > 0.0 ? spanned / det : 0.0;
     }
     static double dot(const double *a, const double *b)
     {

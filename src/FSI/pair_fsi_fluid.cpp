@@ -478,7 +478,12 @@ void PairFSIFluid::advance(bool advance)
   if (beyond) extrapolate_velocities();
   if (!rate || !advance) return;
   advance_density();
-  if (fix_fsi->shifts) displacements(update->dt * shift_every);
+  if (!fix_fsi->shifts) return;
+  const double dt = update->dt * shift_every;
+  if (fix_fsi->dim == 2)
+    fills() ? displacements<2, true>(dt) : displacements<2, false>(dt);
+  else
+    fills() ? displacements<3, true>(dt) : displacements<3, false>(dt);
 }
 
 // the sums of find_fades over some rows
@@ -1040,7 +1045,13 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   fix_fsi->tally(FixFSI::WALLS, sums.walls);
 }
 
-void PairFSIFluid::displacements(double dt)
+// as the last loop had it
+template <int D> double PairFSIFluid::volume_of(int i) const
+{
+  return reinterpret_cast<const Point<D> *>(points.data())[i].vol;
+}
+
+template <int D, bool FILLS> void PairFSIFluid::displacements(double dt)
 {
   double *const *const velocity = velocity_of_shifting();
   const int *const type = atom->type;
@@ -1050,12 +1061,9 @@ void PairFSIFluid::displacements(double dt)
     if (s.species != FLUID) continue;
     // lattices overshoot from 0.51 h on (theory.rst)
     const double most = std::min(shifting * s.c * dt, 0.5 * s.h);
-    if (fix_fsi->dim == 2)
-      Shift<2>::displacement(sums[i], fills(), most * s.h, 0.25 * most);
-    else
-      Shift<3>::displacement(sums[i], fills(), most * s.h, 0.25 * most);
+    Shift<D>::template displacement<FILLS>(sums[i], volume_of<D>(i), most * s.h, 0.25 * most);
     if (velocity && dt > 0.0)
-      for (int d = 0; d < fix_fsi->dim; d++) velocity[d][i] = sums[i][d] / dt;
+      for (int d = 0; d < D; d++) velocity[d][i] = sums[i][d] / dt;
   }
 }
 
@@ -1127,7 +1135,7 @@ template <int D> void PairFSIFluid::add_gradients(double *s)
                   m.loops->shifts(m.kind, which, mirror, in, m.wdx, sums.data());
                 });
   for (size_t i = 0; i < nall; i++)
-    for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d];
+    for (int d = 0; d < D; d++) s[d * nall + i] += sums[ROW * i + D + d] / -volume_of<D>(i);
 }
 
 void PairFSIFluid::add_velocities_at_solids()

@@ -162,6 +162,7 @@ class PairFSIFluid : public PairFSI {
   FSI::FluidParticles of_rows(const FSI::FluidParticles &, const Meeting &,
                               const std::vector<FSI::Row> &, const std::vector<double> &visible);
   FSI::FluidParticles particles_at(const double *points);
+  template <int D> double volume_of(int i) const;
   // positions a time t later; what else a loop needs is up to complete(i, point)
   template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);
   // the density rate (continuity) of fluids, and the sums of particle shifting, at the positions
@@ -181,6 +182,7 @@ class PairFSIFluid : public PairFSI {
   void extrapolate_velocities();
   template <int D> void add_density_rate(double dt);
   void advance_density();
+  template <int D, bool FILLS>
   void displacements(double dt);    // turns the sums of particle shifting of local fluid atoms into
                                     // displacements
   template <int D> void add_gradients(double *);
