@@ -447,6 +447,9 @@ void FixFSIReference::find_quadrature(const std::vector<int> &bare)
     const double dx = fix_fsi->dx_of(atom->type[i]), near = NEAR * dx;
     for (int b = 0; b < count(i); b++) {
       const double *const X = bond(i, b) + dim * BOND_BLOCK;
+      double rsq = 0.0;
+      for (int a = 0; a < dim; a++) rsq += X[a * BOND_BLOCK] * X[a * BOND_BLOCK];
+      if (rsq > 1.7 * dx * dx) continue;    // most: no need to look closer
       int direction = -1, others = 0;
       for (int a = 0; a < dim; a++) {
         const double s = along(dim, X, axes.e[a]);
@@ -507,11 +510,13 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, const Cells &s
 {
   double **x = atom->x;
   const tagint *const tag = atom->tag, *const molecule = atom->molecule;
-  const int *const type = atom->type;
+  const int *const type = atom->type, type_i = type[i];
   const bool periodic = is_periodic();
+  const double *const xi = x[i], cutsq = WITHIN * kernel.cutsq;
+  const tagint body = molecule[i];
   near.clear();
-  solids.around(x[i], kernel.cut, [&](int j, double rsq) {
-    if (rsq < WITHIN * kernel.cutsq && j != i && molecule[j] == molecule[i]) near.push_back(j);
+  solids.around(xi, kernel.cut, [&](int j, double rsq) {
+    if (rsq < cutsq && j != i && molecule[j] == body) near.push_back(j);
   });
   // whatever ranks there are
   std::sort(near.begin(), near.end(), [tag](int a, int b) {
@@ -524,12 +529,13 @@ void FixFSIReference::find_neighbors(int i, const Kernel &kernel, const Cells &s
     double rsq = 0.0, *const d = &dX[k * D];
     bool halfway = false;    // round the box: the image on the other side is as near
     for (int a = 0; a < D; a++) {
-      d[a] = x[j][a] - x[i][a];
+      d[a] = x[j][a] - xi[a];
       rsq += d[a] * d[a];
       halfway = halfway ||
-          (domain->periodicity[a] && 2.0 * std::fabs(d[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
+          (periodic && domain->periodicity[a] &&
+           2.0 * std::fabs(d[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
     }
-    if (fix_fsi->h_of(type[j]) != fix_fsi->h_of(type[i]))
+    if (type[j] != type_i && fix_fsi->h_of(type[j]) != fix_fsi->h_of(type_i))
       error->one(FLERR,
                  "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types {} and "
                  "{}: a body has one",
@@ -618,6 +624,7 @@ void FixFSIReference::enter_bonds(int i, const Kernel &kernel, const std::vector
                                   const std::vector<int> &bits)
 {
   const int n = near.size();
+  const double own = volume(i);
   slot[i] = new_slot(n);
   owner[slot[i]] = atom->tag[i];
   if (keeps_places) std::copy_n(atom->x[i], D, &place[(size_t) slot[i] * D]);
@@ -630,13 +637,13 @@ void FixFSIReference::enter_bonds(int i, const Kernel &kernel, const std::vector
       value[(D + a) * BOND_BLOCK] = d[a];
       rsq += d[a] * d[a];
     }
-    const double r = std::sqrt(rsq), vv = volume(i) * volume(near[k]);
+    const double r = std::sqrt(rsq), vv = own * volume(near[k]);
     value[2 * D * BOND_BLOCK] = vv * kernel.W(r) / rsq;
     value[(2 * D + 1) * BOND_BLOCK] = vv * kernel.gradient(r);
     partner[(size_t) slot[i] * maxbond + k] = atom->tag[near[k]];
     if (keeps_images) through[(size_t) slot[i] * maxbond + k] = bits[k];
   }
-  complete(slot[i]);
+  complete_as<D>(slot[i]);
 }
 
 double FixFSIReference::volume(int i) const
@@ -654,7 +661,7 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
       all_h.push_back(fix_fsi->h_of(type[i]));
   // LAMMPS' list would be of all particles, and stay
   const double widest = fix_fsi->largest_cut;
-  const Cells solids(atom->x, atom->nlocal + atom->nghost, D, 0.5 * widest, [this](int i) {
+  const Cells solids(atom->x, atom->nlocal + atom->nghost, D, widest / 3.0, [this](int i) {
     return is_solid(i);
   });
   GradientWeights<D> weights;
@@ -826,8 +833,11 @@ void FixFSIReference::resolve()
                  tag[i]);
     solids.push_back(i);
     const size_t first = (size_t) slot[i] * maxbond;
-    for (int k = 0; k < nbond[slot[i]]; k++) {
-      const tagint t = partner[first + k];
+    const tagint *const of_i = &partner[first];
+    int *const local_of_i = &local[first];
+    const int n = nbond[slot[i]];
+    for (int k = 0; k < n; k++) {
+      const tagint t = of_i[k];
       int j = atom->map(t);
       if (j >= 0 && periodic) {
         // the image that is meant may be beyond the ghosts, too
@@ -847,10 +857,9 @@ void FixFSIReference::resolve()
                    tag[i], t,
                    comm->cutghostuser > neighbor->cutneighmax ? comm->cutghostuser
                                                               : neighbor->cutneighmax);
-      local[first + k] = keeps_images && through[first + k] ? images.find(j, through[first + k])
-                                                            : j;
+      local_of_i[k] = keeps_images && through[first + k] ? images.find(j, through[first + k]) : j;
     }
-    std::fill(&local[first] + nbond[slot[i]], &local[first] + whole_blocks(nbond[slot[i]]), i);
+    std::fill(local_of_i + n, local_of_i + whole_blocks(n), i);
   }
   for (int i = atom->nlocal; i < atom->nlocal + atom->nghost; i++)
     if (is_solid(i)) ghosts.push_back(i);
@@ -966,16 +975,22 @@ void FixFSIReference::move_bond(int s, int from, int to)
 // what follows from the bonds of slot s
 void FixFSIReference::complete(int s)
 {
-  const int dim = domain->dimension;
-  for (int k = nbond[s]; k < whole_blocks(nbond[s]); k++)
-    for (int v = 0; v < nvalue; v++) bond_in(s, k)[v * BOND_BLOCK] = 0.0;
-  double *const M = &moment[(size_t) s * packed_size(dim)];
-  std::fill_n(M, packed_size(dim), 0.0);
-  for (int k = 0; k < nbond[s]; k++) {
-    const double *const X = bond_in(s, k) + dim * BOND_BLOCK, w = X[dim * BOND_BLOCK];
-    for (int a = 0, m = 0; a < dim; a++)
+  domain->dimension == 2 ? complete_as<2>(s) : complete_as<3>(s);
+}
+
+template <int D> void FixFSIReference::complete_as(int s)
+{
+  const int n = nbond[s];
+  double *const numbers_of = bond_in(s, 0), M[packed_size(D)] = {};
+  for (int k = n; k < whole_blocks(n); k++)
+    for (int v = 0; v < nvalue; v++) numbers_of[number_of_bond(k, nvalue) + v * BOND_BLOCK] = 0.0;
+  for (int k = 0; k < n; k++) {
+    const double *const X = numbers_of + number_of_bond(k, 2 * D + 2) + D * BOND_BLOCK,
+                        w = X[D * BOND_BLOCK];
+    for (int a = 0, m = 0; a < D; a++)
       for (int c = 0; c <= a; c++) M[m++] += w * X[a * BOND_BLOCK] * X[c * BOND_BLOCK];
   }
+  std::copy_n(M, packed_size(D), &moment[(size_t) s * packed_size(D)]);
 }
 
 // what slots have of each bond: the lists, and how many numbers

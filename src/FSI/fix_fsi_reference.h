@@ -178,6 +178,7 @@ class FixFSIReference : public Fix {
   double *bond_in(int s, int k);
   void move_bond(int s, int from, int to);
   void complete(int s);
+  template <int D> void complete_as(int s);
   int nplace() const;    // numbers of one
   template <class Call> void each_list(Call);
   void reserve(int n);

@@ -75,29 +75,50 @@ namespace FSI {
     }
 
     // calls f(j, squared distance) for all particles within the cell size of a place, or the reach
-    // given: cells half as wide hold fewer that are too far
+    // given, and others: cells a third as wide hold few that are too far
     template <typename F> void around(const double *p, F f) const { around(p, size, f); }
     template <typename F> void around(const double *p, double reach, F f) const
     {
-      int from[3] = {0, 0, 0}, to[3] = {0, 0, 0}, c[3];
-      for (int d = 0; d < dim; d++) {
-        from[d] = place(d, p[d] - reach);
-        to[d] = place(d, p[d] + reach);
-      }
-      for (c[2] = from[2]; c[2] <= to[2]; c[2]++)
-        for (c[1] = from[1]; c[1] <= to[1]; c[1]++) {
-          // cells along x are next to each other
-          const int row = (dim == 3 ? c[2] * count[1] + c[1] : c[1]) * count[0];
-          for (int m = first[row + from[0]]; m < first[row + to[0] + 1]; m++) {
-            const int j = members[m];
-            double rsq = 0.0;
-            for (int d = 0; d < dim; d++) rsq += (x[j][d] - p[d]) * (x[j][d] - p[d]);
-            f(j, rsq);
-          }
-        }
+      dim == 2 ? around_in<2>(p, reach, f) : around_in<3>(p, reach, f);
     }
 
    private:
+    template <int D, typename F> void around_in(const double *p, double reach, F &f) const
+    {
+      int from[3] = {0, 0, 0}, to[3] = {0, 0, 0}, c[3];
+      for (int d = 0; d < D; d++) {
+        from[d] = place(d, p[d] - reach);
+        to[d] = place(d, p[d] + reach);
+      }
+      const double farthest = 1.000001 * reach * reach;    // more than round-off
+      for (c[2] = from[2]; c[2] <= to[2]; c[2]++) {
+        const double rsq2 = D == 3 ? distance_sq(2, c[2], p[D - 1]) : 0.0;
+        for (c[1] = from[1]; c[1] <= to[1]; c[1]++) {
+          if (rsq2 + distance_sq(1, c[1], p[1]) > farthest) continue;
+          // cells along x are next to each other
+          const int row = (D == 3 ? c[2] * count[1] + c[1] : c[1]) * count[0];
+          const int end = first[row + to[0] + 1];
+          for (int m = first[row + from[0]]; m < end; m++) {
+            const int j = members[m];
+            const double *const xj = x[j];
+            double rsq = 0.0;
+            for (int d = 0; d < D; d++) rsq += (xj[d] - p[d]) * (xj[d] - p[d]);
+            f(j, rsq);
+          }
+        }
+      }
+    }
+
+    // from a place to the nearest point of cell c, along d; those at the ends have what is beyond
+    double distance_sq(int d, int c, double r) const
+    {
+      const double before = low[d] + c * size - r, behind = -before - size;
+      const double away = c > 0 && before > 0.0 ? before
+          : c < count[d] - 1 && behind > 0.0    ? behind
+                                                : 0.0;
+      return away * away;
+    }
+
     const double *const *x;
     int dim, count[3];
     double size, low[3], extent[3];

@@ -168,7 +168,7 @@ namespace FSI {
     const bool packs = have_packs();
     // offsets over the scale along each axis, weights, what is found: one after the other, filled
     // up to whole packs with neighbors that weigh nothing
-    mutable std::vector<double> columns;
+    mutable std::vector<double> columns, distances;    // of lattice_axes()
 
     // squares along the normal of a face keep 0.05 to 0.15 of themselves (cubic to quintic kernel,
     // h = 1 to 2 dx), all others 0.38 or more, in the axes chosen
@@ -199,18 +199,25 @@ namespace FSI {
 
     // Those of a lattice: directions of the nearest neighbors, made orthogonal. False if there are
     // not D of them, 45 degrees apart.
-    static bool lattice_axes(int n, const double *dX, double (*axes)[D])
+    bool lattice_axes(int n, const double *dX, double (*axes)[D]) const
     {
+      distances.resize(n);
+      for (int j = 0; j < n; j++) {
+        double distance = 0.0;
+        for (int a = 0; a < D; a++)
+          distance += (1.0 + PREFERENCE * a) * dX[j * D + a] * dX[j * D + a];
+        distances[j] = distance;
+      }
       for (int k = 0; k < D; k++) {
         double nearest = std::numeric_limits<double>::max();
         for (int j = 0; j < n; j++) {
-          double e[D], rsq = 0.0, distance = 0.0, across = 0.0;
+          const double distance = distances[j];
+          if (distance >= nearest) continue;
+          double e[D], rsq = 0.0, across = 0.0;
           for (int a = 0; a < D; a++) {
             e[a] = dX[j * D + a];
             rsq += e[a] * e[a];
-            distance += (1.0 + PREFERENCE * a) * e[a] * e[a];
           }
-          if (distance >= nearest) continue;
           for (int m = 0; m < k; m++) {
             double along = 0.0;
             for (int a = 0; a < D; a++) along += e[a] * axes[m][a];
