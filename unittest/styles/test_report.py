@@ -127,7 +127,7 @@ def test_what_to_change_is_what_took_the_time(tmp_path, case, named):
             "skin": f"neighbor {2 * DX} bin\n",
             # the other rank has no particle
             "alone": "comm_style brick\nbalance 1.0 x 0.999\n"}[case]
-    done = run(tmp_path, scene.text() + more + "fix report all fsi/report\nrun 80\n", 2 if case == "alone" else 1, scene_data=scene.data())
+    done = run(tmp_path, scene.text() + more + f"fix report all fsi/report\nrun {400 if case == 'alone' else 80}\n", 2 if case == "alone" else 1, scene_data=scene.data())
     report, found = reports(done)[0], hints(done)
     shares = [share for _, share, _ in found]
     assert shares == sorted(shares, reverse=True)
