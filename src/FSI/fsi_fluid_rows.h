@@ -702,7 +702,6 @@ namespace FSI {
   {
     constexpr int D = K::DIM, WITH = (FLAGS & Flag::IMAGES) | Flag::EDGES;
     constexpr bool IMAGE = FLAGS & Flag::IMAGES;
-    using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const Shift<D> law(wdx);
     ShiftOfRow<T, D, (FLAGS & Flag::BOTH) != 0, WITH> shift_of(mirror);

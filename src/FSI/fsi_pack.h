@@ -140,16 +140,7 @@ namespace FSI {
         store(a, load(a) + *this * load(factors));
     }
 
-    // adds sum() of each to the four doubles at a
-    FSI_INLINE static void add_sums(const Pack &x, const Pack &y, const Pack &z, const Pack &w,
-                                    double *a)
-    {
-      Pack row[WIDTH];
-      transpose(x, y, z, w, row);
-      store(a, load(a) + ((row[0] + row[1]) + (row[2] + row[3])));
-    }
-
-    // likewise x, y to the two doubles at a, b, c, d; of the total to both halves of it
+    // as of four: x, y to the two doubles at a, b, c, d; of the total to both halves of it
     FSI_INLINE static void add_rows(const Pack &x, const Pack &y, double *a, double *b, double *c,
                                     double *d, Pack *total)
     {
@@ -293,10 +284,6 @@ namespace FSI {
       for (int d = 0; d < n; d++) a[*j][d] += x[d];
     }
     // adds the sum of each to the numbers at a
-    template <int n> FSI_INLINE static void add_sums(const double (&x)[n], double *a)
-    {
-      for (int d = 0; d < n; d++) a[d] += x[d];
-    }
     // sums over all places of n numbers, in as many T
     static constexpr int totals(int n) { return n; }
     // add_rows(), and to totals
@@ -383,12 +370,6 @@ namespace FSI {
         Pack::add_rows(x[0], x[1], a[j[0]], a[j[1]], a[j[2]], a[j[3]], nullptr);
       else
         add_fours<0>(x, a[j[0]], a[j[1]], a[j[2]], a[j[3]], nullptr);
-    }
-    template <int n> FSI_INLINE static void add_sums(const Pack (&x)[n], double *a)
-    {
-      constexpr int FOURS = n / 4 * 4;
-      for (int d = 0; d < FOURS; d += 4) Pack::add_sums(x[d], x[d + 1], x[d + 2], x[d + 3], a + d);
-      for (int d = FOURS; d < n; d++) a[d] += x[d].sum();
     }
 
     static constexpr int totals(int n)

@@ -40,7 +40,7 @@ FSI_TARGET static void transpose(const double (*rows)[4], double (*columns)[4], 
   Pack::columns(rows[0], rows[1], rows[2], rows[3], c);
   for (int n = 0; n < 4; n++)
     for (int k = 0; k < 4; k++) columns[n][k] = c[n].v[k];
-  Pack::add_rows(c[0], c[1], c[2], 0.0, sums[0], sums[1], sums[2], sums[3]);
+  Pack::add_rows(c[0], c[1], c[2], 0.0, sums[0], sums[1], sums[2], sums[3], nullptr);
 }
 
 FSI_TARGET static void pairs_of_columns(const double (*rows)[4], double *first, double *second)
@@ -71,22 +71,36 @@ TEST(Pack, Columns)
   }
 }
 
-// numbers of four particles go to the rows of those, the rest of which stays
-template <int n, int N> FSI_TARGET static void scatter(const double (*of)[4], double (*rows)[N], const int *j)
+// Numbers of four particles go to the rows of those, the rest of which stays; their totals, times
+// factors, to one row more.
+template <int n, int N>
+FSI_TARGET static void scatter(const double (*of)[4], double (*rows)[N], const int *j, const double *factors, double *all)
 {
+  using L = Lanes<Pack>;
   Pack x[n];
   for (int d = 0; d < n; d++) x[d] = Pack::load(of[d]);
-  Lanes<Pack>::add_rows(x, rows, j);
+  if constexpr (N % 4) {
+    L::add_rows(x, rows, j);
+  } else {
+    Pack total[L::totals(n)];
+    for (Pack &t : total) t = 0.0;
+    L::add_to_all(x, rows, j, total);
+    L::template add_totals<n>(total, factors, all);
+  }
 }
 
 template <int n, int N> static void expect_scattered()
 {
-  double of[n][4], rows[9][N] = {};
+  double of[n][4], rows[9][N] = {}, all[N] = {}, factors[N];
   const int j[4] = {7, 2, 0, 5};
   for (int d = 0; d < n; d++)
     for (int k = 0; k < 4; k++) of[d][k] = 100 * d + k + 1;
-  for (int d = 0; d < N; d++) rows[2][d] = 0.5;
-  scatter<n, N>(of, rows, j);
+  for (int d = 0; d < N; d++) {
+    rows[2][d] = 0.5;
+    factors[d] = d % 3 ? d : -1.0;
+  }
+  scatter<n, N>(of, rows, j, factors, all);
+  for (int d = 0; d < n && N % 4 == 0; d++) EXPECT_EQ(all[d], factors[d] * (400 * d + 10)) << n << " of " << N << ": total " << d;
   for (int i = 0; i < 9; i++)
     for (int d = 0; d < N; d++) {
       double want = i == 2 ? 0.5 : 0.0;
