@@ -203,7 +203,7 @@ namespace FSI {
       T part[N + 1], back[D], weight_i, weight_j;
       weigh<FLAGS>(weight, in, i, j, weight_i, weight_j);
       for (int d = 0; d < D; d++) back[d] = IMAGES ? mirror.sign[d] * x[d] : x[d];
-      Shift<D>::template of_pair<EDGES>(part, g, weight_j, rsq, back);
+      Shift<D>::template of_pair<EDGES>(part, g, BOTH ? weight_j : weight_i, rsq, back);
       if constexpr (!BOTH) {
         for (int k = 0; k < N; k++) of_i[k] += part[k];
       } else {
