@@ -194,7 +194,7 @@ def still_deck(name, settings):
     if name == "elastic_gate":
         return re.sub(r"^timestep .*", "timestep 1e-7", effects.gate(settings["per_metre"], 0), flags=re.M)
     text = re.sub(r"&\n", " ", scene.deck(name).read_text())
-    text = re.sub(r"^(dump|dump_modify|run|thermo|thermo_style|print|fix +(dt|balance|series|history|gauges)|timestep) .*$", "", text, flags=re.M)
+    text = re.sub(r"^(dump|dump_modify|run|thermo|thermo_style|print|fix +(dt|balance|series|history|gauges|peaks)|timestep) .*$", "", text, flags=re.M)
     return "".join(f"variable {n} index {v}\n" for n, v in settings.items()) + text + "\ntimestep 1e-7\nthermo 1000000\n"
 
 
