@@ -1,13 +1,11 @@
 """The largest run that this machine's memory holds: still water in 3D, with its restart file written and read. tools/cost largest"""
 
-import os
-import re
 import shutil
 import tempfile
 from pathlib import Path
 
 import measure
-from scaling import STILL
+from scaling import STILL, seconds_of_files
 from tool import Job
 
 from fsi import log
@@ -17,17 +15,13 @@ from fsi.command import split, start, whole
 def measured(edge, kept_log):
     """{what: (value, unit)} of a cube of edge^3 particles; its log is kept. Times of a step and of files are by the clock."""
     with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
-        folder, before = Path(name), os.times()
-        measure.run(folder, STILL.replace("N", str(edge), 1))
-        after = os.times()
+        folder = Path(name)
+        whole_run, peak = measure.seconds(folder, STILL.replace("N", str(edge), 1)), measure.peak(folder)
         shutil.copyfile(folder / "log.lammps", kept_log)
         file = (folder / "still.restart").stat().st_size
-    said, steps = kept_log.read_text(), log.read(kept_log).finished[-1]
-    number = lambda pattern: float(re.search(pattern, said)[1])
-    return {"particles": (edge**3, ""), "peak of the memory": (number(r"Maximum resident set size: (\S+) Mbyte") / 1024, "GB"),
-            "whole run": (after.children_user + after.children_system - before.children_user - before.children_system, "s"),
-            "a step": (steps.loop_seconds / steps.steps, "s"), "restart file": (file / 2**30, "GB"),
-            "write_restart": (number(r"(?m)^FSI write (\S+)"), "s"), "read_restart": (number(r"(?m)^FSI read (\S+)"), "s")}
+    steps, files = log.read(kept_log).finished[-1], seconds_of_files(kept_log.read_text())
+    return {"particles": (edge**3, ""), "peak of the memory": (peak / 2**30, "GB"), "whole run": (whole_run, "s"), "a step": (steps.loop_seconds / steps.steps, "s"),
+            "restart file": (file / 2**30, "GB"), "write_restart": (files["write"], "s"), "read_restart": (files["read"], "s")}
 
 
 def main(arguments):

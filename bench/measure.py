@@ -1,6 +1,7 @@
 """Measures inputs of LAMMPS: CPU time of pairs in turns, instructions, memory, messages. For the tools of this folder and the tests."""
 
 import json
+import os
 import re
 import shutil
 import statistics
@@ -76,6 +77,19 @@ def run(folder, text, ranks=1, binary=None, before=()):
     (folder / "in.deck").write_text(text)
     command = launch.lammps("in.deck", ranks if ranks > 1 else 0, binary=binary)
     execute([*before, *command, "-screen", "none", "-nocite"], folder, binary)
+
+
+def seconds(folder, text):
+    """CPU seconds of a run, from the start of the program on."""
+    before = os.times()
+    run(folder, text)
+    after = os.times()
+    return after.children_user + after.children_system - before.children_user - before.children_system
+
+
+def peak(folder):
+    """Bytes at the peak of a run that ends with `info memory out log`."""
+    return float(re.search(r"Maximum resident set size: (\S+) Mbyte", (folder / "log.lammps").read_text())[1]) * 2**20
 
 
 def simulate(text, ranks=1, binary=None):

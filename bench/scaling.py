@@ -118,23 +118,23 @@ SIZES = {"1 million": 100, "2 million": 126}  # particles of a cube of water alo
 OTHERS = "LAMMPS' atoms and images at walls"
 
 
+def seconds_of_files(said):
+    """{write, read: seconds} that STILL says of its restart file."""
+    return {what: float(re.search(rf"(?m)^FSI {what} (\S+)", said)[1]) for what in ("write", "read")}
+
+
 def size(kept):
     """Of still water in 3D, {size: bytes of a particle by what they are for, seconds}. The peak has what is there for a while, to write the restart file."""
     def run(text, n):
         with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
             folder = Path(name)
-            before = os.times()
-            measure.run(folder, text[:text.index("run 3")])
-            after = os.times()
+            setup = measure.seconds(folder, text[:text.index("run 3")])
             measure.run(folder, text)
             said, first = (folder / "log.lammps").read_text(), log.read(folder / "log.lammps").finished[0]
-            number = lambda pattern: float(re.search(pattern, said)[1])
             lists = 4 * first.neighbours / n + 16  # entries, and a particle's length and place
-            arrays, rows = number(r"all particles: (\d+) bytes") + 32, 32  # and forces, which LAMMPS' are added to
-            peak = number(r"Maximum resident set size: (\S+) Mbyte") * 2**20 / n
+            arrays, rows = int(re.search(r"all particles: (\d+) bytes", said)[1]) + 32, 32  # and forces, which LAMMPS' are added to
             return {"neighbor lists": lists, "arrays of the package": arrays, "rows": rows, OTHERS: first.bytes_per_rank / n - lists - arrays - rows / 2,
-                    "peak": peak, "setup": after[2] + after[3] - before[2] - before[3], "restart file": (folder / "still.restart").stat().st_size / n,
-                    **{what: number(rf"(?m)^FSI {what} (\S+)") for what in ("write", "read")}}
+                    "peak": measure.peak(folder) / n, "setup": setup, "restart file": (folder / "still.restart").stat().st_size / n, **seconds_of_files(said)}
     found = {}
     for label, n in SIZES.items():
         text = STILL.replace("N", str(n), 1)
@@ -178,11 +178,7 @@ def body(kept):
 
     def run():
         with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
-            folder, before = Path(name), os.times()
-            measure.run(folder, text)
-            after = os.times()
-            peak = float(re.search(r"Maximum resident set size: (\S+) Mbyte", (folder / "log.lammps").read_text())[1])
-            return {"setup": after[2] + after[3] - before[2] - before[3], "peak": peak * 2**20 / n}
+            return {"setup": measure.seconds(Path(name), text), "peak": measure.peak(Path(name)) / n}
     return kept.get(["body", text], run)
 
 

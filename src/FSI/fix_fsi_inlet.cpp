@@ -792,9 +792,7 @@ void FixFSIInlet::renew_ends(bool has_some)
   const bool there = has_some || domain->triclinic ||
       (std::max(low, high) > -2.0 * length - neighbor->skin &&
        std::min(low, high) < zone() + 2.0 * neighbor->skin);
-  int mine = there && ends == MPI_COMM_NULL, any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (!any) return;
+  if (!anywhere(there && ends == MPI_COMM_NULL, world)) return;
   const int color = there || ends != MPI_COMM_NULL ? 0 : MPI_UNDEFINED;
   forget_ends();
   MPI_Comm_split(world, color, comm->me, &ends);
@@ -1238,7 +1236,7 @@ void FixFSIInlet::prescribe()
 
 double FixFSIInlet::compute_vector(int n)
 {
-  double own = 0.0, all;
+  double own = 0.0;
   switch (n) {
     case 1:
       return passed_in;
@@ -1258,8 +1256,7 @@ double FixFSIInlet::compute_vector(int n)
     default:
       own = push_sum[n - 6];
   }
-  MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of(own, world);
 }
 
 void FixFSIInlet::write_restart(FILE *fp)

@@ -93,7 +93,7 @@ void Clamps::find()
     body.small = utils::strmatch(fix->style, "^rigid/small$");
     if (!body.small && !utils::strmatch(fix->style, "^rigid$")) continue;
     std::set<tagint> mine;
-    int solids = 0, in_substeps = 0;
+    bool solids = false;
     for (int i = 0; i < atom->nlocal; i++) {
       const tagint b = id_of(body, i);
       if (b < 0 || scene.state[atom->type[i]].species == NONE ||
@@ -102,8 +102,7 @@ void Clamps::find()
       mine.insert(b);
       solids = solids || scene.is_total_lagrangian(i);
     }
-    solids = solids && takes_substeps();
-    MPI_Allreduce(&solids, &in_substeps, 1, MPI_INT, MPI_MAX, world);
+    const bool in_substeps = anywhere(solids && takes_substeps(), world);
     const auto ids = gather(mine, world);
     const auto expected = expected_of(fix);
     if (in_substeps && !expected.empty())
