@@ -12,9 +12,11 @@ import sound  # noqa: E402
 
 @pytest.mark.parametrize("name", sound.SCENES)
 def test_decks_have_the_variables(name):
-    _, settings, variable, value, ratios, _ = sound.SCENES[name]
-    text, given = sweep.Deck(scene.deck(name)).instance(settings | {variable: 2 * value})
+    _, _, variable, value, over, ratios, _ = sound.SCENES[name]
+    settings = sound.settings_of(name, 2)
+    text, given = sweep.Deck(scene.deck(name)).instance(settings)
     assert ratios[:2] == (1, 2) and (variable in given or f"variable        {variable} equal {2 * value}" in text)
+    assert all(float(settings[k]) == v / 2 and f"variable        {k} index {v:g}" in scene.deck(name).read_text() for k, v in over.items())
 
 
 def test_changes_and_page():
