@@ -4,7 +4,6 @@ import json
 import re
 import shutil
 import sys
-import tempfile
 from pathlib import Path
 
 import accuracy_cost
@@ -94,65 +93,21 @@ def take_pictures(name):
 
 
 def take(wanted):
-    """Takes to doc what results have of these: SCENE or SCENE/CASE, cost/NAME, hard, each of one commit; all other data stay as they are."""
+    """Takes to doc what results have of these: SCENE, cost/NAME, hard, each of one commit; all other data stay as they are."""
     page = paths.PAGE / "results.json"
     found, known = json.loads(page.read_text()), tables() | by_name()
     for what in wanted:
         files = checked(known.get(what, {}))
         for path, target in files.items():
             shutil.copyfile(path, target)
-        name, _, case = what.partition("/")
-        if name not in paths.scenes():
-            if not files:
-                raise Refusal(f"'{what}' is neither a scene, SCENE/CASE, nor one of {', '.join(known)}")
-            continue
-        path, = checked([paths.RESULTS / what / "summary.json"])
-        summary = json.loads(path.read_text())
-        if case:
-            add_case(found["scenes"][name]["summary"], name, case, summary)
-        else:
-            found["scenes"][name] = {"summary": summary}
-            if name in paths.examples():
-                take_pictures(name)
+        if what in paths.scenes():
+            path, = checked([paths.RESULTS / what / "summary.json"])
+            found["scenes"][what] = {"summary": json.loads(path.read_text())}
+            if what in paths.examples():
+                take_pictures(what)
+        elif not files:
+            raise Refusal(f"'{what}' is neither a scene nor one of {', '.join(known)}")
     page.write_text(results.packed(found))
-
-
-def add_case(data, name, case, summary):
-    """Puts one case in the data of a scene whose others were run before: figures that the study has with it and not without, next to what
-    else results have of this commit. A finer case takes over the targets of the one that was the finest of those in results, of whichever
-    commit they are; else figures are judged if those of their names were."""
-    have = [k for k in scene.cases(name) if commit_of(paths.RESULTS / name / k)]
-    there = [k for k in have if k == case or commit_of(paths.RESULTS / name / k) == summary["commit"]]
-    without = [f["name"] for f in studied(name, [k for k in there if k != case])]
-    new = [f for f in studied(name, there) if f["name"] not in [*without, *results.COST]]
-    old = {f["name"]: f for f in data["figures"]}
-    judged = {f["name"] for f in studied(name, have) if f.get("target") is not None}
-    over = [f["name"] for f in studied(name, [k for k in have if k != case]) if f.get("target") is not None and f["name"] not in judged]
-    over = [n for n in over if n in old and old[n]["target"] is not None]
-    for figure in [old[n] for n in over] + [f for f in new if not over and (old.get(f["name"]) or {"target": None})["target"] is None]:
-        figure |= {"target": None, "met": None}
-    names = [f["name"] for f in new]
-    data["figures"] = [f for f in data["figures"] if f["name"] not in names]
-    at = next(k for k, f in enumerate(data["figures"]) if f["name"] in results.COST)
-    data["figures"][at:at] = new
-    ran = {key: summary[key] for key in ("given", "particles", "steps", "ranks", "cpu_seconds", "commit", "date")}
-    data["cases"] = {k: {**data["cases"], case: ran}[k] for k in scene.cases(name) if k in data["cases"] or k == case}
-
-
-def studied(name, cases):
-    """Figures of a scene's study of these cases, made anew."""
-    if not cases:
-        return []
-    with tempfile.TemporaryDirectory() as folder:
-        for case in cases:
-            (Path(folder) / case).symlink_to(paths.RESULTS / name / case)
-        scene.analysis(name).study(Path(folder), {case: Path(folder) / case for case in cases})
-        return json.loads((Path(folder) / "summary.json").read_text())["figures"]
-
-
-def commit_of(folder):
-    path = folder / "summary.json"
-    return json.loads(path.read_text()).get("commit") if path.exists() else None
 
 
 def stamp(path):
@@ -215,7 +170,7 @@ def main(arguments):
     """tools/renew"""
     only = arguments[1:] if arguments[:1] == ["--only"] else []
     if not only and (len(arguments) > 1 or any(word not in WORDS for word in arguments)):
-        raise Refusal(f"'{' '.join(arguments)}' is not one of {', '.join(WORDS)}, --only SCENE[/CASE] or cost/NAME ...")
+        raise Refusal(f"'{' '.join(arguments)}' is not one of {', '.join(WORDS)}, --only SCENE or cost/NAME ...")
     failed = [] if arguments else run()
     if only:
         take(only)

@@ -44,9 +44,9 @@ def run_of(scene, label):
 
 
 def sound(scene, *names):
-    """[value at 10, 20, 40 times the speed of the flow, for each name]"""
+    """[value at 10, 20 and, where it was run, 40 times the speed of the flow, for each name]"""
     found = {(row["times"], row["figure"]): float(row["value"]) for row in rows("sound") if row["scene"] == scene}
-    return [found[times, name] for times in ("10", "20", "40") for name in names]
+    return [found[times, name] for times in ("10", "20", "40") if (times, names[0]) in found for name in names]
 
 
 def hard(run):
@@ -134,6 +134,8 @@ QUOTED = [
     ("doc/choosing.md", "displacement [mm]; its time [s] | {}; {} | {}; {} | {}; {} |", lambda: sound("elastic_gate", "tip_x_peak", "tip_x_peak_time")),
     ("doc/choosing.md", "frequency [rad/s] | {} | {} | {} |", lambda: sound("ring_annulus", "frequency")),
     ("doc/choosing.md", "peak pressure / (rho V^2/2) | {}; {} | {}; {} | {}; {} |", lambda: sound("wedge_entry", "force", "peak_pressure")),
+    ("doc/choosing.md", "first pulse [mm^2]; distance of the tips [mm] | {}; {} | {}; {} | - |", lambda: sound("valve", "forward_1", "opening_1")),
+    ("doc/choosing.md", "flag (FSI2), 10 per diameter: amplitude [mm] | {} | {} | - |", lambda: sound("turek_hron_fsi", "uy_amplitude")),
     ("doc/src/fix_fsi_wall_particle.rst", "scatters by {} % instead of {} %", lambda: figures("wedge_entry", "force_scatter_30_25", "force_scatter_30_25_lattice")),
     ("README.md", "drag is {} % and lift {} % off", lambda: figures("cylinder_free", "drag_re_200", "lift_re_200")),
     ("doc/src/Howto_peers.rst", "here {} to {} % off", lambda: figures("turek_hron_fsi", "uy_amplitude_fsi3_2_to_8", "uy_amplitude_fsi3_4")),
