@@ -87,6 +87,11 @@ WATER = ("fluid", "shifting"), ("fluid", "shifting, every 4 steps")
 QUOTED = [
     ("doc/choosing.md", "{} %, {} %, {} % of the period | 3, 5, 10", lambda: curve("oscillating_plate", TL, 3, 5, 10)),
     ("doc/choosing.md", "3, 5, 10 particles through the thickness | {}, {}, {} s", lambda: seconds("oscillating_plate", TL, 3, 5, 10)),
+    *((("doc/choosing.md", f"{words} | {{}}, {{}} s |", partial(seconds, *of))) for words, *of in (
+        ("deflection | 3, 5", "hydrostatic_plate", "quadratic$", 3, 5), ("| 3, 4", "elastic_gate", "TL, water twice", 0.00166666667, 0.00125),
+        ("along a side", "taylor_green", "shifting, quintic", 0.04, 0.025), ("period | 10, 20 rows deep", "standing_wave", "quintic 1.0", 0.05, 0.025),
+        ("pressure | 10, 20 rows deep", "still_water", "quintic 0.94", 0.05, 0.025),
+        ("5, 10; 3 fails", "oscillating_plate", r"UL quadratic, hourglass, ", 5, 10))),
     ("doc/choosing.md", "{} %, {} % of the deflection", lambda: curve("hydrostatic_plate", "quadratic$", 3, 5)),
     ("doc/choosing.md", "{}, {}, {} % of the peak | 2, 3, 4", lambda: curve("elastic_gate", "TL$", 0.0025, 0.00166666667, 0.00125)),
     ("doc/choosing.md", "2, 3, 4 | {}, {}, {} s", lambda: seconds("elastic_gate", "TL$", 0.0025, 0.00166666667, 0.00125)),
