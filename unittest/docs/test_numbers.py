@@ -43,6 +43,11 @@ def run_of(scene, label):
     return [100 * abs(float(row["error"]))]
 
 
+def fails(scene, knob):
+    """The lowest setting of a keyword with which a sweep's runs failed."""
+    return min(float(row["x"]) for row in rows(scene) if row["group"] == knob and row["status"] == "failed")
+
+
 def sound(scene, *names):
     """[value at 10, 20 and, where it was run, 40 times the speed of the flow, for each name]"""
     found = {(row["times"], row["figure"]): float(row["value"]) for row in rows("sound") if row["scene"] == scene}
@@ -133,7 +138,10 @@ QUOTED = [
     ("doc/choosing.md", "volume error of {} % after a fall", lambda: hard("settle_3d")),
     ("doc/choosing.md", "Taylor-Green: {} % at 2, {} to {} % from 5 to 10, {} % at 40",
      lambda: [x for c in (2, 7, 5, 40) for x in run_of("taylor_green", f"sound speed over U = {c}")]),
-    ("doc/choosing.md", "Taylor-Green: {} % at 0.25, 0.5, and 1;", lambda: run_of("taylor_green", "Courant number = 0.5")),
+    ("doc/choosing.md", "Taylor-Green: {} % at 0.25, 0.5, and 1; fails at {}", lambda: [*run_of("taylor_green", "Courant number = 0.5"), fails("taylor_green", "Courant number")]),
+    ("doc/choosing.md", "to 0.7, fails at {}; gate: fails at {} |", lambda: [
+        fails("oscillating_plate", "Courant number, TL"), fails("elastic_gate", "Courant number of the rubber")]),
+    ("doc/choosing.md", "bends {} % off at 0.49 and {} % at 0.499", lambda: hard("lock_4_0.49") + hard("lock_4_0.499")),
     ("doc/choosing.md", "still water: {} %; without diffusion {} %, by summation {} %; +{} % instructions",
      lambda: [*curve("still_water", "quintic 1.0", 0.05), *run_of("still_water", "no density diffusion"), *run_of("still_water", "density by summation"),
               effect("fluid", "density diffusion")]),
@@ -229,6 +237,19 @@ def test_quoted(page, words, numbers):
     for said, value in zip(found.groups(), numbers(), strict=True):
         digits = len(said.partition(".")[2])
         assert abs(float(said) - value) <= 0.501 * 10.0 ** -digits, f"{page} says {said} in '{words}', the data {value:.4g}"
+
+
+@pytest.mark.parametrize("scene, knob, lowest, highest, apart", [("taylor_green", "Courant number", 0.25, 1.0, 0.07), ("oscillating_plate", "Courant number, TL", 0.1, 0.7, 0.05),
+                                                               ("taylor_green", "neighbour skin", 0.05, 1.0, 1e-6)])
+def test_settings_said_to_be_alike_are(scene, knob, lowest, highest, apart):
+    """doc/choosing.md, "By keyword": the figure is the same over the range."""
+    figures = [float(row["value"]) for row in rows(scene) if row["group"] == knob and lowest <= float(row["x"]) <= highest]
+    assert len(figures) > 2 and max(figures) < (1 + apart) * min(figures)
+
+
+def test_rings_remain_symmetric():
+    """doc/choosing.md, contact: 1e-9 dx."""
+    assert all(size < 1e-9 for size in sizes("colliding_rings", "asymmetry_slow", "asymmetry_fast", "asymmetry_slow_ul"))
 
 
 # ---- no number without a command ----
