@@ -239,7 +239,7 @@ def draw(path, rows):
 def in_words(row):
     """value and unit"""
     value, unit = (1e6 * row["value"], "us") if row["unit"] == "s" and row["value"] < 1e-3 else (row["value"], row["unit"] or "")
-    return f"{f'{value:.3g}' if value < 1e4 else f'{value:,.0f}'} {unit}".rstrip()
+    return f"{f'{value:.3g}' if value < 1e3 else f'{value:,.0f}'} {unit}".rstrip()
 
 
 def side_by_side(rows):

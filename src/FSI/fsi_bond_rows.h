@@ -226,6 +226,29 @@ namespace FSI {
     }
   }
 
+  // F of a row and its rate
+  template <class T, int D>
+  FSI_INLINE void gather_rates(const BondRow &row, const double *points, double *F, double *Fdot)
+  {
+    T from[2 * D], sum[D * D], rate[D * D];
+    for (int a = 0; a < 2 * D; a++) from[a] = points[row_of_points(D) * row.i + a];
+    for (int k = 0; k < D * D; k++) sum[k] = rate[k] = 0.0;
+    for (int k = 0; k < row.n; k += Lanes<T>::WIDTH) {
+      Separation<T, D> b;
+      b.read(row.partner + k, points, from, true);
+      for (int a = 0; a < D; a++)
+        for (int c = 0; c < D; c++) {
+          const T G = number_of<T, D>(row, k, c);
+          sum[a * D + c] += b.x[a] * G;
+          rate[a * D + c] += b.v[a] * G;
+        }
+    }
+    for (int k = 0; k < D * D; k++) {
+      F[k] = Lanes<T>::sum(sum[k]);
+      Fdot[k] = Lanes<T>::sum(rate[k]);
+    }
+  }
+
   // The derivative t of the energy of i with respect to F_i
   template <class T, class Law, int D, int FLAGS>
   FSI_INLINE void differentiate(const BondRow &row, const Law &law, const BondArguments &in,

@@ -633,34 +633,25 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
 // L = F' F^-1 at the time of the velocities, half a step before the positions
 template <int D> void PairFSISolidTL::advance_rates(double dt)
 {
-  reference->images.update(atom->x, atom->v);
-  double **x = reference->images.positions(atom->x);
-  double **v = reference->images.velocities(atom->v);
-  const double dth = 0.5 * dt;
-  for (const int i : reference->solids) {
-    const int n = reference->count(i), *const partner = reference->partners(i);
-    double F[D * D] = {}, Fdot[D * D] = {}, C[D * D], L[D * D] = {};
-    for (int k = 0; k < n; k++) {
-      const int j = partner[k];
-      const double *const G = reference->bond(i, k);
-      for (int a = 0; a < D; a++) {
-        const double dv = v[j][a] - v[i][a], dx = x[j][a] - x[i][a] - dth * dv;
-        for (int c = 0; c < D; c++) {
-          F[a * D + c] += dx * G[c * BOND_BLOCK];
-          Fdot[a * D + c] += dv * G[c * BOND_BLOCK];
-        }
-      }
+  gather_points<D>();
+  const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
+    for (const BondRow &row : rows) {
+      const int i = row.i;
+      double F[D * D], Fdot[D * D], C[D * D], L[D * D] = {};
+      gather_rates<decltype(number), D>(row, points.data(), F, Fdot);
+      for (int k = 0; k < D * D; k++) F[k] -= 0.5 * dt * Fdot[k];
+      cofactor<D>(F, C);
+      const double inv = 1.0 / determinant<D>(F);
+      for (int a = 0; a < D; a++)
+        for (int c = 0; c < D; c++)
+          for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
+      const State &s = fix_fsi->state[atom->type[i]];
+      const double work = fix_stress->advance_stress<D>(i, L, dt, s);
+      if (fix_fsi->ledger)
+        fix_fsi->energy_out[FixFSI::INELASTIC] += work * atom->rmass[i] / s.rho0;
     }
-    if (n == 0) continue;    // torn off
-    cofactor<D>(F, C);
-    const double inv = 1.0 / determinant<D>(F);
-    for (int a = 0; a < D; a++)
-      for (int c = 0; c < D; c++)
-        for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
-    const State &s = fix_fsi->state[atom->type[i]];
-    const double work = fix_stress->advance_stress<D>(i, L, dt, s);
-    if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::INELASTIC] += work * atom->rmass[i] / s.rho0;
-  }
+  };
+  have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
 }
 
 void PairFSISolidTL::break_bonds()
