@@ -200,7 +200,7 @@ SCENES = [
     *((("turek_hron_fsi", f"| uy | {{}} +- {{}} [{{}}] (amplitude {signs[0]}{{}} %) | {{}} +- {{}} [{{}}] ({signs[1]}{{}} %) | {{}} +- {{}} [{{}}] ({signs[2]}{{}} %) |",
         lambda scene, *runs: [x for n in runs for x in (*sizes(scene, f"uy_mean_{n}", f"uy_amplitude_{n}", f"frequency_{n}"), *figures(scene, f"uy_amplitude_{n}"))],
         [f"{kind}_{n}" for n in ("2", "4", "2_to_8")])) for kind, signs in (("fsi2", "+++"), ("fsi3", "-+-"))),
-    ("turek_hron_fsi", "| lift | -{} +- {} (amplitude -{} %) | -{} +- {} (+{} %) | {} +- {} (+{} %) |",
+    ("turek_hron_fsi", "| lift | -{} +- {} (amplitude -{} %) | -{} +- {} (+{} %) | -{} +- {} (+{} %) |",
      lambda scene, *runs: [x for n in runs for x in (*sizes(scene, f"lift_mean_{n}"), *mixed(scene, f"lift_amplitude_{n}"))], ["fsi3_2", "fsi3_4", "fsi3_2_to_8"]),
     ("twisting_column", "top | {} turns", sizes, ["largest_twist"]),
     ("twisting_column", "over the first | {} |", sizes, ["twist_the_other_way"]),
