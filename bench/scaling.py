@@ -260,29 +260,27 @@ def side_by_side(rows):
 def page(rows, pairs, more=()):
     """The page's text; pairs: rows of tools/cost peers, of which those of two ranks; more: points of its list."""
     lines = ["# Several ranks", "",
-             "The package runs on any number of MPI ranks, as LAMMPS does, and gives the same forces to round-off.",
+             "The package runs on any number of MPI ranks and gives the same forces to round-off.",
              "Two ranks are timed (`tools/cost peers`). Of more, work and messages are counted (`tools/cost scaling`).", "",
              "![Bytes of a particle](scaling.png)", "",
              "- Bytes of a particle are those of still water in 3D, Wendland 1.5, skin 0.3 dx, in a cube with five walls, on one rank.",
              "- For a while: the peak of the process less the other parts. It is reached when the restart file is written.",
              "- Model: a cube of particles on each rank; compute, ghosts over particles, bytes in a step. Ghosts limit it.",
              "- Set-up: CPU time from the start of the program to the first step, with all checks. Restart files: wall-clock time.",
-             "- Second table: ghosts over particles, messages, bytes sent; the largest of any rank, in a step without new lists.",
-             "- Bytes and exchanges are what *fix fsi* prints; `unittest/tools/test_pay.py` checks them around the MPI calls.",
+             "- Last rows: ghosts over particles, messages, bytes sent; the largest of any rank, in a step without new lists.",
+             "- Bytes and exchanges are what *fix fsi* prints.",
              "- Balance: a dam break in a tank that is half empty, 1,250 particles, two ranks, 0.5 s.",
-             "- With the box cut in halves one rank has nearly all particles, and two ranks gain little: use `fix balance all balance 20 1.05 shift x 20 1.02`.",
+             "- With the box cut in halves two ranks gain little: use `fix balance all balance 20 1.05 shift x 20 1.02`.",
              *more, "", "| quantity | value |", "|---|---:|"]
     lines += [f"| {r['what']} | {r['ratio']:.2f} ± {r['spread']:.2f} |" for r in pairs if r["what"].startswith("2 ranks") and r["ratio"] is not None]
-    of_ranks = {}  # ranks: {scene: words}
+    shared = {}  # scene: {ranks: words}
     for what, values in side_by_side(rows):
-        words, (label, ranks) = "; ".join(map(in_words, values)), re.fullmatch(r"(.*?)(?:, (\d+) ranks)?", what).groups()
+        words, (label, ranks) = list(map(in_words, values)), re.fullmatch(r"(.*?)(?:, (\d+) ranks)?", what).groups()
         if ranks:
-            of_ranks.setdefault(ranks, {})[label] = words
+            shared.setdefault(label, {})[ranks] = ", ".join(words)
         else:
-            lines.append(f"| {what} | {words} |")
-    for n, (ranks, cells) in enumerate(of_ranks.items()):
-        lines += [] if n else ["", f"| ranks | {' | '.join(cells)} |", "|---:" * (1 + len(cells)) + "|"]
-        lines.append(f"| {ranks} | {' | '.join(cells.values())} |")
+            lines.append(f"| {what} | {'; '.join(words)} |")
+    lines += [f"| {label}, {', '.join(of)} ranks | {'; '.join(of.values())} |" for label, of in shared.items()]
     return "\n".join(lines) + "\n"
 
 
