@@ -7,7 +7,7 @@ import numpy as np
 from cost_report import cheapest, curves_of, few_labels, one_curve, seconds
 from tool import PAGE, read_csv
 
-from fsi import paths, plot
+from fsi import paths, plot, results
 
 HARD = paths.ROOT / "doc" / "hard"
 # scene: method that its deck recommends, usual SPH in that scene and what is usual about it
@@ -115,8 +115,8 @@ def sentences():
     plates = [("oscillating_plate", "TL quadratic, clamp at the face", "TL linear, clamp at the face"), ("hydrostatic_plate", "quadratic", "linear")]
     best = max(spread(scene, method, (3, 4, 5))[1] for scene, method, _ in plates)
     linear = [spread(scene, method, (3, 4, 5)) for scene, _, method in plates]
-    scene = json.loads((paths.PAGE / "results.json").read_text())["scenes"]["turek_hron_fsi"]["summary"]
-    amplitude = next(f for f in scene["figures"] if f["name"] == "uy_amplitude_fsi2_2_to_8")
+    figures = results.scenes_of(paths.PAGE)["turek_hron_fsi"]["summary"]["figures"]
+    amplitude = next(f for f in figures if f["name"] == "uy_amplitude_fsi2_2_to_8")
     still = [spread("taylor_green", f"{how}, quintic 1.0", (size,))[0] for size in (0.05, 0.02) for how in ("no shifting", "shifting")]
     flag = [spread("turek_hron_fsi", method) for method in ("flag twice as fine as the water", "one spacing")]
     gate = found["elastic_gate"]["reference"]

@@ -226,26 +226,27 @@ namespace FSI {
     }
   }
 
-  // F of a row and its rate
-  template <class T, int D>
-  FSI_INLINE void gather_rates(const BondRow &row, const double *points, double *F, double *Fdot)
+  // F of a row alone, for what takes no second pass over it; with RATE its rate, too
+  template <class T, int D, bool RATE>
+  FSI_INLINE void deform_row(const BondRow &row, const double *points, double *F,
+                             double *Fdot = nullptr)
   {
     T from[2 * D], sum[D * D], rate[D * D];
     for (int a = 0; a < 2 * D; a++) from[a] = points[row_of_points(D) * row.i + a];
     for (int k = 0; k < D * D; k++) sum[k] = rate[k] = 0.0;
     for (int k = 0; k < row.n; k += Lanes<T>::WIDTH) {
       Separation<T, D> b;
-      b.read(row.partner + k, points, from, true);
+      b.read(row.partner + k, points, from, RATE);
       for (int a = 0; a < D; a++)
         for (int c = 0; c < D; c++) {
           const T G = number_of<T, D>(row, k, c);
           sum[a * D + c] += b.x[a] * G;
-          rate[a * D + c] += b.v[a] * G;
+          if (RATE) rate[a * D + c] += b.v[a] * G;
         }
     }
     for (int k = 0; k < D * D; k++) {
       F[k] = Lanes<T>::sum(sum[k]);
-      Fdot[k] = Lanes<T>::sum(rate[k]);
+      if (RATE) Fdot[k] = Lanes<T>::sum(rate[k]);
     }
   }
 

@@ -611,19 +611,12 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
   gather_points<D>();
   double dissipated = 0.0;
   const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
-    using T = decltype(number);
-    using Pass = BondPass<T, D, 0>;
-    std::vector<double> kept;
     for (const BondRow &row : rows) {
-      if (kept.size() < (size_t) (row.n / Pass::W + 1) * Pass::SIZE)
-        kept.resize((size_t) 2 * (row.n / Pass::W + 1) * Pass::SIZE);
       const int t = atom->type[row.i];
-      T F[D * D], unused[D * D];
-      double Fi[D * D];
-      gather_row<T, D, 0>(row, points.data(), kept.data(), F, unused);
-      for (int k = 0; k < D * D; k++) Fi[k] = Lanes<T>::sum(F[k]);
+      double F[D * D];
+      deform_row<decltype(number), D, false>(row, points.data(), F);
       dissipated +=
-          row.volume * law_of[t].template advance<D>(Fi, factors[t], fix_history->of[row.i]);
+          row.volume * law_of[t].template advance<D>(F, factors[t], fix_history->of[row.i]);
     }
   };
   have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
@@ -638,7 +631,7 @@ template <int D> void PairFSISolidTL::advance_rates(double dt)
     for (const BondRow &row : rows) {
       const int i = row.i;
       double F[D * D], Fdot[D * D], C[D * D], L[D * D] = {};
-      gather_rates<decltype(number), D>(row, points.data(), F, Fdot);
+      deform_row<decltype(number), D, true>(row, points.data(), F, Fdot);
       for (int k = 0; k < D * D; k++) F[k] -= 0.5 * dt * Fdot[k];
       cofactor<D>(F, C);
       const double inv = 1.0 / determinant<D>(F);
