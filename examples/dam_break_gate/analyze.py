@@ -110,7 +110,7 @@ def main(folder):
     summary.add("particles_leaked", leaks.count(summary.log), target=0)
     summary.add("particles_in_plate", len(within.offenders), target=0)
     summary.add("particles_through_plate", len(through.offenders), target=0)
-    picture_markers(folder / "markers.png", [(plate, values, "")])
+    picture_markers(folder / "markers.png", [(plate, values, "-")])
     shown = dump.nearest(frames, [t for t in SNAPSHOTS if t < plate.time[-1] + 0.01], tolerance=0.02)
     plot.snapshots(folder / "snapshots.png", shown or frames[-1:], values["wx"], (WATER,), (PLATE, ROOT), wall=(GATE,),
                    limits=((-0.01, values["tank"] + 0.01), (-0.01, 0.1 + values["depth"])), columns=2, panel_width=3.2)
@@ -121,11 +121,12 @@ def picture_markers(path, runs):
     """The three markers over time, runs: [(plate, values, line)]."""
     with plot.picture(path) as figure:
         axes = figure.add_subplot()
-        for plate, values, line in runs:
+        for k, (plate, values, line) in enumerate(runs):
             for (name, height), colour in zip(MARKERS.items(), COLOURS):
-                axes.plot(plate.time, 1e3 * plate[name], line or "-", color=colour, label=f"{height} mm, {values['rows']:g} rows")
+                label = f"{height} mm, {values['rows']:g} rows" if k == 0 else f"{values['rows']:g} rows" if name == "m3" else None
+                axes.plot(plate.time, 1e3 * plate[name], line, color=colour, label=label)
         axes.plot(*CODE_END, "o", color=plot.GREY, label="87.5 mm, SPHinXsys")
-        axes.set(xlabel="time [s]", ylabel="displacement of the markers [mm]", xlim=(0.2, None) if runs[0][0].time[-1] > 0.3 else None)
+        axes.set(xlabel="time [s]", ylabel="displacement of the markers [mm]", xlim=(0.2, None) if runs[0][0].time[-1] > 0.3 else (0.0, None))
         axes.legend(fontsize="small")
         figure.tight_layout()
 
