@@ -108,13 +108,13 @@ def main(folder):
     picture_markers(folder / "markers.png", [(plate, values, "-")])
     shown = dump.nearest(frames, [t for t in SNAPSHOTS if t < plate.time[-1] + 0.01], tolerance=0.02)
     plot.snapshots(folder / "snapshots.png", shown or frames[-1:], values["wx"], (WATER,), (PLATE, ROOT), wall=(GATE,),
-                   limits=((-0.01, values["tank"] + 0.01), (-0.01, 0.1 + values["depth"])), columns=2, panel_width=3.2)
+                   limits=((-0.01, values["tank"] + 0.01), (-0.01, 0.05 + values["depth"])), columns=2, panel_width=2.4)
     return summary.write()
 
 
 def picture_markers(path, runs):
     """The three markers over time, runs: [(plate, values, line)]."""
-    with plot.picture(path) as figure:
+    with plot.picture(path, 5.2, 3.2) as figure:
         axes = figure.add_subplot()
         for k, (plate, values, line) in enumerate(runs):
             for (name, height), colour in zip(MARKERS.items(), COLOURS):
@@ -122,7 +122,7 @@ def picture_markers(path, runs):
                 axes.plot(plate.time, 1e3 * plate[name], line, color=colour, label=label)
         axes.plot(*CODE_END, "o", color=plot.GREY, label="87.5 mm, SPHinXsys")
         axes.set(xlabel="time [s]", ylabel="displacement of the markers [mm]", xlim=(0.2, None) if runs[0][0].time[-1] > 0.3 else (0.0, None))
-        axes.legend(fontsize="small")
+        axes.legend(fontsize="x-small")
         figure.tight_layout()
 
 
