@@ -77,6 +77,9 @@ baffle_6MPa      solid rho 1100.0 young 6.0e6 poisson 0.49
 # Elastic obstacle in a dam break: Walhorn, Koelke, Huebner and Dinkler, Computers and Structures 83 (2005) 2100
 obstacle_1MPa    solid rho 2500.0 young 1.0e6 poisson 0.0
 
+# Plate behind a lifting gate: Liao, Hu and Sueyoshi, Appl. Ocean Res. 50 (2015) 94
+rubber_3.5MPa    solid rho 1161.54 young 3.5e6 poisson 0.49
+
 # Copper of the Taylor bar: Zhu and Cescotto, Int. J. Numer. Methods Eng. 38 (1995) 987; linear hardening
 copper           solid rho 8930.0 young 117.0e9 poisson 0.35 yield 400.0e6 hardening 100.0e6
 

@@ -32,7 +32,7 @@ def shown(pages):
 
 
 def test_each_picture_is_shown_and_small():
-    """150 kB is what plot.picture keeps to; a film is moving and has 2 MB."""
+    """140 kB is what plot.picture keeps to; a film is moving and has 2 MB."""
     files = tracked()
     pictures = {path for path in files if path.suffix in ENDINGS}
     pages = [path for path in files if path.suffix in (".md", ".rst")]

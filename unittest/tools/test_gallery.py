@@ -56,7 +56,7 @@ def files():
 
 
 def test_pictures_are_small_and_each_once():
-    """Whoever clones loads all of it; 150 kB is what plot.picture keeps to, 300 kB what nothing exceeds."""
+    """Whoever clones loads all of it; 140 kB is what plot.picture keeps to, 300 kB what nothing exceeds."""
     found = files()
     pictures = [path for path in found if path.suffix in (".png", ".gif", ".webp", ".jpg", ".svg")]
     assert len(pictures) > 90
