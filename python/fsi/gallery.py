@@ -12,7 +12,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import textwrap
 from datetime import datetime
 from pathlib import Path
 
@@ -86,14 +85,8 @@ def page():
         if shown:
             lines += [f"      .. image:: ../../examples/{name}/{shown[0][1]}", f"         :alt: {shown[0][0]}",
                       f"         :target: ../../examples/{name}/README.html", ""]
-        lines += [*textwrap.wrap(f":doc:`{title(name)} <../../examples/{name}/README>` (``{name}``). {_rst(description(name))}", 140, initial_indent=6 * " ",
-                                 subsequent_indent=6 * " ", break_long_words=False, break_on_hyphens=False), ""]
+        lines += [f"      :doc:`{title(name)} <../../examples/{name}/README>` (``{name}``)", ""]
     return "\n".join([*lines, ".. toctree::", "   :hidden:", "", *(f"   ../../examples/{name}/README" for name in names)]) + "\n"
-
-
-def _rst(text):
-    """One paragraph of Markdown: code in double backquotes, links as their text."""
-    return re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", re.sub(r"`([^`]+)`", r"``\1``", text))
 
 
 def main(arguments):
