@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_move.h"
 #include "force.h"
+#include "fsi_cells.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_levels.h"
@@ -27,6 +28,7 @@
 #include "fsi_rows.h"
 #include "fsi_swaps.h"
 #include "fsi_tensor.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "pair_fsi_fluid.h"
@@ -43,7 +45,7 @@ static constexpr double AUTO = -1.0;
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr),
-    fix_fsi(nullptr), swaps(new Swaps(lmp)), sum(nullptr), nsum(0), force_on{}
+    fix_fsi(nullptr), swaps(new Swaps(lmp)), sum(nullptr), nsum(0), turns(false), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
@@ -82,8 +84,11 @@ void FixFSIWallParticle::init()
                  "out, and move it with fix move or fix rigid",
                  atom->tag[i], id);
     mine[atom->type[i]] = 1;
+    for (const auto &fix : modify->get_fix_list())
+      if (fix->time_integrate && (atom->mask[i] & fix->groupbit)) mine[0] = 1;
   }
   MPI_Allreduce(mine.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
+  turns = !slip && types[0];
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!types[t]) continue;
     State &s = fix_fsi->state[t];
@@ -107,7 +112,7 @@ void FixFSIWallParticle::init()
   const bool stiffness = fix_fsi->several_stiffnesses();
   const int dim = fix_fsi->dim;
   first_moment = 2 + dim * (slip ? 1 : 2);
-  first_stiffness = first_moment + (linear ? dim * (dim + 5) / 2 : 0);
+  first_stiffness = first_moment + (linear ? dim * (dim + 5) / 2 : turns ? dim : 0);
   nsum = first_stiffness + stiffness;
   fields.set("sums over the fluid", Fields::STEP, true, sum, nsum);
   for (auto *message : {&to_ghosts, &from_ghosts}) {
@@ -169,6 +174,65 @@ double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p
   return sum / determinant<D>(C);
 }
 
+// Particles of a wall beside each other turn together, or are no rigid body
+static constexpr double BESIDE = 2.0;    // spacings
+
+void FixFSIWallParticle::find_near()
+{
+  const Cells wall(atom->x, atom->nlocal + atom->nghost, fix_fsi->dim,
+                   BESIDE * fix_fsi->dx + neighbor->skin, [this](int i) {
+                     return (atom->mask[i] & groupbit) != 0;
+                   });
+  first.clear();
+  near.clear();
+  for (const int i : members) {
+    first.push_back(near.size());
+    if (i >= atom->nlocal) break;
+    const double reach = BESIDE * fix_fsi->dx_of(atom->type[i]) + neighbor->skin;
+    wall.around(atom->x[i], reach, [&](int j, double rsq) {
+      if (j != i && rsq < reach * reach) near.push_back(j);
+    });
+  }
+  first.push_back(near.size());
+}
+
+// What a rigid wall's velocity changes by on the way from local member m: omega x way, omega by
+// least squares from the particles around it. None where these do not move as a rigid body.
+void FixFSIWallParticle::add_turn(int m, const double *way, double *v) const
+{
+  static constexpr double RIGID_TO = 1.0e-3;    // of what omega leaves, over all
+  const double *const *const x = atom->x, *const *const speed = atom->v;
+  const int i = members[m];
+  const double reach = BESIDE * fix_fsi->dx_of(atom->type[i]);
+  double M[9] = {}, moment[3] = {}, total = 0.0;
+  for (int k = first[m]; k < first[m + 1]; k++) {
+    double d[3], u[3], across[3];
+    MathExtra::sub3(x[near[k]], x[i], d);
+    MathExtra::sub3(speed[near[k]], speed[i], u);
+    const double rsq = MathExtra::lensq3(d), rest = 1.0 - rsq / (reach * reach);
+    if (rest <= 0.0) continue;
+    const double w = rest * rest;
+    MathExtra::cross3(d, u, across);
+    for (int a = 0; a < 3; a++) {
+      moment[a] += w * across[a];
+      for (int b = 0; b < 3; b++) M[3 * a + b] += w * ((a == b) * rsq - d[a] * d[b]);
+    }
+    total += w * MathExtra::lensq3(u);
+  }
+  if (total == 0.0) return;
+  // particles in a line tell nothing of a turn about it
+  const double least = 1.0e-9 * (M[0] + M[4] + M[8]);
+  for (int a = 0; a < 3; a++) M[4 * a] += least;
+  double adjoint[9], omega[3] = {}, turn[3];
+  cofactor<3>(M, adjoint);
+  const double inverse = 1.0 / determinant<3>(M);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) omega[a] += inverse * adjoint[3 * a + b] * moment[b];
+  if (total - MathExtra::dot3(omega, moment) > RIGID_TO * total) return;
+  MathExtra::cross3(omega, way, turn);
+  for (int d = 0; d < fix_fsi->dim; d++) v[d] += turn[d];
+}
+
 // sums over the fluid around each particle of the wall
 void FixFSIWallParticle::sum_up()
 {
@@ -185,6 +249,7 @@ void FixFSIWallParticle::sum_up()
     swaps->find([=](int i) {
       return (mask[i] & groupbit) != 0;
     });
+    if (turns) find_near();
   }
   fields.grow();
   for (const int i : members) std::fill_n(sum[i], nsum, 0.0);
@@ -207,9 +272,10 @@ void FixFSIWallParticle::sum_up()
         s[2 + k] += W * rho[j] * d[k];
       }
       s[1] += W * p;
-      if (linear) {
-        double *m = s + first_moment;
+      double *m = s + first_moment;
+      if (linear || turns)
         for (int k = 0; k < dim; k++) *m++ += W * d[k];
+      if (linear) {
         for (int k = 0; k < dim; k++)
           for (int l = k; l < dim; l++) *m++ += W * d[k] * d[l];
         for (int k = 0; k < dim; k++) *m++ += W * p * d[k];
@@ -228,8 +294,9 @@ void FixFSIWallParticle::sum_up()
 }
 
 // p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq.
-// 27), a_w: acceleration of the wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23). Of
-// fluids of different rho c^2 the wall has the mean, likewise
+// 27), a_w: acceleration of the wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23),
+// with the wall's velocity half way to the fluid that the mean is of, so that fluid sticks to the
+// surface of what turns. Of fluids of different rho c^2 the wall has the mean, likewise
 void FixFSIWallParticle::end_state(bool advance)
 {
   const Phase phase(fix_fsi->profile, Profile::WALLS);
@@ -240,7 +307,8 @@ void FixFSIWallParticle::end_state(bool advance)
   const bool stiffness = fix_fsi->wall_stiffness;
   sum_up();
 
-  for (const int i : members) {
+  for (size_t m = 0; m < members.size(); m++) {
+    const int i = members[m];
     if (i >= atom->nlocal) break;    // ghosts come last
     const State &state = fix_fsi->state[type[i]];
     const double *const s = sum[i];
@@ -264,11 +332,16 @@ void FixFSIWallParticle::end_state(bool advance)
         fix_fsi->wall_velocity[i][k] =
             2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
     }
+    if (turns && s[0] > 0.0) {
+      double way[3] = {};    // from the wall to the fluid
+      for (int k = 0; k < dim; k++) way[k] = -s[first_moment + k] / s[0];
+      add_turn(m, way, fix_fsi->wall_velocity[i]);
+    }
     p = s[0] > 0.0 ? p / s[0] : state.p0;
     if (linear && s[0] > 0.0) {
-      const double *const m = s + first_moment, mean = s[1] / s[0];
-      p += dim == 2 ? beyond_mean<2>(m, s[0], mean, state.rho0, a)
-                    : beyond_mean<3>(m, s[0], mean, state.rho0, a);
+      const double *const moments = s + first_moment, mean = s[1] / s[0];
+      p += dim == 2 ? beyond_mean<2>(moments, s[0], mean, state.rho0, a)
+                    : beyond_mean<3>(moments, s[0], mean, state.rho0, a);
     }
     p = std::max(p, state.floor);
     if (stiffness) {

@@ -72,8 +72,13 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
                                               // may be within the kernel's support
   void sum_up();
   double **sum;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d
-                   // W, d d W, p d W, d = x_wall - x
+                   // W, d d W, p d W, d = x_wall - x; with turns of d W
   int nsum, first_moment, first_stiffness;
+  bool turns;                      // walls that fluid sticks to may
+  std::vector<int> first, near;    // of each local member, where its neighbors in the wall begin;
+                                   // these
+  void find_near();
+  void add_turn(int m, const double *way, double *v) const;
   double force_on[3];    // this group, this rank's part
 
   template <int D>
