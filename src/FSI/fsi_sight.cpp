@@ -30,6 +30,8 @@ static constexpr int NTABLE = 400;    // distances for which forces are tabulate
 // it as long as the mean place of those around leans to no side by more than this: 1 is at an edge,
 // where it is so much of the radius, 5/16 in 2D and 64/(70 pi) in 3D
 static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4, AT_EDGE = 0.3;
+// (distance over support)^2 from which on kernels are zero half a step ago, too
+static constexpr double FAR = 1.1;
 
 Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
     Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{}, reach(0.0),
@@ -200,16 +202,16 @@ void Sight::see_images()
 
 bool Sight::may_hide(const double *y, double slack) const
 {
-  double d[3], dsq = 0.0;
+  double d[3] = {}, dsq = 0.0;
   for (int k = 0; k < scene.dim; k++) {
     d[k] = y[k] - from[k];
     dsq += d[k] * d[k];
   }
   const double length = std::sqrt(dsq);
+  for (double &e : d) e /= length;
   return std::any_of(seen.begin(), seen.end(), [&](const Seen &s) {
     if (!s.thin) return false;
-    double along = 0.0;
-    for (int k = 0; k < scene.dim; k++) along += s.x[k] * d[k] / length;
+    const double along = MathExtra::dot3(s.x, d);
     const double off = s.dx + slack;
     return along > -slack && along < length + slack && s.rsq - along * along < off * off;
   });
@@ -227,20 +229,25 @@ static double smooth(double x)
 
 double Sight::visible(const double *y, double cut) const
 {
+  double dsq = 0.0;
+  for (int k = 0; k < scene.dim; k++) dsq += (y[k] - from[k]) * (y[k] - from[k]);
+  return dsq < FAR * cut * cut ? left_of(y, cut) : 1.0;
+}
+
+double Sight::left_of(const double *y, double cut) const
+{
   const double cutsq = cut * cut;
   double d[3] = {}, dsq = 0.0;
   for (int k = 0; k < scene.dim; k++) {
     d[k] = y[k] - from[k];
     dsq += d[k] * d[k];
   }
-  const auto along = [&](const Seen &s) {
-    return (s.x[0] * d[0] + s.x[1] * d[1] + s.x[2] * d[2]) / dsq;
-  };
   double sum = 0.0, middle = 0.0, spacing = 0.0;
   for (const auto &s : seen) {
-    if (!s.thin || s.rsq >= cutsq) continue;
-    const double t = along(s), near = 1.0 - (s.rsq - t * t * dsq) / (s.dx * s.dx);
-    if (t <= 0.0 || t >= 1.0 || near <= 0.0) continue;
+    const double along = MathExtra::dot3(s.x, d);
+    if (!s.thin || s.rsq >= cutsq || along <= 0.0 || along >= dsq) continue;
+    const double t = along / dsq, near = 1.0 - (s.rsq - t * t * dsq) / (s.dx * s.dx);
+    if (near <= 0.0) continue;
     const double met = 4.0 * t * (1.0 - t) * near * near;
     sum += met;
     middle += met * t;
@@ -252,9 +259,10 @@ double Sight::visible(const double *y, double cut) const
       std::max(cut - std::sqrt(dsq) * std::max(middle, 1.0 - middle), spacing / sum);
   double weight = 0.0, place[3] = {};
   for (const auto &s : seen) {
-    const double t = along(s), off = t - middle;
+    if (s.rsq >= cutsq) continue;
+    const double t = MathExtra::dot3(s.x, d) / dsq, off = t - middle;
     const double rest = 1.0 - (s.rsq - t * t * dsq + off * off * dsq) / (radius * radius);
-    if (rest <= 0.0 || s.rsq >= cutsq || s.rsq + (1.0 - 2.0 * t) * dsq >= cutsq) continue;
+    if (rest <= 0.0 || s.rsq + (1.0 - 2.0 * t) * dsq >= cutsq) continue;
     const double w = s.volume * rest * rest;
     weight += w;
     for (int k = 0; k < scene.dim; k++) place[k] += w * (s.x[k] - t * d[k]);
@@ -308,7 +316,7 @@ Sight::Fill Sight::fill(size_t level, const Face &face) const
   double y[3];
   const double across = 2.0 * face.distance + face.thickness - scene.dx_of(face.type);
   for (int d = 0; d < 3; d++) y[d] = from[d] + across * face.normal[d];
-  const double there = 1.0 - visible(y, scene.levels[level].cut);
+  const double there = 1.0 - left_of(y, scene.levels[level].cut);
   const auto over = [&](double whole, double rest) {
     if (rest <= 0.0 || whole <= rest) return 1.0;
     return std::min(1.0 + there * rest / (whole - rest), MOST);

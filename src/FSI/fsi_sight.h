@@ -43,8 +43,8 @@ namespace FSI {
     void look_from(const double *x, double reach, double slack = 0.0);
     // anything of y, if each distance may change by slack?
     bool may_hide(const double *y, double slack) const;
-    // part of what is at y, to a pair of this support. The same from y to x, and on each rank that
-    // has one of both
+    // part of what is at y, to a pair of this support, as far as that matters. The same from y to x,
+    // and on each rank that has one of both
     double visible(const double *y, double cut) const;
     // of the body beside x: distance of the first layer along its normal, which points to it, and
     // how thick it is
@@ -87,6 +87,7 @@ namespace FSI {
     std::vector<std::vector<Fill>> half_space;
     std::vector<double> tabulated;    // spacings of levels
     Fill beyond(size_t level, int type, double distance) const;
+    double left_of(const double *y, double cut) const;
     bool counts(int type) const;
     void see_images();
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true

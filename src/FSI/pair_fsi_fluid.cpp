@@ -744,6 +744,19 @@ std::vector<RowList *> PairFSIFluid::rows_of_fluids()
   return rows_of;
 }
 
+// the largest support of a fluid particle and these neighbors
+double PairFSIFluid::farthest_of(int i, const int *neighbors, int n) const
+{
+  const auto &resolution = fix_fsi->resolution;
+  const int *const type = atom->type;
+  double other = resolution[type[i]].cut;
+  for (int jj = 0; jj < n; jj++) {
+    const int t = type[neighbors[jj]];
+    if (fix_fsi->state[t].species == FLUID) other = std::max(other, resolution[t].cut);
+  }
+  return 0.5 * (resolution[type[i]].cut + other);
+}
+
 // rows of those fluid neighbors of i that thin bodies may hide before lists are built again: marks
 // them
 void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
@@ -754,7 +767,8 @@ void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
   const int *const type = atom->type;
   const auto &level = fix_fsi->level_of;
   const size_t *const of_levels = &of_hidden[fix_fsi->levels.size() * level[type[i]]];
-  sight.look_from(atom->x[i], fix_fsi->cut, skin);
+  sight.look_from(atom->x[i], fix_fsi->has_levels() ? farthest_of(i, neighbors, n) : fix_fsi->cut,
+                  skin);
   hides.resize(n);
   for (int jj = 0; jj < n; jj++) {
     const int j = neighbors[jj];

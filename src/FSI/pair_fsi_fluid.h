@@ -152,6 +152,7 @@ class PairFSIFluid : public PairFSI {
   // fluid particles that may have a thin body beside them before lists are built again
   std::vector<int> beside;
   void look_past_thin_bodies();
+  double farthest_of(int i, const int *neighbors, int n) const;
   void find_hidden(int i, const int *neighbors, int n, const std::vector<int> &fluid_types,
                    std::vector<char> &hides);
   // particles as the loop over these rows sees them, and that loop
