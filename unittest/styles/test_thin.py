@@ -439,7 +439,7 @@ def test_finer_water_is_pushed_as_alone(layers, dim, second):
 def test_which_pairs_in_levels(dim):
     """test_which_pairs where each pair has kernel and support of the mean spacing, also in what hides it, and volumes of the lattices"""
     x, plate = plate_between(dim)
-    fine = ~plate & (np.random.default_rng(6).random(len(x)) < 0.5)
+    fine = ~plate & (np.random.default_rng(6).random(len(x)) < 0.65)
     left, right = ~plate & (x[:, 0] < 0), ~plate & (x[:, 0] > 0)
     with Scene(x, dim=dim, dx=0.1, type=1 + plate + 2 * fine, mol=1 + plate, held=plate, materials=(WATER, WALL, WATER), fluid="tension yes",
                density=f"spacing 2 0.05 spacing 3 {0.1 / JUMP!r} thin 2", commands=["fix w held fsi/wall/particle"]) as s:
