@@ -219,22 +219,24 @@ def blade(skin, thin="thin 2", levels=False):
 
 def pushes(layers, dim, places, wide=21, aside=0.0, coarsest=None, second=None):
     """Of a fluid particle of spacing 0.1 at these distances before the first of so many layers of a wall of a third of that: its force along the normal.
-    coarsest: spacing of other fluid, far away; second: place of another such wall"""
+    coarsest: spacing of other fluid, of a particle behind the wall; second: place of another such wall"""
     dx, ds = 0.1, 0.1 / 3
     plate = lattice([layers] + [wide] * (dim - 1), ds)
     plate -= [plate[0, 0], *plate[:, 1:].mean(0)]
-    x = np.concatenate([np.zeros((1, 3)), plate, *([plate + [second, 0, 0]] if second else []), *([[[-5, 0, 0]]] if coarsest else [])])
-    solid = x[:, 0] > -1e-9
-    solid[0] = False
+    parts = [np.array([[0, aside, 0]]), plate, *([plate + [second, 0, 0]] if second else []), *([[[0, aside, 0]]] if coarsest else [])]
+    x, solid = np.concatenate(parts), np.repeat([False, True, bool(second), False][:len(parts)], [len(p) for p in parts])
     type_, more = 1 + solid, dict(dx=dx, materials=(WATER, WALL), density=f"spacing 2 {ds!r} thin 2")
     if coarsest:
         type_[0] = 3
         more = dict(dx=coarsest, materials=(WATER, WALL, WATER), density=f"spacing 2 {ds!r} spacing 3 {dx!r} thin 2")
-    with Scene(x, dim=dim, kernel="quintic", hdx=1.0, type=type_, mol=1 + solid, held=solid, **more, box=((-10, -5, -5), (5, 5, 5)),
+    with Scene(x, dim=dim, kernel="quintic", hdx=1.0, type=type_, mol=1 + solid, held=solid, **more,
                fluid="tension yes solid/guard 0 background 1000", commands=["fix w held fsi/wall/particle"]) as s:
         found = []
         for place in places:
-            s.put("x", np.concatenate([[[-place, aside, 0]], x[1:]]))
+            x[0, 0] = -place
+            if coarsest:
+                x[-1, 0] = place
+            s.put("x", x)
             s.run()
             found.append(-s.get("f")[0, 0])
     return np.array(found)
@@ -426,12 +428,12 @@ def test_two_levels_in_levels(kind, layers, ratio, coarse):
     assert np.abs(many[0] - one[0]).max() < 0.01 and many[1] < one[1] + 0.01 and many[2] == 0
 
 
-@pytest.mark.parametrize("layers, dim, second", [(1, 2, None), (2, 2, None), (2, 3, None), (1, 2, 0.35)])
+@pytest.mark.parametrize("layers, dim, second", [(1, 2, None), (2, 2, None), (2, 3, None), (1, 2, 0.33)])
 def test_finer_water_is_pushed_as_alone(layers, dim, second):
     """Who is of a finer level meets thin bodies with its own kernel, to the bit nearly: the force is that in water of its own spacing alone. A second wall
     beyond its support, but within that of the coarser water, makes the first no thicker."""
     places = 0.3 * np.linspace(0.05, 0.99, 12)
-    alone, finer = (pushes(layers, dim, places, coarsest=c, second=second, aside=0.01) for c in (None, 0.2))
+    alone, finer = (pushes(layers, dim, places, coarsest=c, second=second, aside=0.01) for c in (None, 0.13))
     close(finer, alone, 1e-12)
 
 
@@ -521,10 +523,10 @@ def test_no_pair_merges_through_a_plate(dim):
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_nobody_splits_across_a_plate(dim):
-    """Coarse water that has come as near to a plate as a twentieth of its spacing: each side keeps its mass, and who has no room waits"""
+    """Coarse water that has come, on one side, as near to a plate as a twentieth of its spacing: both sides keep their mass, and who has no room waits"""
     coarse = 0.1
     x = lattice([4, 6] + [6] * (dim - 2), coarse, center=True)
-    x[:, 0] = np.sign(x[:, 0]) * (np.abs(x[:, 0]) - 0.45 * coarse)
+    x[x[:, 0] > 0, 0] -= 0.45 * coarse
     plate = lattice([1, 60] + [60] * (dim - 2), coarse / 4, center=True)
     y, m, (splits, _) = changed(x, False, coarse, plate, "INF INF INF INF INF INF", dim=dim)
     print(splits, np.abs(y[:, 0]).min())
