@@ -371,12 +371,16 @@ def with_plate(dim, **options):
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("walls", [False, True])
-def test_momentum(dim, walls):
-    """Kept to round-off, what wall particles get included"""
+@pytest.mark.parametrize("levels", [False, True])
+def test_momentum(dim, walls, levels):
+    """Kept to round-off, what wall particles get included; also where half of the water is finer"""
     x, plate = plate_between(dim)
     v = np.where(plate[:, None], 0, np.random.default_rng(5).uniform(-0.3, 0.3, x.shape) * ([1, 1, dim - 2]))
-    body = dict(materials=(WATER + " viscosity 1", WALL)) if walls else dict(materials=(WATER + " viscosity 1", RUBBER), solid_style="fsi/solid")
-    with Scene(x, v, dim=dim, dx=0.1, type=1 + plate, mol=1 + plate, dt=2e-4, density=("spacing 2 0.05" if walls else "") + " thin 2", **body,
+    water = WATER + " viscosity 1"
+    body = dict(materials=(water, WALL if walls else RUBBER, water)[:2 + levels])
+    fine = levels & ~plate & (np.random.default_rng(6).random(len(x)) < 0.5)
+    spacing = "spacing 2 0.05 " * walls + f"spacing 3 {0.1 / JUMP!r} " * levels
+    with Scene(x, v, dim=dim, dx=0.1, type=1 + plate + 2 * fine, mol=1 + plate, dt=2e-4, density=spacing + "thin 2", **body,
                held=plate if walls else None, fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1 shift 0.1",
                commands=["fix w held fsi/wall/particle slip no"] if walls else []) as s:
         s.run()
