@@ -74,10 +74,8 @@ class Adviser : protected Pointers {
       nothing_acts();
       torn_streams();
       speeds();
-      if (scene.has_levels())
-        levels();
-      else if (update->ntimestep == 0)
-        seen_through();
+      if (scene.has_levels()) levels();
+      if (update->ntimestep == 0) seen_through();
     }
     weightless();
     if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();

@@ -827,9 +827,8 @@ namespace FSI {
               if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
             constexpr bool likes = !unequal_rows && !fades &&
                 (!parts || (ONE_BY_ONE && diffusing)) && (diffusing || (plain && alone));
-            constexpr bool unlikes =
-                unequal_rows && (!parts || ONE_BY_ONE) && diffusing && (flags() & SUMS) &&
-                fades == (shifts != 0);
+            constexpr bool unlikes = unequal_rows && (!parts || ONE_BY_ONE) && diffusing &&
+                (flags() & SUMS) && fades == (shifts != 0);
             if constexpr ((likes || unlikes) &&
                           (shifts == 0 || shifts == (SHIFT | EDGES) ||
                            shifts == (plain ? SHIFT | SLOPES : SHIFT)))

@@ -38,13 +38,13 @@ namespace FSI {
 
     // may a thin one come within the support before lists are built again?
     bool near(const double *x) const;
-    // x: for the next four; reach: the largest support that they ask for, that of the coarsest fluid
-    // at most; slack: look so much farther, by the skin at most
+    // x: for the next four; reach: the largest support that they ask for, at most that of the
+    // coarsest fluid; slack: look so much farther, by the skin at most
     void look_from(const double *x, double reach, double slack = 0.0);
     // anything of y, if each distance may change by slack?
     bool may_hide(const double *y, double slack) const;
-    // part of what is at y, to a pair of this support, as far as that matters. The same from y to x,
-    // and on each rank that has one of both
+    // part of what is at y, to a pair of this support, as far as that matters. The same from y to
+    // x, and on each rank that has one of both
     double visible(const double *y, double cut) const;
     // of the body beside x: distance of the first layer along its normal, which points to it, and
     // how thick it is
@@ -74,7 +74,7 @@ namespace FSI {
       int i = 0;
       bool thin = false;
     };
-    std::vector<Place> places;    // by cell
+    std::vector<Place> places;        // by cell
     double from[3], reach, margin;    // what is seen is within both together
     struct Seen {
       double x[3], rsq;     // from x

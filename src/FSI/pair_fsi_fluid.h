@@ -104,7 +104,7 @@ class PairFSIFluid : public PairFSI {
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
-  struct Meeting;                       // pairs of one kernel
+  struct Meeting;                   // pairs of one kernel
   std::vector<Meeting> meetings;    // those of each level, of two levels, of what thin bodies hide
   std::vector<size_t> of_two_levels, of_hidden;    // the meetings of two fluids
   void find_meetings();
