@@ -2,7 +2,7 @@
 """Figures and pictures of the flexible plate in a stream.   usage: analyze.py FOLDER
 
 main reads series.csv, particles.dump and log.lammps of one run and writes summary.json, plate.png and deflection.png beside them; study
-compares the runs of cases.json.
+compares the runs of cases.json. Types 1, 4, 5, ... are water, from the coarsest on.
 """
 
 import sys
@@ -17,7 +17,7 @@ from matplotlib.colors import Normalize  # noqa: E402
 from fsi import dump, log, plot, series  # noqa: E402
 from fsi.summary import Summary  # noqa: E402
 
-WATER = 1
+PLATE = (2, 3)
 EXPERIMENT = {"drag": 1.15, "dx": 2.14, "dz": 0.59}  # Luhar and Nepf 2011
 COMPUTED = {"drag": 1.03, "dx": 2.12, "dz": 0.54}  # Tian et al. 2014, an immersed boundary and finite elements
 SOURCE = "experiment, Luhar & Nepf 2011"
@@ -88,8 +88,8 @@ def add(summary, folder, suffix="", target=None):
 def picture_plate(path, frame, values):
     """The plate with its von Mises stress, and the water's speed in a layer behind its middle and near the floor: parallel projection."""
     b, speed = values["breadth"], np.linalg.norm(frame.vector(("vx", "vy", "vz")), axis=1) / values["velocity"]
-    points, spacing = frame.vector("xyz") / b, values["dx"]
-    water = frame["type"] == WATER
+    points, spacing = frame.vector("xyz") / b, values["dx"] * 2.0**(-np.maximum(frame["type"] - 3, 0) / 3)
+    water = ~np.isin(frame["type"], PLATE)
     plate = ~water & (points[:, 2] > 0.0)
     flat = points[:, [0, 2]] + points[:, 1:2] * (0.35, 0.28)    # y goes away from the eye
     # layers of some spacings, so that what stands behind shows where particles are apart
@@ -100,7 +100,7 @@ def picture_plate(path, frame, values):
     colours = [plot.matplotlib.colormaps[name] for name in (plot.FLUID_COLOURS, plot.SOLID_COLOURS)]
     shown = back | floor | plate
     rgba = np.where(plate[shown, None], colours[1](norms[1](stress[shown])), colours[0](norms[0](speed[shown])))
-    limits = [(flat[shown, k].min() - spacing, flat[shown, k].max() + spacing) for k in (0, 1)]
+    limits = [(flat[shown, k].min() - values["dx"], flat[shown, k].max() + values["dx"]) for k in (0, 1)]
     width = 5.6
     height = width * np.ptp(limits[1]) / np.ptp(limits[0])
     with plot.picture(path, width + 1.5, height + 0.3) as figure:
@@ -129,7 +129,8 @@ def picture_deflection(path, runs):
 
 
 def _label(values):
-    return f"water {values['dx']:.3g} b, duct {values['width']:.3g} b x {values['height']:.3g} b" + (", rigid" if values["plate"] == "rigid" else "")
+    finest = f" to {values['dx'] * 2**(-values['levels'] / 3):.3g}" if values["levels"] else ""
+    return f"water {values['dx']:.3g}{finest} b, duct {values['width']:.3g} b x {values['height']:.3g} b" + (", rigid" if values["plate"] == "rigid" else "")
 
 
 def main(folder):

@@ -255,7 +255,7 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
       if (vol == 0.0) continue;
       const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, fix_fsi->cut) : 0;
       const bool may_hide = sight && fluid && sight->near(atom->x[i]);
-      if (may_hide) sight->look_from(atom->x[i]);
+      if (may_hide) sight->look_from(atom->x[i], kernel.cut);
       int lo[3], hi[3];
       place.range(x, kernel.cut, lo, hi);
       for (int a = lo[0]; a <= hi[0]; a++)
@@ -274,7 +274,7 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
             if (may_hide) {
               double seen[3];
               for (int d = 0; d < 3; d++) seen[d] = xk[d] - p.shift[d];
-              part *= sight->visible(seen);
+              part *= sight->visible(seen, kernel.cut);
             }
             const auto add = [&](double w, const double *velocity) {
               w *= part;

@@ -28,6 +28,7 @@
 #include "fsi_population.h"
 #include "fsi_record.h"
 #include "fsi_settling.h"
+#include "fsi_sight.h"
 #include "fsi_split.h"
 #include "fsi_zones.h"
 #include "math_extra.h"
@@ -216,6 +217,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
 {
   const bool first = update->ntimestep == update->firststep;
   renew_ghosts();
+  if (fix_fsi->sight) fix_fsi->sight->find_bodies();
   std::fill_n(mine, NTOTAL, 0.0);
   look(may_split, may_merge);
   if (zones->moving() || first) check_zones();
@@ -386,6 +388,15 @@ void FixFSIRefine::warn_of_bodies()
                    who, coarse.count, coarse.first);
 }
 
+// Past thin bodies beside i, through which nobody splits or merges, or null
+const Sight *FixFSIRefine::sight_from(int i) const
+{
+  Sight *const sight = fix_fsi->sight.get();
+  if (!sight || !sight->near(atom->x[i])) return nullptr;
+  sight->look_from(atom->x[i], fix_fsi->resolution[atom->type[i]].cut);
+  return sight;
+}
+
 static uint64_t hash_of(tagint a, tagint b)
 {
   uint64_t hash = 14695981039346656037ULL;
@@ -420,9 +431,11 @@ template <int D> void FixFSIRefine::slopes(Division &two, const Cells &cells) co
   double *const *const x = atom->x, *const *const v = atom->v, *const rho = atom->rho;
   const int i = two.i;
   const double dx = fix_fsi->dx_of(atom->type[i]), cut = fix_fsi->resolution[atom->type[i]].cut;
+  const Sight *const sight = sight_from(i);
   std::vector<int> near;    // the same sums in whatever order particles are
   cells.around(x[i], [&](int j, double rsq) {
-    if (j != i && rsq < cut * cut && level(j) >= 0) near.push_back(j);
+    if (j == i || rsq >= cut * cut || level(j) < 0) return;
+    if (!sight || sight->visible(x[j], cut) == 1.0) near.push_back(j);
   });
   std::sort(near.begin(), near.end(), [&](int a, int b) {
     return atom->tag[a] != atom->tag[b] ? atom->tag[a] < atom->tag[b] : a < b;
@@ -457,7 +470,9 @@ int FixFSIRefine::choose_direction(int i, const Cells &cells) const
   const double *const x = atom->x[i];
   const int dim = fix_fsi->dim;
   const double dx = fix_fsi->dx_of(atom->type[i]), finer = split_spacing(dim),
-               distance = split_distance(dim) * dx, reach = CROWDED * dx;
+               distance = split_distance(dim) * dx, reach = CROWDED * dx,
+               cut = fix_fsi->resolution[atom->type[i]].cut;
+  const Sight *const sight = sight_from(i);
   std::vector<SplitNeighbor> crowd;
   cells.around(x, [&](int j, double rsq) {
     if (j == i || rsq > reach * reach) return;
@@ -478,7 +493,12 @@ int FixFSIRefine::choose_direction(int i, const Cells &cells) const
     crowd.push_back(n);
   });
   return split_direction(directions, crowd, distance, [&](const double *offset) {
-    const double at[3] = {x[0] + offset[0], x[1] + offset[1], x[2] + offset[2]};
+    double at[3], behind[3];    // of its cell
+    for (int d = 0; d < 3; d++) {
+      at[d] = x[d] + offset[d];
+      behind[d] = at[d] + 0.5 * finer * dx / distance * offset[d];
+    }
+    if (sight && sight->visible(behind, cut) < 1.0) return HUGE_VAL;
     return crowd_of_walls(at, dx);
   });
 }
@@ -565,7 +585,9 @@ void FixFSIRefine::choose_partners()
   for (int round = 0; round < ROUNDS; round++) {
     for (int i = 0; i < atom->nlocal; i++) {
       if (!wants(i) || partner[i] < 0) continue;
-      const double per_dx = 1.0 / fix_fsi->dx_of(atom->type[i]);
+      const double per_dx = 1.0 / fix_fsi->dx_of(atom->type[i]),
+                   cut = fix_fsi->resolution[atom->type[i]].cut;
+      const Sight *const sight = sight_from(i);
       std::pair<int, uint64_t> best;
       chosen[i] = -1;
       cells.around(atom->x[i], [&](int j, double rsq) {
@@ -573,6 +595,7 @@ void FixFSIRefine::choose_partners()
         if (segments && are_apart(fix_fsi->walls, atom->x[i], atom->x[j])) return;
         const double q = std::sqrt(rsq) * per_dx;
         if (q >= ((carried[i] | carried[j]) & EAGER ? FAR_REACH : REACH)) return;
+        if (sight && sight->visible(atom->x[j], cut) < 1.0) return;
         const int late = (carried[i] | carried[j]) & EAGER ? 0 : LATER;
         const std::pair<int, uint64_t> key = {late + (int) (PER_SPACING * q + OFF_LATTICE),
                                               hash_of(tag[i], tag[j])};

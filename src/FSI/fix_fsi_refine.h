@@ -30,6 +30,7 @@ FixStyle(fsi/refine,FixFSIRefine);
 namespace LAMMPS_NS {
 namespace FSI {
   class Cells;
+  class Sight;
   class Zones;
 }    // namespace FSI
 
@@ -97,6 +98,7 @@ class FixFSIRefine : public Fix {
   bool in_open_end(int i, int wish) const;
   void check_zones() const;
   void warn_of_bodies();
+  const FSI::Sight *sight_from(int i) const;
   double crowd_of_walls(const double *x, double dx) const;
   int choose_direction(int i, const FSI::Cells &) const;
   void choose_directions(const std::vector<int> &which, const FSI::Cells &);

@@ -74,10 +74,8 @@ class Adviser : protected Pointers {
       nothing_acts();
       torn_streams();
       speeds();
-      if (scene.has_levels())
-        levels();
-      else if (update->ntimestep == 0)
-        seen_through();
+      if (scene.has_levels()) levels();
+      if (update->ntimestep == 0) seen_through();
     }
     weightless();
     if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
@@ -316,6 +314,9 @@ class Adviser : protected Pointers {
     if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY ||
         fluids.couples_stress)
       return;
+    const auto support = [this](int i, int j) {
+      return 0.5 * (scene.resolution[atom->type[i]].cut + scene.resolution[atom->type[j]].cut);
+    };
     const double reach = PART * scene.cut;
     const Cells others(atom->x, atom->nlocal + atom->nghost, scene.dim, 0.5 * reach, [this](int i) {
       return fluid(i);
@@ -333,10 +334,11 @@ class Adviser : protected Pointers {
       tagint mine = MAXTAGINT, first;
       for (size_t k = 0; k < beside.size(); k += beside.size() / ENOUGH + 1) {
         const int i = beside[k];
-        sight.look_from(atom->x[i]);
+        sight.look_from(atom->x[i], scene.cut);
         others.around(atom->x[i], reach, [&](int j, double rsq) {
-          if (j != i && atom->tag[i] < mine && rsq < reach * reach &&
-              sight.may_hide(atom->x[j], 0.0) && sight.visible(atom->x[j]) < HIDDEN)
+          const double cut = support(i, j);
+          if (j != i && atom->tag[i] < mine && rsq < PART * cut * PART * cut &&
+              sight.may_hide(atom->x[j], 0.0) && sight.visible(atom->x[j], cut) < HIDDEN)
             mine = atom->tag[i];
         });
       }

@@ -261,8 +261,6 @@ void Check::fluid_spacings(const std::string &what) const
           "another mode than fix fsi solid summation", jump);
   require(what, !fluid.density_at_surfaces, "pair_style fsi/fluid density/surface no", jump);
   require(what, !fluid.couples_stress, COUPLE_WALL, OWN_VOLUMES);
-  require(what, !scene.sight, "fix fsi without thin",
-          "what a thin body hides is found for one spacing");
 }
 
 void Check::thin_bodies() const

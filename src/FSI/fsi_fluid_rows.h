@@ -827,8 +827,8 @@ namespace FSI {
               if (!fluid) return loop(std::integral_constant<int, WITH_SOLID>(), flags);
             constexpr bool likes = !unequal_rows && !fades &&
                 (!parts || (ONE_BY_ONE && diffusing)) && (diffusing || (plain && alone));
-            constexpr bool unlikes =
-                unequal_rows && !parts && diffusing && (flags() & SUMS) && fades == (shifts != 0);
+            constexpr bool unlikes = unequal_rows && (!parts || ONE_BY_ONE) && diffusing &&
+                (flags() & SUMS) && fades == (shifts != 0);
             if constexpr ((likes || unlikes) &&
                           (shifts == 0 || shifts == (SHIFT | EDGES) ||
                            shifts == (plain ? SHIFT | SLOPES : SHIFT)))
@@ -875,8 +875,7 @@ namespace FSI {
                 !((flags() & IMAGES) && (flags() & UNEQUAL));
             constexpr bool with_parts = flags() & PARTLY;
             if constexpr (with_parts) {
-              if constexpr (ONE_BY_ONE && effects == EFFECTS && (flags() & SUMS) &&
-                            !(flags() & UNEQUAL))
+              if constexpr (ONE_BY_ONE && effects == EFFECTS && (flags() & SUMS))
                 loop(std::integral_constant<int, WITH_FLUID>(), flags);
             } else if constexpr ((effects == EFFECTS && counted) || (alone && !ONE_BY_ONE)) {
               if constexpr (!(flags() & UNEQUAL) || (flags() & SUMS))
@@ -943,11 +942,9 @@ namespace FSI {
       with_flags<Flag::DIVERGENCE | Flag::IMAGES | Flag::BOTH | Flag::UNEQUAL | Flag::PARTLY>(
           what | (image ? Flag::IMAGES : 0) | (both ? Flag::BOTH : 0) | partly(in),
           [&](auto flags) {
-            constexpr bool of_fluids =
-                ONE_BY_ONE && (flags() & Flag::BOTH) && !(flags() & Flag::UNEQUAL);
-            if constexpr ((flags() & Flag::PARTLY)
-                              ? of_fluids
-                              : !(flags() & Flag::UNEQUAL) || !(flags() & Flag::DIVERGENCE))
+            constexpr bool of_fluids = ONE_BY_ONE && (flags() & Flag::BOTH),
+                           known = !(flags() & Flag::UNEQUAL) || !(flags() & Flag::DIVERGENCE);
+            if constexpr (known && (of_fluids || !(flags() & Flag::PARTLY)))
               run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
                 distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror,
                                                             kernel, in, x, vol, sum);

@@ -30,40 +30,54 @@ static constexpr int NTABLE = 400;    // distances for which forces are tabulate
 // it as long as the mean place of those around leans to no side by more than this: 1 is at an edge,
 // where it is so much of the radius, 5/16 in 2D and 64/(70 pi) in 3D
 static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4, AT_EDGE = 0.3;
+// (distance over support)^2 from which on kernels are zero half a step ago, too
+static constexpr double FAR = 1.1;
+
+Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
+    Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{}, reach(0.0),
+    margin(0.0)
+{
+}
 
 // A layer of particles counts as a smeared one, with the kernel that is sharper where its lattice
 // is finer than the fluid's.
-Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
-    Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{},
-    half_space(types.size())
+void Sight::tabulate()
 {
-  for (size_t t = 1; t < types.size(); t++) {
+  std::vector<double> spacings;
+  for (const auto &level : scene.levels) spacings.push_back(level.dx);
+  if (spacings == tabulated) return;
+  tabulated = spacings;
+  half_space.assign(spacings.size() * types.size(), {});
+  for (size_t k = 0; k < half_space.size(); k++) {
+    const Resolution &level = scene.levels[k / types.size()];
+    const size_t t = k % types.size();
     if (types[t] == 0.0) continue;
-    const double dx = scene.dx_of(t), sharper = scene.sharper_of(t, scene.dx);
-    with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &kernel) {
+    const double dx = scene.dx_of(t), sharper = scene.sharper_of(t, level.dx);
+    with_kernel(scene.kernel, scene.dim, level.h, [&](const auto &kernel) {
       constexpr int D = std::decay_t<decltype(kernel)>::DIM, STEPS = 200;
       const double step = kernel.cut / STEPS;
-      for (int k = 0; k <= NTABLE; k++) {
+      for (int place = 0; place <= NTABLE; place++) {
         Fill sum = {0.0, 0.0};
-        for (double a = k * kernel.cut / NTABLE; a < kernel.cut; a += dx)
+        for (double a = place * kernel.cut / NTABLE; a < kernel.cut; a += dx)
           for (int m = 0; m < STEPS; m++) {
             const double s = (m + 0.5) * step, r = std::sqrt(a * a + s * s);
             if (r >= kernel.cut) continue;
             sum.force -= (D == 3 ? s : 1.0) * a * kernel.sharper_gradient(r, sharper);
             sum.weight += (D == 3 ? s : 1.0) * kernel.sharper(r, sharper);
           }
-        half_space[t].push_back(sum);
+        half_space[k].push_back(sum);
       }
     });
   }
 }
 
-Sight::Fill Sight::beyond(int type, double distance) const
+Sight::Fill Sight::beyond(size_t level, int type, double distance) const
 {
-  const double at = std::max(distance, 0.0) / scene.cut * NTABLE;
+  const double at = std::max(distance, 0.0) / scene.levels[level].cut * NTABLE;
   const int k = static_cast<int>(at);
   if (k >= NTABLE) return {0.0, 0.0};
-  const Fill &a = half_space[type][k], &b = half_space[type][k + 1];
+  const Fill *const table = half_space[level * types.size() + type].data();
+  const Fill &a = table[k], &b = table[k + 1];
   return {a.force + (at - k) * (b.force - a.force), a.weight + (at - k) * (b.weight - a.weight)};
 }
 
@@ -141,11 +155,13 @@ bool Sight::near(const double *x) const
 
 // A solid that passes through a mirror wall goes on in its images, which fluids meet in place of
 // what is behind. Walls of particles have none: they go on behind a mirror themselves.
-void Sight::look_from(const double *x, double slack)
+void Sight::look_from(const double *x, double largest, double slack)
 {
-  const double within = (scene.cut + slack) * (scene.cut + slack);
+  reach = largest;
+  margin = slack;
+  const double within = (reach + slack) * (reach + slack);
   const auto &walls = scene.walls;
-  const bool by_walls = walls.near(x, scene.cut + slack);
+  const bool by_walls = walls.near(x, reach + slack);
   seen.clear();
   std::copy_n(x, 3, from);
   for_near(x, [&](const Place &p) {
@@ -172,12 +188,12 @@ void Sight::look_from(const double *x, double slack)
 void Sight::see_images()
 {
   const auto &walls = scene.walls;
-  const int mask = walls.near(from, scene.cut);
+  const int mask = walls.near(from, reach);
   for (size_t k = 0, n = seen.size(); k < n; k++) {
     const Seen s = seen[k];
     if (scene.state[s.type].species != SOLID) continue;
     const double y[3] = {from[0] + s.x[0], from[1] + s.x[1], from[2] + s.x[2]};
-    walls.images(mask & walls.near(y, scene.cut), s.rsq, from, y, scene.cut * scene.cut,
+    walls.images(mask & walls.near(y, reach), s.rsq, from, y, reach * reach,
                  [&](const Walls::Reflection &, double rsq, const double *d) {
                    seen.push_back({{-d[0], -d[1], -d[2]}, rsq, s.dx, s.volume, s.type, s.thin});
                  });
@@ -186,16 +202,16 @@ void Sight::see_images()
 
 bool Sight::may_hide(const double *y, double slack) const
 {
-  double d[3], dsq = 0.0;
+  double d[3] = {}, dsq = 0.0;
   for (int k = 0; k < scene.dim; k++) {
     d[k] = y[k] - from[k];
     dsq += d[k] * d[k];
   }
   const double length = std::sqrt(dsq);
+  for (double &e : d) e /= length;
   return std::any_of(seen.begin(), seen.end(), [&](const Seen &s) {
     if (!s.thin) return false;
-    double along = 0.0;
-    for (int k = 0; k < scene.dim; k++) along += s.x[k] * d[k] / length;
+    const double along = MathExtra::dot3(s.x, d);
     const double off = s.dx + slack;
     return along > -slack && along < length + slack && s.rsq - along * along < off * off;
   });
@@ -211,21 +227,27 @@ static double smooth(double x)
   return t * t * (3.0 - 2.0 * t);
 }
 
-double Sight::visible(const double *y) const
+double Sight::visible(const double *y, double cut) const
 {
-  const double cutsq = scene.cut * scene.cut;
+  double dsq = 0.0;
+  for (int k = 0; k < scene.dim; k++) dsq += (y[k] - from[k]) * (y[k] - from[k]);
+  return dsq < FAR * cut * cut ? left_of(y, cut) : 1.0;
+}
+
+double Sight::left_of(const double *y, double cut) const
+{
+  const double cutsq = cut * cut;
   double d[3] = {}, dsq = 0.0;
   for (int k = 0; k < scene.dim; k++) {
     d[k] = y[k] - from[k];
     dsq += d[k] * d[k];
   }
-  const auto along = [&](const Seen &s) {
-    return (s.x[0] * d[0] + s.x[1] * d[1] + s.x[2] * d[2]) / dsq;
-  };
   double sum = 0.0, middle = 0.0, spacing = 0.0;
   for (const auto &s : seen) {
-    const double t = along(s), near = 1.0 - (s.rsq - t * t * dsq) / (s.dx * s.dx);
-    if (!s.thin || t <= 0.0 || t >= 1.0 || near <= 0.0 || s.rsq >= cutsq) continue;
+    const double along = MathExtra::dot3(s.x, d);
+    if (!s.thin || s.rsq >= cutsq || along <= 0.0 || along >= dsq) continue;
+    const double t = along / dsq, near = 1.0 - (s.rsq - t * t * dsq) / (s.dx * s.dx);
+    if (near <= 0.0) continue;
     const double met = 4.0 * t * (1.0 - t) * near * near;
     sum += met;
     middle += met * t;
@@ -234,12 +256,13 @@ double Sight::visible(const double *y) const
   if (sum <= MISSES) return 1.0;
   middle /= sum;
   const double radius =
-      std::max(scene.cut - std::sqrt(dsq) * std::max(middle, 1.0 - middle), spacing / sum);
+      std::max(cut - std::sqrt(dsq) * std::max(middle, 1.0 - middle), spacing / sum);
   double weight = 0.0, place[3] = {};
   for (const auto &s : seen) {
-    const double t = along(s), off = t - middle;
+    if (s.rsq >= cutsq) continue;
+    const double t = MathExtra::dot3(s.x, d) / dsq, off = t - middle;
     const double rest = 1.0 - (s.rsq - t * t * dsq + off * off * dsq) / (radius * radius);
-    if (rest <= 0.0 || s.rsq >= cutsq || s.rsq + (1.0 - 2.0 * t) * dsq >= cutsq) continue;
+    if (rest <= 0.0 || s.rsq + (1.0 - 2.0 * t) * dsq >= cutsq) continue;
     const double w = s.volume * rest * rest;
     weight += w;
     for (int k = 0; k < scene.dim; k++) place[k] += w * (s.x[k] - t * d[k]);
@@ -250,10 +273,12 @@ double Sight::visible(const double *y) const
 }
 
 // The body is as thick as it is along its normal through x, which is the mean of what is on the
-// side of the nearest particle. What is seen beyond the support tells that it is thicker.
-bool Sight::find_face(Face &face) const
+// side of the nearest particle. What is seen beyond the support tells that it is thicker, but what
+// coarser fluid alone meets may be another one.
+bool Sight::find_face(size_t level, Face &face) const
 {
-  const double cutsq = scene.cut * scene.cut;
+  const double cut = scene.levels[level].cut, cutsq = cut * cut,
+               farthest = (cut + margin) * (cut + margin);
   const Seen *nearest = nullptr;
   for (const auto &s : seen)
     if (s.thin && s.rsq < cutsq && (!nearest || s.rsq < nearest->rsq)) nearest = &s;
@@ -267,10 +292,11 @@ bool Sight::find_face(Face &face) const
   const double length = MathExtra::len3(normal), dx = nearest->dx, tube = 0.75 * dx;
   if (length == 0.0) return false;
   for (double &e : normal) e /= length;
-  double front = scene.cut, back = 0.0;
+  double front = cut, back = 0.0;
   for (const auto &s : seen) {
+    if (!s.thin || s.rsq >= farthest) continue;
     const double depth = MathExtra::dot3(s.x, normal);
-    if (!s.thin || depth <= 0.0 || s.rsq - depth * depth > tube * tube) continue;
+    if (depth <= 0.0 || s.rsq - depth * depth > tube * tube) continue;
     front = std::min(front, depth);
     back = std::max(back, depth);
   }
@@ -281,16 +307,16 @@ bool Sight::find_face(Face &face) const
 // In the part in which the body hides the place that is as far behind it as x is before it. Not
 // where the rest of a half space pulls: the sharper kernel is negative at its end, and what is
 // missing may be as much as what is there.
-Sight::Fill Sight::fill(const Face &face) const
+Sight::Fill Sight::fill(size_t level, const Face &face) const
 {
   static constexpr double MOST = 20.0;    // x in the plane of a layer, which pushes to no side
-  const Fill all = beyond(face.type, face.distance),
-             missing = beyond(face.type, face.distance + face.thickness);
+  const Fill all = beyond(level, face.type, face.distance),
+             missing = beyond(level, face.type, face.distance + face.thickness);
   if (missing.weight == 0.0) return {1.0, 1.0};
   double y[3];
   const double across = 2.0 * face.distance + face.thickness - scene.dx_of(face.type);
   for (int d = 0; d < 3; d++) y[d] = from[d] + across * face.normal[d];
-  const double there = 1.0 - visible(y);
+  const double there = 1.0 - left_of(y, scene.levels[level].cut);
   const auto over = [&](double whole, double rest) {
     if (rest <= 0.0 || whole <= rest) return 1.0;
     return std::min(1.0 + there * rest / (whole - rest), MOST);

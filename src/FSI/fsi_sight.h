@@ -32,30 +32,34 @@ namespace FSI {
    public:
     // whose kernel and spacings are known; past types that are not 0
     Sight(LAMMPS *, const Scene &, const std::vector<double> &types);
+    void tabulate();         // when the fluids' levels are known: for fill()
     void find_bodies();      // when neighbor lists are new
     void follow_bodies();    // to where they are; what follows is said of then
 
     // may a thin one come within the support before lists are built again?
     bool near(const double *x) const;
-    // x: for the next four; slack: look so much farther than the support, by the skin at most
-    void look_from(const double *x, double slack = 0.0);
+    // x: for the next four; reach: the largest support that they ask for, at most that of the
+    // coarsest fluid; slack: look so much farther, by the skin at most
+    void look_from(const double *x, double reach, double slack = 0.0);
     // anything of y, if each distance may change by slack?
     bool may_hide(const double *y, double slack) const;
-    // part of what is at y. The same from y to x, and on each rank that has one of both
-    double visible(const double *y) const;
+    // part of what is at y, to a pair of this support, as far as that matters. The same from y to
+    // x, and on each rank that has one of both
+    double visible(const double *y, double cut) const;
     // of the body beside x: distance of the first layer along its normal, which points to it, and
     // how thick it is
     struct Face {
       int type = 0;
       double normal[3] = {}, distance = 0.0, thickness = 0.0;
     };
-    bool find_face(Face &) const;    // false: there is none within the support
+    // to a fluid particle of this level; false: there is none within its support
+    bool find_face(size_t level, Face &) const;
     // of a half-space of layers over those that there are: forces, and weights in sums of W, as
     // forces along the face are
     struct Fill {
       double force = 0.0, weight = 0.0;
     };
-    Fill fill(const Face &) const;
+    Fill fill(size_t level, const Face &) const;
 
     double memory_usage() const;
 
@@ -70,8 +74,8 @@ namespace FSI {
       int i = 0;
       bool thin = false;
     };
-    std::vector<Place> places;    // by cell
-    double from[3];
+    std::vector<Place> places;        // by cell
+    double from[3], reach, margin;    // what is seen is within both together
     struct Seen {
       double x[3], rsq;     // from x
       double dx, volume;    // spacing, of its cell
@@ -79,9 +83,11 @@ namespace FSI {
       bool thin;
     };
     std::vector<Seen> seen;
-    std::vector<std::vector<Fill>> half_space;    // per type: of its layers by the distance of the
-                                                  // first
-    Fill beyond(int type, double distance) const;
+    // per level and type: of its layers by the distance of the first
+    std::vector<std::vector<Fill>> half_space;
+    std::vector<double> tabulated;    // spacings of levels
+    Fill beyond(size_t level, int type, double distance) const;
+    double left_of(const double *y, double cut) const;
     bool counts(int type) const;
     void see_images();
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true

@@ -44,8 +44,8 @@ using namespace FSI;
 
 static const std::vector<std::string> coupling_names = {"wall", "full"};    // Couple
 
-// What fluids meet: fluids, walls, solids, fluids that thin bodies may hide
-enum { FLUIDS, WALLS, SOLIDS, HIDDEN, NKINDS };
+// What fluids meet: fluids, walls, solids, which each level has; fluids that thin bodies may hide
+enum { FLUIDS, WALLS, SOLIDS, OF_LEVEL, HIDDEN = OF_LEVEL, NKINDS };
 
 // Pairs of one kernel: what fluid particles of one level of the scene meet, and pairs of two levels
 struct PairFSIFluid::Meeting {
@@ -61,6 +61,9 @@ struct PairFSIFluid::Meeting {
   double reach = INFINITY;
   // of these, what is within the support and a margin: the lists have the skin's pairs, too
   std::vector<Row> near;
+  // of pairs that thin bodies may hide: what is left of each, and of those of images
+  std::vector<double> visible;
+  std::vector<std::vector<double>> visible_images;
 };
 
 // Of fluid particles of a level, per type: how its particles count, where it pushes fluid off
@@ -124,7 +127,7 @@ const std::vector<Row> &PairFSIFluid::rows_with_walls(size_t level) const
 {
   static const std::vector<Row> none;
   if (meetings.empty()) return none;    // not set up yet
-  const Meeting &m = meetings[NKINDS * level + WALLS];
+  const Meeting &m = meetings[OF_LEVEL * level + WALLS];
   return near_known ? m.near : m.rows.rows;
 }
 
@@ -249,6 +252,7 @@ void PairFSIFluid::find_meetings()
   const size_t n = levels.size();
   meetings.clear();
   of_two_levels.assign(n * n, 0);
+  of_hidden.clear();
   const auto make_loops = [this](double h, bool packs) {
     return make_fluid_loops(fix_fsi->kernel, fix_fsi->dim, h, packs);
   };
@@ -260,8 +264,8 @@ void PairFSIFluid::find_meetings()
     m.wdx = levels[l].wdx;
     const auto loops = make_loops(levels[l].h, have_packs());
     of_two_levels[n * l + l] = meetings.size();
-    for (m.what = FLUIDS; m.what < NKINDS; m.what++) {
-      m.loops = m.what == HIDDEN && fix_fsi->sight ? make_loops(levels[l].h, false) : loops;
+    for (m.what = FLUIDS; m.what < OF_LEVEL; m.what++) {
+      m.loops = loops;
       m.of_forces = m.what == SOLIDS && couple != WALL ? make_loops(levels[l].h, false) : m.loops;
       m.kind = m.what == WALLS ? WITH_WALL
           : m.what != SOLIDS   ? WITH_FLUID
@@ -286,6 +290,15 @@ void PairFSIFluid::find_meetings()
       of_two_levels[n * a + b] = meetings.size();
       meetings.push_back(m);
     }
+  if (!fix_fsi->sight) return;
+  fix_fsi->sight->tabulate();
+  for (const size_t k : of_two_levels) {
+    Meeting m = meetings[k];
+    m.what = HIDDEN;
+    m.loops = m.of_forces = make_loops(m.h, false);
+    of_hidden.push_back(meetings.size());
+    meetings.push_back(m);
+  }
 }
 
 void PairFSIFluid::find_shares()
@@ -482,9 +495,9 @@ void PairFSIFluid::advance(bool advance)
     fills() ? displacements<3, true>(dt) : displacements<3, false>(dt);
 }
 
-// the sums of find_fades over some rows
+// the sums of find_fades over some rows; seen: how much of pairs, or of all of them all
 template <class T, class K>
-void PairFSIFluid::add_fades(const K &kernel, const std::vector<Row> &rows)
+void PairFSIFluid::add_fades(const K &kernel, const std::vector<Row> &rows, const Visible &seen)
 {
   constexpr int D = K::DIM;
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
@@ -508,7 +521,9 @@ void PairFSIFluid::add_fades(const K &kernel, const std::vector<Row> &rows)
           vx += away * of(v, vi[d]);
         }
         // no direction where both are at one place
-        const Number w = there * kernel.W(root(rsq)) * (vx * vx / greater(rsq, Number(1.0e-300)));
+        Number w = there * kernel.W(root(rsq)) * (vx * vx / greater(rsq, Number(1.0e-300)));
+        if constexpr (std::is_same_v<Number, double>)
+          if (seen.part) w *= seen.part[j - seen.first];
         sum += Lanes<Number>::read(volume, j) * w;
         Lanes<Number>::add(volume[row.i] * w, sums, j);
       });
@@ -530,9 +545,13 @@ void PairFSIFluid::find_fades()
   volumes.resize(nall);
   for (int i = 0; i < nall; i++) volumes[i] = atom->rmass[i] / atom->rho[i];
   for (const auto &m : meetings) {
-    if (m.what != FLUIDS) continue;
+    const std::vector<Row> &rows = m.rows.rows;
+    if ((m.what != FLUIDS && m.what != HIDDEN) || rows.empty()) continue;
     with_kernel(fix_fsi->kernel, fix_fsi->dim, m.h, [&](const auto &kernel) {
-      have_packs() ? add_fades<Pack>(kernel, m.rows.rows) : add_fades<double>(kernel, m.rows.rows);
+      if (m.what == HIDDEN)
+        add_fades<double>(kernel, rows, {m.visible.data(), rows[0].j});
+      else
+        have_packs() ? add_fades<Pack>(kernel, rows, {}) : add_fades<double>(kernel, rows, {});
     });
   }
   fix_fsi->add_ghosts(fade);
@@ -607,16 +626,35 @@ void PairFSIFluid::look_past_thin_bodies()
   Sight &sight = *fix_fsi->sight;
   sight.follow_bodies();
   const auto *const x = FixFSI::rows(atom->x);
-  const auto &hidden = meetings[HIDDEN].rows.rows;
-  double *part = visible.data();
-  for (const auto &there : beside) {
-    sight.look_from(x[there.i], neighbor->skin);
-    for (int n = there.first; n < there.last; n++)
-      for (int k = 0; k < hidden[n].n; k++) *part++ = sight.visible(x[hidden[n].j[k]]);
+  const size_t n = fix_fsi->levels.size();
+  struct Next {
+    const Row *row, *end;
+    double *part;
+  };
+  std::vector<Next> next;
+  for (const size_t k : of_hidden) {
+    const std::vector<Row> &rows = meetings[k].rows.rows;
+    next.push_back({rows.data(), rows.data() + rows.size(), meetings[k].visible.data()});
+  }
+  for (const int i : beside) {
+    const size_t level = fix_fsi->level_of[atom->type[i]];
+    const auto here = [i](const Next &one) {
+      return one.row != one.end && one.row->i == i;
+    };
+    double reach = fix_fsi->levels[level].cut;
+    for (size_t k = n * level; k < n * (level + 1); k++)
+      if (here(next[k])) reach = std::max(reach, meetings[of_hidden[k]].cut);
+    sight.look_from(x[i], reach, neighbor->skin);
+    for (size_t k = n * level; k < n * (level + 1); k++) {
+      const double cut = meetings[of_hidden[k]].cut;
+      for (Next &one = next[k]; here(one); one.row++)
+        for (int m = 0; m < one.row->n; m++) *one.part++ = sight.visible(x[one.row->j[m]], cut);
+    }
     Sight::Face face;
-    const auto more = sight.find_face(face) ? sight.fill(face) : Sight::Fill{1.0, 1.0};
-    fill[there.i] = more.force;
-    fill_weight[there.i] = more.weight;
+    const auto more = sight.find_face(level, face) ? sight.fill(level, face)
+                                                   : Sight::Fill{1.0, 1.0};
+    fill[i] = more.force;
+    fill_weight[i] = more.weight;
   }
   fix_fsi->send_to_ghosts(fill);
   fix_fsi->send_to_ghosts(fill_weight);
@@ -706,6 +744,19 @@ std::vector<RowList *> PairFSIFluid::rows_of_fluids()
   return rows_of;
 }
 
+// the largest support of a fluid particle and these neighbors
+double PairFSIFluid::farthest_of(int i, const int *neighbors, int n) const
+{
+  const auto &resolution = fix_fsi->resolution;
+  const int *const type = atom->type;
+  double other = resolution[type[i]].cut;
+  for (int jj = 0; jj < n; jj++) {
+    const int t = type[neighbors[jj]];
+    if (fix_fsi->state[t].species == FLUID) other = std::max(other, resolution[t].cut);
+  }
+  return 0.5 * (resolution[type[i]].cut + other);
+}
+
 // rows of those fluid neighbors of i that thin bodies may hide before lists are built again: marks
 // them
 void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
@@ -713,9 +764,11 @@ void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
 {
   Sight &sight = *fix_fsi->sight;
   const double skin = neighbor->skin;
-  RowList &hidden_rows = meetings[HIDDEN].rows;
-  const int *const type = atom->type, first = hidden_rows.rows.size();
-  sight.look_from(atom->x[i], skin);
+  const int *const type = atom->type;
+  const auto &level = fix_fsi->level_of;
+  const size_t *const of_levels = &of_hidden[fix_fsi->levels.size() * level[type[i]]];
+  sight.look_from(atom->x[i], fix_fsi->has_levels() ? farthest_of(i, neighbors, n) : fix_fsi->cut,
+                  skin);
   hides.resize(n);
   for (int jj = 0; jj < n; jj++) {
     const int j = neighbors[jj];
@@ -723,11 +776,11 @@ void PairFSIFluid::find_hidden(int i, const int *neighbors, int n,
   }
   for (const int t : fluid_types) {
     const char *hidden = hides.data();
-    hidden_rows.add(i, neighbors, n, false, false, [&](int j) {
+    meetings[of_levels[level[t]]].rows.add(i, neighbors, n, false, false, [&](int j) {
       return *hidden++ && type[j] == t;
     });
   }
-  beside.push_back({i, first, static_cast<int>(hidden_rows.rows.size())});
+  beside.push_back(i);
 }
 
 static bool all_of_type(int t, const int *type, const int *j, int n)
@@ -801,9 +854,12 @@ void PairFSIFluid::find_rows()
       });
     }
   }
-  meetings[HIDDEN].rows.end();
-  visible.clear();
-  for (const Row &row : meetings[HIDDEN].rows.rows) visible.resize(visible.size() + row.n);
+  for (const size_t k : of_hidden) {
+    Meeting &m = meetings[k];
+    m.rows.end();
+    m.visible.clear();
+    for (const Row &row : m.rows.rows) m.visible.resize(m.visible.size() + row.n);
+  }
   for (auto &m : meetings)
     if (!own && m.what == FLUIDS) m.rows.end();
   if (!other_types.empty()) find_rows_with_others(with_others, other_types);
@@ -821,7 +877,7 @@ void PairFSIFluid::find_rows_with_others(const std::vector<std::array<int, 2>> &
   for (const auto &pair : with_others) other[first[pair[0] + 1]++] = pair[1];
   for (int i = 0; i < nall; i++) {
     if (first[i] == first[i + 1]) continue;
-    Meeting *const of_level = &meetings[NKINDS * fix_fsi->level_of[type[i]]];
+    Meeting *const of_level = &meetings[OF_LEVEL * fix_fsi->level_of[type[i]]];
     for (const int t : other_types)
       of_level[state[t].species == SOLID ? SOLIDS : WALLS].rows.add(
           i, &other[first[i]], first[i + 1] - first[i], false, false, [=](int j) {
@@ -859,14 +915,15 @@ void PairFSIFluid::find_images(const Walls &walls, const double *places)
                  });
     return found;
   };
-  visible_images.resize(n);
-  for (auto &parts_of : visible_images) parts_of.clear();
   for (auto &meeting : meetings) {
     if (meeting.what == WALLS) continue;
+    auto &visible_images = meeting.visible_images;
+    visible_images.resize(n);
+    for (auto &parts_of : visible_images) parts_of.clear();
     auto &lists = meeting.images;
     const double within = meeting.reach;
     const int kind = meeting.what;
-    const double *part = visible.data();    // of a pair and its images it is the same
+    const double *part = meeting.visible.data();    // of a pair and its images it is the same
     lists.resize(n);
     for (auto &list_of : lists) list_of.clear();
     for (const Row &row : meeting.rows.rows) {
@@ -1024,11 +1081,11 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   // of what thin bodies may hide the order says which part belongs to which pair
   for (auto &m : meetings) {
     const bool hidden = m.what == HIDDEN;
-    loop(m, sorts || hidden ? m.rows.rows : m.near, visible, nullptr, within(m) + margin,
+    loop(m, sorts || hidden ? m.rows.rows : m.near, m.visible, nullptr, within(m) + margin,
          sorts && !hidden ? &m.near : nullptr);
   }
   for_images(walls, particles.points, [&](Meeting &m, int k, const Mirror *mirror) {
-    loop(m, m.images[k].rows, visible_images[k], mirror, m.reach,
+    loop(m, m.images[k].rows, m.visible_images[k], mirror, m.reach,
          m.what == HIDDEN ? nullptr : &near_images);
     if (m.what != HIDDEN) m.images[k].rows.swap(near_images);
   });
@@ -1072,9 +1129,9 @@ void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particle
     const bool both = m.kind == WITH_FLUID || others_too;
     sum(m, which.rows, both, mirror, of_rows(particles, m, which.rows, parts_of));
   };
-  for (const auto &m : meetings) one(m, m.rows, visible, nullptr);
+  for (const auto &m : meetings) one(m, m.rows, m.visible, nullptr);
   for_images(fix_fsi->walls, nullptr, [&](const Meeting &m, int k, const Mirror *mirror) {
-    one(m, m.images[k], visible_images[k], mirror);
+    one(m, m.images[k], m.visible_images[k], mirror);
   });
 }
 
@@ -1129,7 +1186,7 @@ void PairFSIFluid::add_velocities_at_solids()
   const int dim = fix_fsi->dim;
   const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   for_levels(*fix_fsi, [&](size_t level, const auto &kernel) {
-    for (const Row &row : meetings[NKINDS * level + SOLIDS].rows.rows)
+    for (const Row &row : meetings[OF_LEVEL * level + SOLIDS].rows.rows)
       for (int k = 0; k < row.n; k++) {
         const int i = row.i, j = row.j[k];
         double rsq = 0.0;
@@ -1211,13 +1268,13 @@ template <int D> void PairFSIFluid::compute_forces()
     guarding[m.what] += sums.guard - before;
   };
   for (const auto &m : meetings)
-    loop(m, near_known && m.what != HIDDEN ? m.near : m.rows.rows, visible, nullptr, nullptr);
+    loop(m, near_known && m.what != HIDDEN ? m.near : m.rows.rows, m.visible, nullptr, nullptr);
 
   const Walls &walls = fix_fsi->walls;
   for_images(walls, particles.points, [&](const Meeting &m, int reflection, const Mirror *mirror) {
     const auto &s = walls.reflections[reflection];
     double total[D] = {};
-    loop(m, m.images[reflection].rows, visible_images[reflection], mirror, total);
+    loop(m, m.images[reflection].rows, m.visible_images[reflection], mirror, total);
     for (int d = 0; d < D; d++) {
       int w = s.w[0];
       for (int k = 1; k < s.n; k++)
@@ -1263,14 +1320,15 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   viscous_forces.assign((size_t) ROW * nall, 0.0);
   for (const auto &m : meetings)
     if (m.what == WALLS || m.what == SOLIDS)
-      m.of_forces->forces(m.kind, m.rows.rows, nullptr, of_rows(particles, m, m.rows.rows, visible),
-                          laws, viscous_forces.data(), nullptr, nullptr);
+      m.of_forces->forces(m.kind, m.rows.rows, nullptr,
+                          of_rows(particles, m, m.rows.rows, m.visible), laws,
+                          viscous_forces.data(), nullptr, nullptr);
   for_images(fix_fsi->walls, particles.points, [&](const Meeting &m, int k, const Mirror *mirror) {
     double unused[D] = {};
     if (m.what == SOLIDS)
       m.of_forces->forces(m.kind, m.images[k].rows, mirror,
-                          of_rows(particles, m, m.rows.rows, visible), laws, viscous_forces.data(),
-                          unused, nullptr);
+                          of_rows(particles, m, m.rows.rows, m.visible), laws,
+                          viscous_forces.data(), unused, nullptr);
   });
   for (auto *measure : force_computes)
     if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
@@ -1302,11 +1360,12 @@ double PairFSIFluid::memory_usage()
 {
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
       pressure_over_density.capacity() + sorted_at.capacity() + parts.capacity() +
-      part_rates.capacity() + visible.capacity();
+      part_rates.capacity();
   double bytes = fields.memory_usage() + (double) numbers * sizeof(double) +
       (double) beside.capacity() * sizeof(beside[0]);
   for (const auto &m : meetings) {
-    bytes += m.rows.memory_usage() + (double) m.near.capacity() * sizeof(Row);
+    bytes += m.rows.memory_usage() + (double) m.near.capacity() * sizeof(Row) +
+        (double) m.visible.capacity() * sizeof(double);
     for (const auto &list_of : m.images) bytes += list_of.memory_usage();
   }
   return bytes;

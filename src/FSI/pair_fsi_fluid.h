@@ -34,6 +34,7 @@ namespace FSI {
   struct ForceLaws;
   struct Row;
   class RowList;
+  struct Visible;
 }    // namespace FSI
 
 // Fluid-fluid and fluid-solid pairs: pressure, viscosity, density rate and diffusion, mirror
@@ -103,9 +104,9 @@ class PairFSIFluid : public PairFSI {
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
-  struct Meeting;                       // pairs of one kernel
-  std::vector<Meeting> meetings;        // NKINDS of each level, pairs of levels
-  std::vector<size_t> of_two_levels;    // the meeting of two fluids
+  struct Meeting;                   // pairs of one kernel
+  std::vector<Meeting> meetings;    // those of each level, of two levels, of what thin bodies hide
+  std::vector<size_t> of_two_levels, of_hidden;    // the meetings of two fluids
   void find_meetings();
   void find_shares();
   void find_guards();
@@ -144,18 +145,14 @@ class PairFSIFluid : public PairFSI {
   double *fade;    // of fluids of several levels: what is left of shifting's factor; or null
   std::vector<double> volumes;
   void find_fades();
-  template <class T, class K> void add_fades(const K &, const std::vector<FSI::Row> &);
+  template <class T, class K>
+  void add_fades(const K &, const std::vector<FSI::Row> &, const FSI::Visible &);
   double *fill, *fill_weight;    // per particle, by how much more thin bodies count (fsi_sight.h);
                                  // null: there are none
-  // fluid particles that may have a thin body beside them before lists are built again, and their
-  // rows of pairs that it may hide
-  struct Beside {
-    int i = 0, first = 0, last = 0;
-  };
-  std::vector<Beside> beside;
-  std::vector<double> visible;    // of those pairs
-  std::vector<std::vector<double>> visible_images;
+  // fluid particles that may have a thin body beside them before lists are built again
+  std::vector<int> beside;
   void look_past_thin_bodies();
+  double farthest_of(int i, const int *neighbors, int n) const;
   void find_hidden(int i, const int *neighbors, int n, const std::vector<int> &fluid_types,
                    std::vector<char> &hides);
   // particles as the loop over these rows sees them, and that loop

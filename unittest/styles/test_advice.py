@@ -154,6 +154,10 @@ def test_sound_deck_is_not_criticized(tmp_path):
     # a thin plate that is said to be thin, and one of three layers between the same water
     assert advice(tmp_path, [*THIN, ("wendland 2", "wendland 2 thin 2")]) == []
     assert advice(tmp_path, [*THIN[2:], ("0.07 0.12", "0.08 0.12")]) == []
+    # the same where coarser water is elsewhere, whose support is wider than the plate: what counts is that of pairs
+    coarser = "region top block 0 0.05 0.08 0.109 INF INF units box\nlattice sq 0.0144 origin 0.5 0.0555556 0\ncreate_atoms 3 region top\n"
+    assert advice(tmp_path, [("create_box 2", "create_box 3"), ("group plate type", coarser + "group plate type"), ("inviscid plate", "inviscid plate water_inviscid"), ("NULL plate", "NULL plate NULL"),
+                             ("fsi 0.01 wendland 1.5", "fsi 0.0144 wendland 1.5 spacing 1*2 0.01"), *THIN[2:], ("0.07 0.12", "0.08 0.12")]) == []
 
 
 ON_TWO_RANKS = ("sound", "spacing", "overlap", "idle", "long fluid", "contact", "held", "weightless body", "nothing acts",

@@ -187,9 +187,8 @@ def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
 @pytest.mark.parametrize("edit, message", [
     (("density", "fluid summation solid continuity"), r"spacing 0\.\d+ of type 2, a fluid, requires density by continuity, as fix fsi scheme standard has it: number densities are not smooth"),
     (("fluid", "sound 10 density/surface yes"), r"a fluid, requires pair_style fsi/fluid density/surface no"),
-    (("sph", "thin 3"), r"a fluid, requires fix fsi without thin"),
     (("sph", "spacing 3 0.018"), r"\d+ fluid particles, the first of them atom \d+, meet a body or wall that is more than 2 times coarser"),
-], ids=["summation", "surface", "thin", "coarse body"])
+], ids=["summation", "surface", "coarse body"])
 def test_refused(tmp_path, edit, message):
     key, value = edit
     scene = gate(2, fluid="sound 10 couple wall")

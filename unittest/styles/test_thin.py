@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scenes import DX, RUBBER, WATER, Scene, close, cloud, lattice, pairs, sum_over
+from test_levels import JUMP, gate, near
 from test_spacing import agree_on_ranks, beside, fine_gate, goes_on_bit_for_bit
 
 from fsi import paths
@@ -17,13 +18,24 @@ PAGE = {name: [float(n) for n in numbers.replace("%", "").split()] for name, num
     r"^(\S.*?)  +((?:-?[\d.]+ % *)+)$", (paths.ROOT / "doc/src/Howto_thin.rst").read_text(), re.M)}
 
 
-def two_levels(kind, layers, ratio, dim=2, thin=True):
+def two_levels(kind, layers, ratio, dim=2, thin=True, coarse=None):
     """Water 20 and 10 particles deep on the two sides of a wall or plate of some layers, `ratio` times finer. Means of the last quarter of the
-    time over hydrostatics: load, moment about the foot; the largest error of pressures at the faces, in rho g H; leaked particles."""
+    time over hydrostatics: load, moment about the foot; the largest error of pressures at the faces, in rho g H; leaked particles.
+    coarse: 10/7 of the spacing "far" from the wall on both sides, or all that is on its "right"; in 2D"""
     dx, c, width, deep, G = 0.01, 20.0, 7, (20, 10), 9810.0
-    ds, thick, z = dx / ratio, layers * dx / ratio, [7] * (dim - 2)
+    ds, thick, z, dc = dx / ratio, layers * dx / ratio, [7] * (dim - 2), dx / 0.7
     left = lattice([width, deep[0], *z], dx)
     right = lattice([width, deep[1], *z], dx, origin=np.array([width * dx + thick, 0, 0][:dim]))
+    low, end, fine = 0.0, 2 * width * dx + thick, [3] * (len(left) + len(right))
+    if coarse == "far":
+        low, beyond = -5 * dc, end
+        end += 5 * dc
+        far = [lattice([5, round(0.7 * n)], dc, origin=[at, 0]) for n, at in zip(deep, (low, beyond))]
+        fine = [3] * len(left) + [1] * len(far[0]) + [3] * len(right) + [1] * len(far[1])
+        left, right = np.concatenate([left, far[0]]), np.concatenate([right, far[1]])
+    elif coarse:
+        right = lattice([5, 7], dc, origin=[width * dx + thick, 0])
+        end, fine = width * dx + thick + 5 * dc, [3] * len(left) + [1] * len(right)
     below = round(3 * ratio + 0.4) * (kind == "wall")    # mirrors have no images of wall particles
     body = lattice([layers, round(23 * ratio) + below, *(ratio * k for k in z)], ds, origin=np.array([width * dx, -below * ds, 0][:dim]))
     x = np.concatenate([left, right, body])
@@ -34,13 +46,17 @@ def two_levels(kind, layers, ratio, dim=2, thin=True):
         materials=(WATER, f"solid rho 1000 young {young} poisson 0.3"), solid_style="fsi/solid/tl", solid="artificial/visc 0.1 0")
     dt = 0.25 * 1.5 * dx / c
     substeps = 1 if kind == "wall" else int(np.ceil(c * ratio * np.sqrt(1.35 * young / 1000) / c**2))
-    levels, end = [n * dx for n in deep], 2 * width * dx + thick
+    levels = [n * dx for n in deep]
+    type_, spacing = 1 + solid, f"spacing 2 {ds!r}"
+    if coarse:
+        type_, spacing = np.append(fine, solid[solid] + 1), f"{spacing} spacing 3 {dx!r}"
+        styles["materials"] += (WATER,)
     heights = [0.02, 0.05, 0.08]
     points = " ".join(f"point {at} {y} {0.035 * (dim - 2)}" for y in heights for at in (width * dx, width * dx + thick))
-    with Scene(x, dim=dim, dx=dx, type=1 + solid, mol=1 + solid, held=solid & ((x[:, 1] < 1.01 * ds) | (kind == "wall")), dt=dt,
-               fluid=f"sound {c} artificial/visc 0.2 0 density/diffusion 0.1 {'extrapolate yes' * (kind == 'plate')}", density=f"spacing 2 {ds!r} substeps {substeps} {'thin 2' * thin}", **styles,
+    with Scene(x, dim=dim, dx=dc if coarse else dx, type=type_, mol=1 + solid, held=solid & ((x[:, 1] < 1.01 * ds) | (kind == "wall")), dt=dt,
+               fluid=f"sound {c} artificial/visc 0.2 0 density/diffusion 0.1 {'extrapolate yes' * (kind == 'plate')}", density=f"{spacing} substeps {substeps} {'thin 2' * thin}", **styles,
                **(dict(boundary="f f p", box=((-0.1, -0.1, 0), (end + 0.1, 0.4, 0.07))) if dim == 3 else {}),
-               commands=["fix g all gravity 9.81 vector 0 -1 0", f"fix w all fsi/wall/mirror xlo 0 xhi {end} ylo 0",
+               commands=["fix g all gravity 9.81 vector 0 -1 0", f"fix w all fsi/wall/mirror xlo {low} xhi {end} ylo 0",
                          "fix wp held fsi/wall/particle" if kind == "wall" else "", f"group left id 1:{len(left)}",
                          f"group right id {len(left) + 1}:{len(left) + len(right)}", "group body type 2", f"fsi/set left hydrostatic {levels[0]}",
                          f"fsi/set right hydrostatic {levels[1]}", "compute force body fsi/force", f"compute p all fsi/probe p extrapolate yes {points}"]) as s:
@@ -181,8 +197,8 @@ def test_a_free_edge_in_water_under_pressure(ratio):
         assert push < 0.03
 
 
-def blade(skin, thin="thin 2"):
-    """A still blade in water that streams past it, as a tank's beginning: positions after 200 steps"""
+def blade(skin, thin="thin 2", levels=False):
+    """A still blade in water that streams past it, as a tank's beginning: positions after 200 steps. levels: the lower half of the water is finer"""
     dx = 0.01
     water, v = cloud([24, 16], dx, jitter=0.1, vmax=0.5)
     water = water[(np.abs(water[:, 0] - 0.12) > dx) | (water[:, 1] > 0.1)]
@@ -190,25 +206,37 @@ def blade(skin, thin="thin 2"):
     x = np.concatenate([water, plate])
     wall = np.arange(len(x)) >= len(water)
     v = np.where(wall[:, None], 0, 0.5 * np.random.default_rng(2).standard_normal(x.shape) * [1, 1, 0])
-    with Scene(x, v, dx=dx, type=1 + wall, mol=1 + wall, held=wall, materials=(WATER, WALL), density=thin, fluid="sound 20 artificial/visc 0.05 0 density/diffusion 0.1",
+    type_, more = 1 + wall, dict(materials=(WATER, WALL), density=thin)
+    if levels:
+        type_ = np.where(~wall & (x[:, 1] < 0.05), 3, type_)
+        more = dict(materials=(WATER, WALL, WATER), density=f"spacing 3 {dx / JUMP!r} {thin}")
+    with Scene(x, v, dx=dx, type=type_, mol=1 + wall, held=wall, **more, fluid=f"sound 20 artificial/visc 0.05 0 density/diffusion 0.1 {'tension yes background 2000 shift 0.2' * levels}",
                dt=2e-4, skin=skin, commands=["neigh_modify every 1 delay 0 check yes", "fix w held fsi/wall/particle", "fix g all gravity 9.81 vector 0.6 -0.8 0",
                                              "fix m all fsi/wall/mirror xlo 0 xhi 0.24 ylo 0"]) as s:
         s.run(200)
         return s.get("x")
 
 
-def pushes(layers, dim, places, wide=21, aside=0.0):
-    """Of a fluid particle of spacing 0.1 at these distances before the first of so many layers of a wall of a third of that: its force along the normal"""
+def pushes(layers, dim, places, wide=21, aside=0.0, coarsest=None, second=None):
+    """Of a fluid particle of spacing 0.1 at these distances before the first of so many layers of a wall of a third of that: its force along the normal.
+    coarsest: spacing of other fluid, of a particle behind the wall; second: place of another such wall"""
     dx, ds = 0.1, 0.1 / 3
     plate = lattice([layers] + [wide] * (dim - 1), ds)
     plate -= [plate[0, 0], *plate[:, 1:].mean(0)]
-    x = np.concatenate([np.zeros((1, 3)), np.pad(plate, ((0, 0), (0, 3 - plate.shape[1])))])
-    solid = np.arange(len(x)) > 0
-    found = []
-    with Scene(x, dim=dim, dx=dx, kernel="quintic", hdx=1.0, type=1 + solid, mol=1 + solid, held=solid, materials=(WATER, WALL), density=f"spacing 2 {ds!r} thin 2",
+    parts = [np.array([[0, aside, 0]]), plate, *([plate + [second, 0, 0]] if second else []), *([[[0, aside, 0]]] if coarsest else [])]
+    x, solid = np.concatenate(parts), np.repeat([False, True, bool(second), False][:len(parts)], [len(p) for p in parts])
+    type_, more = 1 + solid, dict(dx=dx, materials=(WATER, WALL), density=f"spacing 2 {ds!r} thin 2")
+    if coarsest:
+        type_[0] = 3
+        more = dict(dx=coarsest, materials=(WATER, WALL, WATER), density=f"spacing 2 {ds!r} spacing 3 {dx!r} thin 2")
+    with Scene(x, dim=dim, kernel="quintic", hdx=1.0, type=type_, mol=1 + solid, held=solid, **more,
                fluid="tension yes solid/guard 0 background 1000", commands=["fix w held fsi/wall/particle"]) as s:
+        found = []
         for place in places:
-            s.put("x", np.concatenate([[[-place, aside, 0]], x[1:]]))
+            x[0, 0] = -place
+            if coarsest:
+                x[-1, 0] = place
+            s.put("x", x)
             s.run()
             found.append(-s.get("f")[0, 0])
     return np.array(found)
@@ -234,6 +262,12 @@ def test_lists_do_not_matter():
     often, rarely = blade(0.002), blade(0.006)
     assert np.abs(often - rarely).max() < 1e-10 * 0.01 * 1e3
     assert np.abs(often - blade(0.002, "")).max() > 1e-4 * 0.01
+
+
+def test_lists_do_not_matter_in_levels():
+    often, rarely = blade(0.002, levels=True), blade(0.006, levels=True)
+    assert np.abs(often - rarely).max() < 1e-10 * 0.01 * 1e3
+    assert np.abs(often - blade(0.002, "", levels=True)).max() > 1e-4 * 0.01
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -337,12 +371,16 @@ def with_plate(dim, **options):
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("walls", [False, True])
-def test_momentum(dim, walls):
-    """Kept to round-off, what wall particles get included"""
+@pytest.mark.parametrize("levels", [False, True])
+def test_momentum(dim, walls, levels):
+    """Kept to round-off, what wall particles get included; also where half of the water is finer"""
     x, plate = plate_between(dim)
     v = np.where(plate[:, None], 0, np.random.default_rng(5).uniform(-0.3, 0.3, x.shape) * ([1, 1, dim - 2]))
-    body = dict(materials=(WATER + " viscosity 1", WALL)) if walls else dict(materials=(WATER + " viscosity 1", RUBBER), solid_style="fsi/solid")
-    with Scene(x, v, dim=dim, dx=0.1, type=1 + plate, mol=1 + plate, dt=2e-4, density=("spacing 2 0.05" if walls else "") + " thin 2", **body,
+    water = WATER + " viscosity 1"
+    body = dict(materials=(water, WALL if walls else RUBBER, water)[:2 + levels])
+    fine = levels & ~plate & (np.random.default_rng(6).random(len(x)) < 0.5)
+    spacing = "spacing 2 0.05 " * walls + f"spacing 3 {0.1 / JUMP!r} " * levels
+    with Scene(x, v, dim=dim, dx=0.1, type=1 + plate + 2 * fine, mol=1 + plate, dt=2e-4, density=spacing + "thin 2", **body,
                held=plate if walls else None, fluid="artificial/visc 0.1 0.1 laminar/visc density/diffusion 0.1 shift 0.1",
                commands=["fix w held fsi/wall/particle slip no"] if walls else []) as s:
         s.run()
@@ -381,3 +419,121 @@ def test_ranks_and_newton(tmp_path, dim):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
     goes_on_bit_for_bit(tmp_path, with_plate(2), ranks)
+
+
+# ---- in water of several spacings ----
+
+@pytest.mark.parametrize("kind, layers, ratio, coarse", [("wall", 1, 1, "far"), ("wall", 1, 2, "right"), ("wall", 2, 2, "far"), ("plate", 2, 1, "right")])
+def test_two_levels_in_levels(kind, layers, ratio, coarse):
+    """test_two_levels with coarser water: load, moment and pressures of one spacing to 1 % of those of the depth"""
+    one, many = two_levels(kind, layers, ratio), two_levels(kind, layers, ratio, coarse=coarse)
+    print(f"{kind} {layers} thick, {ratio} times finer, coarse {coarse}: load {many[0][0]:.4f}, moment {many[0][1]:.4f}, pressures {many[1]:.4f}, leaked {many[2]}; "
+          f"one spacing {one[0][0]:.4f}, {one[0][1]:.4f}, {one[1]:.4f}")
+    assert np.abs(many[0] - one[0]).max() < 0.01 and many[1] < one[1] + 0.01 and many[2] == 0
+
+
+@pytest.mark.parametrize("layers, dim, second", [(1, 2, None), (2, 2, None), (2, 3, None), (1, 2, 0.33)])
+def test_finer_water_is_pushed_as_alone(layers, dim, second):
+    """Who is of a finer level meets thin bodies with its own kernel, to the bit nearly: the force is that in water of its own spacing alone. A second wall
+    beyond its support, but within that of the coarser water, makes the first no thicker."""
+    places = 0.3 * np.linspace(0.05, 0.99, 12)
+    alone, finer = (pushes(layers, dim, places, coarsest=c, second=second, aside=0.01) for c in (None, 0.13))
+    close(finer, alone, 1e-12)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_which_pairs_in_levels(dim):
+    """test_which_pairs where each pair has kernel and support of the mean spacing, also in what hides it, and volumes of the lattices"""
+    x, plate = plate_between(dim)
+    fine = ~plate & (np.random.default_rng(6).random(len(x)) < 0.65)
+    left, right = ~plate & (x[:, 0] < 0), ~plate & (x[:, 0] > 0)
+    with Scene(x, dim=dim, dx=0.1, type=1 + plate + 2 * fine, mol=1 + plate, held=plate, materials=(WATER, WALL, WATER), fluid="tension yes",
+               density=f"spacing 2 0.05 spacing 3 {0.1 / JUMP!r} thin 2", commands=["fix w held fsi/wall/particle"]) as s:
+        s.run()
+        f, V0, p0 = s.get("f"), s.get("rmass") / s.get("rho"), s.p
+        s.put("rho", np.where(right, 1010.0, 1000.0))
+        s.run()
+        change, V, p = s.get("f") - f, s.get("rmass") / s.get("rho"), s.p
+        i, j, d, r, kernel, omega = near(s, x, fine)
+        of = left[i] & right[j] & (r < kernel.cut)
+        i, j, d, omega, g, cut = (a[of] for a in (i, j, d, omega, kernel.g(r), kernel.cut))
+        seen = np.array([visible(x[a], x[b], x[plate], 0.05, c) for a, b, c in zip(i, j, cut)])
+        expected = sum_over(i, -(seen / omega * (p * V**2 - p0 * V0**2)[j] * g)[:, None] * d, s.n)
+        hidden = [(seen[(fine[i] == a) & (fine[j] == b)] < 0.05).sum() for a in (False, True) for b in (False, True)]
+        print(hidden, (seen > 0.05).sum())
+        assert min(hidden) > 5 and (seen > 0.05).sum() > 10
+        close(change[left], expected[left], 1e-9)
+
+
+def levels_with_plate(dim):
+    """gate() of test_levels.py, its plate two layers thick and thin, with water of both spacings behind it"""
+    scene = gate(dim)
+    df, plate = DX / JUMP, scene.type == 3
+    face = scene.x[plate, 0].min() - df / 2
+    kept = ~plate | (scene.x[:, 0] < face + 2 * df)
+    n, rows = ([4, 7], [4, 4]) if dim == 2 else ([4, 5, 5], [4, 3, 7])
+    behind = [cloud(k, d, seed=4, jitter=0.1, origin=np.array([face + 2 * df, at, 0])[:dim], vmax=0.1)
+              for k, d, at in ((n, DX, 0), (rows, df, n[1] * DX))]
+    x, v = (np.concatenate([part[kept], *both]) for part, both in zip((scene.x, scene.v), zip(*behind)))
+    count = [len(b[0]) for b in behind]
+    box = np.stack([x.min(axis=0) - 2.5 * DX, x.max(axis=0) + 2.5 * DX], axis=1)
+    box[2] = (-0.5 * DX, 0.5 * DX) if dim == 2 else box[2]
+    return replace(scene, x=x, v=v, type=np.append(scene.type[kept], np.repeat([1, 2], count)), rho=np.append(scene.rho[kept], np.full(sum(count), 1000.0)),
+                   ids=np.arange(1, len(x) + 1), box=box, sph=scene.sph + " thin 3")
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_ranks_and_newton_in_levels(tmp_path, dim):
+    agree_on_ranks(tmp_path, levels_with_plate(dim))
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_restart_in_levels(tmp_path, ranks):
+    goes_on_bit_for_bit(tmp_path, levels_with_plate(2), ranks)
+
+
+# ---- splitting and merging ----
+
+def changed(x, fine, coarse, plate, zone, **options):
+    """Positions, masses and counts of splits and merges after one event without motion"""
+    dim = options.pop("dim", 2)
+    n = len(x)
+    x = np.concatenate([x, plate])
+    solid = np.arange(len(x)) >= n
+    low, high = x.min(0) - 1, x.max(0) + 1
+    with Scene(x, dim=dim, dx=coarse, type=np.where(solid, 2, 1 + 2 * fine), mol=1 + solid, held=solid, materials=(WATER, WALL, WATER), dt=1e-9, box=(low, high),
+               density=f"spacing 2 {coarse / 4!r} spacing 3 {coarse * 2**(-1 / dim)!r} thin 2", fluid="tension yes",
+               commands=["fix w held fsi/wall/particle", f"region zone block {zone} units box", "fix ref moving fsi/refine 1 types 1 3 region zone settle 0"]) as s:
+        s.run(1)
+        events = [s.lmp.extract_fix("ref", 0, 1, k) for k in range(2)]
+        s.n = s.lmp.get_natoms()
+        water = s.get("type") != 2
+        return s.get("x")[water], s.get("rmass")[water], events
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_no_pair_merges_through_a_plate(dim):
+    """Fine water on both sides of a plate a quarter of its spacing thick: nobody comes to lie in it, but beyond its end some do in its plane"""
+    coarse, n = 0.1, [16, 40] if dim == 2 else [16, 16, 8]
+    fine = coarse * 2**(-1 / dim)
+    x = lattice(n, fine, center=True)
+    plate = lattice([1, 80 if dim == 2 else 40] + [34] * (dim - 2), coarse / 4, center=True)
+    plate[:, 1] -= plate[:, 1].max() + coarse / 8    # up to y = 0, and further down than the water
+    y, m, (_, merges) = changed(x, True, coarse, plate, "5 6 5 6 INF INF", dim=dim)
+    in_plane = np.abs(y[:, 0]) < 0.45 * fine
+    assert merges > 0.3 * len(x)
+    assert not (in_plane & (y[:, 1] < -fine)).any() and (in_plane & (y[:, 1] > fine)).any()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_nobody_splits_across_a_plate(dim):
+    """Coarse water that has come, on one side, as near to a plate as a twentieth of its spacing: both sides keep their mass, and who has no room waits"""
+    coarse = 0.1
+    x = lattice([4, 6] + [6] * (dim - 2), coarse, center=True)
+    x[x[:, 0] > 0, 0] -= 0.45 * coarse
+    plate = lattice([1, 60] + [60] * (dim - 2), coarse / 4, center=True)
+    y, m, (splits, _) = changed(x, False, coarse, plate, "INF INF INF INF INF INF", dim=dim)
+    print(splits, np.abs(y[:, 0]).min())
+    for side in (-1, 1):
+        assert m[side * y[:, 0] > 0].sum() == pytest.approx(0.5 * len(x) * 1000 * coarse**dim, rel=0.05)
+    assert splits >= 0.5 * len(x) and np.abs(y[:, 0]).min() > 0.04 * coarse
