@@ -11,8 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// The shortest of a difference's periodic images, as Domain::minimum_image() has it, whose arguments
-// differ between releases of LAMMPS.
+// The shortest of a difference's periodic images, as Domain::minimum_image() gives it, whose
+// arguments differ between releases of LAMMPS.
 
 #ifndef LMP_FSI_NEAREST_IMAGE_H
 #define LMP_FSI_NEAREST_IMAGE_H
