@@ -107,6 +107,15 @@ def test_pages_are_those_of_lammps_manual(tree):
             assert ".. versionadded:: TBD" in text and "part of the FSI package" in text, path.name
 
 
+def test_words_for_the_spelling_check(tree):
+    """What LAMMPS' list learns is on the pages, and it did not know it."""
+    words = re.search('WORDS = """(.*?)"""', TOOL_TEXT, re.S)[1].split()
+    listed = (tree / "doc/utils/sphinx-config/false_positives.txt").read_text().split()
+    pages = "".join(path.read_text() for path in (tree / "doc/src").glob("*fsi*.rst"))
+    for word in words:
+        assert listed.count(word) == 1 and re.search(rf"\b{word}\b", pages, re.I), word
+
+
 def test_no_deck_is_forgotten(tree):
     """Recipes are examples, but for those of pages that are left out. They write no files, and
     their materials are there."""
