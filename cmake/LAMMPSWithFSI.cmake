@@ -2,8 +2,8 @@
 # RegisterStyles() collects our headers before its CMakeLists writes style_*.h.
 option(FSI_COMPILED_IN "The package is part of LAMMPS (OFF: of the plugin only)" ON)
 
-# What the bundled decks need. More: -DPKG_<NAME>=ON.
-foreach(pkg RIGID GRANULAR PLUGIN)
+# What the bundled decks need (GRAPHICS: dump image, since 2026 a package). More: -DPKG_<NAME>=ON.
+foreach(pkg RIGID GRANULAR PLUGIN GRAPHICS)
   option(PKG_${pkg} "LAMMPS package ${pkg}" ON)
 endforeach()
 option(BUILD_SHARED_LIBS "Build liblammps as a shared library (Python, plugins)" ON)

@@ -1,6 +1,7 @@
-# Finds the LAMMPS source tree: the user's own (-DLAMMPS_SOURCE_DIR=<tree>), or the pinned release that
+# Finds the LAMMPS source tree: the user's own (-DLAMMPS_SOURCE_DIR=<tree>), or a release that
 # cmake/obtain-lammps.sh downloads once into a cache folder and verifies by SHA-256.
-set(LAMMPS_SOURCE_DIR "" CACHE PATH "LAMMPS source tree (empty: obtain the pinned release)")
+set(LAMMPS_SOURCE_DIR "" CACHE PATH "LAMMPS source tree (empty: obtain FSI_LAMMPS_RELEASE)")
+set(FSI_LAMMPS_RELEASE 20250204 CACHE STRING "LAMMPS release to obtain: 20250204 or 20260704")
 if(DEFINED ENV{XDG_CACHE_HOME})
   set(_fsi_cache "$ENV{XDG_CACHE_HOME}/lammps-fsi")
 else()
@@ -10,7 +11,7 @@ set(FSI_LAMMPS_CACHE "${_fsi_cache}" CACHE PATH "Where the obtained LAMMPS tree 
 
 if(NOT LAMMPS_SOURCE_DIR)
   execute_process(
-    COMMAND "${CMAKE_CURRENT_LIST_DIR}/obtain-lammps.sh" "${FSI_LAMMPS_CACHE}"
+    COMMAND "${CMAKE_CURRENT_LIST_DIR}/obtain-lammps.sh" "${FSI_LAMMPS_CACHE}" "${FSI_LAMMPS_RELEASE}"
     RESULT_VARIABLE _result
     OUTPUT_VARIABLE _tree OUTPUT_STRIP_TRAILING_WHITESPACE)
   if(NOT _result EQUAL 0)
@@ -19,7 +20,7 @@ if(NOT LAMMPS_SOURCE_DIR)
       "Download a LAMMPS release (4 Feb 2025 or newer), unpack it, and configure again with\n"
       "  cmake -DLAMMPS_SOURCE_DIR=<the unpacked folder> ...")
   endif()
-  set(LAMMPS_SOURCE_DIR "${_tree}" CACHE PATH "LAMMPS source tree (empty: obtain the pinned release)" FORCE)
+  set(LAMMPS_SOURCE_DIR "${_tree}" CACHE PATH "LAMMPS source tree (empty: obtain FSI_LAMMPS_RELEASE)" FORCE)
 endif()
 
 get_filename_component(LAMMPS_SOURCE_DIR "${LAMMPS_SOURCE_DIR}" ABSOLUTE)

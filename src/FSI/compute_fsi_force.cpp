@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_keywords.h"
+#include "fsi_nearest_image.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -86,7 +87,7 @@ void ComputeFSIForce::add(int i, const double *f, double sign, int where)
 {
   double r[3];
   for (int d = 0; d < 3; d++) r[d] = atom->x[i][d] - origin[d];
-  domain->minimum_image(r);
+  FSI::to_nearest_image(*domain, r);
   const int dim = fix_fsi->dim;
   for (int d = 0; d < 3; d++) {
     const int a = (d + 1) % 3, b = (d + 2) % 3;

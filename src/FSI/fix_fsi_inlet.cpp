@@ -23,6 +23,7 @@
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
+#include "fsi_nearest_image.h"
 #include "fsi_nodes.h"
 #include "fsi_number_density.h"
 #include "fsi_population.h"
@@ -449,7 +450,7 @@ void FixFSIInlet::beside(const std::vector<Particle> &sorted, const double *x, V
     });
     for (; p != sorted.end() && p->x[a] < from + 2.0 * reach; p++) {
       double d[3] = {p->x[0] - x[0], p->x[1] - x[1], p->x[2] - x[2]};
-      domain->minimum_image(d);
+      to_nearest_image(*domain, d);
       visit(*p, d);
     }
   }

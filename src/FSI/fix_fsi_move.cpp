@@ -22,6 +22,7 @@
 #include "fsi_clock.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
+#include "fsi_nearest_image.h"
 #include "fsi_record.h"
 #include "fsi_value.h"
 #include "lattice.h"
@@ -287,7 +288,7 @@ void FixFSIMove::move(When when)
         if (when == END && driven[k] && of_atom(k)) {
           double moved[3] = {};
           moved[k] = to[k] - x[k];
-          domain->minimum_image(moved);
+          to_nearest_image(*domain, moved);
           compare_velocity(k, moved[k], 0.5 * dt, v[k], fast[k], std::fabs(x[k]) + std::fabs(to[k]),
                            i);
         }

@@ -387,7 +387,9 @@ void Clamps::sum(const std::vector<Member> &list, const double *const *f, bool w
 // what fix rigid itself adds to the sums: keywords langevin and gravity
 void Clamps::add_own(const Body &b, double *force_and_torque) const
 {
-  const double *const langevin = b.small ? nullptr : (large(b.fix)->*Rigid::langevin)[b.id];
+  // newer releases have the forces of keyword langevin only with it
+  const double *const *const forces = b.small ? nullptr : large(b.fix)->*Rigid::langevin;
+  const double *const langevin = forces ? forces[b.id] : nullptr;
   const bool field = b.small ? small(b.fix)->*Small::gravity : large(b.fix)->*Rigid::gravity;
   const double *const g = b.small ? small(b.fix)->*Small::field : large(b.fix)->*Rigid::field;
   for (int d = 0; d < 6 && langevin; d++) force_and_torque[d] += b.free[d] * langevin[d];

@@ -21,6 +21,8 @@
 #include "fsi_scene.h"
 #include "math_const.h"
 
+#include <cmath>
+
 using namespace LAMMPS_NS;
 using namespace FSI;
 using MathConst::MY_PI;
@@ -67,11 +69,10 @@ void Others::give_density(int i) const
   atom->rho[i] = atom->rmass[i] / volume;
 }
 
-// atom_style sphere gives all new particles one, whatever they are
+// atom_style sphere gives all new particles one, whatever they are; releases differ in its last bit
 bool Others::has_mass_of_new_sphere(int i) const
 {
-  return atom->radius_flag &&
-      atom->rmass[i] == 4.0 * MY_PI / 3.0 * 0.5 * 0.5 * 0.5;    // as AtomVecSphere writes it
+  return atom->radius_flag && std::fabs(atom->rmass[i] / (MY_PI / 6.0) - 1.0) < 1e-15;
 }
 
 // spheres, in 2D too, as in fix nve/sphere

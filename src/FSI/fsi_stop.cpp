@@ -23,6 +23,7 @@
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_limits.h"
+#include "fsi_nearest_image.h"
 #include "fsi_part.h"
 #include "fsi_scene.h"
 #include "lmptype.h"
@@ -117,7 +118,7 @@ Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
       double d[3];
       for (int k = 0; k < 3; k++) d[k] = k < scene.dim ? atom->x[i][k] - all.x[k] : 0.0;
       if (!std::isfinite(d[0] + d[1] + d[2])) continue;
-      domain->minimum_image(d);
+      to_nearest_image(*domain, d);
       const double r = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
       if (r < scene.largest_cut) f(i, r, d);
     }
@@ -339,7 +340,7 @@ void Stop::write_neighbours(const Scene &scene, const Finding &all) const
     const bool itself = atom->tag[i] == all.tag;    // wherever it is
     if (!itself) {
       if (!std::isfinite(d[0] + d[1] + d[2])) continue;
-      domain->minimum_image(d);
+      to_nearest_image(*domain, d);
       if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach * reach) continue;
     }
     mine.push_back({atom->tag[i],

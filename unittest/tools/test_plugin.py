@@ -173,20 +173,23 @@ def test_setup_for_an_installed_lammps(plain, tmp_path):
 
 
 @pytest.mark.parametrize("change, says", [
-    (("4 Feb 2025", "29 Aug 2024 - Update 1"), "is LAMMPS 29 Aug 2024, the sources are LAMMPS 4 Feb 2025: a plugin needs the sources of the same release"),
-    (("4 Feb 2025", "4 Feb 2025 - Update 2"), "built without LAMMPS' package PLUGIN"),
+    (("- RELEASE", "- 29 Aug 2024 - Update 1"), "is LAMMPS 29 Aug 2024, the sources are LAMMPS SOURCES: a plugin needs the sources of the same release"),
+    (("- RELEASE", "- RELEASE - Update 2"), "built without LAMMPS' package PLUGIN"),
     (("RIGID", "PLUGIN RIGID fsi/fluid"), "has the package already"),
-    (("Simulator - 4", "Simulator 4"), "names no release of LAMMPS")])
+    (("Simulator -", "Simulator"), "names no release of LAMMPS")])
 def test_setup_refuses(tmp_path, change, says):
     """Before anything is installed, downloaded or built, in one line."""
-    about = ("Large-scale Atomic/Molecular Massively Parallel Simulator - 4 Feb 2025\n\nInstalled packages:\n\nRIGID \n\n"
+    about = ("Large-scale Atomic/Molecular Massively Parallel Simulator - RELEASE\n\nInstalled packages:\n\nRIGID \n\n"
              "List of individual style options included in this LAMMPS executable\nplugin PLUGIN\n")
     program = tmp_path / "lmp"
-    program.write_text(f"#!/bin/sh\ncat <<'END'\n{about.replace(*change)}END\n")
-    program.chmod(0o755)
-    for environment in (source(), {"LAMMPS_SOURCE_DIR": ""}):  # the release that is obtained is the same
+    of_tree = re.search('LAMMPS_VERSION "(.*)"', (paths.lammps_source() / "src/version.h").read_text())[1]
+    obtained = {"LAMMPS_SOURCE_DIR": ""}
+    for release, sources, environment in ((of_tree, of_tree, source()), ("4 Feb 2025", "4 Feb 2025", obtained), ("4 Jul 2026", "4 Feb 2025", obtained)):
+        answer = about.replace(*change).replace("RELEASE", release)
+        program.write_text(f"#!/bin/sh\ncat <<'END'\n{answer}END\n")
+        program.chmod(0o755)
         status, said = run_setup(tmp_path / "build", "--lammps", program, **environment)
-        assert status == 1 and says in said and said.count("\n") == 1, said
+        assert status == 1 and says.replace("SOURCES", sources) in said and said.count("\n") == 1, said
     assert not (tmp_path / "build").exists()
 
 
