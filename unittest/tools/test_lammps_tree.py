@@ -108,7 +108,7 @@ def test_pages_are_those_of_lammps_manual(tree):
 
 
 def test_words_for_the_spelling_check(tree):
-    """What LAMMPS' list learns is on the pages, and it did not know it."""
+    """LAMMPS' list has them once, and each is on a page."""
     words = re.search('WORDS = """(.*?)"""', TOOL_TEXT, re.S)[1].split()
     listed = (tree / "doc/utils/sphinx-config/false_positives.txt").read_text().split()
     pages = "".join(path.read_text() for path in (tree / "doc/src").glob("*fsi*.rst"))
