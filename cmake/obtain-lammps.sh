@@ -49,7 +49,7 @@ from_apt() {
   # a suite that moves on drops the release
   has=$(apt-cache "$@" showsrc lammps | sed -n 's/^Version: //p' | sort -u)
   package=$(printf '%s\n' "$has" | grep -m 1 "^$version") ||
-    { say "Debian's suite $suite has LAMMPS" $has "by now, no longer $version"; return 1; }
+    { say "suite $suite of Debian no longer has LAMMPS $version, but" $has; return 1; }
   apt apt-get -q "$@" source --tar-only --download-only "lammps=$package" || return 1
   archive=$(ls "$work"/lammps_*.orig.tar.* | head -n 1)
   want=$sha_debian

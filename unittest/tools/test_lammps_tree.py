@@ -134,7 +134,7 @@ def test_no_deck_is_forgotten(tree):
             assert "Total wall time" in text and f"on {ranks} procs" in text
 
 
-@pytest.mark.parametrize("check", ["homepage", "errordocs", "permissions", "whitespace"])
+@pytest.mark.parametrize("check", ["homepage", "errordocs", "permissions", "whitespace", "fmtlib"])
 def test_coding_standard(tree, check):
     """LAMMPS' own checks. versiontags is for releases: it names what is still 'TBD', as
     contributors are to write."""
