@@ -29,6 +29,7 @@ SCENES = {  # scene: (variable of the resolution, its value, whether it is a num
     "dam_break": ("resolution", 20, True, {}),
     "dam_break_3d": ("dx", 0.055, False, {}),
     "dam_break_elastic": ("dx", 0.004, False, {"dim": 2, "column": 0.292, "depth": 0.12}),
+    "dam_break_gate": ("rows", 80, True, {"across": 2}),
     "droplet": ("dx", 0.005, False, {}),
     "elastic_gate": ("dx", 0.0025, False, {}),
     "elliptical_drop": ("dx", 0.05, False, {}),
