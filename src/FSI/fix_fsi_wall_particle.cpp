@@ -71,6 +71,9 @@ void FixFSIWallParticle::init()
     error->all(FLERR,
                "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
 
+  int moved = 0;    // groups that something moves, where fluid sticks
+  for (const auto &fix : modify->get_fix_list())
+    if (fix->time_integrate && !slip) moved |= fix->groupbit;
   std::vector<int> mine(atom->ntypes + 1, 0), types(atom->ntypes + 1);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
@@ -84,11 +87,10 @@ void FixFSIWallParticle::init()
                  "out, and move it with fix move or fix rigid",
                  atom->tag[i], id);
     mine[atom->type[i]] = 1;
-    for (const auto &fix : modify->get_fix_list())
-      if (fix->time_integrate && (atom->mask[i] & fix->groupbit)) mine[0] = 1;
+    if (atom->mask[i] & moved) mine[0] = 1;
   }
   MPI_Allreduce(mine.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
-  turns = !slip && types[0];
+  turns = types[0];
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!types[t]) continue;
     State &s = fix_fsi->state[t];
