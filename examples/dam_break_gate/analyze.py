@@ -67,9 +67,14 @@ def add_motion(summary, plate, values, suffix="", others=(), source=None, target
         summary.add(f"touch{suffix}", time, "s")
 
 
+def is_of_code(plate, values):
+    """Is this the other code's scene, to its end?"""
+    return values["depth"] == 0.2 and values["lifted"] and plate.time[-1] > 0.99 * CODE_END[0]
+
+
 def add_code(summary, plate, values, suffix="", target=AGREES):
     """The upper marker against another code's, if this is its scene."""
-    if values["depth"] == 0.2 and values["lifted"] and plate.time[-1] > 0.99 * CODE_END[0]:
+    if is_of_code(plate, values):
         summary.add(f"end_87.5{suffix}", 1e3 * plate["m3"][-1], "mm", CODE_END[1], CODE, target)
         summary.add(f"largest_87.5{suffix}", 1e3 * plate.peak("m3")[0], "mm", CODE_END[1], CODE, target)
 
@@ -120,7 +125,8 @@ def picture_markers(path, runs):
             for (name, height), colour in zip(MARKERS.items(), COLOURS):
                 label = f"{height} mm, {values['rows']:g} rows" if k == 0 else f"{values['rows']:g} rows" if name == "m3" else None
                 axes.plot(plate.time, 1e3 * plate[name], line, color=colour, label=label)
-        axes.plot(*CODE_END, "o", color=plot.GREY, label="87.5 mm, SPHinXsys")
+        if is_of_code(*runs[0][:2]):
+            axes.plot(*CODE_END, "o", color=plot.GREY, label="87.5 mm, SPHinXsys")
         axes.set(xlabel="time [s]", ylabel="displacement of the markers [mm]", xlim=(0.2, None) if runs[0][0].time[-1] > 0.3 else (0.0, None))
         axes.legend(fontsize="x-small")
         figure.tight_layout()
