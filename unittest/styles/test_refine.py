@@ -532,14 +532,15 @@ thermo_modify norm no lost error format float %20.15g
 """)
 
 
-def test_levels_around_an_elastic_body(tmp_path):
+@pytest.mark.parametrize("thin", ["", " thin 4"], ids=["thick", "thin"])
+def test_levels_around_an_elastic_body(tmp_path, thin):
     """A heavy strip with sub-steps against a stream, two levels of water around it by the distance: momentum to round-off, the same on any number of ranks and
-    from a restart file."""
+    from a restart file. Also where the strip hides the water behind it."""
     materials = MATERIALS + "rubber solid rho 8000 young 3e6 poisson 0.4\n"
     runs = {}
     for name, ranks, newton, grid, start, steps in (("one", 1, "on", "* * *", BODY[1], 160), ("two", 2, "on", "2 1 1", BODY[1], 160), ("four", 4, "off", "2 2 1", BODY[1], 160),
                                                     ("rest", 1, "on", "* * *", "read_restart ../one/r.85\n", 75)):
-        text = BODY[0].format(newton=newton, grid=grid) + start + BODY[2]
+        text = BODY[0].format(newton=newton, grid=grid) + start + BODY[2].replace("spacing 3*4 0.025", "spacing 3*4 0.025" + thin)
         runs[name] = run(tmp_path / name, text + watch(every=160) + f"restart 85 r.*\nrun {steps}\n", ranks, water_fsi=materials)
     last = {name: result.frames()[-1] for name, result in runs.items()}
     assert set(last["one"]["type"]) == {1, 2, 3, 4}
