@@ -504,10 +504,10 @@ processors {grid}
 create_box 4 box
 lattice sq 0.05 origin 0.5 0.5 0
 create_atoms 1 box
-region around block 0.79 1.21 0.74 0.86 INF INF units box
+region around block 0.79 1.21 {hole} INF INF units box
 delete_atoms region around compress yes
-lattice sq 0.025 origin 0.5 0.5 0
-region strip block 0.8 1.2 0.75 0.85 INF INF units box
+lattice sq {spacing} origin 0.5 0.5 0
+region strip block 0.8 1.2 {faces} INF INF units box
 create_atoms 4 region strip
 group water type 1
 group body type 4
@@ -519,7 +519,7 @@ velocity body set -3 0 0 units box
 """, """pair_style hybrid fsi/fluid sound 30 tension yes density/diffusion 0.1 shift 0.25 shift/every 4 artificial/visc 0.02 0 fsi/solid/tl
 pair_coeff * * fsi/fluid water.fsi water water water rubber
 pair_coeff * * fsi/solid/tl water.fsi NULL NULL NULL rubber
-fix sph all fsi 0.05 wendland 1.5 substeps 4 spacing 2 0.0353553390593 spacing 3*4 0.025
+fix sph all fsi 0.05 wendland 1.5 substeps 4 spacing 2 0.0353553390593 spacing 3 0.025 spacing 4 {spacing} {thin}
 fix ref water fsi/refine 10 types 1 2 3 distance body 0.5 0.25
 compute e all fsi/energy
 variable px equal vcm(all,x)*mass(all)
@@ -532,15 +532,17 @@ thermo_modify norm no lost error format float %20.15g
 """)
 
 
-@pytest.mark.parametrize("thin", ["", " thin 4"], ids=["thick", "thin"])
-def test_levels_around_an_elastic_body(tmp_path, thin):
+# the second between two rows of water
+@pytest.mark.parametrize("strip", [dict(hole="0.74 0.86", faces="0.75 0.85", spacing=0.025, thin=""),
+                                   dict(hole="0.79 0.81", faces="0.7875 0.8125", spacing=0.0125, thin="thin 4")], ids=["thick", "thin"])
+def test_levels_around_an_elastic_body(tmp_path, strip):
     """A heavy strip with sub-steps against a stream, two levels of water around it by the distance: momentum to round-off, the same on any number of ranks and
     from a restart file. Also where the strip hides the water behind it."""
     materials = MATERIALS + "rubber solid rho 8000 young 3e6 poisson 0.4\n"
-    runs = {}
-    for name, ranks, newton, grid, start, steps in (("one", 1, "on", "* * *", BODY[1], 160), ("two", 2, "on", "2 1 1", BODY[1], 160), ("four", 4, "off", "2 2 1", BODY[1], 160),
+    runs, begin = {}, BODY[1].format(**strip)
+    for name, ranks, newton, grid, start, steps in (("one", 1, "on", "* * *", begin, 160), ("two", 2, "on", "2 1 1", begin, 160), ("four", 4, "off", "2 2 1", begin, 160),
                                                     ("rest", 1, "on", "* * *", "read_restart ../one/r.85\n", 75)):
-        text = BODY[0].format(newton=newton, grid=grid) + start + BODY[2].replace("spacing 3*4 0.025", "spacing 3*4 0.025" + thin)
+        text = BODY[0].format(newton=newton, grid=grid) + start + BODY[2].format(**strip)
         runs[name] = run(tmp_path / name, text + watch(every=160) + f"restart 85 r.*\nrun {steps}\n", ranks, water_fsi=materials)
     last = {name: result.frames()[-1] for name, result in runs.items()}
     assert set(last["one"]["type"]) == {1, 2, 3, 4}
