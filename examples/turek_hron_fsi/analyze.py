@@ -43,10 +43,17 @@ def read(folder):
     return found.values["benchmark"], found.values, s
 
 
-def swings(time, values, rate):
-    """(mean, amplitude) of the last GROUPS of PERIODS periods, of as many as there are (GROUPS, 2)"""
-    groups = [time <= time[-1] - k * PERIODS / rate for k in range(GROUPS)]
+def swings(time, values, rate, groups=GROUPS):
+    """(mean, amplitude) of the last `groups` of PERIODS periods, of as many as there are (groups, 2)"""
+    groups = [time <= time[-1] - k * PERIODS / rate for k in range(groups)]
     return np.array([series.swing(time[g], values[g], rate, PERIODS) for g in groups if g.any() and (time[g][-1] - time[0]) * rate >= 1.0])
+
+
+def grown(time, values, rate):
+    """How many of the last groups do not belong to the growth of the swing: of each at least three quarters of the last one's amplitude"""
+    amplitudes = swings(time, values, rate)[:, 1]
+    small = amplitudes < 0.75 * amplitudes[0]
+    return int(small.argmax()) if small.any() else GROUPS
 
 
 def add(summary, folder, suffix="", finest=True):
@@ -66,8 +73,9 @@ def add(summary, folder, suffix="", finest=True):
         half = s.time >= 0.5 * s.time[-1]
         rate = series.frequency(s.time[half], s[fundamental][half])
         figure("frequency", rate, "Hz", REFERENCE[case][fundamental][2])
+        groups = grown(s.time, s[fundamental], rate)
         for name, (mean, amplitude, _) in REFERENCE[case].items():
-            found = swings(s.time, s[name], rate)
+            found = swings(s.time, s[name], rate, groups)
             figure(f"{name}_mean", found[:, 0].mean(), UNITS[name], mean)
             figure(f"{name}_amplitude", found[:, 1].mean(), UNITS[name], amplitude)
             if name == fundamental:
