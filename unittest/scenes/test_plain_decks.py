@@ -18,7 +18,7 @@ LINES, COLUMNS = 45, 132
 PLAIN_COMMANDS = {
     "atom_style", "boundary", "comm_modify", "compute", "create_atoms", "create_box",
     "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/material",
-    "fsi/set", "group", "include", "lattice", "neigh_modify", "neighbor", "pair_coeff",
+    "fsi/displace",     "fsi/set", "group", "include", "lattice", "neigh_modify", "neighbor", "pair_coeff",
     "pair_style", "region", "run", "set", "thermo", "thermo_modify", "thermo_style", "timestep",
     "unfix", "units", "variable", "velocity"}
 DEFAULTS = ("newton on", "comm_modify mode single", "neigh_modify every 1 delay 0 check yes")

@@ -1,0 +1,163 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_displace.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fsi_gather.h"
+#include "fsi_keywords.h"
+#include "group.h"
+#include "input.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+namespace {
+// This part of a particle's cell a cell of the body covers, squares or cubes. Cells of a lattice
+// fill space, so the sum over the fluid is the body's volume in it, wherever the two lattices lie.
+double covered(const double *xi, double a, const double *xj, double b, int dim)
+{
+  double part = 1.0;
+  for (int d = 0; d < dim; d++) {
+    const double common = std::min({0.5 * (a + b) - std::fabs(xi[d] - xj[d]), a, b});
+    part *= std::max(common, 0.0) / a;
+  }
+  return part;
+}
+
+// First goes what is covered most and nearest to the body, in spacings, so that none that stays is
+// too near; of the same, as lattices have them, by place: no two have one key.
+double key_of(double part, double nearest, const double *x, const Domain *domain)
+{
+  double key = std::floor((part - nearest + 4.0) * 1e4 + 0.5), digit = 0.5;
+  for (int d = 0; d < domain->dimension; d++, digit *= 1e-4)
+    key -= digit * (x[d] - domain->boxlo[d]) / domain->prd[d];
+  return key;
+}
+}    // namespace
+
+// of all particles, as between runs there are none
+const NeighList *FSIDisplace::neighbors()
+{
+  neighbor->add_request(this, "fsi/displace", NeighConst::REQ_FULL);
+  lmp->init();    // materials and masses are entered there
+  domain->pbc();
+  domain->reset_box();
+  comm->setup();
+  if (neighbor->style) neighbor->setup_bins();
+  comm->exchange();
+  comm->borders();
+  neighbor->build(1);
+  auto *const list = neighbor->find_list(this);
+  neighbor->build_one(list);
+  return list;
+}
+
+// All ranks together: above which limit there are n keys, or as many as may be without being more
+static double limit_of(const std::vector<double> &key, bigint n, MPI_Comm world)
+{
+  double low = -1.0, high = 1e9;
+  for (int k = 0; k < 80; k++) {
+    const double middle = 0.5 * (low + high);
+    const bigint above = std::count_if(key.begin(), key.end(), [middle](double one) {
+      return one > middle;
+    });
+    (count_of(above, world) > n ? low : high) = middle;
+  }
+  return high;
+}
+
+void FSIDisplace::command(int narg, char **arg)
+{
+  if (domain->box_exist == 0)
+    error->all(FLERR, "Fsi/displace command before simulation box is defined");
+  std::string names[2];
+  Keywords keywords(lmp, "fsi/displace");
+  keywords.argument("fluid group-ID").word(names[0], "");
+  keywords.argument("body group-ID").word(names[1], "");
+  keywords.parse(narg, arg);
+  int bit[2];
+  for (int k = 0; k < 2; k++) {
+    const int igroup = group->find(names[k]);
+    if (igroup == -1) error->all(FLERR, "Fsi/displace group-ID {} does not exist", names[k]);
+    bit[k] = group->bitmask[igroup];
+  }
+  const FixFSI &fsi = *FixFSI::find(lmp, "Fsi/displace");
+  const NeighList *const list = neighbors();
+  double **const x = atom->x;
+  const int *const type = atom->type, *const mask = atom->mask;
+  const auto is_fluid = [&](int i) {
+    return mask[i] & bit[0] && fsi.state[type[i]].species == FLUID;
+  };
+  const auto is_body = [&](int j) {
+    return mask[j] & bit[1] && fsi.state[type[j]].species != FLUID;
+  };
+  for (int k = 0; k < 2; k++)
+    if (find_particles(atom, world, [&](int i) {
+          return k == 0 ? is_fluid(i) : is_body(i);
+        }).count == 0)
+      error->all(FLERR, "Fsi/displace group-ID {} has no particle of {}", names[k],
+                 k == 0 ? "a fluid" : "a body");
+
+  std::vector<double> key(atom->nlocal, -1.0);
+  double own[3] = {}, all[3];    // particles, mass in whose place the body is; what goes
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii];
+    if (!is_fluid(i)) continue;
+    const double dx = fsi.dx_of(type[i]);
+    double part = 0.0, nearest = 4.0 * dx;
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = list->firstneigh[i][jj] & NEIGHMASK;
+      if (!is_body(j)) continue;
+      part += covered(x[i], dx, x[j], fsi.dx_of(type[j]), fsi.dim);
+      nearest =
+          std::min(nearest, std::hypot(x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]));
+    }
+    if (part == 0.0) continue;
+    own[0] += part;
+    own[1] += part * atom->rmass[i];
+    key[i] = key_of(part, nearest / dx, x[i], domain);
+  }
+  MPI_Allreduce(own, all, 2, MPI_DOUBLE, MPI_SUM, world);
+
+  const double limit = limit_of(key, std::llround(all[0]), world);
+  own[0] = 0.0;
+  const std::string gone = "FSI_DISPLACED";
+  const int igone = group->find_or_create(gone.c_str());
+  for (int i = 0; i < atom->nlocal; i++)
+    if (key[i] > limit) {
+      atom->mask[i] |= group->bitmask[igone];
+      own[0]++;
+      own[2] += atom->rmass[i];
+    }
+  MPI_Allreduce(own, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  if (comm->me == 0)
+    utils::logmesg(
+        lmp, "  fsi/displace: {} is in the place of {:.6g} of {}, {} particles of {:.6g} go\n",
+        names[1], all[1], names[0], all[0], all[2]);
+  if (all[0] == 0.0 && comm->me == 0)
+    error->warning(FLERR, "Fsi/displace {} {}: the body is in no fluid", names[0], names[1]);
+  input->one(fmt::format("delete_atoms group {} compress no", gone));
+  input->one(fmt::format("group {} delete", gone));
+}
