@@ -206,7 +206,7 @@ class Adviser : protected Pointers {
         warn(fmt::format("atoms {} and {} are {:.2g} spacings apart{}", all.a, all.b, all.r,
                          all.around < 0
                              ? std::string(": do bodies or phases overlap? Put them on one "
-                                           "lattice, or delete_atoms overlap")
+                                           "lattice, or fsi/displace")
                              : fmt::format(" around the periodic box: make it a whole "
                                            "number of spacings long in {}",
                                            "xyz"[all.around])));

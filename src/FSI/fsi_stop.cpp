@@ -163,7 +163,7 @@ double Stop::courant(const Scene &scene, int type) const
 // where fluid is in a body
 std::string Stop::advice(const Neighbor &body, When when)
 {
-  if (when == START) return "delete_atoms overlap, where the fluid is put around bodies";
+  if (when == START) return "fsi/displace, where the fluid is put around bodies";
   if (body.species == SOLID)
     return "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, which keeps "
            "fluid out";
