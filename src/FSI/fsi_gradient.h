@@ -133,16 +133,18 @@ namespace FSI {
 
   // Inverse C of such moments for the slopes of a linear fit. Directions along which neighbors
   // hardly lie apart fade: there a slope is that of noise. Half of a disc about its own center has
-  // 0.28 of its largest eigenvalue, half of a ball 0.30.
-  template <int D> inline void faded_inverse(const double *moments, double *C)
+  // 0.28 of its largest eigenvalue, half of a ball 0.30. wide: what an eigenvalue of neighbors that
+  // lie apart has at least; moments about the center of a single one are all round-off.
+  template <int D> inline void faded_inverse(const double *moments, double *C, double wide = 0.0)
   {
     constexpr double NONE = 0.02, ALL = 0.1;    // of the largest eigenvalue
     double value[3], axes[D][D];
     principal<D>(moments, value, axes);
     std::fill_n(C, D * D, 0.0);
+    wide = std::max(wide, value[0]);
     for (int k = 0; k < D; k++) {
-      if (!(value[k] > NONE * value[0])) break;
-      const double t = std::min(1.0, (value[k] / value[0] - NONE) / (ALL - NONE));
+      if (!(value[k] > NONE * wide)) break;
+      const double t = std::min(1.0, (value[k] / wide - NONE) / (ALL - NONE));
       for (int a = 0; a < D; a++)
         for (int b = 0; b < D; b++)
           C[a * D + b] += t * t * (3.0 - 2.0 * t) / value[k] * axes[k][a] * axes[k][b];

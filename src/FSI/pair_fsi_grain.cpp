@@ -222,6 +222,8 @@ template <class K> void PairFSIGrain::sum_up(const K &kernel)
 // Pressure and its gradient at the grain are those of the plane that fits best, which walls and
 // surfaces on one side do not bend. In 2D a grain is as many spheres to a unit of depth as have
 // together the volume pi r^2: it sinks as one of them does.
+static constexpr double WIDE = 0.1;    // variance of places over h^2; two, dx = h/4 apart: 0.016
+
 template <int D> void PairFSIGrain::forces()
 {
   using Of = Sums<D>;
@@ -239,7 +241,7 @@ template <int D> void PairFSIGrain::forces()
     for (int a = 0, n = 0; a < D; a++)
       for (int b = 0; b <= a; b++, n++)
         moments[n] = sum[Of::XX + n] - per * sum[Of::X + a] * sum[Of::X + b];
-    faded_inverse<D>(moments, C);
+    faded_inverse<D>(moments, C, WIDE * sum[Of::ONE]);
     for (int a = 0; a < D; a++) {
       for (int b = 0; b < D; b++) slope[a] += C[a * D + b] * (sum[Of::PX + b] - p * sum[Of::X + b]);
       steepness += slope[a] * slope[a];

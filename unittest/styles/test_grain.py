@@ -183,6 +183,30 @@ def test_edge_of_a_column(tmp_path):
 
 
 @pytest.mark.parametrize("dim", (2, 3))
+def test_one_neighbor(tmp_path, dim):
+    """A grain that sees one fluid particle knows no gradient: no force, whichever way it lies; round-off over round-off was several
+    weights at one angle in ten. As the second comes within the support the force begins at 0."""
+    angles = np.deg2rad(np.arange(0, 360, 10))
+    for second in (None, 3e-3, 0.3):  # within the support, over h
+        x, grains = [], []
+        for k, angle in enumerate(angles):
+            e = np.array([np.cos(angle), np.sin(angle), 0])
+            center = np.array([0.1 + DX * 10 * (k % 6), 0.1 + DX * 10 * (k // 6), 0.1 if dim == 3 else 0.0])
+            grains.append(center + 0.015 * e)
+            x.append(center)
+            if second:
+                x.append(grains[-1] + e * (2 - second) * H * DX)
+        x, grains = np.array(x), np.array(grains)
+        box = "0 0.8 0 0.8"
+        with Grains(tmp_path, dim, x, np.zeros_like(x), grains, np.zeros_like(grains), 0.4 * DX, fluid="tension yes", box=box) as s:
+            s.run()
+            s.lmp.numpy.extract_atom("rho")[np.argsort(s.lmp.numpy.extract_atom("id")[:len(x) + len(grains)])[:len(x)]] = \
+                1000 + (np.arange(len(x)) % 2 if second else 2.5)  # p = 1000 Pa, or 0 and 400 Pa
+            size = np.linalg.norm(s.run().get("f")[len(x):], axis=1)
+        assert size.max() == 0 if second in (None, 3e-3) else size.min() > 0
+
+
+@pytest.mark.parametrize("dim", (2, 3))
 def test_archimedes(tmp_path, dim):
     """Still water whose pressure is a plane: a sphere under water is pushed up by the weight of its volume, one in the surface by that
     of its cap, one above it not; to round-off, since the fit is exact for a plane."""
