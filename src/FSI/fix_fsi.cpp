@@ -232,7 +232,7 @@ void FixFSI::init()
   members->frame.init();
   check.materials();
   for (int i = 0; i < atom->nlocal; i++) members->others.give_defaults(i);
-  body_forces.find(state);
+  body_forces.find();
   check.init();
 }
 
@@ -351,7 +351,7 @@ void FixFSI::update_state(bool advance)
   changes.in_step();
   inverted = -1;
   set_tally(advance ? update->dt : 0.0);
-  body_forces.evaluate();
+  body_forces.evaluate(state);
   if (ledger && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);
   for (auto *p : parts) p->begin_state(advance);

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_gravity.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ struct Peek : FixGravity {
 };
 }    // namespace
 
-void BodyForces::find(const std::vector<State> &state)
+void BodyForces::find()
 {
   all.clear();
   for (auto &fix : modify->get_fix_by_style("^gravity"))
@@ -47,33 +48,36 @@ void BodyForces::find(const std::vector<State> &state)
                      {0.0, 0.0, 0.0}});
       g->init();    // its variables are looked up
     }
-  const int ntypes = atom->ntypes, nfields = all.size();
-  const auto at = [ntypes](int field, int type) {
-    return (size_t) field * (ntypes + 1) + type;
-  };
-  std::vector<int> without(nfields * (ntypes + 1), 0), with(without), some(without);
+  acts_on_all.assign(all.size() * (atom->ntypes + 1), 0);
+  told = acts_on_all;
+}
+
+// Of the particles that there are now: levels and buffers may be empty at the start of a run
+void BodyForces::find_whole_types(const std::vector<State> &state)
+{
+  const int ntypes = atom->ntypes, nfields = all.size(), n = acts_on_all.size();
+  std::vector<int> mine(2 * n, 0), any(2 * n);    // type by type: with, without
   for (int i = 0; i < atom->nlocal; i++)
     for (int k = 0; k < nfields; k++)
-      (atom->mask[i] & all[k].mask ? with : without)[at(k, atom->type[i])] = 1;
-  acts_on_all.resize(without.size());
-  MPI_Allreduce(without.data(), acts_on_all.data(), (int) without.size(), MPI_INT, MPI_MAX, world);
-  MPI_Allreduce(with.data(), some.data(), (int) with.size(), MPI_INT, MPI_MAX, world);
-  for (int k = 0; k < nfields; k++)
-    for (int t = 1; t <= ntypes; t++) {
-      if (some[at(k, t)] && acts_on_all[at(k, t)] && state[t].species == FLUID && comm->me == 0)
-        error->warning(FLERR,
-                       "Fix gravity {} acts on a part of the particles of type {} only: for what "
-                       "is hydrostatic between them, as in density diffusion, it does not count",
-                       all[k].fix->id, t);
-      acts_on_all[at(k, t)] = all[k].mask && !acts_on_all[at(k, t)];
-    }
-  of_type.assign(ntypes + 1, {0.0, 0.0, 0.0});
+      mine[(atom->mask[i] & all[k].mask ? 0 : n) + k * (ntypes + 1) + atom->type[i]] = 1;
+  MPI_Allreduce(mine.data(), any.data(), 2 * n, MPI_INT, MPI_MAX, world);
+  for (int at = 0; at < n; at++) {
+    const int k = at / (ntypes + 1), t = at % (ntypes + 1);
+    acts_on_all[at] = any[at] && !any[n + at];
+    if (!any[at] || !any[n + at] || state[t].species != FLUID || told[at]++ || comm->me > 0)
+      continue;
+    error->warning(FLERR,
+                   "Fix gravity {} acts on a part of the particles of type {} only: for what "
+                   "is hydrostatic between them, as in density diffusion, it does not count",
+                   all[k].fix->id, t);
+  }
 }
 
 // Body forces of this step. Fix gravity evaluates its variables when it acts, after the pair
 // styles: it is asked to do so earlier, with nothing to act on.
-void BodyForces::evaluate()
+void BodyForces::evaluate(const std::vector<State> &state)
 {
+  if (neighbor->ago == 0 && !all.empty()) find_whole_types(state);
   of_type.assign(atom->ntypes + 1, {0.0, 0.0, 0.0});
   size_t on = 0;
   for (auto &field : all) {

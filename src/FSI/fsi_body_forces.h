@@ -30,8 +30,8 @@ namespace FSI {
   class BodyForces : protected Pointers {
    public:
     explicit BodyForces(LAMMPS *lmp) : Pointers(lmp) {}
-    void find(const std::vector<State> &);    // before a run
-    void evaluate();                          // at the time of the step
+    void find();                                  // before a run
+    void evaluate(const std::vector<State> &);    // at the time of the step
     // Energy that this rank's particles have lost because fields changed in the last evaluate(),
     // taken in the middle between two steps. Those of the group are half a step further.
     double work(const std::vector<State> &, int groupbit) const;
@@ -47,7 +47,8 @@ namespace FSI {
     std::vector<std::array<double, 3>> of_type;    // sum of those that act on all its particles
 
    private:
-    std::vector<int> acts_on_all;    // each field, type by type
+    void find_whole_types(const std::vector<State> &);
+    std::vector<int> acts_on_all, told;    // each field, type by type
   };
 
 }    // namespace FSI

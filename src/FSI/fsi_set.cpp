@@ -75,7 +75,7 @@ void FSISet::command(int narg, char **arg)
 
   // materials, masses and gravity are entered in init()
   lmp->init();
-  fix_fsi->body_forces.evaluate();
+  fix_fsi->body_forces.evaluate(fix_fsi->state);
   if (what == HYDROSTATIC &&
       std::none_of(fix_fsi->body_forces.all.begin(), fix_fsi->body_forces.all.end(),
                    [](const BodyForces::Field &f) {

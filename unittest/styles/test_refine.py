@@ -60,6 +60,25 @@ def nearest(x, y, size):
     return np.sqrt(d.min(1))
 
 
+def test_gravity_in_an_empty_level():
+    """Density diffusion knows as hydrostatic what gravity acts on, all the particles of a level: those that have come into it, empty at
+    first or not. Bit for bit the same: gravity of nobody in the water and none; gravity of its types and of all."""
+    x = lattice((24, 24), DX)
+    found = {}
+    for group in ("none", "other", "water", "all"):
+        gravity = [] if group == "none" else ["group water type 1 2", "group other empty", f"fix g {group} gravity 9.81 vector 0 -1 0"]
+        for first in (False, True):
+            with box_scene(x, zone="block 0.3 0.9 0.3 0.9 INF INF", fluid="density/diffusion 0.1", commands=gravity) as s:
+                if first:  # and a second one, which begins with a level that is there
+                    s.run()
+                go(s, 20)
+                found[group, first] = np.hstack([s.get("x"), s.get("rho")[:, None]])
+    for group, same in (("other", "none"), ("water", "all")):
+        for first in (False, True):
+            assert np.array_equal(found[group, first], found[same, True])
+    assert len(found["none", True]) > len(x) and np.abs(found["all", True] - found["none", True])[:, 3].max() > 1e-3
+
+
 @pytest.mark.parametrize("n, origin, apart", [((24, 24), 0.0, 2**-0.5), ((8, 8, 8), 0.0, 3**0.5 / 2)], ids=["2D", "3D"])
 def test_a_lattice_splits(n, origin, apart):
     """Before the first step: a square lattice becomes a square one, a cubic one a body-centered one, whose particles are that far from each other.
