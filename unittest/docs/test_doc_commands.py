@@ -277,7 +277,7 @@ class Reader:
     tools_coverage = tools_pytest
 
     def tools_proof(self, _, words):  # test_proof.py looks at what it does
-        assert len(words) == 1 and "compares" in self.execute("python3 -m fsi.proof --help")
+        assert len(words) == 1 and "hashes" in self.execute("python3 -m fsi.proof --help")
 
     def tools_setup(self, _, words):
         text = self.execute("tools/setup --help")
