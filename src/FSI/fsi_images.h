@@ -89,6 +89,12 @@ namespace FSI {
       for (size_t k = 0; k < all.size(); k++)
         call(first + (int) k, all[k].of, all[k].mirror, !(all[k].bits & HALF));
     }
+    // of atoms and images
+    void give_types(const int *type, std::vector<int> &types) const
+    {
+      types.assign(type, type + first);    // LAMMPS' array may end there
+      for (const Image &image : all) types.push_back(type[image.of]);
+    }
     // f of images to their originals; part: of the force on the planes
     template <int D> void fold(double (*f)[row_of_forces(D)], double part) const
     {

@@ -15,6 +15,7 @@
 
 #include "atom.h"
 #include "atom_vec.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fsi_gather.h"
@@ -56,6 +57,9 @@ void Population::leave_an_id_free()
     if (scene.state[atom->type[i]].species == FLUID) mine = std::max(mine, atom->tag[i]);
   MPI_Allreduce(&mine, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (largest == 0 || atom->natoms >= MAXTAGINT) return;
+  if (comm->me == 0)
+    utils::logmesg(lmp, "  atom {} is {} from now on: particles come and go\n", largest,
+                   atom->natoms + 1);
   begin();    // the map is of the old IDs
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->tag[i] == largest) atom->tag[i] = static_cast<tagint>(atom->natoms) + 1;
@@ -175,6 +179,8 @@ void Population::release(const std::vector<tagint> &mine)
   const auto all = gather(mine, world);
   free_ids.insert(free_ids.end(), all.begin(), all.end());
   std::sort(free_ids.begin(), free_ids.end());
+  // commands between runs may have given a free one to a particle that is gone now
+  free_ids.erase(std::unique(free_ids.begin(), free_ids.end()), free_ids.end());
 }
 
 void Population::end()

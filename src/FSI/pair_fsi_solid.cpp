@@ -279,10 +279,7 @@ void PairFSISolid::find_image_rows()
   }
   for (auto *rows : {&own_images, &other_images})
     for (RowList &list_ : *rows) list_.end();
-  types_with_images.assign(atom->type, atom->type + images.end());
-  images.for_each([this](int k, int of, const Mirror &, bool) {
-    types_with_images[k] = atom->type[of];
-  });
+  images.give_types(atom->type, types_with_images);
 }
 
 void PairFSISolid::check_planes() const

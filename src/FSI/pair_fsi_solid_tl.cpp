@@ -301,10 +301,7 @@ void PairFSISolidTL::find_rows()
       }
   }
   const Images &images = reference->images;
-  if (images.any()) types_with_images.assign(type, type + images.end());
-  images.for_each([this, type](int k, int of, const Mirror &, bool) {
-    types_with_images[k] = type[of];
-  });
+  if (images.any()) images.give_types(type, types_with_images);
   rows.clear();
   for (const int i : reference->solids) {
     const State &s = fix_fsi->state[type[i]];

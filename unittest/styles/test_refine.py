@@ -360,6 +360,47 @@ def test_ids_stay_small_and_unique():
             go(s, 50)
 
 
+RENUMBERED = """units si
+dimension 2
+boundary p p p
+atom_style fsi
+region box block 0 0.4 0 0.4 -0.005 0.005
+create_box 2 box
+lattice sq 0.01 origin 0.5 0.5 0
+create_atoms 1 box
+displace_atoms all random 0.0008 0.0008 0 1 units box
+group nobody empty
+fsi/material w fluid rho 1000
+pair_style fsi/fluid sound 10 background 500 tension yes density/diffusion 0.1 shift 0.2
+pair_coeff * * NULL w w
+fix 1 all fsi 0.01 wendland 1.5 spacing 2 0.0070711
+variable a equal ternary(step<20,0.12,0)
+variable b equal ternary(step<120,0.12,0)
+variable c equal ternary((step>=170)*(step<235),0.12,0)
+region a sphere 0.1 0.1 0 v_a units box
+region b sphere 0.3 0.1 0 v_b units box
+region c sphere 0.2 0.3 0 v_c units box
+region zone union 3 a b c
+fix 2 all fsi/refine 5 types 1 2 region zone
+variable u atom 0.5*sin(5*PI*y)
+velocity all set v_u 0 0
+timestep 2e-4
+neighbor 0.003 bin
+run 100
+{command}
+run 150
+write_dump all custom left.dump id type mass modify sort id time yes format float %.17g
+"""
+
+
+@pytest.mark.parametrize("command", ["reset_atoms id", "delete_atoms group nobody"])
+def test_renumbered_between_runs(tmp_path, command):
+    """IDs that particles left free may be those of others after a command: none stands twice, and no mass is lost."""
+    frame = run(tmp_path, RENUMBERED.format(command=command)).frames("left.dump")[-1]
+    assert len(set(frame["id"])) == len(frame["id"]) > 1600
+    assert math.fsum(frame["mass"]) == pytest.approx(1600 * frame["mass"].max(), rel=1e-14)
+
+
 def test_walls_and_edges():
     """Halves stay before mirror walls and in the box, and not much nearer to a wall than the shaken lattice was."""
     x, v = cloud((24, 24), DX, jitter=0.3)
