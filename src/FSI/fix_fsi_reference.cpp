@@ -708,10 +708,11 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
   }
 }
 
-void FixFSIReference::break_bonds(double stretch, const Energy &energy)
+void FixFSIReference::break_bonds(double stretch, const Energy &energy,
+                                  const std::function<bool(int)> &crushed)
 {
-  domain->dimension == 2 ? break_bonds_of_all<2>(stretch, energy)
-                         : break_bonds_of_all<3>(stretch, energy);
+  domain->dimension == 2 ? break_bonds_of_all<2>(stretch, energy, crushed)
+                         : break_bonds_of_all<3>(stretch, energy, crushed);
 }
 
 // Nobody of this rank's solids moves relative to anybody else by more than the diagonal of the box
@@ -746,7 +747,9 @@ template <int D> void FixFSIReference::move_apart()
   apart = anew ? 0.0 : apart + std::sqrt(sum) + 1e-9 * fix_fsi->dx;    // more than round-off
 }
 
-template <int D> void FixFSIReference::break_bonds_of_all(double stretch, const Energy &energy)
+template <int D>
+void FixFSIReference::break_bonds_of_all(double stretch, const Energy &energy,
+                                         const std::function<bool(int)> &crushed)
 {
   const double limit = stretch * stretch;
   if (solids.empty()) return;
@@ -755,9 +758,13 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch, const 
   double **x = images.positions(atom->x);
   for (const int i : solids) {
     double &reserve = slack[slot[i]];
-    if (apart < reserve) continue;
     const size_t first = (size_t) slot[i] * maxbond;
     int &n = nbond[slot[i]];
+    if (n > 0 && crushed(i)) {
+      n = 0;
+      changes++;
+    }
+    if (apart < reserve) continue;
     reserve = std::numeric_limits<double>::max();
     const auto longer = [&](int k) {
       const double *const X = bond(i, k) + D * BOND_BLOCK, *const xj = x[local[first + k]];
@@ -783,6 +790,7 @@ template <int D> void FixFSIReference::break_bonds_of_all(double stretch, const 
     if (kept == n) continue;
     n = kept;
     renew<D>(i);
+    if (n > 0 && crushed(i)) n = 0;
     const double after = energy(i);
     if (after > before) quadrature[slot[i]] *= before / after;
     changes++;

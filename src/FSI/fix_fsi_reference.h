@@ -92,7 +92,8 @@ class FixFSIReference : public Fix {
   // by it, the particle's weight shrinks instead, so that breaking makes no energy. Looks only at
   // particles of which a bond may have become too long since
   typedef std::function<double(int)> Energy;
-  void break_bonds(double stretch, const Energy &energy);
+  // all of them where a particle is crushed
+  void break_bonds(double stretch, const Energy &energy, const std::function<bool(int)> &crushed);
 
   // Contact of a body with itself (fsi_contact.h), if its range, over the spacing, is above 0:
   // pairs as a local particle i sees them, without a bond, or whose bond may have broken by now,
@@ -172,7 +173,8 @@ class FixFSIReference : public Fix {
   void look_for_passing();
   bool is_solid(int i) const;
   bool is_periodic() const;
-  template <int D> void break_bonds_of_all(double stretch, const Energy &energy);
+  template <int D>
+  void break_bonds_of_all(double, const Energy &, const std::function<bool(int)> &crushed);
   template <int D> bool renew(int i);
   template <int D> void move_apart();
   double *bond_in(int s, int k);

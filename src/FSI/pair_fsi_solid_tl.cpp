@@ -638,7 +638,7 @@ template <int D> void PairFSISolidTL::advance_rates(double dt)
       const State &s = fix_fsi->state[atom->type[i]];
       const double work = fix_stress->advance_stress<D>(i, L, dt, s);
       if (fix_fsi->ledger)
-        fix_fsi->energy_out[FixFSI::INELASTIC] += work * atom->rmass[i] / s.rho0;
+        fix_fsi->energy_out[FixFSI::INELASTIC] += work * row.volume * determinant<D>(F);
     }
   };
   have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
@@ -648,22 +648,26 @@ void PairFSISolidTL::break_bonds()
 {
   if (damage <= 0.0) return;
   const Phase phase(fix_fsi->profile, Profile::STRESS);
-  reference->break_bonds(1.0 + damage, [this](int i) {
-    return std::max(0.0, stored(i));
-  });
+  // a fragment with few bonds may be turned inside out, where no law holds
+  reference->break_bonds(
+      1.0 + damage,
+      [this](int i) {
+        return std::max(0.0, stored(i));
+      },
+      [this](int i) {
+        return volume_ratio(i) < CRUSHED;
+      });
 }
 
-// elastic energy per reference volume; where stress comes by rates, and is no function of F, 0
+// elastic energy per reference volume
 double PairFSISolidTL::stored(int i) const
 {
   if (reference->count(i) == 0) return 0.0;
   return with_law([&](const auto *law_of, auto dimension) {
-    using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;
-    if constexpr (L::BY_RATE) return 0.0;
     double F[D * D];
     deformation<D>(i, F);
-    const double *const own = L::HISTORY.empty() ? nullptr : fix_history->of[i];
+    const double *const own = history() ? history()[i] : nullptr;
     return law_of[atom->type[i]].template operator()<D>(F, own).energy;
   });
 }

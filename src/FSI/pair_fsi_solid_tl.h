@@ -109,6 +109,7 @@ class PairFSISolidTL : public PairFSI {
   void refuse_constraints() const;
   bool takes_substeps() const;    // or may choose to
   void refuse_rigid_parts() const;
+  static constexpr double CRUSHED = 0.1;    // of its volume
   double stored(int i) const;
   void make_laws();
   // per particle, stress of rates or the law's own; or null
