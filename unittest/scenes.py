@@ -25,7 +25,7 @@ class Kernel:
     """The kernels as the papers print them: W(r), and g(r) with grad_i W_ij = g x_ij (r > 0)."""
 
     def __init__(self, name, dim, h):
-        self.name, self.h = name, h
+        self.name, self.dim, self.h = name, dim, h
         self.cut = (3 if name == "quintic" else 2) * h
         self.norm = {"cubic": (15 / (7 * np.pi), 3 / (2 * np.pi)), "quintic": (7 / (478 * np.pi), 1 / (120 * np.pi)),
                      "wendland": (7 / (4 * np.pi), 21 / (16 * np.pi))}[name][dim - 2] / h**dim
@@ -54,6 +54,17 @@ class Kernel:
     def lattice_sum(self, dx, dim):
         """sum of W over an infinite square or cubic lattice"""
         return self.W(np.linalg.norm(lattice([2 * int(self.cut / dx) + 3] * dim, dx, center=True), axis=1)).sum()
+
+    def rubbing(self, form, hdx, w, d):
+        """what laminar viscosity multiplies with 2 eta V V g: w, the relative velocity, in the plain form, (d+2)(w.d)d/l^2 in the central one;
+        l^2 makes the force of v_x = y^2/2 right on a lattice whose rows lie anywhere, the mean over 16 places"""
+        if "central" not in form:
+            return w
+        one = Kernel(self.name, self.dim, hdx)
+        x = lattice([2 * int(16 * one.cut) + 33] + [2 * int(one.cut) + 3] * (self.dim - 1), 1, center=True) * np.array([1 / 16, 1, 1])
+        r = np.maximum(np.linalg.norm(x, axis=1), 1e-300)
+        length_sq = -(self.dim + 2) * (one.g(r) * (x[:, 0] * x[:, 1])**2).sum() / 16 / one.lattice_sum(1, self.dim) / hdx**2 * self.h**2
+        return (self.dim + 2) * ((w * d).sum(1) / length_sq)[:, None] * d
 
 
 def lattice(n, dx, origin=0.0, center=False):

@@ -433,8 +433,8 @@ namespace FSI {
   template <class T, int KIND, int FLAGS, int D>
   FSI_INLINE T rub(const LaminarViscosity<D> &viscous, const ForceLaws &laws, const Mirror &mirror,
                    const Particle<T, D> &pi, const Particle<T, D> &pj, const T (&velocity_of_j)[D],
-                   const int *j, const RowConstants &constant, const T &g, const T &rsq,
-                   const T (&x)[D], const T (&v)[D], T (&force)[D], T (&on_j)[D])
+                   const int *j, const RowConstants &constant, const T &g, const T (&x)[D],
+                   const T (&v)[D], T (&force)[D], T (&on_j)[D])
   {
     using L = Lanes<T>;
     const double visc = constant.visc;
@@ -460,7 +460,7 @@ namespace FSI {
         seen[d] = -mirror.sign[d] * x[d];
         of_j[d] = 0.0;
       }
-      loss = viscous(g, rsq, visc, vv, x, w, rubbing) + viscous(g, rsq, visc, vv, seen, back, of_j);
+      loss = viscous(g, visc, vv, x, w, rubbing) + viscous(g, visc, vv, seen, back, of_j);
       if ((FLAGS & Flag::SUMS) && KIND != WITH_FLUID) {
         // the power is that of the solid's own velocity
         loss = 0.0;
@@ -473,10 +473,10 @@ namespace FSI {
       // fluid beyond the wall or inside the solid, with the velocity extrapolated
       T w[D];
       for (int d = 0; d < D; d++) w[d] = pi.v[d] - beyond_face(d);
-      viscous(g, rsq, visc, vv, x, w, rubbing);
+      viscous(g, visc, vv, x, w, rubbing);
       if (FLAGS & Flag::SUMS) loss = -product(rubbing, v);
     } else
-      loss = viscous(g, rsq, visc, vv, x, v, rubbing);
+      loss = viscous(g, visc, vv, x, v, rubbing);
     for (int d = 0; d < D; d++) force[d] += rubbing[d];
     return loss;
   }
@@ -605,7 +605,7 @@ namespace FSI {
     if (FLAGS & Flag::SUMS)
       for (int d = 0; d < D; d++) friction[d] += force[d];
     const T loss = rub<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, velocity_of_j, j, constant,
-                                       there, m.rsq, m.x, m.v, force, on_j);
+                                       there, m.x, m.v, force, on_j);
     if (FLAGS & Flag::SUMS)
       for (int d = 0; d < D; d++) friction[d] -= force[d];
     if (FLAGS & Flag::SUMS)
@@ -623,8 +623,8 @@ namespace FSI {
     using L = Lanes<T>;
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     const ArtificialViscosity artificial(laws.alpha, laws.beta, kernel.h);
-    const LaminarViscosity<D> viscous(kernel.h,
-                                      (FLAGS & Flag::CENTRAL) && laws.laminar == CENTRAL_LAMINAR);
+    const LaminarViscosity<D> viscous(
+        (FLAGS & Flag::CENTRAL) ? laws.central_length_sq * (kernel.h * kernel.h) : 0.0);
     Powers<T> by;
     T on_all[D];
     for (T &w : on_all) w = 0.0;

@@ -258,6 +258,23 @@ namespace FSI {
     return psi;
   }
 
+  // l^2 of central laminar viscosity (fsi_viscosity.h), with which a flow along the rows of a
+  // lattice has the viscosity that is given, in the mean over the places of rows that slide along
+  // each other
+  template <class K> double central_length_sq(const K &kernel, double dx)
+  {
+    constexpr int PLACES = 16;
+    const int n = static_cast<int>(kernel.cut / dx) + 1, nz = K::DIM == 3 ? n : 0;
+    double sum = 0.0;
+    for (int k = -nz; k <= nz; k++)
+      for (int j = -n; j <= n; j++)
+        for (int i = -n * PLACES; i <= n * PLACES; i++) {
+          const double x = i * dx / PLACES, y = j * dx, z = k * dx;
+          sum -= kernel.gradient(std::sqrt(x * x + y * y + z * z)) * x * x * y * y;
+        }
+    return (K::DIM + 2) * sum / (PLACES * lattice_number_density(kernel, dx));
+  }
+
   // The elasticity that a lattice of fluid particles has and the fluid has not.
   //
   // A fluid strained without a change of area (3D: volume) keeps its density. The number density

@@ -51,6 +51,9 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
   };
   const Resolution fluid = resolution_of(dx);
   static_cast<Resolution &>(*this) = fluid;
+  with_kernel(kernel, dim, hdx, [this](const auto &k) {
+    central_length_sq = FSI::central_length_sq(k, 1.0) / (k.h * k.h);
+  });
   largest_cut = cut;
   levels = {fluid};
   level_of.assign(spacing.size(), 0);

@@ -60,6 +60,7 @@ namespace FSI {
     int density_fluid, density_solid;                              // Density
     int dim;
     int kernel;                            // KernelKind
+    double central_length_sq;              // l^2/h^2 of central laminar viscosity
     std::vector<Resolution> resolution;    // per atom type
     double largest_cut;                    // support of the coarsest
     double dx_of(int type) const { return resolution[type].dx; }

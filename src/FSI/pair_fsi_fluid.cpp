@@ -1248,6 +1248,7 @@ template <int D> void PairFSIFluid::compute_forces()
   ForceLaws laws = {alpha,
                     beta,
                     laminar,
+                    laminar == CENTRAL_LAMINAR ? fix_fsi->central_length_sq : 0.0,
                     extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
                     fix_fsi->density_solid == FixFSI::SUMMATION ? 1.0 : 0.0,
                     nullptr,

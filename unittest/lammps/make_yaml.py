@@ -89,8 +89,10 @@ class Fluid:
         alpha, beta = self.artificial
         Q = (s.rho[i] + s.rho[j]) / 2 * V[i] * V[j] * (-alpha * C * mu + beta * mu**2)
         pv2 = self.p(s.rho) * V**2
-        pair = -(pv2[i] + pv2[j] + Q) + 5 * V[i] * V[j] * 2 * self.eta * vd / r**2
-        return sum_over(i, (pair * k.g(r))[:, None] * d, len(s.x))
+        pair = -(pv2[i] + pv2[j] + Q)[:, None] * d
+        rubbing = k.rubbing("central", k.h / DX, s.v[i] - s.v[j], d)
+        pair += (V[i] * V[j] * 2 * self.eta)[:, None] * rubbing
+        return sum_over(i, pair * k.g(r)[:, None], len(s.x))
 
     def advance(self, s):
         k, (i, j, d, r) = self.kernel, pairs(s.middle(), self.kernel.cut)

@@ -137,7 +137,7 @@ template <class K, class T> FSI_INLINE Values<T> evaluate(const T &q, const T &u
   r.artificial = ArtificialViscosity(0.3, 0.7, 0.1)(T(x[0] * v[0] + x[1] * v[1]), rsq, T(1000.0 + u), 20.0, T(1e-4));
   r.flux = DensityDiffusion(0.1, 0.1, 20.0)(T(1000.0), T(1000.0 + u), greater(u, T(0.0)), r.gradient);
   r.f[0] = r.f[1] = 0.0;
-  r.loss = LaminarViscosity<2>(0.1, central)(r.gradient, rsq, 0.02, T(1e-4), x, v, r.f);
+  r.loss = LaminarViscosity<2>(central ? 0.01 : 0.0)(r.gradient, 0.02, T(1e-4), x, v, r.f);
   r.sum = q;
   r.sum += u;
   return r;
