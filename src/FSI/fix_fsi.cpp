@@ -319,6 +319,8 @@ void FixFSI::final_integrate()
   if (substeps > 1)
     for (auto *p : parts) p->integrate_substeps();
   if (clamps.any()) clamps.take_step();
+  set_tally(update->dt);
+  for (auto *p : parts) p->react();
   dim == 2 ? kick<2>() : kick<3>();
 }
 

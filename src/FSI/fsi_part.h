@@ -94,6 +94,7 @@ namespace FSI {
     // when all forces are there: those that bring velocities to what is given
     virtual void prescribe() {}
     virtual void integrate_substeps() {}    // what takes shorter steps than the kick of all
+    virtual void react() {}    // to what bodies have done in this step, before the kick of all
 
     // from the middle of a step to its start: a run that stops leaves a state to go on from
     virtual void go_back() {}

@@ -677,24 +677,36 @@ void PairFSIFluid::advance_density()
 }
 
 // The ledger's powers have velocities of the start of the step. With those of its middle, which are
-// known now, they are second order in time.
-void PairFSIFluid::prescribe()
+// known now, they are second order in time: of what waits for its kick by its force, of what has
+// moved since, in sub-steps or with a rigid body, by the way it went.
+void PairFSIFluid::react()
 {
   if (!fix_fsi->ledger || taken.empty()) return;
-  const int dim = fix_fsi->dim, nlocal = atom->nlocal, nall = nlocal + atom->nghost,
-            row = row_of_points(dim);
-  const double half = 0.5 * update->dt * force->ftm2v;
+  fix_fsi->dim == 2 ? correct_powers<2>() : correct_powers<3>();
+}
+
+template <int D> void PairFSIFluid::correct_powers()
+{
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, *const type = atom->type;
+  const double dt = update->dt, half = 0.5 * dt * force->ftm2v;
+  const auto *const point = reinterpret_cast<const Point<D> *>(points.data());
+  const auto change = [&](int i, int d) {
+    const bool waits = fix_fsi->state[type[i]].species == FLUID || fix_fsi->substeps == 1;
+    if (waits && (atom->mask[i] & fix_fsi->groupbit)) return half * atom->f[i][d] / atom->rmass[i];
+    const double way = atom->x[i][d] - point[i].x[d];
+    return way == 0.0 ? 0.0 : way / dt - 0.5 * point[i].v[d];
+  };
   std::vector<double> one(nall);
-  for (const auto term : {FixFSI::COUPLING, FixFSI::ARTIFICIAL}) {
-    const int first = term == FixFSI::COUPLING ? 0 : dim;
+  for (const auto term : {FixFSI::COUPLING, FixFSI::ARTIFICIAL, FixFSI::WALLS}) {
     double power = 0.0;
-    for (int d = 0; d < dim; d++) {
-      for (int i = 0; i < nall; i++) one[i] = taken[row * i + first + d];
+    for (int d = 0; d < D; d++) {
+      for (int i = 0; i < nall; i++)
+        one[i] = term == FixFSI::COUPLING              ? taken[row_of_points(D) * i + d]
+            : term == FixFSI::ARTIFICIAL               ? taken[row_of_points(D) * i + D + d]
+            : fix_fsi->state[type[i]].species == RIGID ? forces[row_of_forces(D) * i + d]
+                                                       : 0.0;
       fix_fsi->add_ghosts(one.data());
-      for (int i = 0; i < nlocal; i++)
-        if ((atom->mask[i] & fix_fsi->groupbit) &&
-            (fix_fsi->substeps == 1 || fix_fsi->state[atom->type[i]].species == FLUID))
-          power += half * one[i] * atom->f[i][d] / atom->rmass[i];
+      for (int i = 0; i < nlocal; i++) power += one[i] * change(i, d);
     }
     fix_fsi->tally(term, power);
   }

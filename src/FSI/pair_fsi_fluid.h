@@ -67,7 +67,7 @@ class PairFSIFluid : public PairFSI {
   bool add_rates(bool) override;
   void advance(bool) override;
   void add_number_density(double *, bool of_all_bodies) override;
-  void prescribe() override;
+  void react() override;
   void go_back() override;
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
   void add_position_divergence(double *div);
@@ -177,6 +177,7 @@ class PairFSIFluid : public PairFSI {
   double **beyond;
   void add_velocities_at_solids();
   void extrapolate_velocities();
+  template <int D> void correct_powers();
   template <int D> void add_density_rate(double dt);
   void advance_density();
   template <int D, bool FILLS>

@@ -198,8 +198,8 @@ def test_fix_rigid_sees_the_mean_force():
 def test_momenta_and_energy_in_water(part):
     """A drop in a void around a beam with a rigid part, of the solid or of wall particles around its root, that flies and spins in it: linear
     momentum to round-off. The force of water acts where bodies are in the middle of the step, and is held in the sub-steps: angular momentum to
-    the second order of the step. So is energy, but its balance takes powers with the velocities of the start of the step, and is of the first
-    order, as with any sub-steps."""
+    the second order of the step. So is energy: its balance takes powers with the mean velocities of the step. Of walls, too: of the two thirds
+    that the balance leaves out with the walls, what comes to them through the root, the part does not depend on the step."""
     x = lattice([28, 24], DX)
     inner = (x[:, 0] > 7 * DX) & (x[:, 0] < 21 * DX) & (x[:, 1] > 10 * DX) & (x[:, 1] < 14 * DX)
     tip = inner & (x[:, 0] > 16 * DX)
@@ -229,9 +229,11 @@ def test_momenta_and_energy_in_water(part):
             moved = np.abs(s.get("x")[inner] - x[inner]).max() / DX
     print(f"in water, moved {moved:.1f} dx: angular momentum and energy off by {off}")
     off = np.array(off)
+    assert moved > 0.5 and off[0, 0] < 1e-5 and (off[1:, 0] < 0.3 * off[:-1, 0]).all()
     if walls.any():
-        off = off[:, :1]    # compute fsi/energy leaves walls out, and with them what the root does on them
-    assert moved > 0.5 and (off[0] < [1e-5, 0.02][:off.shape[1]]).all() and (off[1:] < [0.3, 0.6][:off.shape[1]] * off[:-1]).all()
+        assert np.ptp(off[:, 1]) < 0.003    # 0.0015; with the velocities of the start 0.0047
+    else:    # 1.0e-3, 2.8e-4, 8.2e-5; with the velocities of the start 1.3e-2, 6.0e-3, 2.9e-3
+        assert off[0, 1] < 2e-3 and (off[1:, 1] < 0.4 * off[:-1, 1]).all()
 
 
 def test_steps_without_substeps_between():

@@ -430,8 +430,8 @@ def test_substeps_with_fluid_keep_energy():
     print(f"imbalance after 0.8 s: {drift}")
     for dt in (2e-4, 1e-4):
         assert 0.0 < abs(drift[dt, 1]) < 0.01
-        # 1.07e-3 at the longer step; without sub-steps, where powers have the velocities of the middle of the step, 7e-5
-        assert 0.0 < abs(drift[dt, 4]) < 2.0e-3
+        # 7.2e-5 at the longer step, as without sub-steps; with the powers of the start of the step 1.07e-3
+        assert 0.0 < abs(drift[dt, 4]) < 1.5e-4
         assert abs(drift[dt, 16] / drift[dt, 4] - 1.0) < 0.15
     assert 0.4 < drift[1e-4, 16] / drift[2e-4, 16] < 0.6
 
