@@ -179,8 +179,9 @@ FixFSI *FixFSI::ready(LAMMPS *lmp, const std::string &who)
   for (const auto *p : fix_fsi->parts) mine |= !p->is_set_up();
   if (anywhere(mine, lmp->world))
     lmp->error->all(FLERR,
-                    "{} needs a run before it, if only run 0, and after atoms are made, "
-                    "deleted or changed, or a pair style is given",
+                    "{} needs a run before it, if only run 0, and another after atoms are made, "
+                    "deleted or changed, after a pair style, and after a command that sets all up "
+                    "anew, as write_restart, write_data and balance do",
                     who);
   return fix_fsi;
 }

@@ -1269,6 +1269,7 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("gradient", std::vector<double>{gradient});
   record.add("fill", std::vector<double>{fill, mean_fill, column});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
+  record.add("mean", std::vector<double>(mean, mean + NMEAN));
   fields.write(record);
   record.write(fp);
 }
@@ -1296,6 +1297,10 @@ void FixFSIInlet::restart(char *buf)
   passed_in = numbers[0];
   passed_out = numbers[1];
   mass_in = numbers[2];
+  if (record.has("mean")) {
+    numbers = record.numbers("mean");
+    std::copy_n(numbers.begin(), std::min(numbers.size(), (size_t) NMEAN), mean);
+  }
   fields.read(record);
 }
 

@@ -709,10 +709,10 @@ template <int D> void FixFSIReference::take_reference(const std::vector<int> &ba
 }
 
 void FixFSIReference::break_bonds(double stretch, const Energy &energy,
-                                  const std::function<bool(int)> &crushed)
+                                  const std::function<double(int)> &spare)
 {
-  domain->dimension == 2 ? break_bonds_of_all<2>(stretch, energy, crushed)
-                         : break_bonds_of_all<3>(stretch, energy, crushed);
+  domain->dimension == 2 ? break_bonds_of_all<2>(stretch, energy, spare)
+                         : break_bonds_of_all<3>(stretch, energy, spare);
 }
 
 // Nobody of this rank's solids moves relative to anybody else by more than the diagonal of the box
@@ -749,7 +749,7 @@ template <int D> void FixFSIReference::move_apart()
 
 template <int D>
 void FixFSIReference::break_bonds_of_all(double stretch, const Energy &energy,
-                                         const std::function<bool(int)> &crushed)
+                                         const std::function<double(int)> &spare)
 {
   const double limit = stretch * stretch;
   if (solids.empty()) return;
@@ -760,12 +760,18 @@ void FixFSIReference::break_bonds_of_all(double stretch, const Energy &energy,
     double &reserve = slack[slot[i]];
     const size_t first = (size_t) slot[i] * maxbond;
     int &n = nbond[slot[i]];
-    if (n > 0 && crushed(i)) {
-      n = 0;
-      changes++;
-    }
     if (apart < reserve) continue;
     reserve = std::numeric_limits<double>::max();
+    double &volume = quadrature[slot[i]];
+    const auto crush = [&]() {
+      if (n == 0 || volume == 0.0) return;
+      const double left = spare(i);
+      reserve = std::min(reserve, apart + left);
+      if (left > 0.0) return;
+      volume = 0.0;
+      changes++;
+    };
+    crush();
     const auto longer = [&](int k) {
       const double *const X = bond(i, k) + D * BOND_BLOCK, *const xj = x[local[first + k]];
       double rsq = 0.0, Rsq = 0.0;
@@ -790,9 +796,9 @@ void FixFSIReference::break_bonds_of_all(double stretch, const Energy &energy,
     if (kept == n) continue;
     n = kept;
     renew<D>(i);
-    if (n > 0 && crushed(i)) n = 0;
+    crush();
     const double after = energy(i);
-    if (after > before) quadrature[slot[i]] *= before / after;
+    if (after > before) volume *= before / after;
     changes++;
   }
 }

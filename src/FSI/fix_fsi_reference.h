@@ -85,6 +85,8 @@ class FixFSIReference : public Fix {
   const double *moments(int i) const { return &moment[(size_t) slot[i] * nmoment]; }
   // of i in the energy's integral, times its volume
   double weight(int i) const { return quadrature[slot[i]]; }
+  // stress: has bonds and is not crushed
+  bool bears(int i) const { return count(i) > 0 && weight(i) > 0.0; }
 
   // removes bonds longer than stretch times their reference length, and makes the gradient anew
   // from those left; a particle whose bonds no longer suffice loses them all. The gradient of those
@@ -92,8 +94,9 @@ class FixFSIReference : public Fix {
   // by it, the particle's weight shrinks instead, so that breaking makes no energy. Looks only at
   // particles of which a bond may have become too long since
   typedef std::function<double(int)> Energy;
-  // all of them where a particle is crushed
-  void break_bonds(double stretch, const Energy &energy, const std::function<bool(int)> &crushed);
+  // That of a crushed particle is 0: it keeps its bonds, lest contact pushes from nothing.
+  // spare: how far its partners may move until it is
+  void break_bonds(double stretch, const Energy &energy, const std::function<double(int)> &spare);
 
   // Contact of a body with itself (fsi_contact.h), if its range, over the spacing, is above 0:
   // pairs as a local particle i sees them, without a bond, or whose bond may have broken by now,
@@ -174,7 +177,7 @@ class FixFSIReference : public Fix {
   bool is_solid(int i) const;
   bool is_periodic() const;
   template <int D>
-  void break_bonds_of_all(double, const Energy &, const std::function<bool(int)> &crushed);
+  void break_bonds_of_all(double, const Energy &, const std::function<double(int)> &spare);
   template <int D> bool renew(int i);
   template <int D> void move_apart();
   double *bond_in(int s, int k);

@@ -26,6 +26,7 @@
 #include "fsi_sight.h"
 #include "group.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -70,6 +71,7 @@ class Adviser : protected Pointers {
       yields();
     }
     held();
+    excluded();
     if (fluids.style) {
       nothing_acts();
       torn_streams();
@@ -161,12 +163,14 @@ class Adviser : protected Pointers {
       tagint a, b;
       int around;    // direction in which they meet around the box, or -1
     } closest = {BIG, 0, 0, -1};
+    std::vector<int> of_bodies(atom->nlocal, 0);    // particles of bodies and walls beside
     for (int i = 0; i < atom->nlocal; i++) {
       if (!has_material(i)) continue;
       double nearest = 1.25 * 1.25;    // over the spacing between the two lattices
       int who = -1;
       cells.around(atom->x[i], [&](int j, double rsq) {
         const double apart = 0.5 * (dx(i) + dx(j));
+        if (fluid(i) && !fluid(j) && rsq < 1.25 * 1.25 * apart * apart) of_bodies[i]++;
         if (j == i || rsq >= nearest * apart * apart) return;
         nearest = rsq / (apart * apart);
         who = j;
@@ -200,7 +204,14 @@ class Adviser : protected Pointers {
                        mean * scene.dx, scene.dx));
       return false;
     }
-    if (update->ntimestep == 0) {
+    const auto inside = find([&](int i) {
+      return of_bodies[i] >= (scene.dim == 2 ? 4 : 7);    // beside a face are 3, 6 at most
+    });
+    if (inside.count)
+      warn(fmt::format("{} fluid particles, the first of them atom {}, are inside a body or wall: "
+                       "fsi/displace takes out the fluid in whose place a body is",
+                       inside.count, inside.first));
+    else if (update->ntimestep == 0) {
       const auto all = of_least(closest.r, closest, world);
       if (all.r < 0.4)
         warn(fmt::format("atoms {} and {} are {:.2g} spacings apart{}", all.a, all.b, all.r,
@@ -375,6 +386,30 @@ class Adviser : protected Pointers {
       say("all ", bodies, "particles of elastic bodies");
   }
 
+  /* neigh_modify exclude takes from sums of fluid what is beside it */
+
+  void excluded() const
+  {
+    const auto has = [this](int i, int k, const int *group) {
+      return (atom->mask[i] & group[k]) != 0;
+    };
+    const auto out = find([&](int i) {
+      if (!fluid(i)) return false;
+      const int t = atom->type[i];
+      bool any = false;
+      for (int k = 0; k < neighbor->nex_type; k++)
+        any = any || t == neighbor->ex1_type[k] || t == neighbor->ex2_type[k];
+      for (int k = 0; k < neighbor->nex_group; k++)
+        any = any || has(i, k, neighbor->ex1_bit) || has(i, k, neighbor->ex2_bit);
+      for (int k = 0; k < neighbor->nex_mol; k++) any = any || has(i, k, neighbor->ex_mol_bit);
+      return any;
+    });
+    if (out.count)
+      warn(fmt::format("neigh_modify exclude hides neighbors from {} fluid particles, the first of "
+                       "them atom {}: their sums over neighbors are wrong",
+                       out.count, out.first));
+  }
+
   /* A body that ends at a mirror wall is free there: mirror walls act on fluid. Not where weight
      acts along the wall's normal (that is a floor, and without weight it may be one), nor where the
      body fills the room between two walls. */
@@ -545,10 +580,15 @@ class Adviser : protected Pointers {
       axis[d] = 1.0;
       width = std::min(width, extent(axis));
     }
+    // of what swings by so little the frequency decides
+    static constexpr double LINEAR = 1.0e5;
+    const bool swings = g == 0.0 && find([this](int i) {
+                                      return moves(i);
+                                    }).count > 0;
     bool said = expected == 0.0;
     for (const int t : types) {
       const double c = scene.state[t].c;
-      if (!said && c > 50.0 * expected)
+      if (!said && c > 50.0 * expected && !(swings && c > LINEAR * expected))
         warn(fmt::format("the speed of sound {:g} of the fluid is {:.2g} times the speed {:.3g} "
                          "that there is or falling gives: 10 times is enough. If the fluid should "
                          "be faster: velocity ... units box (its default are lattice units per "

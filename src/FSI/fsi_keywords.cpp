@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -349,6 +350,7 @@ void Keywords::parse(int narg, char **arg)
     if (row.keyword) known.push_back(row.name);
   begin();
   int iarg = 0;
+  std::set<std::string> given;
   auto row = rows.begin();
   while (iarg < narg || (row != rows.end() && !row->keyword)) {
     const bool keyword = row == rows.end() || row->keyword;
@@ -362,6 +364,9 @@ void Keywords::parse(int narg, char **arg)
         error->all(FLERR, "Unknown {} keyword {}: expected {}", command, arg[iarg], list_of(known));
       }
       iarg++;
+      if (!given.insert(it->name).second && it->values.front().kind != Value::PER_TYPE &&
+          comm->me == 0)
+        error->warning(FLERR, "{} {} is given twice: the last counts", command, it->name);
     } else
       row++;
     if (iarg + it->count() > narg)

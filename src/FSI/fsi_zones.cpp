@@ -47,15 +47,22 @@ void Zones::read_distances(const std::vector<std::string> &words)
 {
   if (words.empty()) utils::missing_cmd_args(FLERR, "fix fsi/refine distance", error);
   body_id = words[0];
-  const int of_body = group->find(body_id);
-  if (of_body < 0) error->all(FLERR, "Group {} of fix fsi/refine distance does not exist", body_id);
-  body_bit = group->bitmask[of_body];
+  find_body();
   for (size_t k = 1; k < words.size(); k++) {
     distances.push_back(numeric(lmp, who + " distance", words[k], Range::above(0.0)));
     if (k > 1 && distances[k - 1] >= distances[k - 2])
       error->all(FLERR, "{} distance: {} after {}, expected less: the finer levels are nearer", who,
                  distances[k - 1], distances[k - 2]);
   }
+}
+
+// A group may be deleted, and another take its bit
+void Zones::find_body()
+{
+  if (body_id.empty()) return;
+  const int of_body = group->find(body_id);
+  if (of_body < 0) error->all(FLERR, "Group {} of fix fsi/refine distance does not exist", body_id);
+  body_bit = group->bitmask[of_body];
 }
 
 void Zones::check_number(size_t types) const
@@ -74,6 +81,7 @@ void Zones::check_number(size_t types) const
 // sees beside its own
 void Zones::init(const Scene &scene, const std::vector<int> &types)
 {
+  find_body();
   regions.clear();
   can_move = !distances.empty();
   for (const auto &name : region_ids) {

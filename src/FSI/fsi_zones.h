@@ -34,6 +34,7 @@ namespace FSI {
     Zones(LAMMPS *, const std::string &who);
     void read_regions(const std::vector<std::string> &words);
     void read_distances(const std::vector<std::string> &words);
+    void find_body();
     void check_number(size_t types) const;
 
     void init(const Scene &, const std::vector<int> &types);

@@ -96,7 +96,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("solid/guard").number(solids_guard, 0.5, Range::between(0.0, 1.0));
   keywords.key("density/diffusion")
-      .number(delta, 0.0, Range::from(0.0))
+      .number(delta, 0.0, Range::between(0.0, 0.5))    // more is unstable at the usual step
       .effect("density diffusion {}");
   keywords.key("density/surface").logical(surfaces, false);
   keywords.key("shift")

@@ -305,7 +305,7 @@ void PairFSISolidTL::find_rows()
   rows.clear();
   for (const int i : reference->solids) {
     const State &s = fix_fsi->state[type[i]];
-    if (reference->count(i) == 0) continue;    // torn off by damage
+    if (!reference->bears(i)) continue;    // torn off, crushed
     rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i),
                     reference->moments(i), atom->rmass[i] / s.rho0 * reference->weight(i),
                     zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
@@ -655,14 +655,35 @@ void PairFSISolidTL::break_bonds()
         return std::max(0.0, stored(i));
       },
       [this](int i) {
-        return volume_ratio(i) < CRUSHED;
+        return fix_fsi->dim == 2 ? spare<2>(i) : spare<3>(i);
       });
+}
+
+// How far the partners of i can move, relative to it, before det F is below CRUSHED. With
+// |dF| <= d = motion sum |G|: |d det F| <= (|F| + d)^D - |F|^D, the terms of order 1 to D in d.
+template <int D> double PairFSISolidTL::spare(int i) const
+{
+  double F[D * D], norm = 0.0, gradients = 0.0;
+  deformation<D>(i, F);
+  for (const double value : F) norm += value * value;
+  norm = std::sqrt(norm);
+  for (int k = 0; k < reference->count(i); k++) {
+    const double *const G = reference->bond(i, k);
+    double sum = 0.0;
+    for (int a = 0; a < D; a++) sum += G[a * BOND_BLOCK] * G[a * BOND_BLOCK];
+    gradients += std::sqrt(sum);
+  }
+  const double left = determinant<D>(F) - CRUSHED,
+               power = D == 2 ? norm * norm : norm * norm * norm;
+  if (left <= 0.0) return 0.0;
+  const double most = D == 2 ? std::sqrt(power + left) : std::cbrt(power + left);
+  return (most - norm) / gradients;
 }
 
 // elastic energy per reference volume
 double PairFSISolidTL::stored(int i) const
 {
-  if (reference->count(i) == 0) return 0.0;
+  if (!reference->bears(i)) return 0.0;
   return with_law([&](const auto *law_of, auto dimension) {
     constexpr int D = decltype(dimension)::value;
     double F[D * D];
@@ -679,7 +700,7 @@ int PairFSISolidTL::bonds(int i) const
 
 double PairFSISolidTL::volume_ratio(int i) const
 {
-  if (reference->count(i) == 0) return 1.0;
+  if (!reference->bears(i)) return 1.0;
   double F[9];
   if (fix_fsi->dim == 2) {
     deformation<2>(i, F);
@@ -715,7 +736,7 @@ PairFSISolidTL::Stress PairFSISolidTL::stress(int i) const
   static constexpr int voigt[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   Stress s = {};
   s.J = 1.0;
-  if (reference->count(i) == 0) return s;
+  if (!reference->bears(i)) return s;
   with_law([&](const auto *law_of, auto dimension) {
     using L = std::decay_t<decltype(*law_of)>;
     constexpr int D = decltype(dimension)::value;

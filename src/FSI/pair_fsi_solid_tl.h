@@ -111,6 +111,7 @@ class PairFSISolidTL : public PairFSI {
   void refuse_rigid_parts() const;
   static constexpr double CRUSHED = 0.1;    // of its volume
   double stored(int i) const;
+  template <int D> double spare(int i) const;
   void make_laws();
   // per particle, stress of rates or the law's own; or null
   const double *const *history() const;

@@ -88,6 +88,11 @@ CASES = {
     "spacing": ([("fsi 0.01", "fsi 0.0085"), ("4e-5", "3e-5")], None, r"nearest neighbors are 0.01 apart on average, but the spacing is 0.0085"),
     "coarse": ([("sq 0.01", "sq 0.013")], None, r"most particles have no neighbor within 0.0125: is 0.01 the spacing"),
     "overlap": ([("run 0", "create_atoms 1 single 0.028 0.025 0 units box\nrun 0")], None, r"atoms 13 and 65 are 0.3 spacings apart"),
+    # a block of 2 x 2 on a lattice half a spacing aside, with all of it in the plate
+    "inside": ([("run 0", "lattice sq 0.01 origin 0 0 0\nregion more block 0.055 0.075 0.025 0.045 INF INF units box\ncreate_atoms 1 region more\nrun 0")], None,
+               r"4 fluid particles, the first of them atom 65, are inside a body or wall: fsi/displace"),
+    "excluded": ([("run 0", "group plates type 2\nneigh_modify exclude group plates all\nrun 0")], None,
+                 r"neigh_modify exclude hides neighbors from 40 fluid particles, the first of them atom 1"),
     "around": ([("boundary f f p", "boundary p f p"), ("box block -0.05 0.15", "box block 0.0045 0.0755"), ("water block 0 0.05", "water block INF INF"),
                 ("walls all fsi/wall/mirror xlo 0", "walls all fsi/wall/mirror"), ("create_atoms 2 region plate", "")], None,
                r"atoms 1 and 8 are 0.1 spacings apart around the periodic box: make it a whole number of spacings long in x"),
@@ -133,7 +138,7 @@ THIN = [("wendland 1.5", "wendland 2"), ("0.05 0.08 0 0.08", "0.05 0.07 0 0.08")
         ("create_atoms 1 region water", "create_atoms 1 region water\nregion behind block 0.07 0.12 0 0.08 INF INF units box\ncreate_atoms 1 region behind")]
 CASES["thin"] = (THIN, None, r"fluid atom 5 sees fluid on the other side of a body or wall of type 2, which is thinner than .* 0\.04: .* Then fix sph \.\.\. thin 2$")
 ALSO = {  # what follows from the mistake as well
-    "grams": r"too long for elastic", "megapascal": r"times shorter",
+    "inside": r"sees fluid on the other side", "grams": r"too long for elastic", "megapascal": r"times shorter",
 }
 
 
@@ -147,10 +152,19 @@ def advice(folder, changes=(), materials=None, ranks=1):
     return [re.sub(r" \([^()]*fsi_advice.cpp:\d+\)$", "", line) for line in output.splitlines() if line.startswith("WARNING: Fix fsi: ")]
 
 
+def test_keyword_given_twice(tmp_path):
+    """Atom types may be named as often as wanted."""
+    text = DECK.replace("sound 12.53", "sound 12.53 shift 0.1 sound 20").replace("wendland 1.5", "wendland 1.5 spacing 1 0.01 spacing 2 0.01")
+    found = [line for line in run(tmp_path, text).output.splitlines() if "given twice" in line]
+    assert len(found) == 1 and found[0].startswith("WARNING: pair_style fsi/fluid sound is given twice: the last counts")
+
+
 def test_sound_deck_is_not_criticized(tmp_path):
     assert advice(tmp_path) == []
     # the bounds themselves: 7 sqrt(2gH), 0.4 h/c_l, three layers
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
+    # a body that swings by little: of the sound decides its frequency
+    assert advice(tmp_path, [("run 0", "velocity all set 1e-5 0 0 units box\nrun 0"), ("fix g all", "#")]) == []
     # a thin plate that is said to be thin, and one of three layers between the same water
     assert advice(tmp_path, [*THIN, ("wendland 2", "wendland 2 thin 2")]) == []
     assert advice(tmp_path, [*THIN[2:], ("0.07 0.12", "0.08 0.12")]) == []

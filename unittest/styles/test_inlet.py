@@ -173,6 +173,15 @@ def test_restart_goes_on_bit_for_bit(tmp_path, background, inlet):
     assert (tmp_path / "whole.txt").read_text().splitlines()[-1] == (tmp_path / "rest.txt").read_text().splitlines()[-1]
 
 
+def test_first_output_after_a_restart(tmp_path):
+    """The flow of the last step, which is not known from particles alone."""
+    printed = "\nfix p all print 1 '$(step) $(f_i[4]:%.17g) $(f_i[5]:%.17g) $(f_o[6]:%.17g)' file {}.txt screen no\nthermo_style custom step f_i[4] f_i[5] f_o[6]\n"
+    run(tmp_path, deck() + printed.format("whole") + "run 50\nwrite_restart end\n", **FILES)
+    run(tmp_path, deck("read_restart end") + printed.format("rest") + "run 0\n", **FILES)
+    last, first = ((tmp_path / f"{name}.txt").read_text().splitlines()[k] for name, k in (("whole", -1), ("rest", 1)))
+    assert last == first and abs(float(last.split()[2])) > 1e-6
+
+
 @pytest.mark.parametrize("inlet", (INLET + " buffer 0.8", INLET.replace("xlo 0", "xlo 0.1"), INLET), ids=("buffer", "plane", "same"))
 def test_restart_keeps_the_buffer(tmp_path, inlet):
     """It is full: with another length, or elsewhere, the stream would lack a slice or have one twice."""

@@ -636,6 +636,7 @@ BAD = {
     "10 types 1 2 region one settle": r"Illegal fix fsi/refine settle command: missing argument",
     "10 types 1 2 region one distance all 0.1": r"takes region or distance, not both",
     "10 types 1 2 distance nobody 0.1": r"Group nobody of fix fsi/refine distance does not exist",
+    "10 types 1 2 distance some 0.1\nrun 0\ngroup some delete": r"Group some of fix fsi/refine distance does not exist",
     "10 types 1 2 3 distance wall 0.2 0.3": r"distance: 0.3 after 0.2, expected less",
     "10 types 1 2 3 distance wall 0.3 0.2": r"there is 0.1 for atom type 2: expected at least 0.185",
     "10 types 1 3 region one": r"spacings of 0.05 and 0.025: expected 0.0353553 of the second",
@@ -664,6 +665,7 @@ group wall type 5
 group fluid type 1 2 3 4
 region wet block 0.25 1 INF INF INF INF units box
 group wet region wet
+group some id 13
 pair_style fsi/fluid sound 15
 pair_coeff * * water.fsi water water water oil wall
 fix sph fluid fsi 0.05 wendland 1.5 spacing 2 0.0353553 spacing 3 0.025 spacing 4 0.0353553
