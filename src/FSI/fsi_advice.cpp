@@ -185,7 +185,8 @@ class Adviser : protected Pointers {
                    atom->tag[i], atom->tag[who], atom->x[i][0], atom->x[i][1], atom->x[i][2]);
       mine[0] += r;
       mine[1]++;
-      if (r < closest.r)
+      const bool both_walls = !fluid(i) && !solid(i) && !fluid(who) && !solid(who);
+      if (r < closest.r && !both_walls)    // walls may cross
         closest = {r, std::min(atom->tag[i], atom->tag[who]),
                    std::max(atom->tag[i], atom->tag[who]), around_box(who)};
     }
