@@ -125,7 +125,7 @@ void Check::materials()
   compare_densities();
   spacings();
   thin_bodies();
-  held_parts();
+  if (update->whichflag) held_parts();    // who moves it may come after fsi/set
   integrators();
 }
 

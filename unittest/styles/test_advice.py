@@ -152,6 +152,15 @@ def advice(folder, changes=(), materials=None, ranks=1):
     return [re.sub(r" \([^()]*fsi_advice.cpp:\d+\)$", "", line) for line in output.splitlines() if line.startswith("WARNING: Fix fsi: ")]
 
 
+def test_what_moves_a_part_may_come_after_set(tmp_path):
+    """Fsi/set prepares all as a run does, but before all fixes are there."""
+    moved = DECK.replace("fix sph all", "group top id 62:64\ngroup rest subtract all top\nfix sph rest").replace(
+        "run 0", "velocity top set 0.1 0 0 units box\nfsi/set all hydrostatic 0.08\n{}run 0")
+    assert not run(tmp_path, moved.format("fix move top rigid single\n")).errors
+    done = lammps(tmp_path, moved.format(""))
+    assert done.status != 0 and any("neither fix fsi nor another fix moves it" in line for line in done.errors)
+
+
 def test_keyword_given_twice(tmp_path):
     """Atom types may be named as often as wanted."""
     text = DECK.replace("sound 12.53", "sound 12.53 shift 0.1 sound 20").replace("wendland 1.5", "wendland 1.5 spacing 1 0.01 spacing 2 0.01")
