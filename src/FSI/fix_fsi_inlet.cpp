@@ -35,6 +35,7 @@
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
+#include "pair_fsi_fluid.h"
 #include "region.h"
 #include "thermo.h"
 #include "update.h"
@@ -66,6 +67,7 @@ static constexpr double FEW_FINER = 0.25;    // of a buffer, that are alone
 static constexpr double AT_SURFACE = 0.9;    // of the density: m psi of a particle at a free
                                              // surface is less
 static constexpr double EXCESS = 0.02;       // of the mass near the plane that is worth a word
+static constexpr double MOST_ADDED = 0.05;    // of a pressure that is given
 // Time in h/c in which particles and room come together before the plane; steps between two looks,
 // and of how many looks the mean is that is told
 static constexpr double SETTLE = 50.0;
@@ -283,6 +285,22 @@ const State &FixFSIInlet::softest() const
   return soft ? *soft : fix_fsi->state[0];
 }
 
+// of what is slower than sound through the box
+double FixFSIInlet::slow_rate() const
+{
+  double c = 0.0;
+  for (const auto &s : fix_fsi->state)
+    if (s.species == FLUID) c = std::max(c, s.c);
+  return 0.5 * c / domain->prd[axis];
+}
+
+// hat functions, which a lattice sums to a constant
+double FixFSIInlet::hat_at(double s) const
+{
+  const double width = 2.0 * fix_fsi->dx;
+  return std::max(0.0, 1.0 - std::fabs(s) / width) / width;
+}
+
 bool FixFSIInlet::is_far(double p) const
 {
   const State &soft = softest();
@@ -400,6 +418,11 @@ void FixFSIInlet::fill_buffer()
     fix_fsi->population.end();
   }
   find_places();    // of which variables are asked
+  double at_plane = 0.0;
+  for (const auto &place : places)
+    at_plane += hat_at(inside(atom->x[place.i])) *
+        std::pow(fix_fsi->dx_of(atom->type[place.i]), fix_fsi->dim);
+  area = sum_of(at_plane, world);
   given->evaluate(zone_group, 0, 3);
   for (int i = 0; i < atom->nlocal; i++)
     if (of_buffer[i])
@@ -747,7 +770,8 @@ void FixFSIInlet::stranger(int i)
 // behind those that pass the plane would bring each gap again and again.)
 void FixFSIInlet::follow(int i, double s)
 {
-  const double spacing = column * fix_fsi->dx;
+  const State &state = fix_fsi->state[atom->type[i]];
+  const double spacing = column * fix_fsi->dx * state.rho0 / atom->rho[i];
   const bool at_end = s <= spacing - length, is_next = of_buffer[i] == NEXT_OF_ROW;
   if (at_end && (is_next || of_buffer[i] == MEMBER)) of_buffer[i] = LAST;
   if (at_end || !(of_buffer[i] == LAST || (is_next && side * atom->v[i][axis] > 0.0))) return;
@@ -883,9 +907,7 @@ void FixFSIInlet::measure()
       const double *const x = atom->x[i];
       const double s = place.inside = inside(x), u = atom->v[i][axis], m = atom->rmass[i];
       const State &state = fix_fsi->state[atom->type[i]];
-      // hat functions, which a lattice sums to a constant
-      const double width = 2.0 * fix_fsi->dx,
-                   hat = std::max(0.0, 1.0 - std::fabs(s) / width) / width;
+      const double hat = hat_at(s);
       total[MASS_FLOW] += m * side * u * hat;
       total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
       if (s <= 0.0) {
@@ -991,10 +1013,7 @@ void FixFSIInlet::advance(bool advance)
   measure();
   keep_full();    // knows the flow of now, after a restart, too
 
-  double c = 0.0;
-  for (const auto &s : fix_fsi->state)
-    if (s.species == FLUID) c = std::max(c, s.c);
-  const double slow = 0.5 * c / domain->prd[axis];
+  const double slow = slow_rate();
   const double rate = wants_velocity && wants_pressure ? 0.0
       : absorb == AUTO                                 ? (driven ? slow : STIFF * slow)
                                                        : absorb;
@@ -1041,7 +1060,7 @@ void FixFSIInlet::advance(bool advance)
                       : state.p0;
     else
       p = (background ? state.p0 : value(PRESSURE, i)) + gradient * place.inside +
-          state.rho0 * state.c * wave;
+          state.rho0 * state.c * wave + added;
     set_density(i, state.density(std::max(p, state.floor)));
   }
 }
@@ -1164,6 +1183,38 @@ void FixFSIInlet::end_state(bool advance)
   }
   mean_fill += (fill - mean_fill) / (first ? 1 : LOOKS);
   warn_of_fill(at_surface < EXCESS * members);
+  if (advance) meet_pressure();
+}
+
+// What pushes the fluid is the stress at the plane, the mean of p sum_j V_j x_ji.grad_i W_ij/D. It
+// goes with the square of number density times volume, of which 0.5 % are 5 % of what drives a flow
+// if pressure is five times its difference: what the stress lacks is added to the buffer's pressure
+void FixFSIInlet::meet_pressure()
+{
+  if (has_own_pressure() || softest().p0 <= 0.0 || area == 0.0) return;
+  enum { PRESSURES, GIVEN, WEIGHTS, NSUM };
+  double own[NSUM] = {}, all[NSUM];
+  std::vector<double> div(atom->nmax, 0.0);
+  dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1))
+      ->add_position_divergence(div.data());
+  fix_fsi->add_ghosts(div.data());
+  for (const auto &place : places) {
+    const int i = place.i;
+    const State &state = fix_fsi->state[atom->type[i]];
+    const double hat = hat_at(inside(atom->x[i])), volume = atom->rmass[i] / atom->rho[i];
+    own[PRESSURES] += hat * volume * state.pressure(atom->rho[i]) * div[i] / fix_fsi->dim;
+    if (place.inside > 0.0) continue;
+    own[GIVEN] += hat * (background ? state.p0 : (*given)(PRESSURE, i));
+    own[WEIGHTS] += hat;
+  }
+  MPI_Allreduce(own, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
+  if (all[WEIGHTS] == 0.0) return;
+  const State &soft = softest();
+  const double p = all[GIVEN] / all[WEIGHTS], most = MOST_ADDED * std::fabs(p),
+               time = LOOK_EVERY * (update->dt + fix_fsi->dt_offset),
+               lacks = p + soft.rho0 * soft.c * wave - all[PRESSURES] / area;
+  added += (1.0 - std::exp(-slow_rate() * time)) * lacks;
+  added = std::clamp(added, -most, most);
 }
 
 void FixFSIInlet::warn_of_fill(bool full)
@@ -1266,7 +1317,7 @@ void FixFSIInlet::write_restart(FILE *fp)
   record.add("filled", std::vector<double>{double(filled), served});
   record.add("buffer", std::vector<double>{position, length});
   record.add("absorption", std::vector<double>{wave, before, double(has_before)});
-  record.add("gradient", std::vector<double>{gradient});
+  record.add("gradient", std::vector<double>{gradient, added, area});
   record.add("fill", std::vector<double>{fill, mean_fill, column});
   record.add("passed", std::vector<double>{passed_in, passed_out, mass_in});
   record.add("mean", std::vector<double>(mean, mean + NMEAN));
@@ -1286,7 +1337,12 @@ void FixFSIInlet::restart(char *buf)
   wave = numbers[0];
   before = numbers[1];
   has_before = numbers[2] != 0.0;
-  if (record.has("gradient")) gradient = record.numbers("gradient")[0];
+  if (record.has("gradient")) {
+    numbers = record.numbers("gradient");
+    gradient = numbers[0];
+    added = numbers[1];
+    area = numbers[2];
+  }
   if (record.has("fill")) {
     numbers = record.numbers("fill");
     fill = numbers[0];

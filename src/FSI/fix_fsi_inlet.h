@@ -131,6 +131,9 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   bool has_before = false;
   // of the fluid's pressure beyond that given, into the fluid: mean over the plane and some time
   double gradient = 0.0;
+  // added to a given pressure, so that the stress at the plane is that; area of the plane, when the
+  // buffer was filled
+  double added = 0.0, area = 0.0;
   double served = -1.0;    // particles near the plane at first; < 0: not known yet
   double passed_in = 0.0, passed_out = 0.0, mass_in = 0.0;
   // mass of the fluid near the plane over what its density has room for (0: not known yet); its
@@ -180,6 +183,8 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void check_supply();
   void warn_of_fill(bool full);
   void keep_full();
+  void meet_pressure();
+  double slow_rate() const, hat_at(double s) const;
   void set_density(int i, double rho);
   void make(const std::vector<FSI::Particle> &, bool at_start);
   void find_next_of_rows(const std::vector<FSI::Particle> &gone);
