@@ -32,7 +32,7 @@ using namespace FSI;
 static constexpr double STRENGTH = 0.15, LONGEST = 0.05;
 // Sums of V W: particles with the first are at a surface and stay, with the second move as others
 static constexpr double SURFACE = 0.9, INSIDE = 0.95;
-static constexpr int POINT = 4;    // of points: position and volume
+static constexpr int POINT = 4;        // of points: position and volume
 static constexpr double SKIN = 0.5;    // of rows, in spacings of the two
 
 Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
@@ -198,8 +198,8 @@ template <class K> void Settling::add_images_of_segments(const std::vector<K> &o
     for (int n = 0; n < rows[r].n; n++) {
       const int j = rows[r].j[n];
       const K &kernel = of_types[type[i] * (atom->ntypes + 1) + type[j]];
-      walls.images(near, MathExtra::distsq3(x[i], x[j]), x[i], x[j], kernel.cutsq,
-                   [&](const Walls::Reflection &s, double rsq, const double *away) {
+      walls.images(near & walls.near(x[j], scene.cut), MathExtra::distsq3(x[i], x[j]), x[i], x[j],
+                   kernel.cutsq, [&](const Walls::Reflection &s, double rsq, const double *away) {
                      if (!walls.finite(s)) return;
                      const double distance = std::sqrt(rsq), volume = points[POINT * j + 3],
                                   g = volume * kernel.gradient(distance);

@@ -34,8 +34,7 @@ static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4,
 static constexpr double FAR = 1.1;
 
 Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
-    Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{}, reach(0.0),
-    margin(0.0)
+    Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{}, reach(0.0)
 {
 }
 
@@ -158,7 +157,6 @@ bool Sight::near(const double *x) const
 void Sight::look_from(const double *x, double largest, double slack)
 {
   reach = largest;
-  margin = slack;
   const double within = (reach + slack) * (reach + slack);
   const auto &walls = scene.walls;
   const bool by_walls = walls.near(x, reach + slack);
@@ -273,12 +271,10 @@ double Sight::left_of(const double *y, double cut) const
 }
 
 // The body is as thick as it is along its normal through x, which is the mean of what is on the
-// side of the nearest particle. What is seen beyond the support tells that it is thicker, but what
-// coarser fluid alone meets may be another one.
+// side of the nearest particle, as far as the support reaches.
 bool Sight::find_face(size_t level, Face &face) const
 {
-  const double cut = scene.levels[level].cut, cutsq = cut * cut,
-               farthest = (cut + margin) * (cut + margin);
+  const double cut = scene.levels[level].cut, cutsq = cut * cut;
   const Seen *nearest = nullptr;
   for (const auto &s : seen)
     if (s.thin && s.rsq < cutsq && (!nearest || s.rsq < nearest->rsq)) nearest = &s;
@@ -294,7 +290,7 @@ bool Sight::find_face(size_t level, Face &face) const
   for (double &e : normal) e /= length;
   double front = cut, back = 0.0;
   for (const auto &s : seen) {
-    if (!s.thin || s.rsq >= farthest) continue;
+    if (!s.thin || s.rsq >= cutsq) continue;
     const double depth = MathExtra::dot3(s.x, normal);
     if (depth <= 0.0 || s.rsq - depth * depth > tube * tube) continue;
     front = std::min(front, depth);

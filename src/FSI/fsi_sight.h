@@ -74,8 +74,8 @@ namespace FSI {
       int i = 0;
       bool thin = false;
     };
-    std::vector<Place> places;        // by cell
-    double from[3], reach, margin;    // what is seen is within both together
+    std::vector<Place> places;    // by cell
+    double from[3], reach;        // what is seen is within that
     struct Seen {
       double x[3], rsq;     // from x
       double dx, volume;    // spacing, of its cell

@@ -644,7 +644,7 @@ void PairFSIFluid::look_past_thin_bodies()
     double reach = fix_fsi->levels[level].cut;
     for (size_t k = n * level; k < n * (level + 1); k++)
       if (here(next[k])) reach = std::max(reach, meetings[of_hidden[k]].cut);
-    sight.look_from(x[i], reach, neighbor->skin);
+    sight.look_from(x[i], reach);
     for (size_t k = n * level; k < n * (level + 1); k++) {
       const double cut = meetings[of_hidden[k]].cut;
       for (Next &one = next[k]; here(one); one.row++)

