@@ -19,6 +19,10 @@ def pytest_unconfigure():
     shutil.rmtree(os.environ["OMPI_MCA_orte_tmpdir_base"], ignore_errors=True)
 
 
+def pytest_addoption(parser):
+    parser.addoption("--pairs-seed", type=int, default=0, help="draws other scenes for unittest/pairs")
+
+
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: not in tools/test --quick")
 

@@ -15,7 +15,7 @@ from . import launch, paths
 
 # What --quick and the line coverage leave out of unittest/, beside cases marked slow: scenes, whose equations the tests of the styles look at one
 # by one; what runs tools, installs, builds or counts instructions, to which an instrumented build adds its own
-SLOW = ["scenes", "tools", "docs", "styles/test_fuzz.py", "styles/test_faults.py"]
+SLOW = ["scenes", "pairs", "tools", "docs", "styles/test_fuzz.py", "styles/test_faults.py"]
 
 
 def googletest():
@@ -42,7 +42,7 @@ def pytest(arguments):
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
         # tests side by side, since most run on one core; those that share what a fixture has run stay together (unittest/conftest.py). Long ones first
-        tests = [str(paths.ROOT / "unittest" / name) for name in ("tools", "scenes", "docs", "styles")]
+        tests = [str(paths.ROOT / "unittest" / name) for name in ("tools", "scenes", "docs", "pairs", "styles")]
         tests = [test for test in tests if f"--ignore={test}" not in arguments]  # pytest would collect what it is given, ignored or not
         command = [sys.executable, "-m", "pytest", "-q", "-n", str(launch.cores()), "--dist", "loadgroup", f"--junitxml={report}",
                    *arguments, *tests]
