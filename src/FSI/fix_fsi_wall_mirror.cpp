@@ -47,12 +47,13 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
 
   // one keyword at a time, and the values that follow it
   static const std::vector<std::string> faces = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"},
-                                        others = {"range", "velocity", "slip", "symmetry", "guard"};
+                                        others = {"range",    "velocity",    "slip",
+                                                  "symmetry", "hydrostatic", "guard"};
   const auto is_in = [](const std::vector<std::string> &list, const std::string &word) {
     return std::find(list.begin(), list.end(), word) != list.end();
   };
   double place, low, high, velocity[3], distance;
-  int axis, slip, joins;
+  int axis, slip, joins, hydrostatic;
   Keywords words(lmp, "fix fsi/wall/mirror");
   for (const auto &name : faces) words.key(name).number(place, 0.0).or_word("EDGE", EDGE);
   words.key("range").choice(axis, 0, {"x", "y", "z"}, "axis");
@@ -61,6 +62,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   for (double &v : velocity) words.number(v, 0.0);
   words.key("slip").logical(slip, true);
   words.key("symmetry").logical(joins, false);
+  words.key("hydrostatic").logical(hydrostatic, false);
   words.key("guard").number(distance, guard, Range::between(0.0, 0.45));
 
   std::vector<bool> slip_said;    // of each wall
@@ -83,6 +85,8 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
     } else if (key == "slip") {
       walls.back().noslip = !slip;
       slip_said.back() = true;
+    } else if (key == "hydrostatic") {
+      walls.back().hydrostatic = hydrostatic;
     } else
       walls.back().joins = joins ? groupbit : 0;
   }
@@ -308,6 +312,7 @@ std::string FixFSIWallMirror::settings(int k) const
   std::string text = fmt::format("velocity {} {} {} slip {} guard {}", w.velocity[0], w.velocity[1],
                                  w.velocity[2], w.noslip ? "no" : "yes", guard);
   if (w.joins) text += " symmetry yes";
+  if (w.hydrostatic) text += " hydrostatic yes";
   for (int b = 0; b < 3; b++)
     if (w.lo[b] > -BIG || w.hi[b] < BIG)
       text += fmt::format(" range {} {} {}", "xyz"[b], w.lo[b], w.hi[b]);

@@ -77,7 +77,10 @@ class Adviser : protected Pointers {
       torn_streams();
       speeds();
       if (scene.has_levels()) levels();
-      if (update->ntimestep == 0) seen_through();
+      if (update->ntimestep == 0) {
+        seen_through();
+        shallow();
+      }
     }
     weightless();
     if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
@@ -448,6 +451,33 @@ class Adviser : protected Pointers {
             "must be held there",
             body, "xyz"[walls[k].axis], walls[k].position));
       }
+  }
+
+  /* In water on a mirror wall the lowest row is pressed against its own image, which does not push
+     it any more; where few rows are above it, water that rests on the guard loses volume. */
+
+  void shallow() const
+  {
+    static constexpr double BESIDE = 1.0;    // spacings
+    for (const auto &w : scene.walls.wall) {
+      const int rows = w.hydrostatic ? 4 : 8;    // that rest
+      double mine[2] = {-BIG, -BIG}, all[2];     // top, minus bottom
+      for (int i = 0; i < atom->nlocal; i++) {
+        const double s = w.distance(atom->x[i]) / dx(i);
+        if (!fluid(i) || w.side * scene.body_forces.on(i)[w.axis] >= 0.0 ||
+            !w.spans(atom->x[i], 0.0))
+          continue;
+        mine[0] = std::max(mine[0], s);
+        mine[1] = std::max(mine[1], -s);
+      }
+      MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+      if (-all[1] < BESIDE && all[0] + all[1] + 1.5 < rows)
+        warn(fmt::format("fluid is {:.2g} spacings deep on the mirror wall at {} = {:g}: under its "
+                         "weight less than {} rows sink there, by 4 to 48 % in 30 s. {}build the "
+                         "wall of particles",
+                         all[0] + all[1] + 1.0, "xyz"[w.axis], w.position, rows,
+                         w.hydrostatic ? "Better " : "Give it hydrostatic yes, or "));
+    }
   }
 
   /* what weighs nothing while other particles do */

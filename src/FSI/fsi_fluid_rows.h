@@ -575,6 +575,19 @@ namespace FSI {
     for (int d = 0; d < D; d++) force[d] = p * m.x[d];
   }
 
+  // Images below a hydrostatic wall have the pressure of fluid at rest where they are, the mean of
+  // both of a pair. What that takes is the wall's.
+  template <class T, int FLAGS, int D>
+  FSI_INLINE T pressure_below(const double (&down)[D], const Particle<T, D> &pi,
+                              const Particle<T, D> &pj, const Between<T, D> &m, Powers<T> &by)
+  {
+    T head = 0.0;
+    for (int d = 0; d < D; d++) head -= down[d] * m.x[d];
+    const T p = 0.5 * (pi.rho + pj.rho) * head * pi.vol * pj.vol;
+    if (FLAGS & Flag::SUMS) by.walls += m.share * p * m.g * m.vdotx;
+    return p;
+  }
+
   // The guard keeps out what has no pressure of its own.
   template <class T, int KIND, int FLAGS, int D>
   FSI_INLINE void keep_out(const Contact &guard, const FluidParticles &in, double bulk,
@@ -641,6 +654,11 @@ namespace FSI {
                    back = (FLAGS & Flag::UNEQUAL) ? fill / constant.volume : 1.0;
       if (FLAGS & Flag::UNEQUAL) pi.pv2 = fill * constant.volume * pi.pv2;
       const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && constant.thin);
+      double down[D];
+      for (int d = 0; d < D; d++)
+        down[d] = (FLAGS & Flag::IMAGES) && laws.gravity
+            ? mirror.deeper[d] * laws.gravity[in.type[i]][d]
+            : 0.0;
       T sum[D];
       for (T &s : sum) s = 0.0;
       Taken<T, D> taken((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES) ? laws.taken : nullptr);
@@ -651,8 +669,10 @@ namespace FSI {
             if (FLAGS & Flag::IMAGES) pj.reflect(mirror);
             Between<T, D> m;
             relate<T, K, KIND, FLAGS>(kernel, in, constant, i, pi, pj, j, weight, m);
-            const T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate,
-                                                    constant.floor, back, own);
+            T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate,
+                                              constant.floor, back, own);
+            if ((FLAGS & Flag::IMAGES) && KIND == WITH_FLUID)
+              p += pressure_below<T, FLAGS, D>(down, pi, pj, m, by);
             T force[D], on_j[D], coupling[D], friction[D], coupled;
             push<T, KIND, FLAGS>(artificial, laws, constant, pi, pj, p, m, force, coupling,
                                  friction, coupled, by);

@@ -39,6 +39,7 @@ namespace FSI {
     bool noslip = false;              // image velocity for viscous forces
     bool finite = false;              // has an extent
     double lo[3] = {}, hi[3] = {};    // extent along the other two axes
+    bool hydrostatic = false;         // are images as much deeper as they are lower?
     int joins = 0;                    // bit of the group whose solids go on in their images
 
     double distance(const double *x) const { return side * (x[axis] - position); }
@@ -236,18 +237,20 @@ namespace FSI {
   // depends on the order of the walls, which is that of the script.
   struct Mirror {
     double sign[3], x[3], v[3], rubbing_sign[3], rubbing_v[3];
+    double deeper[3];    // 1 along axes of hydrostatic walls
     Mirror() = default;
     Mirror(const Walls &walls, const Walls::Reflection &s)
     {
       for (int d = 0; d < 3; d++) {
         sign[d] = rubbing_sign[d] = 1.0;
-        x[d] = v[d] = rubbing_v[d] = 0.0;
+        x[d] = v[d] = rubbing_v[d] = deeper[d] = 0.0;
       }
       for (int k = 0; k < s.n; k++) {
         const Wall &w = walls.wall[s.w[k]];
         sign[w.axis] = -1.0;
         x[w.axis] = 2.0 * w.position;
         v[w.axis] = 2.0 * w.velocity[w.axis];
+        deeper[w.axis] = w.hydrostatic;
         for (int d = 0; d < 3; d++)
           if (w.noslip || d == w.axis) {
             rubbing_sign[d] = -rubbing_sign[d];

@@ -131,6 +131,8 @@ CASES = {
                     r"a stream without tension opens holes .* background of about rho U\^2, U being its largest speed, and tension yes$"),
     "weightless fluid": ([("fix g all", "fix g plate")], None, r"40 moving particles of fluids, the first of them atom 1, are in the group of no fix gravity"),
     "nothing acts": ([("fix g all gravity 9.81 vector 0 -1 0\n", "")], None, r"nothing moves this scene: no gravity, no velocity"),
+    "shallow": ([("block 0 0.05 0 0.08", "block 0 0.05 0 0.07")], None,
+                r"fluid is 7 spacings deep on the mirror wall at y = 0: .* less than 8 rows sink there, .* Give it hydrostatic yes, or build the wall of particles$"),
     "cut by a mirror": ([("xlo 0 ylo 0", "xlo 0 xhi 0.08 ylo 0")], None, r"body 1 ends at the mirror wall at x = 0.08, and its face there is free"),
 }
 # a support of 4 spacings, a plate of 2, and water behind it
@@ -172,6 +174,7 @@ def test_sound_deck_is_not_criticized(tmp_path):
     assert advice(tmp_path) == []
     # the bounds themselves: 7 sqrt(2gH), 0.4 h/c_l, three layers
     assert advice(tmp_path, [("sound 12.53", "sound 8.78"), ("4e-5", "9.1e-5")]) == []
+    assert advice(tmp_path, [("block 0 0.05 0 0.08", "block 0 0.05 0 0.07"), ("ylo 0", "ylo 0 hydrostatic yes")]) == []
     # a body that swings by little: of the sound decides its frequency
     assert advice(tmp_path, [("run 0", "velocity all set 1e-5 0 0 units box\nrun 0"), ("fix g all", "#")]) == []
     # a thin plate that is said to be thin, and one of three layers between the same water
