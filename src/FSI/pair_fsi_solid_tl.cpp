@@ -40,10 +40,13 @@
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
+
+static constexpr double TOUCHES = 0.96;    // of the square of contact's range: no round-off
 
 struct PairFSISolidTL::Members {
   SolidLaws laws;
@@ -250,6 +253,7 @@ void PairFSISolidTL::compute(int eflag, int vflag)
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
+  tell_contact();
   if (fix_fsi->substeps > 1 && !update->setupflag) return;
   internal_forces();
   double **f = atom->f;
@@ -512,6 +516,23 @@ void PairFSISolidTL::push_image(int i, int j, const Walls::Reflection &s, double
   strain_energy += (both ? 1.0 : 0.5) * contact.energy(rsq, Ki, Kj);
 }
 
+// Bodies whose faces are rows of balls have touched: what slides is held by them.
+void PairFSISolidTL::tell_contact()
+{
+  static constexpr double SMOOTH = 1.9;    // of contact
+  static constexpr int EVERY = 20;         // steps between two looks
+  if (contact_told || !list || contact_range > SMOOTH || update->ntimestep % EVERY) return;
+  const auto least = of_least(touch[1] ? double(touch[0]) : HUGE_VAL, touch, world);
+  contact_told = least[1] != 0;
+  if (contact_told && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Pair style fsi/solid/tl: bodies {} and {} touch. With contact {:g} faces are as "
+        "bumpy as rows of balls, which hold a body that slides by up to half of its "
+        "load: take contact 2.5 for those, and begin as many spacings apart",
+        least[0], least[1], contact_range);
+}
+
 // particles of different bodies (fsi_contact.h)
 template <int D> void PairFSISolidTL::contact_forces()
 {
@@ -531,8 +552,12 @@ template <int D> void PairFSISolidTL::contact_forces()
         rsq += xij[d] * xij[d];
       }
       const Contact &contact = contacts[type[i] * (ntypes + 1) + type[j]];
+      if (rsq >= contact.reachsq) continue;
+      if (!contact_told && rsq < TOUCHES * contact.reachsq &&
+          ((atom->mask[i] | atom->mask[j]) & fix_fsi->groupbit))
+        touch = {std::min(molecule[i], molecule[j]), std::max(molecule[i], molecule[j])};
       // without newton the other rank does its own particle
-      if (rsq < contact.reachsq) push<D>(i, j, xij, rsq, contact, newton || j < nlocal ? 1.0 : 0.0);
+      push<D>(i, j, xij, rsq, contact, newton || j < nlocal ? 1.0 : 0.0);
     }
   }
 }

@@ -133,6 +133,9 @@ class PairFSISolidTL : public PairFSI {
   template <class Call> auto with_law(Call call) const;
   template <class L, int D> void bond_forces(const L *law_of);
   std::vector<FSI::Contact> contacts;    // by both types
+  std::array<tagint, 2> touch = {};      // bodies that do, on this rank
+  bool contact_told = false;
+  void tell_contact();
   template <int D> void contact_forces();
   template <int D> void self_contact_forces();
   template <int D> void fold_images(double part);
