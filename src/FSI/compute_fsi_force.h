@@ -40,6 +40,10 @@ class ComputeFSIForce : public Compute {
   // between the two: forces of viscosity alone, per particle, rows of so many numbers; only if
   // split
   void tally_viscosity(const double *, int row);
+  void add_more(int i, const double *f)    // after them, to local atom i
+  {
+    if (counts(i)) add(i, f, 1.0, FORCE);
+  }
   int split;
 
  private:

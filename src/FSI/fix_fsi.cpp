@@ -212,6 +212,7 @@ void FixFSI::init()
   find_parts();
   profile = nullptr;
   shift = nullptr;
+  for (auto &row : impedance) row.clear();
   noslip_walls = false;
   surface_ratio = 0.0;
   for (auto *p : parts) {

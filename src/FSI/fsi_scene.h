@@ -119,6 +119,9 @@ namespace FSI {
     int *wmask = nullptr;                // bits of the mirror walls that an atom is near
     double **wall_velocity = nullptr;    // viscous velocity of no-slip walls of particles (fix
                                          // fsi/wall/particle) and solids
+    // Of solids with sub-steps: how fluid resists a change of their velocity within the step (xx yy
+    // zz xy xz yz; empty: there is none), the mean of this change
+    std::vector<double> impedance[6], swerve[3];
     double *wall_stiffness = nullptr;    // rho dp/drho of wall particles, that of the fluid around
                                          // them; null: it is the same for all fluids, and in the
                                          // wall's state

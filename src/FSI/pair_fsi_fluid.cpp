@@ -400,6 +400,11 @@ void PairFSIFluid::add_costs(Costs &costs) const
     costs.fluid_ghost += 2;
     costs.forward += 2;
   }
+  const int d = is_light(0) ? fix_fsi->dim : 0, back = newton * d * (d + 3) / 2;
+  costs.forward += d;
+  costs.back += back;
+  costs.solid_ghost += d + back;
+  costs.fluid_ghost += d + back;
   if (sticks_to_solids()) costs.solid_ghost += fix_fsi->dim + newton * (fix_fsi->dim + 1);
 }
 
@@ -676,11 +681,102 @@ void PairFSIFluid::advance_density()
   }
 }
 
+// With sub-steps: does a layer of these solids weigh less than half of one of the fluid? t = 0: are
+// there any?
+bool PairFSIFluid::is_light(int t) const
+{
+  const auto &state = fix_fsi->state;
+  double fluid = 0.0, solid = INFINITY;
+  for (int k = 1; k <= atom->ntypes && fix_fsi->substeps > 1; k++) {
+    const double layer = state[k].rho0 * fix_fsi->dx_of(k);
+    if (state[k].species == FLUID) fluid = std::max(fluid, layer);
+    if (state[k].species == SOLID && (t == 0 || k == t)) solid = std::min(solid, layer);
+  }
+  return solid < 0.5 * fluid;
+}
+
+// Light solids with sub-steps: use(i, j, x_ij, k) for pairs of a fluid and a solid, whose change of
+// velocity w within the step changes the force on the fluid by k x_ij (x_ij.w) (theory.rst)
+template <int D, class Use> void PairFSIFluid::for_wet_pairs(Use use) const
+{
+  static constexpr double HALF = 0.3;    // of the stiffness of a wet area, over rho c^2/dx
+  const int *const type = atom->type;
+  const auto *const point = reinterpret_cast<const Point<D> *>(points.data());
+  for_levels(*fix_fsi, [&](size_t level, const auto &kernel) {
+    for (const Row &row : meetings[OF_LEVEL * level + SOLIDS].rows.rows) {
+      const int i = row.i, t = type[row.j[0]];
+      if (!is_light(t)) continue;
+      const State &s = fix_fsi->state[type[i]];
+      const double more = shares[level].of_type[t].thin ? fill[i] : 1.0,
+                   z = HALF * s.rho0 * s.csq / fix_fsi->levels[level].dx * update->dt * more;
+      for (const int *j = row.j; j < row.j + row.n; j++) {
+        double x[D];
+        difference(point[i].x, point[*j].x, x);
+        const double rsq = product(x, x), r = std::sqrt(rsq);
+        if (rsq < kernel.cutsq && r > 0.0 && (atom->mask[*j] & fix_fsi->groupbit))
+          use(i, *j, x, -2.0 * z * point[i].vol * point[*j].vol * kernel.gradient(r) / r);
+      }
+    }
+  });
+}
+
+void PairFSIFluid::integrate_substeps()
+{
+  if (is_light(0)) fix_fsi->dim == 2 ? find_impedances<2>() : find_impedances<3>();
+}
+
+template <int D> void PairFSIFluid::find_impedances()
+{
+  auto *const z = fix_fsi->impedance, *const w = fix_fsi->swerve;
+  for (auto *rows : {z, z + 3, w})
+    for (int d = 0; d < 3; d++) rows[d].assign(atom->nlocal + atom->nghost, 0.0);
+  for_wet_pairs<D>([&](int, int j, const double(&x)[D], double k) {
+    for (int a = 0; a < D; a++)
+      for (int b = a; b < D; b++) z[Sym<3>::id(a, b)][j] += k * x[a] * x[b];
+  });
+  for (int a = 0; a < D; a++)
+    for (int b = a; b < D; b++) fix_fsi->add_ghosts(z[Sym<3>::id(a, b)].data());
+}
+
+// the reaction: what solids have not got of the impulse, fluids have not given
+template <int D> void PairFSIFluid::take_swerve()
+{
+  std::vector<double> more[D];
+  const auto &w = fix_fsi->swerve;
+  for (int d = 0; d < D; d++) {
+    fix_fsi->send_to_ghosts(fix_fsi->swerve[d].data());
+    more[d].assign(w[d].size(), 0.0);
+  }
+  for_wet_pairs<D>([&](int i, int j, const double(&x)[D], double k) {
+    for (int a = 0; a < D; a++)
+      for (int b = 0; b < D; b++) {
+        more[a][i] += k * x[a] * x[b] * w[b][j];
+        more[a][j] -= k * x[a] * x[b] * w[b][j];
+      }
+  });
+  for (auto &of : more) fix_fsi->add_ghosts(of.data());
+  double power = 0.0;    // that on solids is counted in their sub-steps
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool counts =
+        (atom->mask[i] & fix_fsi->groupbit) && fix_fsi->state[atom->type[i]].species == FLUID;
+    double f[3] = {};
+    for (int d = 0; d < D; d++) {
+      atom->f[i][d] += f[d] = more[d][i];
+      if (counts)
+        power += f[d] *
+            (atom->v[i][d] + 0.5 * update->dt * force->ftm2v * atom->f[i][d] / atom->rmass[i]);
+    }
+    for (auto *measure : force_computes) measure->add_more(i, f);
+  }
+  fix_fsi->tally(FixFSI::COUPLING, -power);
+}
+
 // The ledger's powers have velocities of the start of the step. With those of its middle, which are
 // known now, they are second order in time: of what waits for its kick by its force, of what has
 // moved since, in sub-steps or with a rigid body, by the way it went.
 void PairFSIFluid::react()
 {
+  if (is_light(0)) fix_fsi->dim == 2 ? take_swerve<2>() : take_swerve<3>();
   if (!fix_fsi->ledger || taken.empty()) return;
   fix_fsi->dim == 2 ? correct_powers<2>() : correct_powers<3>();
 }

@@ -67,6 +67,7 @@ class PairFSIFluid : public PairFSI {
   bool add_rates(bool) override;
   void advance(bool) override;
   void add_number_density(double *, bool of_all_bodies) override;
+  void integrate_substeps() override;
   void react() override;
   void go_back() override;
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
@@ -177,6 +178,10 @@ class PairFSIFluid : public PairFSI {
   double **beyond;
   void add_velocities_at_solids();
   void extrapolate_velocities();
+  bool is_light(int type) const;
+  template <int D, class Use> void for_wet_pairs(Use) const;
+  template <int D> void find_impedances();
+  template <int D> void take_swerve();
   template <int D> void correct_powers();
   template <int D> void add_density_rate(double dt);
   void advance_density();

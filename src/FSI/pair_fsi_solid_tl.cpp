@@ -31,6 +31,7 @@
 #include "fsi_profile.h"
 #include "fsi_solid_laws.h"
 #include "fsi_swaps.h"
+#include "fsi_tensor.h"
 #include "fsi_viscosity.h"
 #include "fsi_volumetric.h"
 #include "math_extra.h"
@@ -838,6 +839,47 @@ void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
   });
 }
 
+// Fluid resists a change w of the velocity of solids within the step by -Z w, here implicit. It has
+// the reaction afterwards (theory.rst).
+class PairFSISolidTL::Wet {
+  struct One {
+    int i;
+    double implicit[3][3], v[3], w[3];    // (1 + t Z/m)^-1, velocity at the start
+  };
+  std::vector<One> all;
+
+ public:
+  double taken = 0.0;    // energy
+  Wet(const Scene &scene, const Atom *atom, const std::vector<int> &moving, double t)
+  {
+    if (scene.impedance[0].empty()) return;
+    for (const int i : moving) {
+      One one = {i, {}, {atom->v[i][0], atom->v[i][1], atom->v[i][2]}, {}};
+      double m[3][3];
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+          m[a][b] = (a == b) + t / atom->rmass[i] * scene.impedance[Sym<3>::id(a, b)][i];
+      if (m[0][0] + m[1][1] == 2.0) continue;    // dry
+      MathExtra::invert3(m, one.implicit);
+      all.push_back(one);
+    }
+  }
+  void kick(Scene &scene, const Atom *atom)
+  {
+    for (One &one : all) {
+      double *const v = atom->v[one.i], free[3], w[3];
+      MathExtra::sub3(v, one.v, free);
+      MathExtra::matvec(one.implicit, free, w);
+      for (int d = 0; d < 3; d++) {
+        taken += atom->rmass[one.i] * (free[d] - w[d]) * (one.v[d] + 0.5 * (one.w[d] + w[d]));
+        scene.swerve[d][one.i] += w[d] / scene.substeps;
+        one.w[d] = w[d];
+        v[d] = one.v[d] + w[d];
+      }
+    }
+  }
+};
+
 // Stiff solids: from the state at the start of the step on, position Verlet with a step that
 // many times shorter. What acts on them from outside (f: fluid, gravity, ...), taken at the
 // middle of the step, is held: what the fluid has lost in momentum, the solid gains, to
@@ -879,6 +921,7 @@ void PairFSISolidTL::integrate_substeps()
     for (const auto &[i, middle] : carried)
       for (int d = 0; d < dim; d++) x[i][d] = middle[d] + t * v[i][d];
   };
+  Wet wet(*fix_fsi, atom, moving, dt * force->ftm2v);
   fix_fsi->set_tally(dt);
   fix_fsi->check.before_substeps(solids());
   only_moving = !fix_fsi->ledger;
@@ -897,6 +940,7 @@ void PairFSISolidTL::integrate_substeps()
       const double dtfm = dt * force->ftm2v / rmass[i];
       for (int d = 0; d < dim; d++) v[i][d] += dtfm * (f[i][d] + fs[i][d]);
     }
+    wet.kick(*fix_fsi, atom);
     hold(dt);
     drift(dth);
     if (!clamped) continue;
@@ -913,6 +957,7 @@ void PairFSISolidTL::integrate_substeps()
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   for (const int i : solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
+  if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::COUPLING] += wet.taken / force->ftm2v;
   if (clamped) clamps.finish();
 }
 

@@ -44,6 +44,7 @@ namespace FSI {
 
 class PairFSISolidTL : public PairFSI {
   struct Members;
+  class Wet;
   const std::unique_ptr<Members> members;
 
  public:
