@@ -166,14 +166,15 @@ class Adviser : protected Pointers {
       tagint a, b;
       int around;    // direction in which they meet around the box, or -1
     } closest = {BIG, 0, 0, -1};
-    std::vector<int> of_bodies(atom->nlocal, 0);    // particles of bodies and walls beside
+    std::vector<double> of_bodies(atom->nlocal, 0);    // particles of bodies and walls beside
     for (int i = 0; i < atom->nlocal; i++) {
       if (!has_material(i)) continue;
       double nearest = 1.25 * 1.25;    // over the spacing between the two lattices
       int who = -1;
       cells.around(atom->x[i], [&](int j, double rsq) {
         const double apart = 0.5 * (dx(i) + dx(j));
-        if (fluid(i) && !fluid(j) && rsq < 1.25 * 1.25 * apart * apart) of_bodies[i]++;
+        if (fluid(i) && !fluid(j) && rsq < 1.25 * 1.25 * apart * apart)    // of finer ones more
+          of_bodies[i] += std::pow(std::min(1.0, dx(j) / apart), scene.dim);
         if (j == i || rsq >= nearest * apart * apart) return;
         nearest = rsq / (apart * apart);
         who = j;
@@ -209,7 +210,7 @@ class Adviser : protected Pointers {
       return false;
     }
     const auto inside = find([&](int i) {
-      return of_bodies[i] >= (scene.dim == 2 ? 4 : 7);    // beside a face are 3, 6 at most
+      return of_bodies[i] >= (scene.dim == 2 ? 3.5 : 6.5);    // beside a face are 3, 6 at most
     });
     if (inside.count)
       warn(fmt::format("{} fluid particles, the first of them atom {}, are inside a body or wall: "
