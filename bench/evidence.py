@@ -213,7 +213,6 @@ def unstable():
     two = _curve("elastic_gate", "TL")[0.0025]  # two particles in 5 mm
     coarsest = min(x for x, r in _curve("oscillating_plate", "UL quadratic, hourglass, clamp at the face").items() if r["status"] == "ok")
     return [f"Two particles through the thickness: the gate bends {-100 * two['error']:.0f} % too little, and water may leak through it. Take three or more.",
-            "A plate lighter than the water that it moves in a step: with sub-steps it shakes. Halve the Courant number of the water.",
             "Thin free edges: single water particles may pass an edge that is thinner than the kernel's support.",
             "Two open ends with given pressures that swing: bursts of inflow, rare and short, in runs of more than 20 s.",
             "Updated-Lagrangian solids lock near Poisson's ratio 1/2 and stop when coarse: the elastic plate with fewer than "
