@@ -189,11 +189,13 @@ def balance(found):
                 used[level] += 1
 
 
-def rows(seed=0):
-    """Rows of levels, one of each factor: every allowed pair is in one of them."""
+def rows(seed=0, without=()):
+    """Rows of levels, one of each factor: every allowed pair is in one of them. Without: not these levels, and only as far as the drawing goes."""
     rng = random.Random(seed)
-    values = [rng.sample(list(levels), len(levels)) if seed else list(levels) for levels in FACTORS.values()]
+    values = [[level for level in (rng.sample(list(levels), len(levels)) if seed else levels) if level not in without] for levels in FACTORS.values()]
     found = [list(row) for row in AllPairs(values, filter_func=allowed)]
+    if without:
+        return found
     wanted = {pair for pair, good in all_pairs().items() if good} - set().union(*map(pairs_of, found))
     for pair in sorted(wanted, key=sorted):    # what the drawing could not complete
         if pair in wanted:

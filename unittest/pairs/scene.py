@@ -331,10 +331,12 @@ group spot intersect spot water
         return self.has["between"].replace("{again}", again)
 
     def text(self, folder):
-        a, b, c = STEPS
+        a, b, c = (round(n * DT / self.dt) for n in STEPS)
         return turned(f"""{self.head(f'{folder}/scene.data')}
 {self.pair}
 {self.physics()}
+{'run 0' if self.energy else ''}
+{'variable before equal $(c_energy:%.17g)' if self.energy else ''}
 run {a}
 variable gone equal {'$(mass(spot):%.17g)' if self.setting('spot') else 0}
 {self.between().replace('between.restart', f'{folder}/between.restart')}
@@ -393,7 +395,10 @@ def go(scene, folder, text=None):
                 if name != "refine":
                     state.extra[name + " mass"] = lmp.extract_fix(ends, 0, 0)
         if scene.energy:
-            state.extra["energy"] = lmp.extract_compute("energy", 0, 0)
+            before = lmp.extract_variable("before")
+            state.extra["drift"] = lmp.extract_compute("energy", 0, 0) - before
+            entries = lmp.extract_compute("energy", 0, 1)
+            state.extra["energy"] = np.array([entries[k] for k in range(14)])
     finally:
         lmp.close()
     return state
