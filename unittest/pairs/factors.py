@@ -30,6 +30,8 @@ FACTORS = {
         "segment": {"ground": "", "sides": "", "mirror": "<xhi> <-0.01> range y 0.04 INF <xlo> <-0.01> range y 0.04 INF", "settings": {"thick": 0}},
         "still particles": {"floor": "slip no"},
         "moving particles": {"floor": "", "lines": "fix move floor fsi/move wiggle <0.002> 0.001 0 0.05 units box"},
+        "driven particles": {"floor": "slip no", "regions": "variable s equal 0.001*sin(100*time)\nvariable u equal 0.1*cos(100*time)\nvariable zero equal 0",
+                             "lines": "fix move floor fsi/move variable v_zero v_s {still} v_zero v_u {still}"},
         "linear particles": {"floor": "slip no pressure linear guard 0.5"},
         "thin particles": {"floor": "slip no", "fsi": "thin 3", "settings": {"thick": 1}},
     },
@@ -41,6 +43,8 @@ FACTORS = {
         "plastic": {"body": "fsi/solid/tl", "solid": "law hypo artificial/visc 0.1 0", "stress": "plastic", "material": "yield 200 hardening 1e4"},
         "damage": {"body": "fsi/solid/tl", "solid": "gradient linear damage 0.01 artificial/visc 0.1 0"},
         "hypo updated": {"body": "fsi/solid", "solid": "gradient corrected artificial/visc 0.1 0 artificial/stress 0.3 hourglass 0.1", "stress": " "},
+        "quadratic updated": {"body": "fsi/solid", "solid": "gradient quadratic artificial/visc 0.1 0", "stress": " "},
+        "plane stress": {"body": "fsi/solid/tl", "solid": "plane stress volumes plain volumetric local gradient linear"},
         "hypo total": {"body": "fsi/solid/tl", "solid": "law hypo artificial/visc 0.1 0", "stress": " "},
         "volumetric": {"body": "fsi/solid/tl", "solid": "volumetric smoothed artificial/visc 0.1 0", "material": "poisson 0.45"},
         "thin": {"body": "fsi/solid/tl", "solid": "artificial/visc 0.1 0", "fsi": "thin 2", "settings": {"wide": 2}},
@@ -58,19 +62,21 @@ FACTORS = {
         "one level": {},
         "region": {"refine": "region near", "regions": "region near block [-0.045 0.085] INF INF INF INF units box"},
         "moving region": {"refine": "region near", "regions": "variable place equal <1.0>*time\nregion near block [-0.045 0.085] INF INF INF INF move v_place NULL NULL units box"},
+        "unsettled": {"refine": "region near settle 0", "regions": "region near block [-0.045 0.085] INF INF INF INF units box"},
         "distance": {"refine": "distance body 0.018"},
     },
     "ends": {
         "no ends": {},
         "inlet and outlet": {"ends": "fix in water fsi/inlet <xlo> <-0.12> velocity <0.4> 0 0 buffer 0.06\nfix out water fsi/outlet <xhi> <0.12> buffer 0.06"},
         "two pressures": {"ends": "fix in water fsi/inlet <xlo> <-0.12> pressure {p1} buffer 0.06\nfix out water fsi/outlet <xhi> <0.12> pressure {p0} buffer 0.06"},
+        "absorbing ends": {"ends": "fix in water fsi/inlet <xlo> <-0.12> velocity <0.4> 0 0 absorb auto buffer 0.06\nfix out water fsi/outlet <xhi> <0.12> pressure free buffer 0.06"},
         "stream": {"regions": "region zone block [-0.11 -0.02] INF INF INF INF units box",
                    "lines": "fix stream water fsi/stream <0.4> 0 NULL region zone rate 50 density 20", "settings": {"stream": True}},
     },
     "float": {"no float": {}, "floating": {"settings": {"buoy": True}, "lines": "fix buoy buoy rigid single{flat}"}},
     "grains": {"no grains": {}, "grains": {"settings": {"grains": 6}}},
     "gravity": {"no gravity": {}, "gravity": {"gravity": True}, "gravity of water": {"gravity": "water"}},
-    "step": {"fixed step": {}, "adaptive step": {"lines": "fix dt all fsi/dt 4 cfl 0.3"}, "adaptive sub-steps": {"lines": "fix dt all fsi/dt 4 cfl/fluid 0.3 substeps auto"}},
+    "step": {"fixed step": {}, "adaptive step": {"lines": "fix dt all fsi/dt 4 cfl 0.3"}, "checked step": {"lines": "fix dt all fsi/dt 4 check warn"}, "adaptive sub-steps": {"lines": "fix dt all fsi/dt 4 cfl/fluid 0.3 substeps auto"}},
     "between runs": {
         "nothing": {},
         "reset_atoms": {"between": "reset_atoms id sort yes"},
@@ -90,9 +96,8 @@ def all_of(factor, *but):
     return [level for level in FACTORS[factor] if level not in (FIRST[factor], *but)]
 
 
-TOTAL = all_of("solid", "hypo updated")
-PARTICLES = ("still particles", "moving particles", "linear particles", "thin particles")
-OPEN = ("inlet and outlet", "two pressures")
+UPDATED = ("hypo updated", "quadratic updated")
+TOTAL = all_of("solid", *UPDATED)
 
 # {reason: pairs of levels, each a level or several}: what makes no sense, or is not what the level is for
 NOT_DRAWN = {
@@ -107,7 +112,8 @@ REFUSED = {
     ("surface rule", "background"): (r"density/surface is for fluids with a free surface", {}),
     **{("surface rule", levels): (r"requires pair_style fsi/fluid (without )?density/surface", {}) for levels in all_of("levels")},
     ("self", "symmetry plane"): (r"self yes does not go with symmetry yes", {}),
-    ("hypo updated", "sub-steps"): (r"substeps requires pair_style fsi/solid/tl", {}),
+    **{(solid, "sub-steps"): (r"substeps requires pair_style fsi/solid/tl", {}) for solid in UPDATED},
+    ("plane stress", "3D"): (r"plane is for dimension 2 only", {}),
     **{("reset_atoms", solid): (r"reset_atoms id", {}) for solid in TOTAL},
     ("reset_atoms", "sub-steps"): (r"reset_atoms id", {"solid": "svk"}),
 }

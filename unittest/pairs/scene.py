@@ -131,13 +131,13 @@ class PairScene:
             return self.block(x, y, z, own * DX)
 
         if self.setting("hairpin"):
-            x = np.vstack([one((2, 4)), one((8, 10)), one((4, 8), (y[0], y[0] + 2))])
+            x = np.vstack([one((1, 3)), one((7, 9)), one((3, 7), (y[0], y[0] + 2))])
         else:
-            x = one((2, 2 + wide))
+            x = one((1, 1 + wide))
         mol = np.ones(len(x), int)
         if self.setting("bodies") == 2:
             # beside it, a little less than the range of contact from it
-            more = one((2, 2 + wide)) + [(wide + 1.45 - own) * DX, 0, 0]
+            more = one((1, 1 + wide)) + [(wide + 1.45 - own) * DX, 0, 0]
             x, mol = np.vstack([x, more]), np.append(mol, np.full(len(more), 2))
         return x, mol
 
@@ -296,7 +296,8 @@ group spot intersect spot water
         if has["ends"]:
             p0 = 500 if "background" in self.row else 0
             lines.append(has["ends"].format(p0=p0, p1=p0 + 50))
-        lines.append(has["lines"].replace("{flat}", " force * on on off torque * off off on" if self.dim == 2 else ""))
+        lines.append(has["lines"].replace("{flat}", " force * on on off torque * off off on" if self.dim == 2 else "")
+                     .replace("{still}", "NULL" if self.dim == 2 else "v_zero"))
         if has["refine"]:
             lines.append(f"fix refine water fsi/refine 6 types 1 5 {has['refine']}")
         lines.append("compute state all fsi/atom rho")
