@@ -152,7 +152,7 @@ class PairScene:
         body, mol = self.bodies()
         parts = [(body, BODY, mol)]
         if self.has["floor"] is not None:
-            parts.append((self.block((-HALF - 7, HALF + 7) if self.open else (-HALF, HALF), self.floor_layers), FLOOR, 0))
+            parts.append((self.block((-HALF - 6, HALF + 6) if self.open else (-HALF, HALF), self.floor_layers), FLOOR, 0))
         if self.setting("buoy"):
             parts.append((self.block((-9, -5), (self.high // 2 - 2, self.high // 2 + 2) if self.dim == 2 else (2, 5), (1, 4)), BUOY, 0))
         if self.setting("grains"):
@@ -353,7 +353,8 @@ run {c}
 
     @staticmethod
     def end(folder):
-        return (f"write_dump all custom {folder}/end.dump id type mass x y z vx vy vz c_state modify sort id time yes format float %.17g\n"
+        # open ends count when lists are built
+        return (f"run 0\nwrite_dump all custom {folder}/end.dump id type mass x y z vx vy vz c_state modify sort id time yes format float %.17g\n"
                 "variable now equal time\n")
 
 
