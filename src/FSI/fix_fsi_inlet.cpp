@@ -43,6 +43,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -133,6 +134,7 @@ FixFSIInlet::FixFSIInlet(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
   fields.set("of the buffer", Fields::RESTART, true, of_buffer);
   fields.set("place of the copy", Fields::RESTART, true, behind, 3);
+  fields.set("velocity of the copy", Fields::RESTART, true, follower, 4);
   register_fields();
 }
 
@@ -186,9 +188,10 @@ void FixFSIInlet::init()
                "xyz"[axis]);
 
   // lists hold for half a skin; a place that becomes free at the end is filled when a column has
-  // gone by
-  const double least = fix_fsi->cut + fix_fsi->dx + 0.5 * neighbor->skin;
-  length = fix_fsi->dx * std::ceil(least / fix_fsi->dx - 1.0e-9);
+  // gone by. As long for any skin up to a spacing
+  const double least = fix_fsi->cut + fix_fsi->dx + 0.5 * neighbor->skin,
+               usual = std::max(least, fix_fsi->cut + 1.5 * fix_fsi->dx);
+  length = fix_fsi->dx * std::ceil(usual / fix_fsi->dx - 1.0e-9);
   if (given_length != AUTO) {
     length = fix_fsi->dx * std::round(given_length / fix_fsi->dx);
     if (std::fabs(length - given_length) > 1.0e-6 * fix_fsi->dx)
@@ -215,9 +218,6 @@ void FixFSIInlet::init()
   check_plane();
   find_region();
   given->find();
-  zone_group = igroup;
-  if (given->of_atoms())
-    zone_group = group->find_or_create(fmt::format("fsi_inlet_{}", id).c_str());
   driven = false;
   for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
     driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->has_own_velocity();
@@ -423,7 +423,7 @@ void FixFSIInlet::fill_buffer()
     at_plane += hat_at(inside(atom->x[place.i])) *
         std::pow(fix_fsi->dx_of(atom->type[place.i]), fix_fsi->dim);
   area = sum_of(at_plane, world);
-  given->evaluate(zone_group, 0, 3);
+  given->evaluate_for(places, 0, 3);
   for (int i = 0; i < atom->nlocal; i++)
     if (of_buffer[i])
       for (int d = 0; d < fix_fsi->dim; d++)
@@ -628,8 +628,8 @@ std::vector<int> FixFSIInlet::find_occupied(std::vector<Particle> &copies, bool 
   return occupied;
 }
 
-// Makes copies: IDs in the order of those of the parents, whatever rank has them. Fluid that is in
-// the place keeps it.
+// Makes copies: IDs in the order in which they came to be followed, and of those of the parents,
+// whatever rank has them. Fluid that is in the place keeps it.
 void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
 {
   std::vector<Particle> all, copies;
@@ -639,7 +639,8 @@ void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
   for (size_t k = 0; k < all.size(); k++)
     if (!occupied[k]) copies.push_back(all[k]);
   std::sort(copies.begin(), copies.end(), [&](const Particle &b, const Particle &c) {
-    return b.parent < c.parent || (b.parent == c.parent && inside(b.x) > inside(c.x));
+    return std::make_tuple(b.since, b.parent, -inside(b.x)) <
+        std::make_tuple(c.since, c.parent, -inside(c.x));
   });
   const int first = atom->nlocal;
   fix_fsi->population.make(copies, name, at_start ? nullptr : fix_fsi->account(FixFSI::FIELDS));
@@ -666,6 +667,8 @@ void FixFSIInlet::pre_exchange()
     if (of_buffer[i] == FOLLOWED) {
       copies.push_back(fix_fsi->population.copy_of(i));
       std::copy_n(behind[i], 3, copies.back().x);
+      std::copy_n(follower[i], 3, copies.back().v);
+      copies.back().since = follower[i][3];
       of_buffer[i] = MEMBER;
     }
     if (of_buffer[i] && s > 0.0) {
@@ -778,10 +781,39 @@ void FixFSIInlet::follow(int i, double s)
   of_buffer[i] = FOLLOWED;
   std::copy_n(atom->x[i], 3, behind[i]);
   behind[i][axis] -= side * spacing;
+  std::copy_n(atom->v[i], 3, follower[i]);
+  follower[i][3] = (double) update->ntimestep;
 }
 
-// Fluid at the plane and in the buffer, of this rank: from one list to the next. Variables are
-// evaluated for a group: it gets one of its own.
+// to the middle of the step, whose length may be new
+void FixFSIInlet::start_step()
+{
+  for (const auto &place : places)
+    for (int d = 0; of_buffer[place.i] == FOLLOWED && d < fix_fsi->dim; d++)
+      behind[place.i][d] += 0.5 * update->dt * follower[place.i][d];
+}
+
+// A velocity that is given by atom-style variables: where those who follow are
+bool FixFSIInlet::find_followers()
+{
+  if (has_own_velocity() || !given->of_atoms()) return false;
+  std::vector<Place> followed;
+  for (const auto &place : places)
+    if (of_buffer[place.i] == FOLLOWED) followed.push_back(place);
+  if (!anywhere(!followed.empty(), world)) return true;
+  const auto swap = [&]() {
+    for (const auto &one : followed)
+      std::swap_ranges(behind[one.i], behind[one.i] + 3, atom->x[one.i]);
+  };
+  swap();
+  given->evaluate_for(followed, 0, 3);
+  for (const auto &one : followed)
+    for (int d = 0; d < 3; d++) follower[one.i][d] = value(d, one.i);
+  swap();
+  return true;
+}
+
+// Fluid at the plane and in the buffer, of this rank: from one list to the next
 void FixFSIInlet::find_places()
 {
   places.clear();
@@ -789,10 +821,8 @@ void FixFSIInlet::find_places()
   const double from = -2.0 * length, to = zone() + neighbor->skin;
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = inside(atom->x[i]);
-    if (zone_group != igroup) atom->mask[i] &= ~group->bitmask[zone_group];
-    if (!(s > from && s < to && is_fluid(i) && in_patch(atom->x[i]))) continue;
-    places.push_back({i, 0.0, 0.0, false});
-    atom->mask[i] |= group->bitmask[zone_group];
+    if (s > from && s < to && is_fluid(i) && in_patch(atom->x[i]))
+      places.push_back({i, 0.0, 0.0, false});
   }
 
   renew_ends(!places.empty());
@@ -1009,7 +1039,7 @@ void FixFSIInlet::advance(bool advance)
   if (!advance) return;
   const double dt = update->dt + fix_fsi->dt_offset;
   const bool wants_velocity = has_own_velocity(), wants_pressure = has_own_pressure();
-  if (!given->name(PRESSURE).empty()) given->evaluate(zone_group, PRESSURE, 1);
+  if (!given->name(PRESSURE).empty()) given->evaluate_for(places, PRESSURE, 1);
   measure();
   keep_full();    // knows the flow of now, after a restart, too
 
@@ -1264,19 +1294,23 @@ void FixFSIInlet::prescribe()
   const double dt = update->dt;
   if (dt == 0.0) return;
   const bool wants_velocity = has_own_velocity();
-  if (!wants_velocity) given->evaluate(zone_group, 0, 3);
+  const bool found = find_followers();
+  if (!wants_velocity) given->evaluate_for(places, 0, 3);
   for (const auto &place : places) {
     const int i = place.i;
     if (place.inside > 0.0) continue;
     const double m = atom->rmass[i];
     double *const f = atom->f[i], *const v = atom->v[i];
     for (int d = 0; d < fix_fsi->dim; d++) {
-      double u;
-      if (wants_velocity)
-        u = !place.known ? v[d] : d == axis ? place.normal : 0.0;
-      else
-        u = value(d, i) + (d == axis ? side * wave : 0.0);
-      if (of_buffer[i] == FOLLOWED) behind[i][d] += dt * u;
+      const double more = d == axis ? side * wave : 0.0;
+      const double u = !wants_velocity ? value(d, i) + more
+          : !place.known               ? v[d]
+          : d == axis                  ? place.normal
+                                       : 0.0;
+      if (of_buffer[i] == FOLLOWED) {
+        follower[i][d] = found ? follower[i][d] + more : u;
+        behind[i][d] += 0.5 * dt * follower[i][d];
+      }
       const double to = m * (u - v[d]) / (dt * force->ftm2v), push = to - f[d];
       f[d] = to;
       push_sum[d] += push;

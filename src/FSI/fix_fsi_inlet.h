@@ -57,6 +57,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   double memory_usage() override;
 
   Rank rank() const override { return OPEN_ENDS; }
+  void start_step() override;       // places of those who are to be made
   void advance(bool) override;      // density of the buffer, when the fluid has its own
   void end_state(bool) override;    // is there as much fluid as there is room?
   void prescribe() override;        // velocity of the buffer
@@ -112,9 +113,9 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   // it is the last
   static constexpr double NOT = 0.0, MEMBER = 1.0, LAST = 2.0, FOLLOWED = 3.0, NEXT_OF_ROW = 4.0;
   double *of_buffer = nullptr;    // per atom
-  double **behind = nullptr;      // of one that is followed: where who follows would be now
+  // of one that is followed: where who follows would be now; its velocity, and the step since when
+  double **behind = nullptr, **follower = nullptr;
   std::vector<Place> places;
-  int zone_group;    // that of the places
 
   // sums over the fluid at the nodes of a lattice in the plane, then values there; then the largest
   // and the negative least velocity
@@ -189,6 +190,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void make(const std::vector<FSI::Particle> &, bool at_start);
   void find_next_of_rows(const std::vector<FSI::Particle> &gone);
   void follow(int i, double s);
+  bool find_followers();
   void find_places();
   MPI_Comm ends = MPI_COMM_NULL;    // of the ranks that this end is a matter of; null on others
   void renew_ends(bool has_some);

@@ -103,9 +103,6 @@ void FixFSIStream::init()
                region_id, low, high, name, domain->boxlo[along], domain->boxhi[along]);
 
   velocity->find();
-  zone_group = igroup;
-  if (velocity->of_atoms())
-    zone_group = group->find_or_create(("fsi_stream_" + std::string(id)).c_str());
 }
 
 void FixFSIStream::setup(int vflag)
@@ -121,26 +118,21 @@ void FixFSIStream::setup(int vflag)
   post_force(vflag);
 }
 
-// Fluid that may be in the zone before the next list. Variables are evaluated for a group: it gets
-// one of its own.
+// Fluid that may be in the zone before the next list
 void FixFSIStream::find_zone()
 {
   zone.clear();
-  const int bit = group->bitmask[zone_group];
-  int *const mask = atom->mask;
   const double L = domain->prd[along], from = -neighbor->skin, to = high - low + neighbor->skin;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (zone_group != igroup) mask[i] &= ~bit;
     const int species = fix_fsi->state[atom->type[i]].species;
-    const bool fluid = species == FLUID && (mask[i] & groupbit);
+    const bool fluid = species == FLUID && (atom->mask[i] & groupbit);
     if (!fluid && species != SOLID) continue;
     double s = atom->x[i][along] - low;
     if (domain->periodicity[along]) s -= L * std::floor((s - from) / L);
     if (s < from || s > to) continue;
-    if (fluid) {
+    if (fluid)
       zone.push_back({i, 0.0});
-      mask[i] |= bit;
-    } else if (in_zone(i) >= 0.0)
+    else if (in_zone(i) >= 0.0)
       error->one(FLERR,
                  "Atom {} of a solid is in region {} of fix fsi/stream, which is for fluid alone",
                  atom->tag[i], region_id);
@@ -203,7 +195,7 @@ void FixFSIStream::advance(bool advance)
 void FixFSIStream::post_force(int)
 {
   find_weights();    // in setup
-  velocity->evaluate(zone_group, 0, 3);
+  velocity->evaluate_for(zone, 0, 3);
   std::fill_n(given, 4, 0.0);
   const double dt = update->dt;
   if (dt == 0.0) return;

@@ -32,6 +32,7 @@ namespace FSI {
     double x[3] = {}, v[3] = {}, rho = 0.0, rmass = 0.0;
     tagint parent = 0, molecule = 0;    // parent: of whoever makes it, for an order of IDs
     int type = 0, mask = 0;
+    double since = 0.0;    // a step, likewise
   };
 
   class Population : protected Pointers {

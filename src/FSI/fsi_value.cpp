@@ -16,6 +16,7 @@
 #include "atom.h"
 #include "error.h"
 #include "fsi_keywords.h"
+#include "group.h"
 #include "input.h"
 #include "memory.h"
 #include "modify.h"
@@ -113,6 +114,16 @@ void Values::evaluate(int igroup, int first, int n, bool atoms)
                  v.number, update->ntimestep);
   }
   modify->addstep_compute(update->ntimestep + 1);
+}
+
+int Values::shared_group() const
+{
+  return group->find_or_create("fsi_variables");
+}
+
+void Values::mark(int i, int igroup) const
+{
+  if (igroup) atom->mask[i] ^= group->bitmask[igroup];
 }
 
 double Values::memory_usage() const

@@ -48,6 +48,14 @@ namespace FSI {
     // all ranks together, at the time that LAMMPS has; atom-style ones of the particles of a group;
     // n of them from the first one on
     void evaluate(int igroup, int first, int n, bool atoms = true);
+    // of the particles i of the elements of a list
+    template <class List> void evaluate_for(const List &particles, int first, int n)
+    {
+      const int igroup = of_atoms() ? shared_group() : 0;
+      for (const auto &one : particles) mark(one.i, igroup);
+      evaluate(igroup, first, n);
+      for (const auto &one : particles) mark(one.i, igroup);
+    }
     // of none or of an atom-style variable: 0
     double number(int k) const { return list[k].number; }
     double operator()(int k, int i) const
@@ -72,6 +80,8 @@ namespace FSI {
     double **each;    // of atom-style variables
     int nmax;
     int variable(Value &) const;
+    int shared_group() const;              // of all commands: LAMMPS has 32
+    void mark(int i, int igroup) const;    // in it, or out of it
   };
 
 }    // namespace FSI
