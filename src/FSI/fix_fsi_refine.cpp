@@ -217,6 +217,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
 {
   const bool first = update->ntimestep == update->firststep;
   renew_ghosts();
+  fix_fsi->gather_walls();    // those of the last force are a step behind
   if (fix_fsi->sight) fix_fsi->sight->find_bodies();
   std::fill_n(mine, NTOTAL, 0.0);
   look(may_split, may_merge);
@@ -251,7 +252,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   for (int i = before; i < atom->nlocal; i++) add_event(i);
   std::vector<tagint> released;
   for (const int i : gone) released.push_back(atom->tag[i]);
-  fix_fsi->population.remove(gone, nullptr);
+  fix_fsi->population.remove(gone, fix_fsi->account(FixFSI::LEVELS));
   fix_fsi->population.release(released);
   fix_fsi->population.end();
   if (settle_steps == 0) return;
@@ -279,7 +280,8 @@ void FixFSIRefine::renew_ghosts()
 // spacing outside of its zone, so that one that moves to and fro at the edge does not change.
 void FixFSIRefine::look(bool may_split, bool may_merge)
 {
-  zones->find(*fix_fsi, FAR * fix_fsi->dx_of(types[0]));
+  const bool at_start = update->ntimestep == update->firststep;    // else in the middle of a step
+  zones->find(*fix_fsi, FAR * fix_fsi->dx_of(types[0]), at_start ? 0.0 : 0.5 * update->dt);
   carried.assign(atom->nlocal + atom->nghost, 0);
   for (int i = 0; i < atom->nlocal; i++) {
     const int own = level(i);
@@ -518,6 +520,30 @@ void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells 
   }
 }
 
+// Not within the guard of a wall of particles, which would push them with energy out of nothing:
+// both halves are as much farther from it
+void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
+{
+  static constexpr int PASSES = 3;    // the next wall particle may be as near
+  const double *const x = atom->x[two.i], dx = fix_fsi->dx,
+               fine = fix_fsi->dx_of(types[level(two.i) + 1]);
+  for (int pass = 0; pass < 2 * PASSES; pass++) {
+    const double to = pass % 2 ? 1.0 : -1.0;
+    double at[3], away[3] = {}, deepest = 0.0;
+    for (int d = 0; d < 3; d++) at[d] = x[d] + two.off[d] + to * two.dx[d];
+    cells.around(at, [&](int j, double rsq) {
+      const int t = atom->type[j];
+      const double own = fix_fsi->dx_of(t), r = std::sqrt(rsq),
+                   depth = fix_fsi->state[t].guard * (fine + own) / (dx + own) - r;
+      if (depth <= 0.0 || r == 0.0) return;
+      deepest = std::max(deepest, depth);
+      for (int d = 0; d < fix_fsi->dim; d++) away[d] += depth / r * (at[d] - atom->x[j][d]);
+    });
+    const double length = MathExtra::len3(away);
+    for (int d = 0; d < 3 && length > 0.0; d++) two.off[d] += deepest / length * away[d];
+  }
+}
+
 std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
 {
   std::vector<Division> list;
@@ -539,6 +565,7 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
     const double distance = split_distance(fix_fsi->dim) * fix_fsi->dx_of(atom->type[i]);
     for (int d = 0; d < 3; d++) two.dx[d] = distance * directions[heading[i] - 1][d];
     fix_fsi->dim == 2 ? slopes<2>(two, cells) : slopes<3>(two, cells);
+    keep_off_walls(two, cells);
     list.push_back(two);
     const double m = atom->rmass[i];
     double spin[3];
@@ -632,7 +659,7 @@ std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gon
     MathExtra::sub3(atom->v[j], atom->v[i], faster);
     Union one;
     one.i = i;
-    one.energy = fix_fsi->population.energy(i) + fix_fsi->population.energy(j);
+    one.energy = fix_fsi->population.energy(i);    // a ghost has no image flags: see remove()
     one.rmass = m + n;
     one.rho = one.rmass / (m / atom->rho[i] + n / atom->rho[j]);
     for (int d = 0; d < 3; d++) {
@@ -679,7 +706,7 @@ void FixFSIRefine::divide(const std::vector<Division> &divisions)
     const int j = population.copy(i, ids[nth]);
     const auto move = [&](int k, double to) {
       for (int d = 0; d < fix_fsi->dim; d++) {
-        atom->x[k][d] += to * two.dx[d];
+        atom->x[k][d] += two.off[d] + to * two.dx[d];
         atom->v[k][d] += to * two.dv[d];
       }
       atom->rho[k] += to * two.drho;

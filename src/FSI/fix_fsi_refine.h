@@ -55,11 +55,11 @@ class FixFSIRefine : public Fix {
   double memory_usage() override;
 
  private:
-  struct Division {    // of a particle: its halves are at x + dx and x - dx, ...
+  struct Division {    // of a particle: its halves are at x + off + dx and x + off - dx, ...
     int i = 0;
-    double dx[3] = {}, dv[3] = {}, drho = 0.0;
+    double off[3] = {}, dx[3] = {}, dv[3] = {}, drho = 0.0;
   };
-  struct Union {    // of two: what becomes of the one that stays; energy of both
+  struct Union {    // of two: what becomes of the one that stays; its energy before
     int i = 0;
     double x[3] = {}, v[3] = {}, rho = 0.0, rmass = 0.0, energy = 0.0;
   };
@@ -103,6 +103,7 @@ class FixFSIRefine : public Fix {
   int choose_direction(int i, const FSI::Cells &) const;
   void choose_directions(const std::vector<int> &which, const FSI::Cells &);
   template <int D> void slopes(Division &, const FSI::Cells &) const;
+  void keep_off_walls(Division &, const FSI::Cells &) const;
   std::vector<Division> plan_divisions();
   void choose_partners();
   std::vector<Union> plan_unions(std::vector<int> &gone);

@@ -178,8 +178,9 @@ namespace FSI {
     typedef double Row[3];
     static Row *rows(double **a) { return reinterpret_cast<Row *>(a[0]); }
 
+    void gather_walls();    // one list from all fixes fsi/wall/mirror, where they are now
+
    protected:
-    void gather_walls();            // one list from all fixes fsi/wall/mirror
     void find_near_walls();         // wmask
     bool states_entered = false;    // in this init()
 

@@ -30,7 +30,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 Zones::Zones(LAMMPS *lmp, const std::string &who) :
-    Pointers(lmp), who(who), body_bit(0), can_move(false),
+    Pointers(lmp), who(who), body_bit(0), can_move(false), ahead(0.0),
     directions(split_directions(domain->dimension))
 {
 }
@@ -106,8 +106,9 @@ std::string Zones::names(int k) const
   return regions.empty() ? "" : fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
 }
 
-void Zones::find(const Scene &scene, double beyond)
+void Zones::find(const Scene &scene, double beyond, double time)
 {
+  ahead = time;
   for (auto *region : regions) region->prematch();
   if (!body_bit) return;
   const auto body = everywhere(lmp, distances[0] + beyond, [this](int i) {
@@ -124,7 +125,11 @@ bool Zones::has(int k, int i, double grown) const
 {
   if (regions.empty()) return away[i] < distances[k - 1] + grown;
   Region *const region = regions[k - 1];
-  const double *const x = atom->x[i];
+  double x[3] = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
+  if (region->dynamic_check()) {
+    for (int d = 0; d < 3; d++) x[d] += ahead * atom->v[i][d];
+    domain->remap(x);
+  }
   if (region->match(x[0], x[1], x[2])) return true;
   if (grown == 0.0) return false;
   const auto matches = [&](const std::array<double, 3> &e, double to) {

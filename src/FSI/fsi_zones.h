@@ -39,7 +39,9 @@ namespace FSI {
 
     void init(const Scene &, const std::vector<int> &types);
     bool moving() const { return can_move; }
-    void find(const Scene &, double beyond);       // where they are now, and so much beyond them
+    // where they are at the end of this step, and so much beyond them; positions are by that time
+    // before it
+    void find(const Scene &, double beyond, double time);
     bool has(int k, int i, double grown) const;    // is i in zone k, from 1 on, grown by that?
     std::string names(int k) const;                // of zones k and k + 1, for errors
 
@@ -51,6 +53,7 @@ namespace FSI {
     int body_bit;
     std::vector<double> distances, away;    // of zones; per local particle, from the body
     bool can_move;
+    double ahead;    // of positions, time
     std::vector<std::array<double, 3>> directions;    // in which a region grows
   };
 

@@ -43,6 +43,11 @@ def exact_mass(scene):
     return math.fsum(scene.get("rmass"))
 
 
+def energy(scene):
+    """the sum that is constant"""
+    return scene.lmp.extract_compute("e", 0, 0)
+
+
 def energies(scene):
     """kinetic energy, angular momentum about the origin"""
     m, x, v = scene.get("rmass"), scene.get("x"), scene.get("v")
@@ -326,6 +331,55 @@ def test_zone_that_moves():
         assert fine[inside].all() and fine[outside > 2.5 * DX].mean() < 0.08
         assert exact_mass(s) == mass
         assert outputs(s)[SPLITS] - outputs(s)[MERGES] == s.n - len(x)
+
+
+def test_zone_that_goes_with_the_water():
+    """The zone is at the end of the step, water in its middle: a column that is a fiftieth of a spacing outside of it stays so."""
+    x = lattice((24, 24), DX)
+    with box_scene(x, (3.0, 0, 0), zone=f"block {0.3 + 0.02 * DX!r} {0.9 + 0.48 * DX!r} 0.3 0.9 INF INF move v_go NULL NULL", every=1, refine="region zone settle 0",
+                   before=("variable go equal 3*1e-3*step",)) as s:
+        first = outputs(go(s, 0))[SPLITS]
+        assert first == 12 * 12 and outputs(go(s, 2))[SPLITS] == first
+
+
+def test_walls_that_move():
+    """A wall that comes half a spacing nearer in a step: halves are before it as it is then, not as it was for the last force."""
+    x = np.array([[0.8 * DX, 0.6 + k * DX, 0] for k in (0, 1, -1)])
+    with box_scene(x, size=[1.2, 1.2, 0], boundary="f f p", room=0.8, zone=f"sphere {0.8 * DX!r} 0.6 0 {0.2 * DX!r} move NULL v_go NULL", every=2, refine="region zone settle 0",
+                   before=("variable go equal 0.5*(step<2)",), commands=(f"fix w all fsi/wall/mirror xlo {-0.25 * DX!r} velocity {500 * DX!r} 0 0",)) as s:
+        go(s, 2)
+        assert s.n == 4 and s.get("x")[:, 0].min() > 0.5 * DX    # where the wall is in the middle of the second step
+
+
+@pytest.mark.parametrize("settle", [0, 30])
+def test_balance_where_pairs_merge_across_the_edge(settle):
+    """Under gravity: a partner beyond the edge of the box, or on another rank, has its potential energy too."""
+    x = lattice((34, 34), DX * FINER[2])
+    with box_scene(x, 0.0, 2, size=[34 * DX * FINER[2]] * 2 + [0], every=5, boundary="p f p", dt=1e-4, zone="block INF INF 0.6 INF INF INF", refine=f"region zone settle {settle}",
+                   commands=("fix g all gravity 9.81 vector 0 -1 0", "fix w all fsi/wall/mirror ylo 0")) as s:
+        before = energy(go(s, 4))
+        after = energy(go(s, 2))
+        y = s.get("x")[:, 1]
+        assert outputs(s)[MERGES] > 100
+        assert after == pytest.approx(before, rel=1e-6)    # a ghost's flags of its image are others': 512 heights of the box
+
+
+@pytest.mark.parametrize("guard", ["auto", "0"])
+def test_energy_of_splitting_beside_a_wall(guard):
+    """Halves are not within the guard of a wall of particles, which would push them with energy out of nothing: 18 J of 13 J that this water exchanges."""
+    fine = 1.2 / 34
+    water, bed = lattice((24, 16), DX), lattice((34, 4), fine, origin=np.array([0, -4 * fine]))
+    x, type_ = np.concatenate([water, bed]), np.repeat([1, 3], [len(water), len(bed)])
+    with Scene(x, dx=DX, type=type_, held=type_ == 3, materials=(WATER, WATER, "wall rho 1000"), density=f"spacing 2 {DX * FINER[2]!r} spacing 3 {fine!r}",
+               box=((0, -0.2, 0), (1.2, 1.5, 0)), boundary="p f p", dt=5e-4, fluid="sound 30 density/diffusion 0.1 artificial/visc 0.02 0",
+               commands=(f"fix w held fsi/wall/particle guard {guard}", "fix g moving gravity 9.81 vector 0 -1 0", "fsi/set moving hydrostatic 0.8",
+                         "variable down equal -0.9*(step>50)", "region z block INF INF 0.9 1.3 INF INF units box move NULL v_down NULL",
+                         "fix ref moving fsi/refine 5 types 1 2 region z", "compute e all fsi/energy")) as s:
+        before = energy(go(s, 50))
+        after = [energy(go(s, 20)) for _ in range(3)]
+        assert outputs(s)[SPLITS] > 150
+        print(guard, np.array(after) - before)
+        assert np.abs(np.array(after) - before).max() < 0.05 * 13
 
 
 def test_distance_from_a_body():
