@@ -13,6 +13,8 @@
 
 #include "fsi_fluid_loops.h"
 
+#include "exceptions.h"
+#include "fmt/format.h"
 #include "fsi_kernel.h"
 
 using namespace LAMMPS_NS;
@@ -28,4 +30,12 @@ std::shared_ptr<FluidLoops> FSI::make_fluid_loops(int kernel, int dim, double h,
   }
 #endif
   return make_fluid_loops_any(kernel, dim, h);
+}
+
+void FSI::no_such_loop(const char *what, int kind, int flags)
+{
+  throw LAMMPSException(fmt::format(
+      "Pair style fsi/fluid has no loop of {} for pairs of kind {} with the effects {:#x}: please "
+      "report it",
+      what, kind, flags));
 }

@@ -168,6 +168,8 @@ namespace FSI {
                                      const double *vol, double *sum) const = 0;
   };
 
+  // an error of whoever asks for it
+  [[noreturn]] void no_such_loop(const char *what, int kind, int flags);
   // packs: several pairs at a time, of all kinds but WITH_SOLID_FULL
   std::shared_ptr<FluidLoops> make_fluid_loops(int kernel, int dim, double h, bool packs);
   std::shared_ptr<FluidLoops> make_fluid_loops_any(int kernel, int dim, double h);

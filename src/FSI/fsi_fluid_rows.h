@@ -332,13 +332,14 @@ namespace FSI {
         const T rsq = pair(j, weight);
         if (near) sieve.take(reachsq < rsq, j);
       });
-      if (near) near->push_back(sieve.close(row));
+      Row within = row;    // of images the others are gone
+      if (near) near->push_back(within = sieve.close(row));
       const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if constexpr (CUT)
         if (in.cut && sums && (in.newton || i < in.nlocal))
           sums->walls -= laws.pressure_over_density[i] * point[i].rho * volume * point[i].vol *
-              point[i].vol * coming_out<T, K, IMAGE>(row, mirror, kernel, in, sharper);
+              point[i].vol * coming_out<T, K, IMAGE>(within, mirror, kernel, in, sharper);
       if constexpr (FLAGS & Flag::SHIFT) shift_of.close(shift[i]);
     }
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);
@@ -815,7 +816,9 @@ namespace FSI {
       using namespace Flag;
       if (near) near->clear();
       const Mirror mirror = image ? *image : Mirror();
+      bool ran = rows.empty();
       const auto loop = [&](auto kind_is, auto flags) {
+        ran = true;
         run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
           rate_rows<decltype(number), K, kind_is(), flags()>(
               rows.data(), rows.size(), mirror, kernel, in, laws, rate,
@@ -834,9 +837,10 @@ namespace FSI {
                                   : SHIFT;
       const int named = shifting |
           (diffuses || partly(in) ? sums ? DIFFUSION | SUMS : DIFFUSION : 0) |
-          (shift && in.fade ? FADES : 0);
+          (shift && in.fade ? FADES : 0) | (image ? IMAGES : 0) | unequal_or_cut(kind, in) |
+          partly(in);
       with_flags<IMAGES | DIFFUSION | SUMS | UNEQUAL | SHIFT | SLOPES | PARTLY | EDGES | FADES>(
-          (image ? IMAGES : 0) | unequal_or_cut(kind, in) | partly(in) | named, [&](auto flags) {
+          named, [&](auto flags) {
             constexpr int shifts = flags() & (SHIFT | SLOPES | EDGES);
             constexpr bool parts = flags() & PARTLY, diffusing = flags() & DIFFUSION,
                            alone = !(flags() & (DIFFUSION | SUMS)), plain = !(flags() & IMAGES),
@@ -854,6 +858,7 @@ namespace FSI {
                            shifts == (plain ? SHIFT | SLOPES : SHIFT)))
               loop(std::integral_constant<int, WITH_FLUID>(), flags);
           });
+      if (!ran) no_such_loop("rates", kind, named);
     }
 
     void forces(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
@@ -870,7 +875,9 @@ namespace FSI {
       const int unequal_rows = kind == WITH_SOLID_FULL ? 0 : unequal_or_cut(kind, in);
       if (!sums && (kind == WITH_SOLID_FULL || (image && unequal_rows) || in.unlike))
         sums = &unused;
+      bool ran = rows.empty();
       const auto loop = [&](auto kind_is, auto flags) {
+        ran = true;
         run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
           force_rows<decltype(number), K, kind_is(), flags()>(rows.data(), rows.size(), mirror,
                                                               kernel, in, laws, f, total, sums);
@@ -908,6 +915,7 @@ namespace FSI {
                   loop(std::integral_constant<int, WITH_SOLID_FULL>(), flags);
             }
           });
+      if (!ran) no_such_loop("forces", kind, special);
     }
 
     void shifts(PairKind kind, const std::vector<Row> &rows, const Mirror *image,
@@ -917,7 +925,9 @@ namespace FSI {
       with_flags<Flag::IMAGES | Flag::BOTH | Flag::PARTLY>(
           (image ? Flag::IMAGES : 0) | (kind == WITH_FLUID ? Flag::BOTH : 0) | partly(in),
           [&](auto flags) {
-            if constexpr (!(flags() & Flag::PARTLY) || (ONE_BY_ONE && (flags() & Flag::BOTH)))
+            if constexpr ((flags() & Flag::PARTLY) && !(ONE_BY_ONE && (flags() & Flag::BOTH)))
+              rows.empty() ? void() : no_such_loop("shifts", kind, flags());
+            else
               run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
                 shift_rows<decltype(number), K, flags()>(
                     rows.data(), rows.size(), mirror, kernel, in, wdx,
@@ -964,7 +974,9 @@ namespace FSI {
           [&](auto flags) {
             constexpr bool of_fluids = ONE_BY_ONE && (flags() & Flag::BOTH),
                            known = !(flags() & Flag::UNEQUAL) || !(flags() & Flag::DIVERGENCE);
-            if constexpr (known && (of_fluids || !(flags() & Flag::PARTLY)))
+            if constexpr (!known || (!of_fluids && (flags() & Flag::PARTLY)))
+              rows.empty() ? void() : no_such_loop("distances", WITH_FLUID, flags());
+            else
               run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
                 distance_rows<decltype(number), K, flags()>(rows.data(), rows.size(), mirror,
                                                             kernel, in, x, vol, sum);

@@ -113,6 +113,9 @@ class PairFSIFluid : public PairFSI {
   void find_guards();
   std::vector<FSI::RowList *> rows_of_fluids();
   void find_rows();
+  double beyond_lists() const;
+  void add_pairs_behind_walls(const std::vector<char> &is_fluid,
+                              std::vector<std::array<int, 2>> &pairs) const;
   void find_rows_with_others(const std::vector<std::array<int, 2>> &,
                              const std::vector<int> &other_types);
   bool has_rows_with_walls() const;

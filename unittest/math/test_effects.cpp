@@ -10,9 +10,12 @@
 // Viscosities, density diffusion, artificial stress: values by hand, signs, and, where the continuum operator is known,
 // the lattice sum against it.
 
+#include "exceptions.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_drag.h"
+#include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
+#include "fsi_pack.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_viscosity.h"
 #include "reference.h"
@@ -294,3 +297,22 @@ TEST(Drag, SphereInSurface)
   }
   EXPECT_DOUBLE_EQ(immersed_part(0.0, 0.0, r), 1.0);
 }
+
+#if FSI_PACKS
+// what no loop is there for is an error, not nothing: pairs that a thin body hides, several at a time
+TEST(FluidLoops, RefuseWhatTheyHaveNotGot)
+{
+  const auto loops = make_fluid_loops(WENDLAND, 2, 0.1, true);
+  const int j = 1;
+  const double part = 1.0;
+  const Visible visible = {&part, &j};
+  FluidParticles in;
+  in.visible = &visible;
+  double rate[2] = {};
+  const auto ask = [&](const std::vector<Row> &rows) {
+    loops->rates(WITH_FLUID, rows, nullptr, in, {}, rate, nullptr, nullptr, nullptr);
+  };
+  EXPECT_NO_THROW(ask({}));
+  EXPECT_THROW(ask({{0, 1, &j}}), LAMMPS_NS::LAMMPSException);
+}
+#endif
