@@ -383,6 +383,7 @@ double FixFSIWallParticle::compute_scalar()
 {
   // before the first run, or with a new fix fsi
   if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
+  if (update->whichflag == 0) FixFSI::ready(lmp, "Fix fsi/wall/particle");    // rows may be stale
   double counted = 0.0;
   for (size_t level = 0; level < fix_fsi->levels.size(); level++)
     for_pairs(level, [&](int w, int j) {

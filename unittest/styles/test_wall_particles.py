@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from scenes import Kernel, close, difference, differing, lattice, run
+from scenes import Kernel, close, difference, differing, lammps, lattice, run
 
 from fsi import dump, paths
 
@@ -553,6 +553,14 @@ reset_timestep 0
     frame = dump.read(go(tmp_path, first, data(x, kind, None, BOX2)).folder / "atoms.dump")[-1]
     # the walls hold the water back
     assert 0.0 < frame["vx"][frame["type"] == 1].mean() < 0.0999
+
+
+def test_output_after_atoms_are_deleted(tmp_path):
+    """Pairs within the guard are known by where atoms are in the arrays: others are there then."""
+    x, kind = tank(12, 8)
+    text = deck(more='run 1\nprint "pairs $(f_walls)"\ngroup gone id 1:60\ndelete_atoms group gone\nprint "pairs $(f_walls)"\n')
+    done = lammps(tmp_path, text, scene_data=data(x, kind, None, BOX2), scene_fsi=MATERIALS)
+    assert done.output.count("\npairs ") == 1 and "Fix fsi/wall/particle needs a run before it" in done.errors[0]
 
 
 @pytest.mark.parametrize("wall, error", [("", 0.005), ("pressure linear", 0.005), ("guard 0", 0.002)])
