@@ -195,8 +195,10 @@ void Clamps::find_members()
 }
 
 // state of a body here and there; fix rigid has all on each rank, fix rigid/small has each on the
-// rank of one of its atoms, and copies where others are
-std::vector<Clamps::State> Clamps::states(Fix *fix) const
+// rank of one of its atoms, and copies where others are: of those with particles of walls or
+// solids, few among many, each rank gets it
+std::vector<Clamps::State>
+Clamps::states(Fix *fix, const std::unordered_map<tagint, size_t> &of) const
 {
   std::vector<State> mine;
   State s = {};
@@ -217,6 +219,7 @@ std::vector<Clamps::State> Clamps::states(Fix *fix) const
   for (int k = 0; k < small(fix)->*Small::own; k++) {
     const auto &b = (small(fix)->*Small::bodies)[k];
     s.id = atom->tag[b.ilocal];
+    if (!of.count(s.id)) continue;
     std::copy_n(b.xcm, 3, s.x);
     std::copy_n(b.vcm, 3, s.v);
     std::copy_n(b.quat, 4, s.q);
@@ -290,7 +293,7 @@ template <class Use> void Clamps::with_states(Use use)
 {
   of_fixes([&](size_t first, size_t last) {
     const auto of = entries(first, last);
-    for (const State &s : states(bodies[first].fix)) {
+    for (const State &s : states(bodies[first].fix, of)) {
       const auto at = of.find(s.id);
       if (at != of.end()) use(bodies[at->second], s);
     }

@@ -96,7 +96,8 @@ namespace FSI {
     void place(const std::vector<Member> &) const;
     void sum(const std::vector<Member> &, const double *const *f, bool whole);
     void add_own(const Body &, double *force_and_torque) const;
-    std::vector<State> states(Fix *) const;    // of all its bodies
+    // of its bodies that are among these
+    std::vector<State> states(Fix *, const std::unordered_map<tagint, size_t> &) const;
     template <class Use> void of_fixes(Use) const;
     std::unordered_map<tagint, size_t> entries(size_t first, size_t last) const;
     template <class Use> void with_states(Use);

@@ -17,6 +17,8 @@
 #define LMP_FSI_GATHER_H
 
 #include "atom.h"
+#include "exceptions.h"
+#include "fmt/format.h"
 
 #include <algorithm>
 #include <mpi.h>
@@ -31,16 +33,24 @@ namespace FSI {
   template <class T> inline std::vector<T> gather(const std::vector<T> &mine, MPI_Comm world)
   {
     static_assert(std::is_trivially_copyable<T>::value, "elements are sent as bytes");
-    int nprocs, n = mine.size() * sizeof(T), total = 0;
+    int nprocs;
+    bigint n = mine.size() * sizeof(T), total = 0;
     MPI_Comm_size(world, &nprocs);
-    std::vector<int> count(nprocs), first(nprocs);
-    MPI_Allgather(&n, 1, MPI_INT, count.data(), 1, MPI_INT, world);
-    for (int k = 0; k < nprocs; k++) {
-      first[k] = total;
-      total += count[k];
+    std::vector<bigint> bytes(nprocs);
+    MPI_Allgather(&n, 1, MPI_LMP_BIGINT, bytes.data(), 1, MPI_LMP_BIGINT, world);
+    std::vector<int> count, first;
+    for (const bigint b : bytes) {
+      first.push_back((int) total);
+      count.push_back((int) b);
+      total += b;
     }
+    // what grows without end has no place on every rank, and MPI counts in int
+    if (total > MAXSMALLINT)
+      throw LAMMPSException(fmt::format("Package FSI: {} elements of {} bytes on every rank, more "
+                                        "than 2 GB",
+                                        total / sizeof(T), sizeof(T)));
     std::vector<T> all(total / sizeof(T));
-    MPI_Allgatherv(const_cast<T *>(mine.data()), n, MPI_BYTE, all.data(), count.data(),
+    MPI_Allgatherv(const_cast<T *>(mine.data()), (int) n, MPI_BYTE, all.data(), count.data(),
                    first.data(), MPI_BYTE, world);
     return all;
   }

@@ -1,8 +1,9 @@
 """Neither decomposition, newton flag, numbering nor orientation may change the result."""
 
+import re
+import subprocess
 from dataclasses import replace
 
-import re
 import numpy as np
 import pytest
 
@@ -211,3 +212,94 @@ def test_pressure_is_of_pairs(tmp_path):
         output = run(tmp_path / newton, scene.text() + "thermo_style custom step press\nrun 0\n", scene_data=scene.data()).output
         found.append(float(re.search(r"Press\s*\n\s*0\s+(\S+)", output)[1]))
     assert found[0] != 0.0 and found[0] == pytest.approx(found[1], rel=1e-9)
+
+
+COUNTER = """#include <mpi.h>
+#include <stdio.h>
+static long long bytes;
+int MPI_Allgatherv(const void *s, int n, MPI_Datatype t, void *r, const int *c, const int *first, MPI_Datatype to, MPI_Comm w)
+{
+  int size, one;
+  MPI_Comm_size(w, &size);
+  MPI_Type_size(to, &one);
+  for (int k = 0; k < size; k++) bytes += (long long) c[k] * one;
+  return PMPI_Allgatherv(s, n, t, r, c, first, to, w);
+}
+int MPI_Finalize(void)
+{
+  printf("bytes on every rank %lld\\n", bytes);
+  fflush(stdout);
+  return PMPI_Finalize();
+}
+"""
+
+
+def bytes_on_every_rank(folder, text, ranks=4):
+    (folder / "count.c").write_text(COUNTER)
+    subprocess.run(["mpicc", "-shared", "-fPIC", "-o", "count.so", "count.c"], cwd=folder, check=True)
+    output = run(folder, text, ranks, environment={"LD_PRELOAD": str(folder / "count.so")}).output
+    return int(re.findall(r"bytes on every rank (\d+)", output)[-1])
+
+
+COMMON = """units si
+dimension 2
+atom_style fsi
+atom_modify map array
+{start}
+fsi/material w fluid rho 1000
+fsi/material b wall rho 1000
+timestep 1e-4
+neighbor 0.015 bin
+"""
+
+
+def test_states_of_clamped_bodies_alone(tmp_path):
+    """One wall among 400 grains that fix rigid/small moves: 20 steps take its state alone to all ranks, 144 bytes twice a step, and IDs at the start."""
+    text = COMMON.format(start="""boundary f f p
+region box block 0 4 0 2 -0.05 0.05
+create_box 3 box
+lattice sq 0.1 origin 0.5 0.5 0
+region water block 0 1 0 1 INF INF units box
+region wall block 1 1.2 0 1 INF INF units box
+create_atoms 1 region water
+create_atoms 2 region wall
+lattice sq 0.05 origin 0.5 0.5 0
+region grains block 2 4 0 2 INF INF units box
+create_atoms 3 region grains""") + """pair_style hybrid/overlay fsi/fluid sound 10 zero 0.1
+pair_coeff * * zero
+pair_coeff * * fsi/fluid NULL w b NULL
+variable body atom "(type==3)*(2+floor(x*10)+100*floor(y*10))+(type==2)"
+group water type 1
+group wall type 2
+group bodies type 2 3
+set type 3 mass 1
+set group bodies mol v_body
+fix sph water fsi 0.1 wendland 1.5
+fix w all fsi/wall/mirror xlo 0 ylo 0
+fix wp wall fsi/wall/particle
+comm_modify cutoff 1
+fix r bodies rigid/small molecule
+run 20
+"""
+    assert 5000 < bytes_on_every_rank(tmp_path, text, 2) < 8000
+
+
+def test_places_of_a_body_go_where_they_matter(tmp_path):
+    """Levels around a body in half of a long box: 8 events on four ranks take its 160 places to none of them that is not near."""
+    text = COMMON.format(start="""boundary p p p
+region box block 0 8 0 1 -0.05 0.05
+create_box 3 box
+lattice sq 0.05 origin 0.5 0.5 0
+create_atoms 1 box
+region body block 0 4 0.2 0.3 INF INF units box
+set region body type 3""") + """pair_style fsi/fluid sound 10 tension yes
+pair_coeff * * NULL w w b
+group body type 3
+group water subtract all body
+fix sph water fsi 0.05 wendland 1.5 spacing 2 $(0.05/sqrt(2))
+fix wp body fsi/wall/particle
+fix r water fsi/refine 5 types 1 2 distance body 0.15
+velocity water set 1 0 0
+run 40
+"""
+    assert bytes_on_every_rank(tmp_path, text) < 20000
