@@ -295,9 +295,9 @@ double FixFSIInlet::slow_rate() const
 }
 
 // hat functions, which a lattice sums to a constant
-double FixFSIInlet::hat_at(double s) const
+double FixFSIInlet::hat_at(double s, double spacings) const
 {
-  const double width = 2.0 * fix_fsi->dx;
+  const double width = spacings * fix_fsi->dx;
   return std::max(0.0, 1.0 - std::fabs(s) / width) / width;
 }
 
@@ -1074,7 +1074,6 @@ void FixFSIInlet::advance(bool advance)
     const int i = place.i;
     hold_shift(place);
     if (place.inside > 0.0) continue;
-    follow(i, place.inside);
     const State &state = fix_fsi->state[atom->type[i]];
     double values[2] = {0.0, 0.0};
     place.known = at_plane(atom->x[i], values);
@@ -1092,6 +1091,7 @@ void FixFSIInlet::advance(bool advance)
       p = (background ? state.p0 : value(PRESSURE, i)) + gradient * place.inside +
           state.rho0 * state.c * wave + added;
     set_density(i, state.density(std::max(p, state.floor)));
+    follow(i, place.inside);    // by that density: rates at the buffer's end depend on lists
   }
 }
 
@@ -1231,7 +1231,8 @@ void FixFSIInlet::meet_pressure()
   for (const auto &place : places) {
     const int i = place.i;
     const State &state = fix_fsi->state[atom->type[i]];
-    const double hat = hat_at(inside(atom->x[i])), volume = atom->rmass[i] / atom->rho[i];
+    // those who do not see the end of the buffer, where others wait for lists
+    const double hat = hat_at(inside(atom->x[i]), 1.0), volume = atom->rmass[i] / atom->rho[i];
     own[PRESSURES] += hat * volume * state.pressure(atom->rho[i]) * div[i] / fix_fsi->dim;
     if (place.inside > 0.0) continue;
     own[GIVEN] += hat * (background ? state.p0 : (*given)(PRESSURE, i));

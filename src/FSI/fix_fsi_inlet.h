@@ -185,7 +185,7 @@ class FixFSIInlet : public FSI::FixFields, public FSI::Part {
   void warn_of_fill(bool full);
   void keep_full();
   void meet_pressure();
-  double slow_rate() const, hat_at(double s) const;
+  double slow_rate() const, hat_at(double s, double spacings = 2.0) const;
   void set_density(int i, double rho);
   void make(const std::vector<FSI::Particle> &, bool at_start);
   void find_next_of_rows(const std::vector<FSI::Particle> &gone);
