@@ -32,6 +32,8 @@ static constexpr int NTABLE = 400;    // distances for which forces are tabulate
 static constexpr double MISSES = 0.15, MEETS = 0.5, INSIDE = 0.1, OUTSIDE = 0.4, AT_EDGE = 0.3;
 // (distance over support)^2 from which on kernels are zero half a step ago, too
 static constexpr double FAR = 1.1;
+// Of equals, and of a side, the edges: in spacings, as the cosine of an angle
+static constexpr double AS_NEAR = 0.2, ASIDE = 0.3;
 
 Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
     Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{}, reach(0.0)
@@ -272,20 +274,18 @@ double Sight::left_of(const double *y, double cut) const
 
 // The body is as thick as it is along its normal through x, which is the mean of what is on the
 // side of the nearest particle, as far as the support reaches.
-bool Sight::find_face(size_t level, Face &face) const
+bool Sight::find_face(size_t level, const Seen &nearest, Face &face) const
 {
   const double cut = scene.levels[level].cut, cutsq = cut * cut;
-  const Seen *nearest = nullptr;
-  for (const auto &s : seen)
-    if (s.thin && s.rsq < cutsq && (!nearest || s.rsq < nearest->rsq)) nearest = &s;
-  if (!nearest) return false;
   double normal[3] = {};
-  for (const auto &s : seen)
-    if (s.thin && s.rsq < cutsq && MathExtra::dot3(s.x, nearest->x) > 0.0) {
-      const double rest = 1.0 - s.rsq / cutsq;
-      for (int d = 0; d < 3; d++) normal[d] += rest * rest * rest * s.x[d];
-    }
-  const double length = MathExtra::len3(normal), dx = nearest->dx, tube = 0.75 * dx;
+  for (const auto &s : seen) {
+    const double ahead = MathExtra::dot3(s.x, nearest.x) / std::sqrt(s.rsq * nearest.rsq);
+    if (!s.thin || s.rsq >= cutsq || !(ahead > 0.0)) continue;
+    const double rest = 1.0 - s.rsq / cutsq;
+    const double w = smooth(ahead / ASIDE) * rest * rest * rest;
+    for (int d = 0; d < 3; d++) normal[d] += w * s.x[d];
+  }
+  const double length = MathExtra::len3(normal), dx = nearest.dx, tube = 0.75 * dx;
   if (length == 0.0) return false;
   for (double &e : normal) e /= length;
   double front = cut, back = 0.0;
@@ -296,8 +296,30 @@ bool Sight::find_face(size_t level, Face &face) const
     front = std::min(front, depth);
     back = std::max(back, depth);
   }
-  face = {nearest->type, {normal[0], normal[1], normal[2]}, front, back - front + dx};
+  face = {nearest.type, {normal[0], normal[1], normal[2]}, front, back - front + dx};
   return back > 0.0;
+}
+
+// Several may be nearest, on a lattice and between two bodies: the mean of what each says, where
+// one that is farther by AS_NEAR of its spacing has no say
+Sight::Fill Sight::fill(size_t level) const
+{
+  const double cutsq = scene.levels[level].cut * scene.levels[level].cut;
+  double least = cutsq, total = 0.0;
+  for (const auto &s : seen)
+    if (s.thin) least = std::min(least, s.rsq);
+  least = std::sqrt(least);
+  Fill mean = {0.0, 0.0};
+  Face face;
+  for (const auto &s : seen) {
+    const double say = smooth(1.0 - (std::sqrt(s.rsq) - least) / (AS_NEAR * s.dx));
+    if (!s.thin || s.rsq >= cutsq || say == 0.0 || !find_face(level, s, face)) continue;
+    const Fill one = fill(level, face);
+    mean.force += say * one.force;
+    mean.weight += say * one.weight;
+    total += say;
+  }
+  return total > 0.0 ? Fill{mean.force / total, mean.weight / total} : Fill{1.0, 1.0};
 }
 
 // In the part in which the body hides the place that is as far behind it as x is before it. Not

@@ -46,20 +46,12 @@ namespace FSI {
     // part of what is at y, to a pair of this support, as far as that matters. The same from y to
     // x, and on each rank that has one of both
     double visible(const double *y, double cut) const;
-    // of the body beside x: distance of the first layer along its normal, which points to it, and
-    // how thick it is
-    struct Face {
-      int type = 0;
-      double normal[3] = {}, distance = 0.0, thickness = 0.0;
-    };
-    // to a fluid particle of this level; false: there is none within its support
-    bool find_face(size_t level, Face &) const;
-    // of a half-space of layers over those that there are: forces, and weights in sums of W, as
-    // forces along the face are
+    // Of a half-space of layers over those of the body beside x, to a fluid particle of this level:
+    // forces, and weights in sums of W, as forces along the face are; 1 where there is none
     struct Fill {
       double force = 0.0, weight = 0.0;
     };
-    Fill fill(size_t level, const Face &) const;
+    Fill fill(size_t level) const;
 
     double memory_usage() const;
 
@@ -88,6 +80,13 @@ namespace FSI {
     std::vector<double> tabulated;    // spacings of levels
     Fill beyond(size_t level, int type, double distance) const;
     double left_of(const double *y, double cut) const;
+    // distance of the first layer along the normal, which points to it, and how thick the body is
+    struct Face {
+      int type = 0;
+      double normal[3] = {}, distance = 0.0, thickness = 0.0;
+    };
+    bool find_face(size_t level, const Seen &nearest, Face &) const;
+    Fill fill(size_t level, const Face &) const;
     bool counts(int type) const;
     void see_images();
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true

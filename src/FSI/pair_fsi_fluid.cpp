@@ -658,9 +658,7 @@ void PairFSIFluid::look_past_thin_bodies()
       for (Next &one = next[k]; here(one); one.row++)
         for (int m = 0; m < one.row->n; m++) *one.part++ = sight.visible(x[one.row->j[m]], cut);
     }
-    Sight::Face face;
-    const auto more = sight.find_face(level, face) ? sight.fill(level, face)
-                                                   : Sight::Fill{1.0, 1.0};
+    const auto more = sight.fill(level);
     fill[i] = more.force;
     fill_weight[i] = more.weight;
   }
