@@ -16,10 +16,13 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fsi_find.h"
+#include "fsi_part.h"
 #include "fsi_record.h"
 #include "modify.h"
 
 using namespace LAMMPS_NS;
+using namespace FSI;
 
 AtomVecFSI::AtomVecFSI(LAMMPS *lmp) : AtomVec(lmp), rmass(nullptr), rho(nullptr)
 {
@@ -92,8 +95,8 @@ void AtomVecFSI::data_atom_post(int ilocal)
 void AtomVecFSI::pack_data_pre(int ilocal)
 {
   if (ilocal > 0 || comm->me > 0) return;
-  if (modify->get_fix_by_style("^fsi/stress$").empty() &&
-      modify->get_fix_by_style("^FSI_REFERENCE$").empty())
+  if (!any_is(fixes_of<Part>(lmp), &Facts::keeps_solids) &&
+      !any_is(pairs_of<Part>(lmp), &Facts::keeps_solids))
     return;
   error->warning(FLERR,
                  "Data files hold no strain, stress or bonds of solids: read again, bodies are at "

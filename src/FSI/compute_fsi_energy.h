@@ -21,18 +21,22 @@ ComputeStyle(fsi/energy,ComputeFSIEnergy);
 #define LMP_COMPUTE_FSI_ENERGY_H
 
 #include "compute.h"
+#include "fsi_part.h"
 
 namespace LAMMPS_NS {
 
 // Energy ledger: what the particles have, and what each term has taken since fix fsi was defined.
 
-class ComputeFSIEnergy : public Compute {
+class ComputeFSIEnergy : public Compute, public FSI::Part {
  public:
   ComputeFSIEnergy(class LAMMPS *, int, char **);
   ~ComputeFSIEnergy() override;
   void init() override;
   double compute_scalar() override;
   void compute_vector() override;
+
+  FSI::Facts facts() const override;
+
   static const char *name(int);    // of an entry of the vector
 
  private:

@@ -20,12 +20,14 @@
 #include "force.h"
 #include "fsi_keywords.h"
 #include "fsi_nearest_image.h"
+#include "fsi_part.h"
 #include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
 
 using namespace LAMMPS_NS;
+using namespace FSI;
 
 static bool has_period(const Domain *domain, int dim)
 {
@@ -54,7 +56,7 @@ ComputeFSIForce::~ComputeFSIForce()
 void ComputeFSIForce::init()
 {
   fix_fsi = FixFSI::find(lmp, "Compute fsi/force");
-  if (!force->pair_match("fsi/fluid", 1))
+  if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Compute fsi/force requires pair_style fsi/fluid");
 }
 

@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_find.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
 #include "memory.h"
@@ -52,7 +53,7 @@ ComputeFSISurfaceAtom::~ComputeFSISurfaceAtom()
 void ComputeFSISurfaceAtom::init()
 {
   fix_fsi = FixFSI::find(lmp, "Compute fsi/surface/atom");
-  if (!force->pair_match("fsi/fluid", 1))
+  if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Compute fsi/surface/atom requires pair_style fsi/fluid");
 }
 
@@ -76,8 +77,7 @@ void ComputeFSISurfaceAtom::compute_peratom()
     limit = threshold * fix_fsi->psi_bulk;
   } else {
     std::fill(sum.begin(), sum.end(), 0.0);
-    dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1))
-        ->add_position_divergence(sum.data());
+    first_of(pairs_of<PairFSIFluid>(lmp))->add_position_divergence(sum.data());
     fix_fsi->add_ghosts(sum.data());
     limit = threshold * fix_fsi->dim;
   }

@@ -24,6 +24,7 @@
 #include "fsi_check.h"
 #include "fsi_clamps.h"
 #include "fsi_clock.h"
+#include "fsi_find.h"
 #include "fsi_frame.h"
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
@@ -135,7 +136,7 @@ Record FixFSI::record() const
 // arrays of the effects that are on
 void FixFSI::set_fields()
 {
-  const bool particle_walls = !modify->get_fix_by_style("^fsi/wall/particle$").empty();
+  const bool particle_walls = any_is(parts, &Facts::particle_walls);
   number_density.set_fields(fields);
   members->surface_room.set_array(fields);
   for (int d = 0; d < 3; d++)
@@ -159,8 +160,7 @@ void FixFSI::set_fields()
 
 FixFSI *FixFSI::there(LAMMPS *lmp)
 {
-  auto fixes = lmp->modify->get_fix_by_style("^fsi$");
-  return fixes.empty() ? nullptr : dynamic_cast<FixFSI *>(fixes[0]);
+  return first_of(fixes_of<FixFSI>(lmp));
 }
 
 FixFSI *FixFSI::find(LAMMPS *lmp, const std::string &who)
@@ -204,6 +204,7 @@ void FixFSI::post_run()
 
 void FixFSI::init()
 {
+  if (fixes_of<FixFSI>(lmp).size() > 1) error->all(FLERR, "There can be only one fix fsi");
   check.before_init();
   dt_offset = 0.0;
   changes.begin_run();
@@ -224,7 +225,7 @@ void FixFSI::init()
   set_fields();
   register_fields();
 
-  ledger = !modify->get_compute_by_style("^fsi/energy$").empty();
+  ledger = any_is(computes_of<Part>(lmp), &Facts::keeps_account);
   guarding[0] = guarding[1] = 0.0;
 
   // pair forces and density rates need the velocities of ghosts
@@ -248,11 +249,11 @@ void FixFSI::setup(int)
 
 void FixFSI::find_parts()
 {
-  parts.clear();
-  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl", "fsi/grain"})
-    if (auto *p = dynamic_cast<Part *>(force->pair_match(style, 1))) parts.push_back(p);
-  for (auto &fix : modify->get_fix_list())
-    if (auto *p = dynamic_cast<Part *>(fix)) parts.push_back(p);
+  parts = pairs_of<Part>(lmp);
+  std::sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
+    return a->facts().style < b->facts().style;
+  });
+  for (auto *p : fixes_of<Part>(lmp)) parts.push_back(p);
   parts.push_back(&members->surface_room);
   parts.push_back(&members->clamps);
   std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {

@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_clock.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_limits.h"
@@ -85,8 +86,7 @@ FixFSIDt::~FixFSIDt() = default;
 void FixFSIDt::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/dt");
-  if (modify->get_fix_by_style("^fsi/dt$").size() > 1)
-    error->all(FLERR, "There can be only one fix fsi/dt");
+  if (fixes_of<FixFSIDt>(lmp).size() > 1) error->all(FLERR, "There can be only one fix fsi/dt");
   if (update->dt <= 0.0 || update->dt >= BIG)
     error->all(FLERR, "Fix fsi/dt: timestep {} must be > 0 and below {:g}", update->dt, BIG);
   if (check) return;

@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_cells.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
@@ -171,7 +172,7 @@ double FixFSIInlet::value(int k, int i) const
 void FixFSIInlet::init()
 {
   fix_fsi = FixFSI::find(lmp, who);
-  if (!force->pair_match("fsi/fluid", 1))
+  if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
   if (fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR,
@@ -219,8 +220,7 @@ void FixFSIInlet::init()
   find_region();
   given->find();
   driven = false;
-  for (const auto &fix : modify->get_fix_by_style("^fsi/[io][nu]t?let$"))
-    driven = driven || !dynamic_cast<FixFSIInlet *>(fix)->has_own_velocity();
+  for (const auto *end : fixes_of<FixFSIInlet>(lmp)) driven = driven || !end->has_own_velocity();
   told = {};
   if (given->source(PRESSURE) == Values::NUMBER && is_far(given->number(PRESSURE))) {
     const State &soft = softest();
@@ -651,7 +651,7 @@ void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
 void FixFSIInlet::pre_exchange()
 {
   if (region) region->prematch();
-  const auto others = modify->get_fix_by_style("^fsi/[io][nu]t?let$");
+  const auto ends = fixes_of<FixFSIInlet>(lmp);
   std::vector<Particle> copies;
   std::vector<int> gone;
   double own[5] = {}, all[5];    // in, out, net mass, made, deleted
@@ -683,8 +683,8 @@ void FixFSIInlet::pre_exchange()
       own[2] -= atom->rmass[i];
     }
     if (!of_buffer[i]) continue;
-    for (const auto &other : others)
-      if (other != this && dynamic_cast<FixFSIInlet *>(other)->holds(x))
+    for (const auto *other : ends)
+      if (other != this && other->holds(x))
         error->one(FLERR,
                    "Atom {} at {:g} {:g} {:g} is in the buffers of fix {} and fix {}: keep them "
                    "apart, with keyword region",
@@ -1225,8 +1225,7 @@ void FixFSIInlet::meet_pressure()
   enum { PRESSURES, GIVEN, WEIGHTS, NSUM };
   double own[NSUM] = {}, all[NSUM];
   std::vector<double> div(atom->nmax, 0.0);
-  dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1))
-      ->add_position_divergence(div.data());
+  first_of(pairs_of<PairFSIFluid>(lmp))->add_position_divergence(div.data());
   fix_fsi->add_ghosts(div.data());
   for (const auto &place : places) {
     const int i = place.i;

@@ -23,6 +23,7 @@
 #include "fsi_changes.h"
 #include "fsi_contact.h"
 #include "fsi_fields.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_gradient.h"
 #include "fsi_images.h"
@@ -133,8 +134,7 @@ void FixFSIReference::find_planes()
 {
   Walls walls;
   std::vector<WallForce> forces;
-  for (auto *const fix : modify->get_fix_by_style("^fsi/wall/mirror$"))
-    dynamic_cast<Part *>(fix)->add_walls(walls, forces);
+  for (auto *p : fixes_of<Part>(lmp)) p->add_walls(walls, forces);
   images.find_planes(walls, forces);
   if (!images.planes.any()) return;
   if (self_range > 0.0)

@@ -21,6 +21,7 @@
 #include "fix_fsi_inlet.h"
 #include "force.h"
 #include "fsi_cells.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
@@ -126,15 +127,12 @@ int FixFSIRefine::setmask()
 void FixFSIRefine::init()
 {
   fix_fsi = FixFSI::find(lmp, who);
-  if (!force->pair_match("fsi/fluid", 1))
+  if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
   check_types();
   check_others();
   zones->init(*fix_fsi, types);
-  open_ends.clear();
-  for (const char *style : {"^fsi/inlet$", "^fsi/outlet$"})
-    for (const auto &fix : modify->get_fix_by_style(style))
-      open_ends.push_back(dynamic_cast<FixFSIInlet *>(fix));
+  open_ends = fixes_of<FixFSIInlet>(lmp);
   next_reneighbor = (update->ntimestep / every + 1) * every;
   told = false;
   fix_fsi->population.leave_an_id_free();
@@ -180,8 +178,7 @@ void FixFSIRefine::check_types() const
 // what one splits in its zone another would merge again, outside of its own, and so on for ever
 void FixFSIRefine::check_others() const
 {
-  for (const auto &fix : modify->get_fix_by_style("^fsi/refine$")) {
-    const auto *const other = dynamic_cast<FixFSIRefine *>(fix);
+  for (const auto *const other : fixes_of<FixFSIRefine>(lmp)) {
     const bool same = std::any_of(types.begin(), types.end(), [other](int t) {
       return other->level_of[t] >= 0;
     });
@@ -526,7 +523,7 @@ void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
 {
   static constexpr int PASSES = 3;    // the next wall particle may be as near
   const double *const x = atom->x[two.i], dx = fix_fsi->dx,
-               fine = fix_fsi->dx_of(types[level(two.i) + 1]);
+                      fine = fix_fsi->dx_of(types[level(two.i) + 1]);
   for (int pass = 0; pass < 2 * PASSES; pass++) {
     const double to = pass % 2 ? 1.0 : -1.0;
     double at[3], away[3] = {}, deepest = 0.0;

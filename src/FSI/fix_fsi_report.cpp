@@ -21,6 +21,7 @@
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
 #include "fsi_clock.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
@@ -79,16 +80,15 @@ FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
 FixFSIReport::~FixFSIReport()
 {
   if (fp) fclose(fp);
-  for (auto &fix : modify->get_fix_by_style("^fsi$")) static_cast<FixFSI *>(fix)->profile = nullptr;
+  for (auto *fix : fixes_of<FixFSI>(lmp)) fix->profile = nullptr;
 }
 
 void FixFSIReport::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
-  if (modify->get_fix_by_style("^fsi/report$").size() > 1)
+  if (fixes_of<FixFSIReport>(lmp).size() > 1)
     error->all(FLERR, "There can be only one fix fsi/report");
-  auto computes = modify->get_compute_by_style("^fsi/energy$");
-  energy = computes.empty() ? nullptr : dynamic_cast<ComputeFSIEnergy *>(computes[0]);
+  energy = first_of(computes_of<ComputeFSIEnergy>(lmp));
 }
 
 // where a run starts; one with "pre no" has no setup and starts where the one before ended
@@ -125,8 +125,8 @@ void FixFSIReport::end_of_step()
   for (const auto &field : fields)
     for (int d = 0; d < 3 && comm->me == 0; d++)
       impulse[GRAVITY][d] += dtf * field.mass * field.g[d];
-  for (const auto *mirror : modify->get_fix_by_style("^fsi/wall/mirror$"))
-    for (const auto &f : dynamic_cast<const FixFSIWallMirror *>(mirror)->force_on)
+  for (const auto *mirror : fixes_of<FixFSIWallMirror>(lmp))
+    for (const auto &f : mirror->force_on)
       for (int d = 0; d < 3; d++) impulse[WALLS][d] -= dtf * f[d];
   if (!any_held) return;
   if (listed != neighbor->lastcall) {

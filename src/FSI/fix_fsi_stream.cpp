@@ -75,7 +75,7 @@ FixFSIStream::~FixFSIStream() = default;
 void FixFSIStream::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/stream");
-  if (!force->pair_match("fsi/fluid", 1))
+  if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
   if (density_rate > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
     error->all(FLERR,

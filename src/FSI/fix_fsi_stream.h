@@ -67,8 +67,8 @@ class FixFSIStream : public Fix, public FSI::Part {
     double weight = 0.0;    // 0 outside of the zone and at its ends, 1 in its middle
   };
   std::vector<Member> zone;    // local fluid in and near it, as of the last list
-  double given[4];    // force on the fluid and its power, this rank's part
-  double work;        // since the fix was defined, likewise
+  double given[4];             // force on the fluid and its power, this rank's part
+  double work;                 // since the fix was defined, likewise
 
   void find_zone();
   double in_zone(int i) const;

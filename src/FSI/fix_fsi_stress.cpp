@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fsi_changes.h"
+#include "fsi_find.h"
 #include "fsi_hypoelastic.h"
 #include "fsi_record.h"
 #include "modify.h"
@@ -60,8 +61,7 @@ FixFSIStress::~FixFSIStress()
 
 FixFSIStress *FixFSIStress::find(LAMMPS *lmp)
 {
-  auto fixes = lmp->modify->get_fix_by_style("^fsi/stress$");
-  return fixes.empty() ? nullptr : dynamic_cast<FixFSIStress *>(fixes[0]);
+  return first_of(fixes_of<FixFSIStress>(lmp));
 }
 
 void FixFSIStress::choose_fields()
@@ -77,7 +77,7 @@ void FixFSIStress::choose_fields()
 
 void FixFSIStress::init()
 {
-  if (modify->get_fix_by_style("^fsi/stress$").size() > 1)
+  if (fixes_of<FixFSIStress>(lmp).size() > 1)
     error->all(FLERR, "There can be only one fix fsi/stress");
   const FixFSI *fix_fsi = FixFSI::find(lmp, "Fix fsi/stress");
   choose_fields();    // another pair_style command may have changed what is kept
@@ -185,4 +185,11 @@ void FixFSIStress::restart(char *buf)
   const Record record(lmp, "fix fsi/stress", buf);
   keywords.compare(record);
   fields.read(record);
+}
+
+Facts FixFSIStress::facts() const
+{
+  Facts facts;
+  facts.keeps_solids = true;
+  return facts;
 }

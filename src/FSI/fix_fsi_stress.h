@@ -37,6 +37,7 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  FSI::Facts facts() const override;
   std::vector<Effect> effects() const override;
   void find_idle(const Census &, const Idle &) const override;
 

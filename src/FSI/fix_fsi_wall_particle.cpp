@@ -20,6 +20,7 @@
 #include "fix_fsi_move.h"
 #include "force.h"
 #include "fsi_cells.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_levels.h"
@@ -66,7 +67,7 @@ FixFSIWallParticle::~FixFSIWallParticle() = default;
 void FixFSIWallParticle::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/particle");
-  const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
+  const auto *fluid = first_of(pairs_of<PairFSIFluid>(lmp));
   if (!fluid)
     error->all(FLERR,
                "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
@@ -108,9 +109,7 @@ void FixFSIWallParticle::init()
                    "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has "
                    "no laminar/visc");
 
-  movers.clear();
-  for (auto &fix : modify->get_fix_by_style("^fsi/move$"))
-    movers.push_back(dynamic_cast<FixFSIMove *>(fix));
+  movers = fixes_of<FixFSIMove>(lmp);
   const bool stiffness = fix_fsi->several_stiffnesses();
   const int dim = fix_fsi->dim;
   first_moment = 2 + dim * (slip ? 1 : 2);
@@ -142,7 +141,7 @@ void FixFSIWallParticle::add_costs(Costs &costs) const
 
 template <class F> void FixFSIWallParticle::for_pairs(size_t level, F f) const
 {
-  const auto *fluid = dynamic_cast<PairFSIFluid *>(force->pair_match("fsi/fluid", 1));
+  const auto *fluid = first_of(pairs_of<PairFSIFluid>(lmp));
   if (!fluid) return;    // a script has put another style in its place since the last run
   for (const Row &row : fluid->rows_with_walls(level)) {
     if (!(atom->mask[row.j[0]] & groupbit)) continue;    // a type is in one such fix
@@ -418,4 +417,11 @@ void FixFSIWallParticle::restart(char *buf)
 double FixFSIWallParticle::memory_usage()
 {
   return FixFields::memory_usage() + (double) members.capacity() * sizeof(members[0]);
+}
+
+Facts FixFSIWallParticle::facts() const
+{
+  Facts facts;
+  facts.particle_walls = true;
+  return facts;
 }

@@ -48,6 +48,8 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
+
+  FSI::Facts facts() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 

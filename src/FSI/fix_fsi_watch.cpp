@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_find.h"
 #include "fsi_keywords.h"
 #include "fsi_stop.h"
 #include "group.h"
@@ -176,9 +177,8 @@ void FixFSIWatch::look_at_pairs()
   double **x = atom->x;
   const int *const mask = atom->mask, *const type = atom->type;
   double smallest = BIG;
-  for (const char *style : {"^fsi/fluid", "^fsi/solid"}) {
-    const Pair *const pair = force->pair_match(style, 0);
-    if (!pair || !pair->list) continue;
+  for (const auto *const pair : pairs_of<PairFSI>(lmp)) {
+    if (!pair->list) continue;
     const NeighList *const list = pair->list;
     for (int ii = 0; ii < list->inum; ii++) {
       const int i = list->ilist[ii];

@@ -18,7 +18,9 @@
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
+#include "fix_fsi_dt.h"
 #include "fsi_cells.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_limits.h"
 #include "fsi_part.h"
@@ -83,7 +85,7 @@ class Adviser : protected Pointers {
       }
     }
     weightless();
-    if (modify->get_fix_by_style("^fsi/dt$").empty()) time_step();
+    if (fixes_of<FixFSIDt>(lmp).empty()) time_step();
   }
 
  private:
@@ -544,7 +546,10 @@ class Adviser : protected Pointers {
 
   void torn_streams() const
   {
-    if (!scene.has_open_ends() && modify->get_fix_by_style("^fsi/stream$").empty()) return;
+    bool any = false;
+    for (const auto *p : scene.parts)
+      any = any || p->rank() == Part::STREAMS || p->rank() == Part::OPEN_ENDS;
+    if (!any) return;
     const auto found = find([&](int i) {
       return fluid(i) && scene.is_moved(i) && scene.state[atom->type[i]].floor == 0.0 && !weighs(i);
     });

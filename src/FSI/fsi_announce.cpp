@@ -53,7 +53,8 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
     for (const auto &w : scene.walls.wall) planes += w.joins != 0;
     effects.push_back({fmt::format("{} planes of symmetry of solids", planes),
                        "fix fsi/wall/mirror symmetry", planes > 0});
-    const int n = lmp->modify->get_fix_by_style("^fsi/wall/particle$").size();
+    int n = 0;
+    for (const auto *p : scene.parts) n += p->facts().particle_walls;
     effects.push_back(
         {fmt::format("{} groups of wall particles", n), "fix fsi/wall/particle", n > 0});
   }

@@ -18,6 +18,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_gravity.h"
+#include "fsi_find.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
@@ -39,15 +40,14 @@ struct Peek : FixGravity {
 void BodyForces::find()
 {
   all.clear();
-  for (auto &fix : modify->get_fix_by_style("^gravity"))
-    if (auto *g = dynamic_cast<FixGravity *>(fix)) {
-      all.push_back({g,
-                     Peek::is_disabled(g) ? 0 : g->groupbit,
-                     Peek::has_variable(g),
-                     {0.0, 0.0, 0.0},
-                     {0.0, 0.0, 0.0}});
-      g->init();    // its variables are looked up
-    }
+  for (auto *g : fixes_of<FixGravity>(lmp)) {
+    all.push_back({g,
+                   Peek::is_disabled(g) ? 0 : g->groupbit,
+                   Peek::has_variable(g),
+                   {0.0, 0.0, 0.0},
+                   {0.0, 0.0, 0.0}});
+    g->init();    // its variables are looked up
+  }
   acts_on_all.assign(all.size() * (atom->ntypes + 1), 0);
   told = acts_on_all;
 }

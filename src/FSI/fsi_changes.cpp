@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_part.h"
 #include "modify.h"
@@ -73,8 +74,7 @@ std::vector<std::uintptr_t> Changes::present() const
     list.push_back(reinterpret_cast<std::uintptr_t>(p));
   };
   add(force->pair);
-  for (const char *style : {"fsi/fluid", "fsi/solid", "fsi/solid/tl", "fsi/grain"}) {
-    Pair *const pair = force->pair_match(style, 1);
+  for (const auto *const pair : pairs_of<Pair>(lmp)) {
     const auto *const part = dynamic_cast<const Part *>(pair);
     add(pair);
     list.push_back(part && part->is_set_up());

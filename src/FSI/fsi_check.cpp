@@ -75,8 +75,6 @@ Check::Check(LAMMPS *lmp, const Scene &scene) :
 
 void Check::before_init()
 {
-  if (modify->get_fix_by_style("^fsi$").size() > 1)
-    error->all(FLERR, "There can be only one fix fsi");
   if (update->whichflag == 2)
     error->all(FLERR,
                "Fix fsi does not support minimize: there is no energy of all particles; run with "
@@ -113,7 +111,11 @@ void Check::before_init()
 
 void Check::materials()
 {
-  const auto walls = modify->get_fix_by_style("^fsi/wall/particle$");
+  std::vector<const Fix *> walls;
+  for (const auto *fix : modify->get_fix_list()) {
+    const auto *const part = dynamic_cast<const Part *>(fix);
+    if (part && part->facts().particle_walls) walls.push_back(fix);
+  }
   for (int i = 0; i < atom->nlocal; i++) {
     const int species = scene.state[atom->type[i]].species;
     if (species == RIGID && std::none_of(walls.begin(), walls.end(), [&](const Fix *fix) {

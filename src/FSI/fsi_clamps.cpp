@@ -197,8 +197,8 @@ void Clamps::find_members()
 // state of a body here and there; fix rigid has all on each rank, fix rigid/small has each on the
 // rank of one of its atoms, and copies where others are: of those with particles of walls or
 // solids, few among many, each rank gets it
-std::vector<Clamps::State>
-Clamps::states(Fix *fix, const std::unordered_map<tagint, size_t> &of) const
+std::vector<Clamps::State> Clamps::states(Fix *fix,
+                                          const std::unordered_map<tagint, size_t> &of) const
 {
   std::vector<State> mine;
   State s = {};

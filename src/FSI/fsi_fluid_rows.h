@@ -576,6 +576,18 @@ namespace FSI {
     for (int d = 0; d < D; d++) force[d] = p * m.x[d];
   }
 
+  // gravity along the axes of hydrostatic walls; whether there is any
+  template <int D>
+  FSI_INLINE bool is_below(const ForceLaws &laws, const Mirror &mirror, int type, double (&down)[D])
+  {
+    bool any = false;
+    for (int d = 0; d < D; d++) {
+      down[d] = laws.gravity ? mirror.deeper[d] * laws.gravity[type][d] : 0.0;
+      any = any || down[d] != 0.0;
+    }
+    return any;
+  }
+
   // Images below a hydrostatic wall have the pressure of fluid at rest where they are, the mean of
   // both of a pair. What that takes is the wall's.
   template <class T, int FLAGS, int D>
@@ -656,10 +668,7 @@ namespace FSI {
       if (FLAGS & Flag::UNEQUAL) pi.pv2 = fill * constant.volume * pi.pv2;
       const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && constant.thin);
       double down[D];
-      for (int d = 0; d < D; d++)
-        down[d] = (FLAGS & Flag::IMAGES) && laws.gravity
-            ? mirror.deeper[d] * laws.gravity[in.type[i]][d]
-            : 0.0;
+      const bool deep = (FLAGS & Flag::IMAGES) && is_below(laws, mirror, in.type[i], down);
       T sum[D];
       for (T &s : sum) s = 0.0;
       Taken<T, D> taken((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES) ? laws.taken : nullptr);
@@ -672,7 +681,7 @@ namespace FSI {
             relate<T, K, KIND, FLAGS>(kernel, in, constant, i, pi, pj, j, weight, m);
             T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate,
                                               constant.floor, back, own);
-            if ((FLAGS & Flag::IMAGES) && KIND == WITH_FLUID)
+            if ((FLAGS & Flag::IMAGES) && KIND == WITH_FLUID && deep)
               p += pressure_below<T, FLAGS, D>(down, pi, pj, m, by);
             T force[D], on_j[D], coupling[D], friction[D], coupled;
             push<T, KIND, FLAGS>(artificial, laws, constant, pi, pj, p, m, force, coupling,

@@ -35,9 +35,7 @@ using namespace FSI;
 void Frame::init()
 {
   left = 0.0;
-  allowed = neighbor->dist_check && !domain->box_change;
-  for (const char *end : {"^fsi/inlet$", "^fsi/outlet$"})
-    allowed = allowed && modify->get_fix_by_style(end).empty();
+  allowed = neighbor->dist_check && !domain->box_change && !scene.has_open_ends();
   for (const auto &wall : scene.walls.wall) allowed = allowed && wall.velocity[wall.axis] == 0.0;
 }
 

@@ -36,7 +36,7 @@ namespace FSI {
 
   // What others need to know of a style. A style that there is not has none of it.
   struct Facts {
-    enum Style { NONE, OF_FLUIDS, OF_SOLIDS, OF_TOTAL_LAGRANGIAN_SOLIDS };
+    enum Style { NONE, OF_FLUIDS, OF_SOLIDS, OF_TOTAL_LAGRANGIAN_SOLIDS, OF_GRAINS };
     Style style = NONE;    // of pairs
     // of fluids
     bool laminar = false;                  // laminar viscosity
@@ -52,8 +52,12 @@ namespace FSI {
     bool corrected_gradients = false;
     // of both
     double alpha = 0.0;    // artificial viscosity
-    // of what chooses the time step, sub-steps
+    // of fixes: what chooses the time step, sub-steps; walls; what keeps strain or stress
     bool chooses_step = false, chooses_substeps = false;
+    bool mirror_walls = false, particle_walls = false;
+    bool keeps_solids = false;
+    // of computes
+    bool keeps_account = false;    // of energy
   };
   // of the pair style of fluids, of solids, that there is now, hybrid or not
   Facts facts_of_fluids(LAMMPS *);
@@ -123,6 +127,12 @@ namespace FSI {
    protected:
     ~Part() = default;    // a style is deleted as what LAMMPS knows it as
   };
+  inline bool any_is(const std::vector<Part *> &parts, bool Facts::*what)
+  {
+    for (const auto *p : parts)
+      if (p->facts().*what) return true;
+    return false;
+  }
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

@@ -120,7 +120,7 @@ struct Stored : public Modify {
 };
 }    // namespace
 
-void FSI::check_ids(LAMMPS *lmp)
+void FSI::check_ids(LAMMPS *lmp, bool updated_solids)
 {
   Modify *const modify = lmp->modify;
   Error *const error = lmp->error;
@@ -138,7 +138,7 @@ void FSI::check_ids(LAMMPS *lmp)
       if (style_before == "fsi" || style_before == "fsi/stress") error->all(FLERR, text);
       if (first) error->warning(FLERR, text);
     }
-    if (style_before == "FSI_REFERENCE" && lmp->force->pair_match("^fsi/solid$", 0) && first)
+    if (style_before == "FSI_REFERENCE" && first && updated_solids)
       error->warning(FLERR,
                      "The strain of total-Lagrangian solids in the restart file is lost: they go "
                      "on in pair_style fsi/solid");

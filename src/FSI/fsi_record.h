@@ -54,7 +54,7 @@ namespace FSI {
 
   // once, before the first run after a restart file was read: what the file keeps for fixes of the
   // package that go by another ID now
-  void check_ids(LAMMPS *);
+  void check_ids(LAMMPS *, bool updated_solids);
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "fsi_find.h"
 #include "fsi_kernel.h"
 #include "fsi_part.h"
 #include "lammps.h"
@@ -130,9 +131,10 @@ bool Scene::density_follows_shift() const
 
 bool Scene::has_open_ends() const
 {
-  Modify *const modify = instance->modify;
-  return !modify->get_fix_by_style("^fsi/inlet$").empty() ||
-      !modify->get_fix_by_style("^fsi/outlet$").empty();
+  const auto fixes = fixes_of<Part>(instance);
+  return std::any_of(fixes.begin(), fixes.end(), [](const Part *p) {
+    return p->rank() == Part::OPEN_ENDS;
+  });
 }
 
 bool Discretization::several_stiffnesses() const
@@ -197,21 +199,22 @@ bool Scene::is_moved(int i) const
   return false;
 }
 
-static Facts facts_of(LAMMPS *lmp, const char *style)
+static Facts facts_of(LAMMPS *lmp, Facts::Style least, Facts::Style most)
 {
-  if (!lmp->force->pair) return Facts();
-  const auto *const part = dynamic_cast<const Part *>(lmp->force->pair_match(style, 1));
-  return part ? part->facts() : Facts();
+  for (const auto *p : pairs_of<Part>(lmp)) {
+    const Facts facts = p->facts();
+    if (facts.style >= least && facts.style <= most) return facts;
+  }
+  return {};
 }
 
 Facts FSI::facts_of_fluids(LAMMPS *lmp)
 {
-  return facts_of(lmp, "fsi/fluid");
+  return facts_of(lmp, Facts::OF_FLUIDS, Facts::OF_FLUIDS);
 }
 
 // there is one of the two (pair_fsi_solid_tl.cpp)
 Facts FSI::facts_of_solids(LAMMPS *lmp)
 {
-  const Facts facts = facts_of(lmp, "fsi/solid");
-  return facts.style ? facts : facts_of(lmp, "fsi/solid/tl");
+  return facts_of(lmp, Facts::OF_SOLIDS, Facts::OF_TOTAL_LAGRANGIAN_SOLIDS);
 }

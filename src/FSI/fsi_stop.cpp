@@ -20,6 +20,7 @@
 #include "fix.h"
 #include "force.h"
 #include "fsi_clock.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_limits.h"
@@ -225,8 +226,11 @@ std::string Stop::advice(const Scene &scene, const Finding &all, When when,
                          const Neighbor &body) const
 {
   const bool fluid = !all.tag || scene.state[all.type].species == FLUID;
-  const auto *const pair =
-      dynamic_cast<Part *>(force->pair_match(fluid ? "^fsi/fluid" : "^fsi/solid", 0));
+  const Part *pair = nullptr;
+  for (const auto *p : pairs_of<Part>(lmp)) {
+    const auto style = p->facts().style;
+    if (style && style != Facts::OF_GRAINS && (style == Facts::OF_FLUIDS) == fluid) pair = p;
+  }
   const auto off = [&](const std::string &keyword) {
     if (!pair) return false;
     for (const auto &e : pair->effects())

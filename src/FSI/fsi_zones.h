@@ -53,7 +53,7 @@ namespace FSI {
     int body_bit;
     std::vector<double> distances, away;    // of zones; per local particle, from the body
     bool can_move;
-    double ahead;    // of positions, time
+    double ahead;                                     // of positions, time
     std::vector<std::array<double, 3>> directions;    // in which a region grows
   };
 

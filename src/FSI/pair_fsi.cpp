@@ -21,6 +21,7 @@
 #include "fix_fsi_history.h"
 #include "fix_fsi_reference.h"
 #include "force.h"
+#include "fsi_find.h"
 #include "fsi_record.h"
 #include "memory.h"
 #include "modify.h"
@@ -115,11 +116,8 @@ void PairFSI::check_species() const
       error->all(FLERR, "Pair_coeff of pair style {} gives atom type {} {}: expected a {}", style,
                  t, in_words(material[t]), solid_style ? "solid" : "fluid, solid or wall");
   const PairFSI *fluid = solid_style ? nullptr : this, *solid = solid_style ? this : nullptr;
-  for (const char *name : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"}) {
-    auto *const other = dynamic_cast<PairFSI *>(force->pair_match(name, 1));
-    if (!other || !other->allocated) continue;
-    (strcmp(name, "fsi/fluid") == 0 ? fluid : solid) = other;
-  }
+  for (const auto *const other : pairs_of<PairFSI>(lmp))
+    if (other->allocated) (other->facts().style == Facts::OF_FLUIDS ? fluid : solid) = other;
   for (int t = 1; fluid && solid && t <= atom->ntypes; t++) {
     const Material &f = fluid->material[t], &s = solid->material[t];
     if ((f.species == SOLID && s.species != SOLID) ||
@@ -152,9 +150,12 @@ void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
   fix_fsi = FixFSI::find(lmp, "Pair style " + style);
-  if (!fix_fsi->ids_checked) check_ids(lmp);
+  if (!fix_fsi->ids_checked) check_ids(lmp, facts_of_solids(lmp).style == Facts::OF_SOLIDS);
   fix_fsi->ids_checked = true;
-  if (force->pair_match(style, 1, 1) != force->pair_match(style, 1, 2))
+  const auto all = pairs_of<PairFSI>(lmp);
+  if (std::count_if(all.begin(), all.end(), [this](const PairFSI *p) {
+        return p->style == style;
+      }) > 1)
     error->all(
         FLERR,
         "Pair style hybrid has {} more than once: one is for the materials of all atom types{}",
@@ -178,7 +179,7 @@ void PairFSI::drop_reference() const
 {
   Fix *const fix = modify->get_fix_by_id(FixFSIReference::ID);
   const auto *const reference = dynamic_cast<FixFSIReference *>(fix);
-  if (!reference || force->pair_match("fsi/solid/tl", 1)) return;
+  if (!reference || facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS) return;
   if (reference->any() && comm->me == 0)
     error->warning(FLERR,
                    "There is no pair_style fsi/solid/tl any more: its bodies lose their reference, "
@@ -190,15 +191,14 @@ void PairFSI::drop_reference() const
 // a solid that has several styles has one material
 void PairFSI::check_same_materials() const
 {
-  for (const char *name : {"fsi/fluid", "fsi/solid", "fsi/solid/tl"}) {
-    const auto *const other = dynamic_cast<PairFSI *>(force->pair_match(name, 1));
-    for (int t = 1; other && t <= atom->ntypes; t++) {
+  for (const auto *const other : pairs_of<PairFSI>(lmp)) {
+    for (int t = 1; t <= atom->ntypes; t++) {
       const Material &a = material[t], &b = other->material[t];
       if (a.species == SOLID && b.species == SOLID && strcmp(a.name, b.name) != 0)
         error->all(FLERR,
                    "Pair_coeff of pair style {} gives atom type {} the material {}, that of {} {}: "
                    "expected the same",
-                   style, t, a.name, name, b.name);
+                   style, t, a.name, other->style, b.name);
     }
   }
 }

@@ -24,6 +24,7 @@
 #include "fsi_contact.h"
 #include "fsi_density_diffusion.h"
 #include "fsi_fields.h"
+#include "fsi_find.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
 #include "fsi_levels.h"
@@ -210,9 +211,7 @@ void PairFSIFluid::init_style()
           "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
   }
   if (!fix_fsi->sight) beside.clear();
-  force_computes.clear();
-  for (auto *compute : modify->get_compute_by_style("^fsi/force$"))
-    force_computes.push_back(dynamic_cast<ComputeFSIForce *>(compute));
+  force_computes = computes_of<ComputeFSIForce>(lmp);
   const Facts of_solids = facts_of_solids(lmp);
   couple = fix_fsi->article && of_solids.style == Facts::OF_SOLIDS ? FULL : given_couple;
   if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
@@ -228,7 +227,7 @@ void PairFSIFluid::init_style()
   // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count
   // their own
   give_back_virial();
-  if (force->pair != this && !modify->get_fix_by_style("^fsi/wall/mirror$").empty()) {
+  if (force->pair != this && any_is(fixes_of<Part>(lmp), &Facts::mirror_walls)) {
     hybrid = force->pair;
     no_fdotr_before = hybrid->no_virial_fdotr_compute;
     hybrid->no_virial_fdotr_compute = 1;
@@ -243,7 +242,7 @@ void PairFSIFluid::init_style()
     error->all(FLERR,
                "Pair style fsi/fluid couple full requires pair_style fsi/solid gradient plain: "
                "with corrected gradients use couple wall");
-  if (has_solids() && !modify->get_fix_by_style("^fsi/wall/mirror$").empty())    // ghosts
+  if (has_solids() && any_is(fixes_of<Part>(lmp), &Facts::mirror_walls))    // ghosts
     comm->cutghostuser = std::max(comm->cutghostuser, beyond_lists() + neighbor->skin);
   open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);

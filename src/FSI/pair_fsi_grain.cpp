@@ -361,3 +361,10 @@ double PairFSIGrain::memory_usage()
       (double) (grains.capacity() + number.capacity()) * sizeof(int) +
       (double) (sums.capacity() + given.capacity()) * sizeof(double);
 }
+
+Facts PairFSIGrain::facts() const
+{
+  Facts facts;
+  facts.style = Facts::OF_GRAINS;
+  return facts;
+}

@@ -46,6 +46,7 @@ class PairFSIGrain : public Pair, public FSI::Part {
   void unpack_reverse_comm(int, int *, double *) override;
   double memory_usage() override;
 
+  FSI::Facts facts() const override;
   bool is_set_up() const override { return fix_fsi != nullptr; }
   std::vector<Effect> effects() const override;
   void add_costs(Costs &) const override;

@@ -26,6 +26,7 @@
 #include "fsi_check.h"
 #include "fsi_clamps.h"
 #include "fsi_contact.h"
+#include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_images.h"
 #include "fsi_profile.h"
@@ -38,6 +39,7 @@
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
+#include "pair_fsi_solid.h"
 #include "update.h"
 
 #include <algorithm>
@@ -96,7 +98,7 @@ PairFSISolidTL::~PairFSISolidTL()
 
 PairFSISolidTL *PairFSISolidTL::find(LAMMPS *lmp)
 {
-  return dynamic_cast<PairFSISolidTL *>(lmp->force->pair_match("fsi/solid/tl", 1));
+  return first_of(pairs_of<PairFSISolidTL>(lmp));
 }
 
 void PairFSISolidTL::check_settings()
@@ -133,7 +135,7 @@ void PairFSISolidTL::init_style()
   const int dim = fix_fsi->dim;
   if (plane_stress && dim == 3)
     error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
-  if (force->pair_match("^fsi/solid$", 0))
+  if (!pairs_of<PairFSISolid>(lmp).empty())
     error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
   refuse_constraints();
   make_laws();
@@ -188,9 +190,7 @@ const double *const *PairFSISolidTL::history() const
 // adds to these, as fix addforce, is right; what sets or projects the whole force is not.
 bool PairFSISolidTL::takes_substeps() const
 {
-  const auto dt = modify->get_fix_by_style("^fsi/dt$");
-  return fix_fsi->substeps > 1 ||
-      (!dt.empty() && dynamic_cast<Part *>(dt[0])->facts().chooses_substeps);
+  return fix_fsi->substeps > 1 || any_is(fixes_of<Part>(lmp), &Facts::chooses_substeps);
 }
 
 void PairFSISolidTL::refuse_constraints() const
@@ -972,6 +972,7 @@ Facts PairFSISolidTL::facts() const
 {
   Facts facts = PairFSI::facts();
   facts.style = Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
+  facts.keeps_solids = reference != nullptr;
   facts.by_rate = laws.by_rate();
   return facts;
 }

@@ -68,6 +68,14 @@ def test_fix_fsi_knows_no_style():
     assert len((SOURCES / "fix_fsi.cpp").read_text().splitlines()) < 450
 
 
+def test_styles_are_found_by_what_they_are():
+    """A suffix changes the name of a style: fsi_find.h looks at classes."""
+    named = re.compile(r'(?:pair_match|get_\w+_by_style)\("[^"]*fsi[^"]*"|strmatch\([^)]*fsi/\w')
+    assert named.search('force->pair_match("fsi/fluid", 1)') and named.search('get_fix_by_style("^fsi/dt$")')
+    found = {p.name: named.findall(p.read_text()) for p in SOURCES.glob("*.*")}
+    assert {name: f for name, f in found.items() if f and (name, f) != ("fsi_find.h", ['pair_match("^fsi/"'])} == {}
+
+
 NO_CODE = re.compile(r'"(\\.|[^"\\\n])*"|\'(\\.|[^\'\\])\'|//[^\n]*|/\*.*?\*/', re.S)
 
 

@@ -106,13 +106,23 @@ def understood(compiler, standard):
     return good
 
 
+def formatted():
+    """Are the sources as clang-format writes them?"""
+    sources = [str(p) for p in sorted((ROOT / "src/FSI").glob("*.[ch]*"))]
+    return subprocess.run(["clang-format", "--dry-run", "-Werror", *sources], check=False).returncode == 0
+
+
 def main(names):
     """Returns (passed, failed)."""
     results = {}
     normal = Path(os.environ.get("FSI_BUILD_DIR") or ROOT / "build")
     with tempfile.TemporaryDirectory() as scratch:
         produce(Path(scratch) / "normal", normal, 1)
-        for name in names or [*VARIANTS, *(name for name, words in COMPILERS.items() if shutil.which(words[0]))]:
+        installed = [name for name, words in {**COMPILERS, "clang-format": ("clang-format",)}.items() if shutil.which(words[0])]
+        for name in names or [*VARIANTS, *installed]:
+            if name == "clang-format":
+                results[f"{name}: all sources"] = formatted()
+                continue
             if name in COMPILERS:
                 results[f"{name}: all sources"] = understood(*COMPILERS[name])
                 continue
