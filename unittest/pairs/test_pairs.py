@@ -125,12 +125,6 @@ def four_ranks(r):
     same(r.scene, r.base, go_on_ranks(r.scene, r.folder / "four", 4), ROUND)
 
 
-def closed(scene):
-    """FAULT: what comes out of an inlet depends on when lists are built. FAULT: the image of a solid in a mirror may be nearer than the solid, and is not
-    in the lists then."""
-    return not scene.open and not (scene.mirrors and scene.low < 0)
-
-
 def skin(r):
     same(r.scene, r.base, r.other(skin=1.0), SKIN)
 
@@ -192,7 +186,7 @@ def galilei(r):
     same(r.scene, r.base, other, ROUND)
 
 
-INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "skin": (closed, skin),
+INVARIANTS = {"finite": (always, finite), "mass": (keeps_mass, mass), "ranks": (ordered, two_ranks), "four ranks": (ordered, four_ranks), "skin": (always, skin),
               "numbering": (no_levels, numbering), "mirror": (ordered, mirror), "restart": (always, restart), "momentum": (alone, momentum), "frame": (drifts, galilei)}
 SAMPLE = {"four ranks": 8}    # asked of one scene in so many
 
