@@ -332,14 +332,14 @@ namespace FSI {
         const T rsq = pair(j, weight);
         if (near) sieve.take(reachsq < rsq, j);
       });
-      Row within = row;    // of images the others are gone
-      if (near) near->push_back(within = sieve.close(row));
+      if (near) near->push_back(sieve.close(row));    // of images the others are gone
       const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if constexpr (CUT)
         if (in.cut && sums && (in.newton || i < in.nlocal))
           sums->walls -= laws.pressure_over_density[i] * point[i].rho * volume * point[i].vol *
-              point[i].vol * coming_out<T, K, IMAGE>(within, mirror, kernel, in, sharper);
+              point[i].vol *
+              coming_out<T, K, IMAGE>(near ? near->back() : row, mirror, kernel, in, sharper);
       if constexpr (FLAGS & Flag::SHIFT) shift_of.close(shift[i]);
     }
     if (FLAGS & Flag::SUMS) sums->diffusion += L::sum(by_diffusion);

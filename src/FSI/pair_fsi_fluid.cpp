@@ -242,8 +242,10 @@ void PairFSIFluid::init_style()
     error->all(FLERR,
                "Pair style fsi/fluid couple full requires pair_style fsi/solid gradient plain: "
                "with corrected gradients use couple wall");
-  if (has_solids() && any_is(fixes_of<Part>(lmp), &Facts::mirror_walls))    // ghosts
-    comm->cutghostuser = std::max(comm->cutghostuser, beyond_lists() + neighbor->skin);
+  double &ghosts = comm->cutghostuser;    // 0: LAMMPS chooses; too small: fix fsi says so
+  if (has_solids() && any_is(fixes_of<Part>(lmp), &Facts::mirror_walls) &&
+      (ghosts == 0.0 || ghosts >= fix_fsi->largest_cut))
+    ghosts = std::max(ghosts, beyond_lists() + neighbor->skin);
   open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);
 }
