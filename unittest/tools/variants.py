@@ -108,7 +108,7 @@ def understood(compiler, standard):
 
 def formatted():
     """Are the sources as clang-format writes them?"""
-    sources = [str(p) for p in sorted((ROOT / "src/FSI").glob("*.[ch]*"))]
+    sources = [str(p) for ending in ("*.h", "*.cpp") for p in sorted((ROOT / "src/FSI").glob(ending))]
     return subprocess.run(["clang-format", "--dry-run", "-Werror", *sources], check=False).returncode == 0
 
 
