@@ -174,7 +174,7 @@ def momentum(r):
 
 def drifts(scene):
     """Nothing outside stands still, and no step depends on speeds."""
-    return not (scene.walled or scene.plane or scene.open or scene.setting("stream") or given(scene, "clamped", "adaptive step", "adaptive sub-steps", "region", "moving region"))
+    return not (scene.walled or scene.plane or scene.open or scene.setting("stream") or given(scene, "clamped", "adaptive step", "adaptive sub-steps", "region", "moving region", "unsettled"))
 
 
 def galilei(r):
