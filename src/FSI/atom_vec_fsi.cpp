@@ -19,7 +19,6 @@
 #include "fsi_find.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
-#include "modify.h"
 
 using namespace LAMMPS_NS;
 using namespace FSI;

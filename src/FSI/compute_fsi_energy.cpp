@@ -114,10 +114,3 @@ void ComputeFSIEnergy::compute_vector()
   mine[NHAVE + FixFSI::COUPLING] += fix_fsi->guarding[1];
   MPI_Allreduce(mine, vector, size_vector, MPI_DOUBLE, MPI_SUM, world);
 }
-
-Facts ComputeFSIEnergy::facts() const
-{
-  Facts facts;
-  facts.keeps_account = true;
-  return facts;
-}

@@ -35,7 +35,7 @@ class ComputeFSIEnergy : public Compute, public FSI::Part {
   double compute_scalar() override;
   void compute_vector() override;
 
-  FSI::Facts facts() const override;
+  FSI::Facts facts() const override { return FSI::only(&FSI::Facts::keeps_account); }
 
   static const char *name(int);    // of an entry of the vector
 

@@ -38,7 +38,6 @@
 #include "fsi_sight.h"
 #include "fsi_surface_room.h"
 #include "group.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "output.h"
 #include "pair.h"

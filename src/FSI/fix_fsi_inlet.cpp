@@ -33,7 +33,6 @@
 #include "fsi_value.h"
 #include "group.h"
 #include "math_extra.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "output.h"
 #include "pair_fsi_fluid.h"
@@ -651,7 +650,7 @@ void FixFSIInlet::make(const std::vector<Particle> &own, bool at_start)
 void FixFSIInlet::pre_exchange()
 {
   if (region) region->prematch();
-  const auto ends = fixes_of<FixFSIInlet>(lmp);
+  const auto others = fixes_of<FixFSIInlet>(lmp);
   std::vector<Particle> copies;
   std::vector<int> gone;
   double own[5] = {}, all[5];    // in, out, net mass, made, deleted
@@ -683,7 +682,7 @@ void FixFSIInlet::pre_exchange()
       own[2] -= atom->rmass[i];
     }
     if (!of_buffer[i]) continue;
-    for (const auto *other : ends)
+    for (const auto *other : others)
       if (other != this && other->holds(x))
         error->one(FLERR,
                    "Atom {} at {:g} {:g} {:g} is in the buffers of fix {} and fix {}: keep them "
@@ -1374,8 +1373,10 @@ void FixFSIInlet::restart(char *buf)
   if (record.has("gradient")) {
     numbers = record.numbers("gradient");
     gradient = numbers[0];
-    added = numbers[1];
-    area = numbers[2];
+    if (numbers.size() > 2) {    // else of a version without
+      added = numbers[1];
+      area = numbers[2];
+    }
   }
   if (record.has("fill")) {
     numbers = record.numbers("fill");

@@ -491,10 +491,11 @@ void FixFSIReference::find_quadrature(const std::vector<int> &bare)
     of_bars += few > 1;
   }
   layer = nullptr;
+  if (dim == 2) return;
   // a lattice of three by three cannot warp
   bigint mine[2] = {(bigint) bare.size(), of_bars}, all[2];
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (dim == 3 && 2 * all[1] > all[0] && comm->me == 0)
+  if (2 * all[1] > all[0] && comm->me == 0)
     error->warning(FLERR,
                    "Pair style fsi/solid/tl: {} of {} particles are of bars of three particles or "
                    "fewer through the thickness: twisted, their frequency is 10 to 16 % too high. "

@@ -33,7 +33,6 @@
 #include "fsi_split.h"
 #include "fsi_zones.h"
 #include "math_extra.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>

@@ -22,7 +22,6 @@
 #include "fsi_find.h"
 #include "fsi_hypoelastic.h"
 #include "fsi_record.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -185,11 +184,4 @@ void FixFSIStress::restart(char *buf)
   const Record record(lmp, "fix fsi/stress", buf);
   keywords.compare(record);
   fields.read(record);
-}
-
-Facts FixFSIStress::facts() const
-{
-  Facts facts;
-  facts.keeps_solids = true;
-  return facts;
 }

@@ -37,7 +37,7 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  FSI::Facts facts() const override;
+  FSI::Facts facts() const override { return FSI::only(&FSI::Facts::keeps_solids); }
   std::vector<Effect> effects() const override;
   void find_idle(const Census &, const Idle &) const override;
 

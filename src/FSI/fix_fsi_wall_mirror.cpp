@@ -364,10 +364,3 @@ void FixFSIWallMirror::restart(char *buf)
                      id, face(walls[k]), before, settings(k));
   }
 }
-
-Facts FixFSIWallMirror::facts() const
-{
-  Facts facts;
-  facts.mirror_walls = true;
-  return facts;
-}

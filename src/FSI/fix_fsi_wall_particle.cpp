@@ -418,10 +418,3 @@ double FixFSIWallParticle::memory_usage()
 {
   return FixFields::memory_usage() + (double) members.capacity() * sizeof(members[0]);
 }
-
-Facts FixFSIWallParticle::facts() const
-{
-  Facts facts;
-  facts.particle_walls = true;
-  return facts;
-}

@@ -49,7 +49,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   double compute_vector(int) override;
   double memory_usage() override;
 
-  FSI::Facts facts() const override;
+  FSI::Facts facts() const override { return FSI::only(&FSI::Facts::particle_walls); }
   void write_restart(FILE *) override;
   void restart(char *) override;
 

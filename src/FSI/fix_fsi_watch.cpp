@@ -17,7 +17,6 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "force.h"
 #include "fsi_find.h"
 #include "fsi_keywords.h"
 #include "fsi_stop.h"

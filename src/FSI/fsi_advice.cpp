@@ -397,6 +397,7 @@ class Adviser : protected Pointers {
 
   void excluded() const
   {
+    if (neighbor->nex_type + neighbor->nex_group + neighbor->nex_mol == 0) return;
     const auto has = [this](int i, int k, const int *group) {
       return (atom->mask[i] & group[k]) != 0;
     };

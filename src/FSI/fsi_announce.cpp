@@ -23,7 +23,6 @@
 #include "fsi_part.h"
 #include "fsi_scene.h"
 #include "lammps.h"
-#include "modify.h"
 
 #include <string>
 #include <vector>

@@ -19,7 +19,6 @@
 #include "error.h"
 #include "fix_gravity.h"
 #include "fsi_find.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 

@@ -18,7 +18,6 @@
 #include "domain.h"
 #include "fsi_scene.h"
 #include "math_extra.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 

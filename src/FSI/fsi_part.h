@@ -59,6 +59,12 @@ namespace FSI {
     // of computes
     bool keeps_account = false;    // of energy
   };
+  inline Facts only(bool Facts::*what)
+  {
+    Facts facts;
+    facts.*what = true;
+    return facts;
+  }
   // of the pair style of fluids, of solids, that there is now, hybrid or not
   Facts facts_of_fluids(LAMMPS *);
   Facts facts_of_solids(LAMMPS *);

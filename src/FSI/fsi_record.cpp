@@ -16,7 +16,6 @@
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
-#include "force.h"
 #include "modify.h"
 
 #include <cstdlib>

@@ -17,7 +17,6 @@
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
-#include "force.h"
 #include "fsi_find.h"
 #include "fsi_kernel.h"
 #include "fsi_part.h"

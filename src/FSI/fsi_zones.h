@@ -34,7 +34,6 @@ namespace FSI {
     Zones(LAMMPS *, const std::string &who);
     void read_regions(const std::vector<std::string> &words);
     void read_distances(const std::vector<std::string> &words);
-    void find_body();
     void check_number(size_t types) const;
 
     void init(const Scene &, const std::vector<int> &types);
@@ -46,6 +45,7 @@ namespace FSI {
     std::string names(int k) const;                // of zones k and k + 1, for errors
 
    private:
+    void find_body();
     const std::string who;
     std::vector<std::string> region_ids;
     std::vector<Region *> regions;

@@ -31,7 +31,6 @@
 #include "fsi_profile.h"
 #include "fsi_shift.h"
 #include "fsi_sight.h"
-#include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "pair_hybrid.h"

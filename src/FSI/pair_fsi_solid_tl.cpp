@@ -50,6 +50,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 static constexpr double TOUCHES = 0.96;    // of the square of contact's range: no round-off
+static constexpr double SMOOTH = 1.9;      // range from which on faces are no rows of balls
 
 struct PairFSISolidTL::Members {
   SolidLaws laws;
@@ -520,8 +521,7 @@ void PairFSISolidTL::push_image(int i, int j, const Walls::Reflection &s, double
 // Bodies whose faces are rows of balls have touched: what slides is held by them.
 void PairFSISolidTL::tell_contact()
 {
-  static constexpr double SMOOTH = 1.9;    // of contact
-  static constexpr int EVERY = 20;         // steps between two looks
+  static constexpr int EVERY = 20;    // steps between two looks
   if (contact_told || !list || contact_range > SMOOTH || update->ntimestep % EVERY) return;
   const auto least = of_least(touch[1] ? double(touch[0]) : HUGE_VAL, touch, world);
   contact_told = least[1] != 0;
@@ -537,6 +537,7 @@ void PairFSISolidTL::tell_contact()
 // particles of different bodies (fsi_contact.h)
 template <int D> void PairFSISolidTL::contact_forces()
 {
+  const bool looks = !contact_told && contact_range <= SMOOTH;
   double **x = atom->x;
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
@@ -554,7 +555,7 @@ template <int D> void PairFSISolidTL::contact_forces()
       }
       const Contact &contact = contacts[type[i] * (ntypes + 1) + type[j]];
       if (rsq >= contact.reachsq) continue;
-      if (!contact_told && rsq < TOUCHES * contact.reachsq &&
+      if (looks && rsq < TOUCHES * contact.reachsq &&
           ((atom->mask[i] | atom->mask[j]) & fix_fsi->groupbit))
         touch = {std::min(molecule[i], molecule[j]), std::max(molecule[i], molecule[j])};
       // without newton the other rank does its own particle
