@@ -224,7 +224,7 @@ void FixFSI::init()
   set_fields();
   register_fields();
 
-  ledger = any_is(computes_of<Part>(lmp), &Facts::keeps_account);
+  kept = any_is(computes_of<Part>(lmp), &Facts::keeps_account);
   guarding[0] = guarding[1] = 0.0;
 
   // pair forces and density rates need the velocities of ghosts
@@ -356,7 +356,7 @@ void FixFSI::update_state(bool advance)
   inverted = -1;
   set_tally(advance ? update->dt : 0.0);
   body_forces.evaluate(state);
-  if (ledger && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
+  if (kept && advance) energy_out[FIELDS] += body_forces.work(state, groupbit);
   Phase phase(profile);
   for (auto *p : parts) p->begin_state(advance);
   if (walls.any()) {
@@ -412,7 +412,7 @@ void FixFSI::write_restart(FILE *fp)
   MPI_Allreduce(energy_out, all, NTERM, MPI_DOUBLE, MPI_SUM, world);
   Record record = this->record();
   clock.write(record);
-  if (ledger) record.add("ledger", std::vector<double>(all, all + NTERM));
+  if (kept) record.add("ledger", std::vector<double>(all, all + NTERM));
   members->surface_room.write(record);
   fields.write(record);
   record.write(fp);

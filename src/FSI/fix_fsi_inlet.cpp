@@ -1097,9 +1097,9 @@ void FixFSIInlet::advance(bool advance)
 // the energy that it takes is in the balance
 void FixFSIInlet::set_density(int i, double rho)
 {
-  const double stored = fix_fsi->ledger ? fix_fsi->stored(i) : 0.0;
+  const double stored = fix_fsi->kept ? fix_fsi->stored(i) : 0.0;
   atom->rho[i] = rho;
-  if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
+  if (fix_fsi->kept) fix_fsi->energy_out[FixFSI::FIELDS] += stored - fix_fsi->stored(i);
 }
 
 // What has a given velocity goes without the fluid where that does not follow, and has nothing to

@@ -208,12 +208,12 @@ void FixFSIWallMirror::post_integrate()
       // behind a segment already at the last step: it flows there by right
       const double ahead = update->dt * w.side * (v[i][w.axis] - w.velocity[w.axis]);
       if (w.finite && a < 0.0 && a < ahead) continue;
-      const double before = fix_fsi->ledger ? fix_fsi->potential(i) : 0.0;
+      const double before = fix_fsi->kept ? fix_fsi->potential(i) : 0.0;
       x[i][w.axis] += w.side * 2.0 * (near - a);
-      if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::WALLS] += before - fix_fsi->potential(i);
+      if (fix_fsi->kept) fix_fsi->energy_out[FixFSI::WALLS] += before - fix_fsi->potential(i);
       const double vn = v[i][w.axis] - w.velocity[w.axis];
       if (vn * w.side < 0.0) {
-        if (fix_fsi->ledger)
+        if (fix_fsi->kept)
           fix_fsi->energy_out[FixFSI::WALLS] += 2.0 * vn * atom->rmass[i] *
               (v[i][w.axis] - vn + dth * fix_fsi->body_forces.on(i)[w.axis]);
         v[i][w.axis] -= 2.0 * vn;
@@ -230,7 +230,7 @@ void FixFSIWallMirror::end_of_step()
   for (size_t k = 0; k < walls.size(); k++) {
     Wall &w = walls[k];
     w.position += 0.5 * update->dt * w.velocity[w.axis];
-    if (fix_fsi->ledger)
+    if (fix_fsi->kept)
       for (int d = 0; d < 3; d++)
         fix_fsi->energy_out[FixFSI::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
   }

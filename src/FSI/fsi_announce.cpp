@@ -66,7 +66,7 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
   }
   if (scene.article)
     effects.push_back({"what the article's scheme sets where nothing else is said", "", true});
-  effects.push_back({"energy balance", "compute fsi/energy", scene.ledger});
+  effects.push_back({"energy balance", "compute fsi/energy", scene.kept});
 
   std::string on, off;
   for (const auto &e : effects)

@@ -136,13 +136,13 @@ namespace FSI {
       LEVELS, NTERM
     };
     // clang-format on
-    bool ledger = false;
+    bool kept = false;
     double energy_out[NTERM] = {};
     double guarding[2] = {};    // that pairs held off by walls of particles and by solids have
-    double *account(Term term) { return ledger ? &energy_out[term] : nullptr; }    // of one term
+    double *account(Term term) { return kept ? &energy_out[term] : nullptr; }    // of one term
     // adds a power of the pair loops, which counts only in steps, not in setup
     void tally(Term term, double power) { energy_out[term] += tally_dt * power; }
-    void set_tally(double dt) { tally_dt = ledger ? dt : 0.0; }    // time that powers act for
+    void set_tally(double dt) { tally_dt = kept ? dt : 0.0; }    // time that powers act for
 
    private:
     double tally_dt = 0.0;

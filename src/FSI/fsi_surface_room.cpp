@@ -117,7 +117,7 @@ void SurfaceRoom::pass(double dt)
 bool SurfaceRoom::add_rates(bool advance)
 {
   if (room && advance) pass(update->dt);
-  if (room && scene.ledger && advance && due) earlier.assign(atom->rho, atom->rho + atom->nlocal);
+  if (room && scene.kept && advance && due) earlier.assign(atom->rho, atom->rho + atom->nlocal);
   return false;
 }
 
@@ -205,7 +205,7 @@ void SurfaceRoom::follow()
     atom->rho[i] = std::max(before + (has - had) * state.rho0, atom->rmass[i] * scene.w0);
     changes[2 * i] = has - had;
     changes[2 * i + 1] = atom->rho[i] - before;
-    if (scene.ledger)
+    if (scene.kept)
       scene.energy_out[Scene::DIFFUSION] += energy_loss(i, before, atom->rho[i] - before);
   }
 }

@@ -36,7 +36,7 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
-    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr), alpha(0.0),
+    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr), disc(nullptr), step(nullptr), ledger(nullptr), alpha(0.0),
     beta(0.0), contact_range(1.0), self_contact(0)
 {
   restartinfo = 1;
@@ -150,6 +150,9 @@ void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
   fix_fsi = FixFSI::find(lmp, "Pair style " + style);
+  disc = fix_fsi;
+  step = fix_fsi;
+  ledger = fix_fsi;
   if (!fix_fsi->ids_checked) check_ids(lmp, facts_of_solids(lmp).style == Facts::OF_SOLIDS);
   fix_fsi->ids_checked = true;
   const auto all = pairs_of<PairFSI>(lmp);

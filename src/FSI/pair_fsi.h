@@ -21,6 +21,7 @@
 #include "fsi_keywords.h"
 #include "fsi_material.h"
 #include "fsi_part.h"
+#include "fsi_scene.h"
 #include "pair.h"
 
 #include <string>
@@ -51,6 +52,9 @@ class PairFSI : public Pair, public FSI::Part {
   const std::string style;                // for messages
   FSI::Keywords keywords;                 // of settings()
   class FixFSI *fix_fsi;                  // null: not since settings() or coeff()
+  const FSI::Discretization *disc;        // of it, as the next two
+  FSI::StepState *step;
+  FSI::Ledger *ledger;
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
   double alpha, beta;                     // artificial/visc (fsi_viscosity.h)
   double contact_range;                   // of solids, over dx (fsi_contact.h)

@@ -778,7 +778,7 @@ template <int D> void PairFSIFluid::take_swerve()
 void PairFSIFluid::react()
 {
   if (is_light(0)) fix_fsi->dim == 2 ? take_swerve<2>() : take_swerve<3>();
-  if (!fix_fsi->ledger || taken.empty()) return;
+  if (!fix_fsi->kept || taken.empty()) return;
   fix_fsi->dim == 2 ? correct_powers<2>() : correct_powers<3>();
 }
 
@@ -1205,8 +1205,8 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
       if (fix_fsi->state[type[i]].species == RIGID)
         point[i].vol = atom->rmass[i] * fix_fsi->state[type[i]].inv_rho0;
   }
-  if (fix_fsi->ledger || fix_fsi->has_levels()) pressure_over_density.resize(atom->nmax);
-  if (fix_fsi->ledger)
+  if (fix_fsi->kept || fix_fsi->has_levels()) pressure_over_density.resize(atom->nmax);
+  if (fix_fsi->kept)
     for (int i = 0; i < atom->nlocal + atom->nghost; i++)
       pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
 
@@ -1223,7 +1223,7 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
     }
     laws.wdx = m.wdx;
     laws.reach = reach;
-    m.loops->rates(m.kind, which, mirror, in, laws, rate, shift, fix_fsi->ledger ? &sums : nullptr,
+    m.loops->rates(m.kind, which, mirror, in, laws, rate, shift, fix_fsi->kept ? &sums : nullptr,
                    found);
   };
   // of what thin bodies may hide the order says which part belongs to which pair
@@ -1392,7 +1392,7 @@ template <int D> void PairFSIFluid::compute_forces()
     p.pv2 = p.p * p.vol * p.vol;
   });
 
-  if (fix_fsi->ledger) taken.assign((size_t) row_of_points(D) * nall, 0.0);
+  if (fix_fsi->kept) taken.assign((size_t) row_of_points(D) * nall, 0.0);
   ForceLaws laws = {alpha,
                     beta,
                     laminar,
@@ -1404,8 +1404,8 @@ template <int D> void PairFSIFluid::compute_forces()
                     FixFSI::rows(fix_fsi->wall_velocity ? fix_fsi->wall_velocity : atom->v),
                     fix_stress ? fix_stress->stress : nullptr,
                     fix_fsi->body_forces.of_type.data(),
-                    fix_fsi->ledger ? taken.data() : nullptr};
-  PairSums sums, *const of_pairs = fix_fsi->ledger || tally_pairs ? &sums : nullptr;
+                    fix_fsi->kept ? taken.data() : nullptr};
+  PairSums sums, *const of_pairs = fix_fsi->kept || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   double guarding[NKINDS] = {};
   const auto loop = [&](const Meeting &m, const std::vector<Row> &which,

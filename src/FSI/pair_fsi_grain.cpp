@@ -301,7 +301,7 @@ template <int D> void PairFSIGrain::give_back()
 // middle of the step
 void PairFSIGrain::prescribe()
 {
-  if (!fix_fsi->ledger) return;
+  if (!fix_fsi->kept) return;
   const int dim = fix_fsi->dim, nlocal = atom->nlocal;
   const double half = 0.5 * update->dt * force->ftm2v;
   std::vector<double> one(nlocal + atom->nghost);

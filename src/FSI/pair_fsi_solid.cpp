@@ -447,7 +447,7 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
       // d rho/dt = -rho div v, centered: second order, and positive for any step
       rho[i] *= (1.0 - 0.5 * dt * div) / (1.0 + 0.5 * dt * div);
     }
-    if (fix_fsi->ledger) {
+    if (fix_fsi->kept) {
       // what the strain stores; what the pair forces deliver, with the same stress and velocity, is
       // taken off in force_pairs(): their difference is what the gradient's correction costs
       auto sigma = Sym<D>::load(fix_stress->stress[i]);
@@ -703,7 +703,7 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
 
   // sums and quadratic gradients come with viscosity, pairs one by one with all effects: what is
   // off has coefficients of zero
-  const int sums_too = fix_fsi->ledger || tally_pairs ? SUMS : 0;
+  const int sums_too = fix_fsi->kept || tally_pairs ? SUMS : 0;
   const int named = (artificial_stress() > 0.0 ? STRESS : 0) | sums_too |
       (has_artificial() || sums_too || TERMS > D ? VISCOSITY : 0);
   with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {

@@ -442,7 +442,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
   // coefficients of zero
   const bool packs = have_packs() && (one_material || !has_artificial());
   const int named = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
-  with_flags<ALL>(fix_fsi->ledger || vflag_global || !packs ? ALL : named, [&](auto which) {
+  with_flags<ALL>(fix_fsi->kept || vflag_global || !packs ? ALL : named, [&](auto which) {
     if constexpr (!(which() & SUMS) || which() == ALL) {
       const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
         bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f);
@@ -644,7 +644,7 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
     }
   };
   have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
-  if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::INELASTIC] += dissipated;
+  if (fix_fsi->kept) fix_fsi->energy_out[FixFSI::INELASTIC] += dissipated;
 }
 
 // L = F' F^-1 at the time of the velocities, half a step before the positions
@@ -664,7 +664,7 @@ template <int D> void PairFSISolidTL::advance_rates(double dt)
           for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
       const State &s = fix_fsi->state[atom->type[i]];
       const double work = fix_stress->advance_stress<D>(i, L, dt, s);
-      if (fix_fsi->ledger)
+      if (fix_fsi->kept)
         fix_fsi->energy_out[FixFSI::INELASTIC] += work * row.volume * determinant<D>(F);
     }
   };
@@ -925,7 +925,7 @@ void PairFSISolidTL::integrate_substeps()
   Wet wet(*fix_fsi, atom, moving, dt * force->ftm2v);
   fix_fsi->set_tally(dt);
   fix_fsi->check.before_substeps(solids());
-  only_moving = !fix_fsi->ledger;
+  only_moving = !fix_fsi->kept;
   drift(back);
   for (int n = 0; n < substeps; n++) {
     if (n + 1 == substeps) only_moving = false;
@@ -958,7 +958,7 @@ void PairFSISolidTL::integrate_substeps()
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
   for (const int i : solids())
     for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
-  if (fix_fsi->ledger) fix_fsi->energy_out[FixFSI::COUPLING] += wet.taken / force->ftm2v;
+  if (fix_fsi->kept) fix_fsi->energy_out[FixFSI::COUPLING] += wet.taken / force->ftm2v;
   if (clamped) clamps.finish();
 }
 
