@@ -60,7 +60,7 @@ namespace FSI {
   };
 
   // How particles of a type count at a fluid particle, if their spacing is another (theory.rst)
-  struct Share {
+  struct VolumeRatio {
     double volume = 1.0;     // of a particle of the lattice over that of the fluid particle
     double sharper = 0.0;    // e of Kernel::sharper_gradient(): negative where it is coarser
     bool thin = false;    // the body counts as if it went on behind, and under the pressure of the
@@ -69,7 +69,7 @@ namespace FSI {
 
   // By particle: by how much more thin bodies count (fsi_sight.h), in forces and in sums of W
   struct Thin {
-    const double *fill = nullptr, *fill_weight = nullptr;
+    const double *backfill = nullptr, *backfill_weight = nullptr;
   };
 
   // By particle: how much of solids is before mirror walls, and its rate (Walls::before)
@@ -89,10 +89,10 @@ namespace FSI {
     const int *type = nullptr;
     const State *state = nullptr;
     int nlocal = 0;
-    const Share *share = nullptr;    // per type
-    bool unequal = false;            // does any type differ from fluids in it?
-    const Thin *thin = nullptr;      // null: none is
-    const Cut *cut = nullptr;        // null: none is
+    const VolumeRatio *ratio = nullptr;    // per type
+    bool unequal = false;                  // does any type differ from fluids in it?
+    const Thin *thin = nullptr;            // null: none is
+    const Cut *cut = nullptr;              // null: none is
     // else a pair across ranks is visited on both: each counts half of powers and forces on walls
     bool newton = false;
     // of pairs of fluids, in loops pair by pair; null: all of each
@@ -105,7 +105,7 @@ namespace FSI {
     // types of different spacing that are one fluid
     bool is_one_fluid(int a, int b) const
     {
-      return share[b].volume != 1.0 && state[a].rho0 == state[b].rho0 &&
+      return ratio[b].volume != 1.0 && state[a].rho0 == state[b].rho0 &&
           state[a].csq == state[b].csq;
     }
   };

@@ -113,13 +113,13 @@ namespace FSI {
 
   // How much more neighbors of this type count at i: in forces of pressure; in sums of W and along
   // the face
-  FSI_INLINE double fill_of(const FluidParticles &in, int i, int type_j)
+  FSI_INLINE double backfill_of(const FluidParticles &in, int i, int type_j)
   {
-    return in.share[type_j].thin ? in.thin->fill[i] : 1.0;
+    return in.ratio[type_j].thin ? in.thin->backfill[i] : 1.0;
   }
-  FSI_INLINE double fill_weight_of(const FluidParticles &in, int i, int type_j)
+  FSI_INLINE double backfill_weight_of(const FluidParticles &in, int i, int type_j)
   {
-    return in.share[type_j].thin ? in.thin->fill_weight[i] : 1.0;
+    return in.ratio[type_j].thin ? in.thin->backfill_weight[i] : 1.0;
   }
 
   // Kernel or gradient of neighbors that mirror walls cut
@@ -282,9 +282,9 @@ namespace FSI {
       const int i = row.i, type_i = in.type[i], type_j = in.type[row.j[0]];
       const Particle<T, D> pi(point[i]);
       const auto diffusion = diffusion_of<UNLIKE>(in, laws.delta, kernel.h, type_i, type_j);
-      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[type_j].sharper : 0.0,
-                   fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0,
-                   back = UNLIKE ? 1.0 / in.share[type_j].volume : 1.0;
+      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.ratio[type_j].sharper : 0.0,
+                   backfill = (FLAGS & Flag::UNEQUAL) ? backfill_of(in, i, type_j) : 1.0,
+                   back = UNLIKE ? 1.0 / in.ratio[type_j].volume : 1.0;
       T sum = 0.0, flux = 0.0;
       if (FLAGS & Flag::SHIFT) shift_of.open();
       if (near) sieve.open(row);
@@ -301,7 +301,7 @@ namespace FSI {
         if (CUT) g = cut_off(in, j, g);
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         const auto shift_pair = [&](const T &along, const T *rate_j) FSI_INLINE_LAMBDA {
-          const T vol_j = (FLAGS & Flag::UNEQUAL) ? fill * pj.vol : pj.vol;
+          const T vol_j = (FLAGS & Flag::UNEQUAL) ? backfill * pj.vol : pj.vol;
           shift_of.take(law.weight(w), in, i, rsq, pi.vol * vol_j * along, x, v, rate_j, j, shift);
         };
         if constexpr ((FLAGS & Flag::SHIFT) && KIND != WITH_FLUID) shift_pair(g, nullptr);
@@ -333,7 +333,7 @@ namespace FSI {
         if (near) sieve.take(reachsq < rsq, j);
       });
       if (near) near->push_back(sieve.close(row));    // of images the others are gone
-      const double volume = (FLAGS & Flag::UNEQUAL) ? fill * in.share[type_j].volume : 1.0;
+      const double volume = (FLAGS & Flag::UNEQUAL) ? backfill * in.ratio[type_j].volume : 1.0;
       rate[i] += point[i].rho * volume * point[i].vol * L::sum(sum) + L::sum(flux);
       if constexpr (CUT)
         if (in.cut && sums && (in.newton || i < in.nlocal))
@@ -397,14 +397,14 @@ namespace FSI {
         ? 0.0
         : 2.0 * (KIND == WITH_FLUID ? between(fluid.viscosity, other.viscosity) : fluid.viscosity);
     if (FLAGS & Flag::UNEQUAL) {
-      r.volume = in.share[type_j].volume;
-      r.sharper = in.share[type_j].sharper;
-      r.visc *= fill_weight_of(in, i, type_j);
+      r.volume = in.ratio[type_j].volume;
+      r.sharper = in.ratio[type_j].sharper;
+      r.visc *= backfill_weight_of(in, i, type_j);
     }
-    r.thin = (FLAGS & Flag::UNEQUAL) && in.share[type_j].thin;
+    r.thin = (FLAGS & Flag::UNEQUAL) && in.ratio[type_j].thin;
     if (KIND == WITH_SOLID || r.thin) {
       const auto *const g = KIND == WITH_WALL ? laws.gravity : laws.extrapolate;
-      const double along = r.thin ? in.thin->fill_weight[i] / in.thin->fill[i] : 1.0;
+      const double along = r.thin ? in.thin->backfill_weight[i] / in.thin->backfill[i] : 1.0;
       for (int d = 0; d < D; d++) r.extrapolate[d] = g ? along * g[type_i][d] : 0.0;
     }
     return r;
@@ -663,9 +663,9 @@ namespace FSI {
       Particle<T, D> pi(point[i]);
       // neighbors of another volume count by it: omega p_i V_i^2 + p_j V_j^2/omega, omega = V_j/V_i
       // of the lattices
-      const double fill = (FLAGS & Flag::UNEQUAL) ? fill_of(in, i, type_j) : 1.0,
-                   back = (FLAGS & Flag::UNEQUAL) ? fill / constant.volume : 1.0;
-      if (FLAGS & Flag::UNEQUAL) pi.pv2 = fill * constant.volume * pi.pv2;
+      const double backfill = (FLAGS & Flag::UNEQUAL) ? backfill_of(in, i, type_j) : 1.0,
+                   back = (FLAGS & Flag::UNEQUAL) ? backfill / constant.volume : 1.0;
+      if (FLAGS & Flag::UNEQUAL) pi.pv2 = backfill * constant.volume * pi.pv2;
       const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && constant.thin);
       double down[D];
       const bool deep = (FLAGS & Flag::IMAGES) && is_below(laws, mirror, in.type[i], down);
@@ -740,8 +740,8 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i;
       const Particle<T, D> pi(point[i]);
-      const double fill = !(FLAGS & Flag::BOTH) && in.thin ? fill_of(in, i, in.type[row.j[0]])
-                                                           : 1.0;
+      const double backfill =
+          !(FLAGS & Flag::BOTH) && in.thin ? backfill_of(in, i, in.type[row.j[0]]) : 1.0;
       shift_of.open();
       for_neighbors<T, IMAGE>(row, [&](const int *j, const T &weight) FSI_INLINE_LAMBDA {
         Particle<T, D> pj(point, j);
@@ -754,8 +754,8 @@ namespace FSI {
         if (IMAGE) g = weight * g;
         if constexpr (FLAGS & Flag::PARTLY) g = as_visible(in, j, g);
         const T no_rate = 0.0;
-        shift_of.take(law.weight(kernel.W(r)), in, i, rsq, pi.vol * (fill * pj.vol) * g, x, nullptr,
-                      &no_rate, j, shift);
+        shift_of.take(law.weight(kernel.W(r)), in, i, rsq, pi.vol * (backfill * pj.vol) * g, x,
+                      nullptr, &no_rate, j, shift);
       });
       shift_of.close(shift[i]);
     }
@@ -774,10 +774,11 @@ namespace FSI {
       if (row.n == 0) continue;
       const int i = row.i;
       // of neighbors of another spacing
-      double volume = (FLAGS & Flag::UNEQUAL) ? in.share[in.type[row.j[0]]].volume : 1.0;
+      double volume = (FLAGS & Flag::UNEQUAL) ? in.ratio[in.type[row.j[0]]].volume : 1.0;
       if (in.thin)
-        volume *= ((FLAGS & Flag::DIVERGENCE) ? fill_of : fill_weight_of)(in, i, in.type[row.j[0]]);
-      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.share[in.type[row.j[0]]].sharper : 0.0,
+        volume *= ((FLAGS & Flag::DIVERGENCE) ? backfill_of
+                                              : backfill_weight_of)(in, i, in.type[row.j[0]]);
+      const double sharper = (FLAGS & Flag::UNEQUAL) ? in.ratio[in.type[row.j[0]]].sharper : 0.0,
                    back = (FLAGS & Flag::UNEQUAL) && in.unlike ? 1.0 / volume : 1.0;
       T of_i = 0.0;
       for_neighbors<T, (FLAGS & Flag::IMAGES) != 0>(

@@ -36,8 +36,9 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
-    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr), disc(nullptr), step(nullptr), ledger(nullptr), alpha(0.0),
-    beta(0.0), contact_range(1.0), self_contact(0)
+    Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr),
+    disc(nullptr), step(nullptr), ledger(nullptr), alpha(0.0), beta(0.0), contact_range(1.0),
+    self_contact(0)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -247,7 +248,7 @@ bool PairFSI::several_bodies() const
 double PairFSI::init_one(int i, int j)
 {
   if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set: types {} and {}", i, j);
-  const double own = fix_fsi->resolution[i].cut, other = fix_fsi->resolution[j].cut;
+  const double own = disc->resolution[i].cut, other = disc->resolution[j].cut;
   if (!handles(material[i].species, material[j].species)) return 0.0;
   const bool fluids = material[i].species == FLUID && material[j].species == FLUID;
   return fluids ? 0.5 * (own + other) : std::max(own, other);
@@ -273,10 +274,10 @@ void PairFSI::contact_row()
 
 void PairFSI::check_contact() const
 {
-  if (contact_range * fix_fsi->dx > fix_fsi->cut * (1.0 + 1.0e-12))
+  if (contact_range * disc->dx > disc->cut * (1.0 + 1.0e-12))
     error->all(FLERR,
                "Pair style {} contact {} must not exceed the kernel's support, {:g} spacings",
-               style, contact_range, fix_fsi->cut / fix_fsi->dx);
+               style, contact_range, disc->cut / disc->dx);
 }
 
 // the solid's speed of sound is that of its bulk modulus (paper eq. 21)

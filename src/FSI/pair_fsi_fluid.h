@@ -22,7 +22,6 @@ PairStyle(fsi/fluid,PairFSIFluid);
 
 #include "pair_fsi.h"
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -32,8 +31,9 @@ namespace FSI {
   class Fields;
   struct FluidParticles;
   struct ForceLaws;
+  struct PairSet;
+  class PairSets;
   struct Row;
-  class RowList;
   struct Visible;
 }    // namespace FSI
 
@@ -105,64 +105,27 @@ class PairFSIFluid : public PairFSI {
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
-  struct Meeting;                   // pairs of one kernel
-  std::vector<Meeting> meetings;    // those of each level, of two levels, of what thin bodies hide
-  std::vector<size_t> of_two_levels, of_hidden;    // the meetings of two fluids
-  void find_meetings();
-  void find_shares();
-  void find_guards();
-  std::vector<FSI::RowList *> rows_of_fluids();
-  void find_rows();
-  double beyond_lists() const;
-  void add_pairs_behind_walls(const std::vector<char> &is_fluid,
-                              std::vector<std::array<int, 2>> &pairs) const;
-  void find_rows_with_others(const std::vector<std::array<int, 2>> &,
-                             const std::vector<int> &other_types);
-  bool has_rows_with_walls() const;
+  FSI::PairSets &pairs;
   bool has_all_pairs() const;
-  bigint images_step;
-  void find_images(const FSI::Walls &, const double *places);
-  template <class Loop> void for_images(const FSI::Walls &, const double *places, Loop);
-  // The loop of rates sorts near pairs out when particles may have moved by the margin since it
-  // last did. Before the lists are used by a second force evaluation at other positions they are
-  // not known.
-  bool near_known, sorts;
-  double margin;
-  std::vector<double> sorted_at;    // positions
-  template <int D> void find_reach();
-  double within(const Meeting &) const;
-  std::vector<FSI::Row> near_images;
-
-  bool cut, solids_pass;    // does a solid pass through a mirror wall, may one before the next
-                            // neighbor lists?
-  std::vector<FSI::Walls::Depth> depths;    // per type and wall
-  std::vector<double> parts, part_rates;    // how much of solids is before the walls, local and
-                                            // ghost, and its rate
-  void find_depths();
-  void find_cut_solids();
-
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
-  std::vector<double> taken;     // by coupling and friction, if there is a ledger
-  struct Shares;                 // how bodies count at fluid particles
-  std::vector<Shares> shares;    // per level
+  std::vector<double> taken;          // by coupling and friction, if there is a ledger
+  struct LevelRatios;                 // how bodies count at fluid particles
+  std::vector<LevelRatios> ratios;    // per level
+  void find_ratios();
+  void find_guards();
   double *fade;    // of fluids of several levels: what is left of shifting's factor; or null
   std::vector<double> volumes;
   void find_fades();
   template <class T, class K>
   void add_fades(const K &, const std::vector<FSI::Row> &, const FSI::Visible &);
-  double *fill, *fill_weight;    // per particle, by how much more thin bodies count (fsi_sight.h);
-                                 // null: there are none
-  // fluid particles that may have a thin body beside them before lists are built again
-  std::vector<int> beside;
-  void look_past_thin_bodies();
-  double farthest_of(int i, const int *neighbors, int n) const;
-  void find_hidden(int i, const int *neighbors, int n, const std::vector<int> &fluid_types,
-                   std::vector<char> &hides);
+  // per particle, by how much more thin bodies count (fsi_sight.h); null: there are none
+  double *backfill, *backfill_weight;
   // particles as the loop over these rows sees them, and that loop
-  FSI::FluidParticles of_rows(const FSI::FluidParticles &, const Meeting &,
+  FSI::FluidParticles of_rows(const FSI::FluidParticles &, const FSI::PairSet &,
                               const std::vector<FSI::Row> &, const std::vector<double> &visible);
   FSI::FluidParticles particles_at(const double *points);
+  std::vector<FSI::FluidParticles> particles_of_levels();
   template <int D> double volume_of(int i) const;
   // positions a time t later; what else a loop needs is up to complete(i, point)
   template <int D, class Complete> FSI::FluidParticles gather(double t, Complete);
@@ -181,10 +144,6 @@ class PairFSIFluid : public PairFSI {
   double **beyond;
   void add_velocities_at_solids();
   void extrapolate_velocities();
-  bool is_light(int type) const;
-  template <int D, class Use> void for_wet_pairs(Use) const;
-  template <int D> void find_impedances();
-  template <int D> void take_swerve();
   template <int D> void correct_powers();
   template <int D> void add_density_rate(double dt);
   void advance_density();

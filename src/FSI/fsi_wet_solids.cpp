@@ -1,0 +1,206 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_wet_solids.h"
+
+#include "atom.h"
+#include "compute_fsi_force.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "fsi_levels.h"
+#include "fsi_pair_sets.h"
+#include "fsi_tensor.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+void CutSolids::init(const Discretization &disc_in, bool has_solids_in)
+{
+  disc = &disc_in;
+  has_solids = has_solids_in;
+}
+
+// solids that pass through mirror walls, or may before the next neighbor lists
+void CutSolids::find_depths(const Walls &walls)
+{
+  const auto &wall = walls.wall;
+  const int *const type = atom->type, n = wall.size();
+  const auto *const x = Scene::rows(atom->x), *const v = Scene::rows(atom->v);
+  std::vector<double> here(n * (atom->ntypes + 1), -INFINITY), all(here.size()),
+      speeds(here.size());
+  const auto for_near = [&](auto f) {
+    const InnerBox inner(wall, neighbor->skin);
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (inner.contains(x[i]) || disc->state[type[i]].species != SOLID) continue;
+      for (int k = 0; k < n; k++)
+        if (!wall[k].finite) f(i, n * type[i] + k, wall[k]);
+    }
+  };
+  for_near([&](int i, int m, const Wall &w) {
+    here[m] = std::max(here[m], -w.distance(x[i]));
+  });
+  MPI_Allreduce(here.data(), all.data(), here.size(), MPI_DOUBLE, MPI_MAX, world);
+  may_pass = std::any_of(all.begin(), all.end(), [this](double depth) {
+    return depth > -neighbor->skin;
+  });
+  depths.assign(all.size(), {0.0, 0.0});
+  any = std::any_of(all.begin(), all.end(), [](double depth) {
+    return depth > 0.0;
+  });
+  if (!any) return;
+  std::fill(here.begin(), here.end(), -INFINITY);
+  for_near([&](int i, int m, const Wall &w) {
+    if (-w.distance(x[i]) == all[m])
+      here[m] = std::max(here[m], -w.side * (v[i][w.axis] - w.velocity[w.axis]));
+  });
+  MPI_Allreduce(here.data(), speeds.data(), here.size(), MPI_DOUBLE, MPI_MAX, world);
+  for (size_t m = 0; m < all.size(); m++)
+    if (all[m] > 0.0) depths[m] = {all[m], speeds[m]};
+}
+
+void CutSolids::find(StepState &step)
+{
+  const Walls &walls = step.walls;
+  any = false;
+  if (!walls.any() || !has_solids || (neighbor->ago && !may_pass)) return;
+  find_depths(walls);
+  if (!any) return;
+  const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
+  const auto *const x = Scene::rows(atom->x), *const v = Scene::rows(atom->v);
+  parts.assign(nall, 1.0);
+  part_rates.assign(nall, 0.0);
+  for (int i = 0; i < nall; i++) {
+    if (disc->state[type[i]].species != SOLID) continue;
+    const double dx = disc->dx_of(type[i]);
+    parts[i] = walls.before(x[i], v[i], dx, &depths[walls.wall.size() * type[i]], part_rates[i]);
+    step.wmask[i] = parts[i] > 0.0 ? walls.near(x[i], disc->cut, 0.5 * dx) : 0;
+  }
+}
+
+const Cut *CutSolids::of_particles()
+{
+  cut = {parts.data(), part_rates.data()};
+  return any ? &cut : nullptr;
+}
+
+double CutSolids::memory_usage() const
+{
+  return (double) (parts.capacity() + part_rates.capacity()) * sizeof(double);
+}
+
+void LightSolids::init(FixFSI *fix_fsi_in)
+{
+  fix_fsi = fix_fsi_in;
+  disc = fix_fsi;
+  step = fix_fsi;
+}
+
+// t = 0: is any type?
+bool LightSolids::is_light(int t) const
+{
+  const auto &state = disc->state;
+  double fluid = 0.0, solid = INFINITY;
+  for (int k = 1; k <= atom->ntypes && step->substeps > 1; k++) {
+    const double layer = state[k].rho0 * disc->dx_of(k);
+    if (state[k].species == FLUID) fluid = std::max(fluid, layer);
+    if (state[k].species == SOLID && (t == 0 || k == t)) solid = std::min(solid, layer);
+  }
+  return solid < 0.5 * fluid;
+}
+
+// use(i, j, x_ij, k) for pairs of a fluid and a solid, whose change of velocity w within the step
+// changes the force on the fluid by k x_ij (x_ij.w)
+template <int D, class Use> void LightSolids::for_wet_pairs(const Fluid &fluid, Use use) const
+{
+  static constexpr double HALF = 0.3;    // of the stiffness of a wet area, over rho c^2/dx
+  const int *const type = atom->type;
+  for_levels(*disc, [&](size_t level, const auto &kernel) {
+    const FluidParticles &in = fluid.of_level[level];
+    const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+    for (const Row &row : fluid.sets.of(level, PairSet::SOLIDS).rows.rows) {
+      const int i = row.i, t = type[row.j[0]];
+      if (!is_light(t)) continue;
+      const State &s = disc->state[type[i]];
+      const double more = in.ratio[t].thin ? in.thin->backfill[i] : 1.0,
+                   z = HALF * s.rho0 * s.csq / disc->levels[level].dx * update->dt * more;
+      for (const int *j = row.j; j < row.j + row.n; j++) {
+        double x[D];
+        difference(point[i].x, point[*j].x, x);
+        const double rsq = product(x, x), r = std::sqrt(rsq);
+        if (rsq < kernel.cutsq && r > 0.0 && (atom->mask[*j] & fix_fsi->groupbit))
+          use(i, *j, x, -2.0 * z * point[i].vol * point[*j].vol * kernel.gradient(r) / r);
+      }
+    }
+  });
+}
+
+void LightSolids::find_impedances(const Fluid &fluid)
+{
+  disc->dim == 2 ? find_impedances<2>(fluid) : find_impedances<3>(fluid);
+}
+
+template <int D> void LightSolids::find_impedances(const Fluid &fluid)
+{
+  auto *const z = step->impedance, *const w = step->swerve;
+  for (auto *rows : {z, z + 3, w})
+    for (int d = 0; d < 3; d++) rows[d].assign(atom->nlocal + atom->nghost, 0.0);
+  for_wet_pairs<D>(fluid, [&](int, int j, const double(&x)[D], double k) {
+    for (int a = 0; a < D; a++)
+      for (int b = a; b < D; b++) z[Sym<3>::id(a, b)][j] += k * x[a] * x[b];
+  });
+  for (int a = 0; a < D; a++)
+    for (int b = a; b < D; b++) fix_fsi->add_ghosts(z[Sym<3>::id(a, b)].data());
+}
+
+void LightSolids::react(const Fluid &fluid, const std::vector<ComputeFSIForce *> &measures)
+{
+  disc->dim == 2 ? react<2>(fluid, measures) : react<3>(fluid, measures);
+}
+
+template <int D>
+void LightSolids::react(const Fluid &fluid, const std::vector<ComputeFSIForce *> &measures)
+{
+  std::vector<double> more[D];
+  auto &w = step->swerve;
+  for (int d = 0; d < D; d++) {
+    fix_fsi->send_to_ghosts(w[d].data());
+    more[d].assign(w[d].size(), 0.0);
+  }
+  for_wet_pairs<D>(fluid, [&](int i, int j, const double(&x)[D], double k) {
+    for (int a = 0; a < D; a++)
+      for (int b = 0; b < D; b++) {
+        more[a][i] += k * x[a] * x[b] * w[b][j];
+        more[a][j] -= k * x[a] * x[b] * w[b][j];
+      }
+  });
+  for (auto &of : more) fix_fsi->add_ghosts(of.data());
+  double power = 0.0;    // that on solids is counted in their sub-steps
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool counts =
+        (atom->mask[i] & fix_fsi->groupbit) && disc->state[atom->type[i]].species == FLUID;
+    double f[3] = {};
+    for (int d = 0; d < D; d++) {
+      atom->f[i][d] += f[d] = more[d][i];
+      if (counts)
+        power += f[d] *
+            (atom->v[i][d] + 0.5 * update->dt * force->ftm2v * atom->f[i][d] / atom->rmass[i]);
+    }
+    for (auto *measure : measures) measure->add_more(i, f);
+  }
+  fix_fsi->tally(Ledger::COUPLING, -power);
+}

@@ -1,0 +1,82 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Solids that fluids press on in ways of their own: those that pass through mirror walls, and those
+// that are light and take sub-steps.
+
+#ifndef LMP_FSI_WET_SOLIDS_H
+#define LMP_FSI_WET_SOLIDS_H
+
+#include "fsi_fluid_loops.h"
+#include "fsi_scene.h"
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class ComputeFSIForce;
+class FixFSI;
+
+namespace FSI {
+  class PairSets;
+
+  // How much of the solids' particles is before mirror walls, and its rate
+  class CutSolids : protected Pointers {
+   public:
+    explicit CutSolids(LAMMPS *lmp) : Pointers(lmp) {}
+    void init(const Discretization &, bool has_solids);
+    // where particles are in this step; takes what is behind walls out of step.wmask
+    void find(StepState &step);
+    const Cut *of_particles();    // null: no solid passes through a wall
+    double memory_usage() const;
+
+   private:
+    const Discretization *disc = nullptr;
+    bool has_solids = false;
+    bool any = false, may_pass = false;    // is one cut, may one be before the next lists?
+    std::vector<Walls::Depth> depths;      // per type and wall
+    std::vector<double> parts, part_rates;
+    Cut cut;
+    void find_depths(const Walls &);
+  };
+
+  // Solids whose layers weigh less than half of one of the fluid: their sub-steps feel how the
+  // fluid's force changes within the step (theory.rst)
+  class LightSolids : protected Pointers {
+   public:
+    explicit LightSolids(LAMMPS *lmp) : Pointers(lmp) {}
+    void init(FixFSI *);    // whose group and messages
+    // what its pairs are, and the fluid particles by level as the loop of forces has them
+    struct Fluid {
+      const PairSets &sets;
+      const std::vector<FluidParticles> &of_level;
+    };
+    bool any() const { return is_light(0); }
+    void find_impedances(const Fluid &);
+    // the reaction: what solids have not got of the impulse, fluids have not given
+    void react(const Fluid &, const std::vector<ComputeFSIForce *> &measures);
+
+   private:
+    FixFSI *fix_fsi = nullptr;
+    const Discretization *disc = nullptr;
+    StepState *step = nullptr;
+    bool is_light(int type) const;
+    template <int D, class Use> void for_wet_pairs(const Fluid &, Use) const;
+    template <int D> void find_impedances(const Fluid &);
+    template <int D> void react(const Fluid &, const std::vector<ComputeFSIForce *> &);
+  };
+
+}    // namespace FSI
+}    // namespace LAMMPS_NS
+
+#endif
