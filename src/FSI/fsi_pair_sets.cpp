@@ -412,6 +412,10 @@ void PairSets::find_images_of(PairSet &set, const Walls &walls, const double *pl
   const auto *const x = Scene::rows(atom->x);
   const bool finite = walls.finite(), hidden = set.what == PairSet::HIDDEN;
   const double *part = set.visible.data();    // of a pair and its images it is the same
+  RowList *const images = set.images.data();
+  const Walls::Reflection *const reflections = walls.reflections.data();
+  const Wall *const wall_of = step->walls.wall.data();
+  const double reach = set.reach;
   for (const Row &row : set.rows.rows) {
     const int i = row.i;
     const double *const parts_of_row = part;
@@ -420,25 +424,25 @@ void PairSets::find_images_of(PairSet &set, const Walls &walls, const double *pl
     const bool of_own_type = set.what == PairSet::FLUIDS && i < atom->nlocal &&
         (row.n == 0 || type[row.j[0]] == type[i]);
     for (int k = 0; k < n; k++) {
-      const int mask = walls.reflections[k].mask;
+      const int mask = reflections[k].mask;
       if ((wmask[i] & mask) != mask) continue;
-      const Wall &wall = step->walls.wall[walls.reflections[k].w[0]];
-      const double farthest = set.reach - wall.distance(x[i]);
+      const Wall &wall = wall_of[reflections[k].w[0]];
+      const double farthest = reach - wall.distance(x[i]);
       if (hidden) {
         const double *of_pair = parts_of_row;
-        set.images[k].add(i, row.j, row.n, false, false, [&](int j) {
+        images[k].add(i, row.j, row.n, false, false, [&](int j) {
           const double seen = *of_pair++;
           if ((wmask[j] & mask) != mask || (finite && !sees(i, j, walls, k, places))) return false;
           set.visible_images[k].push_back(seen);
           return true;
         });
       } else if (finite)
-        set.images[k].add(i, row.j, row.n, of_own_type && sees(i, i, walls, k, places), false,
-                          [&](int j) {
-                            return (wmask[j] & mask) == mask && sees(i, j, walls, k, places);
-                          });
+        images[k].add(i, row.j, row.n, of_own_type && sees(i, i, walls, k, places), false,
+                      [&](int j) {
+                        return (wmask[j] & mask) == mask && sees(i, j, walls, k, places);
+                      });
       else
-        set.images[k].add(i, row.j, row.n, of_own_type, false, [&](int j) {
+        images[k].add(i, row.j, row.n, of_own_type, false, [&](int j) {
           return (wmask[j] & mask) == mask && wall.distance(x[j]) < farthest;
         });
     }

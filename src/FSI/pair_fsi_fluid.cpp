@@ -29,6 +29,7 @@
 #include "fsi_levels.h"
 #include "fsi_pair_sets.h"
 #include "fsi_profile.h"
+#include "fsi_refusals.h"
 #include "fsi_shift.h"
 #include "fsi_sight.h"
 #include "fsi_wet_solids.h"
@@ -94,13 +95,18 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
 
 PairFSIFluid::~PairFSIFluid()
 {
-  give_back_virial();
+  take_virial(nullptr);
 }
 
-void PairFSIFluid::give_back_virial()
+// A hybrid style would take the virial of images, too, with that of pairs: pairs have to count their
+// own. What an earlier one had is given back.
+void PairFSIFluid::take_virial(Pair *of)
 {
   if (hybrid) hybrid->no_virial_fdotr_compute = no_fdotr_before;
-  hybrid = nullptr;
+  hybrid = of;
+  if (!hybrid) return;
+  no_fdotr_before = hybrid->no_virial_fdotr_compute;
+  hybrid->no_virial_fdotr_compute = 1;
 }
 
 const std::vector<Row> &PairFSIFluid::rows_with_walls(size_t level) const
@@ -154,67 +160,52 @@ double PairFSIFluid::sound_of(const Material &m) const
   return sound;
 }
 
-// choose the loops for kernel, dimension and the effects that the script names
+void PairFSIFluid::check_effects(const Facts &of_solids) const
+{
+  const bool continuity = disc->density_fluid == Discretization::CONTINUITY, full = couple != WALL;
+  if (delta > 0.0 && !continuity) refuse(error, Refused::CONTINUITY, "density/diffusion");
+  if (surfaces && !continuity) refuse(error, Refused::CONTINUITY, "density/surface");
+  if (shifting > 0.0 && !continuity) refuse(error, Refused::CONTINUITY, "shift");
+  if (surfaces && (tension || background != 0.0)) refuse(error, Refused::SURFACES);
+  if (full && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS)
+    refuse(error, Refused::FULL_TOTAL);
+  // the plain forces of a solid end at its face with half a kernel of neighbors missing, which the
+  // fluid's pairs supply
+  if (full && of_solids.corrected_gradients) refuse(error, Refused::FULL_CORRECTED);
+
+  if (comm->me) return;
+  const bool viscous = std::any_of(material.begin(), material.end(), [](const Material &m) {
+    return m.viscosity > 0.0;
+  });
+  const auto idle = [this](const char *what, const char *why) {
+    error->warning(FLERR, "Pair style fsi/fluid {} has nothing to act on: {}", what, why);
+  };
+  if (laminar && !viscous) idle("laminar/visc", "no fluid has a viscosity");
+  if (extrapolate && !has_solids()) idle("extrapolate", "there is no solid");
+  if (extrapolate && has_solids() && full) idle("extrapolate", "it is for couple wall");
+  if (solids_slip && !has_solids()) idle("solid/slip", "there is no solid");
+  if (solids_slip && has_solids() && !laminar) idle("solid/slip", "there is no laminar/visc");
+}
+
+// chooses the loops for kernel, dimension and the effects that the script names
 void PairFSIFluid::init_style()
 {
   NeighList *const lists = list;    // LAMMPS makes no others where all is asked for as before
   PairFSI::init_style();
   list = lists;
-  for (const auto &of_continuity :
-       {std::make_pair(delta > 0.0, "density/diffusion"),
-        std::make_pair(surfaces != 0, "density/surface"), std::make_pair(shifting > 0.0, "shift")})
-    if (of_continuity.first && disc->density_fluid != Discretization::CONTINUITY)
-      error->all(FLERR,
-                 "Pair style fsi/fluid {} requires density by continuity, as fix fsi scheme "
-                 "standard has it",
-                 of_continuity.second);
-  if (surfaces && (tension || background != 0.0))
-    error->all(FLERR,
-               "Pair style fsi/fluid density/surface is for fluids with a free surface: without "
-               "tension yes and background");
-  if (laminar) {
-    bool any = false;
-    for (const auto &m : material) any = any || m.viscosity > 0.0;
-    if (!any && comm->me == 0)
-      error->warning(
-          FLERR,
-          "Pair style fsi/fluid laminar/visc has nothing to act on: no fluid has a viscosity");
-  }
   force_computes = computes_of<ComputeFSIForce>(lmp);
   const Facts of_solids = facts_of_solids(lmp);
   couple = disc->article && of_solids.style == Facts::OF_SOLIDS ? FULL : given_couple;
-  if (extrapolate && (couple != WALL || !has_solids()) && comm->me == 0)
-    error->warning(FLERR, "Pair style fsi/fluid extrapolate has nothing to act on: {}",
-                   has_solids() ? "it is for couple wall" : "there is no solid");
-  if (solids_slip && (!laminar || !has_solids()) && comm->me == 0)
-    error->warning(FLERR, "Pair style fsi/fluid solid/slip has nothing to act on: {}",
-                   has_solids() ? "there is no laminar/visc" : "there is no solid");
+  check_effects(of_solids);
   fix_fsi->find_levels();
   pairs.init(*disc, *step, couple != WALL);
   members->cut_solids.init(*disc, has_solids());
   members->light_solids.init(fix_fsi);
   find_ratios();
-  // a hybrid style would take the virial of images, too, with that of pairs: pairs have to count
-  // their own
-  give_back_virial();
-  if (force->pair != this && any_is(fixes_of<Part>(lmp), &Facts::mirror_walls)) {
-    hybrid = force->pair;
-    no_fdotr_before = hybrid->no_virial_fdotr_compute;
-    hybrid->no_virial_fdotr_compute = 1;
-  }
-  if (couple != WALL && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS)
-    error->all(FLERR,
-               "Pair style fsi/solid/tl requires couple wall in pair_style fsi/fluid: its stress "
-               "is not one that crosses to the fluid");
-  // the plain forces of a solid end at its face with half a kernel of neighbors missing, which the
-  // fluid's pairs supply; forces with corrected gradients are complete without them
-  if (couple != WALL && of_solids.corrected_gradients)
-    error->all(FLERR,
-               "Pair style fsi/fluid couple full requires pair_style fsi/solid gradient plain: "
-               "with corrected gradients use couple wall");
+  const bool mirrors = any_is(fixes_of<Part>(lmp), &Facts::mirror_walls);
+  take_virial(force->pair != this && mirrors ? force->pair : nullptr);
   double &ghosts = comm->cutghostuser;    // 0: LAMMPS chooses; too small: fix fsi says so
-  if (has_solids() && any_is(fixes_of<Part>(lmp), &Facts::mirror_walls) &&
-      (ghosts == 0.0 || ghosts >= disc->largest_cut))
+  if (has_solids() && mirrors && (ghosts == 0.0 || ghosts >= disc->largest_cut))
     ghosts = std::max(ghosts, pairs.beyond_lists() + neighbor->skin);
   open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);
@@ -608,14 +599,11 @@ template <int D, class Complete> FluidParticles PairFSIFluid::gather(double t, C
   return particles_at(points.data());
 }
 
-// Positions are those of time n, half a step before atom->x, where the velocities belong: the
-// density leapfrogs from n-1/2 to n+1/2, second order in time.
-template <int D> void PairFSIFluid::add_density_rate(double dt)
+// particles at time n, half a step before atom->x, with what density diffusion reads
+template <int D> FluidParticles PairFSIFluid::gather_for_rates(double dth)
 {
-  const double dth = 0.5 * dt;
   double **x = atom->x;
-  const int *const type = atom->type;
-  const Walls walls = step->walls.moved(-dth);
+  const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
   double *const *const by_shifting = velocity_of_shifting();
   if (by_shifting)
     for (int d = 0; d < D; d++) fix_fsi->send_to_ghosts(by_shifting[d]);
@@ -634,37 +622,45 @@ template <int D> void PairFSIFluid::add_density_rate(double dt)
   });
   // the density of walls is that of the pressures in the last step or setup, which a restart does
   // not know
-  if (step->shifts && pairs.has_rows_with_walls()) {
-    auto *const point = reinterpret_cast<Point<D> *>(points.data());
-    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-      if (disc->state[type[i]].species == RIGID)
-        point[i].vol = atom->rmass[i] * disc->state[type[i]].inv_rho0;
-  }
+  if (!step->shifts || !pairs.has_rows_with_walls()) return particles;
+  auto *const point = reinterpret_cast<Point<D> *>(points.data());
+  for (int i = 0; i < nall; i++)
+    if (disc->state[type[i]].species == RIGID)
+      point[i].vol = atom->rmass[i] * disc->state[type[i]].inv_rho0;
+  return particles;
+}
+
+// Positions are those to which the velocities belong: the density leapfrogs from n-1/2 to n+1/2,
+// second order in time.
+template <int D> void PairFSIFluid::add_density_rate(double dt)
+{
+  const double dth = 0.5 * dt;
+  const int nall = atom->nlocal + atom->nghost;
+  const Walls walls = step->walls.moved(-dth);
+  const FluidParticles particles = gather_for_rates<D>(dth);
   if (ledger->kept || disc->has_levels()) pressure_over_density.resize(atom->nmax);
   if (ledger->kept)
-    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-      pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
+    for (int i = 0; i < nall; i++) pressure_over_density[i] = fix_fsi->pressure(i) / atom->rho[i];
 
   RateLaws laws = {delta, pressure_over_density.data(), 0.0, fills(), 0.0};
   double *const shift = step->shifts ? step->shift[0] : nullptr;
   PairSums sums;
-  const auto loop = [&](const PairSet &m, const std::vector<Row> &which,
-                        const std::vector<double> &parts_of, const Mirror *mirror, double reach,
-                        std::vector<Row> *found) {
-    FluidParticles in = of_rows(particles, m, which, parts_of);
-    if (shift && fade) {
-      in.fade = fade;
-      in.unlike = true;
-    }
-    laws.wdx = m.wdx;
-    laws.reach = reach;
-    m.loops->rates(m.kind, which, mirror, in, laws, rate, shift, ledger->kept ? &sums : nullptr,
-                   found);
-  };
-  pairs.for_rates(walls, particles.points, loop);
+  pairs.for_rates(walls, particles.points,
+                  [&](const PairSet &set, const std::vector<Row> &rows,
+                      const std::vector<double> &visible, const Mirror *mirror, double reach,
+                      std::vector<Row> *near) {
+                    FluidParticles in = of_rows(particles, set, rows, visible);
+                    if (shift && fade) {
+                      in.fade = fade;
+                      in.unlike = true;
+                    }
+                    laws.wdx = set.wdx;
+                    laws.reach = reach;
+                    set.loops->rates(set.kind, rows, mirror, in, laws, rate, shift,
+                                     ledger->kept ? &sums : nullptr, near);
+                  });
   const int of_shift = nshift(), last = shift_sums();
-  for (int i = 0; shift && i < atom->nlocal + atom->nghost; i++)
-    rate[i] += shift[of_shift * i + last];
+  for (int i = 0; shift && i < nall; i++) rate[i] += shift[of_shift * i + last];
   ledger->tally(Ledger::DIFFUSION, sums.diffusion);
   ledger->tally(Ledger::WALLS, sums.walls);
 }
@@ -798,6 +794,35 @@ void PairFSIFluid::compute(int eflag, int vflag)
   if (vflag_fdotr && !step->walls.any()) virial_fdotr_compute();
 }
 
+ForceLaws PairFSIFluid::laws_of_forces()
+{
+  ForceLaws laws;
+  laws.alpha = alpha;
+  laws.beta = beta;
+  laws.laminar = laminar;
+  if (laminar == CENTRAL_LAMINAR) laws.central_length_sq = disc->central_length_sq;
+  laws.gravity = fix_fsi->body_forces.of_type.data();
+  if (extrapolate) laws.extrapolate = laws.gravity;
+  laws.stored = disc->density_solid == Discretization::SUMMATION ? 1.0 : 0.0;
+  laws.solids_slip = !sticks_to_solids();
+  laws.wall_velocity = FixFSI::rows(step->wall_velocity ? step->wall_velocity : atom->v);
+  if (fix_stress) laws.stress = fix_stress->stress;
+  if (ledger->kept) laws.taken = taken.data();
+  return laws;
+}
+
+// of images: each wall of a reflection has the force along its axis
+template <int D>
+void PairFSIFluid::add_wall_forces(const Walls::Reflection &s, const double (&total)[D])
+{
+  for (int d = 0; d < D; d++) {
+    int w = s.w[0];
+    for (int k = 1; k < s.n; k++)
+      if (step->walls.wall[s.w[k]].axis == d) w = s.w[k];
+    step->add_wall_force(w, d, total[d]);
+  }
+}
+
 // F_ij = -(p_i V_i^2 + p_j V_j^2 + Q_ij) grad_i W_ij + laminar viscosity (paper eq. 14),
 // antisymmetric between fluid and solid:
 //   couple wall  both pressures are the fluid's: the solid is a moving wall to the fluid and
@@ -817,45 +842,25 @@ template <int D> void PairFSIFluid::compute_forces()
   });
 
   if (ledger->kept) taken.assign((size_t) row_of_points(D) * nall, 0.0);
-  ForceLaws laws = {alpha,
-                    beta,
-                    laminar,
-                    laminar == CENTRAL_LAMINAR ? disc->central_length_sq : 0.0,
-                    extrapolate ? fix_fsi->body_forces.of_type.data() : nullptr,
-                    disc->density_solid == Discretization::SUMMATION ? 1.0 : 0.0,
-                    nullptr,
-                    !sticks_to_solids(),
-                    FixFSI::rows(step->wall_velocity ? step->wall_velocity : atom->v),
-                    fix_stress ? fix_stress->stress : nullptr,
-                    fix_fsi->body_forces.of_type.data(),
-                    ledger->kept ? taken.data() : nullptr};
+  ForceLaws laws = laws_of_forces();
   PairSums sums, *const of_pairs = ledger->kept || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   double guarding[PairSet::NKINDS] = {};
-  const auto loop = [&](const PairSet &m, const std::vector<Row> &which,
-                        const std::vector<double> &parts_of, const Mirror *mirror, double *total) {
+  const auto loop = [&](const PairSet &set, const std::vector<Row> &rows,
+                        const std::vector<double> &visible, const Mirror *mirror, double *total) {
     const double before = sums.guard;
-    laws.guard = ratios[m.level].guards.data();
-    m.of_forces->forces(m.kind, which, mirror, of_rows(particles, m, which, parts_of), laws,
-                        forces.data(), total, of_pairs);
-    guarding[m.what] += sums.guard - before;
+    laws.guard = ratios[set.level].guards.data();
+    set.of_forces->forces(set.kind, rows, mirror, of_rows(particles, set, rows, visible), laws,
+                          forces.data(), total, of_pairs);
+    guarding[set.what] += sums.guard - before;
   };
-  for (const auto &m : pairs.sets) loop(m, pairs.near_rows(m), m.visible, nullptr, nullptr);
-
-  const Walls &walls = step->walls;
-  pairs.for_images(
-      walls, particles.points, [&](const PairSet &m, int reflection, const Mirror *mirror) {
-        const auto &s = walls.reflections[reflection];
-        double total[D] = {};
-        loop(m, m.images[reflection].rows, m.visible_images[reflection], mirror, total);
-        for (int d = 0; d < D; d++) {
-          int w = s.w[0];
-          for (int k = 1; k < s.n; k++)
-            if (walls.wall[s.w[k]].axis == d) w = s.w[k];
-          step->add_wall_force(w, d, total[d]);
-        }
-      });
-
+  for (const auto &set : pairs.sets) loop(set, pairs.near_rows(set), set.visible, nullptr, nullptr);
+  pairs.for_images(step->walls, particles.points,
+                   [&](const PairSet &set, int k, const Mirror *mirror) {
+                     double total[D] = {};
+                     loop(set, set.images[k].rows, set.visible_images[k], mirror, total);
+                     add_wall_forces(step->walls.reflections[k], total);
+                   });
   split_forces<D>(particles, laws);
   pairs.forget_near();    // a second force evaluation at other positions must not use these lists
 

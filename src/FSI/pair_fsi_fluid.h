@@ -106,6 +106,7 @@ class PairFSIFluid : public PairFSI {
   std::vector<class ComputeFSIForce *> force_computes;
 
   FSI::PairSets &pairs;
+  void check_effects(const FSI::Facts &of_solids) const;
   bool has_all_pairs() const;
   // local and ghost, gathered at the start of each loop
   std::vector<double> points, forces, viscous_forces, pressure_over_density;
@@ -145,17 +146,20 @@ class PairFSIFluid : public PairFSI {
   void add_velocities_at_solids();
   void extrapolate_velocities();
   template <int D> void correct_powers();
+  template <int D> FSI::FluidParticles gather_for_rates(double dth);
   template <int D> void add_density_rate(double dt);
   void advance_density();
   template <int D, bool FILLS>
   void displacements(double dt);    // turns the sums of particle shifting of local fluid atoms into
                                     // displacements
   template <int D> void add_gradients(double *);
+  FSI::ForceLaws laws_of_forces();
+  template <int D> void add_wall_forces(const FSI::Walls::Reflection &, const double (&total)[D]);
   template <int D> void compute_forces();
   template <int D> void split_forces(const FSI::FluidParticles &, FSI::ForceLaws);
   Pair *hybrid;    // the hybrid style that this one makes sum its virial pair by pair; null: none
   int no_fdotr_before;
-  void give_back_virial();
+  void take_virial(Pair *of);
   FSI::Contact guard_of(int type, double spacing) const;
   template <class Sum> void distance_sums(bool others_too, const FSI::FluidParticles &, Sum);
 };

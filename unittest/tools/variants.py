@@ -5,6 +5,7 @@ usage: variants.py [NAME ...]     (default: all but newest, which downloads LAMM
 """
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -18,6 +19,9 @@ from fsi import dump, launch, paths  # noqa: E402
 
 sys.path[:0] = [str(ROOT / "unittest"), *launch.environment()["PYTHONPATH"].split(os.pathsep)]
 
+from pairs.factors import allowed, simple  # noqa: E402
+from pairs.scene import PairScene, go_on_ranks, read  # noqa: E402
+from pairs.test_pairs import ROUND, same as same_state  # noqa: E402
 from scenes import dam_gate, difference, fluid_box, run, watch  # noqa: E402
 
 # name: options of cmake, ranks that it can run on
@@ -39,6 +43,16 @@ SCENES = {
     "fluid 2D": fluid_box(2),
     "ratio": dam_gate(2, density="fluid summation solid ratio", fluid="sound 10 artificial/visc 0.05 0 surface 0.9"),
 }
+# what keeps atom IDs, local indices or images between events: levels of unittest/pairs
+PAIRS = {
+    "plane of symmetry": ("symmetry plane", "svk", "laminar", "write_restart"),
+    "levels, renumbered": ("region", "background", "shift", "delete_atoms"),
+    "levels around a body": ("distance", "volumetric", "mirrors", "delete, no compress"),
+    "open ends": ("two pressures", "tension", "central", "delete_atoms"),
+    "clamp on a float": ("clamp on a float", "sub-steps", "neo-hookean", "gravity"),
+    "grains": ("grains", "contact", "plastic", "mirrors"),
+}
+assert all(allowed(levels) for levels in PAIRS.values())
 ROUND_OFF = 1e-11  # 40 steps with sums in another order, as in test_restart.py
 TAIL = """compute energy all fsi/energy
 compute surface all fsi/surface/atom
@@ -55,6 +69,8 @@ def run_scenes(folder, ranks):
     """Runs every scene with the build that FSI_BUILD_DIR names."""
     for name, scene in SCENES.items():
         run(Path(folder) / name, scene.text() + watch(every=40) + TAIL, int(ranks), scene_data=scene.data())
+    for name, levels in PAIRS.items():
+        go_on_ranks(PairScene(simple(levels)), Path(folder) / name, int(ranks))
 
 
 def produce(folder, build, ranks):
@@ -74,22 +90,35 @@ def same(a, b):
             if not difference(p, q, quantity) < ROUND_OFF:
                 print(f"{name}: {quantity} differs by {difference(p, q, quantity):.1e}")
                 return False
+    for name, levels in PAIRS.items():
+        try:
+            same_state(PairScene(simple(levels)), *(read(Path(f) / name) for f in (a, b)), ROUND)
+        except AssertionError as error:
+            print(f"{name}: {error}")
+            return False
     return True
 
 
 def memcheck(folder, build):
-    """valgrind on a few steps of the first scene, without MPI, whose memory is its own affair."""
+    """valgrind on a few steps of the first scene and of those of pairs, without MPI, whose memory is its own affair."""
     name, scene = next(iter(SCENES.items()))
-    place = Path(folder) / "valgrind"
-    place.mkdir()
-    (place / "scene.data").write_text(scene.data())
-    (place / "in.test").write_text(scene.text() + watch(every=3) + TAIL.replace("40", "3").replace("20", "2"))
+    decks = {name: (scene.text() + watch(every=3) + TAIL.replace("40", "3").replace("20", "2"), scene.data())}
+    for name, levels in PAIRS.items():
+        scene = PairScene(simple(levels))
+        decks[name] = (re.sub(r"^run 1\d$", "run 4", scene.text("."), flags=re.M), scene.data())
     environment = {**launch.environment(), "LD_LIBRARY_PATH": str(build)}
-    done = subprocess.run(["valgrind", "-q", "--error-exitcode=9", str(build / "lmp"), "-in", "in.test"], cwd=place,
-                          env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    if done.returncode:
-        print("\n".join(done.stdout.splitlines()[-30:]))
-    return done.returncode == 0
+    good = True
+    for name, (text, data) in decks.items():
+        place = Path(folder) / "valgrind" / name
+        place.mkdir(parents=True)
+        (place / "scene.data").write_text(data)
+        (place / "in.test").write_text(text)
+        done = subprocess.run(["valgrind", "-q", "--error-exitcode=9", str(build / "lmp"), "-in", "in.test"], cwd=place,
+                              env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        if done.returncode:
+            print(f"{name}:", *done.stdout.splitlines()[-30:], sep="\n")
+            good = False
+    return good
 
 
 def understood(compiler, standard):
