@@ -157,12 +157,9 @@ def _runs():
 # ---- what effects cost ----
 
 def announced(scene):
-    """What fix fsi said to be on, and what it said of memory and messages, from a scene's reference log."""
+    """What fix fsi said to be on, from a scene's reference log."""
     path = next(iter(sorted((paths.EXAMPLES / scene).glob(f"log.*.{scene}.1"))))
-    text = re.search(r"^FSI: .*\n  on: *\n((?:    .*\n)+)  off.*\n((?:  .*\n)*)", path.read_text(), re.M)
-    size = re.search(r"arrays of all particles: (\d+) bytes", text[2])
-    forward, back = re.search(r"(\d+) forward, (\d+) back", text[2]).groups()
-    return text[1], int(size[1]), int(forward) + int(back)
+    return re.search(r"^FSI: .*\n  on: *\n((?:    .*\n)+)  off", path.read_text(), re.M)[1]
 
 
 def matrix():
@@ -170,7 +167,7 @@ def matrix():
     measured = {(r["scene"], r["effect"]): r["instructions"] for r in read_csv(PAGE / "effects.csv")}
     found = []
     for kind, (scene, tables) in TYPES.items():
-        on, added = announced(scene)[0], {}
+        on, added = announced(scene), {}
         for effect, (pattern, rows) in EFFECTS.items():
             if not re.search(pattern, on):
                 continue

@@ -149,13 +149,6 @@ def instructions(texts):
     return [(sum(b.values()) - sum(a.values())) // (LONG - SHORT) for a, b in profiles(texts)]
 
 
-def announcements(texts):
-    """What fix fsi prints at the start of each of some inputs without run command."""
-    with tempfile.TemporaryDirectory(prefix="fsi_cost_") as name:
-        run(Path(name), "\nclear\n".join(f"{t}\nrun 0" for t in texts))
-        return re.findall(r"^FSI: .*(?:\n  .*)*", (Path(name) / "log.lammps").read_text(), re.M)
-
-
 def messages(texts, ranks=2, join=None):
     """What a rank sends per step in each of some inputs without run command: [{"messages", "empty", "bytes", "collectives", "reduced", "ghosts", "particles"}].
 

@@ -133,12 +133,6 @@ void FixFSIWallParticle::set_fields(Scene &scene)
   scene.noslip_walls = scene.noslip_walls || !slip;
 }
 
-void FixFSIWallParticle::add_costs(Costs &costs) const
-{
-  costs.forward++;
-  costs.back += force->newton_pair;
-}
-
 template <class F> void FixFSIWallParticle::for_pairs(size_t level, F f) const
 {
   const auto *fluid = first_of(pairs_of<PairFSIFluid>(lmp));

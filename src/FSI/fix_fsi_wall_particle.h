@@ -57,7 +57,6 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   void set_fields(FSI::Scene &) override;
   void end_state(bool advance) override;    // the fluid's densities and the positions are those at
                                             // which forces are computed
-  void add_costs(Costs &) const override;
 
  private:
   FSI::Keywords keywords;

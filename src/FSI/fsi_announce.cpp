@@ -11,16 +11,14 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_announce.h"
+#include "fsi_part.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
-#include "force.h"
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
-#include "fsi_part.h"
 #include "fsi_scene.h"
 #include "lammps.h"
 
@@ -90,32 +88,6 @@ static void say_effects(LAMMPS *lmp, Scene &scene, std::string &text)
     });
 }
 
-// memory, and what crosses ranks beyond positions and forces: messages to a neighbor, bytes of a
-// ghost
-static void say_costs(LAMMPS *lmp, const Scene &scene, std::string &text)
-{
-  const bool newton = lmp->force->newton_pair, psi = scene.need_psi;
-  Part::Costs costs;
-  costs.bytes = 8 * psi + (scene.walls.any() ? sizeof(int) : 0);
-  costs.arrays = psi ? ", number density" : "";
-  costs.forward = 1;
-  costs.back = newton * psi;
-  costs.fluid_ghost = costs.solid_ghost = 1 + psi * (1 + newton);
-  for (const auto *p : scene.parts) p->add_costs(costs);
-  costs.back += newton * costs.sums;
-
-  text += fmt::format("  arrays of all particles: {} bytes each{}\n", costs.bytes, costs.arrays);
-  text += fmt::format("  messages to each neighbor rank in a step, beyond positions and forces: {} "
-                      "forward, {} back{}\n",
-                      costs.forward, costs.back, costs.solids);
-  const bool fluid = facts_of_fluids(lmp).style, solid = facts_of_solids(lmp).style;
-  text += fmt::format(
-      "  they carry for each ghost:{}{}\n",
-      fluid ? fmt::format(" {} bytes of a fluid", 8 * costs.fluid_ghost) : "",
-      solid ? fmt::format("{} {} bytes of a solid", fluid ? "," : "", 8 * costs.solid_ghost) : "");
-  text += costs.rarely;
-}
-
 // effects that a script names and that have nothing to act on
 static void warn_idle(LAMMPS *lmp, const Scene &scene)
 {
@@ -142,7 +114,6 @@ void FSI::announce(LAMMPS *lmp, Scene &scene)
 {
   std::string text;
   say_effects(lmp, scene, text);
-  say_costs(lmp, scene, text);
   // commands may have made fluid that nobody moves
   const auto held = find_particles(lmp->atom, lmp->world, [&](int i) {
     return scene.state[lmp->atom->type[i]].species == FLUID && !scene.is_moved(i);

@@ -527,12 +527,6 @@ void Clamps::go_back()
   place(members);
 }
 
-void Clamps::add_costs(Costs &costs) const
-{
-  const int substeps = elastic && scene.substeps > 1 ? scene.substeps : 0;
-  if (any()) costs.solids += fmt::format("; {} sums over all ranks for rigid bodies", substeps + 2);
-}
-
 #else
 
 void Clamps::find() {}
@@ -549,6 +543,5 @@ void Clamps::average(int, double **) const {}
 void Clamps::take_step() {}
 void Clamps::finish() {}
 void Clamps::go_back() {}
-void Clamps::add_costs(Costs &) const {}
 
 #endif

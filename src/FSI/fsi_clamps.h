@@ -52,7 +52,6 @@ namespace FSI {
     void take_step();    // from the middle on, by atom->f, if it was not in sub-steps
     void finish();       // atom->f is what fix rigid will see
     void go_back() override;
-    void add_costs(Costs &) const override;
 
    private:
     struct Motion {

@@ -110,19 +110,9 @@ namespace FSI {
     virtual void go_back() {}
     virtual Profile *counters() { return nullptr; }    // where others enter times
 
-    // Before the first step: what is simulated, and with what it costs
+    // Before the first step: what is simulated
     using Effect = Keywords::Effect;
     virtual std::vector<Effect> effects() const { return {}; }
-    struct Costs {
-      int bytes = 0;         // of arrays of all particles
-      std::string arrays;    // and what they are, beyond what every fluid needs
-      bool sums = false;     // pairs leave sums of rates on ghosts: a message back for all of them
-      int forward = 0, back = 0;    // messages to a neighbor rank, beyond positions and forces
-      int fluid_ghost = 0, solid_ghost = 0;    // numbers that they carry for a ghost
-      std::string solids;                      // messages to neighbors with solids
-      std::string rarely;                      // lines of what goes in some steps only
-    };
-    virtual void add_costs(Costs &) const {}
     // effects with nothing to act on: what, why
     using Idle = std::function<void(const std::string &, const std::string &)>;
     struct Census {
@@ -133,6 +123,12 @@ namespace FSI {
    protected:
     ~Part() = default;    // a style is deleted as what LAMMPS knows it as
   };
+  // Before the first step, when it changes: every effect that is on, every one that is not and how
+  // to turn it on; then advice, and what has nothing to act on
+  void announce(LAMMPS *, Scene &);
+  // warns of numbers that are legal and most likely not what was meant (fsi_advice.cpp)
+  void advise(LAMMPS *, const Scene &);
+
   inline bool any_is(const std::vector<Part *> &parts, bool Facts::*what)
   {
     for (const auto *p : parts)

@@ -145,11 +145,6 @@ std::vector<Part::Effect> SurfaceRoom::effects() const
   return {{"density that follows surfaces", "density/surface", room != nullptr}};
 }
 
-void SurfaceRoom::add_costs(Costs &costs) const
-{
-  costs.bytes += room ? 2 * sizeof(double) : 0;
-}
-
 // of particles that are new
 void SurfaceRoom::begin()
 {

@@ -66,7 +66,6 @@ namespace FSI {
     void advance(bool) override;    // after the density
     void go_back() override;
     std::vector<Effect> effects() const override;
-    void add_costs(Costs &) const override;
 
    private:
     Scene &scene;

@@ -295,32 +295,6 @@ void PairFSIFluid::add_messages(Message &to_ghosts, Message &back)
   if (shifting > 0.0) back.add(step->shift, 0, shift_sums(), {FLUID, RIGID}, &step->shifts);
 }
 
-void PairFSIFluid::add_costs(Costs &costs) const
-{
-  const int newton = force->newton_pair,
-            continuity = disc->density_fluid == Discretization::CONTINUITY,
-            ns = shifting > 0.0 ? shift_sums() : 0;
-  costs.bytes += 8 * ((2 + continuity) * disc->dim + 4 + continuity + (ns ? nshift() : 0));
-  costs.sums = costs.sums || continuity;
-  costs.fluid_ghost += newton * continuity * (1 + (shift_every == 1 ? ns : 0));
-  if (ns && shift_every > 1)
-    costs.rarely += fmt::format("  every {} steps: {} bytes of a ghost more, particle shifting\n",
-                                shift_every, 8 * newton * ns);
-  if (step->shift_velocity[0]) costs.bytes += 8 * disc->dim;
-  if (velocity_of_shifting()) costs.fluid_ghost += disc->dim;
-  if (disc->sight) {
-    costs.bytes += 16;
-    costs.fluid_ghost += 2;
-    costs.forward += 2;
-  }
-  const int d = members->light_solids.any() ? disc->dim : 0, back = newton * d * (d + 3) / 2;
-  costs.forward += d;
-  costs.back += back;
-  costs.solid_ghost += d + back;
-  costs.fluid_ghost += d + back;
-  if (sticks_to_solids()) costs.solid_ghost += disc->dim + newton * (disc->dim + 1);
-}
-
 void PairFSIFluid::find_idle(const Census &all, const Idle &nothing) const
 {
   if (shift_every > 1 && shifting == 0.0)

@@ -54,7 +54,6 @@ class PairFSIFluid : public PairFSI {
   FSI::Facts facts() const override;
   bool has_solids() const;
   std::vector<Effect> effects() const override;
-  void add_costs(Costs &) const override;
   void find_idle(const Census &, const Idle &) const override;
   double memory_usage() override;
   bool has_laminar() const { return laminar; }

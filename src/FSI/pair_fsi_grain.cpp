@@ -134,12 +134,6 @@ std::vector<Part::Effect> PairFSIGrain::effects() const
   return {{"grains: pressure gradient and drag of Schiller and Naumann", "fsi/grain", true}};
 }
 
-void PairFSIGrain::add_costs(Costs &costs) const
-{
-  costs.forward++;
-  if (force->newton_pair) costs.back++;
-}
-
 void PairFSIGrain::compute(int eflag, int vflag)
 {
   FixFSI::check_pre_no(lmp, fix_fsi);

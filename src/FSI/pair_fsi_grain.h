@@ -49,7 +49,6 @@ class PairFSIGrain : public Pair, public FSI::Part {
   FSI::Facts facts() const override;
   bool is_set_up() const override { return fix_fsi != nullptr; }
   std::vector<Effect> effects() const override;
-  void add_costs(Costs &) const override;
   Rank rank() const override { return PAIRS; }
   void prescribe() override;
 

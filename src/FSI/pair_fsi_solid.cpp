@@ -172,18 +172,6 @@ void PairFSISolid::add_messages(Message &to_ghosts, Message &back)
   back.add(grad, 0, ngrad(), {SOLID});
 }
 
-void PairFSISolid::add_costs(Costs &costs) const
-{
-  const int dim = fix_fsi->dim, newton = force->newton_pair, hourglass = has_hourglass();
-  costs.bytes += 8 * fours(ngrad());
-  costs.arrays += ", velocity gradient";
-  costs.sums = true;
-  costs.forward += hourglass;
-  costs.back += newton * hourglass;
-  costs.solid_ghost += (dim == 2 ? 3 : 6) + dim * terms() + newton * ngrad() +
-      hourglass * (dim * dim + newton * dim);
-}
-
 void PairFSISolid::find_idle(const Census &all, const Idle &nothing) const
 {
   if (all.solids == 0) nothing("Pair style fsi/solid" + named_effects(), "no particle is a solid");

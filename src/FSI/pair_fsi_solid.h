@@ -61,7 +61,6 @@ class PairFSISolid : public PairFSI {
   void advance(bool) override;
   void add_number_density(double *, bool of_all_bodies) override;
   void go_back() override;
-  void add_costs(Costs &) const override;
   void find_idle(const Census &, const Idle &) const override;
 
   // gradients: 0 = plain, else the number of terms for which they are exact (fsi_gradient.h): dim

@@ -978,17 +978,6 @@ Facts PairFSISolidTL::facts() const
   return facts;
 }
 
-void PairFSISolidTL::add_costs(Costs &costs) const
-{
-  const int n = fix_fsi->substeps, strains = smoothed.on();
-  costs.solid_ghost += n * (fix_fsi->dim + 2 * strains) + (n > 1 ? n * comm_forward : 0);
-  if (n > 1)
-    costs.solids = fmt::format("; {} each way for solid sub-steps, where they carry solids",
-                               n * (1 + strains));
-  else
-    costs.solids = strains ? "; 1 forward and 2 back for solids" : "; 1 back for solid forces";
-}
-
 void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
 {
   if (all.solids == 0)

@@ -63,7 +63,6 @@ class PairFSISolidTL : public PairFSI {
   // Stiff solids: after the kick of what acts from outside is known, with a step that many times
   // shorter
   void integrate_substeps() override;
-  void add_costs(Costs &) const override;
   void find_idle(const Census &, const Idle &) const override;
   double memory_usage() override;
 
