@@ -19,7 +19,6 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
-#include "fsi_announce.h"
 #include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clamps.h"
@@ -107,7 +106,8 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   resolve(hdx, given_spacing);
   const auto &before = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
   if (before && changes.any_mass()) goes_on(*before, "in the last run");
-  if (std::count(thin.begin(), thin.end(), 1.0)) sight = std::make_shared<Sight>(lmp, *this, thin);
+  if (std::count(thin.begin(), thin.end(), 1.0))
+    sight = std::make_shared<Sight>(lmp, *this, walls, thin);
 
   time_integrate = force_reneighbor = create_attribute = restart_global = 1;
   pre_exchange_migrate = 1;

@@ -46,9 +46,9 @@ static constexpr double PRINT =
     0.95;    // causes whose limits differ by less than this are not worth a line each
 
 FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), keywords(lmp, "fix fsi/dt"), cut(false),
-    limits(new Limits(lmp)), target(BIG), cause(MAXIMUM), ruling(-1), dt(0.0), next_dt(0.0),
-    next_substeps(0), warned(0), restored(false)
+    Fix(lmp, narg, arg), fix_fsi(nullptr), disc(nullptr), step(nullptr),
+    keywords(lmp, "fix fsi/dt"), cut(false), limits(new Limits(lmp)), target(BIG), cause(MAXIMUM),
+    ruling(-1), dt(0.0), next_dt(0.0), next_substeps(0), warned(0), restored(false)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/dt requires atom_style fsi");
   keywords.argument("interval").integer(interval, 1, 1);
@@ -86,6 +86,8 @@ FixFSIDt::~FixFSIDt() = default;
 void FixFSIDt::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/dt");
+  disc = fix_fsi;
+  step = fix_fsi;
   if (fixes_of<FixFSIDt>(lmp).size() > 1) error->all(FLERR, "There can be only one fix fsi/dt");
   if (update->dt <= 0.0 || update->dt >= BIG)
     error->all(FLERR, "Fix fsi/dt: timestep {} must be > 0 and below {:g}", update->dt, BIG);
@@ -148,7 +150,7 @@ void FixFSIDt::find_outside() const
 {
   const auto outside = [&](int i, int species) {
     return !(atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit) &&
-        fix_fsi->state[atom->type[i]].species == species;
+        disc->state[atom->type[i]].species == species;
   };
   const auto found = find_particles(atom, world, [&](int i) {
     return outside(i, FLUID) || outside(i, SOLID);
@@ -226,7 +228,7 @@ void FixFSIDt::post_run()
 void FixFSIDt::start_step()
 {
   if (check) return;
-  if (next_substeps) fix_fsi->substeps = next_substeps;
+  if (next_substeps) step->substeps = next_substeps;
   if (next_dt > 0.0 && next_dt != update->dt) {
     update->ntimestep--;
     update->update_time();
@@ -237,7 +239,7 @@ void FixFSIDt::start_step()
     output->reset_dt();
     update->ntimestep++;
   }
-  fix_fsi->dt_offset = dt > 0.0 ? 0.5 * (dt - update->dt) : 0.0;
+  step->dt_offset = dt > 0.0 ? 0.5 * (dt - update->dt) : 0.0;
   dt = update->dt;
 }
 
@@ -245,8 +247,8 @@ void FixFSIDt::start_step()
 void FixFSIDt::find_limits()
 {
   const bool may = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
-  const bool substeps = may && (automatic || fix_fsi->substeps > 1);
-  limits->find(*fix_fsi, groupbit, substeps, of_fluid, of_solid);
+  const bool substeps = may && (automatic || step->substeps > 1);
+  limits->find(*disc, groupbit, fix_fsi->groupbit, substeps, of_fluid, of_solid);
   limits->reduce();
 }
 
@@ -254,18 +256,18 @@ void FixFSIDt::find_limits()
 // step, else the step gives the number
 void FixFSIDt::choose(double most)
 {
-  const double *const step = limits->step, *const sub = limits->sub,
+  const double *const whole = limits->step, *const sub = limits->sub,
                       shortest = *std::min_element(sub, sub + NLIMIT);
-  int n = fix_fsi->substeps;
-  const bool free = automatic && *std::min_element(step, step + NLIMIT) < BIG;
+  int n = step->substeps;
+  const bool free = automatic && *std::min_element(whole, whole + NLIMIT) < BIG;
   target = high;
   cause = MAXIMUM;
   const auto combine = [&]() {
-    for (int k = 0; k < NLIMIT; k++) limit[k] = std::min(step[k], n * sub[k]);
+    for (int k = 0; k < NLIMIT; k++) limit[k] = std::min(whole[k], n * sub[k]);
   };
   if (automatic && !free) n = 1;    // nothing but sub-stepped solids
   combine();
-  const double *const ruled = free ? step : limit.data();
+  const double *const ruled = free ? whole : limit.data();
   for (int k = 0; k < NLIMIT; k++)
     if (ruled[k] < target) {
       target = ruled[k];
@@ -335,8 +337,8 @@ double FixFSIDt::compute_vector(int k)
 {
   if (k < NLIMIT) return limit[k];
   if (k == NLIMIT) return cause + 1;
-  const auto *const scene = FixFSI::there(lmp);
-  return next_substeps ? next_substeps : fix_fsi && scene ? scene->substeps : 0;
+  const auto *const now = FixFSI::there(lmp);
+  return next_substeps ? next_substeps : fix_fsi && now ? now->substeps : 0;
 }
 
 void FixFSIDt::write_restart(FILE *fp)

@@ -30,7 +30,9 @@ FixStyle(fsi/dt,FixFSIDt);
 namespace LAMMPS_NS {
 namespace FSI {
   class Limits;
-}
+  struct Discretization;
+  struct StepState;
+}    // namespace FSI
 
 // Time step, and number of sub-steps of total-Lagrangian solids, from what the particles do.
 
@@ -55,6 +57,8 @@ class FixFSIDt : public Fix, public FSI::Part {
  private:
   enum CheckAction { NO_CHECK, WARN, STOP };
   class FixFSI *fix_fsi;
+  const FSI::Discretization *disc;    // of it
+  FSI::StepState *step;
 
   FSI::Keywords keywords;
   int interval;

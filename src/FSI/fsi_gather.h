@@ -103,17 +103,23 @@ namespace FSI {
     tagint first = MAXTAGINT;
   };
 
+  inline Found total_of(const Found &mine, MPI_Comm world)
+  {
+    Found all;
+    MPI_Allreduce(&mine.count, &all.count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    MPI_Allreduce(&mine.first, &all.first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+    return all;
+  }
+
   template <class Is> inline Found find_particles(const Atom *atom, MPI_Comm world, Is is)
   {
-    Found mine, all;
+    Found mine;
     for (int i = 0; i < atom->nlocal; i++)
       if (is(i)) {
         mine.count++;
         mine.first = std::min(mine.first, atom->tag[i]);
       }
-    MPI_Allreduce(&mine.count, &all.count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    MPI_Allreduce(&mine.first, &all.first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-    return all;
+    return total_of(mine, world);
   }
 
 }    // namespace FSI

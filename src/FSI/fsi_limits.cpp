@@ -14,10 +14,9 @@
 #include "fsi_limits.h"
 
 #include "atom.h"
-#include "fix.h"
 #include "force.h"
-#include "fsi_part.h"
 #include "fsi_scene.h"
+#include "fsi_part.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,73 +30,78 @@ Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
   for (double *row : {step, sub}) std::fill_n(row, NLIMIT, UNLIMITED);
 }
 
-// fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6
-// alpha); laminar: h^2/16nu; acceleration: sqrt(h/|a|)/4
-void Limits::find(const Scene &scene, int groupbit, bool substeps, double of_fluid, double of_solid)
+// fastest wave seen from the lattice, and largest squared acceleration, with whose they are
+struct Limits::OfType {
+  bool present = false;
+  double fastest = 0.0, asq = 0.0;
+  tagint fast = 0, pushed = 0;
+};
+
+std::vector<Limits::OfType> Limits::look(const Discretization &disc, int groupbit, int moved) const
 {
   const int *const mask = atom->mask, *const type = atom->type;
-  double **v = atom->v;
-  double **f = atom->f;
-  const double *const rmass = atom->rmass, *const rho = atom->rho;
-
-  double *const mine[2] = {step, sub};
-  std::vector<double> fastest(atom->ntypes + 1, 0.0), asq_max(fastest);
-  std::vector<tagint> fast(atom->ntypes + 1, 0), pushed(fast);
-  for (auto &row : culprit) row[0] = row[1] = 0;
-  std::vector<char> present(atom->ntypes + 1, 0);
+  double **const v = atom->v, **const f = atom->f;
+  std::vector<OfType> types(atom->ntypes + 1);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(mask[i] & groupbit)) continue;
-    const State &s = scene.state[type[i]];
+    const State &s = disc.state[type[i]];
+    OfType &t = types[type[i]];
     if (s.species == NONE || s.species == RIGID) continue;
-    present[type[i]] = 1;
+    t.present = true;
     if (s.species == FLUID) {
       double c = s.c;
-      if (s.tait) c *= std::max(1.0, std::pow(rho[i] / s.rho0, 3));
+      if (s.tait) c *= std::max(1.0, std::pow(atom->rho[i] / s.rho0, 3));
       c += std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
-      if (c > fastest[type[i]]) {
-        fastest[type[i]] = c;
-        fast[type[i]] = atom->tag[i];
+      if (c > t.fastest) {
+        t.fastest = c;
+        t.fast = atom->tag[i];
       }
     }
-    // what is held does not follow its force
-    if (!(mask[i] & scene.mover->groupbit)) continue;
-    const double w = force->ftm2v / rmass[i];
+    if (!(mask[i] & moved)) continue;    // what is held does not follow its force
+    const double w = force->ftm2v / atom->rmass[i];
     const double asq = w * w * (f[i][0] * f[i][0] + f[i][1] * f[i][1] + f[i][2] * f[i][2]);
-    if (asq > asq_max[type[i]]) {
-      asq_max[type[i]] = asq;
-      pushed[type[i]] = atom->tag[i];
+    if (asq > t.asq) {
+      t.asq = asq;
+      t.pushed = atom->tag[i];
     }
   }
+  return types;
+}
 
+// fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6
+// alpha); laminar: h^2/16nu; acceleration: sqrt(h/|a|)/4
+void Limits::find(const Discretization &disc, int groupbit, int moved, bool substeps,
+                  double of_fluid, double of_solid)
+{
+  const auto types = look(disc, groupbit, moved);
   const Facts of_fluids = facts_of_fluids(lmp), of_solids = facts_of_solids(lmp);
-  for (double *row : mine) std::fill_n(row, NLIMIT, UNLIMITED);
+  for (auto &row : culprit) row[0] = row[1] = 0;
+  for (double *row : {step, sub}) std::fill_n(row, NLIMIT, UNLIMITED);
+  const auto lower = [](double &limit, double value, tagint *whose = nullptr, tagint tag = 0) {
+    if (!(value < limit)) return;
+    limit = value;
+    if (whose) *whose = tag;
+  };
   for (int t = 1; t <= atom->ntypes; t++) {
-    if (!present[t]) continue;
-    const State &s = scene.state[t];
+    const OfType &found = types[t];
+    if (!found.present) continue;
+    const State &s = disc.state[t];
     const bool fluid = s.species == FLUID;
     const int in_sub = substeps && !fluid;
-    double *const m = mine[in_sub], own = fluid ? of_fluid : of_solid, h = scene.h_of(t);
-    const double by_sound = fastest[t] > 0.0 ? of_fluid * safe[SOUND] * h / fastest[t] : UNLIMITED;
-    if (by_sound < mine[0][SOUND]) {
-      mine[0][SOUND] = by_sound;
-      culprit[0][0] = fast[t];
-    }
-    const double pushing = asq_max[t] > 0.0
-        ? own * safe[ACCELERATION] * std::sqrt(h / std::sqrt(asq_max[t]))
-        : UNLIMITED;
-    if (pushing < m[ACCELERATION]) {
-      m[ACCELERATION] = pushing;
-      culprit[in_sub][1] = pushed[t];
-    }
-    const double alpha =
-        (fluid ? of_fluids : of_solids).alpha;    // held solids may be walls, without a style
-    if (!fluid)
-      m[ELASTIC] = std::min(m[ELASTIC], own * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
+    double *const limit = in_sub ? sub : step;
+    const double factor = fluid ? of_fluid : of_solid, h = disc.h_of(t);
+    // held solids may be walls, without a style
+    const double alpha = (fluid ? of_fluids : of_solids).alpha;
+    if (found.fastest > 0.0)
+      lower(step[SOUND], of_fluid * safe[SOUND] * h / found.fastest, &culprit[0][0], found.fast);
+    if (found.asq > 0.0)
+      lower(limit[ACCELERATION], factor * safe[ACCELERATION] * std::sqrt(h / std::sqrt(found.asq)),
+            &culprit[in_sub][1], found.pushed);
+    if (!fluid) lower(limit[ELASTIC], factor * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
     if (alpha > 0.0)
-      m[ARTIFICIAL] =
-          std::min(m[ARTIFICIAL], own * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
+      lower(limit[ARTIFICIAL], factor * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
     if (fluid && s.viscosity > 0.0 && of_fluids.laminar)
-      m[LAMINAR] = std::min(m[LAMINAR], own * safe[LAMINAR] * h * h * s.rho0 / s.viscosity);
+      lower(limit[LAMINAR], factor * safe[LAMINAR] * h * h * s.rho0 / s.viscosity);
   }
 }
 

@@ -19,9 +19,11 @@
 
 #include "pointers.h"
 
+#include <vector>
+
 namespace LAMMPS_NS {
 namespace FSI {
-  class Scene;
+  struct Discretization;
 
   class Limits : protected Pointers {
    public:
@@ -40,10 +42,15 @@ namespace FSI {
     tagint culprit[2][2];    // particle behind sound and acceleration, of step and sub-step
 
     Limits(class LAMMPS *);
-    // of this rank's particles, times a factor of fluids and one of solids
-    void find(const Scene &, int groupbit, bool substeps, double of_fluid = FLUID_FACTOR,
-              double of_solid = SOLID_FACTOR);
+    // of this rank's particles of a group, those that fix fsi moves being of another, times a
+    // factor of fluids and one of solids
+    void find(const Discretization &, int groupbit, int moved, bool substeps,
+              double of_fluid = FLUID_FACTOR, double of_solid = SOLID_FACTOR);
     void reduce();    // of all ranks
+
+   private:
+    struct OfType;
+    std::vector<OfType> look(const Discretization &, int groupbit, int moved) const;
   };
 
 }    // namespace FSI

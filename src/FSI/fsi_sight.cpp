@@ -14,8 +14,8 @@
 #include "fsi_sight.h"
 
 #include "atom.h"
-#include "fsi_kernel.h"
 #include "fsi_scene.h"
+#include "fsi_kernel.h"
 #include "math_extra.h"
 #include "neighbor.h"
 
@@ -35,8 +35,10 @@ static constexpr double FAR = 1.1;
 // Of equals, and of a side, the edges: in spacings, as the cosine of an angle
 static constexpr double AS_NEAR = 0.2, ASIDE = 0.3;
 
-Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) :
-    Pointers(lmp), scene(scene), types(types), low{}, per_cell(0.0), n{}, from{}, reach(0.0)
+Sight::Sight(LAMMPS *lmp, const Discretization &disc, const Walls &walls,
+             const std::vector<double> &types) :
+    Pointers(lmp),
+    disc(disc), walls(walls), types(types), low{}, per_cell(0.0), n{}, from{}, reach(0.0)
 {
 }
 
@@ -45,16 +47,16 @@ Sight::Sight(LAMMPS *lmp, const Scene &scene, const std::vector<double> &types) 
 void Sight::tabulate()
 {
   std::vector<double> spacings;
-  for (const auto &level : scene.levels) spacings.push_back(level.dx);
+  for (const auto &level : disc.levels) spacings.push_back(level.dx);
   if (spacings == tabulated) return;
   tabulated = spacings;
   half_space.assign(spacings.size() * types.size(), {});
   for (size_t k = 0; k < half_space.size(); k++) {
-    const Resolution &level = scene.levels[k / types.size()];
+    const Resolution &level = disc.levels[k / types.size()];
     const size_t t = k % types.size();
     if (types[t] == 0.0) continue;
-    const double dx = scene.dx_of(t), sharper = scene.sharper_of(t, level.dx);
-    with_kernel(scene.kernel, scene.dim, level.h, [&](const auto &kernel) {
+    const double dx = disc.dx_of(t), sharper = disc.sharper_of(t, level.dx);
+    with_kernel(disc.kernel, disc.dim, level.h, [&](const auto &kernel) {
       constexpr int D = std::decay_t<decltype(kernel)>::DIM, STEPS = 200;
       const double step = kernel.cut / STEPS;
       for (int place = 0; place <= NTABLE; place++) {
@@ -74,7 +76,7 @@ void Sight::tabulate()
 
 Sight::Fill Sight::beyond(size_t level, int type, double distance) const
 {
-  const double at = std::max(distance, 0.0) / scene.levels[level].cut * NTABLE;
+  const double at = std::max(distance, 0.0) / disc.levels[level].cut * NTABLE;
   const int k = static_cast<int>(at);
   if (k >= NTABLE) return {0.0, 0.0};
   const Fill *const table = half_space[level * types.size() + type].data();
@@ -86,7 +88,7 @@ Sight::Fill Sight::beyond(size_t level, int type, double distance) const
 // bodies count, too, where a thin one goes on as one of them.
 bool Sight::counts(int type) const
 {
-  const int species = scene.state[type].species;
+  const int species = disc.state[type].species;
   return types[type] != 0.0 || species == SOLID || species == RIGID;
 }
 
@@ -94,7 +96,7 @@ void Sight::find_bodies()
 {
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
   const Scene::Row *const x = Scene::rows(atom->x);
-  per_cell = 1.0 / (scene.cut + neighbor->skin);
+  per_cell = 1.0 / (disc.cut + neighbor->skin);
   double high[3] = {};
   int count = 0;
   for (int i = 0; i < nall; i++) {
@@ -160,22 +162,21 @@ void Sight::look_from(const double *x, double largest, double slack)
 {
   reach = largest;
   const double within = (reach + slack) * (reach + slack);
-  const auto &walls = scene.walls;
   const bool by_walls = walls.near(x, reach + slack);
   seen.clear();
   std::copy_n(x, 3, from);
   for_near(x, [&](const Place &p) {
     Seen s = {};
-    for (int d = 0; d < scene.dim; d++) {
+    for (int d = 0; d < disc.dim; d++) {
       s.x[d] = p.x[d] - x[d];
       s.rsq += s.x[d] * s.x[d];
     }
     if (s.rsq >= within) return false;
     s.type = atom->type[p.i];
-    s.dx = scene.dx_of(s.type);
-    s.volume = scene.dim == 3 ? s.dx * s.dx * s.dx : s.dx * s.dx;
+    s.dx = disc.dx_of(s.type);
+    s.volume = disc.dim == 3 ? s.dx * s.dx * s.dx : s.dx * s.dx;
     s.thin = p.thin;
-    const bool behind = by_walls && scene.state[s.type].species == SOLID &&
+    const bool behind = by_walls && disc.state[s.type].species == SOLID &&
         std::any_of(walls.wall.begin(), walls.wall.end(), [&](const Wall &w) {
                           return !w.finite && w.distance(p.x) < 0.0;
                         });
@@ -187,11 +188,10 @@ void Sight::look_from(const double *x, double largest, double slack)
 
 void Sight::see_images()
 {
-  const auto &walls = scene.walls;
   const int mask = walls.near(from, reach);
   for (size_t k = 0, n = seen.size(); k < n; k++) {
     const Seen s = seen[k];
-    if (scene.state[s.type].species != SOLID) continue;
+    if (disc.state[s.type].species != SOLID) continue;
     const double y[3] = {from[0] + s.x[0], from[1] + s.x[1], from[2] + s.x[2]};
     walls.images(mask & walls.near(y, reach), s.rsq, from, y, reach * reach,
                  [&](const Walls::Reflection &, double rsq, const double *d) {
@@ -203,7 +203,7 @@ void Sight::see_images()
 bool Sight::may_hide(const double *y, double slack) const
 {
   double d[3] = {}, dsq = 0.0;
-  for (int k = 0; k < scene.dim; k++) {
+  for (int k = 0; k < disc.dim; k++) {
     d[k] = y[k] - from[k];
     dsq += d[k] * d[k];
   }
@@ -230,7 +230,7 @@ static double smooth(double x)
 double Sight::visible(const double *y, double cut) const
 {
   double dsq = 0.0;
-  for (int k = 0; k < scene.dim; k++) dsq += (y[k] - from[k]) * (y[k] - from[k]);
+  for (int k = 0; k < disc.dim; k++) dsq += (y[k] - from[k]) * (y[k] - from[k]);
   return dsq < FAR * cut * cut ? left_of(y, cut) : 1.0;
 }
 
@@ -238,7 +238,7 @@ double Sight::left_of(const double *y, double cut) const
 {
   const double cutsq = cut * cut;
   double d[3] = {}, dsq = 0.0;
-  for (int k = 0; k < scene.dim; k++) {
+  for (int k = 0; k < disc.dim; k++) {
     d[k] = y[k] - from[k];
     dsq += d[k] * d[k];
   }
@@ -265,7 +265,7 @@ double Sight::left_of(const double *y, double cut) const
     if (rest <= 0.0 || s.rsq + (1.0 - 2.0 * t) * dsq >= cutsq) continue;
     const double w = s.volume * rest * rest;
     weight += w;
-    for (int k = 0; k < scene.dim; k++) place[k] += w * (s.x[k] - t * d[k]);
+    for (int k = 0; k < disc.dim; k++) place[k] += w * (s.x[k] - t * d[k]);
   }
   const double lean = weight > 0.0 ? MathExtra::len3(place) / (AT_EDGE * radius * weight) : 0.0;
   return 1.0 -
@@ -276,7 +276,7 @@ double Sight::left_of(const double *y, double cut) const
 // side of the nearest particle, as far as the support reaches.
 bool Sight::find_face(size_t level, const Seen &nearest, Face &face) const
 {
-  const double cut = scene.levels[level].cut, cutsq = cut * cut;
+  const double cut = disc.levels[level].cut, cutsq = cut * cut;
   double normal[3] = {};
   for (const auto &s : seen) {
     const double ahead = MathExtra::dot3(s.x, nearest.x) / std::sqrt(s.rsq * nearest.rsq);
@@ -304,7 +304,7 @@ bool Sight::find_face(size_t level, const Seen &nearest, Face &face) const
 // one that is farther by AS_NEAR of its spacing has no say
 Sight::Fill Sight::fill(size_t level) const
 {
-  const double cutsq = scene.levels[level].cut * scene.levels[level].cut;
+  const double cutsq = disc.levels[level].cut * disc.levels[level].cut;
   double least = cutsq, total = 0.0;
   for (const auto &s : seen)
     if (s.thin) least = std::min(least, s.rsq);
@@ -332,9 +332,9 @@ Sight::Fill Sight::fill(size_t level, const Face &face) const
              missing = beyond(level, face.type, face.distance + face.thickness);
   if (missing.weight == 0.0) return {1.0, 1.0};
   double y[3];
-  const double across = 2.0 * face.distance + face.thickness - scene.dx_of(face.type);
+  const double across = 2.0 * face.distance + face.thickness - disc.dx_of(face.type);
   for (int d = 0; d < 3; d++) y[d] = from[d] + across * face.normal[d];
-  const double there = 1.0 - left_of(y, scene.levels[level].cut);
+  const double there = 1.0 - left_of(y, disc.levels[level].cut);
   const auto over = [&](double whole, double rest) {
     if (rest <= 0.0 || whole <= rest) return 1.0;
     return std::min(1.0 + there * rest / (whole - rest), MOST);

@@ -26,12 +26,13 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
-  class Scene;
+  struct Discretization;
+  struct Walls;
 
   class Sight : protected Pointers {
    public:
     // whose kernel and spacings are known; past types that are not 0
-    Sight(LAMMPS *, const Scene &, const std::vector<double> &types);
+    Sight(LAMMPS *, const Discretization &, const Walls &, const std::vector<double> &types);
     void tabulate();         // when the fluids' levels are known: for fill()
     void find_bodies();      // when neighbor lists are new
     void follow_bodies();    // to where they are; what follows is said of then
@@ -56,7 +57,8 @@ namespace FSI {
     double memory_usage() const;
 
    private:
-    const Scene &scene;
+    const Discretization &disc;
+    const Walls &walls;    // at the time of the positions
     const std::vector<double> types;
     double low[3], per_cell;
     int n[3];
