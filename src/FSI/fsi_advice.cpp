@@ -649,8 +649,8 @@ static void time_step(const Census &c)
                 dt, c.update->dt_default ? ", LAMMPS' default," : "", good / dt, good);
 }
 
-// Particles that are counted: {0} of them, the first is {1}; {2} is the group of fix {3}. Said where
-// there are some of the kind `given`, and none of `but`; NKIND: in any case.
+// Particles that are counted: there are {0}, the first is {1}; {2} is the group of fix {3}. Said
+// where there are some of the kind `given`, and none of `but`; NKIND: in any case.
 // Flow behind a body draws: where no weight keeps the pressure above 0, water that cannot bear
 // tension opens holes there, and with shifting loses particles.
 static constexpr struct {

@@ -15,8 +15,8 @@
 
 #include "atom.h"
 #include "force.h"
-#include "fsi_scene.h"
 #include "fsi_part.h"
+#include "fsi_scene.h"
 
 #include <algorithm>
 #include <cmath>

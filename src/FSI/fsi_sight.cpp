@@ -14,8 +14,8 @@
 #include "fsi_sight.h"
 
 #include "atom.h"
-#include "fsi_scene.h"
 #include "fsi_kernel.h"
+#include "fsi_scene.h"
 #include "math_extra.h"
 #include "neighbor.h"
 
