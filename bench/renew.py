@@ -13,6 +13,7 @@ import evidence
 import hard_pages
 import largest
 import peers
+import refusals
 import robustness
 import scaling
 import solid_variants
@@ -145,7 +146,8 @@ def texts():
     pages |= {PAGE / "effects.md": effects.page(tables["effects"], tables["solids"]), PAGE / "peers.md": peers.page(tables["peers"]),
               PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"], [largest.line(read_csv(PAGE / "largest.csv"))]),
               evidence.HARD / "README.md": hard_pages.hard_page(), evidence.HARD / "robustness.md": hard_pages.robustness_page(),
-              paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page()}
+              paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page(),
+              paths.ROOT / "doc/src/refusals.rst": refusals.page()}
     readme = paths.ROOT / "README.md"
     ran = {paths.EXAMPLES / name / "README.md": found["scenes"].get(name, {}).get("summary") for name in paths.examples()}
     pages |= {path: results.run_times(path.read_text(), path.parent.name, summary) for path, summary in ran.items() if summary}

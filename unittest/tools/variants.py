@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -107,32 +108,41 @@ def memcheck(folder, build):
         scene = PairScene(simple(levels))
         decks[name] = (re.sub(r"^run 1\d$", "run 4", scene.text("."), flags=re.M), scene.data())
     environment = {**launch.environment(), "LD_LIBRARY_PATH": str(build)}
-    good = True
-    for name, (text, data) in decks.items():
+
+    def faults(name):
+        text, data = decks[name]
         place = Path(folder) / "valgrind" / name
         place.mkdir(parents=True)
         (place / "scene.data").write_text(data)
         (place / "in.test").write_text(text)
         done = subprocess.run(["valgrind", "-q", "--error-exitcode=9", str(build / "lmp"), "-in", "in.test"], cwd=place,
                               env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-        if done.returncode:
-            print(f"{name}:", *done.stdout.splitlines()[-30:], sep="\n")
-            good = False
-    return good
+        return done.stdout.splitlines()[-30:] if done.returncode else []
+
+    return side_by_side(faults, decks)
+
+
+def side_by_side(faults, names):
+    """Prints what faults(name) finds, as many at once as there are cores; is there nothing?"""
+    with ThreadPoolExecutor(launch.cores()) as pool:
+        found = dict(zip(names, pool.map(faults, names)))
+    for name, lines in found.items():
+        if lines:
+            print(f"{name}:", *lines, sep="\n", flush=True)
+    return not any(found.values())
 
 
 def understood(compiler, standard):
     """Has a compiler neither an error nor a warning for any source?"""
     tree = paths.lammps_source() / "src"
-    good = True
-    for source in sorted((ROOT / "src/FSI").glob("*.cpp")):
+
+    def faults(source):
         done = subprocess.run([compiler, standard, "-fsyntax-only", "-Wall", "-Werror", "-DLAMMPS_SMALLBIG", f"-I{ROOT / 'src/FSI'}",
                                *(f"-isystem{tree / part}" for part in ("", "RIGID", "STUBS")), str(source)],
                               capture_output=True, text=True, check=False)
-        if done.returncode:
-            good = False
-            print("\n".join(line for line in done.stderr.splitlines() if "error" in line)[:1000], flush=True)
-    return good
+        return [line for line in done.stderr.splitlines() if "error" in line][:9] or ["fails"] if done.returncode else []
+
+    return side_by_side(faults, sorted((ROOT / "src/FSI").glob("*.cpp")))
 
 
 def formatted():
