@@ -110,17 +110,26 @@ void LightSolids::init(FixFSI *fix_fsi_in)
   step = fix_fsi;
 }
 
-// t = 0: is any type?
-bool LightSolids::is_light(int t) const
+// the types that are light, in the number of sub-steps that this step has
+std::vector<char> LightSolids::types() const
 {
   const auto &state = disc->state;
-  double fluid = 0.0, solid = INFINITY;
-  for (int k = 1; k <= atom->ntypes && step->substeps > 1; k++) {
-    const double layer = state[k].rho0 * disc->dx_of(k);
-    if (state[k].species == FLUID) fluid = std::max(fluid, layer);
-    if (state[k].species == SOLID && (t == 0 || k == t)) solid = std::min(solid, layer);
-  }
-  return solid < 0.5 * fluid;
+  const auto layer = [&](int t) {
+    return state[t].rho0 * disc->dx_of(t);
+  };
+  double fluid = 0.0;
+  for (int t = 1; t <= atom->ntypes; t++)
+    if (state[t].species == FLUID) fluid = std::max(fluid, layer(t));
+  std::vector<char> light(atom->ntypes + 1, 0);
+  for (int t = 1; t <= atom->ntypes && step->substeps > 1; t++)
+    light[t] = state[t].species == SOLID && layer(t) < 0.5 * fluid;
+  return light;
+}
+
+bool LightSolids::any() const
+{
+  const auto light = types();
+  return std::find(light.begin(), light.end(), 1) != light.end();
 }
 
 // use(i, j, x_ij, k) for pairs of a fluid and a solid, whose change of velocity w within the step
@@ -129,12 +138,13 @@ template <int D, class Use> void LightSolids::for_wet_pairs(const Fluid &fluid, 
 {
   static constexpr double HALF = 0.3;    // of the stiffness of a wet area, over rho c^2/dx
   const int *const type = atom->type;
+  const std::vector<char> light = types();
   for_levels(*disc, [&](size_t level, const auto &kernel) {
     const FluidParticles &in = fluid.of_level[level];
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     for (const Row &row : fluid.sets.of(level, PairSet::SOLIDS).rows.rows) {
       const int i = row.i, t = type[row.j[0]];
-      if (!is_light(t)) continue;
+      if (!light[t]) continue;
       const State &s = disc->state[type[i]];
       const double more = in.ratio[t].thin ? in.thin->backfill[i] : 1.0,
                    z = HALF * s.rho0 * s.csq / disc->levels[level].dx * update->dt * more;

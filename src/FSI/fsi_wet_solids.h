@@ -61,7 +61,7 @@ namespace FSI {
       const PairSets &sets;
       const std::vector<FluidParticles> &of_level;
     };
-    bool any() const { return is_light(0); }
+    bool any() const;
     void find_impedances(const Fluid &);
     // the reaction: what solids have not got of the impulse, fluids have not given
     void react(const Fluid &, const std::vector<ComputeFSIForce *> &measures);
@@ -70,7 +70,7 @@ namespace FSI {
     FixFSI *fix_fsi = nullptr;
     const Discretization *disc = nullptr;
     StepState *step = nullptr;
-    bool is_light(int type) const;
+    std::vector<char> types() const;
     template <int D, class Use> void for_wet_pairs(const Fluid &, Use) const;
     template <int D> void find_impedances(const Fluid &);
     template <int D> void react(const Fluid &, const std::vector<ComputeFSIForce *> &);

@@ -67,7 +67,8 @@ struct PairFSIFluid::Members {
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
     PairFSI(lmp, "fsi/fluid"), members(new Members(lmp)), couple(WALL), pairs(members->pairs),
     fade(nullptr), backfill(nullptr), backfill_weight(nullptr), fields(members->fields),
-    rate(nullptr), beyond(nullptr), hybrid(nullptr), no_fdotr_before(0)
+    rate(nullptr), beyond(nullptr), given_ghosts(0.0), raised_ghosts(-1.0), hybrid(nullptr),
+    no_fdotr_before(0)
 {
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
@@ -205,8 +206,11 @@ void PairFSIFluid::init_style()
   const bool mirrors = any_is(fixes_of<Part>(lmp), &Facts::mirror_walls);
   take_virial(force->pair != this && mirrors ? force->pair : nullptr);
   double &ghosts = comm->cutghostuser;    // 0: LAMMPS chooses; too small: fix fsi says so
+  if (ghosts == raised_ghosts) ghosts = given_ghosts;
+  given_ghosts = ghosts;
   if (has_solids() && mirrors && (ghosts == 0.0 || ghosts >= disc->largest_cut))
     ghosts = std::max(ghosts, pairs.beyond_lists() + neighbor->skin);
+  raised_ghosts = ghosts;
   open_ends = fix_fsi->has_open_ends();
   fix_stress = FixFSIStress::find(lmp);
 }

@@ -156,6 +156,7 @@ class PairFSIFluid : public PairFSI {
   template <int D> void add_wall_forces(const FSI::Walls::Reflection &, const double (&total)[D]);
   template <int D> void compute_forces();
   template <int D> void split_forces(const FSI::FluidParticles &, FSI::ForceLaws);
+  double given_ghosts, raised_ghosts;    // cutoffs: that of the user, as raised for images
   Pair *hybrid;    // the hybrid style that this one makes sum its virial pair by pair; null: none
   int no_fdotr_before;
   void take_virial(Pair *of);
