@@ -97,38 +97,30 @@ void ComputeFSIAtom::compute_peratom()
   for (int i = 0; i < atom->nlocal; i++) {
     const bool chosen = atom->mask[i] & groupbit;
     if (chosen) find(i, of);
-    for (int k = 0; k < n; k++) {
-      double value = 0.0;
-      if (chosen) switch (quantity[k]) {
-          case PRESSURE:
-            value = of.p;
-            break;
-          case DENSITY:
-            value = of.rho;
-            break;
-          case PSI:
-            value = psi[i];
-            break;
-          case VOLUME:
-            value = of.volume;
-            break;
-          case VONMISES:
-            value = of.mises;
-            break;
-          case PLASTIC:
-            if (of.has_stress) value = fix_stress->plastic_strain(i);
-            break;
-          case BONDS:
-            if (solid_tl) value = solid_tl->bonds(i);
-            break;
-          default:
-            value = of.sigma[quantity[k] - SXX];
-        }
-      if (n == 1)
-        vector_atom[i] = value;
-      else
-        array_atom[i][k] = value;
-    }
+    for (int k = 0; k < n; k++)
+      (n == 1 ? vector_atom[i] : array_atom[i][k]) = chosen ? value(quantity[k], i, of) : 0.0;
+  }
+}
+
+double ComputeFSIAtom::value(int what, int i, const Properties &of) const
+{
+  switch (what) {
+    case PRESSURE:
+      return of.p;
+    case DENSITY:
+      return of.rho;
+    case PSI:
+      return psi[i];
+    case VOLUME:
+      return of.volume;
+    case VONMISES:
+      return of.mises;
+    case PLASTIC:
+      return of.has_stress ? fix_stress->plastic_strain(i) : 0.0;
+    case BONDS:
+      return solid_tl ? solid_tl->bonds(i) : 0.0;
+    default:
+      return of.sigma[what - SXX];
   }
 }
 

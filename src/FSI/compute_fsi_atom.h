@@ -56,6 +56,7 @@ class ComputeFSIAtom : public Compute {
   };
   void grow();
   void find(int i, Properties &) const;
+  double value(int quantity, int i, const Properties &) const;
 };
 
 }    // namespace LAMMPS_NS

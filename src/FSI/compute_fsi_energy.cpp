@@ -33,7 +33,7 @@ ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) :
   if (igroup) error->all(FLERR, "Compute fsi/energy must use group all: pairs have no group");
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
-  size_vector = NHAVE + FixFSI::NTERM;
+  size_vector = NHAVE + Ledger::NTERM;
   vector = new double[size_vector];
 }
 
@@ -49,20 +49,12 @@ void ComputeFSIEnergy::init()
 
 const char *ComputeFSIEnergy::name(int k)
 {
-  static const char *const names[NHAVE + FixFSI::NTERM] = {"kinetic",
-                                                           "gravitational",
-                                                           "compressive",
-                                                           "shear",
-                                                           "artificial viscosity",
-                                                           "laminar viscosity",
-                                                           "density diffusion",
-                                                           "artificial stress",
-                                                           "walls",
-                                                           "coupling",
-                                                           "gradient",
-                                                           "plastic",
-                                                           "changing gravity",
-                                                           "splitting and merging"};
+  // clang-format off
+  static const char *const names[NHAVE + Ledger::NTERM] = {
+      "kinetic", "gravitational", "compressive", "shear", "artificial viscosity",
+      "laminar viscosity", "density diffusion", "artificial stress", "walls", "coupling", "gradient",
+      "plastic", "changing gravity", "splitting and merging"};
+  // clang-format on
   return names[k];
 }
 
@@ -81,14 +73,15 @@ void ComputeFSIEnergy::compute_vector()
 {
   invoked_vector = update->ntimestep;
   fix_fsi = FixFSI::ready(lmp, "Compute fsi/energy");
-  double mine[NHAVE + FixFSI::NTERM] = {};
-  double **v = atom->v;
-  double **f = atom->f;
+  const Discretization &disc = *fix_fsi;
+  const Ledger &ledger = *fix_fsi;
+  double sum[NHAVE + Ledger::NTERM] = {};    // of this rank
+  double **const v = atom->v, **const f = atom->f;
   // in the setup of a run positions and velocities are of one time
   const double half = update->ntimestep == update->firststep ? 0.0 : 0.5 * update->dt;
   const auto *const stress = FixFSIStress::find(lmp);
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = fix_fsi->state[atom->type[i]];
+    const State &s = disc.state[atom->type[i]];
     // what a wall gets is in the term of walls; what grains get, in that of coupling
     if (s.species == NONE || s.species == RIGID) continue;
     const double m = atom->rmass[i];
@@ -98,19 +91,19 @@ void ComputeFSIEnergy::compute_vector()
         : tl                                                ? half / fix_fsi->substeps
                                                             : half;
     const auto g = fix_fsi->body_forces.on(i);
-    for (int d = 0; d < fix_fsi->dim; d++) {
+    for (int d = 0; d < disc.dim; d++) {
       const double vmid = v[i][d] - dth * force->ftm2v * f[i][d] / m;
-      mine[0] += 0.5 * m * vmid * vmid;
-      mine[1] += m * g[d] * dth * v[i][d];    // back from the end of the step
+      sum[0] += 0.5 * m * vmid * vmid;
+      sum[1] += m * g[d] * dth * v[i][d];    // back from the end of the step
     }
-    mine[1] += fix_fsi->potential(i);
+    sum[1] += fix_fsi->potential(i);
     if (tl) continue;
-    mine[2] += fix_fsi->stored(i);
-    if (s.form == UPDATED_LAGRANGIAN) mine[3] += stress->shear_energy(i, s.shear);
+    sum[2] += fix_fsi->stored(i);
+    if (s.form == UPDATED_LAGRANGIAN) sum[3] += stress->shear_energy(i, s.shear);
   }
-  if (const auto *solid_tl = PairFSISolidTL::find(lmp)) mine[3] += solid_tl->strain_energy;
-  for (int k = 0; k < FixFSI::NTERM; k++) mine[NHAVE + k] = fix_fsi->energy_out[k];
-  mine[NHAVE + FixFSI::WALLS] += fix_fsi->guarding[0];
-  mine[NHAVE + FixFSI::COUPLING] += fix_fsi->guarding[1];
-  MPI_Allreduce(mine, vector, size_vector, MPI_DOUBLE, MPI_SUM, world);
+  if (const auto *solid_tl = PairFSISolidTL::find(lmp)) sum[3] += solid_tl->strain_energy;
+  for (int k = 0; k < Ledger::NTERM; k++) sum[NHAVE + k] = ledger.energy_out[k];
+  sum[NHAVE + Ledger::WALLS] += ledger.guarding[0];
+  sum[NHAVE + Ledger::COUPLING] += ledger.guarding[1];
+  MPI_Allreduce(sum, vector, size_vector, MPI_DOUBLE, MPI_SUM, world);
 }

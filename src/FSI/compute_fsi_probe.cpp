@@ -33,7 +33,8 @@ using namespace FSI;
 static constexpr double MOST = 1.0e7;    // points of one place
 
 ComputeFSIProbe::ComputeFSIProbe(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1), fix_fsi(nullptr)
+    Compute(lmp, narg, arg), extrapolate(false), nsums(0), listed(-1), fix_fsi(nullptr),
+    disc(nullptr)
 {
   static const std::vector<std::string> names = {"p",  "rho",  "vx",    "vy",
                                                  "vz", "fill", "level", "wet"};
@@ -110,41 +111,15 @@ ComputeFSIProbe::~ComputeFSIProbe()
   if (array_flag) memory->destroy(array);
 }
 
-// points: half a spacing apart on a patch, in the middle of their cells; a quarter along a line,
-// with both ends
 void ComputeFSIProbe::init()
 {
   fix_fsi = FixFSI::find(lmp, "Compute fsi/probe");
-  const double dx = fix_fsi->levels.back().dx;    // the finest fluid's
+  disc = fix_fsi;
   listed = -1;
   points.clear();
   nsums = places[0].line ? 2 : 1 + quantity.size();
   for (auto &place : places) {
-    double length = 0.0;
-    for (int d = 0; d < 3; d++) {
-      const double extent = place.to[d] - place.from[d];
-      length += extent * extent;
-      place.n[d] = 1;
-      std::fill_n(place.step[d], 3, 0.0);
-      place.origin[d] = place.from[d];
-      if (place.line) continue;
-      // the tolerance: 0.1/0.005 is not 21 cells
-      place.n[d] = std::max(
-          1, static_cast<int>(std::min(std::ceil(2.0 * extent / dx - 1.0e-6), MOST + 1.0)));
-      place.step[d][d] = extent / place.n[d];
-      place.origin[d] += 0.5 * place.step[d][d];
-    }
-    if (place.line) {
-      place.n[0] =
-          1 + static_cast<int>(std::min(std::ceil(4.0 * std::sqrt(length) / dx - 1.0e-6), MOST));
-      for (int d = 0; d < 3; d++)
-        place.step[0][d] = (place.to[d] - place.from[d]) / (place.n[0] - 1);
-    }
-    double n = 1.0;
-    for (const int k : place.n) n *= k;
-    if (n > MOST)
-      error->all(FLERR, "Compute fsi/probe {} has {:g} points, more than {:g}",
-                 place.line ? "line" : "patch", n, MOST);
+    set_grid(place, disc->levels.back().dx);    // the finest fluid's
     place.first = points.size() / 3;
     for (int a = 0; a < place.n[0]; a++)
       for (int b = 0; b < place.n[1]; b++)
@@ -155,6 +130,36 @@ void ComputeFSIProbe::init()
   }
 }
 
+// points: half a spacing apart on a patch, in the middle of their cells; a quarter along a line,
+// with both ends
+void ComputeFSIProbe::set_grid(Place &place, double dx) const
+{
+  double length = 0.0;
+  for (int d = 0; d < 3; d++) {
+    const double extent = place.to[d] - place.from[d];
+    length += extent * extent;
+    place.n[d] = 1;
+    std::fill_n(place.step[d], 3, 0.0);
+    place.origin[d] = place.from[d];
+    if (place.line) continue;
+    // the tolerance: 0.1/0.005 is not 21 cells
+    place.n[d] =
+        std::max(1, static_cast<int>(std::min(std::ceil(2.0 * extent / dx - 1.0e-6), MOST + 1.0)));
+    place.step[d][d] = extent / place.n[d];
+    place.origin[d] += 0.5 * place.step[d][d];
+  }
+  if (place.line) {
+    place.n[0] =
+        1 + static_cast<int>(std::min(std::ceil(4.0 * std::sqrt(length) / dx - 1.0e-6), MOST));
+    for (int d = 0; d < 3; d++) place.step[0][d] = (place.to[d] - place.from[d]) / (place.n[0] - 1);
+  }
+  double n = 1.0;
+  for (const int k : place.n) n *= k;
+  if (n > MOST)
+    error->all(FLERR, "Compute fsi/probe {} has {:g} points, more than {:g}",
+               place.line ? "line" : "patch", n, MOST);
+}
+
 double ComputeFSIProbe::Place::along(int d, const double *x) const
 {
   const double *const e = step[d];
@@ -162,53 +167,71 @@ double ComputeFSIProbe::Place::along(int d, const double *x) const
       (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
 }
 
+// of a particle and its periodic images: calls f(shift, x)
+template <class F> void ComputeFSIProbe::for_images(int i, F f) const
+{
+  int most[3], n[3];
+  for (int d = 0; d < 3; d++) most[d] = d < disc->dim && domain->periodicity[d];
+  for (n[0] = -most[0]; n[0] <= most[0]; n[0]++)
+    for (n[1] = -most[1]; n[1] <= most[1]; n[1]++)
+      for (n[2] = -most[2]; n[2] <= most[2]; n[2]++) {
+        Particle p = {i};
+        double x[3];
+        for (int d = 0; d < 3; d++) {
+          p.shift[d] = n[d] * domain->prd[d];
+          x[d] = atom->x[i][d] + p.shift[d];
+        }
+        f(p, x);
+      }
+}
+
+// squared distance to the nearest part of its grid
+double ComputeFSIProbe::Place::distance_sq(const double *x, int dim) const
+{
+  double apart[3], rsq = 0.0;
+  for (int d = 0; d < 3; d++) apart[d] = x[d] - origin[d];
+  for (int k = 0; k < 3; k++) {
+    if (n[k] == 1) continue;
+    const double t = std::min(std::max(along(k, x), 0.0), n[k] - 1.0);
+    for (int d = 0; d < 3; d++) apart[d] -= t * step[k][d];
+  }
+  for (int d = 0; d < dim; d++) rsq += apart[d] * apart[d];
+  return rsq;
+}
+
 // particles that may come within the kernel's support of a place before the neighbor lists are
 // built anew
 void ComputeFSIProbe::find_near()
 {
   listed = neighbor->lastcall;
-  const double reach = fix_fsi->cut + neighbor->skin;
-  int images[3];
-  for (int d = 0; d < 3; d++) images[d] = d < fix_fsi->dim && domain->periodicity[d];
-
+  const double reach = disc->cut + neighbor->skin;
   for (auto &place : places) {
-    place.near.assign(fix_fsi->levels.size(), {});
+    place.near.assign(disc->levels.size(), {});
     for (int i = 0; i < atom->nlocal; i++) {
-      const int species = fix_fsi->state[atom->type[i]].species;
+      const int species = disc->state[atom->type[i]].species;
       if (species == FLUID ? !(atom->mask[i] & groupbit) : !place.line) continue;
-      for (int a = -images[0]; a <= images[0]; a++)
-        for (int b = -images[1]; b <= images[1]; b++)
-          for (int c = -images[2]; c <= images[2]; c++) {
-            const Particle p = {i, {a * domain->prd[0], b * domain->prd[1], c * domain->prd[2]}};
-            double x[3], apart[3], rsq = 0.0;
-            for (int d = 0; d < 3; d++) {
-              x[d] = atom->x[i][d] + p.shift[d];
-              apart[d] = x[d] - place.origin[d];
-            }
-            for (int k = 0; k < 3; k++) {
-              if (place.n[k] == 1) continue;
-              const double t = std::min(std::max(place.along(k, x), 0.0), place.n[k] - 1.0);
-              for (int d = 0; d < 3; d++) apart[d] -= t * place.step[k][d];
-            }
-            for (int d = 0; d < fix_fsi->dim; d++) rsq += apart[d] * apart[d];
-            const int level = fix_fsi->level_of[atom->type[i]];
-            if (rsq < reach * reach) place.near[level].push_back(p);
-          }
+      for_images(i, [&](const Particle &p, const double *x) {
+        if (place.distance_sq(x, disc->dim) < reach * reach)
+          place.near[disc->level_of[atom->type[i]]].push_back(p);
+      });
     }
   }
 }
 
-// points of the grid within the kernel's support of x: from lo to hi on each axis
-void ComputeFSIProbe::Place::range(const double *x, double cut, int *lo, int *hi) const
+// Calls f with the index of each point of the grid that may be within the kernel's support of x.
+template <class F> void ComputeFSIProbe::Place::for_points(const double *x, double cut, F f) const
 {
+  int lo[3] = {}, hi[3] = {};
   for (int d = 0; d < 3; d++) {
-    lo[d] = hi[d] = 0;
     if (n[d] == 1) continue;
     const double *const e = step[d];
     const double t = along(d, x), r = cut / std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
     lo[d] = std::max(0, static_cast<int>(std::ceil(t - r)));
     hi[d] = std::min(n[d] - 1, static_cast<int>(std::floor(t + r)));
   }
+  for (int a = lo[0]; a <= hi[0]; a++)
+    for (int b = lo[1]; b <= hi[1]; b++)
+      for (int c = lo[2]; c <= hi[2]; c++) f(first + (a * n[1] + b) * n[2] + c);
 }
 
 // mirror walls near each point, as bits; points on a wall are put where it is: not behind it
@@ -218,9 +241,8 @@ std::vector<int> ComputeFSIProbe::walls_near(const Walls &walls, std::vector<dou
   if (walls.any())
     for (size_t k = 0; k < mask.size(); k++) {
       for (const auto &w : walls.wall)
-        if (std::fabs(w.distance(&at[3 * k])) < 1.0e-6 * fix_fsi->dx)
-          at[3 * k + w.axis] = w.position;
-      mask[k] = walls.near(&at[3 * k], fix_fsi->cut);
+        if (std::fabs(w.distance(&at[3 * k])) < 1.0e-6 * disc->dx) at[3 * k + w.axis] = w.position;
+      mask[k] = walls.near(&at[3 * k], disc->cut);
     }
   return mask;
 }
@@ -230,9 +252,29 @@ std::vector<int> ComputeFSIProbe::walls_near(const Walls &walls, std::vector<dou
 double ComputeFSIProbe::volume_at(const double *x, int i, const Walls &walls) const
 {
   double vol = atom->rmass[i] / atom->rho[i];
-  if (fix_fsi->state[atom->type[i]].species == SOLID)
-    for (const auto &w : walls.wall) vol *= w.before(x, fix_fsi->dx_of(atom->type[i]));
+  if (disc->state[atom->type[i]].species == SOLID)
+    for (const auto &w : walls.wall) vol *= w.before(x, disc->dx_of(atom->type[i]));
   return vol;
+}
+
+// What a particle gives to the sums of points around it
+struct ComputeFSIProbe::Source {
+  double rho, pressure, floor;
+  bool fluid;
+};
+
+void ComputeFSIProbe::add(const Place &place, const Source &of, double weight, double head,
+                          const double *v, double *sum)
+{
+  sum[place.line && !of.fluid] += weight;
+  for (size_t q = 0; q < quantity.size() && !place.line; q++) {
+    if (quantity[q] == P)
+      sum[q + 1] += weight * (extrapolate ? std::max(of.pressure + head, of.floor) : of.pressure);
+    else if (quantity[q] == RHO)
+      sum[q + 1] += weight * of.rho;
+    else if (quantity[q] != FILL)
+      sum[q + 1] += weight * v[quantity[q] - VX];
+  }
 }
 
 // adds particles with this kernel near each place to its sums; at: points; mask: walls near them
@@ -240,69 +282,47 @@ template <class K>
 void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &walls,
                                 const std::vector<double> &at, const std::vector<int> &mask)
 {
-  double *const *const v = atom->v;
-  Sight *const sight = fix_fsi->sight.get();
+  Sight *const sight = disc->sight.get();
+  const auto add_particle = [&](const Place &place, const Particle &p) {
+    const int i = p.i, type = atom->type[i];
+    const State &state = disc->state[type];
+    const auto &g = fix_fsi->body_forces.of_type[type];
+    const bool fluid = state.species == FLUID;
+    const Source of = {atom->rho[i], fluid ? fix_fsi->pressure(i) : 0.0, state.floor, fluid};
+    double x[3];
+    for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
+    const double vol = volume_at(x, i, walls);
+    if (vol == 0.0) return;
+    const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, disc->cut) : 0;
+    const bool may_hide = sight && fluid && sight->near(atom->x[i]);
+    if (may_hide) sight->look_from(atom->x[i], kernel.cut);
+    place.for_points(x, kernel.cut, [&](int k) {
+      const double *const xk = &at[3 * k];
+      double *const sum = &sums[(size_t) k * nsums];
+      double rsq = 0.0, head = 0.0;
+      for (int d = 0; d < disc->dim; d++) {
+        rsq += (xk[d] - x[d]) * (xk[d] - x[d]);
+        head += of.rho * g[d] * (xk[d] - x[d]);
+      }
+      if (rsq >= kernel.cutsq) return;
+      double part = vol;
+      if (may_hide) {
+        const double seen[3] = {xk[0] - p.shift[0], xk[1] - p.shift[1], xk[2] - p.shift[2]};
+        part *= sight->visible(seen, kernel.cut);
+      }
+      add(place, of, kernel.W(std::sqrt(rsq)) * part, head, atom->v[i], sum);
+      const int both = mask_i & mask[k];
+      if (!both) return;
+      walls.images(both, rsq, xk, x, kernel.cutsq,
+                   [&](const Walls::Reflection &s, double rsq_image, const double *) {
+                     double v[3];
+                     walls.reflect_velocity(s, atom->v[i], v);
+                     add(place, of, kernel.W(std::sqrt(rsq_image)) * part, head, v, sum);
+                   });
+    });
+  };
   for (const auto &place : places)
-    for (const auto &p : place.near[level]) {
-      const int i = p.i;
-      double x[3];
-      for (int d = 0; d < 3; d++) x[d] = atom->x[i][d] + p.shift[d];
-      const State &state = fix_fsi->state[atom->type[i]];
-      const auto &g = fix_fsi->body_forces.of_type[atom->type[i]];
-      const bool fluid = state.species == FLUID;
-      const double rho = atom->rho[i], pressure = fluid ? fix_fsi->pressure(i) : 0.0;
-      const double vol = volume_at(x, i, walls);
-      if (vol == 0.0) continue;
-      const int mask_i = walls.any() && state.species != RIGID ? walls.near(x, fix_fsi->cut) : 0;
-      const bool may_hide = sight && fluid && sight->near(atom->x[i]);
-      if (may_hide) sight->look_from(atom->x[i], kernel.cut);
-      int lo[3], hi[3];
-      place.range(x, kernel.cut, lo, hi);
-      for (int a = lo[0]; a <= hi[0]; a++)
-        for (int b = lo[1]; b <= hi[1]; b++)
-          for (int c = lo[2]; c <= hi[2]; c++) {
-            const int k = place.first + (a * place.n[1] + b) * place.n[2] + c;
-            const double *const xk = &at[3 * k];
-            double *const sum = &sums[(size_t) k * nsums];
-            double rsq = 0.0, head = 0.0;
-            for (int d = 0; d < fix_fsi->dim; d++) {
-              rsq += (xk[d] - x[d]) * (xk[d] - x[d]);
-              head += rho * g[d] * (xk[d] - x[d]);
-            }
-            if (rsq >= kernel.cutsq) continue;
-            double part = vol;
-            if (may_hide) {
-              double seen[3];
-              for (int d = 0; d < 3; d++) seen[d] = xk[d] - p.shift[d];
-              part *= sight->visible(seen, kernel.cut);
-            }
-            const auto add = [&](double w, const double *velocity) {
-              w *= part;
-              if (place.line) {
-                sum[fluid ? 0 : 1] += w;
-                return;
-              }
-              sum[0] += w;
-              for (size_t q = 0; q < quantity.size(); q++) {
-                if (quantity[q] == P)
-                  sum[q + 1] +=
-                      w * (extrapolate ? std::max(pressure + head, state.floor) : pressure);
-                else if (quantity[q] == RHO)
-                  sum[q + 1] += w * rho;
-                else if (quantity[q] != FILL)
-                  sum[q + 1] += w * velocity[quantity[q] - VX];
-              }
-            };
-            add(kernel.W(std::sqrt(rsq)), v[i]);
-            if (mask_i & mask[k])
-              walls.images(mask_i & mask[k], rsq, xk, x, kernel.cutsq,
-                           [&](const Walls::Reflection &s, double rsq_image, const double *) {
-                             double image[3];
-                             walls.reflect_velocity(s, v[i], image);
-                             add(kernel.W(std::sqrt(rsq_image)), image);
-                           });
-          }
-    }
+    for (const auto &p : place.near[level]) add_particle(place, p);
 }
 
 // sums of V W and of V W times each quantity over fluid particles and their images in mirror walls;
@@ -310,6 +330,7 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
 void ComputeFSIProbe::sum_up()
 {
   fix_fsi = FixFSI::ready(lmp, "Compute fsi/probe");
+  disc = fix_fsi;
   if (listed != neighbor->lastcall || update->whichflag == 0) find_near();
 
   const int npoints = points.size() / 3;
@@ -322,8 +343,8 @@ void ComputeFSIProbe::sum_up()
   std::vector<double> at(points);
   const std::vector<int> mask = walls_near(walls, at);
 
-  for (size_t level = 0; level < fix_fsi->levels.size(); level++)
-    with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->levels[level].h, [&](const auto &kernel) {
+  for (size_t level = 0; level < disc->levels.size(); level++)
+    with_kernel(disc->kernel, disc->dim, disc->levels[level].h, [&](const auto &kernel) {
       add_level(level, kernel, walls, at, mask);
     });
   MPI_Allreduce(sums.data(), all.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, world);

@@ -27,8 +27,9 @@ ComputeStyle(fsi/probe,ComputeFSIProbe);
 
 namespace LAMMPS_NS {
 namespace FSI {
+  struct Discretization;
   struct Walls;
-}
+}    // namespace FSI
 
 // Gauges: the fluid's fields interpolated at points and over patches, and its level along lines.
 // Each rank sums over its own particles, a reduction does the rest; particles near a place are
@@ -63,22 +64,28 @@ class ComputeFSIProbe : public Compute {
 
     int size() const { return n[0] * n[1] * n[2]; }
     double along(int d, const double *x) const;    // where x is on grid axis d, in steps
-    void range(const double *x, double cut, int *lo, int *hi) const;
+    double distance_sq(const double *x, int dim) const;
+    template <class F> void for_points(const double *x, double cut, F) const;
   };
   std::vector<Place> places;
   std::vector<double> points, sums, all;
   int nsums;    // per point: fluid, solid; or fluid and one for each quantity
   bigint listed;
 
-  class FixFSI *fix_fsi;
+  const class FixFSI *fix_fsi;
+  const FSI::Discretization *disc;    // of it
 
   int read_place(const std::string &kind, int narg, char **arg);
+  void set_grid(Place &, double dx) const;
   void find_near();
+  template <class F> void for_images(int i, F) const;
   double volume_at(const double *x, int i, const FSI::Walls &) const;
   std::vector<int> walls_near(const FSI::Walls &, std::vector<double> &at) const;
+  struct Source;
   template <class K>
   void add_level(size_t level, const K &, const FSI::Walls &, const std::vector<double> &at,
                  const std::vector<int> &mask);
+  void add(const Place &, const Source &, double weight, double head, const double *v, double *sum);
   void sum_up();
   void evaluate(double *result);
   double field(const Place &, int k) const;

@@ -22,7 +22,6 @@
 #include "fsi_changes.h"
 #include "fsi_check.h"
 #include "fsi_clamps.h"
-#include "fsi_clock.h"
 #include "fsi_find.h"
 #include "fsi_frame.h"
 #include "fsi_gather.h"
@@ -35,7 +34,7 @@
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_sight.h"
-#include "fsi_surface_room.h"
+#include "fsi_surface_deficit.h"
 #include "group.h"
 #include "neighbor.h"
 #include "output.h"
@@ -57,14 +56,14 @@ struct FixFSI::Members {
   Population population;
   NumberDensity number_density;
   Clamps clamps;
-  SurfaceRoom surface_room;
+  SurfaceDeficit surface_deficit;
   Others others;
   Frame frame;
 
   Members(LAMMPS *lmp, FixFSI &fix, const std::function<void(double *)> &add_ghosts) :
       keywords(lmp, "fix fsi"), clock(lmp), check(lmp, fix), changes(lmp), population(lmp, fix),
       number_density(lmp, fix, add_ghosts), clamps(lmp, fix),
-      surface_room(lmp, fix, number_density, add_ghosts), others(lmp, fix), frame(lmp, fix)
+      surface_deficit(lmp, fix, number_density, add_ghosts), others(lmp, fix), frame(lmp, fix)
   {
   }
 };
@@ -137,7 +136,7 @@ void FixFSI::set_fields()
 {
   const bool particle_walls = any_is(parts, &Facts::particle_walls);
   number_density.set_fields(fields);
-  members->surface_room.set_array(fields);
+  members->surface_deficit.set_array(fields);
   for (int d = 0; d < 3; d++)
     fields.set(std::string("velocity of shifting along ") + "xyz"[d], Fields::RESTART,
                d < dim && density_follows_shift(), shift_velocity[d]);
@@ -253,7 +252,7 @@ void FixFSI::find_parts()
     return a->facts().style < b->facts().style;
   });
   for (auto *p : fixes_of<Part>(lmp)) parts.push_back(p);
-  parts.push_back(&members->surface_room);
+  parts.push_back(&members->surface_deficit);
   parts.push_back(&members->clamps);
   std::stable_sort(parts.begin(), parts.end(), [](const Part *a, const Part *b) {
     return a->rank() < b->rank();
@@ -413,7 +412,7 @@ void FixFSI::write_restart(FILE *fp)
   Record record = this->record();
   clock.write(record);
   if (kept) record.add("ledger", std::vector<double>(all, all + NTERM));
-  members->surface_room.write(record);
+  members->surface_deficit.write(record);
   fields.write(record);
   record.write(fp);
 }
@@ -438,7 +437,7 @@ void FixFSI::restart(char *buf)
   const Record record(lmp, "fix fsi", buf);
   const std::vector<std::string> of_kernel = {"reference of ratio"};
   fields.read(record, goes_on(record, Keywords::OF_RESTART) ? decltype(of_kernel)() : of_kernel);
-  members->surface_room.read(record);
+  members->surface_deficit.read(record);
   clock.read(record);
   if (record.has("ledger") && comm->me == 0) {
     const auto terms = record.numbers("ledger");

@@ -18,7 +18,6 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
-#include "fsi_clock.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"

@@ -19,7 +19,6 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "force.h"
-#include "fsi_clock.h"
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_nearest_image.h"

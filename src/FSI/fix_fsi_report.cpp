@@ -20,13 +20,13 @@
 #include "fix_fsi.h"
 #include "fix_fsi_wall_mirror.h"
 #include "force.h"
-#include "fsi_clock.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_keywords.h"
 #include "fsi_population.h"
 #include "fsi_profile.h"
+#include "fsi_record.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -51,9 +51,9 @@ static std::string word(const std::string &text)
 }
 
 FixFSIReport::FixFSIReport(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), profile(new Profile()), fix_fsi(nullptr), energy(nullptr), fp(nullptr),
-    first_step(0), natoms(0), first_time(0.0), any_held(false), listed(-1), momentum{}, impulse{},
-    collected(-1), output{}
+    Fix(lmp, narg, arg), profile(new Profile()), fix_fsi(nullptr), disc(nullptr), energy(nullptr),
+    fp(nullptr), first_step(0), natoms(0), first_time(0.0), any_held(false),
+    listed(-1), momentum{}, impulse{}, collected(-1), output{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/report requires atom_style fsi");
   if (igroup)
@@ -86,6 +86,7 @@ FixFSIReport::~FixFSIReport()
 void FixFSIReport::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/report");
+  disc = fix_fsi;
   if (fixes_of<FixFSIReport>(lmp).size() > 1)
     error->all(FLERR, "There can be only one fix fsi/report");
   energy = first_of(computes_of<ComputeFSIEnergy>(lmp));
@@ -120,7 +121,7 @@ bigint FixFSIReport::particles() const
 // this rank's impulses of this step
 void FixFSIReport::end_of_step()
 {
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   const double dtf = update->dt * force->ftm2v;
   for (const auto &field : fields)
     for (int d = 0; d < 3 && comm->me == 0; d++)
@@ -281,54 +282,54 @@ std::string FixFSIReport::time_table(double loop)
 std::string FixFSIReport::what_to_change(double loop, const double *mean, double busiest)
 {
   if (loop <= 0.0) return "";
+  const double steps = update->ntimestep - first_step, skin = neighbor->skin / disc->dx,
+               a_list = steps / std::max<bigint>(neighbor->ncalls, 1),
+               work = loop - mean[Profile::MESSAGES];
+  const bool waits = busiest > 1.1 * work;
+  const int substeps = fix_fsi->substeps;
+  const double of_fluid = mean[Profile::FLUID_FORCES], of_solids = mean[Profile::SOLID_FORCES];
   struct Hint {
+    bool helps;
     const char *name;
-    double share;
+    double seconds, usual;
     std::string text;
   };
-  std::vector<Hint> hints;
-  const auto add = [&](const char *name, double seconds, double usual, const std::string &text) {
-    if (seconds > usual * loop) hints.push_back({name, seconds / loop, text});
-  };
-  const double steps = update->ntimestep - first_step, skin = neighbor->skin / fix_fsi->dx,
-               a_list = steps / std::max<bigint>(neighbor->ncalls, 1),
-               messages = mean[Profile::MESSAGES], work = loop - messages;
-
-  if (busiest > 1.1 * work)
-    add("waiting", busiest - work, 0.05,
-        fmt::format("the busiest rank works {:.2f} times as long as the mean: fix balance",
-                    busiest / work));
-  else
-    add("communication", messages, 0.25,
-        fmt::format("{} particles on each rank: fewer ranks", natoms / comm->nprocs));
-  add("neighbor lists", mean[NEIGH], 0.2,
-      fmt::format("new ones every {:.3g} steps: a {} skin than {:.3g} dx", a_list,
-                  a_list < 10.0 ? "larger" : "smaller", skin));
-  add("output", mean[OUTPUT], 0.1,
-      fmt::format("thermo every {} steps, {} dumps: less often", lmp->output->thermo_every,
-                  lmp->output->ndump));
-  add("force of solids", mean[Profile::SOLID_FORCES], 0.4,
-      fix_fsi->substeps > 1
-          ? fmt::format(
-                "{} sub-steps in each step: fewer particles through the body, a softer body",
-                fix_fsi->substeps)
-          : "fewer particles through the body");
-  if (facts_of_fluids(lmp).shift_every == 1)
-    add("density", mean[Profile::DENSITY], 0.3, "shifting in every step: shift/every 4");
-  if (fix_fsi->kernel == QUINTIC)
-    add("force of fluid", mean[Profile::FLUID_FORCES], 0.3, "kernel quintic: wendland is faster");
-  if (skin > 1.5)
-    add("force of fluid", mean[Profile::FLUID_FORCES], 0.3,
-        fmt::format("a skin of {:.3g} dx: neighbor {:.2g} bin", skin, 0.3 * fix_fsi->dx));
-  std::sort(hints.begin(), hints.end(), [](const Hint &a, const Hint &b) {
-    return a.share > b.share;
+  std::vector<Hint> hints = {
+      {waits, "waiting", busiest - work, 0.05,
+       fmt::format("the busiest rank works {:.2f} times as long as the mean: fix balance",
+                   busiest / work)},
+      {!waits, "communication", mean[Profile::MESSAGES], 0.25,
+       fmt::format("{} particles on each rank: fewer ranks", natoms / comm->nprocs)},
+      {true, "neighbor lists", mean[NEIGH], 0.2,
+       fmt::format("new ones every {:.3g} steps: a {} skin than {:.3g} dx", a_list,
+                   a_list < 10.0 ? "larger" : "smaller", skin)},
+      {true, "output", mean[OUTPUT], 0.1,
+       fmt::format("thermo every {} steps, {} dumps: less often", lmp->output->thermo_every,
+                   lmp->output->ndump)},
+      {substeps > 1, "force of solids", of_solids, 0.4,
+       fmt::format("{} sub-steps in each step: fewer particles through the body, a softer body",
+                   substeps)},
+      {substeps == 1, "force of solids", of_solids, 0.4, "fewer particles through the body"},
+      {facts_of_fluids(lmp).shift_every == 1, "density", mean[Profile::DENSITY], 0.3,
+       "shifting in every step: shift/every 4"},
+      {disc->kernel == QUINTIC, "force of fluid", of_fluid, 0.3,
+       "kernel quintic: wendland is faster"},
+      {skin > 1.5, "force of fluid", of_fluid, 0.3,
+       fmt::format("a skin of {:.3g} dx: neighbor {:.2g} bin", skin, 0.3 * disc->dx)}};
+  hints.erase(std::remove_if(hints.begin(), hints.end(),
+                             [loop](const Hint &h) {
+                               return !h.helps || h.seconds <= h.usual * loop;
+                             }),
+              hints.end());
+  std::stable_sort(hints.begin(), hints.end(), [](const Hint &a, const Hint &b) {
+    return a.seconds > b.seconds;
   });
   std::string text = "  what to change first\n";
   if (hints.empty())
     text += "    nothing stands out: fewer particles, or longer steps (fix fsi/dt says what limits "
             "them)\n";
   for (const auto &h : hints)
-    text += fmt::format("    {:<14} {:>6.1f}%   {}\n", h.name, 100.0 * h.share, h.text);
+    text += fmt::format("    {:<14} {:>6.1f}%   {}\n", h.name, 100.0 * h.seconds / loop, h.text);
   enter_line("change_first", hints.empty() ? "nothing" : word(hints[0].name));
   return text;
 }
@@ -346,12 +347,12 @@ std::string FixFSIReport::momentum_table(bool lost)
         !utils::strmatch(fix->style, "^gravity"))
       others += fmt::format(" fix {},", fix->id);
   std::string text = fmt::format("  {:<46} {:>12} {:>12}{}\n", "momentum", "x", "y",
-                                 fix_fsi->dim == 3 ? fmt::format(" {:>12}", "z") : "");
+                                 disc->dim == 3 ? fmt::format(" {:>12}", "z") : "");
   const auto row = [&](const char *name, const std::string &label, const Vector &p, bool shown) {
     for (int d = 0; d < 3; d++) enter_line(fmt::format("momentum_{}_{}", name, "xyz"[d]), p[d]);
     if (!shown) return;
     text += fmt::format("    {:<44}", label);
-    for (int d = 0; d < fix_fsi->dim; d++) text += fmt::format(" {:>12.4g}", p[d]);
+    for (int d = 0; d < disc->dim; d++) text += fmt::format(" {:>12.4g}", p[d]);
     text += "\n";
   };
   row("change", "change", b.change, true);

@@ -29,6 +29,9 @@ FixStyle(fsi/report,FixFSIReport);
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  struct Discretization;
+}
 
 // At the end of each run, what it cost and how exact it was. Looks and adds up, changes nothing.
 
@@ -48,6 +51,7 @@ class FixFSIReport : public Fix, public FSI::Part {
  private:
   const std::unique_ptr<FSI::Profile> profile;    // filled by fix fsi, pair styles and walls
   class FixFSI *fix_fsi;
+  const FSI::Discretization *disc;    // of it
   class ComputeFSIEnergy *energy;
   FILE *fp;    // of rank 0; null: the log
 

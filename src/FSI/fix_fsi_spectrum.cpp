@@ -15,7 +15,6 @@
 
 #include "comm.h"
 #include "error.h"
-#include "fsi_clock.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "input.h"
@@ -63,12 +62,7 @@ FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
                "Fix fsi/spectrum input {}: expected v_name of an equal-style variable, or a number "
                "of a compute or fix, c_ID, c_ID[i], f_ID or f_ID[i]",
                argument);
-  if (!file.empty() && comm->me == 0) {    // not only at the end of the run
-    FILE *fp = fopen(file.c_str(), "a");
-    if (!fp)
-      error->one(FLERR, "Cannot open fix fsi/spectrum file {}: {}", file, utils::getsyserror());
-    fclose(fp);
-  }
+  if (!file.empty() && comm->me == 0) fclose(open("a"));    // not only at the end of the run
 
   scalar_flag = vector_flag = array_flag = 1;
   extscalar = extvector = extarray = 0;
@@ -78,6 +72,14 @@ FixFSISpectrum::FixFSISpectrum(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   time_depend = 1;
   restart_global = 1;
   modify->addstep_compute_all(((update->ntimestep + nevery - 1) / nevery) * nevery);
+}
+
+FILE *FixFSISpectrum::open(const char *mode) const
+{
+  FILE *const fp = fopen(file.c_str(), mode);
+  if (!fp)
+    error->one(FLERR, "Cannot open fix fsi/spectrum file {}: {}", file, utils::getsyserror());
+  return fp;
 }
 
 void FixFSISpectrum::end_of_step()
@@ -138,6 +140,26 @@ std::vector<double> FixFSISpectrum::prepare(double &area) const
 //   a = A_k+1/A_k = (m + d)/(m + 1 - d)
 // (m = 0, 1: Rife & Vincent 1970, Grandke 1983), and A_k = amplitude sin(pi d)/(pi d)/prod_j=1..m
 // (1 - d^2/j^2).
+std::vector<FixFSISpectrum::Peak> FixFSISpectrum::peaks_of(const std::vector<double> &A,
+                                                           double df) const
+{
+  std::vector<Peak> found;
+  for (size_t k = 1; k + 1 < A.size(); k++) {
+    if (A[k] <= A[k - 1] || A[k] < A[k + 1]) continue;
+    const bool up = A[k + 1] > A[k - 1];
+    const double a = (up ? A[k + 1] : A[k - 1]) / A[k];
+    const double d = std::max(0.0, ((order + 1) * a - order) / (a + 1.0));
+    double amplitude = A[k];
+    if (d > 0.0) amplitude *= MathConst::MY_PI * d / std::sin(MathConst::MY_PI * d);
+    for (int j = 1; j <= order; j++) amplitude *= 1.0 - d * d / (j * j);
+    found.push_back({(up ? k + d : k - d) * df, amplitude});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Peak &p, const Peak &q) {
+    return p.amplitude > q.amplitude;
+  });
+  return found;
+}
+
 void FixFSISpectrum::analyze()
 {
   std::fill(peaks.begin(), peaks.end(), Peak{0.0, 0.0});
@@ -154,28 +176,12 @@ void FixFSISpectrum::analyze()
       A[k] = (k == 0 || 2 * k == n ? 1.0 : 2.0) * std::hypot(X[k][0], X[k][1]) / area;
     fftw_destroy_plan(plan);
     fftw_free(X);
-
     const double df = (n - 1) / (n * (time[n - 1] - time[0]));
-    std::vector<Peak> found;
-    for (int k = 1; k < n / 2; k++) {
-      if (A[k] <= A[k - 1] || A[k] < A[k + 1]) continue;
-      const bool up = A[k + 1] > A[k - 1];
-      const double a = (up ? A[k + 1] : A[k - 1]) / A[k];
-      const double d = std::max(0.0, ((order + 1) * a - order) / (a + 1.0));
-      double amplitude = A[k];
-      if (d > 0.0) amplitude *= MathConst::MY_PI * d / std::sin(MathConst::MY_PI * d);
-      for (int j = 1; j <= order; j++) amplitude *= 1.0 - d * d / (j * j);
-      found.push_back({(up ? k + d : k - d) * df, amplitude});
-    }
-    std::stable_sort(found.begin(), found.end(), [](const Peak &p, const Peak &q) {
-      return p.amplitude > q.amplitude;
-    });
+    const auto found = peaks_of(A, df);
     std::copy_n(found.begin(), std::min(found.size(), peaks.size()), peaks.begin());
 
     if (!file.empty()) {
-      FILE *fp = fopen(file.c_str(), "w");
-      if (!fp)
-        error->one(FLERR, "Cannot open fix fsi/spectrum file {}: {}", file, utils::getsyserror());
+      FILE *const fp = open("w");
       utils::print(fp, "frequency,amplitude\n");
       for (int k = 0; k <= n / 2; k++) utils::print(fp, "{:.10g},{:.10g}\n", k * df, A[k]);
       if (ferror(fp) + fclose(fp))

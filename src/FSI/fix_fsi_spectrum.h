@@ -59,6 +59,8 @@ class FixFSISpectrum : public Fix {
   bigint last;    // step of the last sample
   std::vector<double> time, value;
 
+  FILE *open(const char *mode) const;
+  std::vector<Peak> peaks_of(const std::vector<double> &amplitudes, double df) const;
   void analyze();
   std::vector<double> prepare(double &) const;
 };

@@ -34,23 +34,22 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-static constexpr double BIG = 1.0e20;
+static constexpr double OFF = 1.0e20, FOLLOWS = -1.0;    // a limit; FOLLOWS: the scene
 
-struct Description {
+// sign: -1 where what is small is wrong
+struct FixFSIWatch::Row {
+  Trouble trouble;
   const char *key, *what;
+  double sign, standard, off;
+  Range range;
+  double limit = OFF, seen = 0.0;    // seen: on all ranks at the last check
+  Finding worst = {};                // of this rank
+  bool warned = false;
 };
-// clang-format off
-static constexpr Description about[] = {    // from DISTANCE on
-    {"distance", "distance over particle spacing"},
-    {"density", "density error |rho/rho0-1|"},
-    {"energy", "growth of the kinetic energy"},
-    {"lost", "number of lost particles"}};
-// clang-format on
+enum { NEAREST, DENSEST, GROWTH, GONE, NROW };
 
 FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), fix_fsi(nullptr), halt(new Stop(lmp, "Fix fsi/watch")), limit(NTROUBLE),
-    worst(NTROUBLE), total(NTROUBLE), seen(NTROUBLE, 0.0), energy_before(-1.0), warned(0),
-    violations(0)
+    Fix(lmp, narg, arg), scene(nullptr), energy_before(-1.0), violations(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/watch requires atom_style fsi");
   for (int k = 4; k < narg; k++)
@@ -58,26 +57,22 @@ FixFSIWatch::FixFSIWatch(LAMMPS *lmp, int narg, char **arg) :
       error->all(FLERR,
                  "Fix fsi/watch has no keyword reflected: fix fsi/wall/mirror counts reflections, "
                  "f_ID, for fix halt");
-  static constexpr double FOLLOWS = -1.0;    // the scene, see allowed()
+  rows = {{DISTANCE, "distance", "distance over particle spacing", -1.0, 0.0, FOLLOWS,
+           Range::inside(0.0, 1.0)},
+          {DENSITY, "density", "density error |rho/rho0-1|", 1.0, 0.3, OFF, Range::above(0.0)},
+          {ENERGY, "energy", "growth of the kinetic energy", 1.0, 10.0, OFF, Range::above(1.0)},
+          {LOST, "lost", "number of lost particles", 1.0, FOLLOWS, OFF, Range::from(0.0)}};
   Keywords keywords(lmp, "fix fsi/watch");
   keywords.argument("interval").integer(interval, 1, 1);
-  const auto row = [&](Trouble q, double start, const Range &range, double off = BIG) {
-    keywords.key(about[q - DISTANCE].key).number(limit[q], start, range).or_word("off", off);
-  };
-  row(DISTANCE, 0.0, Range::inside(0.0, 1.0), FOLLOWS);
-  row(DENSITY, 0.3, Range::above(0.0));
-  row(ENERGY, 10.0, Range::above(1.0));
-  row(LOST, FOLLOWS, Range::from(0.0));
+  for (auto &row : rows)
+    keywords.key(row.key).number(row.limit, row.standard, row.range).or_word("off", row.off);
   keywords.key("action").choice(warn, 0, {"stop", "warn"});
   keywords.parse(narg - 3, arg + 3);
-  distances = limit[DISTANCE] != FOLLOWS;
-  if (!distances) limit[DISTANCE] = 0.0;
-  loses = limit[LOST] != FOLLOWS;
-  if (!loses) limit[LOST] = 0.0;
+  loses = rows[GONE].limit != FOLLOWS;
+  if (!loses) rows[GONE].limit = 0.0;
 
-  clear();
   scalar_flag = vector_flag = 1;
-  size_vector = NTROUBLE - DISTANCE;
+  size_vector = NROW;
   extscalar = extvector = 0;
   global_freq = 1;
   dynamic_group_allow = 1;
@@ -87,13 +82,13 @@ FixFSIWatch::~FixFSIWatch() = default;
 
 double FixFSIWatch::compute_vector(int k)
 {
-  return seen[DISTANCE + k];
+  return rows[k].seen;
 }
 
 void FixFSIWatch::init()
 {
-  fix_fsi = FixFSI::find(lmp, "Fix fsi/watch");
-  solid_tl = PairFSISolidTL::find(lmp);
+  scene = FixFSI::find(lmp, "Fix fsi/watch");
+  halt = std::make_unique<Stop>(lmp, "Fix fsi/watch", *scene);
 }
 
 void FixFSIWatch::find_idle(const Census &, const Idle &nothing) const
@@ -115,82 +110,58 @@ void FixFSIWatch::post_force(int)
   if (update->ntimestep % interval == 0) look(false);
 }
 
-// particles may be meant to leave
-
-double FixFSIWatch::allowed(int q) const
+void FixFSIWatch::enter(int row, int i, double value, int j)
 {
-  return q == LOST && !loses && output->thermo->lostflag == Thermo::IGNORE ? BIG : limit[q];
-}
-
-void FixFSIWatch::clear()
-{
-  worst.assign(NTROUBLE, {});
-  worst[DISTANCE].value = BIG;
-  total.assign(NTROUBLE, 0.0);
-}
-
-void FixFSIWatch::enter(int q, int i, double value, int j)
-{
-  Finding &w = worst[q];
-  if (w.tag && (q == DISTANCE ? value >= w.value : value <= w.value)) return;
-  w = halt->finding((Trouble) q, i, value, j);
+  Row &r = rows[row];
+  if (!(r.sign * value > r.sign * r.worst.value)) return;    // or not a number
+  r.worst = halt->finding(r.trouble, i, value, j);
 }
 
 // kinetic energy, and what of it is small: that of a hundredth of the speed of waves
 void FixFSIWatch::look_at_particles(double &kinetic, double &little)
 {
-  double **v = atom->v;
-  const double *const rmass = atom->rmass, *const rho = atom->rho;
-  const int *const mask = atom->mask, *const type = atom->type;
+  const Discretization &disc = *scene;
+  const PairFSISolidTL *const solid_tl = PairFSISolidTL::find(lmp);
   std::vector<double> mass(atom->ntypes + 1, 0.0);
-  double fastest = -1.0, furthest = -1.0;    // furthest from the density at rest
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(mask[i] & groupbit)) continue;
-    const State &s = fix_fsi->state[type[i]];
+    if (!(atom->mask[i] & groupbit)) continue;
+    const State &s = disc.state[atom->type[i]];
+    const double *const v = atom->v[i], m = atom->rmass[i], rho = atom->rho[i];
     // a wall is neither compressed nor integrated
     if (s.species == NONE || s.species == RIGID) continue;
-    const double vsq = v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2];
-    kinetic += 0.5 * rmass[i] * vsq;
-    mass[type[i]] += rmass[i];
-    if (vsq > fastest) {
-      fastest = vsq;
-      enter(ENERGY, i, vsq);
-    }
+    const double vsq = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    kinetic += 0.5 * m * vsq;
+    mass[atom->type[i]] += m;
+    enter(GROWTH, i, vsq);
     // spray without tension loses density, which then means nothing
-    if (s.species == FLUID && rho[i] < s.rho0 && fix_fsi->pressure(i) == s.floor) continue;
-    const double error = std::abs((fix_fsi->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i)
-                                                                   : fix_fsi->density_ratio(i)) -
-                                  1.0);
-    if (error > furthest) {
-      furthest = error;
-      enter(DENSITY, i, error);
-    }
+    if (s.species == FLUID && rho < s.rho0 && scene->pressure(i) == s.floor) continue;
+    const double ratio = scene->is_total_lagrangian(i) ? 1.0 / solid_tl->volume_ratio(i)
+                                                       : rho / s.rho0;
+    enter(DENSEST, i, std::abs(ratio - 1.0));
   }
   for (int t = 1; t <= atom->ntypes; t++)
-    if (mass[t] > 0.0) little += 0.5e-4 * mass[t] * fix_fsi->state[t].wave_speed_sq();
+    if (mass[t] > 0.0) little += 0.5e-4 * mass[t] * disc.state[t].wave_speed_sq();
 }
 
 // pairs whose neighbor lists are at hand: all but those inside one total-Lagrangian body
 void FixFSIWatch::look_at_pairs()
 {
-  double **x = atom->x;
-  const int *const mask = atom->mask, *const type = atom->type;
-  double smallest = BIG;
+  const std::vector<Resolution> &resolution = scene->resolution;
+  double smallest = OFF;
   for (const auto *const pair : pairs_of<PairFSI>(lmp)) {
-    if (!pair->list) continue;
     const NeighList *const list = pair->list;
-    for (int ii = 0; ii < list->inum; ii++) {
+    for (int ii = 0; list && ii < list->inum; ii++) {
       const int i = list->ilist[ii];
-      if (!(mask[i] & groupbit)) continue;
+      if (!(atom->mask[i] & groupbit)) continue;
       for (int jj = 0; jj < list->numneigh[i]; jj++) {
         const int j = list->firstneigh[i][jj] & NEIGHMASK;
-        const double a = x[i][0] - x[j][0], b = x[i][1] - x[j][1], c = x[i][2] - x[j][2];
+        const double *const xi = atom->x[i], *const xj = atom->x[j];
+        const double a = xi[0] - xj[0], b = xi[1] - xj[1], c = xi[2] - xj[2];
         const double rsq = a * a + b * b + c * c;
-        const double apart =
-            spacing_between(fix_fsi->resolution[type[i]], fix_fsi->resolution[type[j]]);
+        const double apart = spacing_between(resolution[atom->type[i]], resolution[atom->type[j]]);
         if (rsq >= smallest * apart * apart) continue;
         smallest = rsq / (apart * apart);
-        enter(DISTANCE, i, std::sqrt(rsq) / apart, j);
+        enter(NEAREST, i, std::sqrt(rsq) / apart, j);
       }
     }
   }
@@ -198,42 +169,43 @@ void FixFSIWatch::look_at_pairs()
 
 void FixFSIWatch::look(bool at_start)
 {
-  clear();
-  double mine[3] = {0.0, 0.0, (double) atom->nlocal}, all[3];
-  look_at_particles(mine[0], mine[1]);
-  if (distances) look_at_pairs();
-
-  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  for (auto &row : rows) {
+    row.worst = {};
+    row.worst.value = row.sign < 0.0 ? OFF : -1.0;
+  }
+  double sums[3] = {0.0, 0.0, (double) atom->nlocal}, all[3];
+  look_at_particles(sums[0], sums[1]);
+  if (rows[NEAREST].limit != FOLLOWS) look_at_pairs();
+  MPI_Allreduce(sums, all, 3, MPI_DOUBLE, MPI_SUM, world);
   const double scale = std::max(energy_before, all[1]);
-  total[ENERGY] = energy_before >= 0.0 && scale > 0.0 ? all[0] / scale : 0.0;
+  double most[NROW], seen[NROW];
+  for (int k = 0; k < NROW; k++)
+    most[k] = rows[k].worst.tag ? rows[k].sign * rows[k].worst.value : k == NEAREST ? -OFF : 0.0;
+  most[GROWTH] = energy_before >= 0.0 && scale > 0.0 ? all[0] / scale : 0.0;
+  most[GONE] = (double) atom->natoms - all[2];
   energy_before = all[0];
-  total[LOST] = (double) atom->natoms - all[2];
-
-  double own[NTROUBLE];
-  for (int q = 0; q < NTROUBLE; q++)
-    own[q] = q == DISTANCE ? -worst[q].value : q >= ENERGY ? total[q] : worst[q].value;
-  MPI_Allreduce(own, seen.data(), NTROUBLE, MPI_DOUBLE, MPI_MAX, world);
-  seen[DISTANCE] = -seen[DISTANCE];
-  judge(at_start);
+  MPI_Allreduce(most, seen, NROW, MPI_DOUBLE, MPI_MAX, world);
+  for (int k = 0; k < NROW; k++) rows[k].seen = rows[k].sign * seen[k];
+  for (auto &row : rows) judge(row, at_start);
 }
 
 // all ranks know what is wrong, and warn or stop together
-void FixFSIWatch::judge(bool at_start)
+void FixFSIWatch::judge(Row &row, bool at_start)
 {
+  // particles may be meant to leave
+  const bool leaves = row.trouble == LOST && !loses && output->thermo->lostflag == Thermo::IGNORE;
+  const double limit = leaves ? OFF : std::max(row.limit, 0.0);
+  if (row.sign * row.seen <= row.sign * limit) return;
+  violations++;
+  if (row.warned) return;
+  Finding all = halt->worst(row.worst, row.sign * row.worst.value);
+  all.trouble = row.trouble;
+  all.value = row.seen;
+  const auto what = fmt::format("{} {:.4g} is {} the limit {:g}", row.what, all.value,
+                                row.sign < 0.0 ? "below" : "above", limit);
   const auto when = at_start ? Stop::START : Stop::MIDDLE;
-  for (int k = DISTANCE; k < NTROUBLE; k++) {
-    const auto q = static_cast<Trouble>(k);
-    if (q == DISTANCE ? seen[q] >= allowed(q) : seen[q] <= allowed(q)) continue;
-    violations++;
-    if (warned & 1 << k) continue;
-    Finding all = halt->worst(worst[q], q == DISTANCE ? -worst[q].value : worst[q].value);
-    all.trouble = q;
-    all.value = seen[q];
-    const auto what = fmt::format("{} {:.4g} is {} the limit {:g}", about[q - DISTANCE].what,
-                                  all.value, q == DISTANCE ? "below" : "above", allowed(q));
-    const auto text = halt->describe(*fix_fsi, what, all, when);
-    if (!warn) halt->stop(*fix_fsi, text, all, when);
-    warned |= 1 << k;
-    if (comm->me == 0) error->warning(FLERR, text);
-  }
+  const auto text = halt->describe(what, all, when);
+  if (!warn) halt->stop(text, all, when);
+  row.warned = true;
+  if (comm->me == 0) error->warning(FLERR, text);
 }

@@ -24,13 +24,13 @@ FixStyle(fsi/watch,FixFSIWatch);
 #include "fsi_part.h"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
-  struct Finding;
   class Stop;
-}    // namespace FSI
+}
 
 // Limits of what fix fsi itself (fsi_check.h) does not look at: stops a run that goes wrong, or
 // warns, and says what went wrong where.
@@ -49,31 +49,21 @@ class FixFSIWatch : public Fix, public FSI::Part {
   double compute_vector(int k) override;
 
  private:
-  class FixFSI *fix_fsi;
-  class PairFSISolidTL *solid_tl;
-  const std::unique_ptr<FSI::Stop> halt;
+  struct Row;
+  std::vector<Row> rows;    // what is watched, in the order of the output
+  std::unique_ptr<FSI::Stop> halt;
+  const class FixFSI *scene;
 
-  int interval;
-  // of each trouble (fsi_stop.h)
-  std::vector<double> limit;          // BIG, for DISTANCE 0, = off
-  std::vector<FSI::Finding> worst;    // on this rank
-  std::vector<double> total;          // of all ranks: ENERGY, LOST
-  std::vector<double> seen;           // of all ranks at the last check: the output
-  int warn;
-  bool distances;    // found, whether there is a limit or not
-  bool loses;        // does the script say how many?
-
-  double energy_before;
-  int warned;    // bits of quantities
+  int interval, warn;
+  bool loses;              // does the script say how many?
+  double energy_before;    // kinetic
   bigint violations;
 
-  void clear();
-  void enter(int trouble, int i, double value, int j = -1);
-  double allowed(int trouble) const;
+  void enter(int row, int i, double value, int j = -1);
   void look_at_particles(double &kinetic, double &little);
   void look_at_pairs();
   void look(bool at_start);
-  void judge(bool at_start);
+  void judge(Row &, bool at_start);
 };
 
 }    // namespace LAMMPS_NS

@@ -11,8 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Before the first step, and when the list of effects changes: numbers that are legal and most
-// likely not what was meant. Each warning says what to type. Reads only.
+// Before the first step, and when the list of effects changes: this list; numbers that are legal and
+// most likely not what was meant, with what to type; what has nothing to act on.
 
 #include "fsi_part.h"
 
@@ -25,6 +25,7 @@
 #include "fsi_cells.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_kernel.h"
 #include "fsi_limits.h"
 #include "fsi_scene.h"
 #include "fsi_sight.h"
@@ -52,8 +53,8 @@ namespace {
 
 // clang-format off
 enum Kind {    // of particles that are counted
-  HELD_FLUID, BODIES, GOING_BODIES, INTEGRATED_BODIES, EXCLUDED, ACTED_ON, TEARING, FALLING,
-  WEIGHTLESS_FLUID, WEIGHTLESS_SOLID, WEIGHTLESS_RIGID, NKIND
+  FLUIDS, SOLIDS, HELD_FLUID, BODIES, GOING_BODIES, INTEGRATED_BODIES, EXCLUDED, ACTED_ON,
+  TEARING, FALLING, WEIGHTLESS_FLUID, WEIGHTLESS_SOLID, WEIGHTLESS_RIGID, NKIND
 };
 // clang-format on
 
@@ -129,6 +130,8 @@ Census::Census(LAMMPS *lmp, const Scene &scene) :
     const bool falls = is_fluid ? moved : is_solid ? moves(i) : (atom->mask[i] & rigid) != 0;
     if (is_fluid || moves(i)) here[atom->type[i]] = 1;    // what is held limits nothing
     if (is_fluid) speed = std::max(speed, std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    count(FLUIDS, is_fluid);
+    count(SOLIDS, is_solid);
     count(HELD_FLUID, is_fluid && !moved);
     count(BODIES, is_solid && solids.style);
     count(GOING_BODIES, is_solid && (moved || v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0));
@@ -680,9 +683,8 @@ static constexpr struct {
      "{0} moving particles of rigid bodies, the first of them atom {1}, are in the group of no fix "
      "gravity, while others are: they weigh nothing"}};
 
-void FSI::advise(LAMMPS *lmp, const Scene &scene)
+static void advise(const Census &c)
 {
-  const Census c(lmp, scene);
   units(c);
   box(c);
   if (spacing(c) && c.solids.style) {
@@ -704,4 +706,92 @@ void FSI::advise(LAMMPS *lmp, const Scene &scene)
     }
   }
   time_step(c);
+}
+
+static std::vector<Part::Effect> effects_of(const Census &c, bool keeps_account)
+{
+  const auto modes = Discretization::density_names(SOLID);
+  std::vector<Part::Effect> effects;
+  const auto add = [&](const std::string &name, const char *keyword, bool on) {
+    effects.push_back({name, keyword, on});
+  };
+  if (c.fluids.style)
+    add(fmt::format("density of the fluid by {}", modes[c.disc.density_fluid]), "", true);
+  if (c.solids.style == Facts::OF_SOLIDS)
+    add(fmt::format("density of the solid by {}", modes[c.disc.density_solid]), "", true);
+  for (const auto *p : c.parts)
+    for (const auto &e : p->effects()) effects.push_back(e);
+  if (c.fluids.style) {
+    int planes = 0, groups = 0;
+    for (const auto &w : c.walls.wall) planes += w.joins != 0;
+    for (const auto *p : c.parts) groups += p->facts().particle_walls;
+    add(fmt::format("{} mirror walls", c.walls.wall.size()), "fix fsi/wall/mirror", c.walls.any());
+    add(fmt::format("{} planes of symmetry of solids", planes), "fix fsi/wall/mirror symmetry",
+        planes > 0);
+    add(fmt::format("{} groups of wall particles", groups), "fix fsi/wall/particle", groups > 0);
+  }
+  if (c.solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS) {
+    const bool chosen = any_is(c.parts, &Facts::chooses_substeps);
+    add(chosen ? "solid sub-steps, as many as fix fsi/dt chooses"
+               : fmt::format("{} solid sub-steps", c.substeps),
+        "fix fsi substeps", chosen || c.substeps > 1);
+  }
+  if (c.disc.article) add("what the article's scheme sets where nothing else is said", "", true);
+  add("energy balance", "compute fsi/energy", keeps_account);
+  return effects;
+}
+
+static std::string list_effects(const Census &c, bool keeps_account)
+{
+  static const char *const kernels[] = {"cubic spline", "quintic spline", "Wendland C2"};
+  const Discretization &disc = c.disc;
+  std::string on, off, finer;
+  for (const auto &e : effects_of(c, keeps_account))
+    if (e.on)
+      on += "\n    " + e.name;
+    else
+      off += (off.empty() ? "" : ", ") + e.keyword;
+  for (size_t t = 1; t < disc.resolution.size(); t++)
+    if (disc.dx_of(t) != disc.dx)
+      finer += fmt::format("{} {:g} of type {}", finer.empty() ? "," : " and", disc.dx_of(t), t);
+  auto text = fmt::format(
+      "FSI: {}, h = {:g} dx, dx = {:g}{}\n  on: {}\n  off (keyword that turns it on): {}\n",
+      kernels[disc.kernel], disc.h / disc.dx, disc.dx, finer, on, off.empty() ? "none" : off);
+  if (c.fluids.style)
+    with_kernel(disc.kernel, disc.dim, disc.h, [&](const auto &k) {
+      const auto s = lattice_stiffness(k, disc.dx);
+      text += fmt::format("  a lattice of the fluid under a pressure p has a modulus of {:.3f} p "
+                          "when stretched, {:.3f} p in shear (a fluid: 0)\n",
+                          s.stretch, s.shear);
+    });
+  return text;
+}
+
+// effects that a script names and that have nothing to act on
+static void warn_idle(const Census &c)
+{
+  const bigint solids = c.found[SOLIDS].count;
+  const auto nothing = [&](const std::string &what, const std::string &why) {
+    if (c.comm->me == 0) c.error->warning(FLERR, what + " has nothing to act on: " + why);
+  };
+  for (const auto *p : c.parts) p->find_idle({c.found[FLUIDS].count, solids}, nothing);
+  if (c.substeps > 1 && solids == 0) nothing("Fix fsi substeps", "no particle is a solid");
+  if (c.disc.article) return;
+  if (c.disc.density_fluid != Discretization::CONTINUITY && !c.fluids.style)
+    nothing("Fix fsi fluid density", "there is no pair_style fsi/fluid");
+  if (c.disc.density_solid != Discretization::CONTINUITY && !c.solids.style)
+    nothing("Fix fsi solid density", "there is no pair_style fsi/solid");
+}
+
+void FSI::announce(LAMMPS *lmp, Scene &scene)
+{
+  const Census c(lmp, scene);
+  const auto text = list_effects(c, scene.kept);
+  // commands may have made fluid that nothing moves
+  const auto now = fmt::format("{}{}", text, c.found[HELD_FLUID].count);
+  if (now == scene.announced) return;
+  scene.announced = now;
+  if (c.comm->me == 0) utils::logmesg(lmp, text);
+  advise(c);
+  warn_idle(c);
 }

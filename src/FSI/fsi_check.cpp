@@ -68,8 +68,7 @@ static bool all_below(int n, const double *a, double most)
 }
 
 Check::Check(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), scene(scene), stop(lmp, "Fix fsi"), calm_speed(0.0), calm_kick(0.0),
-    lightest(0.0), substepped(nullptr), densest{}, told_dense(false), told_soft(false), found{}
+    Pointers(lmp), scene(scene), disc(scene), step(scene), stop(lmp, "Fix fsi", scene)
 {
 }
 
@@ -89,11 +88,11 @@ void Check::before_init()
                  "would not follow: move walls instead",
                  fix->id);
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
-  if (comm->cutghostuser > 0.0 && comm->cutghostuser < scene.largest_cut)
+  if (comm->cutghostuser > 0.0 && comm->cutghostuser < disc.largest_cut)
     error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}",
-               scene.largest_cut, comm->cutghostuser);
-  if (domain->dimension != scene.dim)
-    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", scene.dim,
+               disc.largest_cut, comm->cutghostuser);
+  if (domain->dimension != disc.dim)
+    error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", disc.dim,
                domain->dimension);
   if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
 
@@ -101,9 +100,9 @@ void Check::before_init()
   const bool solid_tl = solid == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   if (!solid && !fluid)
     error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
-  if (scene.substeps > 1 && !solid_tl)
+  if (step.substeps > 1 && !solid_tl)
     error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
-  if (solid_tl && scene.density_solid != Scene::CONTINUITY)
+  if (solid_tl && disc.density_solid != Discretization::CONTINUITY)
     error->all(FLERR,
                "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of "
                "fsi/solid/tl follows from its strain");
@@ -111,19 +110,15 @@ void Check::before_init()
 
 void Check::materials()
 {
-  std::vector<const Fix *> walls;
+  int walls = 0;    // bits of their groups
   for (const auto *fix : modify->get_fix_list()) {
     const auto *const part = dynamic_cast<const Part *>(fix);
-    if (part && part->facts().particle_walls) walls.push_back(fix);
+    if (part && part->facts().particle_walls) walls |= fix->groupbit;
   }
-  for (int i = 0; i < atom->nlocal; i++) {
-    const int species = scene.state[atom->type[i]].species;
-    if (species == RIGID && std::none_of(walls.begin(), walls.end(), [&](const Fix *fix) {
-          return atom->mask[i] & fix->groupbit;
-        }))
+  for (int i = 0; i < atom->nlocal; i++)
+    if (disc.state[atom->type[i]].species == RIGID && !(atom->mask[i] & walls))
       error->one(FLERR, "Atom {} of type {} is of a wall, but in no fix fsi/wall/particle",
                  atom->tag[i], atom->type[i]);
-  }
   compare_densities();
   spacings();
   thin_bodies();
@@ -138,7 +133,7 @@ void Check::compare_densities()
   densities.resize(atom->ntypes + 1, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     const int t = atom->type[i];
-    const State &s = scene.state[t];
+    const State &s = disc.state[t];
     const bool same = densities[t] == 0.0 || densities[t] == s.rho0;
     if (same || atom->rmass[i] == 0.0 || s.form == TOTAL_LAGRANGIAN) continue;
     error->one(
@@ -148,7 +143,7 @@ void Check::compare_densities()
         atom->tag[i], t, densities[t], s.rho0);
   }
   for (int t = 1; t <= atom->ntypes; t++)
-    if (scene.state[t].species != NONE) densities[t] = scene.state[t].rho0;
+    if (disc.state[t].species != NONE) densities[t] = disc.state[t].rho0;
 }
 
 void Check::write(Record &record) const
@@ -165,17 +160,17 @@ void Check::read(const Record &record)
 // (A whole body is a surface that drags fluid along.)
 void Check::held_parts() const
 {
-  std::set<tagint> mine;
+  std::set<tagint> bodies;
   std::vector<int> suspects;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (scene.state[atom->type[i]].species != SOLID) continue;
+    if (disc.state[atom->type[i]].species != SOLID) continue;
     const double *const v = atom->v[i];
     if (scene.is_moved(i))
-      mine.insert(atom->molecule[i]);
+      bodies.insert(atom->molecule[i]);
     else if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0)
       suspects.push_back(i);
   }
-  const auto moving = gather(mine, world);
+  const auto moving = gather(bodies, world);
   for (const int i : suspects)
     if (moving.count(atom->molecule[i])) {
       const double *const v = atom->v[i];
@@ -221,12 +216,12 @@ void Check::spacings() const
   constexpr double FINEST = 4.0, COARSEST = 2.0, HELD = 1.5, ROUND = 1.0 + 1.0e-6;
   const Facts fluid = facts_of_fluids(lmp);
   for (int t = 1; t <= atom->ntypes; t++) {
-    const double own = scene.dx_of(t), dx = scene.dx, finest = scene.levels.back().dx;
-    const State &s = scene.state[t];
-    if (own == dx || s.species == NONE) continue;
-    const auto what = fmt::format("Fix fsi spacing {:g} of type {}", own, t);
+    const double of_type = disc.dx_of(t), dx = disc.dx, finest = disc.levels.back().dx;
+    const State &s = disc.state[t];
+    if (of_type == dx || s.species == NONE) continue;
+    const auto what = fmt::format("Fix fsi spacing {:g} of type {}", of_type, t);
     if (s.species == FLUID) {
-      if (own > dx)
+      if (of_type > dx)
         error->all(FLERR, "{}, a fluid: dx, {:g}, is to be that of the coarsest fluid", what, dx);
       fluid_spacings(what + ", a fluid,");
       continue;
@@ -237,18 +232,18 @@ void Check::spacings() const
                  "Use pair_style fsi/solid/tl, whose "
                  "bonds are those of one body",
                  what);
-    require(what, scene.density_solid == Scene::CONTINUITY, STANDARD,
+    require(what, disc.density_solid == Discretization::CONTINUITY, STANDARD,
             "number densities are those of one spacing");
     if (!fluid.style) continue;
-    if (own > ROUND * std::min(COARSEST * dx, scene.cut / HELD))
+    if (of_type > ROUND * std::min(COARSEST * dx, disc.cut / HELD))
       error->all(FLERR,
                  "{} is {:.3g} times coarser than the fluid's dx {:g}: expected {:g} at most, and "
                  "the kernel's support, {:g}, to be {:g} of its "
                  "spacings",
-                 what, own / dx, dx, COARSEST, scene.cut, HELD);
-    if (ROUND * FINEST * own < finest)
+                 what, of_type / dx, dx, COARSEST, disc.cut, HELD);
+    if (ROUND * FINEST * of_type < finest)
       error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most",
-                 what, finest / own, finest, FINEST);
+                 what, finest / of_type, finest, FINEST);
     require(what, !fluid.couples_stress, COUPLE_WALL, OWN_VOLUMES);
   }
 }
@@ -258,8 +253,8 @@ void Check::fluid_spacings(const std::string &what) const
 {
   const Facts fluid = facts_of_fluids(lmp);
   const char *const jump = "number densities are not smooth where two lattices meet";
-  require(what, scene.density_fluid == Scene::CONTINUITY, STANDARD, jump);
-  require(what, scene.density_solid != Scene::SUMMATION,
+  require(what, disc.density_fluid == Discretization::CONTINUITY, STANDARD, jump);
+  require(what, disc.density_solid != Discretization::SUMMATION,
           "another mode than fix fsi solid summation", jump);
   require(what, !fluid.density_at_surfaces, "pair_style fsi/fluid density/surface no", jump);
   require(what, !fluid.couples_stress, COUPLE_WALL, OWN_VOLUMES);
@@ -269,14 +264,15 @@ void Check::thin_bodies() const
 {
   const Facts fluid = facts_of_fluids(lmp);
   for (int t = 1; t <= atom->ntypes; t++) {
-    const int species = scene.state[t].species;
-    if (scene.thin[t] == 0.0 || species == NONE) continue;
+    const int species = disc.state[t].species;
+    if (disc.thin[t] == 0.0 || species == NONE) continue;
     const auto what = fmt::format("Fix fsi thin {}", t);
     if (species == FLUID)
       error->all(FLERR, "{}: atom type {} is a fluid, expected a solid or a wall of particles",
                  what, t);
     require(what,
-            scene.density_fluid == Scene::CONTINUITY && scene.density_solid == Scene::CONTINUITY,
+            disc.density_fluid == Discretization::CONTINUITY &&
+                disc.density_solid == Discretization::CONTINUITY,
             STANDARD, "number densities would jump where a body comes between");
     require(what, !fluid.couples_stress, COUPLE_WALL, "each side has its own pressure");
   }
@@ -286,9 +282,9 @@ void Check::init()
 {
   limit_sq.assign(atom->ntypes + 1, HUGE_SQUARE);
   for (int t = 1; t <= atom->ntypes; t++) {
-    const State &s = scene.state[t];
-    if (scene.mach == OFF || (s.species != FLUID && s.species != SOLID)) continue;
-    const double most = scene.mach * (s.species == SOLID ? SOLID_OVER_FLUID : 1.0);
+    const State &s = disc.state[t];
+    if (disc.mach == OFF || (s.species != FLUID && s.species != SOLID)) continue;
+    const double most = disc.mach * (s.species == SOLID ? SOLID_OVER_FLUID : 1.0);
     limit_sq[t] = most * most * s.wave_speed_sq();
   }
   // |v + dv| is below a limit if no component of v is above 0.9, and none of dv above 0.1, of it
@@ -299,8 +295,8 @@ void Check::init()
 
   dense.assign(atom->ntypes + 1, OFF);
   for (int t = 1; t <= atom->ntypes; t++)
-    if (scene.state[t].species == FLUID) dense[t] = COMPRESSED * scene.state[t].rho0;
-  told_dense = told_soft = false;
+    if (disc.state[t].species == FLUID) dense[t] = COMPRESSED * disc.state[t].rho0;
+  warned_dense = warned_soft = false;
   densest = {};
   deviations.assign(2 * dense.size(), 0.0);
 
@@ -332,7 +328,7 @@ void Check::positions()
 void Check::before_kick()
 {
   look(neighbor->ago == 0 || update->ntimestep % EVERY == 0, update->dt * force->ftm2v);
-  if (scene.substeps == 1) judge(Stop::MIDDLE);
+  if (step.substeps == 1) judge(Stop::MIDDLE);
 }
 
 // sub-steps may take solids anywhere: keep a state to go back to, and look at them before the
@@ -385,7 +381,7 @@ void Check::look(bool closely, double kick)
       for (int k = i; k < i + m; k++) examine(k, kick);
   }
   inside_out();
-  if (closely && !(told_dense && told_soft)) look_at_densities();
+  if (closely && !(warned_dense && warned_soft)) look_at_densities();
 }
 
 // What is pressed together far more than sound allows for is no fluid of this method: a pressure
@@ -403,7 +399,7 @@ void Check::look_at_densities()
     if (dense[t] == OFF) continue;
     const double beyond = rho[i] * (COMPRESSED / dense[t]) - 1.0;
     // torn fluid without tension has any density
-    if (beyond > 0.0 || scene.state[t].floor < 0.0) deviations[2 * t] += beyond * beyond;
+    if (beyond > 0.0 || disc.state[t].floor < 0.0) deviations[2 * t] += beyond * beyond;
     deviations[2 * t + 1] += 1.0;
     if (rho[i] <= most * dense[t]) continue;
     most = rho[i] / dense[type[i]];
@@ -414,7 +410,7 @@ void Check::look_at_densities()
 bool Check::any_soft() const
 {
   for (size_t k = 0; k < deviations.size(); k += 2)
-    if (deviations[k] > SOFT * SOFT * deviations[k + 1]) return !told_soft;
+    if (deviations[k] > SOFT * SOFT * deviations[k + 1]) return !warned_soft;
   return false;
 }
 
@@ -424,11 +420,11 @@ void Check::warn_of_sound()
   std::vector<double> all(deviations.size());
   MPI_Allreduce(deviations.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_SUM, world);
   std::fill(deviations.begin(), deviations.end(), 0.0);    // until the next look
-  for (size_t t = 0; t < dense.size() && !told_soft; t++) {
+  for (size_t t = 0; t < dense.size() && !warned_soft; t++) {
     const double square = all[2 * t + 1] > 0.0 ? all[2 * t] / all[2 * t + 1] : 0.0;
     if (square <= SOFT * SOFT) continue;
-    told_soft = true;
-    const double c = scene.state[t].c, p = std::sqrt(12.0 * square);    // over rho c^2
+    warned_soft = true;
+    const double c = disc.state[t].c, p = std::sqrt(12.0 * square);    // over rho c^2
     if (comm->me == 0)
       error->warning(
           FLERR,
@@ -443,7 +439,7 @@ void Check::warn_of_density()
 {
   const Finding worst =
       stop.worst(densest, densest.tag ? densest.value / dense[densest.type] : 0.0);
-  told_dense = told_soft = true;
+  warned_dense = warned_soft = true;
   if (comm->me) return;
   const double rest = dense[worst.type] / COMPRESSED;
   error->warning(FLERR,
@@ -458,16 +454,16 @@ void Check::warn_of_density()
 
 void Check::inside_out()
 {
-  if (scene.inverted >= 0) enter(stop.finding(DENSITY, scene.inverted, scene.inverted_density));
+  if (step.inverted >= 0) enter(stop.finding(DENSITY, step.inverted, step.inverted_density));
 }
 
 void Check::examine(int i, double kick)
 {
   const double *const v = atom->v[i], *const f = atom->f[i];
-  const State &s = scene.state[atom->type[i]];
+  const State &s = disc.state[atom->type[i]];
   const double rho = atom->rho[i];
   const bool kicked =
-      (atom->mask[i] & scene.mover->groupbit) && (scene.substeps == 1 || s.species != SOLID);
+      (atom->mask[i] & scene.mover->groupbit) && (step.substeps == 1 || s.species != SOLID);
   const double k = kicked ? kick / atom->rmass[i] : 0.0;
   const double a = v[0] + k * f[0], b = v[1] + k * f[1], c = v[2] + k * f[2];
   const double vsq = a * a + b * b + c * c;    // not a number if a force is not
@@ -481,9 +477,9 @@ void Check::examine(int i, double kick)
   if (lost.tag)
     enter(lost);
   else if (!(vsq < HUGE_SQUARE) || !(rho < OFF)) {
-    Finding one = stop.finding(FINITE, i, vsq < HUGE_SQUARE ? rho : vsq);
-    one.field = vsq < HUGE_SQUARE ? Stop::MASS_DENSITY : Stop::VELOCITY;
-    enter(one);
+    Finding large = stop.finding(FINITE, i, vsq < HUGE_SQUARE ? rho : vsq);
+    large.field = vsq < HUGE_SQUARE ? Stop::MASS_DENSITY : Stop::VELOCITY;
+    enter(large);
   } else if (rho <= 0.0 && !torn)
     enter(stop.finding(DENSITY, i, rho));
   else if (vsq > limit_sq[atom->type[i]] && (s.species == FLUID || s.species == SOLID))
@@ -491,7 +487,7 @@ void Check::examine(int i, double kick)
 }
 
 // what is not finite comes first
-static double rank_of(const Finding &f)
+static double weight_of(const Finding &f)
 {
   if (!f.tag) return 0.0;
   return f.trouble == FINITE ? 3.0e200
@@ -499,26 +495,26 @@ static double rank_of(const Finding &f)
                              : std::min(f.value, 1.0e200);
 }
 
-void Check::enter(const Finding &one)
+void Check::enter(const Finding &other)
 {
-  if (rank_of(one) > rank_of(found)) found = one;
+  if (weight_of(other) > weight_of(found)) found = other;
 }
 
 // all ranks stop together
 void Check::judge(Stop::When when)
 {
   enum { CALM, PRESSED, DENSE, LOST_MEANING };
-  int mine = found.tag             ? LOST_MEANING
-      : densest.tag && !told_dense ? DENSE
-      : any_soft()                 ? PRESSED
-                                   : CALM,
+  int here = found.tag               ? LOST_MEANING
+      : densest.tag && !warned_dense ? DENSE
+      : any_soft()                   ? PRESSED
+                                     : CALM,
       all;
-  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MAX, world);
   if (all == PRESSED) warn_of_sound();
   if (all == DENSE) warn_of_density();
   if (all != LOST_MEANING) return;
   // back to before the sub-steps, if there were any
-  if (when == Stop::MIDDLE && scene.substeps > 1) {
+  if (when == Stop::MIDDLE && step.substeps > 1) {
     const double *from = kept.data();
     for (const int i : *substepped) {
       std::copy_n(from, 3, atom->x[i]);
@@ -526,12 +522,12 @@ void Check::judge(Stop::When when)
       from += 6;
     }
   }
-  const Finding worst = stop.worst(found, rank_of(found));
+  const Finding worst = stop.worst(found, weight_of(found));
   std::string what;
   if (worst.trouble == DENSITY) what = fmt::format("density {:.4g} is not above 0", worst.value);
   if (worst.trouble == MACH)
-    what = fmt::format("Mach number {:.4g} is above the limit {:g}", worst.value,
-                       scene.mach *
-                           (scene.state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
-  stop.stop(scene, stop.describe(scene, what, worst, when), worst, when);
+    what =
+        fmt::format("Mach number {:.4g} is above the limit {:g}", worst.value,
+                    disc.mach * (disc.state[worst.type].species == SOLID ? SOLID_OVER_FLUID : 1.0));
+  stop.stop(stop.describe(what, worst, when), worst, when);
 }

@@ -44,22 +44,24 @@ namespace FSI {
     void after_substeps();
 
    private:
-    const Scene &scene;
+    const Scene &scene;    // of single particles
+    const Discretization &disc;
+    const StepState &step;
     Stop stop;
     std::vector<double> densities;    // per type, in the last run; 0: not known
     std::vector<double> limit_sq;     // per type: of the speed
-    double calm_speed, calm_kick;     // components of velocities and of their change in a step from
-                                      // which no limit is in reach
-    double lightest;                  // mass of this rank's particles
-    const std::vector<int> *substepped;    // solids with sub-steps,
-    std::vector<double> kept;              // and their positions and velocities before them
-    std::vector<double> dense;             // per type: density over which a fluid is far compressed
-    Finding densest;                       // particle beyond that, of this rank; no tag: none
-    bool told_dense;                       // in this run
+    // components of velocities and of their change in a step from which no limit is in reach
+    double calm_speed = 0.0, calm_kick = 0.0;
+    double lightest = 0.0;                           // mass of this rank's particles
+    const std::vector<int> *substepped = nullptr;    // solids with sub-steps,
+    std::vector<double> kept;     // and their positions and velocities before them
+    std::vector<double> dense;    // per type: density over which a fluid is far compressed
+    Finding densest = {};         // particle beyond that, of this rank; no tag: none
     // per fluid type: sum of (rho/rho0 - 1)^2 over this rank's particles, and how many they are
     std::vector<double> deviations;
-    bool told_soft;    // in this run: sound is too slow for the pressures
-    Finding found;     // the first thing that is not finite, or the worst of this rank
+    // in this run: of particles that are far compressed, of sound too slow for the pressures
+    bool warned_dense = false, warned_soft = false;
+    Finding found = {};    // the first thing that is not finite, or the worst of this rank
 
     void require(const std::string &what, bool met, const char *setting, const char *reason) const;
     void spacings() const;

@@ -88,6 +88,34 @@ static double limit_of(const std::vector<double> &key, bigint n, MPI_Comm world)
   return high;
 }
 
+// Of each particle of fluid that a body covers the key, of others -1; sum: how many, and their mass
+template <class IsFluid, class IsBody>
+std::vector<double> FSIDisplace::find_covered(const Discretization &disc, const NeighList &list,
+                                              IsFluid is_fluid, IsBody is_body, double *sum) const
+{
+  double **const x = atom->x;
+  const int *const type = atom->type;
+  std::vector<double> key(atom->nlocal, -1.0);
+  for (int ii = 0; ii < list.inum; ii++) {
+    const int i = list.ilist[ii];
+    if (!is_fluid(i)) continue;
+    const double dx = disc.dx_of(type[i]);
+    double part = 0.0, nearest = 4.0 * dx;
+    for (int jj = 0; jj < list.numneigh[i]; jj++) {
+      const int j = list.firstneigh[i][jj] & NEIGHMASK;
+      if (!is_body(j)) continue;
+      part += covered(x[i], dx, x[j], disc.dx_of(type[j]), disc.dim);
+      nearest =
+          std::min(nearest, std::hypot(x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]));
+    }
+    if (part == 0.0) continue;
+    sum[0] += part;
+    sum[1] += part * atom->rmass[i];
+    key[i] = key_of(part, nearest / dx, x[i], domain);
+  }
+  return key;
+}
+
 void FSIDisplace::command(int narg, char **arg)
 {
   if (domain->box_exist == 0)
@@ -105,7 +133,6 @@ void FSIDisplace::command(int narg, char **arg)
   }
   const FixFSI &fsi = *FixFSI::find(lmp, "Fsi/displace");
   const NeighList *const list = neighbors();
-  double **const x = atom->x;
   const int *const type = atom->type, *const mask = atom->mask;
   const auto is_fluid = [&](int i) {
     return mask[i] & bit[0] && fsi.state[type[i]].species == FLUID;
@@ -120,38 +147,21 @@ void FSIDisplace::command(int narg, char **arg)
       error->all(FLERR, "Fsi/displace group-ID {} has no particle of {}", names[k],
                  k == 0 ? "a fluid" : "a body");
 
-  std::vector<double> key(atom->nlocal, -1.0);
-  double own[3] = {}, all[3];    // particles, mass in whose place the body is; what goes
-  for (int ii = 0; ii < list->inum; ii++) {
-    const int i = list->ilist[ii];
-    if (!is_fluid(i)) continue;
-    const double dx = fsi.dx_of(type[i]);
-    double part = 0.0, nearest = 4.0 * dx;
-    for (int jj = 0; jj < list->numneigh[i]; jj++) {
-      const int j = list->firstneigh[i][jj] & NEIGHMASK;
-      if (!is_body(j)) continue;
-      part += covered(x[i], dx, x[j], fsi.dx_of(type[j]), fsi.dim);
-      nearest =
-          std::min(nearest, std::hypot(x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]));
-    }
-    if (part == 0.0) continue;
-    own[0] += part;
-    own[1] += part * atom->rmass[i];
-    key[i] = key_of(part, nearest / dx, x[i], domain);
-  }
-  MPI_Allreduce(own, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  double here[3] = {}, all[3];    // particles, mass in whose place the body is; what goes
+  const auto key = find_covered(fsi, *list, is_fluid, is_body, here);
+  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
 
   const double limit = limit_of(key, std::llround(all[0]), world);
-  own[0] = 0.0;
+  here[0] = 0.0;
   const std::string gone = "FSI_DISPLACED";
   const int igone = group->find_or_create(gone.c_str());
   for (int i = 0; i < atom->nlocal; i++)
     if (key[i] > limit) {
       atom->mask[i] |= group->bitmask[igone];
-      own[0]++;
-      own[2] += atom->rmass[i];
+      here[0]++;
+      here[2] += atom->rmass[i];
     }
-  MPI_Allreduce(own, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(here, all, 3, MPI_DOUBLE, MPI_SUM, world);
   if (comm->me == 0)
     utils::logmesg(
         lmp, "  fsi/displace: {} is in the place of {:.6g} of {}, {} particles of {:.6g} go\n",

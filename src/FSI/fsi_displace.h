@@ -22,7 +22,12 @@ CommandStyle(fsi/displace,FSIDisplace);
 
 #include "command.h"
 
+#include <vector>
+
 namespace LAMMPS_NS {
+namespace FSI {
+  struct Discretization;
+}
 
 // fsi/displace fluid-group-ID body-group-ID: takes out the fluid in whose place a body is.
 
@@ -33,6 +38,9 @@ class FSIDisplace : public Command {
 
  private:
   const class NeighList *neighbors();
+  template <class IsFluid, class IsBody>
+  std::vector<double> find_covered(const FSI::Discretization &, const class NeighList &, IsFluid,
+                                   IsBody, double *sum) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -22,6 +22,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <set>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -95,99 +96,68 @@ Keywords::Keywords(LAMMPS *lmp, const std::string &command_in) :
 {
 }
 
-Keywords &Keywords::argument(const std::string &name)
+Keywords &Keywords::add(Row row)
 {
-  rows.emplace_back();
-  rows.back().name = name;
+  rows.push_back(std::move(row));
   return *this;
 }
 
-Keywords &Keywords::key(const std::string &name)
+Keywords &Keywords::add(Value v)
 {
-  argument(name);
-  rows.back().keyword = true;
+  v.begin();
+  rows.back().values.push_back(std::move(v));
   return *this;
-}
-
-Keywords::Value &Keywords::add(Value::Kind kind, double start, const std::string &what)
-{
-  auto &values = rows.back().values;
-  values.emplace_back();
-  values.back().kind = kind;
-  values.back().start = start;
-  values.back().what = what;
-  return values.back();
 }
 
 Keywords &Keywords::number(double &where, double start, const Range &range, const std::string &what)
 {
-  Value &v = add(Value::NUMBER, start, what);
+  Value v(Value::NUMBER, start, what);
   v.range = range;
   v.number = &where;
-  v.begin();
-  return *this;
+  return add(v);
 }
 
 Keywords &Keywords::integer(int &where, int start, int least, int most)
 {
-  Value &v = add(Value::INTEGER, start);
+  Value v(Value::INTEGER, start);
   v.least = least;
   v.most = most;
   v.n = &where;
-  v.begin();
-  return *this;
+  return add(v);
 }
 
 Keywords &Keywords::choice(int &where, int start, const std::vector<std::string> &words,
                            const std::string &what)
 {
-  Value &v = add(Value::CHOICE, start, what);
+  Value v(Value::CHOICE, start, what);
   v.words = words;
   v.n = &where;
-  v.begin();
-  return *this;
+  return add(v);
 }
 
-Keywords &Keywords::logical(int &where, bool start)
+Keywords &Keywords::flag(Value::Kind kind, int &where, int start)
 {
-  Value &v = add(Value::LOGICAL, start);
+  Value v(kind, start);
   v.n = &where;
-  v.begin();
-  return *this;
+  return add(v);
 }
 
 Keywords &Keywords::word(std::string &where, const std::string &start)
 {
-  Value &v = add(Value::WORD);
+  Value v(Value::WORD);
   v.start_word = start;
   v.word = &where;
-  v.begin();
-  return *this;
+  return add(v);
 }
 
-Keywords &Keywords::per_type(std::vector<double> &where, const Range &range)
+Keywords &Keywords::per_type(std::vector<double> &where, const Range &range, bool types_alone)
 {
-  Value &v = add(Value::PER_TYPE);
+  Value v(Value::PER_TYPE);
   v.range = range;
+  v.types_alone = types_alone;
   v.each = &where;
   where.resize(atom->ntypes + 1);
-  v.begin();
-  return *this;
-}
-
-Keywords &Keywords::types(std::vector<double> &where)
-{
-  per_type(where);
-  rows.back().values.back().types_alone = true;
-  return *this;
-}
-
-Keywords &Keywords::set(int &where, int value)
-{
-  Value &v = add(Value::SET, value);
-  v.n = &where;
-  v.begin();
-  return *this;
+  return add(v);
 }
 
 Keywords &Keywords::or_word(const std::string &word, double number)
@@ -195,31 +165,6 @@ Keywords &Keywords::or_word(const std::string &word, double number)
   Value &v = rows.back().values.back();
   v.other = word;
   v.other_number = number;
-  return *this;
-}
-
-Keywords &Keywords::effect(const std::string &text)
-{
-  rows.back().effect = text;
-  return *this;
-}
-
-Keywords &Keywords::kept(const std::string &why)
-{
-  rows.back().restart = why;
-  rows.back().must_not_change = true;
-  return *this;
-}
-
-Keywords &Keywords::changes(const std::string &what_happens)
-{
-  rows.back().restart = what_happens;
-  return *this;
-}
-
-Keywords &Keywords::of_a_run()
-{
-  rows.back().may_change = true;
   return *this;
 }
 

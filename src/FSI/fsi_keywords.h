@@ -62,6 +62,45 @@ namespace FSI {
   std::string list_of(const std::vector<std::string> &words);
 
   class Keywords : protected Pointers {
+   private:
+    struct Value {
+      enum Kind { NUMBER, INTEGER, CHOICE, LOGICAL, WORD, SET, PER_TYPE };
+      explicit Value(Kind kind, double start = 0.0, const std::string &what = "") :
+          kind(kind), start(start), what(what)
+      {
+      }
+      Kind kind;
+      double *number = nullptr;
+      int *n = nullptr;
+      std::string *word = nullptr;
+      std::vector<double> *each = nullptr;
+      double start;    // number, integer, index of a choice, what a keyword sets
+      bool types_alone = false;
+      std::string start_word;
+      Range range;
+      int least = 0, most = 0;
+      std::vector<std::string> words;
+      std::string what;     // its name in messages
+      std::string other;    // a word that stands for other_number
+      double other_number = 0.0;
+
+      // words that follow
+      int count() const { return kind == SET ? 0 : kind == PER_TYPE && !types_alone ? 2 : 1; }
+      void begin() const;
+      bool at_start() const;
+      std::string text() const;
+    };
+    struct Row {
+      std::string name;
+      bool keyword;
+      std::vector<Value> values;
+      std::string effect, restart;
+      bool must_not_change = false, may_change = false;
+
+      int count() const;    // words that follow
+      std::string text() const;
+    };
+
    public:
     Keywords(LAMMPS *, const std::string &command);    // as a user writes it
     Keywords(const Keywords &) = delete;               // rows hold addresses of their owner
@@ -69,28 +108,34 @@ namespace FSI {
     // a row: an argument that stands before all keywords, or a keyword. Its values follow in the
     // order in which they are described; what: their names in messages, where there is more than
     // one
-    Keywords &argument(const std::string &name);
-    Keywords &key(const std::string &name);
+    Keywords &argument(const std::string &name) { return add(Row{name, false}); }
+    Keywords &key(const std::string &name) { return add(Row{name, true}); }
     Keywords &number(double &where, double start, const Range & = {}, const std::string &what = "");
     Keywords &integer(int &where, int start, int least, int most = MAXSMALLINT);
     Keywords &choice(int &where, int start, const std::vector<std::string> &words,
                      const std::string &what = "");
-    Keywords &logical(int &where, bool start);
+    Keywords &logical(int &where, bool start) { return flag(Value::LOGICAL, where, start); }
     Keywords &word(std::string &where, const std::string &start);    // any
     // atom types and a number, as often as wanted; 0: not given
-    Keywords &per_type(std::vector<double> &where, const Range & = {});
-    Keywords &types(std::vector<double> &where);    // atom types alone, 1 if named
-    Keywords &set(int &where, int value);    // no value follows: the keyword sets it; 0 without
+    Keywords &per_type(std::vector<double> &where, const Range & = {}, bool types_alone = false);
+    // atom types alone, 1 if named
+    Keywords &types(std::vector<double> &where) { return per_type(where, {}, true); }
+    // no value follows: the keyword sets it; 0 without
+    Keywords &set(int &where, int value) { return flag(Value::SET, where, value); }
     // of the last value: a word that stands for a number, or for no word
     Keywords &or_word(const std::string &word, double number = 0.0);
     // of the last row: the effect in words, {} stands for its first value; on if a number is not 0,
     // or another value not the one at the start
-    Keywords &effect(const std::string &text);
+    Keywords &effect(const std::string &text) { return with(&Row::effect, text); }
     // of the last row: a run that goes on from a restart file must not change it, or may, and what
     // that does
-    Keywords &kept(const std::string &why);
-    Keywords &changes(const std::string &what_happens);
-    Keywords &of_a_run();    // or may as a matter of course, without a warning
+    Keywords &kept(const std::string &why)
+    {
+      return changes(why).with(&Row::must_not_change, true);
+    }
+    Keywords &changes(const std::string &consequence) { return with(&Row::restart, consequence); }
+    // or may as a matter of course, without a warning
+    Keywords &of_a_run() { return with(&Row::may_change, true); }
 
     void parse(int narg, char **arg);    // what is not named gets what it has at the start
 
@@ -109,43 +154,17 @@ namespace FSI {
     std::vector<Effect> effects() const;
 
    private:
-    struct Value {
-      enum Kind { NUMBER, INTEGER, CHOICE, LOGICAL, WORD, SET, PER_TYPE };
-      Kind kind = NUMBER;
-      double *number = nullptr;
-      int *n = nullptr;
-      std::string *word = nullptr;
-      std::vector<double> *each = nullptr;
-      double start = 0.0;    // number, integer, index of a choice, what a keyword sets
-      bool types_alone = false;
-      std::string start_word;
-      Range range;
-      int least = 0, most = 0;
-      std::vector<std::string> words;
-      std::string what;
-      std::string other;    // a word that stands for other_number
-      double other_number = 0.0;
-
-      // words that follow
-      int count() const { return kind == SET ? 0 : kind == PER_TYPE && !types_alone ? 2 : 1; }
-      void begin() const;
-      bool at_start() const;
-      std::string text() const;
-    };
-    struct Row {
-      std::string name;
-      bool keyword = false;
-      std::vector<Value> values;
-      std::string effect, restart;
-      bool must_not_change = false, may_change = false;
-
-      int count() const;    // words that follow
-      std::string text() const;
-    };
     const std::string command, who;
     std::vector<Row> rows;
 
-    Value &add(Value::Kind, double start = 0.0, const std::string &what = "");
+    Keywords &add(Row);
+    Keywords &add(Value);
+    Keywords &flag(Value::Kind, int &where, int start);
+    template <class T> Keywords &with(T Row::*what, const T &value)    // of the last row
+    {
+      rows.back().*what = value;
+      return *this;
+    }
     void begin() const;
     void take(const Row &, const Value &, const std::string &) const;
   };

@@ -26,36 +26,38 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 NumberDensity::NumberDensity(LAMMPS *lmp, Scene &scene, SumOverGhosts add_ghosts) :
-    Pointers(lmp), scene(scene), add_ghosts(std::move(add_ghosts)), ratio(nullptr)
+    Pointers(lmp), disc(scene), step(scene), parts(scene.parts), profile(scene.profile),
+    add_ghosts(std::move(add_ghosts)), ratio(nullptr)
 {
 }
 
 void NumberDensity::set_fields(Fields &fields)
 {
-  const int of_fluid = scene.density_fluid, of_solid = scene.density_solid;
-  scene.need_psi = of_fluid != Scene::CONTINUITY || scene.surface_ratio > 0.0 ||
-      (of_solid != Scene::CONTINUITY && facts_of_solids(lmp).style == Facts::OF_SOLIDS);
-  fields.set("reference of ratio", Fields::RESTART, of_solid == Scene::RATIO, ratio);
-  fields.set("number density", Fields::STEP, scene.need_psi, scene.psi);
+  const int of_fluid = disc.density_fluid, of_solid = disc.density_solid;
+  disc.need_psi = of_fluid != Discretization::CONTINUITY || disc.surface_ratio > 0.0 ||
+      (of_solid != Discretization::CONTINUITY && facts_of_solids(lmp).style == Facts::OF_SOLIDS);
+  fields.set("reference of ratio", Fields::RESTART, of_solid == Discretization::RATIO, ratio);
+  fields.set("number density", Fields::STEP, disc.need_psi, step.psi);
 }
 
 void NumberDensity::add_messages(Message &to_ghosts)
 {
-  if (scene.need_psi) to_ghosts.add(scene.psi, {FLUID, SOLID, RIGID});
+  if (disc.need_psi) to_ghosts.add(step.psi, {FLUID, SOLID, RIGID});
 }
 
 void NumberDensity::renew()
 {
-  if (!scene.need_psi) return;
-  const Phase phase(scene.profile, Profile::DENSITY);
-  find(scene.psi);
-  if (scene.surface_ratio > 0.0) {
-    double mine = 0.0;
+  if (!disc.need_psi) return;
+  const Phase phase(profile, Profile::DENSITY);
+  find(step.psi);
+  if (disc.surface_ratio > 0.0) {
+    double most = 0.0;
     for (int i = 0; i < atom->nlocal; i++)
-      if (scene.state[atom->type[i]].species == FLUID && scene.psi[i] > mine) mine = scene.psi[i];
-    MPI_Allreduce(&mine, &scene.psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
+      if (disc.state[atom->type[i]].species == FLUID && step.psi[i] > most) most = step.psi[i];
+    MPI_Allreduce(&most, &step.psi_reference, 1, MPI_DOUBLE, MPI_MAX, world);
   }
-  if (scene.density_fluid != Scene::CONTINUITY || scene.density_solid != Scene::CONTINUITY)
+  if (disc.density_fluid != Discretization::CONTINUITY ||
+      disc.density_solid != Discretization::CONTINUITY)
     find_density();
 }
 
@@ -65,18 +67,18 @@ void NumberDensity::renew()
 void NumberDensity::find(double *n) const
 {
   memset(n, 0, (atom->nlocal + atom->nghost) * sizeof(double));
-  for (int i = 0; i < atom->nlocal; i++) n[i] = scene.w0;
+  for (int i = 0; i < atom->nlocal; i++) n[i] = disc.w0;
   const auto for_finer = [&](auto f) {
-    for (int i = 0; scene.has_levels() && i < atom->nlocal; i++)
-      if (scene.level_of[atom->type[i]]) f(n[i], scene.resolution[atom->type[i]]);
+    for (int i = 0; disc.has_levels() && i < atom->nlocal; i++)
+      if (disc.level_of[atom->type[i]]) f(n[i], disc.resolution[atom->type[i]]);
   };
-  for_finer([](double &psi, const Resolution &own) {
-    psi = own.w0;
+  for_finer([](double &psi, const Resolution &finer) {
+    psi = finer.w0;
   });
-  for (auto *p : scene.parts) p->add_number_density(n, scene.density_solid == Scene::SUMMATION);
+  for (auto *p : parts) p->add_number_density(n, disc.density_solid == Discretization::SUMMATION);
   add_ghosts(n);
-  for_finer([this](double &psi, const Resolution &own) {
-    psi *= scene.psi_bulk / own.psi_bulk;
+  for_finer([this](double &psi, const Resolution &finer) {
+    psi *= disc.psi_bulk / finer.psi_bulk;
   });
 }
 
@@ -85,14 +87,14 @@ void NumberDensity::find(double *n) const
 void NumberDensity::find_density()
 {
   double *rho = atom->rho;
-  const double *const rmass = atom->rmass, *const psi = scene.psi;
+  const double *const rmass = atom->rmass, *const psi = step.psi;
   for (int i = 0; i < atom->nlocal; i++) {
-    const int species = scene.state[atom->type[i]].species;
+    const int species = disc.state[atom->type[i]].species;
     if (species == NONE || species == RIGID) continue;
-    const int mode = species == FLUID ? scene.density_fluid : scene.density_solid;
-    if (mode == Scene::SUMMATION)
+    const int mode = species == FLUID ? disc.density_fluid : disc.density_solid;
+    if (mode == Discretization::SUMMATION)
       rho[i] = rmass[i] * psi[i];
-    else if (mode == Scene::RATIO) {
+    else if (mode == Discretization::RATIO) {
       if (ratio[i] == 0.0) ratio[i] = rho[i] / psi[i];
       rho[i] = ratio[i] * psi[i];
     }

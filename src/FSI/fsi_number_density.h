@@ -20,13 +20,18 @@
 #include "pointers.h"
 
 #include <functional>
+#include <vector>
 
 namespace LAMMPS_NS {
 namespace FSI {
 
   class Fields;
   class Message;
+  class Part;
+  class Profile;
   class Scene;
+  struct Discretization;
+  struct StepState;
 
   class NumberDensity : protected Pointers {
    public:
@@ -41,7 +46,10 @@ namespace FSI {
     void find(double *n) const;
 
    private:
-    Scene &scene;
+    Discretization &disc;
+    StepState &step;
+    const std::vector<Part *> &parts;
+    Profile *const &profile;
     const SumOverGhosts add_ghosts;
     double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
     void find_density();

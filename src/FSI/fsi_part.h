@@ -124,10 +124,8 @@ namespace FSI {
     ~Part() = default;    // a style is deleted as what LAMMPS knows it as
   };
   // Before the first step, when it changes: every effect that is on, every one that is not and how
-  // to turn it on; then advice, and what has nothing to act on
+  // to turn it on; then advice, and what has nothing to act on (fsi_advice.cpp)
   void announce(LAMMPS *, Scene &);
-  // warns of numbers that are legal and most likely not what was meant (fsi_advice.cpp)
-  void advise(LAMMPS *, const Scene &);
 
   inline bool any_is(const std::vector<Part *> &parts, bool Facts::*what)
   {

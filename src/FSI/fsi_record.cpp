@@ -17,7 +17,9 @@
 #include "error.h"
 #include "fix.h"
 #include "modify.h"
+#include "update.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 
@@ -108,6 +110,45 @@ Record Record::read(LAMMPS *lmp, const std::string &style, FILE *fp)
   MPI_Bcast(text.data(), size, MPI_CHAR, 0, lmp->world);
   text.back() = '\0';
   return {lmp, style, text.data()};
+}
+
+double Clock::now(const Update *update)
+{
+  return update->atime + (update->ntimestep - update->atimestep) * update->dt;
+}
+
+void Clock::write(Record &record) const
+{
+  record.add("step", std::to_string(update->ntimestep));
+  record.add("clock's step", std::to_string(update->atimestep));
+  record.add("clock", std::vector<double>{update->dt, update->atime});
+}
+
+void Clock::read(const Record &record)
+{
+  const auto at = record.numbers("clock");
+  kept = Time{std::stoll(record.value("step")), std::stoll(record.value("clock's step")), at[0],
+              at[1]};
+}
+
+// LAMMPS counts time from a step on, and forgets that step at each init: in a run that goes on
+// without a timestep command the time since then is lost. With the numbers of the file it is that
+// of the uninterrupted run, bit for bit. Where a command has set another time or step, that holds.
+void Clock::restore()
+{
+  if (!kept) return;
+  const Time &c = *kept;
+  const double elapsed = c.time + (c.step - c.first_step) * c.dt, now = Clock::now(update);
+  const bool forgotten = update->atime == c.time ||
+      std::fabs(now - elapsed) <= 1.0e-12 * std::fabs(elapsed);
+  if (update->ntimestep != c.step || !forgotten) return;
+  if (update->dt == c.dt) {
+    update->atime = c.time;
+    update->atimestep = c.first_step;
+  } else {
+    update->atime = elapsed;
+    update->atimestep = c.step;
+  }
 }
 
 // LAMMPS shows what it has read to classes derived from its own only

@@ -20,6 +20,7 @@
 #include "pointers.h"
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,6 +51,25 @@ namespace FSI {
    private:
     std::vector<std::pair<std::string, std::string>> lines;
     const std::string *find(const std::string &name) const;
+  };
+
+  // Simulated time as a restart file has it, which LAMMPS forgets where it has no timestep command
+  // after reading.
+  class Clock : protected Pointers {
+   public:
+    explicit Clock(LAMMPS *lmp) : Pointers(lmp) {}
+    static double now(const Update *);    // simulated time of this step
+    void write(Record &) const;
+    void read(const Record &);
+    void restore();                    // before the first run after a restart file was read
+    void forget() { kept.reset(); }    // from that run on
+
+   private:
+    struct Time {
+      bigint step = 0, first_step = 0;
+      double dt = 0.0, time = 0.0;
+    };
+    std::optional<Time> kept;
   };
 
   // once, before the first run after a restart file was read: what the file keeps for fixes of the

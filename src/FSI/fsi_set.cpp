@@ -43,10 +43,11 @@ using namespace FSI;
 // The mass follows: a particle keeps the volume of its place in the lattice. (With the mass of the
 // uncompressed lattice volumes would say "compressed" where distances do not, and still water would
 // settle 2 % off at c = 10 sqrt(2 g H).)
+enum { DENSITY, PRESSURE, HYDROSTATIC, VOLUME };
+
 void FSISet::command(int narg, char **arg)
 {
   if (domain->box_exist == 0) error->all(FLERR, "Fsi/set command before simulation box is defined");
-  enum { DENSITY, PRESSURE, HYDROSTATIC, VOLUME };
   static const std::vector<std::string> names = {"density", "pressure", "hydrostatic", "volume"};
   std::string group_name, given;
   int what;
@@ -57,7 +58,6 @@ void FSISet::command(int narg, char **arg)
   keywords.parse(narg, arg);
   const int igroup = group->find(group_name);
   if (igroup == -1) error->all(FLERR, "Fsi/set group-ID {} does not exist", group_name);
-  const int groupbit = group->bitmask[igroup];
   int variable = -1;
   if (utils::strmatch(given, "^v_") && what != HYDROSTATIC) {
     variable = input->variable->find(given.c_str() + 2);
@@ -66,61 +66,63 @@ void FSISet::command(int narg, char **arg)
   }
   const double number = variable < 0 ? numeric(lmp, "Fsi/set " + names[what], given) : 0.0;
 
-  FixFSI *fix_fsi = FixFSI::find(lmp, "Fsi/set");
+  FixFSI *const fix_fsi = FixFSI::find(lmp, "Fsi/set");
   if (update->ntimestep > 0 && comm->me == 0)
     error->warning(FLERR,
                    "Fsi/set {} {} after {} steps: masses change with densities, which is meant "
                    "before the first run",
                    group_name, names[what], update->ntimestep);
-
-  // materials, masses and gravity are entered in init()
-  lmp->init();
-  fix_fsi->body_forces.evaluate(fix_fsi->state);
-  if (what == HYDROSTATIC &&
-      std::none_of(fix_fsi->body_forces.all.begin(), fix_fsi->body_forces.all.end(),
-                   [](const BodyForces::Field &f) {
-                     return f.mask;
-                   }))
+  lmp->init();    // materials, masses and gravity are entered there
+  BodyForces &forces = fix_fsi->body_forces;
+  forces.evaluate(fix_fsi->state);
+  if (what == HYDROSTATIC && std::none_of(forces.all.begin(), forces.all.end(), [](const auto &f) {
+        return f.mask;
+      }))
     error->all(FLERR, "Fsi/set hydrostatic requires fix gravity");
 
   std::vector<double> each(atom->nlocal, number);
   if (variable >= 0) input->variable->compute_atom(variable, igroup, each.data(), 1, 0);
-
   bigint count = 0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    const State &s = fix_fsi->state[atom->type[i]];
-    const double value = each[i];
-    if (what == VOLUME) {
-      if (!(value > 0.0)) error->one(FLERR, "Fsi/set volume {} must be > 0", value);
-      atom->rmass[i] = atom->rho[i] * value;
-      count++;
-      continue;
-    }
-    if (s.species == NONE || s.species == RIGID) continue;    // walls: from the fluid
-    if (s.form == TOTAL_LAGRANGIAN) continue;                 // density from its strain
-    double rho = value;
-    if (what == HYDROSTATIC) {
-      const auto g = fix_fsi->body_forces.on(i);
-      const double *x = atom->x[i], size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-      if (size == 0.0)
-        error->one(FLERR, "Fsi/set hydrostatic: no fix gravity acts on atom {}", atom->tag[i]);
-      const double height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
-      if (height > value) continue;
-      rho = s.density(s.rho0 * size * (value - height) + s.p0);
-    } else if (what == PRESSURE)
-      rho = s.density(value);
-    if (!(rho > 0.0 && rho < Range::LARGEST))
-      error->one(FLERR, "Fsi/set {} {} must be > 0",
-                 what == DENSITY ? "density" : names[what] + ": density", rho);
-    atom->rmass[i] *= rho / atom->rho[i];
-    atom->rho[i] = rho;
-    count++;
-  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & group->bitmask[igroup])
+      count += what == VOLUME
+          ? set_volume(i, each[i])
+          : set_density(i, what, names[what], each[i], fix_fsi->state[atom->type[i]], forces);
   const bigint all = count_of(count, world);
   if (all == 0 && comm->me == 0)
     error->warning(FLERR, "Fsi/set {} {} {} acts on no particle", group_name, names[what], given);
   if (comm->me == 0)
     utils::logmesg(lmp, "  fsi/set: {} of {} particles\n", what == VOLUME ? "mass" : "density",
                    all);
+}
+
+bool FSISet::set_volume(int i, double volume)
+{
+  if (!(volume > 0.0)) error->one(FLERR, "Fsi/set volume {} must be > 0", volume);
+  atom->rmass[i] = atom->rho[i] * volume;
+  return true;
+}
+
+// whether it has been set
+bool FSISet::set_density(int i, int what, const std::string &name, double value, const State &s,
+                         const BodyForces &forces)
+{
+  if (s.species == NONE || s.species == RIGID) return false;    // walls: from the fluid
+  if (s.form == TOTAL_LAGRANGIAN) return false;                 // density from its strain
+  double rho = what == PRESSURE ? s.density(value) : value;
+  if (what == HYDROSTATIC) {
+    const auto g = forces.on(i);
+    const double *x = atom->x[i], size = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    if (size == 0.0)
+      error->one(FLERR, "Fsi/set hydrostatic: no fix gravity acts on atom {}", atom->tag[i]);
+    const double height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]) / size;
+    if (height > value) return false;
+    rho = s.density(s.rho0 * size * (value - height) + s.p0);
+  }
+  if (!(rho > 0.0 && rho < Range::LARGEST))
+    error->one(FLERR, "Fsi/set {} {} must be > 0", what == DENSITY ? "density" : name + ": density",
+               rho);
+  atom->rmass[i] *= rho / atom->rho[i];
+  atom->rho[i] = rho;
+  return true;
 }

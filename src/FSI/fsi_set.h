@@ -22,7 +22,13 @@ CommandStyle(fsi/set,FSISet);
 
 #include "command.h"
 
+#include <string>
+
 namespace LAMMPS_NS {
+namespace FSI {
+  class BodyForces;
+  struct State;
+}    // namespace FSI
 
 // fsi/set group-ID keyword values ...: initial density of particles, once, before a run.
 
@@ -30,6 +36,11 @@ class FSISet : public Command {
  public:
   FSISet(class LAMMPS *lmp) : Command(lmp) {}
   void command(int, char **) override;
+
+ private:
+  bool set_volume(int i, double volume);
+  bool set_density(int i, int what, const std::string &name, double value, const FSI::State &,
+                   const FSI::BodyForces &);
 };
 
 }    // namespace LAMMPS_NS

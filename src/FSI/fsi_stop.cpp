@@ -19,13 +19,13 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
-#include "fsi_clock.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_limits.h"
 #include "fsi_nearest_image.h"
 #include "fsi_part.h"
+#include "fsi_record.h"
 #include "fsi_scene.h"
 #include "lmptype.h"
 #include "pair.h"
@@ -48,9 +48,10 @@ static std::string of_partition(const Universe *all, const std::string &name)
   return all->nworlds > 1 ? fmt::format("{}.{}", name, all->iworld) : name;
 }
 
-Stop::Stop(LAMMPS *lmp, const std::string &who) :
-    Pointers(lmp), who(who), restart_file(of_partition(universe, "fsi_stop.restart")),
-    dump_file(of_partition(universe, "fsi_stop.dump"))
+Stop::Stop(LAMMPS *lmp, const std::string &name, const Scene &scene) :
+    Pointers(lmp), name(name), restart_file(of_partition(universe, "fsi_stop.restart")),
+    dump_file(of_partition(universe, "fsi_stop.dump")), disc(scene), step(scene),
+    parts(scene.parts), mover(scene.mover)
 {
 }
 
@@ -76,16 +77,15 @@ Finding Stop::not_finite(int i, bool forces) const
   return {};
 }
 
-Finding Stop::worst(const Finding &mine, double key) const
+Finding Stop::worst(const Finding &of_rank, double key) const
 {
-  return of_least(mine.tag ? -key : 1.0e300, mine, world);
+  return of_least(of_rank.tag ? -key : 1.0e300, of_rank, world);
 }
 
-std::string Stop::describe(const Scene &scene, const std::string &what, const Finding &all,
-                           When when) const
+std::string Stop::describe(const std::string &what, const Finding &all, When when) const
 {
   static constexpr const char *fields[] = {"force", "velocity", "density", "position", "mass"};
-  auto text = who + ": " +
+  auto text = name + ": " +
       (all.trouble == FINITE ? fmt::format("{} is not finite ({})", fields[all.field], all.value)
                              : what);
   text += fmt::format(" on step {}", update->ntimestep);
@@ -93,48 +93,48 @@ std::string Stop::describe(const Scene &scene, const std::string &what, const Fi
     text += fmt::format(", atom {} (type {}) at {:.6g} {:.6g} {:.6g}", all.tag, all.type, all.x[0],
                         all.x[1], all.x[2]);
   if (all.other) text += fmt::format(", and atom {}", all.other);
-  const Neighbor body = nearest_body(scene, all);
-  if (too_near(scene, body)) {
+  const Neighbor body = nearest_body(all);
+  if (too_near(body)) {
     const bool solid = body.species == SOLID;
     text +=
         fmt::format(", {:.2g} from atom {} of {}, whose spacing is {:g}: fluid ", body.distance,
                     body.tag, solid ? fmt::format("body {}", body.molecule) : "a wall", body.dx);
     text += std::string(body.around ? "inside" : "pressed into") + (solid ? " a solid" : " a wall");
   }
-  return text + ". Try " + advice(scene, all, when, body);
+  return text + ". Try " + advice(all, when, body);
 }
 
 // On all ranks. A body is around a place if the directions to its particles near it all but cancel.
-Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
+Stop::Neighbor Stop::nearest_body(const Finding &all) const
 {
-  Neighbor body = {1.0e300, scene.dx, 0, 0, NONE, false};
-  if (!all.tag || scene.state[all.type].species != FLUID ||
+  Neighbor body = {1.0e300, disc.dx, 0, 0, NONE, false};
+  if (!all.tag || disc.state[all.type].species != FLUID ||
       !std::isfinite(all.x[0] + all.x[1] + all.x[2]))
     return body;
   const int *const type = atom->type;
   const auto for_near = [&](auto f) {
     for (int i = 0; i < atom->nlocal; i++) {
-      const int species = scene.state[type[i]].species;
+      const int species = disc.state[type[i]].species;
       if (species != SOLID && species != RIGID) continue;
       double d[3];
-      for (int k = 0; k < 3; k++) d[k] = k < scene.dim ? atom->x[i][k] - all.x[k] : 0.0;
+      for (int k = 0; k < 3; k++) d[k] = k < disc.dim ? atom->x[i][k] - all.x[k] : 0.0;
       if (!std::isfinite(d[0] + d[1] + d[2])) continue;
       to_nearest_image(*domain, d);
       const double r = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-      if (r < scene.largest_cut) f(i, r, d);
+      if (r < disc.largest_cut) f(i, r, d);
     }
   };
   for_near([&](int i, double r, const double *) {
     if (r < body.distance)
       body = {
-          r,    scene.dx_of(type[i]), atom->tag[i], atom->molecule[i], scene.state[type[i]].species,
+          r,    disc.dx_of(type[i]), atom->tag[i], atom->molecule[i], disc.state[type[i]].species,
           false};
   });
   body = of_least(body.distance, body, world);
   double mine[4] = {}, sum[4];
   for_near([&](int i, double r, const double *d) {
     if (atom->molecule[i] != body.molecule || r == 0.0 ||
-        r > 1.5 * std::max(body.dx, 0.5 * scene.dx))
+        r > 1.5 * std::max(body.dx, 0.5 * disc.dx))
       return;
     for (int k = 0; k < 3; k++) mine[k] += d[k] / r;
     mine[3] += 1.0;
@@ -145,148 +145,139 @@ Stop::Neighbor Stop::nearest_body(const Scene &scene, const Finding &all) const
 }
 
 // nearer than half the distance of fluid at rest from its face, or within it
-bool Stop::too_near(const Scene &scene, const Neighbor &body)
+bool Stop::too_near(const Neighbor &body) const
 {
   return body.species != NONE &&
-      (body.distance < 0.25 * (scene.dx + body.dx) || (body.around && body.distance < body.dx));
+      (body.distance < 0.25 * (disc.dx + body.dx) || (body.around && body.distance < body.dx));
 }
 
-// of waves in an atom type at rest
-double Stop::courant(const Scene &scene, int type) const
+// How to get a shorter step, and whether the Courant number of the particle is suspect
+std::string Stop::shorter_step(const Finding &all, bool &suspect) const
 {
-  const State &s = scene.state[type];
-  const bool waves = s.species == FLUID || s.species == SOLID;
-  return waves ? update->dt * std::sqrt(s.wave_speed_sq()) /
-          (s.species == SOLID ? scene.substeps : 1) / scene.h_of(type)
-               : 0.0;
-}
-
-// where fluid is in a body
-std::string Stop::advice(const Neighbor &body, When when)
-{
-  if (when == START) return "fsi/displace, where the fluid is put around bodies";
-  if (body.species == SOLID)
-    return "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, which keeps "
-           "fluid out";
-  return "a thicker wall, or guard 0.9 of fix fsi/wall/particle, which keeps fluid out";
-}
-
-static double usual_courant(bool fluid)
-{
-  return fluid ? Limits::FLUID_FACTOR * Limits::safe[Limits::SOUND]
-               : Limits::SOLID_FACTOR * Limits::safe[Limits::ELASTIC];
-}
-
-// how to get one
-static std::string shorter_step(const Scene &scene, double number, bool fluid, bool solid_tl)
-{
-  const double usual = usual_courant(fluid);
-  bool chooses_step = false, chooses_substeps = false;
-  for (const auto *p : scene.parts) {
-    chooses_step |= p->facts().chooses_step;
-    chooses_substeps |= p->facts().chooses_substeps;
-  }
+  const State none, &s = all.tag ? disc.state[all.type] : none;
+  const bool fluid = !all.tag || s.species == FLUID,
+             waves = s.species == FLUID || s.species == SOLID,
+             solid_tl = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
+  const double usual = fluid ? Limits::FLUID_FACTOR * Limits::safe[Limits::SOUND]
+                             : Limits::SOLID_FACTOR * Limits::safe[Limits::ELASTIC];
+  const double number = !waves ? 0.0
+                               : update->dt * std::sqrt(s.wave_speed_sq()) /
+          (s.species == SOLID ? step.substeps : 1) / disc.h_of(all.type);
+  suspect = number > SUSPECT * usual;
   std::string tip;
-  if (number > SUSPECT * usual)
+  if (suspect)
     tip = fmt::format("a shorter time step (the Courant number is {:.2g}, {:g} is usual): ", number,
                       usual);
-  if (!chooses_step) return tip + "fix fsi/dt" + (solid_tl ? " with substeps auto" : "");
-  if (!fluid && solid_tl && !chooses_substeps) return tip + "substeps auto of fix fsi/dt";
+  if (!any_is(parts, &Facts::chooses_step))
+    return tip + "fix fsi/dt" + (solid_tl ? " with substeps auto" : "");
+  if (!fluid && solid_tl && !any_is(parts, &Facts::chooses_substeps))
+    return tip + "substeps auto of fix fsi/dt";
   return tip + fmt::format("a smaller cfl/{} of fix fsi/dt", fluid ? "fluid" : "solid");
 }
 
-// What to try: against what, for whom (NONE: all), the keyword of an effect that must be off for it
-// to help, or null.
-static const struct Tip {
+// What to try: against what, for whom (NONE: all), at the start of a run only?, the keyword of an
+// effect that must be off, or with + on, for it to help, or null.
+static constexpr bool START_ONLY = true, ANY_TIME = false;
+static constexpr struct Tip {
   Trouble trouble;
   Species of;
-  const char *off, *text;
+  bool start_only;
+  const char *effect, *text;
 } TIPS[] = {
     // clang-format off
-    {FINITE, NONE, nullptr, "a look at what pushes this particle"},
-    {FINITE, SOLID, "hourglass", "hourglass"},
-    {MACH, FLUID, nullptr, "a higher speed of sound, if the flow is meant to be that fast"},
-    {MACH, FLUID, "artificial/visc", "artificial/visc 0.02 0"},
-    {MACH, SOLID, "artificial/visc", "artificial/visc 0.1 0"},
-    {MACH, SOLID, "hourglass", "hourglass"},
-    {DISTANCE, NONE, "artificial/visc", "artificial/visc 0.02 0"},
-    {DISTANCE, NONE, "shift", "shift"},
-    {DISTANCE, NONE, "background", "a background pressure, if there is no free surface"},
-    {DENSITY, FLUID, nullptr, "a higher speed of sound"},
-    {DENSITY, NONE, "density/diffusion", "density/diffusion 0.1"},
-    {DENSITY, SOLID, "hourglass", "hourglass"},
-    {ENERGY, NONE, nullptr, "a look at this, the fastest particle"},
-    {ENERGY, FLUID, "artificial/visc", "artificial/visc 0.02 0"},
-    {ENERGY, SOLID, "artificial/visc", "artificial/visc 0.1 0"},
-    {LOST, NONE, nullptr, "walls where particles escape, or a larger box; if they are meant to "
-                          "leave, thermo_modify lost ignore"}};
+    {FINITE, NONE, ANY_TIME, nullptr, "a look at what pushes this particle"},
+    {FINITE, SOLID, ANY_TIME, "hourglass", "hourglass"},
+    {MACH, NONE, START_ONLY, nullptr,
+     "velocity ... units box (its default are lattice units per time)"},
+    {MACH, FLUID, ANY_TIME, nullptr,
+     "a higher speed of sound, if the flow is meant to be that fast"},
+    {MACH, FLUID, ANY_TIME, "artificial/visc", "artificial/visc 0.02 0"},
+    {MACH, SOLID, ANY_TIME, "artificial/visc", "artificial/visc 0.1 0"},
+    {MACH, SOLID, ANY_TIME, "hourglass", "hourglass"},
+    {DISTANCE, NONE, START_ONLY, nullptr, "a look for overlapping particles"},
+    {DISTANCE, NONE, ANY_TIME, "wendland", "kernel wendland"},
+    {DISTANCE, NONE, ANY_TIME, "artificial/visc", "artificial/visc 0.02 0"},
+    {DISTANCE, NONE, ANY_TIME, "shift", "shift"},
+    {DISTANCE, NONE, ANY_TIME, "background",
+     "a background pressure, if there is no free surface"},
+    {DENSITY, FLUID, ANY_TIME, nullptr, "a higher speed of sound"},
+    {DENSITY, NONE, ANY_TIME, "density/diffusion", "density/diffusion 0.1"},
+    {DENSITY, SOLID, ANY_TIME, "hourglass", "hourglass"},
+    {DENSITY, FLUID, ANY_TIME, "+tension", "tension no, if there is a free surface"},
+    {ENERGY, NONE, ANY_TIME, nullptr, "a look at this, the fastest particle"},
+    {ENERGY, FLUID, ANY_TIME, "artificial/visc", "artificial/visc 0.02 0"},
+    {ENERGY, SOLID, ANY_TIME, "artificial/visc", "artificial/visc 0.1 0"},
+    {LOST, NONE, ANY_TIME, nullptr,
+     "walls where particles escape, or a larger box; if they are meant to leave, thermo_modify "
+     "lost ignore"}};
 // clang-format on
 
-std::string Stop::advice(const Scene &scene, const Finding &all, When when,
-                         const Neighbor &body) const
+std::string Stop::advice(const Finding &all, When when, const Neighbor &body) const
 {
-  const bool fluid = !all.tag || scene.state[all.type].species == FLUID;
-  const Part *pair = nullptr;
+  const bool fluid = !all.tag || disc.state[all.type].species == FLUID, starts = when == START;
+  std::vector<Part::Effect> effects = {{"", "wendland", disc.kernel == WENDLAND}};
   for (const auto *p : pairs_of<Part>(lmp)) {
     const auto style = p->facts().style;
-    if (style && style != Facts::OF_GRAINS && (style == Facts::OF_FLUIDS) == fluid) pair = p;
+    if (!style || style == Facts::OF_GRAINS || (style == Facts::OF_FLUIDS) != fluid) continue;
+    for (const auto &e : p->effects()) effects.push_back(e);
   }
-  const auto off = [&](const std::string &keyword) {
-    if (!pair) return false;
-    for (const auto &e : pair->effects())
-      if (e.keyword == keyword) return !e.on;
-    return false;
+  const auto is = [&](const std::string &keyword, bool on) {
+    return std::any_of(effects.begin(), effects.end(), [&](const Part::Effect &e) {
+      return e.keyword == keyword && e.on == on;
+    });
   };
   std::vector<std::string> tips;
-  const bool starts = when == START, near = all.trouble == DISTANCE;
-  if (too_near(scene, body)) tips.emplace_back(advice(body, when));
-  if (starts && all.trouble == MACH)
-    tips.emplace_back("velocity ... units box (its default are lattice units per time)");
-  if (starts && near) tips.emplace_back("a look for overlapping particles");
-  if (near && scene.kernel != WENDLAND) tips.emplace_back("kernel wendland");
-  for (const Tip &tip : TIPS)
+  if (too_near(body)) {    // fluid is in a body
+    const bool solid = body.species == SOLID;
+    tips.emplace_back(starts ? "fsi/displace, where the fluid is put around bodies"
+                          : solid
+                          ? "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, "
+                            "which keeps fluid out"
+                          : "a thicker wall, or guard 0.9 of fix fsi/wall/particle, which keeps "
+                            "fluid out");
+  }
+  for (const Tip &tip : TIPS) {
+    const bool on = tip.effect && *tip.effect == '+';
     if (tip.trouble == all.trouble && (tip.of == NONE || (tip.of == FLUID) == fluid) &&
-        (!tip.off || off(tip.off)))
+        (starts || !tip.start_only) && (!tip.effect || is(tip.effect + on, on)))
       tips.emplace_back(tip.text);
-  if (all.trouble == DENSITY && fluid && pair && !off("tension"))
-    tips.emplace_back("tension no, if there is a free surface");
-  if (all.trouble != LOST && when != BEFORE && !(starts && near)) {
-    const double number = all.tag ? courant(scene, all.type) : 0.0;
-    const bool solid_tl = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
-    const auto tip = shorter_step(scene, number, fluid, solid_tl);
-    tips.insert(number > SUSPECT * usual_courant(fluid) ? tips.begin() : tips.end(), tip);
+  }
+  if (all.trouble != LOST && when != BEFORE && !(starts && all.trouble == DISTANCE)) {
+    bool suspect;
+    const auto tip = shorter_step(all, suspect);
+    tips.insert(suspect ? tips.begin() : tips.end(), tip);
   }
   std::string text;
-  for (size_t k = 0; k < tips.size(); k++) text += (k ? "; " : "") + tips[k];
+  for (const auto &tip : tips) text += (text.empty() ? "" : "; ") + tip;
   return text.empty() ? "a look at the particles around it" : text;
 }
 
-void Stop::stop(const Scene &scene, std::string text, const Finding &all, When when)
+void Stop::stop(std::string text, const Finding &all, When when)
 {
-  if (when == MIDDLE) go_back(scene);
+  if (when == MIDDLE) go_back();
   if (when != BEFORE && all.tag) {
-    write_neighbours(scene, all);
+    write_neighbors(all);
     text += fmt::format(". Particles around it: {}", dump_file);
   }
-  if (when != BEFORE) text += write_state(scene);
+  if (when != BEFORE) text += write_state();
   error->all(FLERR, text);
 }
 
 // In the middle of a step positions, walls and densities go back to its start: a state from
 // which the step can be repeated. (The stress of fsi/solid stays where it is, a step too far: an
 // error of one step's strain.)
-void Stop::go_back(const Scene &scene)
+void Stop::go_back()
 {
   const double back = -0.5 * update->dt;
   for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & scene.mover->groupbit)
-      for (int d = 0; d < scene.dim; d++) atom->x[i][d] += back * atom->v[i][d];
-  for (auto *p : scene.parts) p->go_back();
+    if (atom->mask[i] & mover->groupbit)
+      for (int d = 0; d < disc.dim; d++) atom->x[i][d] += back * atom->v[i][d];
+  for (auto *p : parts) p->go_back();
   update->ntimestep--;
 }
 
 // restart file, and what to say of it
-std::string Stop::write_state(const Scene &scene)
+std::string Stop::write_state()
 {
   bool lost = false;
   for (int i = 0; i < atom->nlocal; i++) lost |= not_finite(i, false).tag != 0;
@@ -312,9 +303,9 @@ std::string Stop::write_state(const Scene &scene)
     own[d] = -domain->boxlo[d];
     own[3 + d] = domain->boxhi[d];
     for (int i = 0; i < atom->nlocal && !domain->periodicity[d]; i++) {
-      if (atom->x[i][d] < domain->boxlo[d]) own[d] = std::max(own[d], scene.dx - atom->x[i][d]);
+      if (atom->x[i][d] < domain->boxlo[d]) own[d] = std::max(own[d], disc.dx - atom->x[i][d]);
       if (atom->x[i][d] >= domain->boxhi[d])
-        own[3 + d] = std::max(own[3 + d], scene.dx + atom->x[i][d]);
+        own[3 + d] = std::max(own[3 + d], disc.dx + atom->x[i][d]);
     }
   }
   MPI_Allreduce(own, ends, 6, MPI_DOUBLE, MPI_MAX, world);
@@ -329,14 +320,14 @@ std::string Stop::write_state(const Scene &scene)
 }
 
 // text dump of all particles within three cutoffs
-void Stop::write_neighbours(const Scene &scene, const Finding &all) const
+void Stop::write_neighbors(const Finding &all) const
 {
   struct Row {
     tagint tag, molecule;
     int type;
     double numbers[10];
   };
-  const double reach = 3.0 * scene.largest_cut;
+  const double reach = 3.0 * disc.largest_cut;
   std::vector<Row> mine;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], *const v = atom->v[i], *const f = atom->f[i];
@@ -357,7 +348,7 @@ void Stop::write_neighbours(const Scene &scene, const Finding &all) const
 
   FILE *fp = fopen(dump_file.c_str(), "w");
   if (!fp) {
-    error->warning(FLERR, "{} cannot write file {}: {}", who, dump_file, utils::getsyserror());
+    error->warning(FLERR, "{} cannot write file {}: {}", name, dump_file, utils::getsyserror());
     return;
   }
   char bounds[9];

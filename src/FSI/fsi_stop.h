@@ -20,10 +20,16 @@
 #include "pointers.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
+class Fix;
+
 namespace FSI {
+  class Part;
   class Scene;
+  struct Discretization;
+  struct StepState;
 
   // what can be wrong
   enum Trouble { FINITE, MACH, DISTANCE, DENSITY, ENERGY, LOST, NTROUBLE };
@@ -43,19 +49,23 @@ namespace FSI {
     enum Field { FORCE, VELOCITY, MASS_DENSITY, POSITION, MASS };
     enum When { BEFORE, START, MIDDLE };    // of all forces; of a step: where positions are
 
-    Stop(class LAMMPS *, const std::string &who);
+    Stop(class LAMMPS *, const std::string &who, const Scene &);
     Finding finding(Trouble, int i, double value, int j = -1) const;
     // what of atom i is not finite? No tag if nothing is. With forces, if they are there
     Finding not_finite(int i, bool forces) const;
     // of the findings of all ranks the one with the largest key
-    Finding worst(const Finding &mine, double key) const;
+    Finding worst(const Finding &of_rank, double key) const;
     // what is wrong, if it is not FINITE, then step, particle and what to try
-    std::string describe(const Scene &, const std::string &what, const Finding &, When) const;
+    std::string describe(const std::string &what, const Finding &, When) const;
     // error->all, after writing the files
-    void stop(const Scene &, std::string text, const Finding &, When);
+    void stop(std::string text, const Finding &, When);
 
    private:
-    const std::string who, restart_file, dump_file;
+    const std::string name, restart_file, dump_file;
+    const Discretization &disc;
+    const StepState &step;
+    const std::vector<Part *> &parts;
+    const Fix *const mover;
     // the particle of a solid or wall that a fluid particle is nearest to
     struct Neighbor {
       double distance, dx;
@@ -63,14 +73,13 @@ namespace FSI {
       int species;
       bool around;    // is its body on all sides?
     };
-    Neighbor nearest_body(const Scene &, const Finding &) const;
-    static bool too_near(const Scene &, const Neighbor &);
-    static std::string advice(const Neighbor &, When);
-    double courant(const Scene &, int type) const;
-    std::string advice(const Scene &, const Finding &, When, const Neighbor &) const;
-    void go_back(const Scene &);
-    std::string write_state(const Scene &);
-    void write_neighbours(const Scene &, const Finding &) const;
+    Neighbor nearest_body(const Finding &) const;
+    bool too_near(const Neighbor &) const;
+    std::string advice(const Finding &, When, const Neighbor &) const;
+    std::string shorter_step(const Finding &, bool &suspect) const;
+    void go_back();
+    std::string write_state();
+    void write_neighbors(const Finding &) const;
   };
 
 }    // namespace FSI

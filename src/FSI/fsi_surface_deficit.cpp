@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_surface_room.h"
+#include "fsi_surface_deficit.h"
 
 #include "atom.h"
 #include "force.h"
@@ -36,11 +36,11 @@ using namespace FSI;
 static constexpr double PERIOD = 5.0;
 static const std::string SINCE = "time since the last look at surfaces";
 static constexpr double ROUND = 1.0e-6;    // missing parts of a lattice's sum that may be round-off
-// more room over that of a plane than on any edge: of the two sides of a film s cancels
+// more deficit over that of a plane than on any edge: of the two sides of a film s cancels
 static constexpr double EDGE = 100.0;
 
 // sums over the planes of a lattice that are missing
-RoomOfPlane::RoomOfPlane(int kernel, int dim, double h_over_dx)
+DeficitOfPlane::DeficitOfPlane(int kernel, int dim, double h_over_dx)
 {
   with_kernel(kernel, dim, h_over_dx, [this](const auto &k) {
     constexpr int D = std::decay_t<decltype(k)>::DIM;
@@ -65,7 +65,7 @@ RoomOfPlane::RoomOfPlane(int kernel, int dim, double h_over_dx)
 }
 
 // beyond the first layer, at edges, as between the last two
-double RoomOfPlane::operator()(double s) const
+double DeficitOfPlane::operator()(double s) const
 {
   size_t k = 1;
   while (k + 1 < layers.size() && s > layers[k].first) k++;
@@ -73,144 +73,145 @@ double RoomOfPlane::operator()(double s) const
   return a.second + (s - a.first) * (b.second - a.second) / (b.first - a.first);
 }
 
-SurfaceRoom::SurfaceRoom(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density,
-                         SumOverGhosts add_ghosts) :
+SurfaceDeficit::SurfaceDeficit(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density,
+                               SumOverGhosts add_ghosts) :
     Pointers(lmp),
-    scene(scene), number_density(number_density), add_ghosts(std::move(add_ghosts)), room(nullptr),
-    since(0.0), since_before(0.0), due(false)
+    disc(scene), ledger(scene), parts(scene.parts), profile(scene.profile),
+    number_density(number_density), add_ghosts(std::move(add_ghosts)), deficit(nullptr), since(0.0),
+    since_before(0.0), due(false)
 {
 }
 
-void SurfaceRoom::set_array(Fields &fields)
+void SurfaceDeficit::set_array(Fields &fields)
 {
   // a pair style that comes after fix fsi may want it: what a restart file has of it is read here
   const auto wanted = [&]() {
     return !force->pair || facts_of_fluids(lmp).density_at_surfaces;
   };
   fields.set("room at the surface", Fields::RESTART,
-             scene.density_fluid == Scene::CONTINUITY && wanted(), room, 2);
-  if (room) of_plane = RoomOfPlane(scene.kernel, scene.dim, scene.h / scene.dx);
+             disc.density_fluid == Discretization::CONTINUITY && wanted(), deficit, 2);
+  if (deficit) of_plane = DeficitOfPlane(disc.kernel, disc.dim, disc.h / disc.dx);
 }
 
-void SurfaceRoom::write(Record &record) const
+void SurfaceDeficit::write(Record &record) const
 {
-  if (room) record.add(SINCE, std::vector<double>{since});
+  if (deficit) record.add(SINCE, std::vector<double>{since});
 }
 
-void SurfaceRoom::read(const Record &record)
+void SurfaceDeficit::read(const Record &record)
 {
   if (record.has(SINCE)) since = record.numbers(SINCE)[0];
 }
 
 // by time, not by steps, which reset_timestep may count anew
-void SurfaceRoom::pass(double dt)
+void SurfaceDeficit::pass(double dt)
 {
   double fastest = 0.0;
-  for (const auto &s : scene.state)
+  for (const auto &s : disc.state)
     if (s.species == FLUID) fastest = std::max(fastest, s.c);
   since_before = since;
   since += dt;
-  due = since * fastest >= PERIOD * (1.0 - 1.0e-9) * scene.h;
+  due = since * fastest >= PERIOD * (1.0 - 1.0e-9) * disc.h;
   if (due) since = 0.0;
 }
 
-bool SurfaceRoom::add_rates(bool advance)
+bool SurfaceDeficit::add_rates(bool advance)
 {
-  if (room && advance) pass(update->dt);
-  if (room && scene.kept && advance && due) earlier.assign(atom->rho, atom->rho + atom->nlocal);
+  if (deficit && advance) pass(update->dt);
+  if (deficit && ledger.kept && advance && due) earlier.assign(atom->rho, atom->rho + atom->nlocal);
   return false;
 }
 
-void SurfaceRoom::advance(bool advance)
+void SurfaceDeficit::advance(bool advance)
 {
   changes.clear();
-  if (!room || (advance && !due)) return;
-  const Phase phase(scene.profile, Profile::DENSITY);
+  if (!deficit || (advance && !due)) return;
+  const Phase phase(profile, Profile::DENSITY);
   begin();
   if (advance) follow();
 }
 
-void SurfaceRoom::go_back()
+void SurfaceDeficit::go_back()
 {
   since = since_before;
   for (size_t i = 0; i < changes.size() / 2; i++) {
-    room[i][0] -= changes[2 * i];
+    deficit[i][0] -= changes[2 * i];
     atom->rho[i] -= changes[2 * i + 1];
   }
 }
 
-std::vector<Part::Effect> SurfaceRoom::effects() const
+std::vector<Part::Effect> SurfaceDeficit::effects() const
 {
   if (!facts_of_fluids(lmp).style) return {};
-  return {{"density that follows surfaces", "density/surface", room != nullptr}};
+  return {{"density that follows surfaces", "density/surface", deficit != nullptr}};
 }
 
 // of particles that are new
-void SurfaceRoom::begin()
+void SurfaceDeficit::begin()
 {
   const int nlocal = atom->nlocal, *const type = atom->type;
   const auto is_new = [&](int i) {
-    return scene.state[type[i]].species == FLUID && room[i][0] == 0.0;
+    return disc.state[type[i]].species == FLUID && deficit[i][0] == 0.0;
   };
-  bool mine = false;
-  for (int i = 0; i < nlocal; i++) mine |= is_new(i);
-  if (!anywhere(mine, world)) return;
+  bool any_new = false;
+  for (int i = 0; i < nlocal; i++) any_new |= is_new(i);
+  if (!anywhere(any_new, world)) return;
   std::vector<double> psi(nlocal + atom->nghost);
   number_density.find(psi.data());
   const auto asymmetry = gradients();
   for (int i = 0; i < nlocal; i++)
     if (is_new(i)) {
-      const double missing = std::max(0.0, 1.0 - psi[i] / scene.psi_bulk),
+      const double missing = std::max(0.0, 1.0 - psi[i] / disc.psi_bulk),
                    plane = of_plane(asymmetry[i]);
-      room[i][0] = 1.0 + missing;
+      deficit[i][0] = 1.0 + missing;
       const bool inside = missing <= std::max(plane, ROUND);
-      room[i][1] = inside ? 1.0 : missing < EDGE * plane ? missing / plane : EDGE;
+      deficit[i][1] = inside ? 1.0 : missing < EDGE * plane ? missing / plane : EDGE;
     }
 }
 
 // s of local atoms
-std::vector<double> SurfaceRoom::gradients() const
+std::vector<double> SurfaceDeficit::gradients() const
 {
-  const int nlocal = atom->nlocal, dim = scene.dim;
+  const int nlocal = atom->nlocal, dim = disc.dim;
   const size_t nall = nlocal + atom->nghost;
   std::vector<double> gradient(dim * nall, 0.0), s(nlocal);    // columns one after the other
-  for (auto *p : scene.parts) p->add_gradient_sum(gradient.data());
+  for (auto *p : parts) p->add_gradient_sum(gradient.data());
   for (int d = 0; d < dim; d++) add_ghosts(&gradient[d * nall]);
   for (int i = 0; i < nlocal; i++) {
     double ssq = 0.0;
     for (int d = 0; d < dim; d++) ssq += gradient[d * nall + i] * gradient[d * nall + i];
-    s[i] = scene.h * std::sqrt(ssq);
+    s[i] = disc.h * std::sqrt(ssq);
   }
   return s;
 }
 
-void SurfaceRoom::follow()
+void SurfaceDeficit::follow()
 {
   const auto asymmetry = gradients();
   changes.assign(2 * atom->nlocal, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &state = scene.state[atom->type[i]];
+    const State &state = disc.state[atom->type[i]];
     if (state.species != FLUID) continue;
-    const double had = room[i][0] - 1.0, most = room[i][1] * of_plane(asymmetry[i]),
+    const double had = deficit[i][0] - 1.0, most = deficit[i][1] * of_plane(asymmetry[i]),
                  free = 1.0 - atom->rho[i] / state.rho0;
     const double has = had > most ? most : free > 0.0 ? std::min(most, had + free) : had;
     if (has == had) continue;
     const double before = atom->rho[i];
-    room[i][0] = 1.0 + has;
-    atom->rho[i] = std::max(before + (has - had) * state.rho0, atom->rmass[i] * scene.w0);
+    deficit[i][0] = 1.0 + has;
+    atom->rho[i] = std::max(before + (has - had) * state.rho0, atom->rmass[i] * disc.w0);
     changes[2 * i] = has - had;
     changes[2 * i + 1] = atom->rho[i] - before;
-    if (scene.kept)
-      scene.energy_out[Scene::DIFFUSION] += energy_loss(i, before, atom->rho[i] - before);
+    if (ledger.kept)
+      ledger.energy_out[Ledger::DIFFUSION] += energy_loss(i, before, atom->rho[i] - before);
   }
 }
 
 // Forces have the density of before until the step's start, and that of after from there: the
 // change is one at its start, between two densities, which is what the ledger's energy is of (where
 // it takes half of a step's work, the other is in the next)
-double SurfaceRoom::energy_loss(int i, double now, double change) const
+double SurfaceDeficit::energy_loss(int i, double now, double change) const
 {
-  const State &state = scene.state[atom->type[i]];
+  const State &state = disc.state[atom->type[i]];
   double sum = 0.0;
   for (const double rho : {earlier[i], now}) sum += state.energy(rho) - state.energy(rho + change);
   return 0.5 * atom->rmass[i] * sum;

@@ -15,17 +15,17 @@
 // its number density (pair_fsi_fluid.cpp): a particle that starts at a surface keeps its deficit
 // when it is covered, and a block of water that has fallen into a box would stay too large. So the
 // part of rho that stands for missing neighbors,
-//   room = 1 - psi/psi_bulk  at the start,
+//   deficit = 1 - psi/psi_bulk  at the start,
 // is kept for each particle, and is bounded by that of a particle at a plane surface with the same
 // sum of gradients,
 //   s = h |sum_j grad W_ij|/psi_bulk
 // (at edges in proportion to its value at the start):
-// where neighbors come, room and density decrease. Where a surface opens, room grows to that bound,
-// at p = 0, as long as the density does not exceed rho0: this adds no pressure. Apart from what
-// happens in between, the result does not depend on how often it is evaluated.
+// where neighbors come, deficit and density decrease. Where a surface opens, deficit grows to that
+// bound, at p = 0, as long as the density does not exceed rho0: this adds no pressure. Apart from
+// what happens in between, the result does not depend on how often it is evaluated.
 
-#ifndef LMP_FSI_SURFACE_ROOM_H
-#define LMP_FSI_SURFACE_ROOM_H
+#ifndef LMP_FSI_SURFACE_DEFICIT_H
+#define LMP_FSI_SURFACE_DEFICIT_H
 
 #include "fsi_part.h"
 #include "pointers.h"
@@ -41,23 +41,25 @@ namespace FSI {
   class NumberDensity;
   class Record;
   class Scene;
+  struct Discretization;
+  struct Ledger;
 
-  // The room of the layers of a lattice below a plane surface, linear in s between them
-  class RoomOfPlane {
+  // The deficit of the layers of a lattice below a plane surface, linear in s between them
+  class DeficitOfPlane {
    public:
-    RoomOfPlane() = default;
-    RoomOfPlane(int kernel, int dim, double h_over_dx);
+    DeficitOfPlane() = default;
+    DeficitOfPlane(int kernel, int dim, double h_over_dx);
     double operator()(double s) const;
 
    private:
-    std::vector<std::pair<double, double>> layers;    // s and room, from the inside
+    std::vector<std::pair<double, double>> layers;    // s and deficit, from the inside
   };
 
-  class SurfaceRoom final : public Part, protected Pointers {
+  class SurfaceDeficit final : public Part, protected Pointers {
    public:
     // adds to local atoms what pairs left on their ghosts
     using SumOverGhosts = std::function<void(double *)>;
-    SurfaceRoom(LAMMPS *, Scene &, const NumberDensity &, SumOverGhosts);
+    SurfaceDeficit(LAMMPS *, Scene &, const NumberDensity &, SumOverGhosts);
     void set_array(Fields &);
     void write(Record &) const;
     void read(const Record &);
@@ -68,15 +70,18 @@ namespace FSI {
     std::vector<Effect> effects() const override;
 
    private:
-    Scene &scene;
+    const Discretization &disc;
+    Ledger &ledger;
+    const std::vector<Part *> &parts;
+    Profile *const &profile;
     const NumberDensity &number_density;
     const SumOverGhosts add_ghosts;
-    double **room;    // 1 + room (0: not known yet), and how often that of a plane it was at the
-                      // start, on an edge
+    // 1 + deficit (0: not known yet), and how often that of a plane it was at the start, on an edge
+    double **deficit;
     double since, since_before;    // time since the last look, now and at the start of this step
     bool due;
-    RoomOfPlane of_plane;
-    std::vector<double> changes;    // of room and density in this step
+    DeficitOfPlane of_plane;
+    std::vector<double> changes;    // of deficit and density in this step
     std::vector<double> earlier;    // densities before it, for the ledger
     void pass(double dt);
     void begin();
