@@ -52,8 +52,8 @@ const char *ComputeFSIEnergy::name(int k)
   // clang-format off
   static const char *const names[NHAVE + Ledger::NTERM] = {
       "kinetic", "gravitational", "compressive", "shear", "artificial viscosity",
-      "laminar viscosity", "density diffusion", "artificial stress", "walls", "coupling", "gradient",
-      "plastic", "changing gravity", "splitting and merging"};
+      "laminar viscosity", "density diffusion", "artificial stress", "walls", "coupling",
+      "gradient", "plastic", "changing gravity", "splitting and merging"};
   // clang-format on
   return names[k];
 }

@@ -11,8 +11,8 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Before the first step, and when the list of effects changes: this list; numbers that are legal and
-// most likely not what was meant, with what to type; what has nothing to act on.
+// Before the first step, and when the list of effects changes: this list; numbers that are legal
+// and most likely not what was meant, with what to type; what has nothing to act on.
 
 #include "fsi_part.h"
 
