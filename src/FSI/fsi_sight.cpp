@@ -245,7 +245,9 @@ double Sight::left_of(const double *y, double cut) const
   double sum = 0.0, middle = 0.0, spacing = 0.0;
   for (const auto &s : seen) {
     const double along = MathExtra::dot3(s.x, d);
-    if (!s.thin || s.rsq >= cutsq || along <= 0.0 || along >= dsq) continue;
+    if (!s.thin || along <= 0.0 || along >= dsq) continue;
+    // within the support of both, so that it is the same from either
+    if (s.rsq >= cutsq || s.rsq - 2.0 * along + dsq >= cutsq) continue;
     const double t = along / dsq, near = 1.0 - (s.rsq - t * t * dsq) / (s.dx * s.dx);
     if (near <= 0.0) continue;
     const double met = 4.0 * t * (1.0 - t) * near * near;

@@ -131,7 +131,9 @@ class PairScene:
             return self.block(x, y, z, own * DX)
 
         if self.setting("hairpin"):
-            x = np.vstack([one((1, 3)), one((7, 9)), one((3, 7), (y[0], y[0] + 2))])
+            # in disorder two columns have no quadratic gradient (fsi_gradient.h)
+            thick = 3 if "quadratic updated" in self.row else 2
+            x = np.vstack([one((3 - thick, 3)), one((7, 7 + thick)), one((3, 7), (y[0], y[0] + thick))])
         else:
             x = one((1, 1 + wide))
         mol = np.ones(len(x), int)

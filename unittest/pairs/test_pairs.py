@@ -231,6 +231,7 @@ def test_refused(tmp_path, pair, message, row):
 
 FOUND = {  # faults that pairs have shown, each in the scene that has these levels and the first ones of other factors: what was asked
     "settling-beside-a-segment": (["3D", "cubic", "segment", "region", "svk", "clamped"], "ranks"),
+    "what-a-thin-body-hides-from-either-side": (["3D", "tension", "thin", "clamped", "region"], "skin"),
     "thickness-of-thin-bodies": (["3D", "quintic", "no walls", "thin", "rigid", "gravity"], "skin"),
 }
 
