@@ -185,9 +185,8 @@ void FixFSIStream::advance(bool advance)
   MPI_Allreduce(mine.data(), all.data(), 2 * n, MPI_DOUBLE, MPI_SUM, world);
   for (const auto &[i, weight] : zone) {
     if (weight == 0.0) continue;
-    const double before = fix_fsi->kept ? fix_fsi->stored(i) : 0.0;
-    rho[i] += part(weight) * (all[2 * type[i] + 1] / all[2 * type[i]] - rho[i]);
-    if (fix_fsi->kept) fix_fsi->energy_out[FixFSI::FIELDS] += before - fix_fsi->stored(i);
+    const double mean = all[2 * type[i] + 1] / all[2 * type[i]];
+    fix_fsi->set_density(i, rho[i] + part(weight) * (mean - rho[i]), Ledger::FIELDS);
   }
 }
 

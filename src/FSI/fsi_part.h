@@ -33,6 +33,9 @@ namespace FSI {
   class Message;
   class Profile;
   class Scene;
+  struct Discretization;
+  struct Ledger;
+  struct StepState;
 
   // What others need to know of a style. A style that there is not has none of it.
   struct Facts {

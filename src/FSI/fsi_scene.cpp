@@ -182,6 +182,13 @@ double Scene::stored(int i) const
   return atom->rmass[i] * state[atom->type[i]].energy(atom->rho[i]);
 }
 
+void Scene::set_density(int i, double rho, Term term)
+{
+  const double before = kept ? stored(i) : 0.0;
+  instance->atom->rho[i] = rho;
+  if (kept) energy_out[term] += before - stored(i);
+}
+
 bool Scene::is_total_lagrangian(int i) const
 {
   return state[instance->atom->type[i]].form == TOTAL_LAGRANGIAN;

@@ -170,6 +170,7 @@ namespace FSI {
     double density_ratio(int i) const;    // rho/rho0; not of a total-Lagrangian solid
     double potential(int i) const;        // gravitational energy at the positions in atom->x
     double stored(int i) const;           // compressive energy
+    void set_density(int i, double rho, Term);    // the energy that it takes is in the balance
     bool is_total_lagrangian(int i) const;
     bool is_moved(int i) const;    // by fix fsi or by another that integrates
 

@@ -11,14 +11,12 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// Sums at the nodes of a lattice in a plane across an axis. A rank has only the nodes that its
-// particles give to and those that they take from. Ranks whose nodes overlap send each other
-// theirs, which each adds in the order of the ranks.
+// What the fluid has at the plane of an open end: fits at the nodes of a lattice in it.
 
-#ifndef LMP_FSI_NODES_H
-#define LMP_FSI_NODES_H
+#ifndef LMP_FSI_PLANE_FIT_H
+#define LMP_FSI_PLANE_FIT_H
 
-#include "pointers.h"
+#include "fsi_open_end.h"
 
 #include <cmath>
 #include <vector>
@@ -26,6 +24,9 @@
 namespace LAMMPS_NS {
 namespace FSI {
 
+  // Sums at the nodes of a lattice in a plane across an axis. A rank has only the nodes that its
+  // particles give to and those that they take from. Ranks whose nodes overlap send each other
+  // theirs, which each adds in the order of the ranks.
   class Nodes : protected Pointers {
    public:
     struct Box {    // of nodes; along a periodic axis it goes round
@@ -93,6 +94,34 @@ namespace FSI {
     Box around(const std::vector<const double *> &, double reach) const;
     void overlap(const Box &from, const Box &to, bool in_from, std::vector<int> &) const;
     void add(const Peer &, const double *);
+  };
+
+  // Pressure or normal velocity of the fluid at the nodes: a fit, quadratic along the plane, of the
+  // fluid within the kernel's support, which is on one side only. (A linear one takes 12 U
+  // sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the pressure,
+  // too.) Terms that the fluid there cannot tell from lower ones are left out.
+  // Where pressure is given the profile of the velocity is that of the fluid a buffer's length
+  // before the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi
+  // 2010, Comput. Fluids 39, 553), and only its mean is that at the plane. A profile taken at the
+  // plane keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes
+  // the particle before it follows what it pushes. (Half as far away some of it was left.)
+  class PlaneFit : protected Pointers {
+   public:
+    PlaneFit(LAMMPS *lmp, const OpenEnd &end) : Pointers(lmp), end(end), nodes(lmp) {}
+    void share();      // between the ranks of this end, when there are new lists
+    void measure();    // after the end has measured where places are
+    // fit of a place from the nodes around it: normal velocity, pressure; false: no fluid is near
+    bool at(const double *x, double *values) const;
+    double memory_usage() const { return nodes.memory_usage(); }
+
+   private:
+    const OpenEnd &end;
+    // sums over the fluid at the nodes, then values there; then the largest and the negative least
+    // velocity
+    Nodes nodes;
+    int nbounds = 0;
+    double reach() const { return 2.0 * std::max(nodes.distance[0], nodes.distance[1]); }
+    void fit(int nmoment, int nfit, int nfields);
   };
 
 }    // namespace FSI

@@ -1,0 +1,425 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_open_end.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fsi_cells.h"
+#include "fsi_gather.h"
+#include "neighbor.h"
+#include "region.h"
+#include "update.h"
+
+#include <array>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+static constexpr double STIFF = 40.0;    // absorb auto over c/2L between given pressures: a channel
+                                         // c/K longer, L/20
+static constexpr double MOST_ADDED = 0.05;    // of a pressure that is given
+static constexpr double AT_SURFACE = 0.9;     // of the density: m psi of a particle at a free
+                                              // surface is less
+static constexpr double EXCESS = 0.02;        // of the mass near the plane that is worth a word
+// Time in h/c in which particles and room come together before the plane; of how many looks the
+// mean is that a warning tells
+static constexpr double SETTLE = 50.0;
+static constexpr int LOOKS = 20;
+// Spacing of what comes in: part of an error that a buffer's length of inflow mends; what a lattice
+// that is sheared or bent shows of one; and the range, where particles stay a fluid
+static constexpr double MEND = 0.2, DISORDER = 0.005, NARROW = 0.85, WIDE = 1.15;
+
+OpenEnd::OpenEnd(LAMMPS *lmp, const Fix *fix) :
+    Pointers(lmp), command(std::string("fix ") + fix->style),
+    label(std::string("Fix ") + fix->style), id(fix->id), name(label + " " + id),
+    outlet(label == "Fix fsi/outlet"), igroup(fix->igroup), groupbit(fix->groupbit),
+    given(lmp, command, NVALUES)
+{
+}
+
+void OpenEnd::init(const Discretization *discretization, double given_length)
+{
+  disc = discretization;
+  if (domain->periodicity[axis])
+    error->all(FLERR, "{} is in periodic dimension {}: its boundary must be fixed (f)", name,
+               "xyz"[axis]);
+  find_length(given_length);
+  check_plane();
+  find_region();
+  given.find();
+  forget_ranks();
+}
+
+// Lists hold for half a skin; a place that becomes free at the end is filled when a column has
+// gone by. As long for any skin up to a spacing
+void OpenEnd::find_length(double given_length)
+{
+  const double dx = disc->dx, least = disc->cut + dx + 0.5 * neighbor->skin,
+               usual = std::max(least, disc->cut + 1.5 * dx);
+  length = dx * std::ceil(usual / dx - 1.0e-9);
+  if (given_length == AUTO) return;
+  length = dx * std::round(given_length / dx);
+  if (std::fabs(length - given_length) > 1.0e-6 * dx)
+    error->all(
+        FLERR,
+        "{} buffer {} must be a multiple of the spacing {}: its end is where the lattice goes on",
+        label, given_length, dx);
+  if (length < least - 1.0e-9 * dx)
+    error->all(FLERR,
+               "{} buffer {} is too short: expected at least {:g}, the kernel's support {:g}, a "
+               "spacing and half the skin",
+               label, given_length, dx * std::ceil(least / dx - 1.0e-9), disc->cut);
+}
+
+// plane and buffer are inside the box
+void OpenEnd::check_plane() const
+{
+  // a number in a script may be that of the box but for its last digits
+  const double little = 1.0e-9 * domain->prd[axis], lo = domain->boxlo[axis],
+               hi = domain->boxhi[axis];
+  if (position < lo - little || position > hi + little)
+    error->all(FLERR, "{}: its plane at {} is outside the box, from {} to {}", name, at(position),
+               lo, hi);
+  // what has passed the end of the buffer is deleted with the next list
+  const double half_skin = 0.5 * neighbor->skin, last = end() - side * half_skin;
+  if (domain->boundary[axis][side < 0.0] == 1 && (last < lo - little || last > hi + little))
+    error->all(FLERR,
+               "{}: its buffer, {} to {:g}, and half the neighbor skin, {:g}, must be inside the "
+               "box, from {} to {}",
+               name, at(position), end(), half_skin, lo, hi);
+}
+
+// the part of the plane that is open
+void OpenEnd::find_region()
+{
+  region = nullptr;
+  if (region_id.empty()) return;
+  region = domain->get_region_by_id(region_id);
+  if (!region) error->all(FLERR, "Region {} of {} does not exist", region_id, command);
+  if (region->dynamic_check())
+    error->all(FLERR, "Region {} of {} must not move nor change", region_id, command);
+  if (!region->bboxflag) return;
+  const double from[] = {region->extent_xlo, region->extent_ylo, region->extent_zlo},
+               to[] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
+  const auto refuse = [&](int d, const std::string &what) {
+    error->all(FLERR, "Region {} of {}, from {} to {} along {}, {}", region_id, command, from[d],
+               to[d], "xyz"[d], what);
+  };
+  for (int d = 0; d < disc->dim; d++)
+    if (d != axis && (from[d] > domain->boxhi[d] || to[d] < domain->boxlo[d]))
+      refuse(d, "is outside the box");
+  if (from[axis] > position || to[axis] < position)
+    refuse(axis, fmt::format("does not reach its plane at {}", position));
+}
+
+void OpenEnd::match_region() const
+{
+  if (region) region->prematch();
+}
+
+double OpenEnd::value(int k, int i) const
+{
+  const double x = given(k, i);
+  if (!std::isfinite(x))
+    error->one(FLERR, "{}: {} {} of atom {} at {:g} {:g} {:g} is no number{}", name,
+               k == PRESSURE ? "pressure" : fmt::format("velocity along {}", "xyz"[k]), x,
+               atom->tag[i], atom->x[i][0], atom->x[i][1], atom->x[i][2], given.see(k));
+  return x;
+}
+
+double OpenEnd::pressure_given(int i) const
+{
+  return background ? disc->state[atom->type[i]].p0 : given(PRESSURE, i);
+}
+
+// the fluid that a pressure compresses most; is a pressure out of its range?
+const State &OpenEnd::softest() const
+{
+  const State *soft = nullptr;
+  for (const auto &s : disc->state)
+    if (s.species == FLUID && (!soft || s.rho0 * s.csq < soft->rho0 * soft->csq)) soft = &s;
+  return soft ? *soft : disc->state[0];
+}
+
+bool OpenEnd::is_far(double p) const
+{
+  const State &soft = softest();
+  return soft.species == FLUID && std::fabs(p - soft.p0) > FAR * soft.rho0 * soft.csq;
+}
+
+// of what is slower than sound through the box
+double OpenEnd::slow_rate() const
+{
+  double c = 0.0;
+  for (const auto &s : disc->state)
+    if (s.species == FLUID) c = std::max(c, s.c);
+  return 0.5 * c / domain->prd[axis];
+}
+
+// hat functions, which a lattice sums to a constant
+double OpenEnd::hat_at(double s, double spacings) const
+{
+  const double width = spacings * disc->dx;
+  return std::max(0.0, 1.0 - std::fabs(s) / width) / width;
+}
+
+bool OpenEnd::is_fluid(int i) const
+{
+  return (atom->mask[i] & groupbit) && disc->state[atom->type[i]].species == FLUID;
+}
+
+// a region says which part of the plane is open
+bool OpenEnd::in_patch(const double *x) const
+{
+  if (!region) return true;
+  double to[3] = {x[0], x[1], x[2]};
+  to[axis] = position;
+  domain->remap(to);
+  return region->match(to[0], to[1], to[2]);
+}
+
+bool OpenEnd::holds(const double *x) const
+{
+  const double s = inside(x);
+  return s <= 0.0 && s > -2.0 * length && in_patch(x);
+}
+
+void OpenEnd::find_places()
+{
+  places.clear();
+  match_region();
+  for_fluid(-2.0 * length, zone() + neighbor->skin, [this](int i, double) {
+    places.push_back({i, 0.0, 0.0, 0.0, false});
+  });
+  renew_ranks(!places.empty());
+}
+
+// The ranks whose part of the box the zone of this end reaches, or that have particles there: these
+// make particles and know the plane. Those that were among them stay so until the next run.
+void OpenEnd::renew_ranks(bool has_some)
+{
+  const double low = inside(domain->sublo), high = inside(domain->subhi);
+  const bool there = has_some || domain->triclinic ||
+      (std::max(low, high) > -2.0 * length - neighbor->skin &&
+       std::min(low, high) < zone() + 2.0 * neighbor->skin);
+  if (!anywhere(there && ranks == MPI_COMM_NULL, world)) return;
+  const int color = there || ranks != MPI_COMM_NULL ? 0 : MPI_UNDEFINED;
+  forget_ranks();
+  MPI_Comm_split(world, color, comm->me, &ranks);
+}
+
+void OpenEnd::forget_ranks()
+{
+  if (ranks != MPI_COMM_NULL) MPI_Comm_free(&ranks);
+  ranks = MPI_COMM_NULL;
+}
+
+void OpenEnd::measure(const std::vector<std::array<double, 3>> &body_forces, bool pressure_varies)
+{
+  double total[NSUM] = {};
+  for (auto &place : places) {
+    const int i = place.i, type = atom->type[i];
+    const double s = place.inside = inside(atom->x[i]), u = atom->v[i][axis], m = atom->rmass[i];
+    const State &state = disc->state[type];
+    const double hat = hat_at(s);
+    total[MASS_FLOW] += m * side * u * hat;
+    total[VOLUME_FLOW] += m / atom->rho[i] * side * u * hat;
+    if (s <= 0.0) {
+      if (s > -disc->cut) total[BUFFER]++;
+      if (pressure_varies && is_far(given(PRESSURE, i))) total[TOO_FAR]++;
+      continue;
+    }
+    double p = state.pressure(atom->rho[i]);
+    // a variable need not know a value before the plane
+    const double q = has_own_pressure() ? NAN : p - pressure_given(i);
+    if (std::isfinite(q) && s < zone()) {
+      total[MASS] += m;
+      total[BEYOND] += m * q;
+      total[FIRST] += m * s;
+      total[SECOND] += m * s * s;
+      total[SLOPE] += m * q * s;
+    }
+    const double near = std::max(0.0, 1.0 - s / disc->cut), w = m * near * near,
+                 inner = m * std::max(0.0, 1.0 - std::fabs(s - length) / disc->cut);
+    p -= atom->rho[i] * body_forces[type][axis] * side * s;
+    place.pressure = p;
+    total[WEIGHT] += w;
+    total[SPEED] += w * side * u;
+    total[MEAN_PRESSURE] += w * p;
+    total[OVER_IMPEDANCE] += w * p / (state.rho0 * state.c);
+    total[INNER_WEIGHT] += inner;
+    total[INNER_SPEED] += inner * side * u;
+  }
+  MPI_Allreduce(total, sum, NSUM, MPI_DOUBLE, MPI_SUM, world);
+}
+
+void Absorber::advance(double dt, bool driven)
+{
+  using E = OpenEnd;
+  const double *const sum = end.sum;
+  const bool wants_velocity = end.has_own_velocity();
+  const double slow = end.slow_rate();
+  const double rate = wants_velocity && end.has_own_pressure() ? 0.0
+      : absorb == E::AUTO                                      ? (driven ? slow : STIFF * slow)
+                                                               : absorb;
+  const double spread = sum[E::MASS] * sum[E::SECOND] - sum[E::FIRST] * sum[E::FIRST];
+  if (spread > E::LITTLE * std::pow(sum[E::MASS] * end.disc->dx, 2))
+    gradient += (1.0 - std::exp(-slow * dt)) *
+        ((sum[E::MASS] * sum[E::SLOPE] - sum[E::FIRST] * sum[E::BEYOND]) / spread - gradient);
+  const bool known = rate > 0.0 && sum[E::WEIGHT] > 0.0;
+  if (known) {
+    const double now = end.average(wants_velocity ? E::SPEED : E::OVER_IMPEDANCE);
+    if (has_before) wave -= now - before;
+    before = now;
+  }
+  has_before = known;
+  wave *= std::exp(-rate * dt);
+}
+
+void Absorber::find_area()
+{
+  double at_plane = 0.0;
+  for (const auto &place : end.places)
+    at_plane += end.hat_at(end.inside(atom->x[place.i])) *
+        std::pow(end.disc->dx_of(atom->type[place.i]), end.disc->dim);
+  area = sum_of(at_plane, world);
+}
+
+bool Absorber::meets_pressure() const
+{
+  return !end.has_own_pressure() && end.softest().p0 > 0.0 && area != 0.0;
+}
+
+// What pushes the fluid is the stress at the plane, the mean of p sum_j V_j x_ji.grad_i W_ij/D. It
+// goes with the square of number density times volume, of which 0.5 % are 5 % of what drives a flow
+// if pressure is five times its difference: what the stress lacks is added to the buffer's pressure
+void Absorber::meet_pressure(const double *divergence, double dt)
+{
+  const Discretization &disc = *end.disc;
+  enum { PRESSURES, GIVEN, WEIGHTS, NSUM };
+  double own[NSUM] = {}, all[NSUM];
+  for (const auto &place : end.places) {
+    const int i = place.i;
+    const State &state = disc.state[atom->type[i]];
+    // those that do not see the end of the buffer, where others wait for lists
+    const double hat = end.hat_at(end.inside(atom->x[i]), 1.0),
+                 volume = atom->rmass[i] / atom->rho[i];
+    own[PRESSURES] += hat * volume * state.pressure(atom->rho[i]) * divergence[i] / disc.dim;
+    if (place.inside > 0.0) continue;
+    own[GIVEN] += hat * end.pressure_given(i);
+    own[WEIGHTS] += hat;
+  }
+  MPI_Allreduce(own, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
+  if (all[WEIGHTS] == 0.0) return;
+  const State &soft = end.softest();
+  const double p = all[GIVEN] / all[WEIGHTS], most = MOST_ADDED * std::fabs(p),
+               lacks = p + soft.rho0 * soft.c * wave - all[PRESSURES] / area;
+  added += (1.0 - std::exp(-end.slow_rate() * dt)) * lacks;
+  added = std::clamp(added, -most, most);
+}
+
+// Continuity keeps rho - m psi of a particle, density less that of its number. But what comes in
+// through the plane has the density that is given, and the neighbors with which it went out when
+// pressure was another: where flow reverses each time adds to their number, since it goes out when
+// pressure is higher. And diffusion passes between fluid and buffer what has no volume. So mass is
+// compared with density times room, 1/psi, of the fluid before the plane. Particles at a free
+// surface do not count; where there is one, a lack says nothing. Of fluid of several spacings it is
+// the coarsest that is there, but for those that see another: where two meet, numbers are those of
+// neither lattice.
+void Fullness::look(const double *psi)
+{
+  const Discretization &disc = *end.disc;
+  enum { MASS, ROOM, MEMBERS, SURFACE, NSUM };
+  std::vector<std::array<double, NSUM>> own(disc.levels.size()), all(own.size());
+  const auto level = [&](int i) {
+    return disc.level_of[atom->type[i]];
+  };
+  const bool one_level = !disc.has_levels();
+  const Cells near_zone(atom->x, one_level ? 0 : atom->nlocal + atom->nghost, disc.dim, disc.cut,
+                        [&](int i) {
+                          return end.is_fluid(i) && end.inside(atom->x[i]) < end.zone() + disc.cut;
+                        });
+  const auto sees_another = [&](int i) {
+    bool sees = false;
+    near_zone.around(atom->x[i], [&](int j, double rsq) {
+      const double cut = disc.resolution[atom->type[i]].cut + disc.resolution[atom->type[j]].cut;
+      sees = sees || (level(j) != level(i) && 4.0 * rsq < cut * cut);
+    });
+    return sees;
+  };
+  for (const auto &place : end.places) {
+    const int i = place.i;
+    const double s = end.inside(atom->x[i]), m = atom->rmass[i], rho = atom->rho[i];
+    // those that do not see the buffer, whose particles may be as near to each other as they like
+    if (s <= disc.cut || s >= end.zone() || (!one_level && sees_another(i))) continue;
+    const double n = psi[i] * (disc.resolution[atom->type[i]].psi_bulk / disc.psi_bulk);
+    auto &sum = own[level(i)];
+    const bool at_surface = m * n < AT_SURFACE * rho;
+    sum[at_surface ? SURFACE : MEMBERS]++;
+    if (at_surface) continue;
+    sum[MASS] += m;
+    sum[ROOM] += rho / n;
+  }
+  MPI_Allreduce(own.data(), all.data(), (int) own.size() * NSUM, MPI_DOUBLE, MPI_SUM, world);
+  const bool first = now == 0.0;
+  now = 1.0;
+  double members = 0.0, at_surface = 0.0;
+  for (const auto &sum : all) {
+    if (members == 0.0 && sum[MEMBERS] > 0.0) now = sum[MASS] / sum[ROOM];
+    members += sum[MEMBERS];
+    at_surface += sum[SURFACE];
+  }
+  mean += (now - mean) / (first ? 1 : LOOKS);
+  warn(at_surface < EXCESS * members);
+}
+
+void Fullness::warn(bool full)
+{
+  const bool few = full && mean < 1.0 - EXCESS;
+  if (warned || comm->me || !(mean > 1.0 + EXCESS || few)) return;
+  warned = true;
+  error->warning(
+      FLERR,
+      "{}: within {:g} before its plane there is {:.2g} % {} mass than the fluid's density has "
+      "room for, at step {}: particles {}. {}",
+      end.name, end.zone(), 100.0 * std::fabs(mean - 1.0), few ? "less" : "more", update->ntimestep,
+      few ? "are missing" : "pile up",
+      end.softest().p0 > 0.0
+          ? "Vortices, bodies or a valve near the plane do so: move it away from them, or take a "
+            "lower shift in pair_style fsi/fluid"
+          : "Nothing holds their number without keyword background of pair_style fsi/fluid");
+}
+
+// Where fluid fills the box: too many particles before the plane get a density that presses them
+// out, and those that come in follow each other at another spacing
+void Fullness::keep(Scene *scene, double dt)
+{
+  const State &soft = end.softest();
+  if (soft.p0 <= 0.0 || now == 0.0) return;
+  const double inflow = std::max(0.0, end.average(OpenEnd::SPEED));
+  const double excess = std::max(0.0, std::fabs(now - 1.0) - DISORDER);
+  column = std::clamp(column + std::copysign(MEND * excess * inflow * dt / end.length, now - 1.0),
+                      NARROW, WIDE);
+  const double rise = (now - 1.0) * soft.c * dt / (SETTLE * end.disc->h);
+  // what is dense where a pressure draws in would press the fluid on, and draw in more of itself
+  if (rise == 0.0 || (inflow > 0.0 && !end.has_own_pressure())) return;
+  for (const auto &place : end.places) {
+    const int i = place.i;
+    const double part = 1.0 - end.inside(atom->x[i]) / end.zone();
+    if (part > 0.0 && part < 1.0)
+      scene->set_density(i, atom->rho[i] * (1.0 + part * rise), Ledger::FIELDS);
+  }
+}
