@@ -19,6 +19,7 @@
 #include "error.h"
 #include "fix_gravity.h"
 #include "fsi_find.h"
+#include "fsi_lammps_access.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -29,26 +30,15 @@ using namespace FSI;
 
 // all fix gravity commands, and which of them act on all particles of a type: only then two
 // neighbors are pushed alike, and what is hydrostatic between them has a meaning
-namespace {
-struct Peek : FixGravity {
-  static bool is_disabled(const FixGravity *fix) { return fix->*&Peek::disable; }
-  static bool has_variable(const FixGravity *fix) { return fix->*&Peek::varflag != CONSTANT; }
-};
-}    // namespace
-
 void BodyForces::find()
 {
   all.clear();
   for (auto *g : fixes_of<FixGravity>(lmp)) {
-    all.push_back({g,
-                   Peek::is_disabled(g) ? 0 : g->groupbit,
-                   Peek::has_variable(g),
-                   {0.0, 0.0, 0.0},
-                   {0.0, 0.0, 0.0}});
+    all.push_back({g, is_disabled(g) ? 0 : g->groupbit, has_variable(g), {}, {}});
     g->init();    // its variables are looked up
   }
   acts_on_all.assign(all.size() * (atom->ntypes + 1), 0);
-  told = acts_on_all;
+  warned = acts_on_all;
 }
 
 // Of the particles that there are now: levels and buffers may be empty at the start of a run
@@ -63,7 +53,7 @@ void BodyForces::find_whole_types(const std::vector<State> &state)
   for (int at = 0; at < n; at++) {
     const int k = at / (ntypes + 1), t = at % (ntypes + 1);
     acts_on_all[at] = any[at] && !any[n + at];
-    if (!any[at] || !any[n + at] || state[t].species != FLUID || told[at]++ || comm->me > 0)
+    if (!any[at] || !any[n + at] || state[t].species != FLUID || warned[at]++ || comm->me > 0)
       continue;
     error->warning(FLERR,
                    "Fix gravity {} acts on a part of the particles of type {} only: for what "

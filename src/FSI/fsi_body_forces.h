@@ -48,7 +48,7 @@ namespace FSI {
 
    private:
     void find_whole_types(const std::vector<State> &);
-    std::vector<int> acts_on_all, told;    // each field, type by type
+    std::vector<int> acts_on_all, warned;    // each field, type by type
   };
 
 }    // namespace FSI

@@ -21,6 +21,7 @@
 #include "force.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
+#include "fsi_lammps_access.h"
 #include "fsi_part.h"
 #include "modify.h"
 #include "pair.h"
@@ -30,13 +31,6 @@
 
 using namespace LAMMPS_NS;
 using namespace FSI;
-
-// LAMMPS numbers fixes as they are made, and shows that to classes derived from them only
-namespace {
-struct Numbered : public Fix {
-  static constexpr auto number = &Numbered::instance_me;
-};
-}    // namespace
 
 // Who is where in the arrays of this rank, and of what type: FNV-1a of it
 uint64_t Changes::fingerprint() const
@@ -81,7 +75,7 @@ std::vector<std::uintptr_t> Changes::present() const
   }
   for (auto &region : domain->get_region_list()) add(region);
   // a new one may be at the address of that in whose place it came
-  for (auto &fix : modify->get_fix_list()) list.push_back(fix->*Numbered::number);
+  for (auto &fix : modify->get_fix_list()) list.push_back(number_of(fix));
   for (auto &compute : modify->get_compute_list()) {
     add(compute);
     list.push_back(compute->is_initialized());

@@ -29,57 +29,13 @@
 #include <cmath>
 #include <set>
 
-// there without package RIGID: then there is no fix rigid, and no body
-#if __has_include("fix_rigid.h")
-#include "fix_rigid.h"
-#include "fix_rigid_small.h"
-#include "rigid_const.h"
-#define LMP_FSI_HAS_RIGID
-#endif
-
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-#ifdef LMP_FSI_HAS_RIGID
-
-// LAMMPS shows the state of its rigid bodies to classes derived from their fix only
-namespace {
-struct Rigid : public FixRigid {
-  static constexpr auto early = &Rigid::earlyflag, count = &Rigid::nbody;
-  static constexpr auto of_atom = &Rigid::body, flags = &Rigid::eflags;
-  static constexpr auto have_sizes = &Rigid::extended;
-  static constexpr auto images = &Rigid::xcmimage;
-  static constexpr auto mass = &Rigid::masstotal;
-  static constexpr auto place = &Rigid::displace, center = &Rigid::xcm, velocity = &Rigid::vcm,
-                        moments = &Rigid::inertia, momentum = &Rigid::angmom, spin = &Rigid::omega,
-                        turned = &Rigid::quat, axis_x = &Rigid::ex_space, axis_y = &Rigid::ey_space,
-                        axis_z = &Rigid::ez_space, free_force = &Rigid::fflag,
-                        free_torque = &Rigid::tflag, langevin = &Rigid::langextra;
-  static constexpr auto gravity = &Rigid::id_gravity;
-  static constexpr auto field = &Rigid::gvec;
-};
-struct Small : public FixRigidSmall {
-  static constexpr auto early = &Small::earlyflag, own = &Small::nlocal_body,
-                        ghosts = &Small::nghost_body, thermal = &Small::langflag;
-  static constexpr auto of_atom = &Small::bodytag;
-  static constexpr auto owned = &Small::bodyown, flags = &Small::eflags;
-  static constexpr auto have_sizes = &Small::extended;
-  static constexpr auto images = &Small::xcmimage;
-  static constexpr auto place = &Small::displace;
-  static constexpr auto bodies = &Small::body;
-  static constexpr auto gravity = &Small::id_gravity;
-  static constexpr auto field = &Small::gvec;
-};
-
-FixRigid *large(Fix *fix)
+Clamps::Clamps(LAMMPS *lmp, const Scene &scene) :
+    Pointers(lmp), disc(scene), step(scene), parts(scene.parts), mover(scene.mover)
 {
-  return static_cast<FixRigid *>(fix);
 }
-FixRigidSmall *small(Fix *fix)
-{
-  return static_cast<FixRigidSmall *>(fix);
-}
-}    // namespace
 
 // What moves its bodies in another way is left to its own, half a step ahead. With sub-steps that
 // is refused, here or by pair_style fsi/solid/tl.
@@ -87,37 +43,33 @@ void Clamps::find()
 {
   bodies.clear();
   elastic = false;
-  for (auto &fix : modify->get_fix_by_style("^rigid")) {
-    Body body = {};
-    body.fix = fix;
-    body.small = utils::strmatch(fix->style, "^rigid/small$");
-    if (!body.small && !utils::strmatch(fix->style, "^rigid$")) continue;
-    std::set<tagint> mine;
+  fixes = rigid_bodies(lmp);
+  for (const auto &rigid : fixes) {
+    const Fix *const fix = rigid->fix;
+    std::set<tagint> own;
     bool solids = false;
     for (int i = 0; i < atom->nlocal; i++) {
-      const tagint b = id_of(body, i);
-      if (b < 0 || scene.state[atom->type[i]].species == NONE ||
-          atom->mask[i] & scene.mover->groupbit)
+      const tagint b = rigid->id_of(i);
+      if (b < 0 || disc.state[atom->type[i]].species == NONE || atom->mask[i] & mover->groupbit)
         continue;
-      mine.insert(b);
-      solids = solids || scene.is_total_lagrangian(i);
+      own.insert(b);
+      solids = solids || disc.state[atom->type[i]].form == TOTAL_LAGRANGIAN;
     }
     const bool in_substeps = anywhere(solids && takes_substeps(), world);
-    const auto ids = gather(mine, world);
-    const auto expected = expected_of(fix);
+    const auto ids = gather(own, world);
+    const auto expected = expected_of(*rigid);
     if (in_substeps && !expected.empty())
       error->all(FLERR,
                  "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected {}",
                  fix->id, fix->style, expected);
     if (ids.empty() || !expected.empty()) continue;
-    if (body.small) refuse_new_ids(fix);
+    refuse_new_ids(*rigid);
     elastic = elastic || in_substeps;
     for (const tagint id : ids) {
+      Body body = {};
+      body.fix = rigid.get();
       body.id = id;
-      for (int d = 0; d < 6; d++)
-        body.free[d] = body.small ? 1.0
-            : d < 3               ? (large(fix)->*Rigid::free_force)[id][d]
-                                  : (large(fix)->*Rigid::free_torque)[id][d - 3];
+      for (int d = 0; d < 6; d++) body.free[d] = rigid->free(id, d);
       bodies.push_back(body);
     }
   }
@@ -127,49 +79,39 @@ void Clamps::find()
 bool Clamps::known(const Fix *fix) const
 {
   return std::any_of(bodies.begin(), bodies.end(), [=](const Body &b) {
-    return b.fix == fix;
+    return b.fix->fix == fix;
   });
 }
 
 bool Clamps::takes_substeps() const
 {
-  return scene.substeps > 1 ||
-      std::any_of(scene.parts.begin(), scene.parts.end(), [](const Part *p) {
+  return step.substeps > 1 || std::any_of(parts.begin(), parts.end(), [](const Part *p) {
            return p->facts().chooses_substeps;
          });
 }
 
 // for its bodies to be moved here; empty: they are
-std::string Clamps::expected_of(Fix *fix) const
+std::string Clamps::expected_of(const RigidBodies &rigid) const
 {
-  const bool is_small = utils::strmatch(fix->style, "small$");
   const auto &all = modify->get_fix_list();
-  if (std::find(all.begin(), all.end(), fix) < std::find(all.begin(), all.end(), scene.mover))
-    return fmt::format("after fix {}, whose sub-steps find the forces on them", scene.mover->id);
-  if (is_small && small(fix)->*Small::thermal) return "no keyword langevin, or fix rigid";
-  if (is_small ? small(fix)->*Small::early : large(fix)->*Rigid::early)
+  if (std::find(all.begin(), all.end(), rigid.fix) < std::find(all.begin(), all.end(), mover))
+    return fmt::format("after fix {}, whose sub-steps find the forces on them", mover->id);
+  if (rigid.is_thermal()) return "no keyword langevin, or fix rigid";
+  if (rigid.is_early())
     return fmt::format("bodyforces late in fix_modify, since fix {} finds the forces on them later",
-                       scene.mover->id);
+                       mover->id);
   return {};
 }
 
 // fix rigid/small knows its bodies by the ID of an atom, which delete_atoms changes
-void Clamps::refuse_new_ids(Fix *fix) const
+void Clamps::refuse_new_ids(const RigidBodies &rigid) const
 {
   for (int i = 0; i < atom->nlocal; i++)
-    if ((small(fix)->*Small::owned)[i] >= 0 && (small(fix)->*Small::of_atom)[i] != atom->tag[i])
+    if (const tagint known = rigid.id_by(i); known >= 0 && known != atom->tag[i])
       error->one(FLERR,
                  "Fix {} (style {}) knows a body by the ID {} of an atom that has the ID {} now: "
                  "after delete_atoms define the fix again, or use compress no",
-                 fix->id, fix->style, (small(fix)->*Small::of_atom)[i], atom->tag[i]);
-}
-
-// of the body that atom i is in: an index in fix rigid, a tag in fix rigid/small; -1: in none
-tagint Clamps::id_of(const Body &b, int i) const
-{
-  if (!b.small) return (large(b.fix)->*Rigid::of_atom)[i];
-  const tagint id = (small(b.fix)->*Small::of_atom)[i];
-  return id > 0 ? id : -1;
+                 rigid.fix->id, rigid.fix->style, known, atom->tag[i]);
 }
 
 void Clamps::find_members()
@@ -177,58 +119,17 @@ void Clamps::find_members()
   members.clear();
   of_fixes([this](size_t first, size_t last) {
     const auto of = entries(first, last);
+    const RigidBodies &rigid = *bodies[first].fix;
     for (size_t k = first; k < last; k++) {
-      Body &b = bodies[k];
-      b.displace = b.small ? small(b.fix)->*Small::place : large(b.fix)->*Rigid::place;
-      b.image = b.small ? small(b.fix)->*Small::images : large(b.fix)->*Rigid::images;
-      b.flags = b.small ? small(b.fix)->*Small::flags : large(b.fix)->*Rigid::flags;
-      if (!(b.small ? small(b.fix)->*Small::have_sizes : large(b.fix)->*Rigid::have_sizes))
-        b.flags = nullptr;
+      bodies[k].displace = rigid.displace();
+      bodies[k].image = rigid.image();
+      bodies[k].flags = rigid.flags();
     }
     for (int i = 0; i < atom->nlocal; i++) {
-      const tagint id = id_of(bodies[first], i);
-      if (id < 0) continue;
-      const auto at = of.find(id);
+      const auto at = of.find(rigid.id_of(i));
       if (at != of.end()) members.push_back({i, (int) at->second});
     }
   });
-}
-
-// state of a body here and there; fix rigid has all on each rank, fix rigid/small has each on the
-// rank of one of its atoms, and copies where others are: of those with particles of walls or
-// solids, few among many, each rank gets it
-std::vector<Clamps::State> Clamps::states(Fix *fix,
-                                          const std::unordered_map<tagint, size_t> &of) const
-{
-  std::vector<State> mine;
-  State s = {};
-  if (!utils::strmatch(fix->style, "small$")) {
-    FixRigid *const r = large(fix);
-    for (int b = 0; b < r->*Rigid::count; b++) {
-      s.id = b;
-      std::copy_n((r->*Rigid::center)[b], 3, s.x);
-      std::copy_n((r->*Rigid::velocity)[b], 3, s.v);
-      std::copy_n((r->*Rigid::turned)[b], 4, s.q);
-      std::copy_n((r->*Rigid::momentum)[b], 3, s.L);
-      s.mass = (r->*Rigid::mass)[b];
-      std::copy_n((r->*Rigid::moments)[b], 3, s.inertia);
-      mine.push_back(s);
-    }
-    return mine;
-  }
-  for (int k = 0; k < small(fix)->*Small::own; k++) {
-    const auto &b = (small(fix)->*Small::bodies)[k];
-    s.id = atom->tag[b.ilocal];
-    if (!of.count(s.id)) continue;
-    std::copy_n(b.xcm, 3, s.x);
-    std::copy_n(b.vcm, 3, s.v);
-    std::copy_n(b.quat, 4, s.q);
-    std::copy_n(b.angmom, 3, s.L);
-    s.mass = b.mass;
-    std::copy_n(b.inertia, 3, s.inertia);
-    mine.push_back(s);
-  }
-  return gather(mine, world);
 }
 
 // calls use(first, last) for the bodies of each fix
@@ -251,52 +152,25 @@ std::unordered_map<tagint, size_t> Clamps::entries(size_t first, size_t last) co
 void Clamps::store() const
 {
   of_fixes([this](size_t first, size_t last) {
-    if (!bodies[first].small) {
-      for (size_t k = first; k < last; k++) store_large(bodies[k]);
-      return;
-    }
-    FixRigidSmall *const fix = small(bodies[first].fix);
     const auto of = entries(first, last);
-    const int n = fix->*Small::own + fix->*Small::ghosts;
-    for (int k = 0; k < n; k++) {
-      auto &to = (fix->*Small::bodies)[k];
-      const auto at = of.find(atom->tag[to.ilocal]);
-      if (at == of.end()) continue;
-      const Body &b = bodies[at->second];
-      std::copy_n(b.x, 3, to.xcm);
-      std::copy_n(b.v, 3, to.vcm);
-      std::copy_n(b.q, 4, to.quat);
-      std::copy_n(b.L, 3, to.angmom);
-      std::copy_n(b.omega, 3, to.omega);
-      std::copy_n(b.ex, 3, to.ex_space);
-      std::copy_n(b.ey, 3, to.ey_space);
-      std::copy_n(b.ez, 3, to.ez_space);
-    }
+    bodies[first].fix->store([&](tagint id) -> const BodyNow * {
+      const auto at = of.find(id);
+      return at == of.end() ? nullptr : &bodies[at->second];
+    });
   });
 }
 
-void Clamps::store_large(const Body &b) const
-{
-  FixRigid *const r = large(b.fix);
-  std::copy_n(b.x, 3, (r->*Rigid::center)[b.id]);
-  std::copy_n(b.v, 3, (r->*Rigid::velocity)[b.id]);
-  std::copy_n(b.q, 4, (r->*Rigid::turned)[b.id]);
-  std::copy_n(b.L, 3, (r->*Rigid::momentum)[b.id]);
-  std::copy_n(b.omega, 3, (r->*Rigid::spin)[b.id]);
-  std::copy_n(b.ex, 3, (r->*Rigid::axis_x)[b.id]);
-  std::copy_n(b.ey, 3, (r->*Rigid::axis_y)[b.id]);
-  std::copy_n(b.ez, 3, (r->*Rigid::axis_z)[b.id]);
-}
-
-// calls use(body, its state) for all
+// calls use(body, its state) for all. Those of fix rigid/small with particles of walls or solids,
+// few among many, go to each rank
 template <class Use> void Clamps::with_states(Use use)
 {
   of_fixes([&](size_t first, size_t last) {
     const auto of = entries(first, last);
-    for (const State &s : states(bodies[first].fix, of)) {
-      const auto at = of.find(s.id);
-      if (at != of.end()) use(bodies[at->second], s);
-    }
+    std::vector<BodyState> states;
+    for (const BodyState &s : bodies[first].fix->states())
+      if (of.count(s.id)) states.push_back(s);
+    if (bodies[first].fix->small) states = gather(states, world);
+    for (const BodyState &s : states) use(bodies[of.at(s.id)], s);
   });
 }
 
@@ -367,43 +241,39 @@ void Clamps::place(const std::vector<Member> &list) const
 // Force and torque of each body, of all ranks. Whole: with what has torques of its own.
 void Clamps::sum(const std::vector<Member> &list, const double *const *f, bool whole)
 {
-  std::vector<double> mine(sums.size(), 0.0);
+  std::vector<double> own(sums.size(), 0.0);
   for (const Member &m : list) {
-    double r[3], one[3] = {}, torque[3];
-    for (int d = 0; d < domain->dimension; d++) one[d] = f[m.i][d];
+    double r[3], push[3] = {}, torque[3];
+    for (int d = 0; d < domain->dimension; d++) push[d] = f[m.i][d];
     arm(m, r);
-    MathExtra::cross3(r, one, torque);
+    MathExtra::cross3(r, push, torque);
     const int *const flags = bodies[m.body].flags;
-    if (whole && flags && flags[m.i] & RigidConst::TORQUE)
+    if (whole && flags && flags[m.i] & RigidBodies::TORQUE)
       MathExtra::add3(torque, atom->torque[m.i], torque);
     for (int d = 0; d < 3; d++) {
-      mine[6 * m.body + d] += one[d];
-      mine[6 * m.body + 3 + d] += torque[d];
+      own[6 * m.body + d] += push[d];
+      own[6 * m.body + 3 + d] += torque[d];
     }
   }
   if (comm->nprocs == 1)
-    sums = mine;
+    sums = own;
   else
-    MPI_Allreduce(mine.data(), sums.data(), mine.size(), MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(own.data(), sums.data(), own.size(), MPI_DOUBLE, MPI_SUM, world);
 }
 
 // what fix rigid itself adds to the sums: keywords langevin and gravity
 void Clamps::add_own(const Body &b, double *force_and_torque) const
 {
-  // newer releases have the forces of keyword langevin only with it
-  const double *const *const forces = b.small ? nullptr : large(b.fix)->*Rigid::langevin;
-  const double *const langevin = forces ? forces[b.id] : nullptr;
-  const bool field = b.small ? small(b.fix)->*Small::gravity : large(b.fix)->*Rigid::gravity;
-  const double *const g = b.small ? small(b.fix)->*Small::field : large(b.fix)->*Rigid::field;
+  const double *const langevin = b.fix->langevin(b.id), *const g = b.fix->gravity();
   for (int d = 0; d < 6 && langevin; d++) force_and_torque[d] += b.free[d] * langevin[d];
-  for (int d = 0; d < 3 && field; d++) force_and_torque[d] += g[d] * b.mass;
+  for (int d = 0; d < 3 && g; d++) force_and_torque[d] += g[d] * b.mass;
   if (domain->dimension == 2) force_and_torque[2] = force_and_torque[3] = force_and_torque[4] = 0.0;
 }
 
 void Clamps::start_step()
 {
-  with_states([](Body &b, const State &s) {
-    static_cast<State &>(b) = s;
+  with_states([](Body &b, const BodyState &s) {
+    static_cast<BodyState &>(b) = s;
     b.start = s;
   });
 }
@@ -411,7 +281,7 @@ void Clamps::start_step()
 void Clamps::to_start()
 {
   for (Body &b : bodies) {
-    static_cast<Motion &>(b) = b.start;
+    static_cast<BodyMotion &>(b) = b.start;
     follow(b);
   }
 }
@@ -433,7 +303,7 @@ void Clamps::to_middle()
 // fix rigid may have moved a body by a period of the box since
 void Clamps::follow_boundary()
 {
-  with_states([](Body &b, const State &s) {
+  with_states([](Body &b, const BodyState &s) {
     for (int d = 0; d < 3; d++) {
       b.start.x[d] += s.x[d] - b.middle[d];
       b.middle[d] = s.x[d];
@@ -445,7 +315,7 @@ void Clamps::begin_substeps(const std::vector<int> &solids)
 {
   find_members();
   clamp.assign(atom->nlocal, 0);
-  for (const int i : solids) clamp[i] = !(atom->mask[i] & scene.mover->groupbit);
+  for (const int i : solids) clamp[i] = !(atom->mask[i] & mover->groupbit);
   clamps.clear();
   for (const Member &m : members)
     if (clamp[m.i]) clamps.push_back(m);
@@ -491,7 +361,7 @@ void Clamps::average(int substeps, double **f) const
 
 void Clamps::take_step()
 {
-  if (elastic && scene.substeps > 1) return;
+  if (elastic && step.substeps > 1) return;
   begin_substeps({});
   for (Body &b : bodies) {
     drift(b, 0.5 * update->dt);
@@ -526,22 +396,3 @@ void Clamps::go_back()
   store();
   place(members);
 }
-
-#else
-
-void Clamps::find() {}
-bool Clamps::known(const Fix *) const
-{
-  return false;
-}
-void Clamps::start_step() {}
-void Clamps::to_middle() {}
-void Clamps::begin_substeps(const std::vector<int> &) {}
-void Clamps::drift(double) {}
-void Clamps::kick(double, const double *const *) {}
-void Clamps::average(int, double **) const {}
-void Clamps::take_step() {}
-void Clamps::finish() {}
-void Clamps::go_back() {}
-
-#endif

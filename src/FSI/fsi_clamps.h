@@ -14,6 +14,7 @@
 #ifndef LMP_FSI_CLAMPS_H
 #define LMP_FSI_CLAMPS_H
 
+#include "fsi_lammps_access.h"
 #include "fsi_part.h"
 #include "pointers.h"
 
@@ -26,8 +27,6 @@ class Fix;
 
 namespace FSI {
 
-  class Scene;
-
   // Rigid bodies of fix rigid or rigid/small with particles of walls or solids in them. The fix has
   // them at the end of the step when forces are found, half a step ahead of the fluid. Here they
   // take the position Verlet of all, in sub-steps where total-Lagrangian solids do. The fix keeps
@@ -35,7 +34,7 @@ namespace FSI {
   // sums as ever.
   class Clamps : public Part, protected Pointers {
    public:
-    Clamps(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene) {}
+    Clamps(LAMMPS *, const Scene &);
     void find();    // before a run
     bool any() const { return !bodies.empty(); }
     bool any_elastic() const { return elastic; }    // are there some that sub-steps act on?
@@ -54,54 +53,45 @@ namespace FSI {
     void go_back() override;
 
    private:
-    struct Motion {
-      double x[3], v[3], q[4], L[3];
-    };
-    struct State : Motion {
-      tagint id;    // index in fix rigid, bodytag in fix rigid/small
-      double mass, inertia[3];
-    };
-    struct Body : State {    // state of now
-      Fix *fix;
-      bool small;
-      double free[6];                          // 0: components of force and torque left out
-      const double *const *displace;           // of atoms, from the center in the body's axes
-      const imageint *image;                   // of atoms
-      const int *flags;                        // of atoms, if some have sizes, or null
-      Motion start;                            // of the step
-      double middle[3];                        // x, in the middle of the step
-      double ex[3], ey[3], ez[3], omega[3];    // follow from the orientation
-      double outside[6];                       // force and torque of what is no solid, in this step
+    struct Body : BodyNow {
+      const RigidBodies *fix;
+      double free[6];                   // 0: components of force and torque left out
+      const double *const *displace;    // of atoms, from the center in the body's axes
+      const imageint *image;            // of atoms
+      const int *flags;                 // of atoms, if some have sizes, or null
+      BodyMotion start;                 // of the step
+      double middle[3];                 // x, in the middle of the step
+      double outside[6];                // force and torque of what is no solid, in this step
     };
     struct Member {
       int i, body;    // local atom
     };
+    std::vector<std::shared_ptr<RigidBodies>> fixes;
     std::vector<Body> bodies;
     std::vector<Member> members, clamps;    // all particles; those of solids
     std::vector<char> clamp;                // is an atom one?
     std::vector<double> impulse;            // of clamps, over the last sub-steps' length
     std::vector<double> sums;               // force and torque of each body
-    const Scene &scene;
+    const Discretization &disc;
+    const StepState &step;
+    const std::vector<Part *> &parts;
+    const Fix *const mover;    // fix fsi
     bool elastic = false;
     bool takes_substeps() const;
-    std::string expected_of(Fix *) const;
-    void refuse_new_ids(Fix *) const;
+    std::string expected_of(const RigidBodies &) const;
+    void refuse_new_ids(const RigidBodies &) const;
     void find_members();
     void follow(Body &) const;
     void drift(Body &, double t) const;
     void kick(Body &, double t, const double *force_and_torque) const;
     void arm(const Member &, double *) const;
-    tagint id_of(const Body &, int i) const;
     void place(const std::vector<Member> &) const;
     void sum(const std::vector<Member> &, const double *const *f, bool whole);
     void add_own(const Body &, double *force_and_torque) const;
-    // of its bodies that are among these
-    std::vector<State> states(Fix *, const std::unordered_map<tagint, size_t> &) const;
     template <class Use> void of_fixes(Use) const;
     std::unordered_map<tagint, size_t> entries(size_t first, size_t last) const;
     template <class Use> void with_states(Use);
     void store() const;
-    void store_large(const Body &) const;
     void to_start();
     void follow_boundary();
   };

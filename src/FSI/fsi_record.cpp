@@ -16,6 +16,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix.h"
+#include "fsi_lammps_access.h"
 #include "modify.h"
 #include "update.h"
 
@@ -151,24 +152,12 @@ void Clock::restore()
   }
 }
 
-// LAMMPS shows what it has read to classes derived from its own only
-namespace {
-struct Stored : public Modify {
-  static constexpr auto global_id = &Stored::id_restart_global,
-                        global_style = &Stored::style_restart_global;
-  static constexpr auto global_used = &Stored::used_restart_global;
-};
-}    // namespace
-
 void FSI::check_ids(LAMMPS *lmp, bool updated_solids)
 {
   Modify *const modify = lmp->modify;
   Error *const error = lmp->error;
   const bool first = lmp->comm->me == 0;
-  for (int k = 0; k < modify->nfix_restart_global; k++) {
-    if ((modify->*Stored::global_used)[k]) continue;
-    const std::string style_before = (modify->*Stored::global_style)[k],
-                      id_before = (modify->*Stored::global_id)[k];
+  for (const auto &[style_before, id_before] : not_taken_from_restart(modify)) {
     if (!utils::strmatch(style_before, "^fsi") && style_before != "FSI_REFERENCE") continue;
     for (const auto *fix : modify->get_fix_by_style("^" + style_before + "$")) {
       if (fix->restart_reset) continue;

@@ -13,7 +13,7 @@
 
 #include "fsi_swaps.h"
 
-#include "comm_brick.h"
+#include "comm.h"
 #include "fix.h"
 #include "fsi_profile.h"
 #include "pair.h"
@@ -23,36 +23,17 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-// LAMMPS shows its exchanges to classes derived from its own only
-namespace {
-struct Brick : public CommBrick {
-  static constexpr auto number = &Brick::nswap;
-  static constexpr auto to = &Brick::sendproc, from = &Brick::recvproc, nsend = &Brick::sendnum,
-                        nrecv = &Brick::recvnum, first = &Brick::firstrecv, flag = &Brick::pbc_flag;
-  static constexpr auto list = &Brick::sendlist, shifts = &Brick::pbc;
-};
-}    // namespace
-
 void Swaps::find(const std::function<bool(int)> &is_chosen)
 {
   swaps.clear();
-  const auto *brick = dynamic_cast<const CommBrick *>(comm);
-  chosen = brick != nullptr;
-  if (!chosen) return;
-  for (int k = 0; k < brick->*Brick::number; k++) {
+  std::vector<Exchange> exchanges;
+  chosen = find_exchanges(comm, exchanges);
+  for (const Exchange &e : exchanges) {
     Swap s;
-    const int *const list = (brick->*Brick::list)[k];
-    std::copy_if(list, list + (brick->*Brick::nsend)[k], std::back_inserter(s.list), is_chosen);
-    s.first = (brick->*Brick::first)[k];
-    s.n = (brick->*Brick::nrecv)[k];
-    s.arriving = 0;
-    for (int i = s.first; i < s.first + s.n; i++) s.arriving += is_chosen(i);
-    if (s.list.empty() && s.arriving == 0) continue;
-    s.to = (brick->*Brick::to)[k];
-    s.from = (brick->*Brick::from)[k];
-    s.flag = (brick->*Brick::flag)[k];
-    s.pbc = (brick->*Brick::shifts)[k];
-    swaps.push_back(s);
+    static_cast<Exchange &>(s) = e;
+    std::copy_if(e.list, e.list + e.nsend, std::back_inserter(s.sent), is_chosen);
+    for (int i = e.first; i < e.first + e.nrecv; i++) s.arriving += is_chosen(i);
+    if (!s.sent.empty() || s.arriving > 0) swaps.push_back(s);
   }
 }
 
@@ -68,26 +49,26 @@ double *Swaps::pass(int to, int n, int from, int most)
   return in.data();
 }
 
-template <class Who> void Swaps::forward(Who *who)
+template <class Owner> void Swaps::forward(Owner *owner)
 {
-  if (!chosen) return comm->forward_comm(who);
-  const int size = who->comm_forward;
+  if (!chosen) return comm->forward_comm(owner);
+  const int size = owner->comm_forward;
   for (Swap &s : swaps) {
-    if (out.size() < s.list.size() * size) out.resize(s.list.size() * size);
-    const int n = who->pack_forward_comm(s.list.size(), s.list.data(), out.data(), s.flag, s.pbc);
-    who->unpack_forward_comm(s.n, s.first, pass(s.to, n, s.from, s.arriving * size));
+    if (out.size() < s.sent.size() * size) out.resize(s.sent.size() * size);
+    const int n = owner->pack_forward_comm(s.sent.size(), s.sent.data(), out.data(), s.flag, s.pbc);
+    owner->unpack_forward_comm(s.nrecv, s.first, pass(s.to, n, s.from, s.arriving * size));
   }
 }
 
-template <class Who> void Swaps::reverse(Who *who)
+template <class Owner> void Swaps::reverse(Owner *owner)
 {
-  if (!chosen) return comm->reverse_comm(who);
-  const int size = who->comm_reverse;
+  if (!chosen) return comm->reverse_comm(owner);
+  const int size = owner->comm_reverse;
   for (auto s = swaps.rbegin(); s != swaps.rend(); ++s) {
     if ((int) out.size() < s->arriving * size) out.resize(s->arriving * size);
-    const int n = who->pack_reverse_comm(s->n, s->first, out.data());
-    who->unpack_reverse_comm(s->list.size(), s->list.data(),
-                             pass(s->from, n, s->to, s->list.size() * size));
+    const int n = owner->pack_reverse_comm(s->nrecv, s->first, out.data());
+    owner->unpack_reverse_comm(s->sent.size(), s->sent.data(),
+                               pass(s->from, n, s->to, s->sent.size() * size));
   }
 }
 

@@ -14,6 +14,7 @@
 #ifndef LMP_FSI_SWAPS_H
 #define LMP_FSI_SWAPS_H
 
+#include "fsi_lammps_access.h"
 #include "pointers.h"
 
 #include <functional>
@@ -23,21 +24,20 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   // LAMMPS' exchanges with ghosts, without those that carry none of the chosen particles: both ends
-  // of an exchange see whether it does, so nobody waits for an empty message. With comm_style tiled
-  // they are LAMMPS' own.
+  // of an exchange see whether it does, so no rank waits for an empty message. With comm_style
+  // tiled they are LAMMPS' own.
   class Swaps : protected Pointers {
    public:
     explicit Swaps(LAMMPS *lmp) : Pointers(lmp), chosen(false) {}
     void find(const std::function<bool(int)> &is_chosen);    // whenever ghosts are new
     // for a pair style or a fix, which packs and unpacks the chosen particles only
-    template <class Who> void forward(Who *);
-    template <class Who> void reverse(Who *);
+    template <class Owner> void forward(Owner *);
+    template <class Owner> void reverse(Owner *);
 
    private:
-    struct Swap {
-      std::vector<int> list;    // chosen particles that are sent
-      // ghosts are first to first + n - 1; arriving: how many of them are chosen
-      int to = 0, from = 0, first = 0, n = 0, arriving = 0, flag = 0, *pbc = nullptr;
+    struct Swap : Exchange {
+      std::vector<int> sent;    // chosen atoms of the list
+      int arriving = 0;         // chosen ones of the ghosts
     };
     bool chosen;
     std::vector<Swap> swaps;

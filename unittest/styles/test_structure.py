@@ -76,6 +76,15 @@ def test_styles_are_found_by_what_they_are():
     assert {name: f for name, f in found.items() if f and (name, f) != ("fsi_find.h", ['pair_match("^fsi/"'])} == {}
 
 
+def test_protected_members_are_read_in_one_file():
+    """What LAMMPS shows to derived classes only is read by fsi_lammps_access.cpp alone: nothing else derives from a class of LAMMPS and names its
+    members by address."""
+    peeks = re.compile(r"\b(?:struct|class) (\w+) (?:final )?: (?:public )?(?:Modify|CommBrick|Comm|Fix\w*|Neighbor|Domain|Atom|Force)\b[^{;]*\{[^}]*&\1::")
+    assert peeks.search("struct Peek : public Modify {\n  static constexpr auto id = &Peek::id_restart_global;\n};")
+    assert not peeks.search("class FixFSIMove : public FSI::FixFields {\n  int a;\n};")
+    assert {file.name for file in sources() if peeks.search(file.read_text())} == {"fsi_lammps_access.cpp"}
+
+
 NO_CODE = re.compile(r'"(\\.|[^"\\\n])*"|\'(\\.|[^\'\\])\'|//[^\n]*|/\*.*?\*/', re.S)
 
 
