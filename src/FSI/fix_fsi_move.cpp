@@ -145,26 +145,26 @@ double FixFSIMove::now() const
 void FixFSIMove::init()
 {
   const auto *const fix_fsi = FixFSI::find(lmp, "Fix fsi/move");
-  bool mine = false;
+  bool both = false;
   for (int i = 0; i < atom->nlocal; i++)
-    mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit);
-  if (anywhere(mine, world))
+    both |= (atom->mask[i] & groupbit) && (atom->mask[i] & fix_fsi->groupbit);
+  if (anywhere(both, world))
     error->all(FLERR,
                "Particles of fix fsi/move {} are also in the group of fix fsi, which moves them, "
                "too: leave them out",
                id);
-  refuse_free_walls(fix_fsi);
+  refuse_free_walls(*fix_fsi);
   given->find();
 }
 
 // Nothing holds the particles of a wall together: forces would take each its own way
-void FixFSIMove::refuse_free_walls(const FixFSI *fix_fsi) const
+void FixFSIMove::refuse_free_walls(const Discretization &disc) const
 {
   for (int k = 0; k < domain->dimension; k++) {
     if (sets_velocity(k)) continue;
     const char name = "xyz"[k];
     for (int i = 0; i < atom->nlocal; i++)
-      if ((atom->mask[i] & groupbit) && fix_fsi->state[atom->type[i]].species == RIGID)
+      if ((atom->mask[i] & groupbit) && disc.state[atom->type[i]].species == RIGID)
         error->one(
             FLERR,
             "Fix fsi/move {} leaves {} of atom {} free, which is of a wall: forces would take each "

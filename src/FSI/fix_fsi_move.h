@@ -27,6 +27,7 @@ FixStyle(fsi/move,FixFSIMove);
 
 namespace LAMMPS_NS {
 namespace FSI {
+  struct Discretization;
   class Keywords;
   class Values;
 }    // namespace FSI
@@ -78,7 +79,7 @@ class FixFSIMove : public FSI::FixFields {
   double now() const;
   std::string text() const;    // as in the command
   bool sets_velocity(int k) const, of_atom(int k) const;
-  void refuse_free_walls(const class FixFSI *) const;
+  void refuse_free_walls(const FSI::Discretization &) const;
   void compare_velocities(const double *before) const;
   void compare_velocity(int k, double moved, double dt, double v, double v_end, double round,
                         int i = -1) const;

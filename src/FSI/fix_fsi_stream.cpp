@@ -38,7 +38,7 @@ using namespace FSI;
 FixFSIStream::FixFSIStream(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), keywords(lmp, "fix fsi/stream"),
     velocity(new Values(lmp, "fix fsi/stream", 3)), low(0.0), high(0.0), region(nullptr),
-    fix_fsi(nullptr), step(-1), given{}, work(0.0)
+    last_step(-1), given{}, work(0.0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/stream requires atom_style fsi");
   if (narg < 6) utils::missing_cmd_args(FLERR, "fix fsi/stream", error);
@@ -75,9 +75,12 @@ FixFSIStream::~FixFSIStream() = default;
 void FixFSIStream::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/stream");
+  disc = fix_fsi;
+  step = fix_fsi;
+  ledger = fix_fsi;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
-  if (density_rate > 0.0 && fix_fsi->density_fluid != FixFSI::CONTINUITY)
+  if (density_rate > 0.0 && disc->density_fluid != Discretization::CONTINUITY)
     error->all(FLERR,
                "Fix fsi/stream density requires density by continuity, as fix fsi scheme standard "
                "has it: a sum cannot be damped");
@@ -107,7 +110,7 @@ void FixFSIStream::init()
 
 void FixFSIStream::setup(int vflag)
 {
-  step = -1;
+  last_step = -1;
   find_weights();
   const auto acts = [](const Member &m) {
     return m.weight > 0.0;
@@ -124,7 +127,7 @@ void FixFSIStream::find_zone()
   zone.clear();
   const double L = domain->prd[along], from = -neighbor->skin, to = high - low + neighbor->skin;
   for (int i = 0; i < atom->nlocal; i++) {
-    const int species = fix_fsi->state[atom->type[i]].species;
+    const int species = disc->state[atom->type[i]].species;
     const bool fluid = species == FLUID && (atom->mask[i] & groupbit);
     if (!fluid && species != SOLID) continue;
     double s = atom->x[i][along] - low;
@@ -153,10 +156,10 @@ double FixFSIStream::in_zone(int i) const
 // them
 void FixFSIStream::find_weights()
 {
-  if (step == update->ntimestep) return;
+  if (last_step == update->ntimestep) return;
   region->prematch();
-  if (step < 0 || neighbor->ago == 0) find_zone();
-  step = update->ntimestep;
+  if (last_step < 0 || neighbor->ago == 0) find_zone();
+  last_step = update->ntimestep;
   for (auto &member : zone) {
     const double s = std::sin(MathConst::MY_PI * std::max(in_zone(member.i), 0.0));
     member.weight = s * s;
@@ -167,22 +170,22 @@ void FixFSIStream::find_weights()
 void FixFSIStream::advance(bool advance)
 {
   if (!advance) return;
-  const double dt = update->dt + fix_fsi->dt_offset;
+  const double dt = update->dt + step->dt_offset;
   find_weights();
   if (density_rate == 0.0) return;
   const int *const type = atom->type, n = atom->ntypes + 1;
   double *const rho = atom->rho;
-  std::vector<double> mine(2 * n, 0.0), all(2 * n);
+  std::vector<double> own(2 * n, 0.0), all(2 * n);
   const auto part = [&](double weight) {
     return -std::expm1(-density_rate * weight * dt);
   };
   for (const auto &[i, weight] : zone) {
     if (weight == 0.0) continue;
     const double a = part(weight);
-    mine[2 * type[i]] += a;
-    mine[2 * type[i] + 1] += a * rho[i];
+    own[2 * type[i]] += a;
+    own[2 * type[i] + 1] += a * rho[i];
   }
-  MPI_Allreduce(mine.data(), all.data(), 2 * n, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(own.data(), all.data(), 2 * n, MPI_DOUBLE, MPI_SUM, world);
   for (const auto &[i, weight] : zone) {
     if (weight == 0.0) continue;
     const double mean = all[2 * type[i] + 1] / all[2 * type[i]];
@@ -217,7 +220,7 @@ void FixFSIStream::post_force(int)
       given[3] += push * (v[d] + 0.5 * dt * force->ftm2v * f[d] / m);
     }
   }
-  fix_fsi->tally(FixFSI::FIELDS, -given[3]);
+  ledger->tally(Ledger::FIELDS, -given[3]);
   if (update->ntimestep > update->firststep) work += dt * given[3];
 }
 

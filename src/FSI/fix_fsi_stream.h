@@ -60,8 +60,11 @@ class FixFSIStream : public Fix, public FSI::Part {
   double rate, density_rate;    // 1/time, in the middle of the zone
   double low, high;             // ends of the zone along the axis
   class Region *region;
-  class FixFSI *fix_fsi;
-  bigint step;    // of the weights
+  class FixFSI *fix_fsi = nullptr;
+  const FSI::Discretization *disc = nullptr;
+  const FSI::StepState *step = nullptr;
+  FSI::Ledger *ledger = nullptr;
+  bigint last_step;    // of the weights
   struct Member {
     int i = 0;
     double weight = 0.0;    // 0 outside of the zone and at its ends, 1 in its middle

@@ -23,12 +23,13 @@
 #include "fsi_scene.h"
 
 #include <algorithm>
+#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
 
 Population::Population(LAMMPS *lmp, const Scene &scene) :
-    Pointers(lmp), net(0), scene(scene), last_id(0), made(0), removed(0), wanted(0)
+    Pointers(lmp), net(0), scene(scene), disc(scene), last_id(0), made(0), removed(0), wanted(0)
 {
 }
 
@@ -52,10 +53,10 @@ double Population::energy(int i) const
 void Population::leave_an_id_free()
 {
   if (!atom->tag_consecutive()) return;
-  tagint mine = 0, largest;
+  tagint own = 0, largest;
   for (int i = 0; i < atom->nlocal; i++)
-    if (scene.state[atom->type[i]].species == FLUID) mine = std::max(mine, atom->tag[i]);
-  MPI_Allreduce(&mine, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+    if (disc.state[atom->type[i]].species == FLUID) own = std::max(own, atom->tag[i]);
+  MPI_Allreduce(&own, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (largest == 0 || atom->natoms >= MAXTAGINT) return;
   if (comm->me == 0)
     utils::logmesg(lmp, "  atom {} is {} from now on: particles come and go\n", largest,
@@ -93,42 +94,42 @@ void Population::remove(const std::vector<int> &gone, double *account)
   removed += gone.size();
 }
 
-// the largest ID that any particle has or had, with room for n more, the largest n of any rank,
-// which is returned
-tagint Population::find_last_id(tagint n, const std::string &who)
+// IDs that no particle has or had, behind each other: the largest n of any rank
+std::vector<tagint> Population::new_ids(tagint n, const std::string &who)
 {
-  tagint mine[2] = {last_id, n}, most[2];
-  for (int i = 0; i < atom->nlocal; i++) mine[0] = std::max(mine[0], atom->tag[i]);
-  MPI_Allreduce(mine, most, 2, MPI_LMP_TAGINT, MPI_MAX, world);
-  last_id = most[0];
-  if (last_id > MAXTAGINT - most[1])
+  tagint own[2] = {last_id, n}, most[2];
+  for (int i = 0; i < atom->nlocal; i++) own[0] = std::max(own[0], atom->tag[i]);
+  MPI_Allreduce(own, most, 2, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (most[0] > MAXTAGINT - most[1])
     error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
+  std::vector<tagint> list(most[1]);
+  std::iota(list.begin(), list.end(), most[0] + 1);
+  last_id = most[0] + most[1];
+  wanted += most[1];
   maker = who;
-  return most[1];
+  return list;
 }
 
 void Population::make(const std::vector<Particle> &all, const std::string &who, double *account)
 {
-  const tagint n = find_last_id(static_cast<tagint>(all.size()), who), before = last_id;
+  const auto list = new_ids(static_cast<tagint>(all.size()), who);
   const int first = atom->nlocal;
-  for (const auto &p : all) {
-    last_id++;
+  for (size_t k = 0; k < all.size(); k++) {
+    const Particle &p = all[k];
     double x[3] = {p.x[0], p.x[1], p.x[2]};
-    if (!domain->ownatom(last_id, x, nullptr, 1)) continue;
+    if (!domain->ownatom(list[k], x, nullptr, 1)) continue;
     atom->avec->create_atom(p.type, x);
     const int i = atom->nlocal - 1;
-    atom->tag[i] = last_id;
+    atom->tag[i] = list[k];
     atom->mask[i] = p.mask;
     atom->molecule[i] = p.molecule;
     atom->rho[i] = p.rho;
     atom->rmass[i] = p.rmass;
     std::copy_n(p.v, 3, atom->v[i]);
   }
-  last_id = before + n;
   atom->data_fix_compute_variable(first, atom->nlocal);
   for (int i = first; account && i < atom->nlocal; i++) *account -= energy(i);
   made += atom->nlocal - first;
-  wanted += n;
 }
 
 // Where particles come and go all the time, IDs that are free again come first: so the largest, and
@@ -145,9 +146,9 @@ std::vector<tagint> Population::ids(int n, const std::string &who)
     for (size_t k = 0; k < some.size(); k++)
       if (!used[k]) list.push_back(some[k]);
   }
-  find_last_id(n - (tagint) list.size(), who);
-  while ((int) list.size() < n) list.push_back(++last_id);
-  wanted += n;
+  wanted += list.size();
+  const auto more = new_ids(n - (tagint) list.size(), who);
+  list.insert(list.end(), more.begin(), more.end());
   return list;
 }
 
@@ -174,9 +175,9 @@ int Population::copy(int i, tagint id)
   return j;
 }
 
-void Population::release(const std::vector<tagint> &mine)
+void Population::release(const std::vector<tagint> &of_rank)
 {
-  const auto all = gather(mine, world);
+  const auto all = gather(of_rank, world);
   free_ids.insert(free_ids.end(), all.begin(), all.end());
   std::sort(free_ids.begin(), free_ids.end());
   // commands between runs may have given a free one to a particle that is gone now

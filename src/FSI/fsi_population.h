@@ -26,11 +26,12 @@
 namespace LAMMPS_NS {
 namespace FSI {
   class Record;
+  struct Discretization;
   class Scene;
 
   struct Particle {    // that is to be made
     double x[3] = {}, v[3] = {}, rho = 0.0, rmass = 0.0;
-    tagint parent = 0, molecule = 0;    // parent: of whoever makes it, for an order of IDs
+    tagint parent = 0, molecule = 0;    // parent: of what makes it, for an order of IDs
     int type = 0, mask = 0;
     double since = 0.0;    // a step, likewise
   };
@@ -53,7 +54,8 @@ namespace FSI {
     // IDs of particles that are to be made on any rank, the same list on all; first those released
     std::vector<tagint> ids(int n, const std::string &who);
     int copy(int i, tagint id);    // of this rank, with all that fixes know of it; where it is
-    void release(const std::vector<tagint> &mine);    // IDs of particles removed here: for others
+    void
+    release(const std::vector<tagint> &of_rank);    // IDs of particles removed here: for others
     void end();
 
     void write(Record &) const;
@@ -61,12 +63,13 @@ namespace FSI {
 
    private:
     const Scene &scene;
+    const Discretization &disc;
     tagint last_id;                  // the largest that one had which was made or deleted here
     std::vector<tagint> free_ids;    // below that, released; in rising order
     bigint made, removed, wanted;    // since begin(): of this rank; of all
     std::string maker;
     void renew_map();
-    tagint find_last_id(tagint n, const std::string &who);
+    std::vector<tagint> new_ids(tagint n, const std::string &who);
     std::vector<char> in_use(const std::vector<tagint> &) const;
   };
 

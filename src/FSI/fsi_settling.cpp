@@ -38,24 +38,24 @@ static constexpr double SKIN = 0.5;    // of rows, in spacings of the two
 Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
                    const std::vector<Position> &changed) :
     Pointers(lmp),
-    scene(scene)
+    scene(scene), disc(scene), step(scene), ledger(scene)
 {
-  const double of_body = scene.cut + scene.dx, beyond = scene.cut + 1.1 * of_body;
+  const double of_body = disc.cut + disc.dx, beyond = disc.cut + 1.1 * of_body;
   const Everywhere events(lmp, beyond, changed);
   // the others hold nobody off: who moves is within the support of an event
   const auto bodies = everywhere(lmp, of_body, [&](int j) {
-    const int species = scene.state[atom->type[j]].species;
+    const int species = disc.state[atom->type[j]].species;
     return (species == SOLID || species == RIGID) && events.nearest(atom->x[j]) < beyond * beyond;
   });
   mobility.assign(atom->nlocal, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!moves[i]) continue;
     const double *const x = atom->x[i];
-    const double cut = scene.resolution[atom->type[i]].cut, dx = scene.dx_of(atom->type[i]);
+    const double cut = disc.resolution[atom->type[i]].cut, dx = disc.dx_of(atom->type[i]);
     const double event = events.nearest(x);
     if (event >= cut * cut) continue;
     double body = std::sqrt(std::min((cut + dx) * (cut + dx), bodies.nearest(x)));
-    for (const auto &wall : scene.walls.wall)
+    for (const auto &wall : step.walls.wall)
       if (wall.finite && wall.spans(x, cut)) body = std::min(body, std::fabs(wall.distance(x)));
     mobility[i] =
         std::min(1.0, 2.0 - 2.0 * std::sqrt(event) / cut) * std::max(0.0, (body - cut) / dx);
@@ -66,11 +66,11 @@ void Settling::find_rows()
 {
   const int nall = atom->nlocal + atom->nghost;
   const int *const type = atom->type;
-  const Cells cells(atom->x, nall, scene.dim, 0.25 * scene.cut, [&](int j) {
-    return scene.state[type[j]].species != NONE;
+  const Cells cells(atom->x, nall, disc.dim, 0.25 * disc.cut, [&](int j) {
+    return disc.state[type[j]].species != NONE;
   });
   const auto reach_of = [&](int t) {
-    return 0.5 * (scene.resolution[t].cut + SKIN * scene.dx_of(t));
+    return 0.5 * (disc.resolution[t].cut + SKIN * disc.dx_of(t));
   };
   double widest = 0.0;
   for (int t = 1; t <= atom->ntypes; t++) widest = std::max(widest, reach_of(t));
@@ -98,7 +98,7 @@ void Settling::find_rows()
 bool Settling::rows_hold() const
 {
   for (int i = 0; i < atom->nlocal + atom->nghost; i++) {
-    const double most = 0.5 * SKIN * scene.dx_of(atom->type[i]);
+    const double most = 0.5 * SKIN * disc.dx_of(atom->type[i]);
     if (MathExtra::distsq3(atom->x[i], &start[3 * i]) > most * most) return false;
   }
   return true;
@@ -109,19 +109,19 @@ void Settling::run(int sweeps)
   const int nall = atom->nlocal + atom->nghost;
   points.resize(POINT * nall);
   for (int j = 0; j < nall; j++) points[POINT * j + 3] = atom->rmass[j] / atom->rho[j];
-  mirrors.assign(1, Mirror(scene.walls, {}));
-  for (const auto &s : scene.walls.reflections) mirrors.emplace_back(scene.walls, s);
-  with_kernel(scene.kernel, scene.dim, scene.h, [&](const auto &kernel) {
+  mirrors.assign(1, Mirror(step.walls, {}));
+  for (const auto &s : step.walls.reflections) mirrors.emplace_back(step.walls, s);
+  with_kernel(disc.kernel, disc.dim, disc.h, [&](const auto &kernel) {
     using K = std::decay_t<decltype(kernel)>;
     std::vector<K> of_types;
     for (int a = 0; a <= atom->ntypes; a++)
       for (int b = 0; b <= atom->ntypes; b++)
-        of_types.emplace_back(0.5 * (scene.h_of(a) + scene.h_of(b)));
+        of_types.emplace_back(0.5 * (disc.h_of(a) + disc.h_of(b)));
     for (int k = 0; k < sweeps; k++) {
       if (k == 0 || !rows_hold()) find_rows();
       for (int j = 0; j < nall; j++) std::copy_n(atom->x[j], 3, &points[POINT * j]);
       have_packs() ? sum_up<Pack>(of_types) : sum_up<double>(of_types);
-      if (scene.walls.finite()) add_images_of_segments(of_types);
+      if (step.walls.finite()) add_images_of_segments(of_types);
       displace<K::DIM>();
       comm->forward_comm();
     }
@@ -163,7 +163,7 @@ FSI_INLINE static void add_images(const Row &row, const double *points, const in
 
 template <class T, class K> void Settling::sum_up(const std::vector<K> &of_types)
 {
-  const Walls &walls = scene.walls;
+  const Walls &walls = step.walls;
   const std::vector<Walls::Reflection> &reflections = walls.reflections;
   const double *const *const x = atom->x;
   const int *const type = atom->type;
@@ -177,7 +177,7 @@ template <class T, class K> void Settling::sum_up(const std::vector<K> &of_types
       const K *const with = &of_types[type[row.i] * (atom->ntypes + 1)];
       double *const own = sums[r].data();
       add_images<Number>(row, points.data(), type, with, mirrors[0], own);
-      const int near = walls.near(x[row.i], 0.5 * (scene.resolution[type[row.i]].cut + scene.cut));
+      const int near = walls.near(x[row.i], 0.5 * (disc.resolution[type[row.i]].cut + disc.cut));
       if (near && segments) at_walls.emplace_back(r, near);
       for (size_t s = 0; near && s < reflections.size(); s++)
         if ((reflections[s].mask & near) == reflections[s].mask && !walls.finite(reflections[s]))
@@ -189,7 +189,7 @@ template <class T, class K> void Settling::sum_up(const std::vector<K> &of_types
 // they hide some of what is behind them
 template <class K> void Settling::add_images_of_segments(const std::vector<K> &of_types)
 {
-  const Walls &walls = scene.walls;
+  const Walls &walls = step.walls;
   const double *const *const x = atom->x;
   const int *const type = atom->type;
   for (const auto &[r, near] : at_walls) {
@@ -198,7 +198,7 @@ template <class K> void Settling::add_images_of_segments(const std::vector<K> &o
     for (int n = 0; n < rows[r].n; n++) {
       const int j = rows[r].j[n];
       const K &kernel = of_types[type[i] * (atom->ntypes + 1) + type[j]];
-      walls.images(near & walls.near(x[j], scene.cut), MathExtra::distsq3(x[i], x[j]), x[i], x[j],
+      walls.images(near & walls.near(x[j], disc.cut), MathExtra::distsq3(x[i], x[j]), x[i], x[j],
                    kernel.cutsq, [&](const Walls::Reflection &s, double rsq, const double *away) {
                      if (!walls.finite(s)) return;
                      const double distance = std::sqrt(rsq), volume = points[POINT * j + 3],
@@ -212,12 +212,12 @@ template <class K> void Settling::add_images_of_segments(const std::vector<K> &o
 
 template <int D> void Settling::displace()
 {
-  double *const *const x = atom->x, *const account = scene.account(Ledger::LEVELS);
+  double *const *const x = atom->x, *const account = ledger.account(Ledger::LEVELS);
   for (size_t r = 0; r < rows.size(); r++) {
     const int i = rows[r].i;
     double d[3] = {};
     std::copy_n(sums[r].data(), D, d);
-    const double dx = scene.dx_of(atom->type[i]),
+    const double dx = disc.dx_of(atom->type[i]),
                  full = std::clamp((sums[r][D] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
     MathExtra::scale3(-STRENGTH * dx * dx * mobility[i] * full, d);
     const double length = MathExtra::len3(d);

@@ -31,7 +31,10 @@
 
 namespace LAMMPS_NS {
 namespace FSI {
+  struct Discretization;
+  struct Ledger;
   class Scene;
+  struct StepState;
 
   class Settling : protected Pointers {
    public:
@@ -42,7 +45,10 @@ namespace FSI {
     void run(int sweeps);
 
    private:
-    Scene &scene;
+    const Scene &scene;
+    const Discretization &disc;
+    const StepState &step;
+    Ledger &ledger;
     std::vector<double> mobility, start;    // start: positions that the rows are for
     std::vector<double> points;             // position and volume of each particle
     std::vector<Row> rows;                  // particles that are moved, and themselves among others

@@ -79,7 +79,7 @@ void Zones::check_number(size_t types) const
 
 // Between the zone of level k + 1 and the end of that of level k: one level is all that a particle
 // sees beside its own
-void Zones::init(const Scene &scene, const std::vector<int> &types)
+void Zones::init(const Discretization &disc, const std::vector<int> &types)
 {
   find_body();
   regions.clear();
@@ -91,7 +91,7 @@ void Zones::init(const Scene &scene, const std::vector<int> &types)
   }
   for (size_t k = 1; k < distances.size(); k++) {
     const double shell = distances[k - 1] - distances[k],
-                 least = scene.resolution[types[k - 1]].cut + scene.dx_of(types[k]);
+                 least = disc.resolution[types[k - 1]].cut + disc.dx_of(types[k]);
     if (shell < least)
       error->all(FLERR,
                  "{} distance: from {} to {} there is {:g} for atom type {}: expected at least "
@@ -106,7 +106,7 @@ std::string Zones::names(int k) const
   return regions.empty() ? "" : fmt::format(" ({} and {})", region_ids[k - 1], region_ids[k]);
 }
 
-void Zones::find(const Scene &scene, double beyond, double time)
+void Zones::find(const Discretization &disc, double beyond, double time)
 {
   ahead = time;
   for (auto *region : regions) region->prematch();
@@ -117,7 +117,7 @@ void Zones::find(const Scene &scene, double beyond, double time)
   if (body.empty()) error->all(FLERR, "{} distance: there are no atoms in group {}", who, body_id);
   away.assign(atom->nlocal, Cells::LARGE);
   for (int i = 0; i < atom->nlocal; i++)
-    if (scene.state[atom->type[i]].species == FLUID) away[i] = std::sqrt(body.nearest(atom->x[i]));
+    if (disc.state[atom->type[i]].species == FLUID) away[i] = std::sqrt(body.nearest(atom->x[i]));
 }
 
 // A zone grown by a distance: is any place as far away, in a number of directions, inside?

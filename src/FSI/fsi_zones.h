@@ -27,7 +27,7 @@ namespace LAMMPS_NS {
 class Region;
 
 namespace FSI {
-  class Scene;
+  struct Discretization;
 
   class Zones : protected Pointers {
    public:
@@ -36,11 +36,11 @@ namespace FSI {
     void read_distances(const std::vector<std::string> &words);
     void check_number(size_t types) const;
 
-    void init(const Scene &, const std::vector<int> &types);
+    void init(const Discretization &, const std::vector<int> &types);
     bool moving() const { return can_move; }
     // where they are at the end of this step, and so much beyond them; positions are by that time
     // before it
-    void find(const Scene &, double beyond, double time);
+    void find(const Discretization &, double beyond, double time);
     bool has(int k, int i, double grown) const;    // is i in zone k, from 1 on, grown by that?
     std::string names(int k) const;                // of zones k and k + 1, for errors
 
