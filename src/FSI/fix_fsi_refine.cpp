@@ -61,8 +61,7 @@ static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of 
 
 FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), who("Fix fsi/refine"), every(0), settle_steps(30),
-    zones(new Zones(lmp, who)), fix_fsi(nullptr), total{}, last_event(-1), told(false),
-    message(nullptr), mine{}
+    zones(new Zones(lmp, who)), total{}, last_event(-1), warned(false), message(nullptr), of_rank{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/refine", error);
@@ -126,24 +125,28 @@ int FixFSIRefine::setmask()
 void FixFSIRefine::init()
 {
   fix_fsi = FixFSI::find(lmp, who);
+  disc = fix_fsi;
+  step = fix_fsi;
+  ledger = fix_fsi;
+  population = &fix_fsi->population;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
   check_types();
   check_others();
-  zones->init(*fix_fsi, types);
+  zones->init(*disc, types);
   open_ends = fixes_of<FixFSIInlet>(lmp);
   next_reneighbor = (update->ntimestep / every + 1) * every;
-  told = false;
-  fix_fsi->population.leave_an_id_free();
+  warned = false;
+  population->leave_an_id_free();
 }
 
 // levels are of one fluid, and each has half the mass of the one before
 void FixFSIRefine::check_types() const
 {
-  const double expected = std::pow(2.0, -1.0 / fix_fsi->dim);
-  const State &first = fix_fsi->state[types[0]];
+  const double expected = std::pow(2.0, -1.0 / disc->dim);
+  const State &first = disc->state[types[0]];
   for (int k = 0; k <= finest(); k++) {
-    const State &s = fix_fsi->state[types[k]];
+    const State &s = disc->state[types[k]];
     if (s.species != FLUID)
       error->all(FLERR, "{}: atom type {} is no fluid: its material is {}", who, types[k],
                  s.species == NONE        ? "missing"
@@ -165,12 +168,12 @@ void FixFSIRefine::check_types() const
       error->all(FLERR, "{}: atom types {} and {} have different equations of state", who, types[0],
                  types[k]);
     if (k == 0) continue;
-    const double coarse = fix_fsi->dx_of(types[k - 1]), fine = fix_fsi->dx_of(types[k]);
+    const double coarse = disc->dx_of(types[k - 1]), fine = disc->dx_of(types[k]);
     if (std::fabs(fine / coarse / expected - 1.0) > RATIO_ERROR)
       error->all(FLERR,
                  "{}: atom types {} and {} have spacings of {:g} and {:g}: expected {:g} of the "
                  "second, 2^(-1/{}) of the first, for particles of half the mass: fix fsi spacing",
-                 who, types[k - 1], types[k], coarse, fine, expected * coarse, fix_fsi->dim);
+                 who, types[k - 1], types[k], coarse, fine, expected * coarse, disc->dim);
   }
 }
 
@@ -214,8 +217,8 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   const bool first = update->ntimestep == update->firststep;
   renew_ghosts();
   fix_fsi->gather_walls();    // those of the last force are a step behind
-  if (fix_fsi->sight) fix_fsi->sight->find_bodies();
-  std::fill_n(mine, NTOTAL, 0.0);
+  if (disc->sight) disc->sight->find_bodies();
+  std::fill_n(of_rank, NTOTAL, 0.0);
   look(may_split, may_merge);
   if (zones->moving() || first) check_zones();
   if (first) warn_of_bodies();
@@ -224,17 +227,17 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   if (may_merge) choose_partners();
   std::vector<int> gone;
   const auto unions = may_merge ? plan_unions(gone) : std::vector<Union>();
-  mine[SPLITS] = divisions.size();
-  mine[MERGES] = unions.size();
+  of_rank[SPLITS] = divisions.size();
+  of_rank[MERGES] = unions.size();
   double all[NTOTAL];
-  MPI_Allreduce(mine, all, NTOTAL, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(of_rank, all, NTOTAL, MPI_DOUBLE, MPI_SUM, world);
   for (int k = 0; k < WAITING; k++) total[k] += all[k];
   if (may_merge) total[WAITING] = all[WAITING];
   if (may_split) last_event = update->ntimestep;
   if (all[SPLITS] == 0.0 && all[MERGES] == 0.0) return;
 
   unite(unions);
-  fix_fsi->population.begin();
+  population->begin();
   std::vector<Position> events;
   const auto add_event = [&](int i) {
     Position x = {atom->x[i][0], atom->x[i][1], atom->x[i][2]};
@@ -248,9 +251,9 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   for (int i = before; i < atom->nlocal; i++) add_event(i);
   std::vector<tagint> released;
   for (const int i : gone) released.push_back(atom->tag[i]);
-  fix_fsi->population.remove(gone, fix_fsi->account(FixFSI::LEVELS));
-  fix_fsi->population.release(released);
-  fix_fsi->population.end();
+  population->remove(gone, ledger->account(Ledger::LEVELS));
+  population->release(released);
+  population->end();
   if (settle_steps == 0) return;
   renew_ghosts();
   std::vector<char> moves(atom->nlocal);
@@ -277,7 +280,7 @@ void FixFSIRefine::renew_ghosts()
 void FixFSIRefine::look(bool may_split, bool may_merge)
 {
   const bool at_start = update->ntimestep == update->firststep;    // else in the middle of a step
-  zones->find(*fix_fsi, FAR * fix_fsi->dx_of(types[0]), at_start ? 0.0 : 0.5 * update->dt);
+  zones->find(*disc, FAR * disc->dx_of(types[0]), at_start ? 0.0 : 0.5 * update->dt);
   carried.assign(atom->nlocal + atom->nghost, 0);
   for (int i = 0; i < atom->nlocal; i++) {
     const int own = level(i);
@@ -289,7 +292,7 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
     const bool leaves = in_open_end(i, wish);
     if (may_split && own < finest() && (wish & 1 << (own + 1))) wish |= SPLIT;
     if (may_merge && own > 0 && !leaves && !(wish & 1 << own)) {
-      const double margin = fix_fsi->dx_of(types[own - 1]);
+      const double margin = disc->dx_of(types[own - 1]);
       if (!zones->has(own, i, margin))
         wish |= zones->has(own, i, FAR * margin) ? MERGE : MERGE | EAGER;
     }
@@ -338,8 +341,8 @@ void FixFSIRefine::check_zones() const
 {
   const int nall = atom->nlocal + atom->nghost;
   for (int k = 1; k < finest(); k++) {
-    const double support = fix_fsi->resolution[types[k - 1]].cut;
-    const Cells inner(atom->x, nall, fix_fsi->dim, support, [&](int j) {
+    const double support = disc->resolution[types[k - 1]].cut;
+    const Cells inner(atom->x, nall, disc->dim, support, [&](int j) {
       return level(j) >= 0 && (carried[j] & 1 << (k + 1));
     });
     for (int i = 0; i < atom->nlocal; i++) {
@@ -361,21 +364,21 @@ void FixFSIRefine::check_zones() const
 // bodies and walls meet fluid of their own spacing
 void FixFSIRefine::warn_of_bodies()
 {
-  if (told) return;
-  told = true;
+  if (warned) return;
+  warned = true;
   const int *const type = atom->type, nall = atom->nlocal + atom->nghost;
   const auto is_body = [&](int j) {
-    const int species = fix_fsi->state[type[j]].species;
+    const int species = disc->state[type[j]].species;
     return species == SOLID || species == RIGID;
   };
-  const Cells bodies(atom->x, nall, fix_fsi->dim, fix_fsi->cut, is_body);
+  const Cells bodies(atom->x, nall, disc->dim, disc->cut, is_body);
   const auto coarse = find_particles(atom, world, [&](int i) {
     const int own = level(i);
     if (own < 0 || own == finest() || (carried[i] & SPLIT)) return false;
-    const double dx = fix_fsi->dx_of(type[i]);
+    const double dx = disc->dx_of(type[i]);
     bool found = false;
     bodies.around(atom->x[i], [&](int j, double rsq) {
-      found = found || (rsq < dx * dx && dx > TOO_COARSE * fix_fsi->dx_of(type[j]));
+      found = found || (rsq < dx * dx && dx > TOO_COARSE * disc->dx_of(type[j]));
     });
     return found;
   });
@@ -389,9 +392,9 @@ void FixFSIRefine::warn_of_bodies()
 // Past thin bodies beside i, through which nobody splits or merges, or null
 const Sight *FixFSIRefine::sight_from(int i) const
 {
-  Sight *const sight = fix_fsi->sight.get();
+  Sight *const sight = disc->sight.get();
   if (!sight || !sight->near(atom->x[i])) return nullptr;
-  sight->look_from(atom->x[i], fix_fsi->resolution[atom->type[i]].cut);
+  sight->look_from(atom->x[i], disc->resolution[atom->type[i]].cut);
   return sight;
 }
 
@@ -408,7 +411,7 @@ static uint64_t hash_of(tagint a, tagint b)
 double FixFSIRefine::crowd_of_walls(const double *x, double dx) const
 {
   double sum = 0.0;
-  for (const auto &wall : fix_fsi->walls.wall) {
+  for (const auto &wall : step->walls.wall) {
     if (!wall.spans(x, dx)) continue;
     const double s = wall.distance(x);
     if (wall.finite && s < -dx) continue;
@@ -416,7 +419,7 @@ double FixFSIRefine::crowd_of_walls(const double *x, double dx) const
     const double q = 0.5 * dx / s;
     sum += q * q * q * q;
   }
-  for (int d = 0; d < fix_fsi->dim; d++)
+  for (int d = 0; d < disc->dim; d++)
     if (!domain->periodicity[d] && (x[d] <= domain->boxlo[d] || x[d] >= domain->boxhi[d]))
       return HUGE_VAL;
   return sum;
@@ -428,7 +431,7 @@ template <int D> void FixFSIRefine::slopes(Division &two, const Cells &cells) co
 {
   double *const *const x = atom->x, *const *const v = atom->v, *const rho = atom->rho;
   const int i = two.i;
-  const double dx = fix_fsi->dx_of(atom->type[i]), cut = fix_fsi->resolution[atom->type[i]].cut;
+  const double dx = disc->dx_of(atom->type[i]), cut = disc->resolution[atom->type[i]].cut;
   const Sight *const sight = sight_from(i);
   std::vector<int> near;    // the same sums in whatever order particles are
   cells.around(x[i], [&](int j, double rsq) {
@@ -466,17 +469,17 @@ template <int D> void FixFSIRefine::slopes(Division &two, const Cells &cells) co
 int FixFSIRefine::choose_direction(int i, const Cells &cells) const
 {
   const double *const x = atom->x[i];
-  const int dim = fix_fsi->dim;
-  const double dx = fix_fsi->dx_of(atom->type[i]), finer = split_spacing(dim),
+  const int dim = disc->dim;
+  const double dx = disc->dx_of(atom->type[i]), finer = split_spacing(dim),
                distance = split_distance(dim) * dx, reach = CROWDED * dx,
-               cut = fix_fsi->resolution[atom->type[i]].cut;
+               cut = disc->resolution[atom->type[i]].cut;
   const Sight *const sight = sight_from(i);
   std::vector<SplitNeighbor> crowd;
   cells.around(x, [&](int j, double rsq) {
     if (j == i || rsq > reach * reach) return;
     SplitNeighbor n;
     MathExtra::sub3(atom->x[j], x, n.x);
-    const double of_j = fix_fsi->dx_of(atom->type[j]);
+    const double of_j = disc->dx_of(atom->type[j]);
     if (heading[j] == 0) {
       n.spacing = 0.5 * (finer * dx + of_j);
       crowd.push_back(n);
@@ -521,19 +524,19 @@ void FixFSIRefine::choose_directions(const std::vector<int> &which, const Cells 
 void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
 {
   static constexpr int PASSES = 3;    // the next wall particle may be as near
-  const double *const x = atom->x[two.i], dx = fix_fsi->dx,
-                      fine = fix_fsi->dx_of(types[level(two.i) + 1]);
+  const double *const x = atom->x[two.i], dx = disc->dx,
+                      fine = disc->dx_of(types[level(two.i) + 1]);
   for (int pass = 0; pass < 2 * PASSES; pass++) {
     const double to = pass % 2 ? 1.0 : -1.0;
     double at[3], away[3] = {}, deepest = 0.0;
     for (int d = 0; d < 3; d++) at[d] = x[d] + two.off[d] + to * two.dx[d];
     cells.around(at, [&](int j, double rsq) {
       const int t = atom->type[j];
-      const double own = fix_fsi->dx_of(t), r = std::sqrt(rsq),
-                   depth = fix_fsi->state[t].guard * (fine + own) / (dx + own) - r;
+      const double own = disc->dx_of(t), r = std::sqrt(rsq),
+                   depth = disc->state[t].guard * (fine + own) / (dx + own) - r;
       if (depth <= 0.0 || r == 0.0) return;
       deepest = std::max(deepest, depth);
-      for (int d = 0; d < fix_fsi->dim; d++) away[d] += depth / r * (at[d] - atom->x[j][d]);
+      for (int d = 0; d < disc->dim; d++) away[d] += depth / r * (at[d] - atom->x[j][d]);
     });
     const double length = MathExtra::len3(away);
     for (int d = 0; d < 3 && length > 0.0; d++) two.off[d] += deepest / length * away[d];
@@ -550,45 +553,43 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
   std::sort(which.begin(), which.end(), [&](int a, int b) {
     return atom->tag[a] < atom->tag[b];
   });
-  const Cells cells(atom->x, atom->nlocal + atom->nghost, fix_fsi->dim, fix_fsi->cut, [&](int j) {
-    return fix_fsi->state[atom->type[j]].species != NONE;
+  const Cells cells(atom->x, atom->nlocal + atom->nghost, disc->dim, disc->cut, [&](int j) {
+    return disc->state[atom->type[j]].species != NONE;
   });
   choose_directions(which, cells);
   for (const int i : which) {
     if (heading[i] == 0) continue;    // no room: next time
     Division two;
     two.i = i;
-    const double distance = split_distance(fix_fsi->dim) * fix_fsi->dx_of(atom->type[i]);
+    const double distance = split_distance(disc->dim) * disc->dx_of(atom->type[i]);
     for (int d = 0; d < 3; d++) two.dx[d] = distance * directions[heading[i] - 1][d];
-    fix_fsi->dim == 2 ? slopes<2>(two, cells) : slopes<3>(two, cells);
+    disc->dim == 2 ? slopes<2>(two, cells) : slopes<3>(two, cells);
     keep_off_walls(two, cells);
     list.push_back(two);
     const double m = atom->rmass[i];
     double spin[3];
     MathExtra::cross3(two.dx, two.dv, spin);
-    mine[GAINED] += 0.5 * m * MathExtra::lensq3(two.dv);
-    for (int d = 0; d < 3; d++) mine[SPIN + d] -= m * spin[d];
+    of_rank[GAINED] += 0.5 * m * MathExtra::lensq3(two.dv);
+    for (int d = 0; d < 3; d++) of_rank[SPIN + d] -= m * spin[d];
   }
   return list;
 }
 
-// Has a segment of a mirror wall one on each side? Who is before it sees the other where it would
+// Has a segment of a mirror wall one on each side? The one before it sees the other where it would
 // see the image of one on its own side.
 static bool are_apart(const Walls &walls, const double *x, const double *y)
 {
-  bool apart = false;
-  for (size_t k = 0; k < walls.wall.size(); k++) {
+  for (int k = 0; k < (int) walls.wall.size(); k++) {
     const Wall &wall = walls.wall[k];
     const double a = wall.distance(x), b = wall.distance(y);
     if (!wall.finite || a * b > 0.0 || a == b) continue;
-    const double *const from = a > b ? x : y, *const to = a > b ? y : x;
-    double original[3] = {to[0], to[1], to[2]};
-    original[wall.axis] = 2.0 * wall.position - to[wall.axis];
-    walls.images(1 << k, 0.0, from, original, HUGE_VAL, [&](const auto &...) {
-      apart = true;
-    });
+    const Walls::Reflection reflection = {1 << k, 1, {k}};
+    const double *const from = a > b ? x : y;
+    double original[3], away[3], rsq = 0.0;
+    Mirror(walls, reflection).reflect(a > b ? y : x, original);
+    if (walls.sees(reflection, from, original, HUGE_VAL, rsq, away)) return true;
   }
-  return apart;
+  return false;
 }
 
 // Merging: pairs of which each is the other's best partner, by distance, then by a hash of both
@@ -603,29 +604,11 @@ void FixFSIRefine::choose_partners()
   const auto wants = [&](int i) {
     return (carried[i] & MERGE) != 0;
   };
-  const bool segments = fix_fsi->walls.finite();
-  const Cells cells(atom->x, nall, fix_fsi->dim, FAR_REACH * fix_fsi->dx_of(types[1]), wants);
+  const Cells cells(atom->x, nall, disc->dim, FAR_REACH * disc->dx_of(types[1]), wants);
   for (int round = 0; round < ROUNDS; round++) {
     for (int i = 0; i < atom->nlocal; i++) {
       if (!wants(i) || partner[i] < 0) continue;
-      const double per_dx = 1.0 / fix_fsi->dx_of(atom->type[i]),
-                   cut = fix_fsi->resolution[atom->type[i]].cut;
-      const Sight *const sight = sight_from(i);
-      std::pair<int, uint64_t> best;
-      chosen[i] = -1;
-      cells.around(atom->x[i], [&](int j, double rsq) {
-        if (tag[j] == tag[i] || partner[j] < 0 || atom->type[j] != atom->type[i]) return;
-        if (segments && are_apart(fix_fsi->walls, atom->x[i], atom->x[j])) return;
-        const double q = std::sqrt(rsq) * per_dx;
-        if (q >= ((carried[i] | carried[j]) & EAGER ? FAR_REACH : REACH)) return;
-        if (sight && sight->visible(atom->x[j], cut) < 1.0) return;
-        const int late = (carried[i] | carried[j]) & EAGER ? 0 : LATER;
-        const std::pair<int, uint64_t> key = {late + (int) (PER_SPACING * q + OFF_LATTICE),
-                                              hash_of(tag[i], tag[j])};
-        if (chosen[i] >= 0 && !(key < best)) return;
-        best = key;
-        chosen[i] = j;
-      });
+      chosen[i] = best_partner(i, cells);
       partner[i] = chosen[i] < 0 ? 0 : tag[chosen[i]];
     }
     send(partner);
@@ -635,7 +618,32 @@ void FixFSIRefine::choose_partners()
     for (const int i : found) partner[i] = -partner[i];
     send(partner);
   }
-  for (int i = 0; i < atom->nlocal; i++) mine[WAITING] += wants(i) && partner[i] >= 0;
+  for (int i = 0; i < atom->nlocal; i++) of_rank[WAITING] += wants(i) && partner[i] >= 0;
+}
+
+// of those that have none; -1: there is none in reach
+int FixFSIRefine::best_partner(int i, const Cells &cells) const
+{
+  const tagint *const tag = atom->tag;
+  const double per_dx = 1.0 / disc->dx_of(atom->type[i]), cut = disc->resolution[atom->type[i]].cut;
+  const bool segments = step->walls.finite();
+  const Sight *const sight = sight_from(i);
+  std::pair<int, uint64_t> best;
+  int found = -1;
+  cells.around(atom->x[i], [&](int j, double rsq) {
+    if (tag[j] == tag[i] || partner[j] < 0 || atom->type[j] != atom->type[i]) return;
+    if (segments && are_apart(step->walls, atom->x[i], atom->x[j])) return;
+    const bool eager = (carried[i] | carried[j]) & EAGER;
+    const double q = std::sqrt(rsq) * per_dx;
+    if (q >= (eager ? FAR_REACH : REACH)) return;
+    if (sight && sight->visible(atom->x[j], cut) < 1.0) return;
+    const std::pair<int, uint64_t> key = {
+        (eager ? 0 : LATER) + (int) (PER_SPACING * q + OFF_LATTICE), hash_of(tag[i], tag[j])};
+    if (found >= 0 && !(key < best)) return;
+    best = key;
+    found = j;
+  });
+  return found;
 }
 
 // the one of the lower ID becomes both, on its rank; the other's rank deletes it
@@ -655,7 +663,7 @@ std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gon
     MathExtra::sub3(atom->v[j], atom->v[i], faster);
     Union one;
     one.i = i;
-    one.energy = fix_fsi->population.energy(i);    // a ghost has no image flags: see remove()
+    one.energy = population->energy(i);    // a ghost has no image flags: see remove()
     one.rmass = m + n;
     one.rho = one.rmass / (m / atom->rho[i] + n / atom->rho[j]);
     for (int d = 0; d < 3; d++) {
@@ -664,15 +672,15 @@ std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gon
     }
     list.push_back(one);
     MathExtra::cross3(away, faster, spin);
-    mine[LOST] += 0.5 * reduced * MathExtra::lensq3(faster);
-    for (int d = 0; d < 3; d++) mine[SPIN + d] += reduced * spin[d];
+    of_rank[LOST] += 0.5 * reduced * MathExtra::lensq3(faster);
+    for (int d = 0; d < 3; d++) of_rank[SPIN + d] += reduced * spin[d];
   }
   return list;
 }
 
 void FixFSIRefine::unite(const std::vector<Union> &unions)
 {
-  double *const account = fix_fsi->account(FixFSI::LEVELS);
+  double *const account = ledger->account(Ledger::LEVELS);
   for (const auto &one : unions) {
     const int i = one.i;
     std::copy_n(one.x, 3, atom->x[i]);
@@ -680,33 +688,32 @@ void FixFSIRefine::unite(const std::vector<Union> &unions)
     atom->rho[i] = one.rho;
     atom->rmass[i] = one.rmass;
     atom->type[i] = types[level(i) - 1];
-    if (account) *account += one.energy - fix_fsi->population.energy(i);
+    if (account) *account += one.energy - population->energy(i);
   }
 }
 
 void FixFSIRefine::divide(const std::vector<Division> &divisions)
 {
-  auto &population = fix_fsi->population;
-  double *const account = fix_fsi->account(FixFSI::LEVELS);
+  double *const account = ledger->account(Ledger::LEVELS);
   std::vector<tagint> parents;
   for (const auto &two : divisions) parents.push_back(atom->tag[two.i]);
   auto all = gather(parents, world);
   std::sort(all.begin(), all.end());
-  const auto ids = population.ids((int) all.size(), who);
+  const auto ids = population->ids((int) all.size(), who);
   for (const auto &two : divisions) {
     const int i = two.i;
-    if (account) *account += population.energy(i);
+    if (account) *account += population->energy(i);
     atom->type[i] = types[level(i) + 1];
     atom->rmass[i] *= 0.5;
     const auto nth = std::lower_bound(all.begin(), all.end(), atom->tag[i]) - all.begin();
-    const int j = population.copy(i, ids[nth]);
+    const int j = population->copy(i, ids[nth]);
     const auto move = [&](int k, double to) {
-      for (int d = 0; d < fix_fsi->dim; d++) {
+      for (int d = 0; d < disc->dim; d++) {
         atom->x[k][d] += two.off[d] + to * two.dx[d];
         atom->v[k][d] += to * two.dv[d];
       }
       atom->rho[k] += to * two.drho;
-      if (account) *account -= population.energy(k);
+      if (account) *account -= population->energy(k);
     };
     move(i, 1.0);
     move(j, -1.0);

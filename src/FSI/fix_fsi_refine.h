@@ -30,7 +30,11 @@ FixStyle(fsi/refine,FixFSIRefine);
 namespace LAMMPS_NS {
 namespace FSI {
   class Cells;
+  struct Discretization;
+  struct Ledger;
+  class Population;
   class Sight;
+  struct StepState;
   class Zones;
 }    // namespace FSI
 
@@ -71,19 +75,23 @@ class FixFSIRefine : public Fix {
   int every, settle_steps;
   std::vector<int> types, level_of;           // from the coarsest on; per type, -1: none of them
   const std::unique_ptr<FSI::Zones> zones;    // where the levels from 1 on are
-  class FixFSI *fix_fsi;
+  class FixFSI *fix_fsi = nullptr;
+  const FSI::Discretization *disc = nullptr;
+  const FSI::StepState *step = nullptr;
+  FSI::Ledger *ledger = nullptr;
+  FSI::Population *population = nullptr;
   std::vector<class FixFSIInlet *> open_ends;
   std::vector<std::array<double, 3>> directions;    // of splitting
   double total[NTOTAL];
   bigint last_event;
-  bool told;
+  bool warned;    // in this run
 
   // of one event
   // per particle, local and ghost: see Wish; name; direction, from 1 on, 0: it does not split
   std::vector<tagint> carried, partner, heading;
   std::vector<int> chosen;    // per local one: index of its partner
   std::vector<tagint> *message;
-  double mine[NTOTAL];
+  double of_rank[NTOTAL];
 
   int finest() const { return (int) types.size() - 1; }
   void check_mass(int i) const;
@@ -106,6 +114,7 @@ class FixFSIRefine : public Fix {
   void keep_off_walls(Division &, const FSI::Cells &) const;
   std::vector<Division> plan_divisions();
   void choose_partners();
+  int best_partner(int i, const FSI::Cells &) const;
   std::vector<Union> plan_unions(std::vector<int> &gone);
   void unite(const std::vector<Union> &);
   void divide(const std::vector<Division> &);

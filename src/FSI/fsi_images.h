@@ -121,10 +121,8 @@ namespace FSI {
         xs[first + k] = row;
         vs[first + k] = row + 3;
         const Mirror &m = all[k].mirror;
-        for (int d = 0; d < 3; d++) {
-          row[d] = m.x[d] + m.sign[d] * x[all[k].of][d];
-          row[3 + d] = m.sign[d] * v[all[k].of][d];
-        }
+        m.reflect(x[all[k].of], row);
+        for (int d = 0; d < 3; d++) row[3 + d] = m.sign[d] * v[all[k].of][d];
       }
     }
     double **positions(double **x) { return any() ? xs.data() : x; }

@@ -167,25 +167,33 @@ namespace FSI {
       return part;
     }
 
-    // Calls f(reflection, rsq, dx) for every image M x_j of x_j that x_i sees within the cutoff:
-    // rsq = |x_i - M x_j|^2, dx[3] = x_i - M x_j. mask: walls near both; rsq0 = |x_i - x_j|^2 (0
-    // and x_j = x_i for the images of i itself).
+    // Does x_i see the image M x_j of x_j within the cutoff? rsq: |x_i - x_j|^2, which becomes
+    // |x_i - M x_j|^2; dx[3] = x_i - M x_j. The one rule of all that have images
+    bool sees(const Reflection &s, const double *xi, const double *xj, double cutsq, double &rsq,
+              double *dx) const
+    {
+      double ai[3], aj[3];
+      for (int d = 0; d < 3; d++) dx[d] = xi[d] - xj[d];
+      for (int k = 0; k < s.n; k++) {
+        const Wall &w = wall[s.w[k]];
+        ai[k] = w.distance(xi);
+        aj[k] = w.distance(xj);
+        rsq += 4.0 * ai[k] * aj[k];
+        dx[w.axis] += 2.0 * w.side * aj[k];
+      }
+      return rsq < cutsq && passes(s, xi, dx, ai, aj);
+    }
+
+    // Calls f(reflection, rsq, dx) for every image that x_i sees. mask: walls near both; rsq0 =
+    // |x_i - x_j|^2 (0 and x_j = x_i for the images of i itself).
     template <class F>
     void images(int mask, double rsq0, const double *xi, const double *xj, double cutsq,
                 F &&f) const
     {
       for (const auto &s : reflections) {
         if ((s.mask & mask) != s.mask) continue;
-        double rsq = rsq0, dx[3] = {xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]};
-        double ai[3], aj[3];
-        for (int k = 0; k < s.n; k++) {
-          const Wall &w = wall[s.w[k]];
-          ai[k] = w.distance(xi);
-          aj[k] = w.distance(xj);
-          rsq += 4.0 * ai[k] * aj[k];
-          dx[w.axis] += 2.0 * w.side * aj[k];
-        }
-        if (rsq < cutsq && passes(s, xi, dx, ai, aj)) f(s, rsq, dx);
+        double rsq = rsq0, dx[3];
+        if (sees(s, xi, xj, cutsq, rsq, dx)) f(s, rsq, dx);
       }
     }
 
@@ -257,6 +265,10 @@ namespace FSI {
             rubbing_v[d] = 2.0 * w.velocity[d] - rubbing_v[d];
           }
       }
+    }
+    void reflect(const double *original, double *image) const    // a point
+    {
+      for (int d = 0; d < 3; d++) image[d] = x[d] + sign[d] * original[d];
     }
   };
 
