@@ -41,11 +41,28 @@ static std::string face(const Wall &w)
 }
 
 FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), guard(0.1), reflected(0), fix_fsi(nullptr)
+    Fix(lmp, narg, arg), guard(0.1), reflected(0)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/mirror requires atom_style fsi");
 
-  // one keyword at a time, and the values that follow it
+  read_walls(narg, arg);
+  check_symmetry();
+  for (const auto &w : walls) start.push_back(w.position);
+  force_on.resize(walls.size());
+  begin_state(false);
+  dynamic_group_allow = 1;
+  scalar_flag = array_flag = 1;
+  size_array_rows = walls.size();
+  size_array_cols = 3;
+  extscalar = extarray = 1;
+  global_freq = 1;
+  restart_global = 1;
+  nevery = 1;
+}
+
+// one keyword at a time, and the values that follow it
+void FixFSIWallMirror::read_walls(int narg, char **arg)
+{
   static const std::vector<std::string> faces = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"},
                                         others = {"range",    "velocity",    "slip",
                                                   "symmetry", "hydrostatic", "guard"};
@@ -65,7 +82,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   words.key("hydrostatic").logical(hydrostatic, false);
   words.key("guard").number(distance, guard, Range::between(0.0, 0.45));
 
-  std::vector<bool> slip_said;    // of each wall
+  std::vector<bool> slip_given;    // of each wall
   for (int iarg = 3, next; iarg < narg; iarg = next) {
     const std::string key = arg[iarg];
     next = iarg + 1;
@@ -73,7 +90,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
     words.parse(next - iarg, arg + iarg);
     if (is_in(faces, key)) {
       add_wall(key, place);
-      slip_said.push_back(false);
+      slip_given.push_back(false);
     } else if (key == "guard") {
       guard = distance;
     } else if (walls.empty()) {
@@ -84,7 +101,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
       std::copy_n(velocity, 3, walls.back().velocity);
     } else if (key == "slip") {
       walls.back().noslip = !slip;
-      slip_said.back() = true;
+      slip_given.back() = true;
     } else if (key == "hydrostatic") {
       walls.back().hydrostatic = hydrostatic;
     } else
@@ -92,20 +109,7 @@ FixFSIWallMirror::FixFSIWallMirror(LAMMPS *lmp, int narg, char **arg) :
   }
   if (walls.empty())
     error->all(FLERR, "Fix fsi/wall/mirror needs at least one of xlo, xhi, ylo, yhi, zlo, zhi");
-
-  check_symmetry();
-  warn_of_slip(slip_said);
-  for (const auto &w : walls) start.push_back(w.position);
-  force_on.resize(walls.size());
-  begin_state(false);
-  dynamic_group_allow = 1;
-  scalar_flag = array_flag = 1;
-  size_array_rows = walls.size();
-  size_array_cols = 3;
-  extscalar = extarray = 1;
-  global_freq = 1;
-  restart_global = 1;
-  nevery = 1;
+  warn_of_slip(slip_given);
 }
 
 // key: xlo to zhi
@@ -154,11 +158,11 @@ void FixFSIWallMirror::check_symmetry() const
 }
 
 // a channel of which one wall slips is most likely one whose script says slip once for both
-void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
+void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_given) const
 {
   for (size_t a = 0; a < walls.size() && comm->me == 0; a++)
     for (size_t b = 0; b < walls.size(); b++)
-      if (walls[a].axis == walls[b].axis && walls[a].noslip && !walls[b].noslip && !slip_said[b])
+      if (walls[a].axis == walls[b].axis && walls[a].noslip && !walls[b].noslip && !slip_given[b])
         error->warning(FLERR,
                        "Fix fsi/wall/mirror {}: slip no is of wall {} alone, wall {} slips: slip "
                        "belongs to the wall that it follows",
@@ -168,6 +172,8 @@ void FixFSIWallMirror::warn_of_slip(const std::vector<bool> &slip_said) const
 void FixFSIWallMirror::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/mirror");
+  disc = fix_fsi;
+  ledger = fix_fsi;
 }
 
 // a fluid particle that starts behind a wall is a mistake in the script
@@ -176,9 +182,9 @@ void FixFSIWallMirror::setup(int)
   double **x = atom->x;
   const int *const mask = atom->mask, *const type = atom->type;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID) continue;
+    if (!(mask[i] & groupbit) || disc->state[type[i]].species != FLUID) continue;
     for (const auto &w : walls)
-      if (!w.finite && w.distance(x[i]) < -fix_fsi->dx)
+      if (!w.finite && w.distance(x[i]) < -disc->dx)
         error->one(FLERR, "Fluid atom {} at {} {} {} is behind the {} wall of fix {}", atom->tag[i],
                    x[i][0], x[i][1], x[i][2], face(w), id);
   }
@@ -193,14 +199,14 @@ void FixFSIWallMirror::post_integrate()
   const Phase phase(fix_fsi->profile, Profile::WALLS);
   auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
   const int *const mask = atom->mask, *const type = atom->type;
-  const double dth = 0.5 * update->dt, near = guard * fix_fsi->dx;
+  const double dth = 0.5 * update->dt, near = guard * disc->dx;
 
   for (auto &w : walls) w.position += dth * w.velocity[w.axis];
   turns.clear();
 
   const InnerBox inner(walls, near);
   for (int i = 0; i < atom->nlocal; i++) {
-    if (inner.contains(x[i]) || !(mask[i] & groupbit) || fix_fsi->state[type[i]].species != FLUID)
+    if (inner.contains(x[i]) || !(mask[i] & groupbit) || disc->state[type[i]].species != FLUID)
       continue;
     for (const auto &w : walls) {
       const double a = w.distance(x[i]);
@@ -208,13 +214,13 @@ void FixFSIWallMirror::post_integrate()
       // behind a segment already at the last step: it flows there by right
       const double ahead = update->dt * w.side * (v[i][w.axis] - w.velocity[w.axis]);
       if (w.finite && a < 0.0 && a < ahead) continue;
-      const double before = fix_fsi->kept ? fix_fsi->potential(i) : 0.0;
+      const double before = ledger->kept ? fix_fsi->potential(i) : 0.0;
       x[i][w.axis] += w.side * 2.0 * (near - a);
-      if (fix_fsi->kept) fix_fsi->energy_out[FixFSI::WALLS] += before - fix_fsi->potential(i);
+      if (ledger->kept) ledger->energy_out[Ledger::WALLS] += before - fix_fsi->potential(i);
       const double vn = v[i][w.axis] - w.velocity[w.axis];
       if (vn * w.side < 0.0) {
-        if (fix_fsi->kept)
-          fix_fsi->energy_out[FixFSI::WALLS] += 2.0 * vn * atom->rmass[i] *
+        if (ledger->kept)
+          ledger->energy_out[Ledger::WALLS] += 2.0 * vn * atom->rmass[i] *
               (v[i][w.axis] - vn + dth * fix_fsi->body_forces.on(i)[w.axis]);
         v[i][w.axis] -= 2.0 * vn;
         if (fix_fsi->profile) fix_fsi->profile->reflected[w.axis] -= 2.0 * vn * atom->rmass[i];
@@ -230,9 +236,9 @@ void FixFSIWallMirror::end_of_step()
   for (size_t k = 0; k < walls.size(); k++) {
     Wall &w = walls[k];
     w.position += 0.5 * update->dt * w.velocity[w.axis];
-    if (fix_fsi->kept)
+    if (ledger->kept)
       for (int d = 0; d < 3; d++)
-        fix_fsi->energy_out[FixFSI::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
+        ledger->energy_out[Ledger::WALLS] += update->dt * force_on[k][d] * w.velocity[d];
   }
 }
 
@@ -263,7 +269,7 @@ void FixFSIWallMirror::go_back()
     const Wall &w = walls[t->wall];
     double &x = atom->x[i][w.axis], &v = atom->v[i][w.axis];
     const double dth = atom->mask[i] & fix_fsi->groupbit ? 0.5 * update->dt : 0.0;
-    x = 2.0 * (w.position + w.side * guard * fix_fsi->dx) - (x + dth * v);
+    x = 2.0 * (w.position + w.side * guard * disc->dx) - (x + dth * v);
     if (t->turned) v = 2.0 * w.velocity[w.axis] - v;
     x -= dth * v;
   }
@@ -273,9 +279,11 @@ void FixFSIWallMirror::go_back()
 void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
 {
   const Facts fluid = facts_of_fluids(lmp);
-  const bool joins = std::any_of(walls.begin(), walls.end(), [](const Wall &w) {
-    return w.joins;
-  });
+  bool joins = false, noslip = false;
+  for (const auto &w : walls) {
+    joins = joins || w.joins;
+    noslip = noslip || w.noslip;
+  }
   if (joins && all.solids == 0)
     nothing("Fix fsi/wall/mirror symmetry", "no particle is a solid");
   else if (joins)
@@ -284,11 +292,7 @@ void FixFSIWallMirror::find_idle(const Census &all, const Idle &nothing) const
     nothing("Fix fsi/wall/mirror", "walls mirror fluids, and there is no pair_style fsi/fluid");
   else if (all.fluids == 0)
     nothing("Fix fsi/wall/mirror", "no particle is a fluid");
-  else if (std::any_of(walls.begin(), walls.end(),
-                       [](const Wall &w) {
-                         return w.noslip;
-                       }) &&
-           !fluid.laminar)
+  else if (noslip && !fluid.laminar)
     nothing("Fix fsi/wall/mirror slip no", "pair_style fsi/fluid has no laminar/visc");
 }
 

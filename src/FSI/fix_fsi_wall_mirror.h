@@ -57,10 +57,11 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
  private:
   std::vector<double> start;    // positions in the command
   std::string settings(int) const, faces() const;
+  void read_walls(int narg, char **arg);
   void add_wall(const std::string &key, double place);
   void add_range(FSI::Wall &, int along, double low, double high) const;
   void check_symmetry() const;
-  void warn_of_slip(const std::vector<bool> &slip_said) const;
+  void warn_of_slip(const std::vector<bool> &slip_given) const;
   double guard;    // smallest distance to a wall, in spacings
   bigint reflected;
   struct Turn {    // a reflection of this step
@@ -69,7 +70,9 @@ class FixFSIWallMirror : public Fix, public FSI::Part {
     bool turned;    // the velocity, too
   };
   std::vector<Turn> turns;
-  class FixFSI *fix_fsi;
+  class FixFSI *fix_fsi = nullptr;
+  const FSI::Discretization *disc = nullptr;
+  FSI::Ledger *ledger = nullptr;
 };
 
 }    // namespace LAMMPS_NS

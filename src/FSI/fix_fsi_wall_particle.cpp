@@ -46,7 +46,7 @@ static constexpr double AUTO = -1.0;
 
 FixFSIWallParticle::FixFSIWallParticle(LAMMPS *lmp, int narg, char **arg) :
     FixFields(lmp, narg, arg), keywords(lmp, "fix fsi/wall/particle"), before(nullptr),
-    fix_fsi(nullptr), swaps(new Swaps(lmp)), sum(nullptr), nsum(0), turns(false), force_on{}
+    swaps(new Swaps(lmp)), sum(nullptr), nsum(0), turns(false), force_on{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi/wall/particle requires atom_style fsi");
   keywords.key("slip").logical(slip, true);
@@ -67,18 +67,48 @@ FixFSIWallParticle::~FixFSIWallParticle() = default;
 void FixFSIWallParticle::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/wall/particle");
+  disc = fix_fsi;
+  step = fix_fsi;
   const auto *fluid = first_of(pairs_of<PairFSIFluid>(lmp));
   if (!fluid)
     error->all(FLERR,
                "Fix fsi/wall/particle requires pair_style fsi/fluid: its walls are for fluids");
 
+  enter_states(types_of_members());
+  if (!slip && !fluid->has_laminar() && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has "
+                   "no laminar/visc");
+
+  movers = fixes_of<FixFSIMove>(lmp);
+  const bool stiffness = disc->several_stiffnesses();
+  const int dim = disc->dim;
+  first_moment = 2 + dim * (slip ? 1 : 2);
+  first_stiffness = first_moment + (linear ? dim * (dim + 5) / 2 : turns ? dim : 0);
+  nsum = first_stiffness + stiffness;
+  fields.set("sums over the fluid", Fields::STEP, true, sum, nsum);
+  for (auto *message : {&to_ghosts, &from_ghosts}) {
+    *message = std::make_unique<Message>(lmp, disc->state);
+    (*message)->group = groupbit;
+  }
+  to_ghosts->add(atom->rho, {RIGID});
+  if (stiffness) to_ghosts->add(step->wall_stiffness, {RIGID});
+  if (!slip) to_ghosts->add(step->wall_velocity, 0, dim, {RIGID});
+  from_ghosts->add(sum, 0, nsum, {RIGID});
+  comm_forward = to_ghosts->size();
+  comm_reverse = nsum;
+}
+
+// 1 for each that there is on any rank; and finds whether such that fluid sticks to are moved
+std::vector<int> FixFSIWallParticle::types_of_members()
+{
   int moved = 0;    // groups that something moves, where fluid sticks
   for (const auto &fix : modify->get_fix_list())
     if (fix->time_integrate && !slip) moved |= fix->groupbit;
-  std::vector<int> mine(atom->ntypes + 1, 0), types(atom->ntypes + 1);
+  std::vector<int> own(atom->ntypes + 1, 0), types(atom->ntypes + 1);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
-    if (fix_fsi->state[atom->type[i]].species != RIGID)
+    if (disc->state[atom->type[i]].species != RIGID)
       error->one(FLERR,
                  "Atom {} of fix fsi/wall/particle {} is of type {}, whose material is not a wall",
                  atom->tag[i], id, atom->type[i]);
@@ -87,11 +117,16 @@ void FixFSIWallParticle::init()
                  "Atom {} of fix fsi/wall/particle {} is also in the group of fix fsi: leave it "
                  "out, and move it with fix move or fix rigid",
                  atom->tag[i], id);
-    mine[atom->type[i]] = 1;
-    if (atom->mask[i] & moved) mine[0] = 1;
+    own[atom->type[i]] = 1;
+    if (atom->mask[i] & moved) own[0] = 1;
   }
-  MPI_Allreduce(mine.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(own.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
   turns = types[0];
+  return types;
+}
+
+void FixFSIWallParticle::enter_states(const std::vector<int> &types)
+{
   for (int t = 1; t <= atom->ntypes; t++) {
     if (!types[t]) continue;
     State &s = fix_fsi->state[t];
@@ -102,30 +137,8 @@ void FixFSIWallParticle::init()
     // guard is noise
     const double spacings = guard != AUTO ? guard : s.floor < 0.0 ? 0.0 : 0.9;
     // of the distance from the fluid
-    s.guard = spacings * 0.5 * (fix_fsi->dx + fix_fsi->dx_of(t));
+    s.guard = spacings * 0.5 * (disc->dx + disc->dx_of(t));
   }
-  if (!slip && !fluid->has_laminar() && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix fsi/wall/particle slip no has little to act on: pair_style fsi/fluid has "
-                   "no laminar/visc");
-
-  movers = fixes_of<FixFSIMove>(lmp);
-  const bool stiffness = fix_fsi->several_stiffnesses();
-  const int dim = fix_fsi->dim;
-  first_moment = 2 + dim * (slip ? 1 : 2);
-  first_stiffness = first_moment + (linear ? dim * (dim + 5) / 2 : turns ? dim : 0);
-  nsum = first_stiffness + stiffness;
-  fields.set("sums over the fluid", Fields::STEP, true, sum, nsum);
-  for (auto *message : {&to_ghosts, &from_ghosts}) {
-    *message = std::make_unique<Message>(lmp, fix_fsi->state);
-    (*message)->group = groupbit;
-  }
-  to_ghosts->add(atom->rho, {RIGID});
-  if (stiffness) to_ghosts->add(fix_fsi->wall_stiffness, {RIGID});
-  if (!slip) to_ghosts->add(fix_fsi->wall_velocity, 0, dim, {RIGID});
-  from_ghosts->add(sum, 0, nsum, {RIGID});
-  comm_forward = to_ghosts->size();
-  comm_reverse = nsum;
 }
 
 void FixFSIWallParticle::set_fields(Scene &scene)
@@ -133,14 +146,15 @@ void FixFSIWallParticle::set_fields(Scene &scene)
   scene.noslip_walls = scene.noslip_walls || !slip;
 }
 
-template <class F> void FixFSIWallParticle::for_pairs(size_t level, F f) const
+template <class F> void FixFSIWallParticle::for_pairs(size_t level, double cutsq, F f) const
 {
   const auto *fluid = first_of(pairs_of<PairFSIFluid>(lmp));
   if (!fluid) return;    // a script has put another style in its place since the last run
-  for (const Row &row : fluid->rows_with_walls(level)) {
-    if (!(atom->mask[row.j[0]] & groupbit)) continue;    // a type is in one such fix
-    for (int k = 0; k < row.n; k++) f(row.j[k], row.i);
-  }
+  for (const Row &row : fluid->rows_with_walls(level))
+    if (atom->mask[row.j[0]] & groupbit)    // a type is in one such fix
+      for_near(row, atom->x, disc->dim, cutsq, [&](int w, const double *d, double rsq) {
+        f(w, row.i, d, rsq);
+      });
 }
 
 // What is added to the mean of the fluid's pressures p at a wall particle by weighted least squares
@@ -161,7 +175,7 @@ double FixFSIWallParticle::beyond_mean(const double *moments, double W, double p
   }
   for (int k = 0; k < D; k++)
     for (int l = 0; l < D; l++) covariance[k] -= rho * a[l] * C[k * D + l];
-  for (int k = 0; k < D; k++) C[k * D + k] += 0.005 * fix_fsi->dx * fix_fsi->dx;
+  for (int k = 0; k < D; k++) C[k * D + k] += 0.005 * disc->dx * disc->dx;
   cofactor<D>(C, adjoint);
   double sum = 0.0;
   for (int k = 0; k < D; k++)
@@ -174,8 +188,8 @@ static constexpr double BESIDE = 2.0;    // spacings
 
 void FixFSIWallParticle::find_near()
 {
-  const Cells wall(atom->x, atom->nlocal + atom->nghost, fix_fsi->dim,
-                   BESIDE * fix_fsi->dx + neighbor->skin, [this](int i) {
+  const Cells wall(atom->x, atom->nlocal + atom->nghost, disc->dim,
+                   BESIDE * disc->dx + neighbor->skin, [this](int i) {
                      return (atom->mask[i] & groupbit) != 0;
                    });
   first.clear();
@@ -183,7 +197,7 @@ void FixFSIWallParticle::find_near()
   for (const int i : members) {
     first.push_back(near.size());
     if (i >= atom->nlocal) break;
-    const double reach = BESIDE * fix_fsi->dx_of(atom->type[i]) + neighbor->skin;
+    const double reach = BESIDE * disc->dx_of(atom->type[i]) + neighbor->skin;
     wall.around(atom->x[i], reach, [&](int j, double rsq) {
       if (j != i && rsq < reach * reach) near.push_back(j);
     });
@@ -198,7 +212,7 @@ void FixFSIWallParticle::add_turn(int m, const double *way, double *v) const
   static constexpr double RIGID_TO = 1.0e-3;    // of what omega leaves, over all
   const double *const *const x = atom->x, *const *const speed = atom->v;
   const int i = members[m];
-  const double reach = BESIDE * fix_fsi->dx_of(atom->type[i]);
+  const double reach = BESIDE * disc->dx_of(atom->type[i]);
   double M[9] = {}, moment[3] = {}, total = 0.0;
   for (int k = first[m]; k < first[m + 1]; k++) {
     double d[3], u[3], across[3];
@@ -225,18 +239,17 @@ void FixFSIWallParticle::add_turn(int m, const double *way, double *v) const
     for (int b = 0; b < 3; b++) omega[a] += inverse * adjoint[3 * a + b] * moment[b];
   if (total - MathExtra::dot3(omega, moment) > RIGID_TO * total) return;
   MathExtra::cross3(omega, way, turn);
-  for (int d = 0; d < fix_fsi->dim; d++) v[d] += turn[d];
+  for (int d = 0; d < disc->dim; d++) v[d] += turn[d];
 }
 
 // sums over the fluid around each particle of the wall
 void FixFSIWallParticle::sum_up()
 {
-  const int dim = fix_fsi->dim;
-  double **x = atom->x;
+  const int dim = disc->dim;
   double **v = atom->v;
   const double *const rho = atom->rho;
   const int *const mask = atom->mask, *const type = atom->type;
-  const bool stiffness = fix_fsi->wall_stiffness;
+  const bool stiffness = step->wall_stiffness;
   if (neighbor->ago == 0) {
     members.clear();
     for (int i = 0; i < atom->nlocal + atom->nghost; i++)
@@ -250,13 +263,7 @@ void FixFSIWallParticle::sum_up()
   for (const int i : members) std::fill_n(sum[i], nsum, 0.0);
 
   for_levels(*fix_fsi, [&](size_t level, const auto &kernel) {
-    for_pairs(level, [&](int w, int j) {
-      double d[3], rsq = 0.0;
-      for (int k = 0; k < dim; k++) {
-        d[k] = x[w][k] - x[j][k];
-        rsq += d[k] * d[k];
-      }
-      if (rsq >= kernel.cutsq) return;
+    for_pairs(level, kernel.cutsq, [&](int w, int j, const double *d, double rsq) {
       const double W = kernel.W(std::sqrt(rsq));
       double *const s = sum[w];
       s[0] += W;
@@ -275,8 +282,7 @@ void FixFSIWallParticle::sum_up()
           for (int l = k; l < dim; l++) *m++ += W * d[k] * d[l];
         for (int k = 0; k < dim; k++) *m++ += W * p * d[k];
       }
-      if (stiffness)
-        s[first_stiffness] += W * fix_fsi->state[type[j]].rho0 * fix_fsi->state[type[j]].csq;
+      if (stiffness) s[first_stiffness] += W * disc->state[type[j]].rho0 * disc->state[type[j]].csq;
       if (!slip)
         for (int k = 0; k < dim; k++) s[2 + dim + k] += W * v[j][k];
     });
@@ -288,6 +294,22 @@ void FixFSIWallParticle::sum_up()
     });
 }
 
+// Acceleration: in this step where the motion is known, else in the last; a wall that is set in
+// motion has none in its first step
+void FixFSIWallParticle::find_acceleration(int i, double *a) const
+{
+  const double *const old = before[i], *from = old, *to = atom->v[i];
+  double known = old[3], span = update->dt + 2.0 * step->dt_offset, next[3];
+  for (const auto *mover : movers)
+    if ((atom->mask[i] & mover->groupbit) && mover->velocity_at_end(i, next)) {
+      from = atom->v[i];
+      to = next;
+      known = 1.0;
+      span = update->dt;
+    }
+  for (int k = 0; k < disc->dim; k++) a[k] = known > 0.0 ? (to[k] - from[k]) / span : 0.0;
+}
+
 // p_w = [sum p W + (g - a_w).sum rho (x_w - x) W]/sum W over the fluid around it (Adami et al., eq.
 // 27), a_w: acceleration of the wall; velocity of viscous forces 2 v_w - sum v W/sum W (eq. 23),
 // with the wall's velocity half way to the fluid that the mean is of, so that fluid sticks to the
@@ -295,59 +317,42 @@ void FixFSIWallParticle::sum_up()
 void FixFSIWallParticle::end_state(bool advance)
 {
   const Phase phase(fix_fsi->profile, Profile::WALLS);
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   double **v = atom->v;
   double *rho = atom->rho;
-  const int *const mask = atom->mask, *const type = atom->type;
-  const bool stiffness = fix_fsi->wall_stiffness;
   sum_up();
 
   for (size_t m = 0; m < members.size(); m++) {
     const int i = members[m];
     if (i >= atom->nlocal) break;    // ghosts come last
-    const State &state = fix_fsi->state[type[i]];
-    const double *const s = sum[i];
-    double *const old = before[i];
-    // acceleration: in this step where the motion is known, else in the last; a wall that is set in
-    // motion has none in its first step
-    const double *from = old, *to = v[i];
-    double known = old[3], span = update->dt + 2.0 * fix_fsi->dt_offset, next[3];
-    for (const auto *mover : movers)
-      if ((mask[i] & mover->groupbit) && mover->velocity_at_end(i, next)) {
-        from = v[i];
-        to = next;
-        known = 1.0;
-        span = update->dt;
-      }
-    double p = s[1], a[3];
+    const State &state = disc->state[atom->type[i]];
+    const double *const s = sum[i], *const moments = s + first_moment;
+    double p = s[1], a[3] = {};
+    if (advance) find_acceleration(i, a);
     for (int k = 0; k < dim; k++) {
-      a[k] = advance && known > 0.0 ? (to[k] - from[k]) / span : 0.0;
       p -= a[k] * s[2 + k];
       if (!slip)
-        fix_fsi->wall_velocity[i][k] =
-            2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
+        step->wall_velocity[i][k] = 2.0 * v[i][k] - (s[0] > 0.0 ? s[2 + dim + k] / s[0] : v[i][k]);
     }
     if (turns && s[0] > 0.0) {
       double way[3] = {};    // from the wall to the fluid
-      for (int k = 0; k < dim; k++) way[k] = -s[first_moment + k] / s[0];
-      add_turn(m, way, fix_fsi->wall_velocity[i]);
+      for (int k = 0; k < dim; k++) way[k] = -moments[k] / s[0];
+      add_turn(m, way, step->wall_velocity[i]);
     }
     p = s[0] > 0.0 ? p / s[0] : state.p0;
-    if (linear && s[0] > 0.0) {
-      const double *const moments = s + first_moment, mean = s[1] / s[0];
-      p += dim == 2 ? beyond_mean<2>(moments, s[0], mean, state.rho0, a)
-                    : beyond_mean<3>(moments, s[0], mean, state.rho0, a);
-    }
+    if (linear && s[0] > 0.0)
+      p += dim == 2 ? beyond_mean<2>(moments, s[0], s[1] / s[0], state.rho0, a)
+                    : beyond_mean<3>(moments, s[0], s[1] / s[0], state.rho0, a);
     p = std::max(p, state.floor);
-    if (stiffness) {
-      const double K = fix_fsi->wall_stiffness[i] = s[0] > 0.0 ? s[first_stiffness] / s[0]
-                                                               : state.rho0 * state.csq;
+    if (step->wall_stiffness) {
+      const double K = step->wall_stiffness[i] = s[0] > 0.0 ? s[first_stiffness] / s[0]
+                                                            : state.rho0 * state.csq;
       rho[i] = state.rho0 * (1.0 + (p - state.p0) / K);
     } else
       rho[i] = state.density(p);
     if (advance) {
-      std::copy_n(v[i], 3, old);
-      old[3] = 1.0;
+      std::copy_n(v[i], 3, before[i]);
+      before[i][3] = 1.0;
     }
   }
   sent = to_ghosts.get();
@@ -378,14 +383,11 @@ double FixFSIWallParticle::compute_scalar()
   if (!fix_fsi || fix_fsi != FixFSI::there(lmp)) return 0.0;
   if (update->whichflag == 0) FixFSI::ready(lmp, "Fix fsi/wall/particle");    // rows may be stale
   double counted = 0.0;
-  for (size_t level = 0; level < fix_fsi->levels.size(); level++)
-    for_pairs(level, [&](int w, int j) {
-      double rsq = 0.0;
-      for (int k = 0; k < fix_fsi->dim; k++)
-        rsq += (atom->x[w][k] - atom->x[j][k]) * (atom->x[w][k] - atom->x[j][k]);
-      const double own = fix_fsi->dx_of(atom->type[w]),
-                   limit = fix_fsi->state[atom->type[w]].guard *
-          ((fix_fsi->levels[level].dx + own) / (fix_fsi->dx + own));
+  for (size_t level = 0; level < disc->levels.size(); level++)
+    for_pairs(level, HUGE_VAL, [&](int w, int j, const double *, double rsq) {
+      const double own = disc->dx_of(atom->type[w]),
+                   limit = disc->state[atom->type[w]].guard *
+          ((disc->levels[level].dx + own) / (disc->dx + own));
       // without newton a pair across ranks is in the lists of both
       if (rsq < limit * limit)
         counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;

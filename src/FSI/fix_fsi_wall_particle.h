@@ -64,13 +64,17 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
                    // as the fluid has tension or not
   std::vector<class FixFSIMove *> movers;
   double **before;    // velocity at the last step, and whether there was one
-  class FixFSI *fix_fsi;
+  class FixFSI *fix_fsi = nullptr;
+  const FSI::Discretization *disc = nullptr;
+  FSI::StepState *step = nullptr;
   std::vector<int> members;                   // the group's particles, local and ghost
   const std::unique_ptr<FSI::Swaps> swaps;    // theirs
   std::unique_ptr<FSI::Message> to_ghosts, from_ghosts;
-  template <class F>
-  void for_pairs(size_t level, F f) const;    // f(wall particle, fluid particle) of those that
-                                              // may be within the kernel's support
+  std::vector<int> types_of_members();
+  void enter_states(const std::vector<int> &types);
+  // f(wall particle, fluid particle, distance between and its square) of those within a distance,
+  // if that is not beyond the kernel's support
+  template <class F> void for_pairs(size_t level, double cutsq, F f) const;
   void sum_up();
   double **sum;    // per atom, over the fluid: of W, p W, rho (x_wall - x) W, v W; with linear of d
                    // W, d d W, p d W, d = x_wall - x; with turns of d W
@@ -79,6 +83,7 @@ class FixFSIWallParticle : public FSI::FixFields, public FSI::Part {
   std::vector<int> first, near;    // of each local member, where its neighbors in the wall begin;
                                    // these
   void find_near();
+  void find_acceleration(int i, double *a) const;
   void add_turn(int m, const double *way, double *v) const;
   double force_on[3];    // this group, this rank's part
 

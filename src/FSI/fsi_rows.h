@@ -18,6 +18,7 @@
 #define LMP_FSI_ROWS_H
 
 #include "fsi_pack.h"
+#include "lmptype.h"
 
 #include <algorithm>
 #include <cstring>
@@ -125,6 +126,22 @@ namespace FSI {
         j = last;
       }
       pairs(j, weight(j, left));
+    }
+  }
+
+  // calls f(j, d, rsq), d = x_j - x_i, for the neighbors of a row, or of LAMMPS' list, within a
+  // distance
+  template <class F>
+  void for_near(const Row &row, const double *const *x, int dim, double cutsq, F f)
+  {
+    for (int k = 0; k < row.n; k++) {
+      const int j = row.j[k] & NEIGHMASK;
+      double d[3], rsq = 0.0;
+      for (int a = 0; a < dim; a++) {
+        d[a] = x[j][a] - x[row.i][a];
+        rsq += d[a] * d[a];
+      }
+      if (rsq < cutsq) f(j, d, rsq);
     }
   }
 

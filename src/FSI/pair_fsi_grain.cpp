@@ -22,6 +22,7 @@
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
+#include "fsi_rows.h"
 #include "memory.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -41,7 +42,7 @@ template <int D> struct Sums {
   static constexpr int N = PX + D;
 };
 
-PairFSIGrain::PairFSIGrain(LAMMPS *lmp) : Pair(lmp), fix_fsi(nullptr), least_floor(0.0)
+PairFSIGrain::PairFSIGrain(LAMMPS *lmp) : Pair(lmp), least_floor(0.0)
 {
   restartinfo = 1;      // there is nothing to keep, and a hybrid style keeps its names
   manybody_flag = 1;    // what a pair gives depends on all fluid around: no pairwise energy
@@ -94,6 +95,8 @@ void PairFSIGrain::init_style()
     error->all(FLERR,
                "Pair style fsi/grain requires atom_style hybrid fsi sphere: grains have a radius");
   fix_fsi = FixFSI::find(lmp, "Pair style fsi/grain");
+  disc = fix_fsi;
+  ledger = fix_fsi;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR,
                "Pair style fsi/grain requires pair_style fsi/fluid beside it: use pair_style "
@@ -104,7 +107,7 @@ void PairFSIGrain::init_style()
 double PairFSIGrain::init_one(int i, int j)
 {
   if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set: types {} and {}", i, j);
-  const auto &state = fix_fsi->state;
+  const auto &state = disc->state;
   const int a = state[i].species, b = state[j].species;
   static const char *const words[] = {"no material", "a fluid", "a solid", "a wall"};
   if (std::min(a, b) != NONE || std::max(a, b) != FLUID)
@@ -113,20 +116,20 @@ double PairFSIGrain::init_one(int i, int j)
                "fluid and grains, which have none (NULL in pair_style fsi/fluid)",
                i, words[a], j, words[b]);
   check_radii(a == NONE ? i : j);
-  return fix_fsi->cut;
+  return disc->cut;
 }
 
 // one without a diameter has LAMMPS', 1: neighbor lists of contacts would be of all particles
 void PairFSIGrain::check_radii(int type) const
 {
   for (int k = 0; k < atom->nlocal; k++)
-    if (atom->type[k] == type && atom->radius[k] > fix_fsi->cut)
+    if (atom->type[k] == type && atom->radius[k] > disc->cut)
       error->one(
           FLERR,
           "Pair style fsi/grain: atom {} of type {} has the diameter {:g}: expected grains "
           "smaller than the fluid's kernel, whose support is {:g}. Use set type {} diameter, "
           "after create_atoms",
-          atom->tag[k], type, 2.0 * atom->radius[k], fix_fsi->cut, type);
+          atom->tag[k], type, 2.0 * atom->radius[k], disc->cut, type);
 }
 
 std::vector<Part::Effect> PairFSIGrain::effects() const
@@ -140,26 +143,26 @@ void PairFSIGrain::compute(int eflag, int vflag)
   const Phase phase(fix_fsi->profile, Profile::FLUID_FORCES);
   ev_init(eflag, vflag);
   find_grains();
-  with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, [this](const auto &kernel) {
+  with_kernel(disc->kernel, disc->dim, disc->h, [this](const auto &kernel) {
     sum_up(kernel);
   });
   if (force->newton_pair) reverse_comm(fix_fsi->profile, comm, this);
-  fix_fsi->dim == 2 ? forces<2>() : forces<3>();
+  disc->dim == 2 ? forces<2>() : forces<3>();
   forward_comm(fix_fsi->profile, comm, this);
-  fix_fsi->dim == 2 ? give_back<2>() : give_back<3>();
+  disc->dim == 2 ? give_back<2>() : give_back<3>();
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
 void PairFSIGrain::find_grains()
 {
-  const int nall = atom->nlocal + atom->nghost, dim = fix_fsi->dim;
+  const int nall = atom->nlocal + atom->nghost, dim = disc->dim;
   std::vector<char> is_grain(atom->ntypes + 1, 0);
   least_floor = 0.0;
   for (int i = 1; i <= atom->ntypes; i++)
     for (int j = i; j <= atom->ntypes; j++)
       if (setflag[i][j])
         for (const int t : {i, j}) {
-          const State &s = fix_fsi->state[t];
+          const State &s = disc->state[t];
           is_grain[t] = s.species == NONE;
           if (s.species == FLUID) least_floor = std::min({least_floor, s.floor, -s.p0});
         }
@@ -179,37 +182,33 @@ template <class K> void PairFSIGrain::sum_up(const K &kernel)
 {
   constexpr int D = K::DIM;
   using Of = Sums<D>;
-  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const auto *const v = FixFSI::rows(atom->v);
   const double *const rmass = atom->rmass, *const rho = atom->rho;
   const int *const type = atom->type;
   touches.clear();
   for (int ii = 0; ii < list->inum; ii++) {
-    const int i = list->ilist[ii], *const neighbors = list->firstneigh[i];
+    const int i = list->ilist[ii];
     const bool grain_first = number[i] >= 0;
-    for (int jj = 0; jj < list->numneigh[i]; jj++) {
-      const int j = neighbors[jj] & NEIGHMASK, g = grain_first ? i : j, f = grain_first ? j : i;
-      double d[D], rsq = 0.0;
-      for (int a = 0; a < D; a++) {
-        d[a] = x[f][a] - x[g][a];
-        rsq += d[a] * d[a];
-      }
-      if (rsq >= kernel.cutsq) continue;
+    const double per_h = grain_first ? kernel.hinv : -kernel.hinv;    // from the grain to the fluid
+    const Row row = {i, list->numneigh[i], list->firstneigh[i]};
+    for_near(row, atom->x, D, kernel.cutsq, [&](int j, const double *d, double rsq) {
+      const int g = grain_first ? i : j, f = grain_first ? j : i;
       const double w = rmass[f] / rho[f] * kernel.W(std::sqrt(rsq)), p = w * fix_fsi->pressure(f);
       touches.push_back({f, g, w});
       double *const sum = &sums[(size_t) number[g] * Of::N];
       sum[Of::ONE] += w;
       sum[Of::RHO] += w * rho[f];
-      sum[Of::ETA] += w * fix_fsi->state[type[f]].viscosity;
+      sum[Of::ETA] += w * disc->state[type[f]].viscosity;
       sum[Of::P] += p;
-      double *moment = sum + Of::XX;
+      double *moment = sum + Of::XX, x[D];
       for (int a = 0; a < D; a++) {
-        d[a] *= kernel.hinv;
-        sum[Of::X + a] += w * d[a];
+        x[a] = per_h * d[a];
+        sum[Of::X + a] += w * x[a];
         sum[Of::V + a] += w * v[f][a];
-        sum[Of::PX + a] += p * d[a];
-        for (int b = 0; b <= a; b++) *moment++ += w * d[a] * d[b];
+        sum[Of::PX + a] += p * x[a];
+        for (int b = 0; b <= a; b++) *moment++ += w * x[a] * x[b];
       }
-    }
+    });
   }
 }
 
@@ -241,7 +240,7 @@ template <int D> void PairFSIGrain::forces()
       steepness += slope[a] * slope[a];
     }
     for (int a = 0; a < D; a++) p -= per * slope[a] * sum[Of::X + a];
-    const double hinv = 1.0 / fix_fsi->h;
+    const double hinv = 1.0 / disc->h;
     const double part = least_floor < 0.0 ? 1.0 : immersed_part(p, std::sqrt(steepness) * hinv, r);
 
     double u[D], speed = 0.0;
@@ -295,8 +294,8 @@ template <int D> void PairFSIGrain::give_back()
 // middle of the step
 void PairFSIGrain::prescribe()
 {
-  if (!fix_fsi->kept) return;
-  const int dim = fix_fsi->dim, nlocal = atom->nlocal;
+  if (!ledger->kept) return;
+  const int dim = disc->dim, nlocal = atom->nlocal;
   const double half = 0.5 * update->dt * force->ftm2v;
   std::vector<double> one(nlocal + atom->nghost);
   double power = 0.0;
@@ -309,13 +308,13 @@ void PairFSIGrain::prescribe()
       if (one[i] != 0.0 && atom->mask[i] & fix_fsi->groupbit)
         power += one[i] * (atom->v[i][d] + half * atom->f[i][d] / atom->rmass[i]);
   }
-  fix_fsi->tally(FixFSI::COUPLING, power);
+  ledger->tally(Ledger::COUPLING, power);
 }
 
 // of grains alone: sums come home, what they give goes to ghosts
 int PairFSIGrain::pack_forward_comm(int n, int *listed, double *buf, int, int *)
 {
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   double *const first = buf;
   for (int k = 0; k < n; k++)
     if (number[listed[k]] >= 0) buf = std::copy_n(&given[number[listed[k]] * dim], dim, buf);
@@ -324,7 +323,7 @@ int PairFSIGrain::pack_forward_comm(int n, int *listed, double *buf, int, int *)
 
 void PairFSIGrain::unpack_forward_comm(int n, int first, double *buf)
 {
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   for (int i = first; i < first + n; i++)
     if (number[i] >= 0) {
       std::copy_n(buf, dim, &given[number[i] * dim]);
@@ -334,7 +333,7 @@ void PairFSIGrain::unpack_forward_comm(int n, int first, double *buf)
 
 int PairFSIGrain::pack_reverse_comm(int n, int first, double *buf)
 {
-  const int row = fix_fsi->dim == 2 ? Sums<2>::N : Sums<3>::N;
+  const int row = disc->dim == 2 ? Sums<2>::N : Sums<3>::N;
   double *const begin = buf;
   for (int i = first; i < first + n; i++)
     if (number[i] >= 0) buf = std::copy_n(&sums[number[i] * row], row, buf);
@@ -343,7 +342,7 @@ int PairFSIGrain::pack_reverse_comm(int n, int first, double *buf)
 
 void PairFSIGrain::unpack_reverse_comm(int n, int *listed, double *buf)
 {
-  const int row = fix_fsi->dim == 2 ? Sums<2>::N : Sums<3>::N;
+  const int row = disc->dim == 2 ? Sums<2>::N : Sums<3>::N;
   for (int k = 0; k < n; k++)
     if (number[listed[k]] >= 0)
       for (int c = 0; c < row; c++) sums[number[listed[k]] * row + c] += *buf++;

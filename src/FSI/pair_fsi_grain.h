@@ -53,7 +53,9 @@ class PairFSIGrain : public Pair, public FSI::Part {
   void prescribe() override;
 
  private:
-  class FixFSI *fix_fsi;    // null: not since settings() or coeff()
+  class FixFSI *fix_fsi = nullptr;    // null: not since settings() or coeff()
+  const FSI::Discretization *disc = nullptr;
+  FSI::Ledger *ledger = nullptr;
   // of a step: pairs within the support, and how much of the sphere's force the fluid takes, times
   // the sum over all of its fluid
   struct Touch {
