@@ -17,11 +17,10 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_fsi.h"
-#include "fsi_buffer.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_number_density.h"
-#include "fsi_plane_fit.h"
+#include "fsi_open_end.h"
 #include "fsi_record.h"
 #include "fsi_shift.h"
 #include "neighbor.h"
@@ -282,19 +281,26 @@ void FixFSIInlet::hold_shift(int i, double inside)
   }
 }
 
+// sums go over all fluid: the first end makes them for all ends
 void FixFSIInlet::end_state(bool advance)
 {
-  auto &fullness = members->fullness;
-  if (advance ? update->ntimestep % Fullness::LOOK_EVERY : fullness.now > 0.0) return;
-  std::vector<double> sums(atom->nmax);
-  fix_fsi->number_density.find(sums.data());
-  fullness.look(sums.data());
-  if (!advance || !members->absorber.meets_pressure()) return;
+  const auto ends = fixes_of<FixFSIInlet>(lmp);
+  if (ends[0] != this || (advance && update->ntimestep % Fullness::LOOK_EVERY)) return;
+  std::vector<Members *> looking, meeting;
+  for (const auto *fix : ends) {
+    Members *const end_members = fix->members.get();
+    if (advance || end_members->fullness.now == 0.0) looking.push_back(end_members);
+    if (advance && end_members->absorber.meets_pressure()) meeting.push_back(end_members);
+  }
+  std::vector<double> sums(looking.empty() ? 0 : atom->nmax);
+  if (!looking.empty()) fix_fsi->number_density.find(sums.data());
+  for (auto *end_members : looking) end_members->fullness.look(sums.data());
+  if (meeting.empty()) return;
   std::fill(sums.begin(), sums.end(), 0.0);
   first_of(pairs_of<PairFSIFluid>(lmp))->add_position_divergence(sums.data());
   fix_fsi->add_ghosts(sums.data());
-  members->absorber.meet_pressure(sums.data(),
-                                  Fullness::LOOK_EVERY * (update->dt + step->dt_offset));
+  const double time = Fullness::LOOK_EVERY * (update->dt + step->dt_offset);
+  for (auto *end_members : meeting) end_members->absorber.meet_pressure(sums.data(), time);
 }
 
 void FixFSIInlet::prescribe()

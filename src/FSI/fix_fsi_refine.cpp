@@ -20,7 +20,6 @@
 #include "fix_fsi.h"
 #include "fix_fsi_inlet.h"
 #include "force.h"
-#include "fsi_cells.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
@@ -28,10 +27,8 @@
 #include "fsi_others.h"
 #include "fsi_population.h"
 #include "fsi_record.h"
-#include "fsi_settling.h"
+#include "fsi_refine.h"
 #include "fsi_sight.h"
-#include "fsi_split.h"
-#include "fsi_zones.h"
 #include "math_extra.h"
 #include "update.h"
 
@@ -44,28 +41,28 @@ using namespace FSI;
 
 // Spacings from one level to the next: half the mass, so long as this part of it
 static constexpr double RATIO_ERROR = 0.02;
-// Distance in spacings over which two merge; over which one does that has found nobody at the edge
+// Distance in spacings over which two merge; over which one does that has found none at the edge
 // of its zone, and is half as far again out as need be
 static constexpr double REACH = 1.2, FAR_REACH = 1.7, FAR = 1.5;
 // Nearer pairs come first: in steps of an eighth of a spacing, with edges that no lattice's
 // distances are near, since the two see their distance with different round-off
 static constexpr double PER_SPACING = 8.0, OFF_LATTICE = 0.37;
-// Who has found nobody comes before all others: further out there is nobody left for him
+// One that has found no partner comes before all others: further out there is none left for it
 static constexpr int LATER = 100;
 static constexpr int ROUNDS = 3;          // of choosing partners
-static constexpr double CROWDED = 2.5;    // spacings: who is as near makes a place less empty
+static constexpr double CROWDED = 2.5;    // spacings: what is as near makes a place less empty
 static constexpr int SWEEPS = 12;         // of choosing a direction again
 static constexpr size_t MAX_LEVELS = 12;
 static constexpr double SAME = 1.0e-12;      // what comes from one material
 static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of a body it meets
 
 FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), who("Fix fsi/refine"), every(0), settle_steps(30),
-    zones(new Zones(lmp, who)), total{}, last_event(-1), warned(false), message(nullptr), of_rank{}
+    Fix(lmp, narg, arg), label("Fix fsi/refine"), every(0), settle_steps(30),
+    zones(new Zones(lmp, label)), total{}, last_event(-1), warned(false), message(nullptr), local{}
 {
-  if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", who);
+  if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", label);
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix fsi/refine", error);
-  every = integer(lmp, who + " N", arg[3], 1);
+  every = integer(lmp, label + " N", arg[3], 1);
   level_of.assign(atom->ntypes + 1, -1);
   for (int k = 4; k < narg;) {
     const std::string key = arg[k++];
@@ -82,7 +79,7 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
       zones->read_distances(values);
     else if (key == "settle") {
       if (values.size() != 1) utils::missing_cmd_args(FLERR, "fix fsi/refine settle", error);
-      settle_steps = integer(lmp, who + " settle", values[0], 0, 1000);
+      settle_steps = integer(lmp, label + " settle", values[0], 0, 1000);
     } else
       error->all(FLERR,
                  "Unknown fix fsi/refine keyword {}: expected types, region, distance or settle",
@@ -90,7 +87,7 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
   }
   if (types.size() < 2)
     error->all(FLERR, "{} requires keyword types with two atom types or more, the coarsest first",
-               who);
+               label);
   zones->check_number(types.size());
   directions = split_directions(domain->dimension);
   force_reneighbor = 1;
@@ -108,13 +105,14 @@ void FixFSIRefine::read_types(const std::vector<std::string> &words)
 {
   types.clear();
   for (const auto &word : words) {
-    const int type = integer(lmp, who + " types", word, 1, atom->ntypes);
-    if (level_of[type] >= 0) error->all(FLERR, "{} types: {} is there twice", who, type);
+    const int type = integer(lmp, label + " types", word, 1, atom->ntypes);
+    if (level_of[type] >= 0) error->all(FLERR, "{} types: {} is there twice", label, type);
     level_of[type] = (int) types.size();
     types.push_back(type);
   }
   if (types.size() > MAX_LEVELS)
-    error->all(FLERR, "{} types: there are {}, expected {} at most", who, types.size(), MAX_LEVELS);
+    error->all(FLERR, "{} types: there are {}, expected {} at most", label, types.size(),
+               MAX_LEVELS);
 }
 
 int FixFSIRefine::setmask()
@@ -124,13 +122,13 @@ int FixFSIRefine::setmask()
 
 void FixFSIRefine::init()
 {
-  fix_fsi = FixFSI::find(lmp, who);
+  fix_fsi = FixFSI::find(lmp, label);
   disc = fix_fsi;
   step = fix_fsi;
   ledger = fix_fsi;
   population = &fix_fsi->population;
   if (!facts_of_fluids(lmp).style)
-    error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", who);
+    error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", label);
   check_types();
   check_others();
   zones->init(*disc, types);
@@ -148,7 +146,7 @@ void FixFSIRefine::check_types() const
   for (int k = 0; k <= finest(); k++) {
     const State &s = disc->state[types[k]];
     if (s.species != FLUID)
-      error->all(FLERR, "{}: atom type {} is no fluid: its material is {}", who, types[k],
+      error->all(FLERR, "{}: atom type {} is no fluid: its material is {}", label, types[k],
                  s.species == NONE        ? "missing"
                      : s.species == SOLID ? "a solid"
                                           : "a wall");
@@ -157,7 +155,7 @@ void FixFSIRefine::check_types() const
         error->all(FLERR,
                    "{}: atom types {} and {} have the {} {:g} and {:g}: expected one fluid, of "
                    "one material",
-                   who, types[0], types[k], what, a, b);
+                   label, types[0], types[k], what, a, b);
     };
     differs("density", first.rho0, s.rho0);
     differs("sound", first.c, s.c);
@@ -165,15 +163,15 @@ void FixFSIRefine::check_types() const
     differs("background pressure", first.p0, s.p0);
     differs("lowest pressure", first.floor, s.floor);
     if (first.tait != s.tait)
-      error->all(FLERR, "{}: atom types {} and {} have different equations of state", who, types[0],
-                 types[k]);
+      error->all(FLERR, "{}: atom types {} and {} have different equations of state", label,
+                 types[0], types[k]);
     if (k == 0) continue;
     const double coarse = disc->dx_of(types[k - 1]), fine = disc->dx_of(types[k]);
     if (std::fabs(fine / coarse / expected - 1.0) > RATIO_ERROR)
       error->all(FLERR,
                  "{}: atom types {} and {} have spacings of {:g} and {:g}: expected {:g} of the "
                  "second, 2^(-1/{}) of the first, for particles of half the mass: fix fsi spacing",
-                 who, types[k - 1], types[k], coarse, fine, expected * coarse, disc->dim);
+                 label, types[k - 1], types[k], coarse, fine, expected * coarse, disc->dim);
   }
 }
 
@@ -192,7 +190,7 @@ void FixFSIRefine::check_others() const
       error->all(FLERR,
                  "{}: fix {} and fix {} both have levels of {} particles, the first of them atom "
                  "{}: expected one fix, with regions that are unions of others",
-                 who, id, other->id, both.count, both.first);
+                 label, id, other->id, both.count, both.first);
   }
 }
 
@@ -218,7 +216,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   renew_ghosts();
   fix_fsi->gather_walls();    // those of the last force are a step behind
   if (disc->sight) disc->sight->find_bodies();
-  std::fill_n(of_rank, NTOTAL, 0.0);
+  std::fill_n(local, NTOTAL, 0.0);
   look(may_split, may_merge);
   if (zones->moving() || first) check_zones();
   if (first) warn_of_bodies();
@@ -227,10 +225,10 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
   if (may_merge) choose_partners();
   std::vector<int> gone;
   const auto unions = may_merge ? plan_unions(gone) : std::vector<Union>();
-  of_rank[SPLITS] = divisions.size();
-  of_rank[MERGES] = unions.size();
+  local[SPLITS] = divisions.size();
+  local[MERGES] = unions.size();
   double all[NTOTAL];
-  MPI_Allreduce(of_rank, all, NTOTAL, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(local, all, NTOTAL, MPI_DOUBLE, MPI_SUM, world);
   for (int k = 0; k < WAITING; k++) total[k] += all[k];
   if (may_merge) total[WAITING] = all[WAITING];
   if (may_split) last_event = update->ntimestep;
@@ -244,7 +242,7 @@ void FixFSIRefine::event(bool may_split, bool may_merge)
     domain->remap(x.data());
     events.push_back(x);
   };
-  for (const auto &one : unions) add_event(one.i);
+  for (const auto &merged : unions) add_event(merged.i);
   const int before = atom->nlocal;
   divide(divisions);
   for (const auto &two : divisions) add_event(two.i);
@@ -283,18 +281,18 @@ void FixFSIRefine::look(bool may_split, bool may_merge)
   zones->find(*disc, FAR * disc->dx_of(types[0]), at_start ? 0.0 : 0.5 * update->dt);
   carried.assign(atom->nlocal + atom->nghost, 0);
   for (int i = 0; i < atom->nlocal; i++) {
-    const int own = level(i);
-    if (own < 0) continue;
+    const int now = level(i);
+    if (now < 0) continue;
     check_mass(i);
     int wish = 0;
     for (int k = 1; k <= finest(); k++)
       if (zones->has(k, i, 0.0)) wish |= 1 << k;
     const bool leaves = in_open_end(i, wish);
-    if (may_split && own < finest() && (wish & 1 << (own + 1))) wish |= SPLIT;
-    if (may_merge && own > 0 && !leaves && !(wish & 1 << own)) {
-      const double margin = disc->dx_of(types[own - 1]);
-      if (!zones->has(own, i, margin))
-        wish |= zones->has(own, i, FAR * margin) ? MERGE : MERGE | EAGER;
+    if (may_split && now < finest() && (wish & 1 << (now + 1))) wish |= SPLIT;
+    if (may_merge && now > 0 && !leaves && !(wish & 1 << now)) {
+      const double margin = disc->dx_of(types[now - 1]);
+      if (!zones->has(now, i, margin))
+        wish |= zones->has(now, i, FAR * margin) ? MERGE : MERGE | EAGER;
     }
     carried[i] = wish;
   }
@@ -310,7 +308,7 @@ void FixFSIRefine::check_mass(int i) const
   error->one(FLERR,
              "{}: atom {} of type {} has mass {:g}, expected some {:g} on this level. Commands "
              "that set types leave masses as they are: set ... mass",
-             who, atom->tag[i], t, m, usual);
+             label, atom->tag[i], t, m, usual);
 }
 
 // of this group, and a level of its fluid
@@ -319,7 +317,7 @@ int FixFSIRefine::level(int i) const
   return (atom->mask[i] & groupbit) ? level_of[atom->type[i]] : -1;
 }
 
-// who is in a buffer is left to that, also one that has found no partner on its way
+// what is in a buffer is left to that, also one that has found no partner on its way
 bool FixFSIRefine::in_open_end(int i, int wish) const
 {
   const double *const x = atom->x[i];
@@ -373,8 +371,8 @@ void FixFSIRefine::warn_of_bodies()
   };
   const Cells bodies(atom->x, nall, disc->dim, disc->cut, is_body);
   const auto coarse = find_particles(atom, world, [&](int i) {
-    const int own = level(i);
-    if (own < 0 || own == finest() || (carried[i] & SPLIT)) return false;
+    const int now = level(i);
+    if (now < 0 || now == finest() || (carried[i] & SPLIT)) return false;
     const double dx = disc->dx_of(type[i]);
     bool found = false;
     bodies.around(atom->x[i], [&](int j, double rsq) {
@@ -386,10 +384,10 @@ void FixFSIRefine::warn_of_bodies()
     error->warning(FLERR,
                    "{}: {} fluid particles, the first of them atom {}, are beside a body or wall "
                    "of finer spacing: let the finest level reach a kernel's support beyond bodies",
-                   who, coarse.count, coarse.first);
+                   label, coarse.count, coarse.first);
 }
 
-// Past thin bodies beside i, through which nobody splits or merges, or null
+// Past thin bodies beside i, through which none splits or merges, or null
 const Sight *FixFSIRefine::sight_from(int i) const
 {
   Sight *const sight = disc->sight.get();
@@ -532,8 +530,8 @@ void FixFSIRefine::keep_off_walls(Division &two, const Cells &cells) const
     for (int d = 0; d < 3; d++) at[d] = x[d] + two.off[d] + to * two.dx[d];
     cells.around(at, [&](int j, double rsq) {
       const int t = atom->type[j];
-      const double own = disc->dx_of(t), r = std::sqrt(rsq),
-                   depth = disc->state[t].guard * (fine + own) / (dx + own) - r;
+      const double dx_j = disc->dx_of(t), r = std::sqrt(rsq),
+                   depth = disc->state[t].guard * (fine + dx_j) / (dx + dx_j) - r;
       if (depth <= 0.0 || r == 0.0) return;
       deepest = std::max(deepest, depth);
       for (int d = 0; d < disc->dim; d++) away[d] += depth / r * (at[d] - atom->x[j][d]);
@@ -569,8 +567,8 @@ std::vector<FixFSIRefine::Division> FixFSIRefine::plan_divisions()
     const double m = atom->rmass[i];
     double spin[3];
     MathExtra::cross3(two.dx, two.dv, spin);
-    of_rank[GAINED] += 0.5 * m * MathExtra::lensq3(two.dv);
-    for (int d = 0; d < 3; d++) of_rank[SPIN + d] -= m * spin[d];
+    local[GAINED] += 0.5 * m * MathExtra::lensq3(two.dv);
+    for (int d = 0; d < 3; d++) local[SPIN + d] -= m * spin[d];
   }
   return list;
 }
@@ -618,7 +616,7 @@ void FixFSIRefine::choose_partners()
     for (const int i : found) partner[i] = -partner[i];
     send(partner);
   }
-  for (int i = 0; i < atom->nlocal; i++) of_rank[WAITING] += wants(i) && partner[i] >= 0;
+  for (int i = 0; i < atom->nlocal; i++) local[WAITING] += wants(i) && partner[i] >= 0;
 }
 
 // of those that have none; -1: there is none in reach
@@ -661,19 +659,19 @@ std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gon
     double away[3], faster[3], spin[3];
     MathExtra::sub3(atom->x[j], atom->x[i], away);
     MathExtra::sub3(atom->v[j], atom->v[i], faster);
-    Union one;
-    one.i = i;
-    one.energy = population->energy(i);    // a ghost has no image flags: see remove()
-    one.rmass = m + n;
-    one.rho = one.rmass / (m / atom->rho[i] + n / atom->rho[j]);
+    Union merged;
+    merged.i = i;
+    merged.energy = population->energy(i);    // a ghost has no image flags: see remove()
+    merged.rmass = m + n;
+    merged.rho = merged.rmass / (m / atom->rho[i] + n / atom->rho[j]);
     for (int d = 0; d < 3; d++) {
-      one.x[d] = atom->x[i][d] + part * away[d];
-      one.v[d] = atom->v[i][d] + part * faster[d];
+      merged.x[d] = atom->x[i][d] + part * away[d];
+      merged.v[d] = atom->v[i][d] + part * faster[d];
     }
-    list.push_back(one);
+    list.push_back(merged);
     MathExtra::cross3(away, faster, spin);
-    of_rank[LOST] += 0.5 * reduced * MathExtra::lensq3(faster);
-    for (int d = 0; d < 3; d++) of_rank[SPIN + d] += reduced * spin[d];
+    local[LOST] += 0.5 * reduced * MathExtra::lensq3(faster);
+    for (int d = 0; d < 3; d++) local[SPIN + d] += reduced * spin[d];
   }
   return list;
 }
@@ -681,14 +679,14 @@ std::vector<FixFSIRefine::Union> FixFSIRefine::plan_unions(std::vector<int> &gon
 void FixFSIRefine::unite(const std::vector<Union> &unions)
 {
   double *const account = ledger->account(Ledger::LEVELS);
-  for (const auto &one : unions) {
-    const int i = one.i;
-    std::copy_n(one.x, 3, atom->x[i]);
-    std::copy_n(one.v, 3, atom->v[i]);
-    atom->rho[i] = one.rho;
-    atom->rmass[i] = one.rmass;
+  for (const auto &merged : unions) {
+    const int i = merged.i;
+    std::copy_n(merged.x, 3, atom->x[i]);
+    std::copy_n(merged.v, 3, atom->v[i]);
+    atom->rho[i] = merged.rho;
+    atom->rmass[i] = merged.rmass;
     atom->type[i] = types[level(i) - 1];
-    if (account) *account += one.energy - population->energy(i);
+    if (account) *account += merged.energy - population->energy(i);
   }
 }
 
@@ -699,7 +697,7 @@ void FixFSIRefine::divide(const std::vector<Division> &divisions)
   for (const auto &two : divisions) parents.push_back(atom->tag[two.i]);
   auto all = gather(parents, world);
   std::sort(all.begin(), all.end());
-  const auto ids = population->ids((int) all.size(), who);
+  const auto ids = population->ids((int) all.size(), label);
   for (const auto &two : divisions) {
     const int i = two.i;
     if (account) *account += population->energy(i);

@@ -71,7 +71,7 @@ class FixFSIRefine : public Fix {
   // what a particle is to do: bits above those of the zones that it is in
   enum Wish { SPLIT = 1 << 16, MERGE = 1 << 17, EAGER = 1 << 18 };
 
-  const std::string who;
+  const std::string label;
   int every, settle_steps;
   std::vector<int> types, level_of;           // from the coarsest on; per type, -1: none of them
   const std::unique_ptr<FSI::Zones> zones;    // where the levels from 1 on are
@@ -91,7 +91,7 @@ class FixFSIRefine : public Fix {
   std::vector<tagint> carried, partner, heading;
   std::vector<int> chosen;    // per local one: index of its partner
   std::vector<tagint> *message;
-  double of_rank[NTOTAL];
+  double local[NTOTAL];
 
   int finest() const { return (int) types.size() - 1; }
   void check_mass(int i) const;

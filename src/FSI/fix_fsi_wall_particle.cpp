@@ -105,7 +105,7 @@ std::vector<int> FixFSIWallParticle::types_of_members()
   int moved = 0;    // groups that something moves, where fluid sticks
   for (const auto &fix : modify->get_fix_list())
     if (fix->time_integrate && !slip) moved |= fix->groupbit;
-  std::vector<int> own(atom->ntypes + 1, 0), types(atom->ntypes + 1);
+  std::vector<int> local(atom->ntypes + 1, 0), types(atom->ntypes + 1);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;
     if (disc->state[atom->type[i]].species != RIGID)
@@ -117,10 +117,10 @@ std::vector<int> FixFSIWallParticle::types_of_members()
                  "Atom {} of fix fsi/wall/particle {} is also in the group of fix fsi: leave it "
                  "out, and move it with fix move or fix rigid",
                  atom->tag[i], id);
-    own[atom->type[i]] = 1;
-    if (atom->mask[i] & moved) own[0] = 1;
+    local[atom->type[i]] = 1;
+    if (atom->mask[i] & moved) local[0] = 1;
   }
-  MPI_Allreduce(own.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
+  MPI_Allreduce(local.data(), types.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
   turns = types[0];
   return types;
 }
@@ -385,9 +385,9 @@ double FixFSIWallParticle::compute_scalar()
   double counted = 0.0;
   for (size_t level = 0; level < disc->levels.size(); level++)
     for_pairs(level, HUGE_VAL, [&](int w, int j, const double *, double rsq) {
-      const double own = disc->dx_of(atom->type[w]),
+      const double dx_w = disc->dx_of(atom->type[w]),
                    limit = disc->state[atom->type[w]].guard *
-          ((disc->levels[level].dx + own) / (disc->dx + own));
+          ((disc->levels[level].dx + dx_w) / (disc->dx + dx_w));
       // without newton a pair across ranks is in the lists of both
       if (rsq < limit * limit)
         counted += (force->newton_pair || (w < atom->nlocal && j < atom->nlocal)) ? 1.0 : 0.5;

@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_buffer.h"
+#include "fsi_open_end.h"
 
 #include "comm.h"
 #include "domain.h"
@@ -109,25 +109,25 @@ void Buffer::fill()
 // of all ranks; and of this one fluid behind the plane by slices, and is there anything near?
 Buffer::Census Buffer::take_census(std::vector<int> &slices, bool &has_some)
 {
-  Census own, all;
+  Census local, all;
   const double length = end.length;
   for (int i = 0; i < atom->nlocal; i++) {
     const double s = end.inside(atom->x[i]);
     if (s <= -2.0 * length || s >= length) continue;
     has_some = true;
     if (disc->state[atom->type[i]].species == RIGID && s > -length)
-      (s > 0.0 ? own.walls_ahead : own.walls_behind)++;
+      (s > 0.0 ? local.walls_ahead : local.walls_behind)++;
     if (!end.is_fluid(i) || !end.in_patch(atom->x[i])) continue;
     if (s > 0.0) {
-      own.ahead++;
+      local.ahead++;
       continue;
     }
-    (s > -length - 0.5 * disc->dx ? own.behind : own.beyond)++;
+    (s > -length - 0.5 * disc->dx ? local.behind : local.beyond)++;
     members[i] = MEMBER;
     const size_t k = slice(-s);
     if (k < slices.size()) slices[k]++;
   }
-  MPI_Allreduce(&own, &all, sizeof(Census) / sizeof(bigint), MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&local, &all, sizeof(Census) / sizeof(bigint), MPI_LMP_BIGINT, MPI_SUM, world);
   return all;
 }
 
@@ -207,10 +207,10 @@ int Buffer::find_last_of_rows()
   const double at_end = disc->dx - end.length, low = at_end + neighbor->skin,
                reach = OCCUPIED * disc->dx;
   int missing = 0;
-  std::vector<Particle> own, all;
+  std::vector<Particle> local, all;
   for (int i = 0; i < atom->nlocal; i++)
-    if (member(i) && end.inside(atom->x[i]) <= low) own.push_back(population->copy_of(i));
-  if (end.ranks != MPI_COMM_NULL) all = gather(own, end.ranks);
+    if (member(i) && end.inside(atom->x[i]) <= low) local.push_back(population->copy_of(i));
+  if (end.ranks != MPI_COMM_NULL) all = gather(local, end.ranks);
   sort_along_plane(all);
   const auto is_last = [&](const double *x) {
     bool last = true;
@@ -258,11 +258,11 @@ std::vector<Particle> Buffer::go_on_behind() const
 int Buffer::full_slices() const
 {
   const int most = number_of_slices();
-  std::vector<int> own(most, 0), count(most);
+  std::vector<int> local(most, 0), count(most);
   end.for_fluid(0.0, 2.0 * end.length, [&](int, double s) {
-    if (slice(s) < most) own[slice(s)]++;
+    if (slice(s) < most) local[slice(s)]++;
   });
-  MPI_Allreduce(own.data(), count.data(), most, MPI_INT, MPI_SUM, world);
+  MPI_Allreduce(local.data(), count.data(), most, MPI_INT, MPI_SUM, world);
   int full = 0, limit = std::max(slices_before_bodies(), 1), all;
   while (full < most && count[full] > 0 && count[full] >= SPARSE * count[0]) full++;
   MPI_Allreduce(&limit, &all, 1, MPI_INT, MPI_MIN, world);
@@ -273,11 +273,11 @@ int Buffer::full_slices() const
 int Buffer::slices_before_bodies() const
 {
   // places along the plane of the fluid within a spacing of it
-  std::vector<Column> own, columns;
+  std::vector<Column> local, columns;
   end.for_fluid(0.0, end.length, [&](int i, double s) {
-    if (slice(s) == 0) own.push_back(along(atom->x[i]));
+    if (slice(s) == 0) local.push_back(along(atom->x[i]));
   });
-  if (end.ranks != MPI_COMM_NULL) columns = gather(own, end.ranks);
+  if (end.ranks != MPI_COMM_NULL) columns = gather(local, end.ranks);
   const double dx = disc->dx;
   int limit = number_of_slices(), hole = 0;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -337,11 +337,11 @@ std::vector<int> Buffer::find_occupied(std::vector<Particle> &copies, bool at_st
 
 // Makes copies: IDs in the order in which they came to be followed, and of those of the parents,
 // whatever rank has them. Fluid that is in the place keeps it.
-void Buffer::make(const std::vector<Particle> &own, bool at_start)
+void Buffer::make(const std::vector<Particle> &local, bool at_start)
 {
   std::vector<Particle> all, copies;
   std::vector<int> occupied;
-  if (end.ranks != MPI_COMM_NULL) all = gather(own, end.ranks);
+  if (end.ranks != MPI_COMM_NULL) all = gather(local, end.ranks);
   if (!all.empty()) occupied = find_occupied(all, at_start);
   for (size_t k = 0; k < all.size(); k++)
     if (!occupied[k]) copies.push_back(all[k]);
@@ -360,7 +360,7 @@ void Buffer::exchange(const std::vector<const OpenEnd *> &all_ends)
   std::vector<Particle> copies, left;
   std::vector<int> gone;
   enum { IN, OUT, MASS, MADE, DELETED, NCOUNT };
-  double own[NCOUNT] = {}, all[NCOUNT];
+  double local[NCOUNT] = {}, all[NCOUNT];
   bool has_some = false;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], s = end.inside(x);
@@ -379,20 +379,20 @@ void Buffer::exchange(const std::vector<const OpenEnd *> &all_ends)
     }
     if (member(i) && s > 0.0) {
       members[i] = NOT;
-      own[IN]++;
-      own[MASS] += atom->rmass[i];
+      local[IN]++;
+      local[MASS] += atom->rmass[i];
     } else if (!member(i) && end.holds(x)) {
       members[i] = MEMBER;
-      own[OUT]++;
-      own[MASS] -= atom->rmass[i];
+      local[OUT]++;
+      local[MASS] -= atom->rmass[i];
     }
     if (!member(i)) continue;
     refuse_overlap(i, all_ends);
     if (s <= -end.length) gone.push_back(i);
   }
-  own[MADE] = copies.size();
-  own[DELETED] = gone.size();
-  MPI_Allreduce(own, all, NCOUNT, MPI_DOUBLE, MPI_SUM, world);
+  local[MADE] = copies.size();
+  local[DELETED] = gone.size();
+  MPI_Allreduce(local, all, NCOUNT, MPI_DOUBLE, MPI_SUM, world);
   passed_in += all[IN];
   passed_out += all[OUT];
   mass_in += all[MASS];
@@ -426,7 +426,7 @@ void Buffer::find_next_of_rows(const std::vector<Particle> &gone)
   auto all = gather(gone, end.ranks);
   sort_along_plane(all);
   const double reach = OCCUPIED * disc->dx, far = 2.0 * disc->dx;
-  std::vector<double> own(all.size(), far), nearest(all.size());
+  std::vector<double> local(all.size(), far), nearest(all.size());
   // visit(distance along the axis, to which of them) for a particle that is before one of them
   const auto before = [&](int i, const auto &visit) {
     if (!member(i) || end.inside(atom->x[i]) > far - end.length) return;
@@ -438,9 +438,9 @@ void Buffer::find_next_of_rows(const std::vector<Particle> &gone)
   };
   for (int i = 0; i < atom->nlocal; i++)
     before(i, [&](double ahead, size_t k) {
-      own[k] = std::min(own[k], ahead);
+      local[k] = std::min(local[k], ahead);
     });
-  MPI_Allreduce(own.data(), nearest.data(), (int) own.size(), MPI_DOUBLE, MPI_MIN, end.ranks);
+  MPI_Allreduce(local.data(), nearest.data(), (int) local.size(), MPI_DOUBLE, MPI_MIN, end.ranks);
   for (int i = 0; i < atom->nlocal; i++)
     before(i, [&](double ahead, size_t k) {
       if (member(i) == MEMBER && ahead == nearest[k]) members[i] = NEXT_OF_ROW;

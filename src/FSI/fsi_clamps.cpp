@@ -46,17 +46,17 @@ void Clamps::find()
   fixes = rigid_bodies(lmp);
   for (const auto &rigid : fixes) {
     const Fix *const fix = rigid->fix;
-    std::set<tagint> own;
+    std::set<tagint> local;
     bool solids = false;
     for (int i = 0; i < atom->nlocal; i++) {
       const tagint b = rigid->id_of(i);
       if (b < 0 || disc.state[atom->type[i]].species == NONE || atom->mask[i] & mover->groupbit)
         continue;
-      own.insert(b);
+      local.insert(b);
       solids = solids || disc.state[atom->type[i]].form == TOTAL_LAGRANGIAN;
     }
     const bool in_substeps = anywhere(solids && takes_substeps(), world);
-    const auto ids = gather(own, world);
+    const auto ids = gather(local, world);
     const auto expected = expected_of(*rigid);
     if (in_substeps && !expected.empty())
       error->all(FLERR,
@@ -241,7 +241,7 @@ void Clamps::place(const std::vector<Member> &list) const
 // Force and torque of each body, of all ranks. Whole: with what has torques of its own.
 void Clamps::sum(const std::vector<Member> &list, const double *const *f, bool whole)
 {
-  std::vector<double> own(sums.size(), 0.0);
+  std::vector<double> local(sums.size(), 0.0);
   for (const Member &m : list) {
     double r[3], push[3] = {}, torque[3];
     for (int d = 0; d < domain->dimension; d++) push[d] = f[m.i][d];
@@ -251,14 +251,14 @@ void Clamps::sum(const std::vector<Member> &list, const double *const *f, bool w
     if (whole && flags && flags[m.i] & RigidBodies::TORQUE)
       MathExtra::add3(torque, atom->torque[m.i], torque);
     for (int d = 0; d < 3; d++) {
-      own[6 * m.body + d] += push[d];
-      own[6 * m.body + 3 + d] += torque[d];
+      local[6 * m.body + d] += push[d];
+      local[6 * m.body + 3 + d] += torque[d];
     }
   }
   if (comm->nprocs == 1)
-    sums = own;
+    sums = local;
   else
-    MPI_Allreduce(own.data(), sums.data(), own.size(), MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(local.data(), sums.data(), local.size(), MPI_DOUBLE, MPI_SUM, world);
 }
 
 // what fix rigid itself adds to the sums: keywords langevin and gravity

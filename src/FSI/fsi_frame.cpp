@@ -41,17 +41,17 @@ void Frame::init()
 void Frame::find_velocity()
 {
   static constexpr double GAIN = 0.8;    // of the highest speed: else it is not worth the while
-  double mine[7] = {}, all[7];           // highest, highest of the negative; of the square
-  std::fill_n(mine, 6, -INFINITY);
+  double local[7] = {}, all[7];          // highest, highest of the negative; of the square
+  std::fill_n(local, 6, -INFINITY);
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const v = atom->v[i];
     for (int d = 0; d < 3; d++) {
-      mine[d] = std::max(mine[d], v[d]);
-      mine[3 + d] = std::max(mine[3 + d], -v[d]);
+      local[d] = std::max(local[d], v[d]);
+      local[3 + d] = std::max(local[3 + d], -v[d]);
     }
-    mine[6] = std::max(mine[6], MathExtra::lensq3(v));
+    local[6] = std::max(local[6], MathExtra::lensq3(v));
   }
-  MPI_Allreduce(mine, all, 7, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(local, all, 7, MPI_DOUBLE, MPI_MAX, world);
   double range = 0.0;
   for (int d = 0; d < 3; d++) {
     velocity[d] = 0.5 * (all[d] - all[3 + d]);

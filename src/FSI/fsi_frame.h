@@ -25,7 +25,7 @@ namespace FSI {
   // with one velocity, whatever that is: two come nearer by less than the skin. So the places that
   // LAMMPS measures from go along, with the mean of the highest and lowest velocities there were
   // when lists were new. Lists of a stream last up to twice as long. By half a skin at most: those
-  // who ask for places fixed in space rely on it that nobody goes further than a skin.
+  // that ask for places fixed in space rely on it that none goes further than a skin.
   class Frame : protected Pointers {
    public:
     Frame(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), allowed(false), left(0.0)

@@ -30,11 +30,11 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   // the elements of all ranks, in the order of the ranks; T: anything without pointers
-  template <class T> inline std::vector<T> gather(const std::vector<T> &mine, MPI_Comm world)
+  template <class T> inline std::vector<T> gather(const std::vector<T> &local, MPI_Comm world)
   {
     static_assert(std::is_trivially_copyable<T>::value, "elements are sent as bytes");
     int nprocs;
-    bigint n = mine.size() * sizeof(T), total = 0;
+    bigint n = local.size() * sizeof(T), total = 0;
     MPI_Comm_size(world, &nprocs);
     std::vector<bigint> bytes(nprocs);
     MPI_Allgather(&n, 1, MPI_LMP_BIGINT, bytes.data(), 1, MPI_LMP_BIGINT, world);
@@ -50,50 +50,50 @@ namespace FSI {
                                         "than 2 GB",
                                         total / sizeof(T), sizeof(T)));
     std::vector<T> all(total / sizeof(T));
-    MPI_Allgatherv(const_cast<T *>(mine.data()), (int) n, MPI_BYTE, all.data(), count.data(),
+    MPI_Allgatherv(const_cast<T *>(local.data()), (int) n, MPI_BYTE, all.data(), count.data(),
                    first.data(), MPI_BYTE, world);
     return all;
   }
 
-  inline std::set<tagint> gather(const std::set<tagint> &mine, MPI_Comm world)
+  inline std::set<tagint> gather(const std::set<tagint> &local, MPI_Comm world)
   {
-    const auto all = gather(std::vector<tagint>(mine.begin(), mine.end()), world);
+    const auto all = gather(std::vector<tagint>(local.begin(), local.end()), world);
     return {all.begin(), all.end()};
   }
 
   // what the rank has whose key is the least; T: anything without pointers
-  template <class T> inline T of_least(double key, T mine, MPI_Comm world)
+  template <class T> inline T of_least(double key, T local, MPI_Comm world)
   {
     static_assert(std::is_trivially_copyable<T>::value, "it is sent as bytes");
     struct {
       double key;
       int rank;
-    } own = {key, 0}, least;
-    MPI_Comm_rank(world, &own.rank);
-    MPI_Allreduce(&own, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
-    MPI_Bcast(&mine, sizeof(T), MPI_BYTE, least.rank, world);
-    return mine;
+    } here = {key, 0}, least;
+    MPI_Comm_rank(world, &here.rank);
+    MPI_Allreduce(&here, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, world);
+    MPI_Bcast(&local, sizeof(T), MPI_BYTE, least.rank, world);
+    return local;
   }
 
   // is it so on any of them?
-  inline bool anywhere(bool mine, MPI_Comm world)
+  inline bool anywhere(bool local, MPI_Comm world)
   {
-    int own = mine, any;
-    MPI_Allreduce(&own, &any, 1, MPI_INT, MPI_MAX, world);
+    int here = local, any;
+    MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);
     return any;
   }
 
-  inline double sum_of(double mine, MPI_Comm world)
+  inline double sum_of(double local, MPI_Comm world)
   {
     double all;
-    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(&local, &all, 1, MPI_DOUBLE, MPI_SUM, world);
     return all;
   }
 
-  inline bigint count_of(bigint mine, MPI_Comm world)
+  inline bigint count_of(bigint local, MPI_Comm world)
   {
     bigint all;
-    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    MPI_Allreduce(&local, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
     return all;
   }
 
@@ -103,23 +103,23 @@ namespace FSI {
     tagint first = MAXTAGINT;
   };
 
-  inline Found total_of(const Found &mine, MPI_Comm world)
+  inline Found total_of(const Found &local, MPI_Comm world)
   {
     Found all;
-    MPI_Allreduce(&mine.count, &all.count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    MPI_Allreduce(&mine.first, &all.first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+    MPI_Allreduce(&local.count, &all.count, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    MPI_Allreduce(&local.first, &all.first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
     return all;
   }
 
   template <class Is> inline Found find_particles(const Atom *atom, MPI_Comm world, Is is)
   {
-    Found mine;
+    Found local;
     for (int i = 0; i < atom->nlocal; i++)
       if (is(i)) {
-        mine.count++;
-        mine.first = std::min(mine.first, atom->tag[i]);
+        local.count++;
+        local.first = std::min(local.first, atom->tag[i]);
       }
-    return total_of(mine, world);
+    return total_of(local, world);
   }
 
 }    // namespace FSI

@@ -34,25 +34,21 @@ using namespace FSI;
 namespace {
 
 struct OfModify : public Modify {
-  static constexpr auto id = &OfModify::id_restart_global, style = &OfModify::style_restart_global;
-  static constexpr auto used = &OfModify::used_restart_global;
+  using Modify::id_restart_global, Modify::style_restart_global, Modify::used_restart_global;
 };
 
 struct OfComm : public CommBrick {
-  static constexpr auto number = &OfComm::nswap;
-  static constexpr auto to = &OfComm::sendproc, from = &OfComm::recvproc, nsend = &OfComm::sendnum,
-                        nrecv = &OfComm::recvnum, first = &OfComm::firstrecv,
-                        flag = &OfComm::pbc_flag;
-  static constexpr auto list = &OfComm::sendlist, shifts = &OfComm::pbc;
+  using CommBrick::nswap, CommBrick::sendlist, CommBrick::sendnum, CommBrick::sendproc,
+      CommBrick::recvproc, CommBrick::firstrecv, CommBrick::recvnum, CommBrick::pbc_flag,
+      CommBrick::pbc;
 };
 
 struct OfGravity : public FixGravity {
-  static bool is_disabled(const FixGravity *fix) { return fix->*&OfGravity::disable; }
-  static bool has_variable(const FixGravity *fix) { return fix->*&OfGravity::varflag != CONSTANT; }
+  using FixGravity::disable, FixGravity::varflag, FixGravity::CONSTANT;
 };
 
 struct OfFix : public Fix {
-  static constexpr auto number = &OfFix::instance_me;
+  using Fix::instance_me;
 };
 
 }    // namespace
@@ -61,8 +57,9 @@ std::vector<std::pair<std::string, std::string>> FSI::not_taken_from_restart(con
 {
   std::vector<std::pair<std::string, std::string>> found;
   for (int k = 0; k < modify->nfix_restart_global; k++)
-    if (!(modify->*OfModify::used)[k])
-      found.emplace_back((modify->*OfModify::style)[k], (modify->*OfModify::id)[k]);
+    if (!(modify->*&OfModify::used_restart_global)[k])
+      found.emplace_back((modify->*&OfModify::style_restart_global)[k],
+                         (modify->*&OfModify::id_restart_global)[k]);
   return found;
 }
 
@@ -70,27 +67,60 @@ bool FSI::find_exchanges(const Comm *comm, std::vector<Exchange> &found)
 {
   const auto *const brick = dynamic_cast<const CommBrick *>(comm);
   found.clear();
-  for (int k = 0; brick && k < brick->*OfComm::number; k++)
-    found.push_back({(brick->*OfComm::list)[k], (brick->*OfComm::nsend)[k], (brick->*OfComm::to)[k],
-                     (brick->*OfComm::from)[k], (brick->*OfComm::first)[k],
-                     (brick->*OfComm::nrecv)[k], (brick->*OfComm::flag)[k],
-                     (brick->*OfComm::shifts)[k]});
+  for (int k = 0; brick && k < brick->*&OfComm::nswap; k++)
+    found.push_back({(brick->*&OfComm::sendlist)[k], (brick->*&OfComm::sendnum)[k],
+                     (brick->*&OfComm::sendproc)[k], (brick->*&OfComm::recvproc)[k],
+                     (brick->*&OfComm::firstrecv)[k], (brick->*&OfComm::recvnum)[k],
+                     (brick->*&OfComm::pbc_flag)[k], (brick->*&OfComm::pbc)[k]});
   return brick != nullptr;
 }
 
 bool FSI::is_disabled(const FixGravity *fix)
 {
-  return OfGravity::is_disabled(fix);
+  return fix->*&OfGravity::disable;
 }
 
 bool FSI::has_variable(const FixGravity *fix)
 {
-  return OfGravity::has_variable(fix);
+  return fix->*&OfGravity::varflag != OfGravity::CONSTANT;
 }
 
 int FSI::number_of(const Fix *fix)
 {
-  return fix->*OfFix::number;
+  return fix->*&OfFix::instance_me;
+}
+
+std::vector<BodyState> RigidBodies::states() const
+{
+  std::vector<BodyState> all;
+  for (const Entry &e : entries(false)) {
+    BodyState s = {};
+    s.id = e.id;
+    s.mass = e.mass;
+    std::copy_n(e.inertia, 3, s.inertia);
+    std::copy_n(e.x, 3, s.x);
+    std::copy_n(e.v, 3, s.v);
+    std::copy_n(e.q, 4, s.q);
+    std::copy_n(e.L, 3, s.L);
+    all.push_back(s);
+  }
+  return all;
+}
+
+void RigidBodies::store(const std::function<const BodyNow *(tagint)> &of) const
+{
+  for (const Entry &e : entries(true)) {
+    const BodyNow *const b = of(e.id);
+    if (!b) continue;
+    std::copy_n(b->x, 3, e.x);
+    std::copy_n(b->v, 3, e.v);
+    std::copy_n(b->q, 4, e.q);
+    std::copy_n(b->L, 3, e.L);
+    std::copy_n(b->omega, 3, e.omega);
+    std::copy_n(b->ex, 3, e.ex);
+    std::copy_n(b->ey, 3, e.ey);
+    std::copy_n(b->ez, 3, e.ez);
+  }
 }
 
 #ifdef LMP_FSI_HAS_RIGID
@@ -100,44 +130,30 @@ const int RigidBodies::TORQUE = RigidConst::TORQUE;
 namespace {
 
 struct OfRigid : public FixRigid {
-  static constexpr auto early = &OfRigid::earlyflag, count = &OfRigid::nbody;
-  static constexpr auto of_atom = &OfRigid::body, flags = &OfRigid::eflags;
-  static constexpr auto have_sizes = &OfRigid::extended;
-  static constexpr auto images = &OfRigid::xcmimage;
-  static constexpr auto mass = &OfRigid::masstotal;
-  static constexpr auto place = &OfRigid::displace, center = &OfRigid::xcm,
-                        velocity = &OfRigid::vcm, moments = &OfRigid::inertia,
-                        momentum = &OfRigid::angmom, spin = &OfRigid::omega,
-                        turned = &OfRigid::quat, axis_x = &OfRigid::ex_space,
-                        axis_y = &OfRigid::ey_space, axis_z = &OfRigid::ez_space,
-                        free_force = &OfRigid::fflag, free_torque = &OfRigid::tflag,
-                        langevin = &OfRigid::langextra;
-  static constexpr auto gravity = &OfRigid::id_gravity;
-  static constexpr auto field = &OfRigid::gvec;
+  using FixRigid::earlyflag, FixRigid::displace, FixRigid::xcmimage, FixRigid::extended,
+      FixRigid::eflags, FixRigid::id_gravity, FixRigid::gvec, FixRigid::body, FixRigid::nbody,
+      FixRigid::masstotal, FixRigid::inertia, FixRigid::xcm, FixRigid::vcm, FixRigid::quat,
+      FixRigid::angmom, FixRigid::omega, FixRigid::ex_space, FixRigid::ey_space, FixRigid::ez_space,
+      FixRigid::fflag, FixRigid::tflag, FixRigid::langextra;
 };
 
 struct OfSmall : public FixRigidSmall {
-  static constexpr auto early = &OfSmall::earlyflag, own = &OfSmall::nlocal_body,
-                        ghosts = &OfSmall::nghost_body, thermal = &OfSmall::langflag;
-  static constexpr auto of_atom = &OfSmall::bodytag;
-  static constexpr auto owned = &OfSmall::bodyown, flags = &OfSmall::eflags;
-  static constexpr auto have_sizes = &OfSmall::extended;
-  static constexpr auto images = &OfSmall::xcmimage;
-  static constexpr auto place = &OfSmall::displace;
-  static constexpr auto bodies = &OfSmall::body;
-  static constexpr auto gravity = &OfSmall::id_gravity;
-  static constexpr auto field = &OfSmall::gvec;
+  using FixRigidSmall::earlyflag, FixRigidSmall::displace, FixRigidSmall::xcmimage,
+      FixRigidSmall::extended, FixRigidSmall::eflags, FixRigidSmall::id_gravity,
+      FixRigidSmall::gvec, FixRigidSmall::body, FixRigidSmall::nlocal_body,
+      FixRigidSmall::nghost_body, FixRigidSmall::bodyown, FixRigidSmall::bodytag,
+      FixRigidSmall::langflag;
 };
 
 // what both have
 template <class F, class Of> class BodiesOf : public RigidBodies {
  public:
   BodiesOf(Fix *fix, bool small) : RigidBodies(fix, small), f(static_cast<F *>(fix)) {}
-  bool is_early() const override { return f->*Of::early; }
-  const double *const *displace() const override { return f->*Of::place; }
-  const imageint *image() const override { return f->*Of::images; }
-  const int *flags() const override { return f->*Of::have_sizes ? f->*Of::flags : nullptr; }
-  const double *gravity() const override { return f->*Of::gravity ? f->*Of::field : nullptr; }
+  bool is_early() const override { return f->*&Of::earlyflag; }
+  const double *const *displace() const override { return f->*&Of::displace; }
+  const imageint *image() const override { return f->*&Of::xcmimage; }
+  const int *flags() const override { return f->*&Of::extended ? f->*&Of::eflags : nullptr; }
+  const double *gravity() const override { return f->*&Of::id_gravity ? f->*&Of::gvec : nullptr; }
 
  protected:
   F *const f;
@@ -147,47 +163,28 @@ class LargeBodies : public BodiesOf<FixRigid, OfRigid> {
  public:
   explicit LargeBodies(Fix *fix) : BodiesOf(fix, false) {}
   bool is_thermal() const override { return false; }
-  tagint id_of(int i) const override { return (f->*OfRigid::of_atom)[i]; }
+  tagint id_of(int i) const override { return (f->*&OfRigid::body)[i]; }
   tagint id_by(int) const override { return -1; }
   double free(tagint id, int d) const override
   {
-    return d < 3 ? (f->*OfRigid::free_force)[id][d] : (f->*OfRigid::free_torque)[id][d - 3];
+    return d < 3 ? (f->*&OfRigid::fflag)[id][d] : (f->*&OfRigid::tflag)[id][d - 3];
   }
   // newer releases have these forces only with keyword langevin
   const double *langevin(tagint id) const override
   {
-    const double *const *const forces = f->*OfRigid::langevin;
+    const double *const *const forces = f->*&OfRigid::langextra;
     return forces ? forces[id] : nullptr;
   }
-  std::vector<BodyState> states() const override
+  std::vector<Entry> entries(bool) const override
   {
-    std::vector<BodyState> all(f->*OfRigid::count);
-    for (size_t b = 0; b < all.size(); b++) {
-      BodyState &s = all[b];
-      s.id = b;
-      s.mass = (f->*OfRigid::mass)[b];
-      std::copy_n((f->*OfRigid::center)[b], 3, s.x);
-      std::copy_n((f->*OfRigid::velocity)[b], 3, s.v);
-      std::copy_n((f->*OfRigid::turned)[b], 4, s.q);
-      std::copy_n((f->*OfRigid::momentum)[b], 3, s.L);
-      std::copy_n((f->*OfRigid::moments)[b], 3, s.inertia);
-    }
+    std::vector<Entry> all;
+    for (int k = 0; k < f->*&OfRigid::nbody; k++)
+      all.push_back({k, (f->*&OfRigid::masstotal)[k], (f->*&OfRigid::inertia)[k],
+                     (f->*&OfRigid::xcm)[k], (f->*&OfRigid::vcm)[k], (f->*&OfRigid::quat)[k],
+                     (f->*&OfRigid::angmom)[k], (f->*&OfRigid::omega)[k],
+                     (f->*&OfRigid::ex_space)[k], (f->*&OfRigid::ey_space)[k],
+                     (f->*&OfRigid::ez_space)[k]});
     return all;
-  }
-  void store(const std::function<const BodyNow *(tagint)> &of) const override
-  {
-    for (int k = 0; k < f->*OfRigid::count; k++) {
-      const BodyNow *const b = of(k);
-      if (!b) continue;
-      std::copy_n(b->x, 3, (f->*OfRigid::center)[k]);
-      std::copy_n(b->v, 3, (f->*OfRigid::velocity)[k]);
-      std::copy_n(b->q, 4, (f->*OfRigid::turned)[k]);
-      std::copy_n(b->L, 3, (f->*OfRigid::momentum)[k]);
-      std::copy_n(b->omega, 3, (f->*OfRigid::spin)[k]);
-      std::copy_n(b->ex, 3, (f->*OfRigid::axis_x)[k]);
-      std::copy_n(b->ey, 3, (f->*OfRigid::axis_y)[k]);
-      std::copy_n(b->ez, 3, (f->*OfRigid::axis_z)[k]);
-    }
   }
 };
 
@@ -196,49 +193,28 @@ class SmallBodies : public BodiesOf<FixRigidSmall, OfSmall> {
 
  public:
   SmallBodies(Fix *fix, const Atom *atom) : BodiesOf(fix, true), atom(atom) {}
-  bool is_thermal() const override { return f->*OfSmall::thermal; }
+  bool is_thermal() const override { return f->*&OfSmall::langflag; }
   tagint id_of(int i) const override
   {
-    const tagint id = (f->*OfSmall::of_atom)[i];
+    const tagint id = (f->*&OfSmall::bodytag)[i];
     return id > 0 ? id : -1;
   }
   tagint id_by(int i) const override
   {
-    return (f->*OfSmall::owned)[i] >= 0 ? (f->*OfSmall::of_atom)[i] : -1;
+    return (f->*&OfSmall::bodyown)[i] >= 0 ? (f->*&OfSmall::bodytag)[i] : -1;
   }
   double free(tagint, int) const override { return 1.0; }
   const double *langevin(tagint) const override { return nullptr; }
-  std::vector<BodyState> states() const override
+  std::vector<Entry> entries(bool with_copies) const override
   {
-    std::vector<BodyState> all(f->*OfSmall::own);
-    for (size_t k = 0; k < all.size(); k++) {
-      const auto &b = (f->*OfSmall::bodies)[k];
-      BodyState &s = all[k];
-      s.id = atom->tag[b.ilocal];
-      s.mass = b.mass;
-      std::copy_n(b.xcm, 3, s.x);
-      std::copy_n(b.vcm, 3, s.v);
-      std::copy_n(b.quat, 4, s.q);
-      std::copy_n(b.angmom, 3, s.L);
-      std::copy_n(b.inertia, 3, s.inertia);
+    std::vector<Entry> all;
+    const int n = f->*&OfSmall::nlocal_body + (with_copies ? f->*&OfSmall::nghost_body : 0);
+    for (int k = 0; k < n; k++) {
+      auto &b = (f->*&OfSmall::body)[k];
+      all.push_back({atom->tag[b.ilocal], b.mass, b.inertia, b.xcm, b.vcm, b.quat, b.angmom,
+                     b.omega, b.ex_space, b.ey_space, b.ez_space});
     }
     return all;
-  }
-  void store(const std::function<const BodyNow *(tagint)> &of) const override
-  {
-    for (int k = 0; k < f->*OfSmall::own + f->*OfSmall::ghosts; k++) {
-      auto &to = (f->*OfSmall::bodies)[k];
-      const BodyNow *const b = of(atom->tag[to.ilocal]);
-      if (!b) continue;
-      std::copy_n(b->x, 3, to.xcm);
-      std::copy_n(b->v, 3, to.vcm);
-      std::copy_n(b->q, 4, to.quat);
-      std::copy_n(b->L, 3, to.angmom);
-      std::copy_n(b->omega, 3, to.omega);
-      std::copy_n(b->ex, 3, to.ex_space);
-      std::copy_n(b->ey, 3, to.ey_space);
-      std::copy_n(b->ez, 3, to.ez_space);
-    }
   }
 };
 

@@ -76,8 +76,8 @@ namespace FSI {
     RigidBodies(Fix *fix, bool small) : fix(fix), small(small) {}
     virtual ~RigidBodies() = default;
     virtual bool is_early() const = 0;        // when it finds the forces on its bodies
-    virtual bool is_thermal() const = 0;      // in a way that nobody else can follow
-    virtual tagint id_of(int i) const = 0;    // of the body that atom i is in; -1: none
+    virtual bool is_thermal() const = 0;      // in a way that others cannot follow
+    virtual tagint id_of(int i) const = 0;    // of the body of atom i; -1: of none
     virtual tagint id_by(int i) const = 0;    // of the body whose ID is that of atom i; or -1
     virtual const double *const *displace() const = 0;    // of atoms, in the body's axes
     virtual const imageint *image() const = 0;            // of atoms
@@ -85,8 +85,16 @@ namespace FSI {
     virtual double free(tagint id, int d) const = 0;      // 0: component of force, torque left out
     virtual const double *langevin(tagint id) const = 0;    // force and torque, or null
     virtual const double *gravity() const = 0;              // if that is its own, or null
-    virtual std::vector<BodyState> states() const = 0;      // that this rank has
-    virtual void store(const std::function<const BodyNow *(tagint)> &of) const = 0;
+    std::vector<BodyState> states() const;                  // that this rank has
+    void store(const std::function<const BodyNow *(tagint)> &of) const;
+
+   protected:
+    struct Entry {
+      tagint id;
+      double mass, *inertia;
+      double *x, *v, *q, *L, *omega, *ex, *ey, *ez;
+    };
+    virtual std::vector<Entry> entries(bool with_copies) const = 0;
   };
   // none without package RIGID
   std::vector<std::shared_ptr<RigidBodies>> rigid_bodies(LAMMPS *);

@@ -310,19 +310,19 @@ void Absorber::meet_pressure(const double *divergence, double dt)
 {
   const Discretization &disc = *end.disc;
   enum { PRESSURES, GIVEN, WEIGHTS, NSUM };
-  double own[NSUM] = {}, all[NSUM];
+  double local[NSUM] = {}, all[NSUM];
   for (const auto &place : end.places) {
     const int i = place.i;
     const State &state = disc.state[atom->type[i]];
     // those that do not see the end of the buffer, where others wait for lists
     const double hat = end.hat_at(end.inside(atom->x[i]), 1.0),
                  volume = atom->rmass[i] / atom->rho[i];
-    own[PRESSURES] += hat * volume * state.pressure(atom->rho[i]) * divergence[i] / disc.dim;
+    local[PRESSURES] += hat * volume * state.pressure(atom->rho[i]) * divergence[i] / disc.dim;
     if (place.inside > 0.0) continue;
-    own[GIVEN] += hat * end.pressure_given(i);
-    own[WEIGHTS] += hat;
+    local[GIVEN] += hat * end.pressure_given(i);
+    local[WEIGHTS] += hat;
   }
-  MPI_Allreduce(own, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(local, all, NSUM, MPI_DOUBLE, MPI_SUM, world);
   if (all[WEIGHTS] == 0.0) return;
   const State &soft = end.softest();
   const double p = all[GIVEN] / all[WEIGHTS], most = MOST_ADDED * std::fabs(p),
@@ -343,7 +343,7 @@ void Fullness::look(const double *psi)
 {
   const Discretization &disc = *end.disc;
   enum { MASS, ROOM, MEMBERS, SURFACE, NSUM };
-  std::vector<std::array<double, NSUM>> own(disc.levels.size()), all(own.size());
+  std::vector<std::array<double, NSUM>> local(disc.levels.size()), all(local.size());
   const auto level = [&](int i) {
     return disc.level_of[atom->type[i]];
   };
@@ -366,14 +366,14 @@ void Fullness::look(const double *psi)
     // those that do not see the buffer, whose particles may be as near to each other as they like
     if (s <= disc.cut || s >= end.zone() || (!one_level && sees_another(i))) continue;
     const double n = psi[i] * (disc.resolution[atom->type[i]].psi_bulk / disc.psi_bulk);
-    auto &sum = own[level(i)];
+    auto &sum = local[level(i)];
     const bool at_surface = m * n < AT_SURFACE * rho;
     sum[at_surface ? SURFACE : MEMBERS]++;
     if (at_surface) continue;
     sum[MASS] += m;
     sum[ROOM] += rho / n;
   }
-  MPI_Allreduce(own.data(), all.data(), (int) own.size() * NSUM, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(local.data(), all.data(), (int) local.size() * NSUM, MPI_DOUBLE, MPI_SUM, world);
   const bool first = now == 0.0;
   now = 1.0;
   double members = 0.0, at_surface = 0.0;

@@ -20,6 +20,7 @@
 
 #include "atom.h"
 #include "fmt/format.h"
+#include "fsi_population.h"
 #include "fsi_scene.h"
 #include "fsi_value.h"
 
@@ -30,9 +31,12 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class FixFSI;
 class Region;
 
 namespace FSI {
+  class Fields;
+
   class OpenEnd : protected Pointers {
    public:
     static constexpr int PRESSURE = 3, NVALUES = 4;    // after the components of the velocity
@@ -174,6 +178,176 @@ namespace FSI {
    private:
     const OpenEnd &end;
     void warn(bool full);
+  };
+
+  // Sums at the nodes of a lattice in a plane across an axis. A rank has only the nodes that its
+  // particles give to and those that they take from. Ranks whose nodes overlap send each other
+  // theirs, which each adds in the order of the ranks.
+  class Nodes : protected Pointers {
+   public:
+    struct Box {    // of nodes; along a periodic axis it goes round
+      int low[2] = {0, 0}, n[2] = {0, 0};
+      int size() const { return n[0] * n[1]; }
+    };
+    Box given, taken;
+    int nlateral, lateral[2];                // axes along the plane
+    double distance[2];                      // of nodes along them
+    std::vector<double> sums_given, sums;    // rows of each
+
+    explicit Nodes(LAMMPS *);
+    void place(int axis, double spacing);    // as the simulation box is now
+    // The nodes within a reach of some places, which stay so until the next lists; together on all
+    // ranks of a communicator
+    void share(const std::vector<const double *> &give, double reach,
+               const std::vector<const double *> &take, double reach_of_taken, MPI_Comm);
+    // rows of some numbers to be summed and some of which the largest counts
+    void begin(int to_sum, int largest);
+    void add_up();
+    int row() const { return nsum + nlargest; }
+    double memory_usage() const;
+
+    // calls visit(number in the box, offset from the node) for the nodes within a reach
+    template <class Visit> void at(const Box &box, const double *x, double reach, Visit visit) const
+    {
+      int low[2] = {0, 0}, high[2] = {0, 0};
+      for (int k = 0; k < nlateral; k++) {
+        low[k] = static_cast<int>(std::ceil((x[lateral[k]] - reach) / distance[k]));
+        high[k] = static_cast<int>(std::floor((x[lateral[k]] + reach) / distance[k]));
+      }
+      for (int b = low[1]; b <= high[1]; b++)
+        for (int a = low[0]; a <= high[0]; a++) {
+          const int node = number(box, a, b);
+          double d[2] = {0.0, 0.0};
+          d[0] = x[lateral[0]] - a * distance[0];
+          if (nlateral == 2) d[1] = x[lateral[1]] - b * distance[1];
+          if (node >= 0) visit(node, d);
+        }
+    }
+
+   private:
+    int first[2], count[2];    // all nodes
+    bool periodic[2];
+    int nsum, nlargest;
+    MPI_Comm ranks;
+    struct Peer {
+      int rank = 0;
+      std::vector<int> give, take;    // numbers of the nodes in both of the two ranks' boxes
+      std::vector<double> out, in;
+    };
+    std::vector<Peer> peers;
+
+    int place_in(const Box &box, int k, int a) const    // along an axis, or -1
+    {
+      int m = a - box.low[k];
+      if (periodic[k]) m = (m % count[k] + count[k]) % count[k];
+      return m >= 0 && m < box.n[k] ? m : -1;
+    }
+    int number(const Box &box, int a, int b) const
+    {
+      const int m = place_in(box, 0, a), n = place_in(box, 1, b);
+      return m < 0 || n < 0 ? -1 : n * box.n[0] + m;
+    }
+    Box around(const std::vector<const double *> &, double reach) const;
+    void overlap(const Box &from, const Box &to, bool in_from, std::vector<int> &) const;
+    void add(const Peer &, const double *);
+  };
+
+  // Pressure or normal velocity of the fluid at the nodes: a fit, quadratic along the plane, of the
+  // fluid within the kernel's support, which is on one side only. (A linear one takes 12 U
+  // sigma^2/2 from Poiseuille's profile, and what does not come in is missing in the pressure,
+  // too.) Terms that the fluid there cannot tell from lower ones are left out.
+  // Where pressure is given the profile of the velocity is that of the fluid a buffer's length
+  // before the plane, as in a channel that goes on behind it (a mapped inlet: Tabor and Baba-Ahmadi
+  // 2010, Comput. Fluids 39, 553), and only its mean is that at the plane. A profile taken at the
+  // plane keeps itself: jets and vortices that come in grow, and a row of the buffer that pushes
+  // the particle before it follows what it pushes. (Half as far away some of it was left.)
+  class PlaneFit : protected Pointers {
+   public:
+    PlaneFit(LAMMPS *lmp, const OpenEnd &end) : Pointers(lmp), end(end), nodes(lmp) {}
+    void share();      // between the ranks of this end, when there are new lists
+    void measure();    // after the end has measured where places are
+    // fit of a place from the nodes around it: normal velocity, pressure; false: no fluid is near
+    bool at(const double *x, double *values) const;
+    double memory_usage() const { return nodes.memory_usage(); }
+
+   private:
+    const OpenEnd &end;
+    // sums over the fluid at the nodes, then values there; then the largest and the negative least
+    // velocity
+    Nodes nodes;
+    int nbounds = 0;
+    double reach() const { return 2.0 * std::max(nodes.distance[0], nodes.distance[1]); }
+    void fit(int nmoment, int nfit, int nfields);
+  };
+
+  // The buffer behind the plane of an open end: particles whose velocity or pressure is prescribed.
+  // One that passes the plane inward is fluid from then on; the last of a row that has come a spacing
+  // from the buffer's end is followed by another; fluid that passes it outward is of the buffer, and
+  // deleted at its end.
+  class Buffer : protected Pointers {
+   public:
+    // LAST of a row; FOLLOWED by one that the next list has; NEXT to one that has left, not yet
+    // where it is the last
+    enum Member { NOT, MEMBER, LAST, FOLLOWED, NEXT_OF_ROW };
+    double passed_in = 0.0, passed_out = 0.0, mass_in = 0.0;
+    double served = -1.0;    // particles near the plane at first; < 0: not known yet
+    double push[4] = {};     // force on it and its power, this rank's part
+
+    Buffer(LAMMPS *lmp, OpenEnd &end) : Pointers(lmp), end(end) {}
+    void set_fields(Fields &);
+    void init(FixFSI *);
+    void fill();    // before the first run; an empty one with the fluid before it, which goes on
+    // when lists are built: what has passed the plane, or the end of the buffer
+    void exchange(const std::vector<const OpenEnd *> &all_ends);
+    void start_step();
+    void follow(int i, double s, double column);
+    void prescribe(double wave);    // velocities
+    void check_supply();
+    int count() const;    // of this rank
+
+   private:
+    typedef std::array<double, 2> Column;    // along the plane
+    struct Census {
+      bigint behind = 0, ahead = 0, beyond = 0, walls_behind = 0, walls_ahead = 0;
+    };
+
+    OpenEnd &end;
+    FixFSI *fix_fsi = nullptr;
+    Population *population = nullptr;
+    const Discretization *disc = nullptr;
+    double *members = nullptr;    // per atom: Member, as a number since a field is one
+    // of one that is followed: where the next one would be now; its velocity, and the step since
+    // when
+    double **behind = nullptr, **follower = nullptr;
+    // particles behind the plane in the last step; that went between two runs
+    double last_count = -1.0, taken = 0.0;
+    bool warned_of_stranger = false, warned_of_supply = false;    // in this run
+
+    Member member(int i) const { return static_cast<Member>(members[i]); }
+    int first_axis() const { return end.axis == 0 ? 1 : 0; }
+    Column along(const double *x) const { return {x[first_axis()], x[end.axis == 2 ? 1 : 2]}; }
+    // slices of a spacing, counted from the plane
+    int number_of_slices() const { return static_cast<int>(std::round(end.length / disc->dx)); }
+    int slice(double distance) const
+    {
+      return std::max(0, static_cast<int>(std::ceil(distance / disc->dx - 1.0e-6)) - 1);
+    }
+    template <class Visit>
+    void beside(const std::vector<Particle> &sorted, const double *x, Visit) const;
+    void sort_along_plane(std::vector<Particle> &) const;
+    Census take_census(std::vector<int> &slices, bool &has_some);
+    void check_census(const Census &) const;
+    void check_levels(bool is_empty) const;
+    void check_slices(const std::vector<int> &rank_local) const;
+    int find_last_of_rows();
+    int full_slices() const, slices_before_bodies() const;
+    std::vector<Particle> go_on_behind() const;
+    std::vector<int> find_occupied(std::vector<Particle> &copies, bool at_start);
+    void make(const std::vector<Particle> &, bool at_start);
+    void find_next_of_rows(const std::vector<Particle> &gone);
+    void refuse_overlap(int i, const std::vector<const OpenEnd *> &all_ends) const;
+    void check_stranger(int i);
+    bool find_followers();
   };
 
 }    // namespace FSI

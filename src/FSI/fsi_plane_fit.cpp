@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_plane_fit.h"
+#include "fsi_open_end.h"
 
 #include "domain.h"
 #include "fsi_gradient.h"
@@ -108,10 +108,10 @@ void Nodes::share(const std::vector<const double *> &give, double reach,
   int me, n;
   MPI_Comm_rank(ranks, &me);
   MPI_Comm_size(ranks, &n);
-  const Box own[2] = {given, taken};
+  const Box boxes[2] = {given, taken};
   std::vector<Box> all(2 * n);
-  MPI_Allgather(const_cast<Box *>(own), sizeof(own), MPI_BYTE, all.data(), sizeof(own), MPI_BYTE,
-                ranks);
+  MPI_Allgather(const_cast<Box *>(boxes), sizeof(boxes), MPI_BYTE, all.data(), sizeof(boxes),
+                MPI_BYTE, ranks);
   peers.clear();
   for (int r = 0; r < n; r++) {
     Peer peer;

@@ -53,10 +53,10 @@ double Population::energy(int i) const
 void Population::leave_an_id_free()
 {
   if (!atom->tag_consecutive()) return;
-  tagint own = 0, largest;
+  tagint local = 0, largest;
   for (int i = 0; i < atom->nlocal; i++)
-    if (disc.state[atom->type[i]].species == FLUID) own = std::max(own, atom->tag[i]);
-  MPI_Allreduce(&own, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+    if (disc.state[atom->type[i]].species == FLUID) local = std::max(local, atom->tag[i]);
+  MPI_Allreduce(&local, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (largest == 0 || atom->natoms >= MAXTAGINT) return;
   if (comm->me == 0)
     utils::logmesg(lmp, "  atom {} is {} from now on: particles come and go\n", largest,
@@ -95,24 +95,25 @@ void Population::remove(const std::vector<int> &gone, double *account)
 }
 
 // IDs that no particle has or had, behind each other: the largest n of any rank
-std::vector<tagint> Population::new_ids(tagint n, const std::string &who)
+std::vector<tagint> Population::new_ids(tagint n, const std::string &label)
 {
-  tagint own[2] = {last_id, n}, most[2];
-  for (int i = 0; i < atom->nlocal; i++) own[0] = std::max(own[0], atom->tag[i]);
-  MPI_Allreduce(own, most, 2, MPI_LMP_TAGINT, MPI_MAX, world);
+  tagint local[2] = {last_id, n}, most[2];
+  for (int i = 0; i < atom->nlocal; i++) local[0] = std::max(local[0], atom->tag[i]);
+  MPI_Allreduce(local, most, 2, MPI_LMP_TAGINT, MPI_MAX, world);
   if (most[0] > MAXTAGINT - most[1])
-    error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them", who);
+    error->all(FLERR, "{}: there are no more atom IDs: LAMMPS with -DLAMMPS_BIGBIG has them",
+               label);
   std::vector<tagint> list(most[1]);
   std::iota(list.begin(), list.end(), most[0] + 1);
   last_id = most[0] + most[1];
   wanted += most[1];
-  maker = who;
+  maker = label;
   return list;
 }
 
-void Population::make(const std::vector<Particle> &all, const std::string &who, double *account)
+void Population::make(const std::vector<Particle> &all, const std::string &label, double *account)
 {
-  const auto list = new_ids(static_cast<tagint>(all.size()), who);
+  const auto list = new_ids(static_cast<tagint>(all.size()), label);
   const int first = atom->nlocal;
   for (size_t k = 0; k < all.size(); k++) {
     const Particle &p = all[k];
@@ -134,7 +135,7 @@ void Population::make(const std::vector<Particle> &all, const std::string &who, 
 
 // Where particles come and go all the time, IDs that are free again come first: so the largest, and
 // LAMMPS' map of IDs, does not grow without end. Commands between runs may have given them, too.
-std::vector<tagint> Population::ids(int n, const std::string &who)
+std::vector<tagint> Population::ids(int n, const std::string &label)
 {
   std::vector<tagint> list;
   while ((int) list.size() < n && !free_ids.empty()) {
@@ -147,7 +148,7 @@ std::vector<tagint> Population::ids(int n, const std::string &who)
       if (!used[k]) list.push_back(some[k]);
   }
   wanted += list.size();
-  const auto more = new_ids(n - (tagint) list.size(), who);
+  const auto more = new_ids(n - (tagint) list.size(), label);
   list.insert(list.end(), more.begin(), more.end());
   return list;
 }
@@ -155,12 +156,12 @@ std::vector<tagint> Population::ids(int n, const std::string &who)
 // which of these, in rising order, particles have
 std::vector<char> Population::in_use(const std::vector<tagint> &list) const
 {
-  std::vector<char> own(list.size(), 0), all(list.size());
+  std::vector<char> local(list.size(), 0), all(list.size());
   for (int i = 0; i < atom->nlocal; i++) {
     const auto at = std::lower_bound(list.begin(), list.end(), atom->tag[i]);
-    if (at != list.end() && *at == atom->tag[i]) own[at - list.begin()] = 1;
+    if (at != list.end() && *at == atom->tag[i]) local[at - list.begin()] = 1;
   }
-  MPI_Allreduce(own.data(), all.data(), (int) list.size(), MPI_CHAR, MPI_MAX, world);
+  MPI_Allreduce(local.data(), all.data(), (int) list.size(), MPI_CHAR, MPI_MAX, world);
   return all;
 }
 
@@ -186,10 +187,10 @@ void Population::release(const std::vector<tagint> &of_rank)
 
 void Population::end()
 {
-  bigint own[] = {made, removed};    // not const: LAMMPS' MPI for one process takes no other
+  bigint local[] = {made, removed};    // not const: LAMMPS' MPI for one process takes no other
   tagint largest = last_id;
   bigint all[2];
-  MPI_Allreduce(own, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(local, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&largest, &last_id, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (all[0] != wanted)
     error->all(FLERR, "{}: {} of {} new particles are outside the box", maker, wanted - all[0],

@@ -43,16 +43,16 @@ namespace FSI {
     double energy(int i) const;    // kinetic, potential, compressive
 
     bigint net;                 // particles made less those deleted, since fix fsi is there
-    void leave_an_id_free();    // in init() of who makes particles
+    void leave_an_id_free();    // in init() of what makes particles
     void begin();
     // of this rank, in rising order; to an account goes their energy, from it that of new ones.
     // Null: there is none
     void remove(const std::vector<int> &, double *account);
     // The same list on all ranks that the places belong to, an empty one or this on others; IDs go
-    // on in its order. Those of this rank are the last of its atoms then. Who: of errors
-    void make(const std::vector<Particle> &, const std::string &who, double *account);
+    // on in its order. Those of this rank are the last of its atoms then. Label: of errors
+    void make(const std::vector<Particle> &, const std::string &label, double *account);
     // IDs of particles that are to be made on any rank, the same list on all; first those released
-    std::vector<tagint> ids(int n, const std::string &who);
+    std::vector<tagint> ids(int n, const std::string &label);
     int copy(int i, tagint id);    // of this rank, with all that fixes know of it; where it is
     void
     release(const std::vector<tagint> &of_rank);    // IDs of particles removed here: for others
@@ -69,7 +69,7 @@ namespace FSI {
     bigint made, removed, wanted;    // since begin(): of this rank; of all
     std::string maker;
     void renew_map();
-    std::vector<tagint> new_ids(tagint n, const std::string &who);
+    std::vector<tagint> new_ids(tagint n, const std::string &label);
     std::vector<char> in_use(const std::vector<tagint> &) const;
   };
 

@@ -11,11 +11,10 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_settling.h"
+#include "fsi_refine.h"
 
 #include "atom.h"
 #include "comm.h"
-#include "fsi_cells.h"
 #include "fsi_kernel.h"
 #include "fsi_rows.h"
 #include "fsi_scene.h"
@@ -42,7 +41,7 @@ Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
 {
   const double of_body = disc.cut + disc.dx, beyond = disc.cut + 1.1 * of_body;
   const Everywhere events(lmp, beyond, changed);
-  // the others hold nobody off: who moves is within the support of an event
+  // the others hold no particle off: what moves is within the support of an event
   const auto bodies = everywhere(lmp, of_body, [&](int j) {
     const int species = disc.state[atom->type[j]].species;
     return (species == SOLID || species == RIGID) && events.nearest(atom->x[j]) < beyond * beyond;
@@ -79,9 +78,9 @@ void Settling::find_rows()
   for (int i = 0; i < atom->nlocal; i++) {
     if (mobility[i] <= 0.0) continue;
     const size_t first = neighbors.size();
-    const double own = reach_of(type[i]);
-    cells.around(atom->x[i], own + widest, [&](int j, double rsq) {
-      const double reach = own + reach_of(type[j]);
+    const double reach_i = reach_of(type[i]);
+    cells.around(atom->x[i], reach_i + widest, [&](int j, double rsq) {
+      const double reach = reach_i + reach_of(type[j]);
       if (rsq < reach * reach) neighbors.push_back(j);
     });
     rows.push_back({i, (int) (neighbors.size() - first), nullptr});
@@ -134,7 +133,7 @@ template <class T, class K>
 FSI_INLINE static void add_images(const Row &row, const double *points, const int *type,
                                   const K *with, const Mirror &mirror, double *sums)
 {
-  const double *const own = points + POINT * row.i;
+  const double *const xi = points + POINT * row.i;
   T sum[K::DIM + 1];
   for (auto &s : sum) s = T(0.0);
   for_neighbors<T, false>(row, [&](const int *j, const T &there) FSI_INLINE_LAMBDA {
@@ -145,7 +144,7 @@ FSI_INLINE static void add_images(const Row &row, const double *points, const in
     };
     T away[K::DIM], rsq = T(0.0);
     for (int a = 0; a < K::DIM; a++) {
-      away[a] = own[a] - mirror.x[a] - mirror.sign[a] * of(a);
+      away[a] = xi[a] - mirror.x[a] - mirror.sign[a] * of(a);
       rsq += away[a] * away[a];
     }
     const T hinv = Lanes<T>::make([&](int k) FSI_INLINE_LAMBDA {
@@ -175,13 +174,13 @@ template <class T, class K> void Settling::sum_up(const std::vector<K> &of_types
     for (size_t r = 0; r < rows.size(); r++) {
       const Row &row = rows[r];
       const K *const with = &of_types[type[row.i] * (atom->ntypes + 1)];
-      double *const own = sums[r].data();
-      add_images<Number>(row, points.data(), type, with, mirrors[0], own);
+      double *const sum_i = sums[r].data();
+      add_images<Number>(row, points.data(), type, with, mirrors[0], sum_i);
       const int near = walls.near(x[row.i], 0.5 * (disc.resolution[type[row.i]].cut + disc.cut));
       if (near && segments) at_walls.emplace_back(r, near);
       for (size_t s = 0; near && s < reflections.size(); s++)
         if ((reflections[s].mask & near) == reflections[s].mask && !walls.finite(reflections[s]))
-          add_images<Number>(row, points.data(), type, with, mirrors[s + 1], own);
+          add_images<Number>(row, points.data(), type, with, mirrors[s + 1], sum_i);
     }
   });
 }
@@ -194,7 +193,7 @@ template <class K> void Settling::add_images_of_segments(const std::vector<K> &o
   const int *const type = atom->type;
   for (const auto &[r, near] : at_walls) {
     const int i = rows[r].i;
-    double *const own = sums[r].data();
+    double *const sum_i = sums[r].data();
     for (int n = 0; n < rows[r].n; n++) {
       const int j = rows[r].j[n];
       const K &kernel = of_types[type[i] * (atom->ntypes + 1) + type[j]];
@@ -203,8 +202,8 @@ template <class K> void Settling::add_images_of_segments(const std::vector<K> &o
                      if (!walls.finite(s)) return;
                      const double distance = std::sqrt(rsq), volume = points[POINT * j + 3],
                                   g = volume * kernel.gradient(distance);
-                     for (int a = 0; a < K::DIM; a++) own[a] += g * away[a];
-                     own[K::DIM] += volume * kernel.W(distance);
+                     for (int a = 0; a < K::DIM; a++) sum_i[a] += g * away[a];
+                     sum_i[K::DIM] += volume * kernel.W(distance);
                    });
     }
   }

@@ -11,15 +11,13 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-#include "fsi_zones.h"
+#include "fsi_refine.h"
 
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
-#include "fsi_everywhere.h"
 #include "fsi_keywords.h"
 #include "fsi_scene.h"
-#include "fsi_split.h"
 #include "group.h"
 #include "lammps.h"
 #include "region.h"
@@ -29,8 +27,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-Zones::Zones(LAMMPS *lmp, const std::string &who) :
-    Pointers(lmp), who(who), body_bit(0), can_move(false), ahead(0.0),
+Zones::Zones(LAMMPS *lmp, const std::string &label) :
+    Pointers(lmp), label(label), body_bit(0), can_move(false), ahead(0.0),
     directions(split_directions(domain->dimension))
 {
 }
@@ -49,10 +47,10 @@ void Zones::read_distances(const std::vector<std::string> &words)
   body_id = words[0];
   find_body();
   for (size_t k = 1; k < words.size(); k++) {
-    distances.push_back(numeric(lmp, who + " distance", words[k], Range::above(0.0)));
+    distances.push_back(numeric(lmp, label + " distance", words[k], Range::above(0.0)));
     if (k > 1 && distances[k - 1] >= distances[k - 2])
-      error->all(FLERR, "{} distance: {} after {}, expected less: the finer levels are nearer", who,
-                 distances[k - 1], distances[k - 2]);
+      error->all(FLERR, "{} distance: {} after {}, expected less: the finer levels are nearer",
+                 label, distances[k - 1], distances[k - 2]);
   }
 }
 
@@ -68,12 +66,12 @@ void Zones::find_body()
 void Zones::check_number(size_t types) const
 {
   if (!region_ids.empty() && !distances.empty())
-    error->all(FLERR, "{} takes region or distance, not both", who);
+    error->all(FLERR, "{} takes region or distance, not both", label);
   if (region_ids.size() + distances.size() != types - 1)
     error->all(FLERR,
                "{} has {} types and {} {}: expected one for each type but the first, that of "
                "larger spacing first",
-               who, types, region_ids.size() + distances.size(),
+               label, types, region_ids.size() + distances.size(),
                distances.empty() ? "regions" : "distances");
 }
 
@@ -96,7 +94,7 @@ void Zones::init(const Discretization &disc, const std::vector<int> &types)
       error->all(FLERR,
                  "{} distance: from {} to {} there is {:g} for atom type {}: expected at least "
                  "{:g}, the kernel's support of type {} and a spacing of type {}",
-                 who, distances[k], distances[k - 1], shell, types[k], least, types[k - 1],
+                 label, distances[k], distances[k - 1], shell, types[k], least, types[k - 1],
                  types[k]);
   }
 }
@@ -114,7 +112,8 @@ void Zones::find(const Discretization &disc, double beyond, double time)
   const auto body = everywhere(lmp, distances[0] + beyond, [this](int i) {
     return (atom->mask[i] & body_bit) != 0;
   });
-  if (body.empty()) error->all(FLERR, "{} distance: there are no atoms in group {}", who, body_id);
+  if (body.empty())
+    error->all(FLERR, "{} distance: there are no atoms in group {}", label, body_id);
   away.assign(atom->nlocal, Cells::LARGE);
   for (int i = 0; i < atom->nlocal; i++)
     if (disc.state[atom->type[i]].species == FLUID) away[i] = std::sqrt(body.nearest(atom->x[i]));

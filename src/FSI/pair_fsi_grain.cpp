@@ -297,16 +297,16 @@ void PairFSIGrain::prescribe()
   if (!ledger->kept) return;
   const int dim = disc->dim, nlocal = atom->nlocal;
   const double half = 0.5 * update->dt * force->ftm2v;
-  std::vector<double> one(nlocal + atom->nghost);
+  std::vector<double> on_fluid(nlocal + atom->nghost);
   double power = 0.0;
   for (int d = 0; d < dim; d++) {
-    std::fill(one.begin(), one.end(), 0.0);
+    std::fill(on_fluid.begin(), on_fluid.end(), 0.0);
     for (const Touch &touch : touches)
-      one[touch.fluid] += touch.weight * given[number[touch.grain] * dim + d];
-    fix_fsi->add_ghosts(one.data());
+      on_fluid[touch.fluid] += touch.weight * given[number[touch.grain] * dim + d];
+    fix_fsi->add_ghosts(on_fluid.data());
     for (int i = 0; i < nlocal; i++)
-      if (one[i] != 0.0 && atom->mask[i] & fix_fsi->groupbit)
-        power += one[i] * (atom->v[i][d] + half * atom->f[i][d] / atom->rmass[i]);
+      if (on_fluid[i] != 0.0 && atom->mask[i] & fix_fsi->groupbit)
+        power += on_fluid[i] * (atom->v[i][d] + half * atom->f[i][d] / atom->rmass[i]);
   }
   ledger->tally(Ledger::COUPLING, power);
 }

@@ -79,8 +79,10 @@ def test_styles_are_found_by_what_they_are():
 def test_protected_members_are_read_in_one_file():
     """What LAMMPS shows to derived classes only is read by fsi_lammps_access.cpp alone: nothing else derives from a class of LAMMPS and names its
     members by address."""
-    peeks = re.compile(r"\b(?:struct|class) (\w+) (?:final )?: (?:public )?(?:Modify|CommBrick|Comm|Fix\w*|Neighbor|Domain|Atom|Force)\b[^{;]*\{[^}]*&\1::")
+    peeks = re.compile(r"\b(?:struct|class) (\w+) (?:final )?: (?:public )?(Modify|CommBrick|Comm|Fix\w*|Neighbor|Domain|Atom|Force)\b[^{;]*\{[^}]*"
+                       r"(?:&\1::|using \2::)")
     assert peeks.search("struct Peek : public Modify {\n  static constexpr auto id = &Peek::id_restart_global;\n};")
+    assert peeks.search("struct Peek : public Modify {\n  using Modify::id_restart_global;\n};")
     assert not peeks.search("class FixFSIMove : public FSI::FixFields {\n  int a;\n};")
     assert {file.name for file in sources() if peeks.search(file.read_text())} == {"fsi_lammps_access.cpp"}
 

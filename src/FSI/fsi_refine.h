@@ -11,23 +11,38 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// How a fluid particle becomes two of the next finer level: along the direction in which there is
-// most room around it, on both sides. Two particles of mass m/2 at half the finer spacing from
-// the old one's place make the finer lattice out of a square one, and one with eight equal
-// neighbors (body-centered) out of a simple cubic one. No LAMMPS types.
+// What fix fsi/refine is made of: how a particle is split, where levels are wanted, how particles
+// settle around what has changed.
 
-#ifndef LMP_FSI_SPLIT_H
-#define LMP_FSI_SPLIT_H
+#ifndef LMP_FSI_REFINE_H
+#define LMP_FSI_REFINE_H
 
+#include "fsi_cells.h"
 #include "fsi_gradient.h"
+#include "fsi_rows.h"
+#include "fsi_walls.h"
+#include "pointers.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
+class Region;
+
 namespace FSI {
+  struct Discretization;
+  struct Ledger;
+  class Scene;
+  struct StepState;
+
+  // How a fluid particle becomes two of the next finer level: along the direction in which there is
+  // most room around it, on both sides. Two particles of mass m/2 at half the finer spacing from
+  // the old one's place make the finer lattice out of a square one, and one with eight equal
+  // neighbors (body-centered) out of a simple cubic one. No LAMMPS types.
 
   // Directions along which a particle may split, one of each pair of opposite ones, as unit
   // vectors; the simplest first, since the first of equals is taken: so all of a lattice split the
@@ -135,6 +150,71 @@ namespace FSI {
 
    private:
     double A[packed_size(D)] = {}, sum[FIELDS][D] = {};
+  };
+
+  // Where each level of a fluid from the first finer one on is wanted: nested regions, or distances
+  // from a body. A finer zone is inside the one before it, by the kernel's support at least.
+  class Zones : protected Pointers {
+   public:
+    Zones(LAMMPS *, const std::string &label);
+    void read_regions(const std::vector<std::string> &words);
+    void read_distances(const std::vector<std::string> &words);
+    void check_number(size_t types) const;
+
+    void init(const Discretization &, const std::vector<int> &types);
+    bool moving() const { return can_move; }
+    // where they are at the end of this step, and so much beyond them; positions are by that time
+    // before it
+    void find(const Discretization &, double beyond, double time);
+    bool has(int k, int i, double grown) const;    // is i in zone k, from 1 on, grown by that?
+    std::string names(int k) const;                // of zones k and k + 1, for errors
+
+   private:
+    void find_body();
+    const std::string label;
+    std::vector<std::string> region_ids;
+    std::vector<Region *> regions;
+    std::string body_id;
+    int body_bit;
+    std::vector<double> distances, away;    // of zones; per local particle, from the body
+    bool can_move;
+    double ahead;                                     // of positions, time
+    std::vector<std::array<double, 3>> directions;    // in which a region grows
+  };
+
+  // What has split or merged is not where the pressure around it is even. On its way there by itself
+  // it would make sound, and with each event the fluid would lose some of its mean pressure, since
+  // its density follows what moves. So particles around are moved there at once, with their density,
+  // by steps against the sum of V grad W: less the further they are from an event, and not where
+  // they see bodies, segments of mirror walls or a surface.
+  class Settling : protected Pointers {
+   public:
+    // moves: per local particle, may it be moved? Ghosts are where these are, and follow. Changed:
+    // where something did, of this rank
+    Settling(LAMMPS *, Scene &, const std::vector<char> &moves,
+             const std::vector<Position> &changed);
+    void run(int sweeps);
+
+   private:
+    const Scene &scene;
+    const Discretization &disc;
+    const StepState &step;
+    Ledger &ledger;
+    std::vector<double> mobility, start;    // start: positions that the rows are for
+    std::vector<double> points;             // position and volume of each particle
+    std::vector<Row> rows;                  // particles that are moved, and themselves among others
+    std::vector<Mirror> mirrors;            // none, then those of the walls' reflections
+    std::vector<int> neighbors;             // of the rows
+    // of each row: sum of V grad W, and behind it that of V W; and rows that see walls, with the
+    // bits of these
+    std::vector<std::array<double, 4>> sums;
+    std::vector<std::pair<size_t, int>> at_walls;
+
+    void find_rows();
+    bool rows_hold() const;
+    template <class T, class K> void sum_up(const std::vector<K> &of_types);
+    template <class K> void add_images_of_segments(const std::vector<K> &of_types);
+    template <int D> void displace();
   };
 
 }    // namespace FSI
