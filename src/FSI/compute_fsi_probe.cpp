@@ -316,7 +316,7 @@ void ComputeFSIProbe::add_level(size_t level, const K &kernel, const Walls &wall
       walls.images(both, rsq, xk, x, kernel.cutsq,
                    [&](const Walls::Reflection &s, double rsq_image, const double *) {
                      double v[3];
-                     walls.reflect_velocity(s, atom->v[i], v);
+                     Mirror(walls, s).reflect_velocity(atom->v[i], v);
                      add(place, of, kernel.W(std::sqrt(rsq_image)) * part, head, v, sum);
                    });
     });

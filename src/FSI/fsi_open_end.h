@@ -52,24 +52,12 @@ namespace FSI {
       bool known = false;       // is there fluid at the plane?
     };
     // sums over the fluid at the plane
+    // clang-format off
     enum Sum {
-      WEIGHT,
-      SPEED,
-      INNER_WEIGHT,
-      INNER_SPEED,
-      MEAN_PRESSURE,
-      OVER_IMPEDANCE,
-      MASS_FLOW,
-      VOLUME_FLOW,
-      BUFFER,
-      TOO_FAR,
-      MASS,
-      BEYOND,
-      FIRST,
-      SECOND,
-      SLOPE,
-      NSUM
+      WEIGHT, SPEED, INNER_WEIGHT, INNER_SPEED, MEAN_PRESSURE, OVER_IMPEDANCE, MASS_FLOW,
+      VOLUME_FLOW, BUFFER, TOO_FAR, MASS, BEYOND, FIRST, SECOND, SLOPE, NSUM
     };
+    // clang-format on
 
     const std::string command, label, id, name;    // fix fsi/inlet; Fix fsi/inlet; that and its ID
     const bool outlet;
@@ -161,7 +149,7 @@ namespace FSI {
     const OpenEnd &end;
   };
 
-  // Is there as much fluid as there is room?
+  // Is there as much fluid as its density has volume for?
   class Fullness : protected Pointers {
    public:
     static constexpr int LOOK_EVERY = 20;    // steps
@@ -281,9 +269,9 @@ namespace FSI {
   };
 
   // The buffer behind the plane of an open end: particles whose velocity or pressure is prescribed.
-  // One that passes the plane inward is fluid from then on; the last of a row that has come a spacing
-  // from the buffer's end is followed by another; fluid that passes it outward is of the buffer, and
-  // deleted at its end.
+  // One that passes the plane inward is fluid from then on; the last of a row that has come a
+  // spacing from the buffer's end is followed by another; fluid that passes the plane outward is of
+  // the buffer, and deleted at its end.
   class Buffer : protected Pointers {
    public:
     // LAST of a row; FOLLOWED by one that the next list has; NEXT to one that has left, not yet

@@ -182,11 +182,11 @@ namespace FSI {
     std::vector<std::array<double, 3>> directions;    // in which a region grows
   };
 
-  // What has split or merged is not where the pressure around it is even. On its way there by itself
-  // it would make sound, and with each event the fluid would lose some of its mean pressure, since
-  // its density follows what moves. So particles around are moved there at once, with their density,
-  // by steps against the sum of V grad W: less the further they are from an event, and not where
-  // they see bodies, segments of mirror walls or a surface.
+  // What has split or merged is not where the pressure around it is even. On its way there by
+  // itself it would make sound, and with each event the fluid would lose some of its mean pressure,
+  // since its density follows what moves. So particles around are moved there at once, with their
+  // density, by steps against the sum of V grad W: less the further they are from an event, and not
+  // where they see bodies, segments of mirror walls or a surface.
   class Settling : protected Pointers {
    public:
     // moves: per local particle, may it be moved? Ghosts are where these are, and follow. Changed:

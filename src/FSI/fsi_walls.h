@@ -197,17 +197,6 @@ namespace FSI {
       }
     }
 
-    // velocity of the image of a particle with velocity v, as for walls that slip (viscous forces:
-    // Mirror)
-    void reflect_velocity(const Reflection &s, const double *v, double *image) const
-    {
-      for (int d = 0; d < 3; d++) image[d] = v[d];
-      for (int k = 0; k < s.n; k++) {
-        const Wall &w = wall[s.w[k]];
-        image[w.axis] = 2.0 * w.velocity[w.axis] - image[w.axis];
-      }
-    }
-
     // the same walls a time dt later
     Walls moved(double dt) const
     {
@@ -269,6 +258,10 @@ namespace FSI {
     void reflect(const double *original, double *image) const    // a point
     {
       for (int d = 0; d < 3; d++) image[d] = x[d] + sign[d] * original[d];
+    }
+    void reflect_velocity(const double *original, double *image) const    // as for walls that slip
+    {
+      for (int d = 0; d < 3; d++) image[d] = v[d] + sign[d] * original[d];
     }
   };
 

@@ -359,7 +359,7 @@ TEST(Walls, SlipVelocity)
   const auto later = walls.moved(dt);
   for (const auto &s : walls.reflections) {
     double image[3];
-    walls.reflect_velocity(s, v, image);
+    Mirror(walls, s).reflect_velocity(v, image);
     for (int d = 0; d < 3; d++) {
       const double x0 = 0.2, x1 = x0 + dt * v[d];
       double m0 = x0, m1 = x1;
