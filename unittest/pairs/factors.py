@@ -108,8 +108,8 @@ NOT_DRAWN = {
 
 # {(level, level): (message, further levels)}: what the code refuses, and in which words
 REFUSED = {
-    ("surface rule", "tension"): (r"density/surface is for fluids with a free surface", {}),
-    ("surface rule", "background"): (r"density/surface is for fluids with a free surface", {}),
+    ("surface rule", "tension"): (r"density/surface does not go with tension yes or background", {}),
+    ("surface rule", "background"): (r"density/surface does not go with tension yes or background", {}),
     **{("surface rule", levels): (r"requires pair_style fsi/fluid (without )?density/surface", {}) for levels in all_of("levels")},
     ("self", "symmetry plane"): (r"self yes does not go with symmetry yes", {}),
     **{(solid, "sub-steps"): (r"substeps requires pair_style fsi/solid/tl", {}) for solid in UPDATED},
