@@ -493,8 +493,8 @@ namespace FSI {
     }
   };
 
-  // A pair as the terms of its force need it. weight: 0 in places that are left over; g = W'/r; pushing: that of
-  // pressures; share: the part of its powers that this rank counts.
+  // A pair as the terms of its force need it. weight: 0 in places that are left over; g = W'/r;
+  // pushing: that of pressures; share: the part of its powers that this rank counts.
   template <class T, int D> struct Between {
     T x[D], v[D], rsq, vdotx, weight, g, pushing, share;
   };

@@ -68,7 +68,7 @@ namespace FSI {
         CONTINUITY = {REQUIRES, "Pair style fsi/fluid {}", STANDARD, "it is a rate of density"},
         SURFACES = {NOT_WITH, "Pair style fsi/fluid density/surface", "tension yes or background",
                     "it is for fluids with a free surface"},
-        FULL_TOTAL = {NOT_WITH, "Pair style fsi/fluid couple full", "pair_style fsi/solid/tl",
+        FULL_TOTAL = {REQUIRES, "Pair style fsi/solid/tl", WALL,
                       "its stress is not one that crosses to the fluid"},
         FULL_CORRECTED =
             {REQUIRES, "Pair style fsi/fluid couple full", "pair_style fsi/solid gradient plain",

@@ -110,7 +110,7 @@ void LightSolids::init(FixFSI *fix_fsi_in)
   step = fix_fsi;
 }
 
-// the types that are light, in the number of sub-steps that this step has
+// of a step with sub-steps: the types that are light
 std::vector<char> LightSolids::types() const
 {
   const auto &state = disc->state;
@@ -121,13 +121,14 @@ std::vector<char> LightSolids::types() const
   for (int t = 1; t <= atom->ntypes; t++)
     if (state[t].species == FLUID) fluid = std::max(fluid, layer(t));
   std::vector<char> light(atom->ntypes + 1, 0);
-  for (int t = 1; t <= atom->ntypes && step->substeps > 1; t++)
+  for (int t = 1; t <= atom->ntypes; t++)
     light[t] = state[t].species == SOLID && layer(t) < 0.5 * fluid;
   return light;
 }
 
 bool LightSolids::any() const
 {
+  if (step->substeps <= 1) return false;
   const auto light = types();
   return std::find(light.begin(), light.end(), 1) != light.end();
 }

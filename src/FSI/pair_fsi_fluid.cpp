@@ -99,8 +99,8 @@ PairFSIFluid::~PairFSIFluid()
   take_virial(nullptr);
 }
 
-// A hybrid style would take the virial of images, too, with that of pairs: pairs have to count their
-// own. What an earlier one had is given back.
+// A hybrid style would take the virial of images, too, with that of pairs: pairs have to count
+// their own. What an earlier one had is given back.
 void PairFSIFluid::take_virial(Pair *of)
 {
   if (hybrid) hybrid->no_virial_fdotr_compute = no_fdotr_before;

@@ -197,7 +197,7 @@ CASES = [
     ("surface ratio large", *fluid("", "sound 10 surface 1.5 "), r"surface 1\.5 must be >= 0 and < 1"),
     ("diffusion with summation", "fluid continuity", "fluid summation", r"density/diffusion requires density by continuity"),
     ("surfaces of no logical value", "density/diffusion 0.1", "density/surface perhaps", r"density/surface perhaps"),
-    ("surfaces with tension", "density/diffusion 0.1", "density/surface yes tension yes", r"density/surface is for fluids with a free surface"),
+    ("surfaces with tension", "density/diffusion 0.1", "density/surface yes tension yes", r"density/surface does not go with tension yes or background"),
     ("shift negative", "density/diffusion 0.1", "shift -0.1", r"shift -0\.1 must be between 0 and 1"),
     ("shift large", "density/diffusion 0.1", "shift 2", r"shift 2 must be between 0 and 1"),
     ("shift/every zero", "density/diffusion 0.1", "shift 0.1 shift/every 0", r"shift/every 0 must be >= 1"),
