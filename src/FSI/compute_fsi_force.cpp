@@ -70,15 +70,15 @@ bool ComputeFSIForce::counts(int i) const
 // until the torque is asked for; then its center of mass
 void ComputeFSIForce::find_body()
 {
-  tagint mine = MAXTAGINT, first;
+  tagint local = MAXTAGINT, first;
   double place[3] = {};
   for (int i = 0; i < atom->nlocal; i++)
-    if (counts(i) && atom->tag[i] < mine) {
-      mine = atom->tag[i];
+    if (counts(i) && atom->tag[i] < local) {
+      local = atom->tag[i];
       std::copy_n(atom->x[i], 3, place);
     }
-  MPI_Allreduce(&mine, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  if (mine != first) std::fill_n(place, 3, 0.0);
+  MPI_Allreduce(&local, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  if (local != first) std::fill_n(place, 3, 0.0);
   MPI_Allreduce(place, origin, 3, MPI_DOUBLE, MPI_SUM, world);
 }
 

@@ -34,7 +34,6 @@
 #include "fsi_profile.h"
 #include "fsi_record.h"
 #include "fsi_sight.h"
-#include "fsi_surface_deficit.h"
 #include "group.h"
 #include "neighbor.h"
 #include "output.h"

@@ -144,14 +144,14 @@ void FixFSIReport::end_of_step()
 
 FixFSIReport::Vector FixFSIReport::momentum_of_moving(double *scale) const
 {
-  double mine[4] = {}, all[4];
+  double local[4] = {}, all[4];
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & fix_fsi->groupbit)) continue;
     const double m = atom->rmass[i], *const v = atom->v[i];
-    for (int d = 0; d < 3; d++) mine[d] += m * v[d];
-    mine[3] += m * std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int d = 0; d < 3; d++) local[d] += m * v[d];
+    local[3] += m * std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   }
-  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(local, all, 4, MPI_DOUBLE, MPI_SUM, world);
   if (scale) *scale = all[3];
   return {all[0], all[1], all[2]};
 }
@@ -161,12 +161,12 @@ FixFSIReport::Balance FixFSIReport::balance() const
 {
   Balance b;
   const Vector now = momentum_of_moving(&b.scale);
-  auto mine = impulse;
+  auto local = impulse;
   for (int d = 0; d < 3; d++) {
-    mine[WALLS][d] += profile->reflected[d];
-    mine[HELD][d] -= force->ftm2v * profile->impulse_held[d];
+    local[WALLS][d] += profile->reflected[d];
+    local[HELD][d] -= force->ftm2v * profile->impulse_held[d];
   }
-  MPI_Allreduce(mine.data(), b.from.data(), 3 * NGIVER, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(local.data(), b.from.data(), 3 * NGIVER, MPI_DOUBLE, MPI_SUM, world);
   for (int d = 0; d < 3; d++) {
     b.change[d] = now[d] - momentum[d];
     b.rest[d] = b.change[d] - b.from[GRAVITY][d] - b.from[WALLS][d] - b.from[HELD][d];
@@ -247,17 +247,17 @@ std::string FixFSIReport::time_table(double loop)
       {"neighbor lists", ""},
       {"output", "thermo, dumps, restarts, computes they need"},
       {"rest", "drift and kick, other fixes, their computes, LAMMPS"}};
-  double mine[NROW], sum[NROW], most[NROW], busiest;
-  std::copy_n(profile->seconds, (int) Profile::NPART, mine);
+  double local[NROW], sum[NROW], most[NROW], busiest;
+  std::copy_n(profile->seconds, (int) Profile::NPART, local);
   const bool known = timer->has_normal();
-  mine[Profile::MESSAGES] += known ? timer->get_wall(Timer::COMM) : 0.0;
-  mine[NEIGH] = known ? timer->get_wall(Timer::NEIGH) : 0.0;
-  mine[OUTPUT] = known ? timer->get_wall(Timer::OUTPUT) : 0.0;
-  mine[REST] = loop;
-  for (int k = 0; k < REST; k++) mine[REST] -= mine[k];
-  MPI_Allreduce(mine, sum, NROW, MPI_DOUBLE, MPI_SUM, world);
-  MPI_Allreduce(mine, most, NROW, MPI_DOUBLE, MPI_MAX, world);
-  double work = loop - mine[Profile::MESSAGES];
+  local[Profile::MESSAGES] += known ? timer->get_wall(Timer::COMM) : 0.0;
+  local[NEIGH] = known ? timer->get_wall(Timer::NEIGH) : 0.0;
+  local[OUTPUT] = known ? timer->get_wall(Timer::OUTPUT) : 0.0;
+  local[REST] = loop;
+  for (int k = 0; k < REST; k++) local[REST] -= local[k];
+  MPI_Allreduce(local, sum, NROW, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(local, most, NROW, MPI_DOUBLE, MPI_MAX, world);
+  double work = loop - local[Profile::MESSAGES];
   MPI_Allreduce(&work, &busiest, 1, MPI_DOUBLE, MPI_MAX, world);
 
   std::string text =

@@ -30,6 +30,7 @@
 #include "fsi_scene.h"
 #include "fsi_sight.h"
 #include "group.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "update.h"
@@ -86,6 +87,12 @@ struct Census : public Pointers {
     const auto g = body_forces.on(i);
     return g[0] != 0.0 || g[1] != 0.0 || g[2] != 0.0;
   }
+  bool goes(int i) const
+  {
+    const double *const v = atom->v[i];
+    return v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0;
+  }
+  int kinds_of(int i, bool moved, bool streams, int bodies) const;
   bool excludes_neighbors(int i) const;
   bool acted_on(int i, bool moved) const;
   bool at_first() const { return update->ntimestep == 0; }
@@ -118,35 +125,40 @@ Census::Census(LAMMPS *lmp, const Scene &scene) :
   double speed = 0.0;
   Found of_rank[NKIND];
   for (int i = 0; i < atom->nlocal; i++) {
-    const auto count = [&](int kind, bool is) {
-      if (!is) return;
-      of_rank[kind].count++;
-      of_rank[kind].first = std::min(of_rank[kind].first, atom->tag[i]);
-    };
-    const State &s = state(i);
-    const bool is_fluid = fluid(i), is_solid = solid(i), moved = scene.is_moved(i),
-               heavy = weighs(i);
-    const double *const v = atom->v[i];
-    const bool falls = is_fluid ? moved : is_solid ? moves(i) : (atom->mask[i] & rigid) != 0;
-    if (is_fluid || moves(i)) here[atom->type[i]] = 1;    // what is held limits nothing
-    if (is_fluid) speed = std::max(speed, std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-    count(FLUIDS, is_fluid);
-    count(SOLIDS, is_solid);
-    count(HELD_FLUID, is_fluid && !moved);
-    count(BODIES, is_solid && solids.style);
-    count(GOING_BODIES, is_solid && (moved || v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0));
-    count(INTEGRATED_BODIES, moves(i));
-    count(EXCLUDED, is_fluid && excludes_neighbors(i));
-    count(ACTED_ON, fluids.style && acted_on(i, moved));
-    count(TEARING, streams && is_fluid && moved && s.floor == 0.0 && !heavy);
-    count(FALLING, falls && heavy);
-    count(WEIGHTLESS_FLUID, falls && !heavy && is_fluid);
-    count(WEIGHTLESS_SOLID, falls && !heavy && is_solid);
-    count(WEIGHTLESS_RIGID, falls && !heavy && s.species == RIGID);
+    const bool moved = scene.is_moved(i);
+    if (fluid(i) || moves(i)) here[atom->type[i]] = 1;    // what is held limits nothing
+    if (fluid(i)) speed = std::max(speed, std::sqrt(MathExtra::lensq3(atom->v[i])));
+    const int kinds = kinds_of(i, moved, streams, rigid);
+    for (int k = 0; k < NKIND; k++) {
+      if (!(kinds & 1 << k)) continue;
+      of_rank[k].count++;
+      of_rank[k].first = std::min(of_rank[k].first, atom->tag[i]);
+    }
   }
   MPI_Allreduce(here.data(), present.data(), (int) here.size(), MPI_INT, MPI_MAX, world);
   MPI_Allreduce(&speed, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
   for (int k = 0; k < NKIND; k++) found[k] = total_of(of_rank[k], world);
+}
+
+// bits of the kinds that a particle is of; bodies: bit of the groups of rigid ones
+int Census::kinds_of(int i, bool moved, bool streams, int bodies) const
+{
+  const bool heavy = weighs(i);
+  const auto bit = [](bool is, int kind) {
+    return is ? 1 << kind : 0;
+  };
+  int kinds = bit(fluids.style && acted_on(i, moved), ACTED_ON);
+  if (fluid(i))
+    kinds |= bit(true, FLUIDS) | bit(!moved, HELD_FLUID) | bit(excludes_neighbors(i), EXCLUDED) |
+        bit(streams && moved && state(i).floor == 0.0 && !heavy, TEARING);
+  if (solid(i))
+    kinds |= bit(true, SOLIDS) | bit(solids.style, BODIES) | bit(moved || goes(i), GOING_BODIES) |
+        bit(moves(i), INTEGRATED_BODIES);
+  const bool falls = fluid(i) ? moved : solid(i) ? moves(i) : (atom->mask[i] & bodies) != 0;
+  if (falls)
+    kinds |= bit(heavy, FALLING) |
+        bit(!heavy && state(i).species != NONE, WEIGHTLESS_FLUID + state(i).species - FLUID);
+  return kinds;
 }
 
 // neigh_modify exclude takes from sums of fluid what is beside it
@@ -165,8 +177,8 @@ bool Census::excludes_neighbors(int i) const
 bool Census::acted_on(int i, bool moved) const
 {
   static constexpr double LITTLE = 1.0e-9;    // of what sound would do in a spacing
-  const double *const v = atom->v[i], *const f = atom->f[i];
-  if (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0) return true;
+  const double *const f = atom->f[i];
+  if (goes(i)) return true;
   if (!moved) return false;
   const double most = LITTLE * atom->rmass[i] * state(i).wave_speed_sq() / dx(i);
   return weighs(i) || std::fabs(f[0]) + std::fabs(f[1]) + std::fabs(f[2]) > most;
@@ -218,15 +230,14 @@ struct Near {
 };
 }    // namespace
 
-static Near pair_of(const Census &c, double r, int i, int j)
+// direction of the periodic face beyond which a particle is; -1: it is in the box
+static int around_box(const Census &c, int i)
 {
-  Near pair = {r, std::min(c.atom->tag[i], c.atom->tag[j]),
-               std::max(c.atom->tag[i], c.atom->tag[j]), -1};
-  for (int d = c.disc.dim - 1; d >= 0; d--)
+  for (int d = 0; d < c.disc.dim; d++)
     if (c.domain->periodicity[d] &&
-        (c.atom->x[j][d] < c.domain->boxlo[d] || c.atom->x[j][d] >= c.domain->boxhi[d]))
-      pair.around = d;
-  return pair;
+        (c.atom->x[i][d] < c.domain->boxlo[d] || c.atom->x[i][d] >= c.domain->boxhi[d]))
+      return d;
+  return -1;
 }
 
 // distances to nearest neighbors: sum[0] over sum[1] particles that have one, of sum[2];
@@ -263,7 +274,8 @@ static Near find_nearest(const Census &c, double *sum, std::vector<double> &of_b
     here[0] += r;
     here[1]++;
     if (r < closest.r && !(wall && !c.fluid(next) && !c.solid(next)))    // walls may cross
-      closest = pair_of(c, r, i, next);
+      closest = {r, std::min(atom->tag[i], atom->tag[next]),
+                 std::max(atom->tag[i], atom->tag[next]), around_box(c, next)};
   }
   MPI_Allreduce(here, sum, 3, MPI_DOUBLE, MPI_SUM, c.world);
   return closest;
@@ -447,11 +459,24 @@ static void viscosity(const Census &c, int type, double speed, double length)
         fmt::format(": Reynolds number {:.2g} with speed {:.3g} and the fluid's least width {:.3g}",
                     speed * length / nu, speed, length);
   if (c.comm->me == 0) utils::logmesg(c.lmp, text + "\n");
-  const double own = s.viscosity / s.rho0;
-  if (c.fluids.laminar && own > 0.0 && nu > own)
+  const double laminar = s.viscosity / s.rho0;
+  if (c.fluids.laminar && laminar > 0.0 && nu > laminar)
     c.warn("artificial viscosity of type {} is worth {:.2g}, {:.2g} times its laminar "
            "viscosity {:.2g}: take alpha {:.1g} or less, or a finer spacing",
-           type, nu, nu / own, own, 0.1 * alpha * own / nu);
+           type, nu, nu / laminar, laminar, 0.1 * alpha * laminar / nu);
+}
+
+// Where it points, and its size; 0 where it drives a flow along a channel
+static double gravity(const Census &c, int type, std::array<double, 3> &down)
+{
+  down = c.body_forces.of_type[type];
+  double g = 0.0;
+  for (int d = 0; d < c.disc.dim; d++) g += down[d] * down[d];
+  g = std::sqrt(g);
+  for (double &component : down) component /= g > 0.0 ? g : 1.0;
+  for (int d = 0; d < c.disc.dim; d++)
+    if (down[d] != 0.0 && c.domain->periodicity[d]) return 0.0;
+  return g;
 }
 
 // Speed of sound against that of the fluid, or what falling through its own height makes. Of what
@@ -463,13 +488,9 @@ static void speeds(const Census &c)
   for (size_t t = 1; t < c.present.size(); t++)
     if (c.present[t] && c.disc.state[t].species == FLUID) types.push_back(t);
   if (types.empty()) return;
-  std::array<double, 3> down = c.body_forces.of_type[types[0]];
-  double g = 0.0, width = BIG;
-  for (int d = 0; d < c.disc.dim; d++) g += down[d] * down[d];
-  g = std::sqrt(g);
-  for (double &component : down) component /= g > 0.0 ? g : 1.0;
-  for (int d = 0; d < c.disc.dim; d++)
-    if (down[d] != 0.0 && c.domain->periodicity[d]) g = 0.0;    // drives a flow in a channel
+  std::array<double, 3> down;
+  const double g = gravity(c, types[0], down);
+  double width = BIG;
   const double height = g > 0.0 ? extent(c, down) : 0.0, falls = std::sqrt(2.0 * g * height),
                expected = std::max(c.fastest, falls);
   for (int d = 0; d < c.disc.dim; d++) {
@@ -512,9 +533,10 @@ static void levels(const Census &c)
     return find_particles(c.atom, c.world, [&](int i) {
       if (!c.fluid(i)) return false;
       bool found = false;
-      const double own = c.disc.resolution[c.atom->type[i]].cut;
+      const double cut_i = c.disc.resolution[c.atom->type[i]].cut;
       cells.around(c.atom->x[i], [&](int j, double rsq) {
-        const double cut = c.fluid(j) ? 0.5 * (own + c.disc.resolution[c.atom->type[j]].cut) : own;
+        const double cut = c.fluid(j) ? 0.5 * (cut_i + c.disc.resolution[c.atom->type[j]].cut)
+                                      : cut_i;
         found = found || (rsq < cut * cut && meets(i, j));
       });
       return found;

@@ -262,7 +262,8 @@ void Check::fluid_spacings(const std::string &what) const
 
 void Check::thin_bodies() const
 {
-  const Facts fluid = facts_of_fluids(lmp);
+  const bool standard = disc.density_fluid == Discretization::CONTINUITY &&
+      disc.density_solid == Discretization::CONTINUITY;
   for (int t = 1; t <= atom->ntypes; t++) {
     const int species = disc.state[t].species;
     if (disc.thin[t] == 0.0 || species == NONE) continue;
@@ -270,11 +271,9 @@ void Check::thin_bodies() const
     if (species == FLUID)
       error->all(FLERR, "{}: atom type {} is a fluid, expected a solid or a wall of particles",
                  what, t);
-    require(what,
-            disc.density_fluid == Discretization::CONTINUITY &&
-                disc.density_solid == Discretization::CONTINUITY,
-            STANDARD, "number densities would jump where a body comes between");
-    require(what, !fluid.couples_stress, COUPLE_WALL, "each side has its own pressure");
+    require(what, standard, STANDARD, "number densities would jump where a body comes between");
+    require(what, !facts_of_fluids(lmp).couples_stress, COUPLE_WALL,
+            "each side has its own pressure");
   }
 }
 
@@ -390,27 +389,26 @@ void Check::look(bool closely, double kick)
 void Check::look_at_densities()
 {
   const double *const rho = atom->rho;
-  const int *const type = atom->type;
   densest = {};
   std::fill(deviations.begin(), deviations.end(), 0.0);
   double most = 1.0;
   for (int i = 0; i < atom->nlocal; i++) {
-    const int t = type[i];
+    const int t = atom->type[i];
     if (dense[t] == OFF) continue;
     const double beyond = rho[i] * (COMPRESSED / dense[t]) - 1.0;
     // torn fluid without tension has any density
     if (beyond > 0.0 || disc.state[t].floor < 0.0) deviations[2 * t] += beyond * beyond;
     deviations[2 * t + 1] += 1.0;
     if (rho[i] <= most * dense[t]) continue;
-    most = rho[i] / dense[type[i]];
+    most = rho[i] / dense[t];
     densest = stop.finding(DENSITY, i, rho[i]);
   }
 }
 
 bool Check::any_soft() const
 {
-  for (size_t k = 0; k < deviations.size(); k += 2)
-    if (deviations[k] > SOFT * SOFT * deviations[k + 1]) return !warned_soft;
+  for (size_t k = 0; k < deviations.size() && !warned_soft; k += 2)
+    if (deviations[k] > SOFT * SOFT * deviations[k + 1]) return true;
   return false;
 }
 
@@ -426,12 +424,11 @@ void Check::warn_of_sound()
     warned_soft = true;
     const double c = disc.state[t].c, p = std::sqrt(12.0 * square);    // over rho c^2
     if (comm->me == 0)
-      error->warning(
-          FLERR,
-          "Fix fsi: densities of the fluid of type {} differ from that at rest by {:.2g} "
-          "% (standard deviation) at step {}: its pressures are too large for the speed "
-          "of sound {:g}. Expected sound {:.2g}, 10 times sqrt(p/rho)",
-          t, 100.0 * std::sqrt(square), update->ntimestep, c, 10.0 * std::sqrt(p) * c);
+      error->warning(FLERR,
+                     "Fix fsi: densities of the fluid of type {} differ from that at rest by "
+                     "{:.2g} % (standard deviation) at step {}: its pressures are too large for "
+                     "the speed of sound {:g}. Expected sound {:.2g}, 10 times sqrt(p/rho)",
+                     t, 100.0 * std::sqrt(square), update->ntimestep, c, 10.0 * std::sqrt(p) * c);
   }
 }
 
@@ -440,16 +437,15 @@ void Check::warn_of_density()
   const Finding worst =
       stop.worst(densest, densest.tag ? densest.value / dense[densest.type] : 0.0);
   warned_dense = warned_soft = true;
-  if (comm->me) return;
   const double rest = dense[worst.type] / COMPRESSED;
-  error->warning(FLERR,
-                 "Fix fsi: fluid atom {} (type {}) at {:g} {:g} {:g} has {:.3g} times its density "
-                 "at rest, {:g}, at step "
-                 "{}: fluids are to be compressed by a few per cent at most. Look at the pressures "
-                 "and velocities that are "
-                 "given, at forces that hold particles, and at sound",
-                 worst.tag, worst.type, worst.x[0], worst.x[1], worst.x[2], worst.value / rest,
-                 rest, update->ntimestep);
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix fsi: fluid atom {} (type {}) at {:g} {:g} {:g} has {:.3g} times its "
+                   "density at rest, {:g}, at step {}: fluids are to be compressed by a few per "
+                   "cent at most. Look at the pressures and velocities that are given, at forces "
+                   "that hold particles, and at sound",
+                   worst.tag, worst.type, worst.x[0], worst.x[1], worst.x[2], worst.value / rest,
+                   rest, update->ntimestep);
 }
 
 void Check::inside_out()

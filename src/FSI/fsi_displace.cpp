@@ -80,8 +80,8 @@ static double limit_of(const std::vector<double> &key, bigint n, MPI_Comm world)
   double low = -1.0, high = 1e9;
   for (int k = 0; k < 80; k++) {
     const double middle = 0.5 * (low + high);
-    const bigint above = std::count_if(key.begin(), key.end(), [middle](double one) {
-      return one > middle;
+    const bigint above = std::count_if(key.begin(), key.end(), [middle](double number) {
+      return number > middle;
     });
     (count_of(above, world) > n ? low : high) = middle;
   }

@@ -92,7 +92,7 @@ static std::string sentence(const std::string &command)
 }
 
 Keywords::Keywords(LAMMPS *lmp, const std::string &command_in) :
-    Pointers(lmp), command(command_in), who(sentence(command_in))
+    Pointers(lmp), command(command_in), title(sentence(command_in))
 {
 }
 
@@ -227,10 +227,10 @@ void Keywords::take(const Row &row, const Value &v, const std::string &text) con
   switch (v.kind) {
     case Value::NUMBER:
       *v.number = other ? v.other_number
-                        : FSI::numeric(lmp, who + " " + name, text, v.range, false, v.other);
+                        : FSI::numeric(lmp, title + " " + name, text, v.range, false, v.other);
       break;
     case Value::INTEGER:
-      *v.n = FSI::integer(lmp, who + " " + name, text, v.least, v.most);
+      *v.n = FSI::integer(lmp, title + " " + name, text, v.least, v.most);
       break;
     case Value::WORD:
       *v.word = other ? "" : text;
@@ -243,8 +243,9 @@ void Keywords::take(const Row &row, const Value &v, const std::string &text) con
       int first, last;
       utils::bounds_typelabel(FLERR, text.substr(0, gap), 1, atom->ntypes, first, last, lmp,
                               Atom::ATOM);
-      const double x =
-          v.types_alone ? 1.0 : FSI::numeric(lmp, who + " " + name, text.substr(gap + 1), v.range);
+      const double x = v.types_alone
+          ? 1.0
+          : FSI::numeric(lmp, title + " " + name, text.substr(gap + 1), v.range);
       std::fill(v.each->begin() + first, v.each->begin() + last + 1, x);
       break;
     }
@@ -305,7 +306,7 @@ void Keywords::parse(int narg, char **arg)
         return r.keyword && r.name == arg[iarg];
       });
       if (it == rows.end()) {
-        if (known.empty()) error->all(FLERR, "{} takes no argument {}", who, arg[iarg]);
+        if (known.empty()) error->all(FLERR, "{} takes no argument {}", title, arg[iarg]);
         error->all(FLERR, "Unknown {} keyword {}: expected {}", command, arg[iarg], list_of(known));
       }
       iarg++;
@@ -360,7 +361,7 @@ void Keywords::compare(const Record &record, const std::string &when) const
     const bool meant = row.may_change || (row.restart.empty() && when != OF_RESTART);
     if (meant || !differs(record, row.name)) continue;
     const auto text =
-        fmt::format("{}: {} was {} {}, and is {} now{}", who, row.name, record.value(row.name),
+        fmt::format("{}: {} was {} {}, and is {} now{}", title, row.name, record.value(row.name),
                     when, row.text(), row.restart.empty() ? "" : ": " + row.restart);
     if (row.must_not_change) error->all(FLERR, text);
     if (comm->me == 0) error->warning(FLERR, text);

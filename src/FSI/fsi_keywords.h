@@ -154,7 +154,7 @@ namespace FSI {
     std::vector<Effect> effects() const;
 
    private:
-    const std::string command, who;
+    const std::string command, title;
     std::vector<Row> rows;
 
     Keywords &add(Row);

@@ -77,10 +77,10 @@ void Limits::find(const Discretization &disc, int groupbit, int moved, bool subs
   const Facts of_fluids = facts_of_fluids(lmp), of_solids = facts_of_solids(lmp);
   for (auto &row : culprit) row[0] = row[1] = 0;
   for (double *row : {step, sub}) std::fill_n(row, NLIMIT, UNLIMITED);
-  const auto lower = [](double &limit, double value, tagint *whose = nullptr, tagint tag = 0) {
+  const auto lower = [](double &limit, double value, tagint *particle = nullptr, tagint tag = 0) {
     if (!(value < limit)) return;
     limit = value;
-    if (whose) *whose = tag;
+    if (particle) *particle = tag;
   };
   for (int t = 1; t <= atom->ntypes; t++) {
     const OfType &found = types[t];
@@ -107,16 +107,16 @@ void Limits::find(const Discretization &disc, int groupbit, int moved, bool subs
 
 void Limits::reduce()
 {
-  double mine[2][NLIMIT], all[2][NLIMIT];
-  std::copy_n(step, NLIMIT, mine[0]);
-  std::copy_n(sub, NLIMIT, mine[1]);
-  MPI_Allreduce(&mine[0][0], &all[0][0], 2 * NLIMIT, MPI_DOUBLE, MPI_MIN, world);
-  tagint who[2][2];
+  double local[2][NLIMIT], all[2][NLIMIT];
+  std::copy_n(step, NLIMIT, local[0]);
+  std::copy_n(sub, NLIMIT, local[1]);
+  MPI_Allreduce(&local[0][0], &all[0][0], 2 * NLIMIT, MPI_DOUBLE, MPI_MIN, world);
+  tagint tags[2][2];
   for (int k = 0; k < 2; k++) {
-    who[k][0] = mine[k][SOUND] == all[k][SOUND] ? culprit[k][0] : 0;
-    who[k][1] = mine[k][ACCELERATION] == all[k][ACCELERATION] ? culprit[k][1] : 0;
+    tags[k][0] = local[k][SOUND] == all[k][SOUND] ? culprit[k][0] : 0;
+    tags[k][1] = local[k][ACCELERATION] == all[k][ACCELERATION] ? culprit[k][1] : 0;
   }
-  MPI_Allreduce(&who[0][0], &culprit[0][0], 4, MPI_LMP_TAGINT, MPI_MAX, world);
+  MPI_Allreduce(&tags[0][0], &culprit[0][0], 4, MPI_LMP_TAGINT, MPI_MAX, world);
   std::copy_n(all[0], NLIMIT, step);
   std::copy_n(all[1], NLIMIT, sub);
 }

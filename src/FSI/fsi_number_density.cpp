@@ -14,11 +14,18 @@
 #include "fsi_number_density.h"
 
 #include "atom.h"
+#include "force.h"
 #include "fsi_fields.h"
+#include "fsi_gather.h"
+#include "fsi_kernel.h"
 #include "fsi_part.h"
 #include "fsi_profile.h"
+#include "fsi_record.h"
 #include "fsi_scene.h"
+#include "update.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -99,4 +106,190 @@ void NumberDensity::find_density()
       rho[i] = ratio[i] * psi[i];
     }
   }
+}
+
+// time from one look to the next over h/c: ten usual time steps, in which particles move by h/2 at
+// a Mach number of 0.1
+static constexpr double PERIOD = 5.0;
+static const std::string SINCE = "time since the last look at surfaces";
+static constexpr double ROUND = 1.0e-6;    // missing parts of a lattice's sum that may be round-off
+// more deficit over that of a plane than on any edge: of the two sides of a film s cancels
+static constexpr double EDGE = 100.0;
+
+// sums over the planes of a lattice that are missing
+DeficitOfPlane::DeficitOfPlane(int kernel, int dim, double h_over_dx)
+{
+  with_kernel(kernel, dim, h_over_dx, [this](const auto &k) {
+    constexpr int D = std::decay_t<decltype(k)>::DIM;
+    const double psi = lattice_number_density(k, 1.0);
+    const int n = static_cast<int>(k.cut) + 1;
+    double s = 0.0, missing = 0.0;
+    layers = {{0.0, 0.0}};
+    for (int z = n; z > 0; z--) {
+      double w = 0.0, g = 0.0;
+      for (int y = (D == 3 ? -n : 0); y <= (D == 3 ? n : 0); y++)
+        for (int x = -n; x <= n; x++) {
+          const double r = std::sqrt(double(x * x + y * y + z * z));
+          if (r >= k.cut) continue;
+          w += k.W(r);
+          g -= k.gradient(r) * z;
+        }
+      missing += w / psi;
+      s += k.h * g / psi;
+      if (w > 0.0) layers.emplace_back(s, missing);
+    }
+  });
+}
+
+// beyond the first layer, at edges, as between the last two
+double DeficitOfPlane::operator()(double s) const
+{
+  size_t k = 1;
+  while (k + 1 < layers.size() && s > layers[k].first) k++;
+  const auto &a = layers[k - 1], &b = layers[k];
+  return a.second + (s - a.first) * (b.second - a.second) / (b.first - a.first);
+}
+
+SurfaceDeficit::SurfaceDeficit(LAMMPS *lmp, Scene &scene, const NumberDensity &number_density,
+                               SumOverGhosts add_ghosts) :
+    Pointers(lmp),
+    disc(scene), ledger(scene), parts(scene.parts), profile(scene.profile),
+    number_density(number_density), add_ghosts(std::move(add_ghosts)), deficit(nullptr), since(0.0),
+    since_before(0.0), due(false)
+{
+}
+
+void SurfaceDeficit::set_array(Fields &fields)
+{
+  // a pair style that comes after fix fsi may want it: what a restart file has of it is read here
+  const auto wanted = [&]() {
+    return !force->pair || facts_of_fluids(lmp).density_at_surfaces;
+  };
+  fields.set("room at the surface", Fields::RESTART,
+             disc.density_fluid == Discretization::CONTINUITY && wanted(), deficit, 2);
+  if (deficit) of_plane = DeficitOfPlane(disc.kernel, disc.dim, disc.h / disc.dx);
+}
+
+void SurfaceDeficit::write(Record &record) const
+{
+  if (deficit) record.add(SINCE, std::vector<double>{since});
+}
+
+void SurfaceDeficit::read(const Record &record)
+{
+  if (record.has(SINCE)) since = record.numbers(SINCE)[0];
+}
+
+// by time, not by steps, which reset_timestep may count anew
+void SurfaceDeficit::pass(double dt)
+{
+  double fastest = 0.0;
+  for (const auto &s : disc.state)
+    if (s.species == FLUID) fastest = std::max(fastest, s.c);
+  since_before = since;
+  since += dt;
+  due = since * fastest >= PERIOD * (1.0 - 1.0e-9) * disc.h;
+  if (due) since = 0.0;
+}
+
+bool SurfaceDeficit::add_rates(bool advance)
+{
+  if (deficit && advance) pass(update->dt);
+  if (deficit && ledger.kept && advance && due) earlier.assign(atom->rho, atom->rho + atom->nlocal);
+  return false;
+}
+
+void SurfaceDeficit::advance(bool advance)
+{
+  changes.clear();
+  if (!deficit || (advance && !due)) return;
+  const Phase phase(profile, Profile::DENSITY);
+  begin();
+  if (advance) follow();
+}
+
+void SurfaceDeficit::go_back()
+{
+  since = since_before;
+  for (size_t i = 0; i < changes.size() / 2; i++) {
+    deficit[i][0] -= changes[2 * i];
+    atom->rho[i] -= changes[2 * i + 1];
+  }
+}
+
+std::vector<Part::Effect> SurfaceDeficit::effects() const
+{
+  if (!facts_of_fluids(lmp).style) return {};
+  return {{"density that follows surfaces", "density/surface", deficit != nullptr}};
+}
+
+// of particles that are new
+void SurfaceDeficit::begin()
+{
+  const int nlocal = atom->nlocal, *const type = atom->type;
+  const auto is_new = [&](int i) {
+    return disc.state[type[i]].species == FLUID && deficit[i][0] == 0.0;
+  };
+  bool any_new = false;
+  for (int i = 0; i < nlocal; i++) any_new |= is_new(i);
+  if (!anywhere(any_new, world)) return;
+  std::vector<double> psi(nlocal + atom->nghost);
+  number_density.find(psi.data());
+  const auto asymmetry = gradients();
+  for (int i = 0; i < nlocal; i++)
+    if (is_new(i)) {
+      const double missing = std::max(0.0, 1.0 - psi[i] / disc.psi_bulk),
+                   plane = of_plane(asymmetry[i]);
+      deficit[i][0] = 1.0 + missing;
+      const bool inside = missing <= std::max(plane, ROUND);
+      deficit[i][1] = inside ? 1.0 : missing < EDGE * plane ? missing / plane : EDGE;
+    }
+}
+
+// s of local atoms
+std::vector<double> SurfaceDeficit::gradients() const
+{
+  const int nlocal = atom->nlocal, dim = disc.dim;
+  const size_t nall = nlocal + atom->nghost;
+  std::vector<double> gradient(dim * nall, 0.0), s(nlocal);    // columns one after the other
+  for (auto *p : parts) p->add_gradient_sum(gradient.data());
+  for (int d = 0; d < dim; d++) add_ghosts(&gradient[d * nall]);
+  for (int i = 0; i < nlocal; i++) {
+    double ssq = 0.0;
+    for (int d = 0; d < dim; d++) ssq += gradient[d * nall + i] * gradient[d * nall + i];
+    s[i] = disc.h * std::sqrt(ssq);
+  }
+  return s;
+}
+
+void SurfaceDeficit::follow()
+{
+  const auto asymmetry = gradients();
+  changes.assign(2 * atom->nlocal, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const State &state = disc.state[atom->type[i]];
+    if (state.species != FLUID) continue;
+    const double had = deficit[i][0] - 1.0, most = deficit[i][1] * of_plane(asymmetry[i]),
+                 free = 1.0 - atom->rho[i] / state.rho0;
+    const double has = had > most ? most : free > 0.0 ? std::min(most, had + free) : had;
+    if (has == had) continue;
+    const double before = atom->rho[i];
+    deficit[i][0] = 1.0 + has;
+    atom->rho[i] = std::max(before + (has - had) * state.rho0, atom->rmass[i] * disc.w0);
+    changes[2 * i] = has - had;
+    changes[2 * i + 1] = atom->rho[i] - before;
+    if (ledger.kept)
+      ledger.energy_out[Ledger::DIFFUSION] += energy_loss(i, before, atom->rho[i] - before);
+  }
+}
+
+// Forces have the density of before until the step's start, and that of after from there: the
+// change is one at its start, between two densities, which is what the ledger's energy is of (where
+// it takes half of a step's work, the other is in the next)
+double SurfaceDeficit::energy_loss(int i, double now, double change) const
+{
+  const State &state = disc.state[atom->type[i]];
+  double sum = 0.0;
+  for (const double rho : {earlier[i], now}) sum += state.energy(rho) - state.energy(rho + change);
+  return 0.5 * atom->rmass[i] * sum;
 }

@@ -17,9 +17,11 @@
 #ifndef LMP_FSI_NUMBER_DENSITY_H
 #define LMP_FSI_NUMBER_DENSITY_H
 
+#include "fsi_part.h"
 #include "pointers.h"
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -27,16 +29,18 @@ namespace FSI {
 
   class Fields;
   class Message;
-  class Part;
   class Profile;
+  class Record;
   class Scene;
   struct Discretization;
+  struct Ledger;
   struct StepState;
+
+  // adds what pairs left on ghosts to the local atoms
+  using SumOverGhosts = std::function<void(double *)>;
 
   class NumberDensity : protected Pointers {
    public:
-    // adds what pairs left on ghosts to the local atoms
-    using SumOverGhosts = std::function<void(double *)>;
     NumberDensity(LAMMPS *, Scene &, SumOverGhosts);
     void set_fields(Fields &);    // for the effects that there are now
     void add_messages(Message &to_ghosts);
@@ -53,6 +57,62 @@ namespace FSI {
     const SumOverGhosts add_ghosts;
     double *ratio;    // density mode ratio: rho/psi of the reference state; 0 = not taken yet
     void find_density();
+  };
+
+  // The deficit of the layers of a lattice below a plane surface, linear in s between them
+  class DeficitOfPlane {
+   public:
+    DeficitOfPlane() = default;
+    DeficitOfPlane(int kernel, int dim, double h_over_dx);
+    double operator()(double s) const;
+
+   private:
+    std::vector<std::pair<double, double>> layers;    // s and deficit, from the inside
+  };
+
+  // The kernel's deficit at free surfaces. Continuity conserves rho - m psi of a particle, psi
+  // being its number density (pair_fsi_fluid.cpp): a particle that starts at a surface keeps its
+  // deficit when it is covered, and a block of water that has fallen into a box would stay too
+  // large. So the part of rho that stands for missing neighbors,
+  //   deficit = 1 - psi/psi_bulk  at the start,
+  // is kept for each particle, and is bounded by that of a particle at a plane surface with the
+  // same sum of gradients,
+  //   s = h |sum_j grad W_ij|/psi_bulk
+  // (at edges in proportion to its value at the start): where neighbors come, deficit and density
+  // decrease. Where a surface opens, deficit grows to that bound, at p = 0, as long as the
+  // density does not exceed rho0: this adds no pressure. Apart from what happens in between, the
+  // result does not depend on how often it is evaluated.
+  class SurfaceDeficit final : public Part, protected Pointers {
+   public:
+    SurfaceDeficit(LAMMPS *, Scene &, const NumberDensity &, SumOverGhosts);
+    void set_array(Fields &);
+    void write(Record &) const;
+    void read(const Record &);
+    Rank rank() const override { return SURFACES; }
+    bool add_rates(bool) override;
+    void advance(bool) override;    // after the density
+    void go_back() override;
+    std::vector<Effect> effects() const override;
+
+   private:
+    const Discretization &disc;
+    Ledger &ledger;
+    const std::vector<Part *> &parts;
+    Profile *const &profile;
+    const NumberDensity &number_density;
+    const SumOverGhosts add_ghosts;
+    // 1 + deficit (0: not known yet), and how often that of a plane it was at the start, on an edge
+    double **deficit;
+    double since, since_before;    // time since the last look, now and at the start of this step
+    bool due;
+    DeficitOfPlane of_plane;
+    std::vector<double> changes;    // of deficit and density in this step
+    std::vector<double> earlier;    // densities before it, for the ledger
+    void pass(double dt);
+    void begin();
+    std::vector<double> gradients() const;
+    void follow();
+    double energy_loss(int i, double now, double change) const;
   };
 
 }    // namespace FSI

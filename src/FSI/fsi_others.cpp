@@ -27,19 +27,24 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 using MathConst::MY_PI;
 
+Others::Others(LAMMPS *lmp, const Scene &scene) :
+    Pointers(lmp), disc(scene), scene(scene), spins(false)
+{
+}
+
 void Others::init()
 {
-  bool mine = false;
+  bool local = false;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (scene.state[atom->type[i]].species != NONE) continue;
-    mine = true;
+    if (disc.state[atom->type[i]].species != NONE) continue;
+    local = true;
     if (atom->rmass[i] <= 0.0)
       error->one(FLERR,
                  "Atom {} is of type {}, which has no material, and has no mass: give it a "
                  "material in pair_coeff, or, if it is a particle of another pair style, a mass",
                  atom->tag[i], atom->type[i]);
   }
-  spins = anywhere(mine, world) && atom->radius_flag && atom->omega_flag && atom->torque_flag;
+  spins = anywhere(local, world) && atom->radius_flag && atom->omega_flag && atom->torque_flag;
 }
 
 // an atom that was never given a mass or a density gets those of the stress-free lattice
@@ -47,24 +52,24 @@ void Others::give_defaults(int i) const
 {
   if (scene.parts.empty()) return;    // before the first run
   const int type = atom->type[i];
-  const State &s = scene.state[type];
+  const State &s = disc.state[type];
   if (s.species == NONE) return give_density(i);
   if (atom->rmass[i] == 0.0 || has_mass_of_new_sphere(i))
-    atom->rmass[i] = lattice_mass(scene, type);
+    atom->rmass[i] = lattice_mass(disc, type);
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
 }
 
-double Others::lattice_mass(const Scene &scene, int type)
+double Others::lattice_mass(const Discretization &disc, int type)
 {
-  return scene.state[type].rho0 / scene.resolution[type].psi_bulk;
+  return disc.state[type].rho0 / disc.resolution[type].psi_bulk;
 }
 
 // one number for the checks of all densities: mass over volume
 void Others::give_density(int i) const
 {
   const double r = atom->radius_flag ? atom->radius[i] : 0.0;
-  const double volume = r == 0.0 ? 1.0 / scene.psi_bulk
-      : scene.dim == 2           ? MY_PI * r * r
+  const double volume = r == 0.0 ? 1.0 / disc.psi_bulk
+      : disc.dim == 2           ? MY_PI * r * r
                                  : 4.0 / 3.0 * MY_PI * r * r * r;
   atom->rho[i] = atom->rmass[i] / volume;
 }
@@ -83,7 +88,7 @@ void Others::turn(double dt) const
   const double dtf = dt * force->ftm2v / 0.4;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & scene.mover->groupbit)) continue;
-    if (scene.state[atom->type[i]].species != NONE || atom->radius[i] == 0.0) continue;
+    if (disc.state[atom->type[i]].species != NONE || atom->radius[i] == 0.0) continue;
     const double by = dtf / (atom->rmass[i] * atom->radius[i] * atom->radius[i]);
     for (int d = 0; d < 3; d++) omega[i][d] += by * torque[i][d];
   }

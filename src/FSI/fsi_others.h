@@ -23,19 +23,21 @@
 namespace LAMMPS_NS {
 namespace FSI {
   class Scene;
+  struct Discretization;
 
   class Others : protected Pointers {
    public:
-    Others(LAMMPS *lmp, const Scene &scene) : Pointers(lmp), scene(scene), spins(false) {}
+    Others(LAMMPS *, const Scene &);
     void init();
     // mass of a particle of this type's stress-free lattice
-    static double lattice_mass(const Scene &, int type);
+    static double lattice_mass(const Discretization &, int type);
     // mass and density, where there are none
     void give_defaults(int i) const;
     void turn(double dt) const;    // kicks angular velocities of those with a radius
 
    private:
-    const Scene &scene;
+    const Discretization &disc;
+    const Scene &scene;    // what fix fsi moves, and whether there was a run
     bool spins;
     void give_density(int i) const;
     bool has_mass_of_new_sphere(int i) const;

@@ -200,7 +200,7 @@ void PairSets::look_past_thin_bodies(double *backfill, double *backfill_weight)
       for (Next &rows = next[k]; here(rows); rows.row++)
         for (int m = 0; m < rows.row->n; m++) *rows.part++ = sight.visible(x[rows.row->j[m]], cut);
     }
-    const auto more = sight.fill(level);
+    const auto more = sight.backfill(level);
     backfill[i] = more.force;
     backfill_weight[i] = more.weight;
   }

@@ -89,16 +89,16 @@ namespace FSI {
     const Phase phase(known ? profile : nullptr, Profile::MESSAGES);
     send();
   }
-  template <class T> void forward_comm(Profile *profile, Comm *comm, T *who)
+  template <class T> void forward_comm(Profile *profile, Comm *comm, T *style)
   {
     exchange(profile, comm, [&]() {
-      comm->forward_comm(who);
+      comm->forward_comm(style);
     });
   }
-  template <class T> void reverse_comm(Profile *profile, Comm *comm, T *who)
+  template <class T> void reverse_comm(Profile *profile, Comm *comm, T *style)
   {
     exchange(profile, comm, [&]() {
-      comm->reverse_comm(who);
+      comm->reverse_comm(style);
     });
   }
 

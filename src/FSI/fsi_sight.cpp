@@ -60,7 +60,7 @@ void Sight::tabulate()
       constexpr int D = std::decay_t<decltype(kernel)>::DIM, STEPS = 200;
       const double step = kernel.cut / STEPS;
       for (int place = 0; place <= NTABLE; place++) {
-        Fill sum = {0.0, 0.0};
+        Backfill sum = {0.0, 0.0};
         for (double a = place * kernel.cut / NTABLE; a < kernel.cut; a += dx)
           for (int m = 0; m < STEPS; m++) {
             const double s = (m + 0.5) * step, r = std::sqrt(a * a + s * s);
@@ -74,13 +74,13 @@ void Sight::tabulate()
   }
 }
 
-Sight::Fill Sight::beyond(size_t level, int type, double distance) const
+Sight::Backfill Sight::beyond(size_t level, int type, double distance) const
 {
   const double at = std::max(distance, 0.0) / disc.levels[level].cut * NTABLE;
   const int k = static_cast<int>(at);
   if (k >= NTABLE) return {0.0, 0.0};
-  const Fill *const table = half_space[level * types.size() + type].data();
-  const Fill &a = table[k], &b = table[k + 1];
+  const Backfill *const table = half_space[level * types.size() + type].data();
+  const Backfill &a = table[k], &b = table[k + 1];
   return {a.force + (at - k) * (b.force - a.force), a.weight + (at - k) * (b.weight - a.weight)};
 }
 
@@ -304,34 +304,34 @@ bool Sight::find_face(size_t level, const Seen &nearest, Face &face) const
 
 // Several may be nearest, on a lattice and between two bodies: the mean of what each says, where
 // one that is farther by AS_NEAR of its spacing has no say
-Sight::Fill Sight::fill(size_t level) const
+Sight::Backfill Sight::backfill(size_t level) const
 {
   const double cutsq = disc.levels[level].cut * disc.levels[level].cut;
   double least = cutsq, total = 0.0;
   for (const auto &s : seen)
     if (s.thin) least = std::min(least, s.rsq);
   least = std::sqrt(least);
-  Fill mean = {0.0, 0.0};
+  Backfill mean = {0.0, 0.0};
   Face face;
   for (const auto &s : seen) {
     const double say = smooth(1.0 - (std::sqrt(s.rsq) - least) / (AS_NEAR * s.dx));
     if (!s.thin || s.rsq >= cutsq || say == 0.0 || !find_face(level, s, face)) continue;
-    const Fill one = fill(level, face);
-    mean.force += say * one.force;
-    mean.weight += say * one.weight;
+    const Backfill part = backfill(level, face);
+    mean.force += say * part.force;
+    mean.weight += say * part.weight;
     total += say;
   }
-  return total > 0.0 ? Fill{mean.force / total, mean.weight / total} : Fill{1.0, 1.0};
+  return total > 0.0 ? Backfill{mean.force / total, mean.weight / total} : Backfill{1.0, 1.0};
 }
 
 // In the part in which the body hides the place that is as far behind it as x is before it. Not
 // where the rest of a half space pulls: the sharper kernel is negative at its end, and what is
 // missing may be as much as what is there.
-Sight::Fill Sight::fill(size_t level, const Face &face) const
+Sight::Backfill Sight::backfill(size_t level, const Face &face) const
 {
   static constexpr double MOST = 20.0;    // x in the plane of a layer, which pushes to no side
-  const Fill all = beyond(level, face.type, face.distance),
-             missing = beyond(level, face.type, face.distance + face.thickness);
+  const Backfill all = beyond(level, face.type, face.distance),
+                 missing = beyond(level, face.type, face.distance + face.thickness);
   if (missing.weight == 0.0) return {1.0, 1.0};
   double y[3];
   const double across = 2.0 * face.distance + face.thickness - disc.dx_of(face.type);

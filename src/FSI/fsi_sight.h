@@ -33,7 +33,7 @@ namespace FSI {
    public:
     // whose kernel and spacings are known; past types that are not 0
     Sight(LAMMPS *, const Discretization &, const Walls &, const std::vector<double> &types);
-    void tabulate();         // when the fluids' levels are known: for fill()
+    void tabulate();         // when the fluids' levels are known: for backfill()
     void find_bodies();      // when neighbor lists are new
     void follow_bodies();    // to where they are; what follows is said of then
 
@@ -49,10 +49,10 @@ namespace FSI {
     double visible(const double *y, double cut) const;
     // Of a half-space of layers over those of the body beside x, to a fluid particle of this level:
     // forces, and weights in sums of W, as forces along the face are; 1 where there is none
-    struct Fill {
+    struct Backfill {
       double force = 0.0, weight = 0.0;
     };
-    Fill fill(size_t level) const;
+    Backfill backfill(size_t level) const;
 
     double memory_usage() const;
 
@@ -78,9 +78,9 @@ namespace FSI {
     };
     std::vector<Seen> seen;
     // per level and type: of its layers by the distance of the first
-    std::vector<std::vector<Fill>> half_space;
+    std::vector<std::vector<Backfill>> half_space;
     std::vector<double> tabulated;    // spacings of levels
-    Fill beyond(size_t level, int type, double distance) const;
+    Backfill beyond(size_t level, int type, double distance) const;
     double left_of(const double *y, double cut) const;
     // distance of the first layer along the normal, which points to it, and how thick the body is
     struct Face {
@@ -88,7 +88,7 @@ namespace FSI {
       double normal[3] = {}, distance = 0.0, thickness = 0.0;
     };
     bool find_face(size_t level, const Seen &nearest, Face &) const;
-    Fill fill(size_t level, const Face &) const;
+    Backfill backfill(size_t level, const Face &) const;
     bool counts(int type) const;
     void see_images();
     template <class Visit> void for_near(const double *x, Visit) const;    // until it returns true

@@ -131,15 +131,15 @@ Stop::Neighbor Stop::nearest_body(const Finding &all) const
           false};
   });
   body = of_least(body.distance, body, world);
-  double mine[4] = {}, sum[4];
+  double local[4] = {}, sum[4];
   for_near([&](int i, double r, const double *d) {
     if (atom->molecule[i] != body.molecule || r == 0.0 ||
         r > 1.5 * std::max(body.dx, 0.5 * disc.dx))
       return;
-    for (int k = 0; k < 3; k++) mine[k] += d[k] / r;
-    mine[3] += 1.0;
+    for (int k = 0; k < 3; k++) local[k] += d[k] / r;
+    local[3] += 1.0;
   });
-  MPI_Allreduce(mine, sum, 4, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(local, sum, 4, MPI_DOUBLE, MPI_SUM, world);
   body.around = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) < 0.5 * sum[3];
   return body;
 }
@@ -212,36 +212,46 @@ static constexpr struct Tip {
      "lost ignore"}};
 // clang-format on
 
-std::string Stop::advice(const Finding &all, When when, const Neighbor &body) const
+// of the pair style of fluids or solids; and of the kernel
+std::vector<Part::Effect> Stop::effects(bool of_fluid) const
 {
-  const bool fluid = !all.tag || disc.state[all.type].species == FLUID, starts = when == START;
   std::vector<Part::Effect> effects = {{"", "wendland", disc.kernel == WENDLAND}};
   for (const auto *p : pairs_of<Part>(lmp)) {
     const auto style = p->facts().style;
-    if (!style || style == Facts::OF_GRAINS || (style == Facts::OF_FLUIDS) != fluid) continue;
+    if (!style || style == Facts::OF_GRAINS || (style == Facts::OF_FLUIDS) != of_fluid) continue;
     for (const auto &e : p->effects()) effects.push_back(e);
   }
-  const auto is = [&](const std::string &keyword, bool on) {
-    return std::any_of(effects.begin(), effects.end(), [&](const Part::Effect &e) {
-      return e.keyword == keyword && e.on == on;
+  return effects;
+}
+
+// where fluid is in a body
+static const char *keep_out(bool starts, bool solid)
+{
+  if (starts) return "fsi/displace, where the fluid is put around bodies";
+  if (solid)
+    return "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, which keeps "
+           "fluid out";
+  return "a thicker wall, or guard 0.9 of fix fsi/wall/particle, which keeps fluid out";
+}
+
+std::string Stop::advice(const Finding &all, When when, const Neighbor &body) const
+{
+  const bool fluid = !all.tag || disc.state[all.type].species == FLUID, starts = when == START;
+  const auto known = effects(fluid);
+  // is there such an effect, on or off as this says?
+  const auto met = [&](const char *effect) {
+    if (!effect) return true;
+    const bool on = *effect == '+';
+    return std::any_of(known.begin(), known.end(), [&](const Part::Effect &e) {
+      return e.keyword == effect + on && e.on == on;
     });
   };
   std::vector<std::string> tips;
-  if (too_near(body)) {    // fluid is in a body
-    const bool solid = body.species == SOLID;
-    tips.emplace_back(starts ? "fsi/displace, where the fluid is put around bodies"
-                          : solid
-                          ? "a thicker or finer body, or solid/guard 0.75 of pair_style fsi/fluid, "
-                            "which keeps fluid out"
-                          : "a thicker wall, or guard 0.9 of fix fsi/wall/particle, which keeps "
-                            "fluid out");
-  }
-  for (const Tip &tip : TIPS) {
-    const bool on = tip.effect && *tip.effect == '+';
+  if (too_near(body)) tips.emplace_back(keep_out(starts, body.species == SOLID));
+  for (const Tip &tip : TIPS)
     if (tip.trouble == all.trouble && (tip.of == NONE || (tip.of == FLUID) == fluid) &&
-        (starts || !tip.start_only) && (!tip.effect || is(tip.effect + on, on)))
+        (starts || !tip.start_only) && met(tip.effect))
       tips.emplace_back(tip.text);
-  }
   if (all.trouble != LOST && when != BEFORE && !(starts && all.trouble == DISTANCE)) {
     bool suspect;
     const auto tip = shorter_step(all, suspect);
@@ -298,17 +308,18 @@ std::string Stop::write_state()
   domain->pbc();
   domain->reset_box();
   // what has left a fixed box since the last reneighboring would be missing when the file is read
-  double own[6], ends[6];
+  double outward[6], ends[6];
   for (int d = 0; d < 3; d++) {
-    own[d] = -domain->boxlo[d];
-    own[3 + d] = domain->boxhi[d];
+    outward[d] = -domain->boxlo[d];
+    outward[3 + d] = domain->boxhi[d];
     for (int i = 0; i < atom->nlocal && !domain->periodicity[d]; i++) {
-      if (atom->x[i][d] < domain->boxlo[d]) own[d] = std::max(own[d], disc.dx - atom->x[i][d]);
+      if (atom->x[i][d] < domain->boxlo[d])
+        outward[d] = std::max(outward[d], disc.dx - atom->x[i][d]);
       if (atom->x[i][d] >= domain->boxhi[d])
-        own[3 + d] = std::max(own[3 + d], disc.dx + atom->x[i][d]);
+        outward[3 + d] = std::max(outward[3 + d], disc.dx + atom->x[i][d]);
     }
   }
-  MPI_Allreduce(own, ends, 6, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(outward, ends, 6, MPI_DOUBLE, MPI_MAX, world);
   for (int d = 0; d < 3; d++) {
     domain->boxlo[d] = -ends[d];
     domain->boxhi[d] = ends[3 + d];
@@ -328,7 +339,7 @@ void Stop::write_neighbors(const Finding &all) const
     double numbers[10];
   };
   const double reach = 3.0 * disc.largest_cut;
-  std::vector<Row> mine;
+  std::vector<Row> local;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *const x = atom->x[i], *const v = atom->v[i], *const f = atom->f[i];
     double d[3] = {x[0] - all.x[0], x[1] - all.x[1], x[2] - all.x[2]};
@@ -338,12 +349,12 @@ void Stop::write_neighbors(const Finding &all) const
       to_nearest_image(*domain, d);
       if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reach * reach) continue;
     }
-    mine.push_back({atom->tag[i],
-                    atom->molecule[i],
-                    atom->type[i],
-                    {x[0], x[1], x[2], v[0], v[1], v[2], f[0], f[1], f[2], atom->rho[i]}});
+    local.push_back({atom->tag[i],
+                     atom->molecule[i],
+                     atom->type[i],
+                     {x[0], x[1], x[2], v[0], v[1], v[2], f[0], f[1], f[2], atom->rho[i]}});
   }
-  const auto rows = gather(mine, world);
+  const auto rows = gather(local, world);
   if (comm->me) return;
 
   FILE *fp = fopen(dump_file.c_str(), "w");

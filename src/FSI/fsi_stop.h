@@ -11,12 +11,13 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// How a run that goes wrong is stopped: who, where, what, how much, what to try; files of the state
+// How a run that goes wrong is stopped: particle, place, quantity, value, what to try; files of the state
 // before it went wrong.
 
 #ifndef LMP_FSI_STOP_H
 #define LMP_FSI_STOP_H
 
+#include "fsi_part.h"
 #include "pointers.h"
 
 #include <string>
@@ -26,7 +27,6 @@ namespace LAMMPS_NS {
 class Fix;
 
 namespace FSI {
-  class Part;
   class Scene;
   struct Discretization;
   struct StepState;
@@ -49,7 +49,7 @@ namespace FSI {
     enum Field { FORCE, VELOCITY, MASS_DENSITY, POSITION, MASS };
     enum When { BEFORE, START, MIDDLE };    // of all forces; of a step: where positions are
 
-    Stop(class LAMMPS *, const std::string &who, const Scene &);
+    Stop(class LAMMPS *, const std::string &name, const Scene &);
     Finding finding(Trouble, int i, double value, int j = -1) const;
     // what of atom i is not finite? No tag if nothing is. With forces, if they are there
     Finding not_finite(int i, bool forces) const;
@@ -75,6 +75,7 @@ namespace FSI {
     };
     Neighbor nearest_body(const Finding &) const;
     bool too_near(const Neighbor &) const;
+    std::vector<Part::Effect> effects(bool of_fluid) const;
     std::string advice(const Finding &, When, const Neighbor &) const;
     std::string shorter_step(const Finding &, bool &suspect) const;
     void go_back();

@@ -42,9 +42,9 @@ Values::~Values()
 void Values::read(int k, const std::string &word, const std::string &what, const std::string &other)
 {
   if (utils::strmatch(word, "^v_")) return set_variable(k, word.substr(2));
-  std::string who = command;
-  who[0] = toupper(who[0]);
-  list[k].number = numeric(lmp, who + " " + what, word, {}, false, other);
+  std::string title = command;
+  title[0] = toupper(title[0]);
+  list[k].number = numeric(lmp, title + " " + what, word, {}, false, other);
   list[k].source = NUMBER;
 }
 

@@ -52,9 +52,9 @@ namespace FSI {
     template <class List> void evaluate_for(const List &particles, int first, int n)
     {
       const int igroup = of_atoms() ? shared_group() : 0;
-      for (const auto &one : particles) mark(one.i, igroup);
+      for (const auto &p : particles) mark(p.i, igroup);
       evaluate(igroup, first, n);
-      for (const auto &one : particles) mark(one.i, igroup);
+      for (const auto &p : particles) mark(p.i, igroup);
     }
     // of none or of an atom-style variable: 0
     double number(int k) const { return list[k].number; }

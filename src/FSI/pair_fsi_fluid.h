@@ -100,7 +100,7 @@ class PairFSIFluid : public PairFSI {
   // distance over the mean spacing from which on solids push fluid off; 0: they do not
   double solids_guard;
   int tait, laminar, given_couple, couple, extrapolate, tension, solids_slip;
-  int surfaces;                      // does the density follow surfaces (fsi_surface_deficit.h)?
+  int surfaces;                      // does the density follow surfaces (fsi_number_density.h)?
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
 
