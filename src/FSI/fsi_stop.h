@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// How a run that goes wrong is stopped: particle, place, quantity, value, what to try; files of the state
+// How a run that goes wrong is stopped: particle, place, value, what to try; files of the state
 // before it went wrong.
 
 #ifndef LMP_FSI_STOP_H
