@@ -26,10 +26,12 @@
 #include "fsi_check.h"
 #include "fsi_clamps.h"
 #include "fsi_contact.h"
+#include "fsi_damage.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_images.h"
 #include "fsi_profile.h"
+#include "fsi_self_contact.h"
 #include "fsi_solid_laws.h"
 #include "fsi_swaps.h"
 #include "fsi_tensor.h"
@@ -145,8 +147,8 @@ void PairFSISolidTL::init_style()
   reference = dynamic_cast<FixFSIReference *>(fix);
   reference->quadratic = !linear;
   reference->end_corrected = !plain;
-  reference->self_range = self_contact ? contact_range : 0.0;
-  reference->tears = damage > 0.0;
+  reference->self.range = self_contact ? contact_range : 0.0;
+  reference->self.tears = damage > 0.0;
   comm_forward = has_artificial() || laws.by_rate() ? 2 * dim : dim;
   comm_reverse = dim;
 
@@ -285,7 +287,7 @@ void PairFSISolidTL::internal_forces()
     const double part = update->setupflag ? 1.0 : 1.0 / fix_fsi->substeps;
     fix_fsi->dim == 2 ? fold_images<2>(part) : fold_images<3>(part);
   }
-  if (!reference->near_itself.empty())
+  if (!reference->self.pairs.empty())
     fix_fsi->dim == 2 ? self_contact_forces<2>() : self_contact_forces<3>();
   exchange(fix_fsi->profile, comm, [this]() {
     reference->swaps.reverse<Pair>(this);
@@ -569,7 +571,7 @@ template <int D> void PairFSISolidTL::self_contact_forces()
 {
   double **x = atom->x;
   const int *const type = atom->type;
-  for (const auto &pair : reference->near_itself) {
+  for (const auto &pair : reference->self.pairs) {
     double xij[D], rsq = 0.0;
     for (int d = 0; d < D; d++) {
       xij[d] = x[pair.i][d] - x[pair.j][d];
@@ -676,7 +678,7 @@ void PairFSISolidTL::break_bonds()
   if (damage <= 0.0) return;
   const Phase phase(fix_fsi->profile, Profile::STRESS);
   // a fragment with few bonds may be turned inside out, where no law holds
-  reference->break_bonds(
+  reference->damage.break_bonds(
       1.0 + damage,
       [this](int i) {
         return std::max(0.0, stored(i));

@@ -1,0 +1,279 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+// Takes the reference configuration of total-Lagrangian solids: bonds each particle to its
+// neighbors of the same body where they are now, and to their images in planes of symmetry.
+
+#include "fsi_bond_store.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fsi_cells.h"
+#include "fsi_gather.h"
+#include "fsi_gradient.h"
+#include "fsi_kernel.h"
+#include "fsi_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <type_traits>
+#include <vector>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+namespace {
+class BondMaker : protected Pointers {
+ public:
+  BondMaker(LAMMPS *lmp, BondStore &bonds) : Pointers(lmp), disc(*bonds.disc), bonds(bonds) {}
+  void take(const std::vector<int> &bare);    // local solids without bonds
+
+ private:
+  const Discretization &disc;
+  BondStore &bonds;
+  // of the particle that is bonded: neighbors, X_j - X_i, weights V_j W, planes of images, G_ij
+  std::vector<int> near, bits;
+  std::vector<double> dX, w, G;
+
+  double volume(int i) const;
+  void check_planes(const std::vector<int> &bare) const;
+  template <int D> void bond_all(const std::vector<int> &bare);
+  template <int D> void report(const bigint *counts) const;
+  template <int D, class Kernel, class Weights>
+  int bond(int i, const Kernel &, const Cells &, const Weights &);
+  template <int D, class Kernel> void find_neighbors(int i, const Kernel &, const Cells &);
+  template <int D> double measure(int i, int j, double cut, double *X) const;
+  template <int D, class Kernel> void find_images(int i, const Kernel &);
+  template <int D, class Kernel> void enter_bonds(int i, const Kernel &);
+};
+}    // namespace
+
+void BondStore::take(const std::vector<int> &bare)
+{
+  BondMaker(lmp, *this).take(bare);
+}
+
+void BondMaker::take(const std::vector<int> &bare)
+{
+  if (bonds.images.planes.any()) check_planes(bare);
+  domain->dimension == 2 ? bond_all<2>(bare) : bond_all<3>(bare);
+}
+
+double BondMaker::volume(int i) const
+{
+  return atom->rmass[i] / disc.state[atom->type[i]].rho0;
+}
+
+// Bodies that are cut by a plane of symmetry: their particles are where the lattice of the whole
+// has them, before the plane. Those that end short of it would be glued to their images.
+void BondMaker::check_planes(const std::vector<int> &bare) const
+{
+  static constexpr double LEAST = 0.25, MOST = 0.75;    // spacings, half a one is meant
+  for (const auto &plane : bonds.images.planes.wall) {
+    std::set<tagint> there, close;
+    for (const int i : bare) {
+      if (!(atom->mask[i] & plane.joins)) continue;
+      const double dx = disc.dx_of(atom->type[i]), d = plane.distance(atom->x[i]);
+      const char *const face = plane.side > 0.0 ? "lo" : "hi";
+      if (d < LEAST * dx)
+        error->one(FLERR,
+                   "Solid atom {} of body {} is {:g} before the plane of symmetry {}{} {}: "
+                   "expected half a spacing, {:g}, or more",
+                   atom->tag[i], atom->molecule[i], d, "xyz"[plane.axis], face, plane.position,
+                   0.5 * dx);
+      if (d < MOST * dx) there.insert(atom->molecule[i]);
+      if (d < disc.resolution[atom->type[i]].cut / 2.0) close.insert(atom->molecule[i]);
+    }
+    there = gather(there, world);
+    for (const tagint body : gather(close, world))
+      if (!there.count(body))
+        error->all(
+            FLERR,
+            "Body {} ends short of the plane of symmetry at {} = {}: expected half a spacing "
+            "between them, or leave it out of the group of fix fsi/wall/mirror",
+            body, "xyz"[plane.axis], plane.position);
+  }
+}
+
+template <int D> void BondMaker::bond_all(const std::vector<int> &bare)
+{
+  const int *const type = atom->type;
+  // bodies by their smoothing length, in the order of the first of each
+  std::vector<double> all_h;
+  for (const int i : bare)
+    if (std::find(all_h.begin(), all_h.end(), disc.h_of(type[i])) == all_h.end())
+      all_h.push_back(disc.h_of(type[i]));
+  // LAMMPS' list would be of all particles, and stay
+  const double widest = disc.largest_cut;
+  const Cells solids(atom->x, atom->nlocal + atom->nghost, D, widest / 3.0, [this](int i) {
+    return bonds.is_solid(i);
+  });
+  const GradientWeights<D> weights;
+  bigint counts[6] = {};    // particles, bonds, particles by order reached
+  bonds.expect(bare.size());
+  for (const double h : all_h)
+    with_kernel(disc.kernel, D, h, [&](const auto &kernel) {
+      if constexpr (std::decay_t<decltype(kernel)>::DIM == D)
+        for (const int i : bare) {
+          if (disc.h_of(type[i]) != h) continue;
+          const int order = bond<D>(i, kernel, solids, weights);
+          counts[0]++;
+          counts[1] += near.size();
+          counts[2 + order]++;
+        }
+    });
+  report<D>(counts);
+}
+
+template <int D> void BondMaker::report(const bigint *counts) const
+{
+  bigint all[6];
+  MPI_Allreduce(counts, all, 6, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (comm->me) return;
+  utils::logmesg(lmp, "  fsi/solid/tl: reference of {} particles taken, {:.1f} bonds each\n",
+                 all[0], double(all[1]) / all[0]);
+  if (bonds.quadratic)
+    utils::logmesg(lmp,
+                   "    gradients: {} exact for quadratic fields, {} for part of their terms, {} "
+                   "for linear fields only\n",
+                   all[2 + Gradient<D>::QUADRATIC], all[2 + Gradient<D>::PARTIAL],
+                   all[2 + Gradient<D>::LINEAR]);
+}
+
+// what its gradient is exact for
+template <int D, class Kernel, class Weights>
+int BondMaker::bond(int i, const Kernel &kernel, const Cells &solids, const Weights &weights)
+{
+  find_neighbors<D>(i, kernel, solids);
+  if (bonds.images.planes.any()) find_images<D>(i, kernel);
+  const int n = near.size();
+  G.resize((size_t) n * D);
+  const auto order = weights(n, dX.data(), w.data(), kernel.h, bonds.quadratic, G.data());
+  if (order == Gradient<D>::DEFICIENT)
+    error->one(FLERR,
+               "Solid atom {} of body {} has {} neighbors of its own body within {}: too "
+               "few, or all in one {}, for a deformation gradient. A body must be at least "
+               "two particles thick, and one body one molecule ID",
+               atom->tag[i], atom->molecule[i], n, kernel.cut, D == 2 ? "line" : "plane");
+  enter_bonds<D>(i, kernel);
+  return order;
+}
+
+template <int D, class Kernel>
+void BondMaker::find_neighbors(int i, const Kernel &kernel, const Cells &solids)
+{
+  const tagint *const tag = atom->tag, *const molecule = atom->molecule;
+  const double cutsq = BondStore::WITHIN * kernel.cutsq;
+  near.clear();
+  solids.around(atom->x[i], kernel.cut, [&](int j, double rsq) {
+    if (rsq < cutsq && j != i && molecule[j] == molecule[i]) near.push_back(j);
+  });
+  // whatever ranks there are
+  std::sort(near.begin(), near.end(), [tag](int a, int b) {
+    return tag[a] < tag[b];
+  });
+  dX.resize(near.size() * D);
+  w.resize(near.size());
+  for (size_t k = 0; k < near.size(); k++) {
+    const double rsq = measure<D>(i, near[k], kernel.cut, &dX[k * D]);
+    w[k] = volume(near[k]) * kernel.W(std::sqrt(rsq));
+  }
+}
+
+// X_j - X_i of neighbors that may be bonded, its square
+template <int D> double BondMaker::measure(int i, int j, double cut, double *X) const
+{
+  const tagint *const tag = atom->tag, *const molecule = atom->molecule;
+  const int *const type = atom->type;
+  const bool periodic = bonds.is_periodic();
+  double rsq = 0.0;
+  bool halfway = false;    // round the box: the image on the other side is as near
+  for (int a = 0; a < D; a++) {
+    X[a] = atom->x[j][a] - atom->x[i][a];
+    rsq += X[a] * X[a];
+    halfway = halfway ||
+        (periodic && domain->periodicity[a] &&
+         2.0 * std::fabs(X[a]) > (1.0 - 1.0e-9) * domain->prd[a]);
+  }
+  if (disc.h_of(type[j]) != disc.h_of(type[i]))
+    error->one(FLERR,
+               "Solid atoms {} and {} of body {} have the spacings {:g} and {:g} of types {} and "
+               "{}: a body has one",
+               tag[i], tag[j], molecule[i], disc.dx_of(type[i]), disc.dx_of(type[j]), type[i],
+               type[j]);
+  if (rsq == 0.0)
+    error->one(FLERR,
+               "Solid atoms {} and {} of body {} are at the same place: regions overlap, or share "
+               "an edge that particles lie on; delete_atoms overlap",
+               tag[i], tag[j], molecule[i]);
+  if (halfway || (periodic && domain->closest_image(i, j) != j))
+    error->one(FLERR,
+               "Solid atoms {} and {} are neighbors through more than one image: a periodic box "
+               "must be wider than two supports, {}, of the kernel",
+               tag[i], tag[j], 2.0 * cut);
+  return rsq;
+}
+
+// likewise images of its neighbors and of itself in planes of symmetry
+template <int D, class Kernel> void BondMaker::find_images(int i, const Kernel &kernel)
+{
+  double **x = atom->x;
+  const Images &images = bonds.images;
+  const int own = images.joins(atom->mask, i) ? images.planes.near(x[i], kernel.cut) : 0;
+  bits.assign(near.size(), 0);
+  if (!own) return;
+  const auto add = [&](int j, double rsq) {
+    images.planes.images(own & images.planes.near(x[j], kernel.cut), rsq, x[i], x[j],
+                         BondStore::WITHIN * kernel.cutsq,
+                         [&](const Walls::Reflection &s, double image_rsq, const double *away) {
+                           near.push_back(j);
+                           bits.push_back(s.mask);
+                           for (int a = 0; a < D; a++) dX.push_back(-away[a]);
+                           w.push_back(volume(j) * kernel.W(std::sqrt(image_rsq)));
+                         });
+  };
+  const int n = near.size();
+  add(i, 0.0);
+  for (int k = 0; k < n; k++) {
+    if (!images.joins(atom->mask, near[k])) continue;
+    double rsq = 0.0;
+    for (int a = 0; a < D; a++) rsq += dX[k * D + a] * dX[k * D + a];
+    add(near[k], rsq);
+  }
+}
+
+template <int D, class Kernel> void BondMaker::enter_bonds(int i, const Kernel &kernel)
+{
+  const int n = near.size();
+  const double own = volume(i);
+  bonds.make(i, n);
+  bonds.enter_place(i, atom->x[i]);
+  for (int k = 0; k < n; k++) {
+    double *const value = bonds.bond(i, k);
+    const double *d = &dX[k * D];
+    double rsq = 0.0;
+    for (int a = 0; a < D; a++) {
+      value[a * BOND_BLOCK] = G[k * D + a];
+      value[(D + a) * BOND_BLOCK] = d[a];
+      rsq += d[a] * d[a];
+    }
+    const double r = std::sqrt(rsq), vv = own * volume(near[k]);
+    value[2 * D * BOND_BLOCK] = vv * kernel.W(r) / rsq;
+    value[(2 * D + 1) * BOND_BLOCK] = vv * kernel.gradient(r);
+    bonds.enter(i, k, atom->tag[near[k]], bonds.keeps_images ? bits[k] : 0);
+  }
+  bonds.complete(i);
+}
