@@ -27,7 +27,7 @@ FixStyle(FSI_HISTORY,FixFSIHistory);
 
 namespace LAMMPS_NS {
 
-// What a law of total-Lagrangian solids keeps of each particle (fsi_solid_laws.h): it goes with its
+// What a law of total-Lagrangian solids keeps of each particle (fsi_law_list.h): it goes with its
 // atom from rank to rank, through restart files and from one pair_style command to the next.
 // Internal: pair_style fsi/solid/tl makes it where a law has a history, and only there.
 

@@ -20,8 +20,8 @@
 #include "fix_fsi.h"
 #include "fsi_changes.h"
 #include "fsi_find.h"
-#include "fsi_hypoelastic.h"
 #include "fsi_record.h"
+#include "fsi_solid_laws.h"
 #include "update.h"
 
 #include <algorithm>

@@ -20,19 +20,19 @@
 // r_ij is what the linear field F_i does not explain of its neighbors' positions. The derivative
 // with respect to F_i is -zeta E (A - F_i M), A = sum_j w (x_j - x_i) (x) X_ij,
 // M = sum_j w X_ij (x) X_ij, so that one pass over the bonds has it; M is of the reference.
-// Artificial viscosity (fsi_viscosity.h) with the reference kernel; each particle of a
+// Artificial viscosity (fsi_pair_laws.h) with the reference kernel; each particle of a
 // pair does half.
 
 #ifndef LMP_FSI_BOND_ROWS_H
 #define LMP_FSI_BOND_ROWS_H
 
-#include "fsi_elastic.h"
 #include "fsi_gradient.h"
 #include "fsi_material.h"
 #include "fsi_pack.h"
+#include "fsi_pair_laws.h"
 #include "fsi_rows.h"
+#include "fsi_solid_laws.h"
 #include "fsi_tensor.h"
-#include "fsi_viscosity.h"
 
 #include <cstring>
 #include <type_traits>

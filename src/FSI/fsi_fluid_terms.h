@@ -17,15 +17,12 @@
 #ifndef LMP_FSI_FLUID_TERMS_H
 #define LMP_FSI_FLUID_TERMS_H
 
-#include "fsi_contact.h"
 #include "fsi_couple_paper.h"
-#include "fsi_density_diffusion.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
+#include "fsi_pair_laws.h"
 #include "fsi_rows.h"
-#include "fsi_shift.h"
 #include "fsi_tensor.h"
-#include "fsi_viscosity.h"
 
 #include <type_traits>
 

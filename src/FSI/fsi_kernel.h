@@ -258,7 +258,7 @@ namespace FSI {
     return psi;
   }
 
-  // l^2 of central laminar viscosity (fsi_viscosity.h), with which a flow along the rows of a
+  // l^2 of central laminar viscosity (fsi_pair_laws.h), with which a flow along the rows of a
   // lattice has the viscosity that is given, in the mean over the places of rows that slide along
   // each other
   template <class K> double central_length_sq(const K &kernel, double dx)

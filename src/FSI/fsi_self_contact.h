@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// A total-Lagrangian body and itself: pairs that contact (fsi_contact.h) acts on, and, without
+// A total-Lagrangian body and itself: pairs that contact (fsi_pair_laws.h) acts on, and, without
 // contact, parts of it that pass through each other.
 
 #ifndef LMP_FSI_SELF_CONTACT_H

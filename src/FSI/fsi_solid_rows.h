@@ -23,14 +23,13 @@
 #ifndef LMP_FSI_SOLID_ROWS_H
 #define LMP_FSI_SOLID_ROWS_H
 
-#include "fsi_contact.h"
 #include "fsi_gradient.h"
 #include "fsi_hourglass.h"
 #include "fsi_material.h"
+#include "fsi_pair_laws.h"
 #include "fsi_rows.h"
 #include "fsi_stress_artificial.h"
 #include "fsi_tensor.h"
-#include "fsi_viscosity.h"
 
 #include <type_traits>
 
@@ -262,7 +261,7 @@ namespace FSI {
   // grad_i W_ij (paper eq. 14), sigma = -p I + S corrected, quadratic: with the weights G_ij = -V_j
   // g C phi of the gradient V_i sigma_i G_ij - V_j sigma_j G_ji instead of the first two terms.
   // What deforms the solid is what resists: energy and angular momentum are kept
-  // between bodies only contact (fsi_contact.h) and Q: bodies do not stick, nor share their stress
+  // between bodies only contact and Q: bodies do not stick, nor share their stress
   template <class T, class K, int TERMS, int FLAGS>
   FSI_INLINE void force_rows(const Row *const rows, const int nrows, const K kernel,
                              const double *const records, const SolidLaws laws,

@@ -30,7 +30,7 @@ namespace LAMMPS_NS {
 namespace FSI {
 
   // of full matrices
-  template <int D> inline double determinant(const double *F)
+  template <int D> FSI_INLINE double determinant(const double *F)
   {
     if constexpr (D == 2)
       return F[0] * F[3] - F[1] * F[2];
@@ -40,7 +40,7 @@ namespace FSI {
   }
 
   // det(F) F^-T
-  template <int D> inline void cofactor(const double *F, double *C)
+  template <int D> FSI_INLINE void cofactor(const double *F, double *C)
   {
     if constexpr (D == 2) {
       C[0] = F[3];
@@ -76,10 +76,10 @@ namespace FSI {
       if (a == b) return a;
       return (D == 2) ? 2 : a + b + 2;
     }
-    T &operator()(int a, int b) { return c[id(a, b)]; }
-    const T &operator()(int a, int b) const { return c[id(a, b)]; }
+    FSI_INLINE T &operator()(int a, int b) { return c[id(a, b)]; }
+    FSI_INLINE const T &operator()(int a, int b) const { return c[id(a, b)]; }
 
-    static Sym identity(double s)
+    FSI_INLINE static Sym identity(double s)
     {
       Sym t;
       for (int a = 0; a < D; a++) t.c[a] = s;
@@ -91,7 +91,7 @@ namespace FSI {
       for (int k = 0; k < N; k++) t.c[k] = p[k];
       return t;
     }
-    void store(double *p) const
+    FSI_INLINE void store(double *p) const
     {
       for (int k = 0; k < N; k++) p[k] = c[k];
     }
@@ -105,14 +105,14 @@ namespace FSI {
       for (int k = 0; k < N; k++) c[k] = s * c[k];
       return *this;
     }
-    double trace() const
+    FSI_INLINE double trace() const
     {
       double t = 0.0;
       for (int a = 0; a < D; a++) t += c[a];
       return t;
     }
     // in-plane double contraction c:c
-    double squared() const
+    FSI_INLINE double squared() const
     {
       double t = 0.0;
       for (int a = 0; a < D; a++) t += c[a] * c[a];
@@ -135,7 +135,7 @@ namespace FSI {
   }
 
   // symmetric part of the matrix L
-  template <int D> inline Sym<D> symmetric(const double *L)
+  template <int D> FSI_INLINE Sym<D> symmetric(const double *L)
   {
     Sym<D> e;
     for (int a = 0; a < D; a++)
@@ -146,7 +146,7 @@ namespace FSI {
   // Rotation Q = exp(dt w) for the spin w = antisym(L), L_ab = dv_a/dx_b (Rodrigues' formula;
   // exact, so that a rigid spin keeps every invariant of a rotated tensor to round-off whatever the
   // step).
-  template <int D> inline void rotation(const double *L, double dt, double *Q)
+  template <int D> FSI_INLINE void rotation(const double *L, double dt, double *Q)
   {
     if constexpr (D == 2) {
       const double angle = 0.5 * dt * (L[2] - L[1]);    // w_yx
@@ -176,7 +176,7 @@ namespace FSI {
   }
 
   // Q t Q^T
-  template <int D> inline Sym<D> rotate(const Sym<D> &t, const double *Q)
+  template <int D> FSI_INLINE Sym<D> rotate(const Sym<D> &t, const double *Q)
   {
     double qt[D * D];
     for (int a = 0; a < D; a++)

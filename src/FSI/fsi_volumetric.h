@@ -16,7 +16,7 @@
 // lambda exceeds that of a Poisson's ratio of LOCAL acts on a smoothed volumetric strain,
 //   U = sum_i V_i k u(theta_i),  theta_i = sum_j w_ij m_j,
 // i: particles that move; j: i and its partners of the same material; m_j: the law's volumetric
-// strain of F_j (fsi_elastic.h). w_ij are the weights of a least-squares fit of a linear function
+// strain of F_j (fsi_solid_laws.h). w_ij: weights of a least-squares fit of a linear function
 // to the m_j, at i, with weights 1 - |X|^2/R^2, R the support: sum_j w_ij = 1, sum_j w_ij X_ij = 0.
 // A linear strain, as in bending, stays as it is, so that nothing gets soft; what changes from
 // particle to particle is taken out, as in the finite element Q2/P1. Projected strains: Hughes,

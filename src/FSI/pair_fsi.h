@@ -49,15 +49,15 @@ class PairFSI : public Pair, public FSI::Part {
   Rank rank() const override { return PAIRS; }
 
  protected:
-  const std::string style;                // for messages
-  FSI::Keywords keywords;                 // of settings()
-  class FixFSI *fix_fsi;                  // null: not since settings() or coeff()
-  const FSI::Discretization *disc;        // of it, as the next two
+  const std::string style;            // for messages
+  FSI::Keywords keywords;             // of settings()
+  class FixFSI *fix_fsi;              // null: not since settings() or coeff()
+  const FSI::Discretization *disc;    // of it, as the next two
   FSI::StepState *step;
   FSI::Ledger *ledger;
   std::vector<FSI::Material> material;    // per type; species NONE where pair_coeff said NULL
-  double alpha, beta;                     // artificial/visc (fsi_viscosity.h)
-  double contact_range;                   // of solids, over dx (fsi_contact.h)
+  double alpha, beta;                     // artificial/visc (fsi_pair_laws.h)
+  double contact_range;                   // of solids, over dx (fsi_pair_laws.h)
   int self_contact;                       // of a body with itself
 
   // does this style handle pairs of these species?

@@ -25,17 +25,16 @@
 #include "fsi_bond_rows.h"
 #include "fsi_check.h"
 #include "fsi_clamps.h"
-#include "fsi_contact.h"
 #include "fsi_damage.h"
 #include "fsi_find.h"
 #include "fsi_gather.h"
 #include "fsi_images.h"
+#include "fsi_law_list.h"
+#include "fsi_pair_laws.h"
 #include "fsi_profile.h"
 #include "fsi_self_contact.h"
-#include "fsi_solid_laws.h"
 #include "fsi_swaps.h"
 #include "fsi_tensor.h"
-#include "fsi_viscosity.h"
 #include "fsi_volumetric.h"
 #include "math_extra.h"
 #include "memory.h"
@@ -107,10 +106,10 @@ PairFSISolidTL *PairFSISolidTL::find(LAMMPS *lmp)
 void PairFSISolidTL::check_settings()
 {
   laws.choose(law);
-  if (plane_stress && !laws.for_plane_stress()) {
+  if (plane_stress && !laws.facts().plane_stress) {
     std::string known;
-    for (const auto &name : SolidLaws::names_for_plane_stress())
-      known += (known.empty() ? "" : " or ") + name;
+    for (const LawFacts &l : SolidLaws::all)
+      if (l.plane_stress) known += (known.empty() ? "" : " or ") + std::string(l.name);
     error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law {}", known);
   }
   if (volumetric != SMOOTHED) return;
@@ -149,7 +148,7 @@ void PairFSISolidTL::init_style()
   reference->end_corrected = !plain;
   reference->self.range = self_contact ? contact_range : 0.0;
   reference->self.tears = damage > 0.0;
-  comm_forward = has_artificial() || laws.by_rate() ? 2 * dim : dim;
+  comm_forward = has_artificial() || laws.facts().by_rate ? 2 * dim : dim;
   comm_reverse = dim;
 
   contacts.clear();
@@ -171,17 +170,17 @@ void PairFSISolidTL::make_laws()
   if (std::all_of(smoothed.modulus.begin(), smoothed.modulus.end(), none)) smoothed.modulus.clear();
   laws.choose(law);
   laws.make(material, smoothed.modulus, plane_stress);
-  fix_history = FixFSIHistory::keep(lmp, laws.history(), laws.columns(fix_fsi->dim));
-  fix_stress = laws.by_rate() ? FixFSIStress::find(lmp) : nullptr;
-  if (!laws.by_rate()) return;
+  fix_history = FixFSIHistory::keep(lmp, laws.facts().history, laws.columns(fix_fsi->dim));
+  fix_stress = laws.facts().by_rate ? FixFSIStress::find(lmp) : nullptr;
+  if (!laws.facts().by_rate) return;
   if (!fix_stress)
-    error->all(FLERR, "Pair style fsi/solid/tl law {} requires fix fsi/stress", laws.name());
+    error->all(FLERR, "Pair style fsi/solid/tl law {} requires fix fsi/stress", laws.facts().name);
   if (fix_stress->plane_stress == plane_stress) return;
   static const char *const planes[] = {"strain", "stress"};
   error->all(FLERR,
              "Pair style fsi/solid/tl law {} has plane {} and fix fsi/stress plane {}: expected "
              "the same in both",
-             laws.name(), planes[plane_stress], planes[fix_stress->plane_stress]);
+             laws.facts().name, planes[plane_stress], planes[fix_stress->plane_stress]);
 }
 
 const double *const *PairFSISolidTL::history() const
@@ -536,7 +535,7 @@ void PairFSISolidTL::tell_contact()
         least[0], least[1], contact_range);
 }
 
-// particles of different bodies (fsi_contact.h)
+// particles of different bodies (fsi_pair_laws.h)
 template <int D> void PairFSISolidTL::contact_forces()
 {
   const bool looks = !contact_told && contact_range <= SMOOTH;
@@ -976,7 +975,7 @@ Facts PairFSISolidTL::facts() const
   Facts facts = PairFSI::facts();
   facts.style = Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   facts.keeps_solids = reference != nullptr;
-  facts.by_rate = laws.by_rate();
+  facts.by_rate = laws.facts().by_rate;
   return facts;
 }
 
@@ -988,7 +987,7 @@ void PairFSISolidTL::find_idle(const Census &all, const Idle &nothing) const
     nothing("Pair style fsi/solid/tl volumetric smoothed",
             fmt::format("no Poisson's ratio is above {}", VolumetricStrain::LOCAL));
   const bool relaxes = any_relaxes();
-  if (relaxes != !laws.history().empty())
+  if (relaxes != !laws.facts().history.empty())
     nothing(relaxes ? "Prony series of a material" : "Pair style fsi/solid/tl law viscoelastic",
             relaxes ? "pair_style fsi/solid/tl has another law" : "no material has a Prony series");
 }
@@ -998,7 +997,7 @@ std::vector<PairFSI::Effect> PairFSISolidTL::effects() const
   auto list = keywords.effects();
   list.insert(list.begin(),
               {fmt::format("total-Lagrangian solid, {}, gradients exact for {} fields",
-                           laws.title(), linear ? "linear" : "quadratic"),
+                           laws.facts().title, linear ? "linear" : "quadratic"),
                "law", true});
   if (smoothed.on())
     list.push_back(

@@ -11,13 +11,12 @@
 // the lattice sum against it.
 
 #include "exceptions.h"
-#include "fsi_density_diffusion.h"
+#include "fsi_pair_laws.h"
 #include "fsi_drag.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
 #include "fsi_pack.h"
 #include "fsi_stress_artificial.h"
-#include "fsi_viscosity.h"
 #include "reference.h"
 
 using namespace LAMMPS_NS::FSI;

@@ -9,9 +9,8 @@
 
 // Hyperelastic laws: stress from energy, limits, objectivity, closed forms; and the contact of bodies.
 
-#include "fsi_contact.h"
-#include "fsi_elastic.h"
-#include "fsi_viscoelastic.h"
+#include "fsi_pair_laws.h"
+#include "fsi_solid_laws.h"
 #include "fsi_volumetric.h"
 #include "reference.h"
 

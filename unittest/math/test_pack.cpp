@@ -13,10 +13,9 @@
 
 // Four numbers side by side give what four numbers one by one give.
 
-#include "fsi_density_diffusion.h"
+#include "fsi_pair_laws.h"
 #include "fsi_kernel.h"
 #include "fsi_pack.h"
-#include "fsi_viscosity.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

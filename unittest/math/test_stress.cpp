@@ -9,7 +9,7 @@
 
 // The Jaumann update alone, driven by prescribed velocity gradients. L of time n takes S from n-1/2 to n+1/2.
 
-#include "fsi_hypoelastic.h"
+#include "fsi_solid_laws.h"
 #include "reference.h"
 
 using namespace LAMMPS_NS::FSI;

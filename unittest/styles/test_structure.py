@@ -7,8 +7,7 @@ import pytest
 from fsi import paths
 
 SOURCES = paths.ROOT / "src" / "FSI"
-LAWS = ["contact", "density_diffusion", "drag", "elastic", "gradient", "hourglass", "hypoelastic", "kernel", "pack", "shift", "stress_artificial",
-        "tensor", "viscoelastic", "viscosity"]
+LAWS = ["drag", "pair_laws", "gradient", "hourglass", "kernel", "pack", "solid_laws", "stress_artificial", "tensor"]
 
 
 def includes(name):

@@ -24,14 +24,14 @@ SOURCES = ROOT / "src" / "FSI"
 
 # files with numerics, by pattern (the first that fits): the tests that look at them, test_NAME.py, or ctest
 TESTS = {
-    "fsi_kernel.h": "ctest lattice", "fsi_tensor.h": "ctest", "fsi_hypoelastic.h": "ctest plasticity", "fsi_walls.h": "ctest walls",
-    "fsi_gradient.h": "ctest", "fsi_elastic.h": "ctest", "fsi_contact.h": "ctest contact self_contact", "fsi_pack.h": "ctest",
-    "fsi_stress_artificial.h": "ctest solid", "fsi_hourglass.h": "ctest solid_tl", "fsi_density_diffusion.h": "ctest density",
-    "fsi_viscosity.h": "ctest viscosity walls", "fsi_material.*": "ctest density solid", "fsi_shift.h": "shift", "fsi_sight.cpp": "thin",
+    "fsi_kernel.h": "ctest lattice", "fsi_tensor.h": "ctest", "fsi_walls.h": "ctest walls",
+    "fsi_gradient.h": "ctest", "fsi_solid_laws.h": "ctest plasticity viscoelastic", "fsi_pack.h": "ctest",
+    "fsi_stress_artificial.h": "ctest solid", "fsi_hourglass.h": "ctest solid_tl",
+    "fsi_pair_laws.h": "ctest viscosity walls density shift contact self_contact", "fsi_material.*": "ctest density solid", "fsi_sight.cpp": "thin",
     "fsi_fluid_*": "density momentum walls surface interface viscosity wall_particles shift spacing",
     "pair_fsi_fluid.cpp": "density integrator dt interface surface wall_particles shift",
     "pair_fsi_solid.*": "solid integrator energy momentum", "pair_fsi_solid_tl.*": "solid_tl energy report contact",
-    "fsi_viscoelastic.h": "ctest viscoelastic", "fsi_solid_laws.h": "solid_tl viscoelastic", "fix_fsi_history.*": "viscoelastic",
+    "fsi_law_list.h": "solid_tl viscoelastic", "fix_fsi_history.*": "viscoelastic",
     "fsi_bond_rows.h": "solid_tl plasticity", "fix_fsi_reference.*": "solid_tl plasticity", "fsi_bond_*.cpp": "solid_tl plasticity", "fsi_quadrature.cpp": "solid_tl", "fsi_damage.*": "solid_tl", "fsi_self_contact.*": "self_contact", "fsi_swaps.cpp": "solid_tl wall_particles", "fsi_frame.cpp": "lists", "fsi_clamps.cpp": "clamp", "fsi_lammps_access.cpp": "clamp gravity", "fsi_images.h": "symmetry",
     "pair_fsi.cpp": "solid density solid_tl", "fix_fsi.cpp": "integrator density momentum restart", "fsi_number_density.*": "density surface parallel restart",
     "fsi_scene.cpp": "surface density energy", "fsi_body_forces.cpp": "density energy gravity", "fsi_fields.cpp": "parallel restart",
