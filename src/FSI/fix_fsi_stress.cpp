@@ -78,12 +78,12 @@ void FixFSIStress::init()
 {
   if (fixes_of<FixFSIStress>(lmp).size() > 1)
     error->all(FLERR, "There can be only one fix fsi/stress");
-  const FixFSI *fix_fsi = FixFSI::find(lmp, "Fix fsi/stress");
+  const Discretization &disc = *FixFSI::find(lmp, "Fix fsi/stress");
   choose_fields();    // another pair_style command may have changed what is kept
   // what had a stress keeps it, what had none never gets the right one
   for (int i = 0; i < atom->nlocal && update->whichflag == 1; i++) {
     double &first = stress[i][0];
-    const bool solid = fix_fsi->state[atom->type[i]].species == FSI::SOLID;
+    const bool solid = disc.state[atom->type[i]].species == FSI::SOLID;
     if (solid ? first == FOREIGN : first != FOREIGN && first != 0.0)
       error->one(FLERR,
                  "Atom {} of type {} is {} solid{} when a run began: delete it and create another "
@@ -93,7 +93,7 @@ void FixFSIStress::init()
     if (!solid) first = FOREIGN;
   }
   bool yields = false;
-  for (const auto &s : fix_fsi->state) yields = yields || s.yield > 0.0;
+  for (const auto &s : disc.state) yields = yields || s.yield > 0.0;
   if (comm->me == 0 && plastic && !yields)
     error->warning(FLERR,
                    "Fix fsi/stress plastic has nothing to act on: no material has a yield stress");

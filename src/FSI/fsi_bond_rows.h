@@ -75,7 +75,7 @@ namespace FSI {
     const double *points = nullptr;    // per particle x, v
     const int *type = nullptr;
     const State *state = nullptr;
-    const double *const *history = nullptr;    // per particle, of the law (fsi_solid_laws.h); null:
+    const double *const *history = nullptr;    // per particle, of the law (fsi_law_list.h); null:
                                                // none
     const double *volumetric = nullptr;        // per particle, q of fsi_volumetric.h; null: none
     double alpha = 0.0, beta = 0.0;            // artificial viscosity
@@ -170,8 +170,8 @@ namespace FSI {
   // adds artificial viscosity of a bond, g = V_i V_j (grad W)/x_ij, to the force on j; what it
   // takes from their energy
   template <class T, int D>
-  FSI_INLINE T rub(const ArtificialViscosity &viscosity, const State &si, const State &sj,
-                   const T &g, const Separation<T, D> &b, T (&force)[D])
+  FSI_INLINE T viscous_force(const ArtificialViscosity &viscosity, const State &si, const State &sj,
+                             const T &g, const Separation<T, D> &b, T (&force)[D])
   {
     T vdotx = 0.0, rsq = 0.0;
     for (int a = 0; a < D; a++) {
@@ -203,26 +203,23 @@ namespace FSI {
     static constexpr int W = Lanes<T>::WIDTH;
   };
 
-  // The first pass: F and A of a row
-  template <class T, int D, int FLAGS>
-  FSI_INLINE void gather_row(const BondRow &row, const double *points, double *end, T (&F)[D * D],
-                             T (&A)[D * D])
+  // F gains u (x) G of bond k, and of those side by side with it: the one place that says what F is
+  template <class T, int D> FSI_INLINE void deform(const BondRow &row, int k, const T (&u)[D], T *F)
   {
-    using Pass = BondPass<T, D, FLAGS>;
+    for (int a = 0; a < D; a++)
+      for (int c = 0; c < D; c++) F[a * D + c] += u[a] * number_of<T, D>(row, k, c);
+  }
+
+  // calls each(k, Separation) of all bonds of a row
+  template <class T, int D, bool VELOCITIES, class Each>
+  FSI_INLINE void for_bonds(const BondRow &row, const double *points, Each each)
+  {
     T from[2 * D];
     for (int a = 0; a < 2 * D; a++) from[a] = points[row_of_points(D) * row.i + a];
-    for (int k = 0; k < D * D; k++) F[k] = A[k] = 0.0;
-    for (int k = 0; k < row.n; k += Pass::W, end += Pass::SIZE) {
+    for (int k = 0; k < row.n; k += Lanes<T>::WIDTH) {
       Separation<T, D> b;
-      b.read(row.partner + k, points, from, Pass::VELOCITIES);
-      for (int a = 0; a < D; a++) {
-        for (int c = 0; c < D; c++) F[a * D + c] += b.x[a] * number_of<T, D>(row, k, c);
-        if (!(FLAGS & BondFlag::HOURGLASS)) continue;
-        const T wx = number_of<T, D>(row, k, 2 * D) * b.x[a];
-        for (int c = 0; c < D; c++) A[a * D + c] += wx * number_of<T, D>(row, k, D + c);
-      }
-      std::memcpy(end, b.x, sizeof(b.x));
-      if (Pass::VELOCITIES) std::memcpy(end + Pass::SIZE / 2, b.v, sizeof(b.v));
+      b.read(row.partner + k, points, from, VELOCITIES);
+      each(k, b);
     }
   }
 
@@ -231,23 +228,36 @@ namespace FSI {
   FSI_INLINE void deform_row(const BondRow &row, const double *points, double *F,
                              double *Fdot = nullptr)
   {
-    T from[2 * D], sum[D * D], rate[D * D];
-    for (int a = 0; a < 2 * D; a++) from[a] = points[row_of_points(D) * row.i + a];
+    T sum[D * D], rate[D * D];
     for (int k = 0; k < D * D; k++) sum[k] = rate[k] = 0.0;
-    for (int k = 0; k < row.n; k += Lanes<T>::WIDTH) {
-      Separation<T, D> b;
-      b.read(row.partner + k, points, from, RATE);
-      for (int a = 0; a < D; a++)
-        for (int c = 0; c < D; c++) {
-          const T G = number_of<T, D>(row, k, c);
-          sum[a * D + c] += b.x[a] * G;
-          if (RATE) rate[a * D + c] += b.v[a] * G;
-        }
-    }
+    for_bonds<T, D, RATE>(row, points, [&](int k, const Separation<T, D> &b) FSI_INLINE_LAMBDA {
+      deform<T, D>(row, k, b.x, sum);
+      if (RATE) deform<T, D>(row, k, b.v, rate);
+    });
     for (int k = 0; k < D * D; k++) {
       F[k] = Lanes<T>::sum(sum[k]);
       if (RATE) Fdot[k] = Lanes<T>::sum(rate[k]);
     }
+  }
+
+  // The first pass: F and A of a row
+  template <class T, int D, int FLAGS>
+  FSI_INLINE void gather_row(const BondRow &row, const double *points, double *end, T (&F)[D * D],
+                             T (&A)[D * D])
+  {
+    using Pass = BondPass<T, D, FLAGS>;
+    for (int k = 0; k < D * D; k++) F[k] = A[k] = 0.0;
+    for_bonds<T, D, Pass::VELOCITIES>(
+        row, points, [&](int k, const Separation<T, D> &b) FSI_INLINE_LAMBDA {
+          deform<T, D>(row, k, b.x, F);
+          for (int a = 0; a < D && (FLAGS & BondFlag::HOURGLASS); a++) {
+            const T wx = number_of<T, D>(row, k, 2 * D) * b.x[a];
+            for (int c = 0; c < D; c++) A[a * D + c] += wx * number_of<T, D>(row, k, D + c);
+          }
+          std::memcpy(end, b.x, sizeof(b.x));
+          if (Pass::VELOCITIES) std::memcpy(end + Pass::SIZE / 2, b.v, sizeof(b.v));
+          end += Pass::SIZE;
+        });
   }
 
   // The derivative t of the energy of i with respect to F_i
@@ -273,75 +283,87 @@ namespace FSI {
     }
   }
 
+  // what a loop adds up in the type that it goes with
+  template <class T> struct BondTotals {
+    T energy = 0.0, artificial = 0.0, virial[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  };
+
+  // The second pass: forces on partners, and the opposite on i. next: what gather_row() kept
+  template <class T, int D, int FLAGS>
+  FSI_INLINE void push_row(const BondRow &row, const BondArguments &in, const double *F,
+                           const double *t, const double *next, BondTotals<T> &totals,
+                           double (*f)[row_of_forces(D)])
+  {
+    using namespace BondFlag;
+    using Pass = BondPass<T, D, FLAGS>;
+    const ArtificialViscosity viscosity(in.alpha, in.beta, row.h);
+    const State &si = in.state[in.type[row.i]];
+    T sum[D];
+    for (T &s : sum) s = 0.0;
+    for (int k = 0; k < row.n; k += Pass::W, next += Pass::SIZE) {
+      Separation<T, D> b;
+      std::memcpy(b.x, next, sizeof(b.x));
+      if (Pass::VELOCITIES) std::memcpy(b.v, next + Pass::SIZE / 2, sizeof(b.v));
+      T force[D], X[D], other[D];    // on j
+      // what does not act through F_i: the virial's
+      T(&beyond)[D] = (FLAGS & SUMS) ? other : force;
+      for (int a = 0; a < D; a++) {
+        force[a] = -t[a * D] * number_of<T, D>(row, k, 0);
+        for (int c = 1; c < D; c++) force[a] -= t[a * D + c] * number_of<T, D>(row, k, c);
+        X[a] = number_of<T, D>(row, k, D + a);
+        if (FLAGS & SUMS) other[a] = 0.0;
+      }
+      if (FLAGS & HOURGLASS) {
+        const T w = number_of<T, D>(row, k, 2 * D);
+        const T stored = straighten(row.stiffness * w, F, b.x, X, beyond);
+        if (FLAGS & SUMS) totals.energy += stored;
+      }
+      if (FLAGS & VISCOSITY) {
+        // with several materials one by one, since the speed of sound is a number
+        const State &sj = in.one_material ? si : in.state[in.type[row.partner[k]]];
+        const T g = number_of<T, D>(row, k, 2 * D + 1);
+        const T loss = viscous_force(viscosity, si, sj, g, b, beyond);
+        if (FLAGS & SUMS) totals.artificial += loss;
+      }
+      if (FLAGS & SUMS)
+        add_virial<D>(
+            [&](int a, int c) FSI_INLINE_LAMBDA {
+              return b.x[a] * beyond[c];
+            },
+            totals.virial);
+      for (int a = 0; a < D; a++) {
+        if (FLAGS & SUMS) force[a] += other[a];
+        sum[a] += force[a];
+      }
+      Lanes<T>::add_rows(force, f, row.partner + k);
+    }
+    for (int a = 0; a < D; a++) f[row.i][a] -= Lanes<T>::sum(sum[a]);
+  }
+
   // f: rows of row_of_forces(D), of local and ghost particles; laws: per type
   template <class T, class Law, int D, int FLAGS>
   FSI_INLINE void bond_rows(const BondRow *const rows, const int nrows, const Law *const laws,
                             const BondArguments in, double (*const f)[row_of_forces(D)])
   {
-    using namespace BondFlag;
     using L = Lanes<T>;
     using Pass = BondPass<T, D, FLAGS>;
     std::vector<double> kept;
-    T energy = 0.0, artificial = 0.0, virial[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    BondTotals<T> totals;
     for (int n = 0; n < nrows; n++) {
       const BondRow row = rows[n];
-      const int i = row.i;
-      const ArtificialViscosity viscosity(in.alpha, in.beta, row.h);
       if (kept.size() < (size_t) (row.n / Pass::W + 1) * Pass::SIZE)
         kept.resize((size_t) 2 * (row.n / Pass::W + 1) * Pass::SIZE);
       T F[D * D], A[D * D];
       gather_row<T, D, FLAGS>(row, in.points, kept.data(), F, A);
       double Fi[D * D], t[D * D];
       for (int k = 0; k < D * D; k++) Fi[k] = L::sum(F[k]);
-      differentiate<T, Law, D, FLAGS>(row, laws[in.type[i]], in, Fi, A, t);
-
-      const State &si = in.state[in.type[i]];
-      T sum[D];
-      for (T &s : sum) s = 0.0;
-      const double *next = kept.data();
-      for (int k = 0; k < row.n; k += Pass::W, next += Pass::SIZE) {
-        Separation<T, D> b;
-        std::memcpy(b.x, next, sizeof(b.x));
-        if (Pass::VELOCITIES) std::memcpy(b.v, next + Pass::SIZE / 2, sizeof(b.v));
-        T force[D], X[D], other[D];    // on j
-        // what does not act through F_i: the virial's
-        T(&beyond)[D] = (FLAGS & SUMS) ? other : force;
-        for (int a = 0; a < D; a++) {
-          force[a] = -t[a * D] * number_of<T, D>(row, k, 0);
-          for (int c = 1; c < D; c++) force[a] -= t[a * D + c] * number_of<T, D>(row, k, c);
-          X[a] = number_of<T, D>(row, k, D + a);
-          if (FLAGS & SUMS) other[a] = 0.0;
-        }
-        if (FLAGS & HOURGLASS) {
-          const T w = number_of<T, D>(row, k, 2 * D);
-          const T stored = straighten(row.stiffness * w, Fi, b.x, X, beyond);
-          if (FLAGS & SUMS) energy += stored;
-        }
-        if (FLAGS & VISCOSITY) {
-          // with several materials one by one, since the speed of sound is a number
-          const State &sj = in.one_material ? si : in.state[in.type[row.partner[k]]];
-          const T g = number_of<T, D>(row, k, 2 * D + 1);
-          const T loss = rub(viscosity, si, sj, g, b, beyond);
-          if (FLAGS & SUMS) artificial += loss;
-        }
-        if (FLAGS & SUMS)
-          add_virial<D>(
-              [&](int a, int c) FSI_INLINE_LAMBDA {
-                return b.x[a] * beyond[c];
-              },
-              virial);
-        for (int a = 0; a < D; a++) {
-          if (FLAGS & SUMS) force[a] += other[a];
-          sum[a] += force[a];
-        }
-        L::add_rows(force, f, row.partner + k);
-      }
-      for (int a = 0; a < D; a++) f[i][a] -= L::sum(sum[a]);
+      differentiate<T, Law, D, FLAGS>(row, laws[in.type[row.i]], in, Fi, A, t);
+      push_row<T, D, FLAGS>(row, in, Fi, t, kept.data(), totals, f);
     }
-    if (FLAGS & SUMS) {
-      in.sums->energy += L::sum(energy);
-      in.sums->artificial += L::sum(artificial);
-      for (int k = 0; k < 6; k++) in.sums->virial[k] += L::sum(virial[k]);
+    if (FLAGS & BondFlag::SUMS) {
+      in.sums->energy += L::sum(totals.energy);
+      in.sums->artificial += L::sum(totals.artificial);
+      for (int k = 0; k < 6; k++) in.sums->virial[k] += L::sum(totals.virial[k]);
     }
   }
 

@@ -75,39 +75,40 @@ namespace FSI {
   // least: the smallest such part among the quadratic terms kept, 0 if there are none.
   constexpr double MIN_INDEPENDENCE = 0.025;
   constexpr double FLAT = 1.0e-4;    // so much of the largest square, for linear terms
-  template <int D, int TERMS>
-  inline typename Gradient<D>::Order
-  gradient_coefficients(const double *A, double *C, double quadratic_tolerance = MIN_INDEPENDENCE,
-                        double *least = nullptr)
-  {
-    const auto at = [](int a, int b) {
-      return packed_size(a) + b;
-    };
-
-    // A = L d L^T
-    double L[TERMS][TERMS] = {}, d[TERMS], part = 1.0, widest = 0.0;
+  template <int D, int TERMS> struct MomentFactors {    // A = L d L^T
+    double L[TERMS][TERMS] = {}, d[TERMS], part = 1.0;
     int dropped = 0;
-    for (int a = 0; a < D; a++) widest = std::max(widest, A[at(a, a)]);
-    for (int a = 0; a < TERMS; a++) {
-      for (int b = 0; b < a; b++) {
-        if (d[b] == 0.0) continue;
-        double s = A[at(a, b)];
-        for (int k = 0; k < b; k++) s -= L[a][k] * d[k] * L[b][k];
-        L[a][b] = s / d[b];
+
+    // false: neighbors lie in a line or plane
+    bool factorize(const double *A, double quadratic_tolerance)
+    {
+      const auto at = [](int a, int b) {
+        return packed_size(a) + b;
+      };
+      double widest = 0.0;
+      for (int a = 0; a < D; a++) widest = std::max(widest, A[at(a, a)]);
+      for (int a = 0; a < TERMS; a++) {
+        for (int b = 0; b < a; b++) {
+          if (d[b] == 0.0) continue;
+          double s = A[at(a, b)];
+          for (int k = 0; k < b; k++) s -= L[a][k] * d[k] * L[b][k];
+          L[a][b] = s / d[b];
+        }
+        d[a] = A[at(a, a)];
+        for (int k = 0; k < a; k++) d[a] -= L[a][k] * L[a][k] * d[k];
+        if (!(d[a] > (a < D ? FLAT * widest : quadratic_tolerance * A[at(a, a)]))) {
+          if (a < D) return false;
+          d[a] = 0.0;
+          for (int k = 0; k < a; k++) L[a][k] = 0.0;
+          dropped++;
+        } else if (a >= D)
+          part = std::min(part, d[a] / A[at(a, a)]);
       }
-      d[a] = A[at(a, a)];
-      for (int k = 0; k < a; k++) d[a] -= L[a][k] * L[a][k] * d[k];
-      if (!(d[a] > (a < D ? FLAT * widest : quadratic_tolerance * A[at(a, a)]))) {
-        if (a < D) return Gradient<D>::DEFICIENT;
-        d[a] = 0.0;
-        for (int k = 0; k < a; k++) L[a][k] = 0.0;
-        dropped++;
-      } else if (a >= D)
-        part = std::min(part, d[a] / A[at(a, a)]);
+      return true;
     }
-    if (least) *least = dropped < TERMS - D ? part : 0.0;
-    for (int a = 0; a < D; a++) {
-      double *const c = C + a * TERMS;
+
+    void find_row(int a, double *c) const    // of the inverse
+    {
       for (int k = 0; k < TERMS; k++) {
         c[k] = (k == a) ? 1.0 : 0.0;
         for (int b = a; b < k; b++) c[k] -= L[k][b] * c[b];
@@ -116,8 +117,19 @@ namespace FSI {
       for (int k = TERMS - 1; k >= 0; k--)
         for (int b = k + 1; b < TERMS; b++) c[k] -= L[b][k] * c[b];
     }
-    if (dropped == TERMS - D) return Gradient<D>::LINEAR;
-    return dropped ? Gradient<D>::PARTIAL : Gradient<D>::QUADRATIC;
+  };
+
+  template <int D, int TERMS>
+  inline typename Gradient<D>::Order
+  gradient_coefficients(const double *A, double *C, double quadratic_tolerance = MIN_INDEPENDENCE,
+                        double *least = nullptr)
+  {
+    MomentFactors<D, TERMS> f;
+    if (!f.factorize(A, quadratic_tolerance)) return Gradient<D>::DEFICIENT;
+    if (least) *least = f.dropped < TERMS - D ? f.part : 0.0;
+    for (int a = 0; a < D; a++) f.find_row(a, C + a * TERMS);
+    if (f.dropped == TERMS - D) return Gradient<D>::LINEAR;
+    return f.dropped ? Gradient<D>::PARTIAL : Gradient<D>::QUADRATIC;
   }
 
   // principal values, decreasing, and axes (rows) of packed moments sum_j w_j x_j x_j^T

@@ -218,7 +218,7 @@ namespace FSI {
     double stress = 0.0, gradient = 0.0, viscosity = 0.0, virial[6] = {};
   };
 
-  struct SolidLaws {
+  struct PairLaws {
     ArtificialViscosity viscosity;
     ArtificialStress artificial;
     Contact contact;
@@ -256,81 +256,115 @@ namespace FSI {
     for (int d = 0; d < D; d++) t[d] -= other[At::VOL0] * si[d] - own[At::VOL0] * sj[d];
   }
 
-  // Adds the forces of pairs to both.
+  // what a loop adds up in the type that it goes with: as SolidSums
+  template <class T> struct SolidTotals {
+    T stress = 0.0, gradient = 0.0, viscosity = 0.0, virial[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  };
+
+  // a pair: records of both, i minus j, grad_i W_ij = g x, part of powers that counts here
+  template <int D, int TERMS, class T> struct SolidPair {
+    T own[ForceRecord<D, TERMS>::N], other[ForceRecord<D, TERMS>::N], x[D], v[D];
+    T rsq, r, g, share;
+  };
+
+  // force of the stress of both, and of artificial stress
+  template <int FLAGS, class K, int D, int TERMS, class T>
+  FSI_INLINE void push_by_stress(const SolidPair<D, TERMS, T> &p, const K &kernel,
+                                 const ArtificialStress &artificial, SolidTotals<T> &totals,
+                                 T (&force)[D])
+  {
+    using namespace SolidFlag;
+    using At = ForceRecord<D, TERMS>;
+    Sym<D, T> t;
+    if constexpr (TERMS == 0) {
+      t = Sym<D, T>::load(p.own + At::STRESS);
+      t += Sym<D, T>::load(p.other + At::STRESS);
+    }
+    if constexpr (FLAGS & STRESS) {
+      auto R = Sym<D, T>::load(p.own + At::ARTIFICIAL);
+      R += Sym<D, T>::load(p.other + At::ARTIFICIAL);
+      R *= artificial.weight(kernel.W(p.r));
+      t += R;
+      if (FLAGS & SUMS) {
+        dot(R, p.x, force);
+        const T power = p.share * p.g * product(force, p.v);
+        totals.stress -= power;
+        totals.gradient += power;
+      }
+    }
+    if constexpr (TERMS == 0 || (FLAGS & STRESS)) dot(t, p.x, force);
+    if constexpr (TERMS > 0) subtract_corrected<D, TERMS>(p.own, p.other, p.x, kernel.hinv, force);
+    for (int d = 0; d < D; d++) force[d] = p.g * force[d];
+  }
+
+  // Force of a pair on i.
   // gradient plain: F_ij = [sigma_i V_i^2 + sigma_j V_j^2 + (R_i + R_j) (W_ij/W(dx))^4 - Q_ij I] .
   // grad_i W_ij (paper eq. 14), sigma = -p I + S corrected, quadratic: with the weights G_ij = -V_j
   // g C phi of the gradient V_i sigma_i G_ij - V_j sigma_j G_ji instead of the first two terms.
   // What deforms the solid is what resists: energy and angular momentum are kept
   // between bodies only contact and Q: bodies do not stick, nor share their stress
-  template <class T, class K, int TERMS, int FLAGS>
-  FSI_INLINE void force_rows(const Row *const rows, const int nrows, const K kernel,
-                             const double *const records, const SolidLaws laws,
-                             double (*const f)[row_of_forces(K::DIM)])
+  template <int FLAGS, class K, int D, int TERMS, class T>
+  FSI_INLINE void push_pair(const SolidPair<D, TERMS, T> &p, int i, const int *j, const K &kernel,
+                            const PairLaws &laws, SolidTotals<T> &totals, T (&force)[D])
   {
     using namespace SolidFlag;
+    using At = ForceRecord<D, TERMS>;
+    for (int d = 0; d < D; d++) force[d] = 0.0;
+    if constexpr (!(FLAGS & CONTACT)) {
+      push_by_stress<FLAGS>(p, kernel, laws.artificial, totals, force);
+    } else {
+      // along x: it does not go with the kernel's gradient, which may vanish here
+      const State &si = laws.state[laws.type[i]], &sj = laws.state[laws.type[*j]];
+      const T push = laws.contact(p.rsq, si.csq * si.rho0, sj.csq * sj.rho0);
+      for (int d = 0; d < D; d++) force[d] = push * p.x[d];
+    }
+    if (FLAGS & SUMS) totals.gradient -= p.share * product(force, p.v);
+    if (FLAGS & VISCOSITY) {
+      const T vdotx = product(p.v, p.x);
+      const T q = p.g *
+          laws.viscosity(vdotx, p.rsq, T(0.5 * (p.own[At::RHO] + p.other[At::RHO])),
+                         T(0.5 * (p.own[At::SOUND] + p.other[At::SOUND])),
+                         T(p.own[At::VOL] * p.other[At::VOL]));
+      for (int d = 0; d < D; d++) force[d] -= q * p.x[d];
+      if (FLAGS & SUMS) totals.viscosity += p.share * q * vdotx;
+    }
+    if (FLAGS & SUMS)
+      add_virial<D>(
+          [&](int a, int b) FSI_INLINE_LAMBDA {
+            return p.share * p.x[a] * force[b];
+          },
+          totals.virial);
+  }
+
+  // Adds the forces of pairs to both.
+  template <class T, class K, int TERMS, int FLAGS>
+  FSI_INLINE void force_rows(const Row *const rows, const int nrows, const K kernel,
+                             const double *const records, const PairLaws laws,
+                             double (*const f)[row_of_forces(K::DIM)])
+  {
+    constexpr bool SUMS = FLAGS & SolidFlag::SUMS;
     constexpr int D = K::DIM, NR = ForceRecord<D, TERMS>::N;
     using At = ForceRecord<D, TERMS>;
     using L = Lanes<T>;
-    T by_stress = 0.0, by_gradient = 0.0, by_viscosity = 0.0, virial[6];
-    for (T &w : virial) w = 0.0;
+    SolidTotals<T> totals;
     for (int n = 0; n < nrows; n++) {
       const Row row = rows[n];
-      T own[NR], of_i[D];
-      read_own<NR>(records, row.i, own);
+      SolidPair<D, TERMS, T> p;
+      T of_i[D];
+      read_own<NR>(records, row.i, p.own);
       for (T &s : of_i) s = 0.0;
       for_neighbors<T, false>(row, [&](const int *j, const T &) FSI_INLINE_LAMBDA {
-        T other[NR], x[D], v[D], force[D], of_j[D];
-        read_records<NR>(records, j, other);
+        T force[D], of_j[D];
+        read_records<NR>(records, j, p.other);
         for (int d = 0; d < D; d++) {
-          x[d] = own[At::X + d] - other[At::X + d];
-          v[d] = own[At::V + d] - other[At::V + d];
-          force[d] = 0.0;
+          p.x[d] = p.own[At::X + d] - p.other[At::X + d];
+          p.v[d] = p.own[At::V + d] - p.other[At::V + d];
         }
-        const T rsq = product(x, x), r = root(rsq), g = kernel.gradient(r),
-                share = (FLAGS & SUMS) ? share_of<T>(row.i, j, laws.nlocal, laws.newton) : T(1.0);
-        if constexpr (!(FLAGS & CONTACT)) {
-          Sym<D, T> t;
-          if constexpr (TERMS == 0) {
-            t = Sym<D, T>::load(own + At::STRESS);
-            t += Sym<D, T>::load(other + At::STRESS);
-          }
-          if constexpr (FLAGS & STRESS) {
-            auto R = Sym<D, T>::load(own + At::ARTIFICIAL);
-            R += Sym<D, T>::load(other + At::ARTIFICIAL);
-            R *= laws.artificial.weight(kernel.W(r));
-            t += R;
-            if (FLAGS & SUMS) {
-              dot(R, x, force);
-              const T power = share * g * product(force, v);
-              by_stress -= power;
-              by_gradient += power;
-            }
-          }
-          if constexpr (TERMS == 0 || (FLAGS & STRESS)) dot(t, x, force);
-          if constexpr (TERMS > 0) subtract_corrected<D, TERMS>(own, other, x, kernel.hinv, force);
-          for (int d = 0; d < D; d++) force[d] = g * force[d];
-        } else {
-          // along x: it does not go with the kernel's gradient, which may vanish here
-          const State &si = laws.state[laws.type[row.i]], &sj = laws.state[laws.type[*j]];
-          const T push = laws.contact(rsq, si.csq * si.rho0, sj.csq * sj.rho0);
-          for (int d = 0; d < D; d++) force[d] = push * x[d];
-        }
-        if (FLAGS & SUMS) by_gradient -= share * product(force, v);
-        if (FLAGS & VISCOSITY) {
-          const T vdotx = product(v, x);
-          const T q = g *
-              laws.viscosity(vdotx, rsq, T(0.5 * (own[At::RHO] + other[At::RHO])),
-                             T(0.5 * (own[At::SOUND] + other[At::SOUND])),
-                             T(own[At::VOL] * other[At::VOL]));
-          for (int d = 0; d < D; d++) force[d] -= q * x[d];
-          if (FLAGS & SUMS) by_viscosity += share * q * vdotx;
-        }
-        if (FLAGS & SUMS)
-          add_virial<D>(
-              [&](int a, int b) FSI_INLINE_LAMBDA {
-                return share * x[a] * force[b];
-              },
-              virial);
+        p.rsq = product(p.x, p.x);
+        p.r = root(p.rsq);
+        p.g = kernel.gradient(p.r);
+        p.share = SUMS ? share_of<T>(row.i, j, laws.nlocal, laws.newton) : T(1.0);
+        push_pair<FLAGS>(p, row.i, j, kernel, laws, totals, force);
         for (int d = 0; d < D; d++) {
           of_i[d] += force[d];
           of_j[d] = -force[d];
@@ -339,12 +373,11 @@ namespace FSI {
       });
       for (int d = 0; d < D; d++) f[row.i][d] += L::sum(of_i[d]);
     }
-    if (FLAGS & SUMS) {
-      laws.sums->stress += L::sum(by_stress);
-      laws.sums->gradient += L::sum(by_gradient);
-      laws.sums->viscosity += L::sum(by_viscosity);
-      for (int k = 0; k < 6; k++) laws.sums->virial[k] += L::sum(virial[k]);
-    }
+    if (!SUMS) return;
+    laws.sums->stress += L::sum(totals.stress);
+    laws.sums->gradient += L::sum(totals.gradient);
+    laws.sums->viscosity += L::sum(totals.viscosity);
+    for (int k = 0; k < 6; k++) laws.sums->virial[k] += L::sum(totals.virial[k]);
   }
 
 }    // namespace FSI

@@ -49,10 +49,10 @@ double *Swaps::pass(int to, int n, int from, int most)
   return in.data();
 }
 
-template <class Owner> void Swaps::forward(Owner *owner)
+template <class Owner> void Swaps::forward(Owner *owner, int size)
 {
-  if (!chosen) return comm->forward_comm(owner);
-  const int size = owner->comm_forward;
+  if (!chosen) return comm->forward_comm(owner, size);
+  if (size == 0) size = owner->comm_forward;
   for (Swap &s : swaps) {
     if (out.size() < s.sent.size() * size) out.resize(s.sent.size() * size);
     const int n = owner->pack_forward_comm(s.sent.size(), s.sent.data(), out.data(), s.flag, s.pbc);
@@ -60,10 +60,10 @@ template <class Owner> void Swaps::forward(Owner *owner)
   }
 }
 
-template <class Owner> void Swaps::reverse(Owner *owner)
+template <class Owner> void Swaps::reverse(Owner *owner, int size)
 {
-  if (!chosen) return comm->reverse_comm(owner);
-  const int size = owner->comm_reverse;
+  if (!chosen) return comm->reverse_comm(owner, size);
+  if (size == 0) size = owner->comm_reverse;
   for (auto s = swaps.rbegin(); s != swaps.rend(); ++s) {
     if ((int) out.size() < s->arriving * size) out.resize(s->arriving * size);
     const int n = owner->pack_reverse_comm(s->nrecv, s->first, out.data());
@@ -72,7 +72,7 @@ template <class Owner> void Swaps::reverse(Owner *owner)
   }
 }
 
-template void Swaps::forward(Pair *);
-template void Swaps::forward(Fix *);
-template void Swaps::reverse(Pair *);
-template void Swaps::reverse(Fix *);
+template void Swaps::forward(Pair *, int);
+template void Swaps::forward(Fix *, int);
+template void Swaps::reverse(Pair *, int);
+template void Swaps::reverse(Fix *, int);

@@ -30,9 +30,10 @@ namespace FSI {
    public:
     explicit Swaps(LAMMPS *lmp) : Pointers(lmp), chosen(false) {}
     void find(const std::function<bool(int)> &is_chosen);    // whenever ghosts are new
-    // for a pair style or a fix, which packs and unpacks the chosen particles only
-    template <class Owner> void forward(Owner *);
-    template <class Owner> void reverse(Owner *);
+    // for a pair style or a fix, which packs and unpacks the chosen particles only; size: numbers
+    // of each, 0: comm_forward, comm_reverse
+    template <class Owner> void forward(Owner *, int size = 0);
+    template <class Owner> void reverse(Owner *, int size = 0);
 
    private:
     struct Swap : Exchange {

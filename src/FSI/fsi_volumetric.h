@@ -122,26 +122,11 @@ namespace FSI {
   FSI_INLINE void find_volumetric_strains(const std::vector<BondRow> &rows, const int *type,
                                           const double *points, VolumetricStrain &s)
   {
-    using L = Lanes<T>;
-    constexpr int NV = 2 * D + 2, W = L::WIDTH;
     for (const BondRow &row : rows) {
       if (s.modulus[type[row.i]] == 0.0) continue;
-      T from[2 * D], F[D * D];
-      for (int a = 0; a < 2 * D; a++) from[a] = points[row_of_points(D) * row.i + a];
-      for (T &x : F) x = 0.0;
-      for (int k = 0; k < row.n; k += W) {
-        Separation<T, D> b;
-        b.read(row.partner + k, points, from, false);
-        const size_t first = W == BOND_BLOCK ? (size_t) k * NV : number_of_bond(k, NV);
-        const double *const G = row.numbers + first;
-        for (int c = 0; c < D; c++) {
-          const T g = L::load(G + c * BOND_BLOCK);
-          for (int a = 0; a < D; a++) F[a * D + c] += b.x[a] * g;
-        }
-      }
-      double Fi[D * D];
-      for (int k = 0; k < D * D; k++) Fi[k] = L::sum(F[k]);
-      s.strain[row.i] = Law::template volumetric_strain<D>(Fi);
+      double F[D * D];
+      deform_row<T, D, false>(row, points, F);
+      s.strain[row.i] = Law::template volumetric_strain<D>(F);
     }
   }
 

@@ -85,23 +85,23 @@ void PairFSISolid::init_style()
     error->all(
         FLERR,
         "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
-  comm_forward = has_hourglass() ? fix_fsi->dim * fix_fsi->dim : 0;
-  comm_reverse = has_hourglass() ? fix_fsi->dim : 0;
+  comm_forward = has_hourglass() ? disc->dim * disc->dim : 0;
+  comm_reverse = has_hourglass() ? disc->dim : 0;
   bodies = several_bodies();
 }
 
 // that of the article's scheme, unless another is given
 double PairFSISolid::artificial_stress() const
 {
-  return epsilon == 0.0 && fix_fsi->article ? 0.3 : epsilon;
+  return epsilon == 0.0 && disc->article ? 0.3 : epsilon;
 }
 
 // calls f(are pairs packed, kernel, terms of the gradient) with the types and constants that loops
 // are compiled for: those of quadratic gradients, and pairs one by one, for any kernel
 template <class F> void PairFSISolid::with_loops(F f) const
 {
-  const int kind = fix_fsi->kernel, dim = fix_fsi->dim;
-  const double h = fix_fsi->h;
+  const int kind = disc->kernel, dim = disc->dim;
+  const double h = disc->h;
   const auto plain_or_linear = [&](auto packed, const auto &kernel) {
     constexpr int D = std::decay_t<decltype(kernel)>::DIM;
     if (gradient == PLAIN)
@@ -155,7 +155,7 @@ Facts PairFSISolid::facts() const
 
 int PairFSISolid::ngrad() const
 {
-  const int dim = fix_fsi->dim, n = terms();
+  const int dim = disc->dim, n = terms();
   return n == 0 ? dim * dim : dim * n + 2 * packed_size(n);
 }
 
@@ -166,7 +166,7 @@ void PairFSISolid::set_fields(Scene &)
 
 void PairFSISolid::add_messages(Message &to_ghosts, Message &back)
 {
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   to_ghosts.add(fix_stress->stress, 0, dim == 2 ? 3 : 6, {SOLID});
   to_ghosts.add(grad, dim * dim, dim * terms(), {SOLID});
   back.add(grad, 0, ngrad(), {SOLID});
@@ -191,9 +191,9 @@ void PairFSISolid::begin_state(bool)
 void PairFSISolid::find_rows()
 {
   const tagint *const molecule = atom->molecule;
-  const double far = FAR * fix_fsi->cut;
-  if (self_contact) fix_stress->enter_start(fix_fsi->state);
-  const auto one = [=](int i, int j) {
+  const double far = FAR * disc->cut;
+  if (self_contact) fix_stress->enter_start(disc->state);
+  const auto joined = [=](int i, int j) {
     return molecule[i] == molecule[j] &&
         !(self_contact && fix_stress->distance_at_start(i, j) >= far);
   };
@@ -210,11 +210,11 @@ void PairFSISolid::find_rows()
     unmasked.resize(n);
     for (int jj = 0; jj < n; jj++) unmasked[jj] = neighbors[jj] & NEIGHMASK;
     own.add(i, unmasked.data(), n, false, false, [=](int j) {
-      return one(i, j);
+      return joined(i, j);
     });
     if (bodies || self_contact)
       others.add(i, unmasked.data(), n, false, false, [=](int j) {
-        return !one(i, j);
+        return !joined(i, j);
       });
   }
   find_image_rows();
@@ -228,13 +228,13 @@ void PairFSISolid::find_rows()
 // of i do, too, mirrored.
 void PairFSISolid::find_image_rows()
 {
-  images.find_planes(fix_fsi->walls, fix_fsi->wall_forces);
+  images.find_planes(step->walls, step->wall_forces);
   images.begin(atom->nlocal + atom->nghost);
   if (!images.planes.any()) return;
   if (update->setupflag) check_planes();
   double **x = atom->x;
   const int *const mask = atom->mask, nlocal = atom->nlocal;
-  const double most = fix_fsi->cut + neighbor->skin;
+  const double most = disc->cut + neighbor->skin;
   std::vector<int> found[2][2];    // of other bodies, by half
   for (auto *rows : {&own_images, &other_images})
     for (RowList &list_ : *rows) list_.clear();
@@ -390,7 +390,7 @@ void PairFSISolid::advance(bool advance)
 {
   if (!any_gradient) return;
   const Phase phase(fix_fsi->profile, Profile::STRESS);
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   if (terms() == 0)
     dim == 2 ? advance_stress<2, 0>(advance) : advance_stress<3, 0>(advance);
   else if (terms() == dim)
@@ -400,70 +400,71 @@ void PairFSISolid::advance(bool advance)
   if (advance && has_hourglass()) advance_hourglass(update->dt);
 }
 
+// the velocity gradient L, and the coefficients of its weights for the forces, from the sums
+template <int D, int TERMS> static void fit_gradient(double *L, double inv)
+{
+  // L = [sum_j w_ij (v_j - v_i)(x)phi_j] C^T
+  double C[D * TERMS], force_C[D * TERMS], full[D * D] = {};
+  const double *const moments = L + D * TERMS;
+  // hardly any neighbors: torn off, no strain, no stress to share
+  if (gradient_coefficients<D, TERMS>(moments, C) == Gradient<D>::DEFICIENT)
+    std::fill_n(C, D * TERMS, 0.0);
+  if (gradient_coefficients<D, TERMS>(moments + packed_size(TERMS), force_C) ==
+      Gradient<D>::DEFICIENT)
+    std::fill_n(force_C, D * TERMS, 0.0);
+  for (int a = 0; a < D; a++)
+    for (int b = 0; b < D; b++)
+      for (int k = 0; k < TERMS; k++) full[a * D + b] += L[a * TERMS + k] * C[b * TERMS + k];
+  for (int k = 0; k < D * D; k++) L[k] = full[k] * inv;
+  for (int k = 0; k < D * TERMS; k++) L[D * D + k] = force_C[k] * inv;
+}
+
 // velocity gradient L from its sums; stress and, in continuity mode, density from L
 template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
 {
   double *rho = atom->rho;
-  const int *const type = atom->type;
-  const double dt = update->dt + fix_fsi->dt_offset;
+  const double dt = update->dt + step->dt_offset;
   for (int i = 0; i < atom->nlocal; i++) {
-    const State &s = fix_fsi->state[type[i]];
+    const State &s = disc->state[atom->type[i]];
     if (s.species != SOLID) continue;
     double *L = grad[i];
-    if constexpr (TERMS > 0) {
-      // L = [sum_j w_ij (v_j - v_i)(x)phi_j] C^T
-      double C[D * TERMS], force_C[D * TERMS], full[D * D] = {};
-      const double *const moments = L + D * TERMS;
-      // hardly any neighbors: torn off, no strain, no stress to share
-      if (gradient_coefficients<D, TERMS>(moments, C) == Gradient<D>::DEFICIENT)
-        std::fill_n(C, D * TERMS, 0.0);
-      if (gradient_coefficients<D, TERMS>(moments + packed_size(TERMS), force_C) ==
-          Gradient<D>::DEFICIENT)
-        std::fill_n(force_C, D * TERMS, 0.0);
-      for (int a = 0; a < D; a++)
-        for (int b = 0; b < D; b++)
-          for (int k = 0; k < TERMS; k++) full[a * D + b] += L[a * TERMS + k] * C[b * TERMS + k];
-      const double inv = 1.0 / fix_fsi->h;
-      for (int k = 0; k < D * D; k++) L[k] = full[k] * inv;
-      for (int k = 0; k < D * TERMS; k++) L[D * D + k] = force_C[k] * inv;
-    }
+    if constexpr (TERMS > 0) fit_gradient<D, TERMS>(L, 1.0 / disc->h);
     if (!advance) continue;
     const double work = fix_stress->advance_stress<D>(i, L, dt, s);
-    if (fix_fsi->density_solid == FixFSI::CONTINUITY) {
+    if (disc->density_solid == Discretization::CONTINUITY) {
       double div = 0.0;
       for (int a = 0; a < D; a++) div += L[a * D + a];
       // d rho/dt = -rho div v, centered: second order, and positive for any step
       rho[i] *= (1.0 - 0.5 * dt * div) / (1.0 + 0.5 * dt * div);
     }
-    if (fix_fsi->kept) {
-      // what the strain stores; what the pair forces deliver, with the same stress and velocity, is
-      // taken off in force_pairs(): their difference is what the gradient's correction costs
-      auto sigma = Sym<D>::load(fix_stress->stress[i]);
-      sigma += Sym<D>::identity(-s.pressure(rho[i]));
-      double power = 0.0;
-      for (int a = 0; a < D; a++)
-        for (int b = 0; b < D; b++) power += sigma(a, b) * L[a * D + b];
-      fix_fsi->tally(FixFSI::GRADIENT, -power * atom->rmass[i] / rho[i]);
-      fix_fsi->energy_out[FixFSI::INELASTIC] += work * atom->rmass[i] / rho[i];
-    }
+    if (!ledger->kept) continue;
+    // what the strain stores; what the pair forces deliver, with the same stress and velocity, is
+    // taken off in force_pairs(): their difference is what the gradient's correction costs
+    auto sigma = Sym<D>::load(fix_stress->stress[i]);
+    sigma += Sym<D>::identity(-s.pressure(rho[i]));
+    double power = 0.0;
+    for (int a = 0; a < D; a++)
+      for (int b = 0; b < D; b++) power += sigma(a, b) * L[a * D + b];
+    ledger->tally(Ledger::GRADIENT, -power * atom->rmass[i] / rho[i]);
+    ledger->energy_out[Ledger::INELASTIC] += work * atom->rmass[i] / rho[i];
   }
 }
 
 void PairFSISolid::go_back()
 {
-  if (fix_fsi->density_solid != FixFSI::CONTINUITY) return;
-  const double dt = update->dt + fix_fsi->dt_offset;
+  if (disc->density_solid != Discretization::CONTINUITY) return;
+  const double dt = update->dt + step->dt_offset;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (fix_fsi->state[atom->type[i]].species != SOLID) continue;
+    if (disc->state[atom->type[i]].species != SOLID) continue;
     double div = 0.0;
-    for (int k = 0; k < fix_fsi->dim; k++) div += grad[i][k * (fix_fsi->dim + 1)];
+    for (int k = 0; k < disc->dim; k++) div += grad[i][k * (disc->dim + 1)];
     atom->rho[i] *= (1.0 + 0.5 * dt * div) / (1.0 - 0.5 * dt * div);
   }
 }
 
 void PairFSISolid::velocity_gradient(double dt)
 {
-  fix_fsi->dim == 2 ? fill_rate_records<2>(0.5 * dt) : fill_rate_records<3>(0.5 * dt);
+  disc->dim == 2 ? fill_rate_records<2>(0.5 * dt) : fill_rate_records<3>(0.5 * dt);
   if (own.rows.empty() && !images.any()) return;
   with_loops([&](auto packed, const auto &kernel, auto terms) {
     using K = std::decay_t<decltype(kernel)>;
@@ -479,7 +480,7 @@ void PairFSISolid::velocity_gradient(double dt)
 template <int D> void PairFSISolid::fill_rate_records(double half)
 {
   using At = RateRecord<D>;
-  const State *const state = fix_fsi->state.data();
+  const State *const state = disc->state.data();
   const int nall = atom->nlocal + atom->nghost;
   if (rate_records.size() < (size_t) At::N * images.end())
     rate_records.assign((size_t) At::N * std::max(atom->nmax, images.end()), 0.0);
@@ -507,7 +508,7 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
 // hourglass control (fsi_hourglass.h)
 void PairFSISolid::advance_hourglass(double dt)
 {
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   forward_comm(fix_fsi->profile, comm, this);
   hourglass_rate.assign((size_t) images.end() * row_of_forces(dim), 0.0);
   if (!own.rows.empty() || images.any())
@@ -583,7 +584,7 @@ void PairFSISolid::add_number_density(double *psi, bool all_bodies)
   images.update(atom->x, atom->v);
   double **x = atom->x;
   double **const at = images.positions(atom->x);
-  with_kernel(fix_fsi->kernel, fix_fsi->dim, fix_fsi->h, [&](const auto &kernel) {
+  with_kernel(disc->kernel, disc->dim, disc->h, [&](const auto &kernel) {
     const auto add = [&](const RowList &pairs, bool both) {
       for (const Row &row : pairs.rows)
         for (int k = 0; k < row.n; k++) {
@@ -618,7 +619,7 @@ void PairFSISolid::compute(int eflag, int vflag)
     for (int i = 0; i < atom->nlocal; i++) {
       if (material[atom->type[i]].species != SOLID) continue;
       const double *q = fix_stress->hourglass_force(i);
-      for (int d = 0; d < fix_fsi->dim; d++) f[i][d] += q[d];
+      for (int d = 0; d < disc->dim; d++) f[i][d] += q[d];
     }
   }
   if (vflag_fdotr) virial_fdotr_compute();
@@ -627,9 +628,9 @@ void PairFSISolid::compute(int eflag, int vflag)
 template <int D, int TERMS> void PairFSISolid::fill_force_records()
 {
   using At = ForceRecord<D, TERMS>;
-  const State *const state = fix_fsi->state.data();
+  const State *const state = disc->state.data();
   const int nall = atom->nlocal + atom->nghost;
-  const ArtificialStress artificial(artificial_stress(), fix_fsi->wdx);
+  const ArtificialStress artificial(artificial_stress(), disc->wdx);
   if (force_records.size() < (size_t) At::N * images.end())
     force_records.assign((size_t) At::N * std::max(atom->nmax, images.end()), 0.0);
   for (int i = 0; i < nall; i++) {
@@ -670,30 +671,17 @@ template <int D, int TERMS> void PairFSISolid::fill_force_records()
   });
 }
 
-template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const K &kernel)
+// of one body, with or without sums of powers
+template <bool PACKED, int TERMS, class K>
+void PairFSISolid::own_forces(const K &kernel, const PairLaws &laws, bool sums)
 {
   using namespace SolidFlag;
-  constexpr int D = K::DIM, ROW = row_of_forces(D), ALL = VISCOSITY | STRESS | SUMS;
-  const int nall = atom->nlocal + atom->nghost;
-  const bool newton = force->newton_pair, tally_pairs = evflag && !vflag_fdotr;    // newton off
-  fill_force_records<D, TERMS>();
-  forces.assign((size_t) ROW * images.end(), 0.0);
-  auto *const of_rows = reinterpret_cast<double(*)[ROW]>(forces.data());
-  SolidSums sums;
-  const SolidLaws laws = {ArtificialViscosity(alpha, beta, fix_fsi->h),
-                          ArtificialStress(artificial_stress(), fix_fsi->wdx),
-                          Contact(D, fix_fsi->dx, contact_range),
-                          atom->type,
-                          fix_fsi->state.data(),
-                          atom->nlocal,
-                          newton,
-                          &sums};
-
+  constexpr int D = K::DIM, ALL = VISCOSITY | STRESS | SUMS;
+  auto *const of_rows = reinterpret_cast<double(*)[row_of_forces(D)]>(forces.data());
   // sums and quadratic gradients come with viscosity, pairs one by one with all effects: what is
   // off has coefficients of zero
-  const int sums_too = fix_fsi->kept || tally_pairs ? SUMS : 0;
-  const int named = (artificial_stress() > 0.0 ? STRESS : 0) | sums_too |
-      (has_artificial() || sums_too || TERMS > D ? VISCOSITY : 0);
+  const int named = (artificial_stress() > 0.0 ? STRESS : 0) | (sums ? SUMS : 0) |
+      (has_artificial() || sums || TERMS > D ? VISCOSITY : 0);
   with_flags<ALL>(PACKED ? named : ALL, [&](auto flags) {
     if constexpr (PACKED ? (flags() & VISCOSITY) || (!(flags() & SUMS) && TERMS <= D)
                          : flags() == ALL) {
@@ -704,22 +692,42 @@ template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const 
       });
     }
   });
+}
+
+template <bool PACKED, int TERMS, class K> void PairFSISolid::pair_forces(const K &kernel)
+{
+  constexpr int D = K::DIM, ROW = row_of_forces(D),
+                BETWEEN = SolidFlag::CONTACT | SolidFlag::VISCOSITY | SolidFlag::SUMS;
+  const int nall = atom->nlocal + atom->nghost;
+  const bool newton = force->newton_pair, tally_pairs = evflag && !vflag_fdotr;    // newton off
+  fill_force_records<D, TERMS>();
+  forces.assign((size_t) ROW * images.end(), 0.0);
+  auto *const of_rows = reinterpret_cast<double(*)[ROW]>(forces.data());
+  SolidSums sums;
+  const PairLaws laws = {ArtificialViscosity(alpha, beta, disc->h),
+                         ArtificialStress(artificial_stress(), disc->wdx),
+                         Contact(D, disc->dx, contact_range),
+                         atom->type,
+                         disc->state.data(),
+                         atom->nlocal,
+                         newton,
+                         &sums};
+  own_forces<PACKED, TERMS>(kernel, laws, ledger->kept || tally_pairs);
+  const AnyKernel<D> any(disc->kernel, disc->h);
   if (!others.rows.empty())
-    force_rows<double, AnyKernel<D>, TERMS, CONTACT | VISCOSITY | SUMS>(
-        others.rows.data(), others.rows.size(), AnyKernel<D>(fix_fsi->kernel, fix_fsi->h),
-        force_records.data(), laws, of_rows);
+    force_rows<double, AnyKernel<D>, TERMS, BETWEEN>(others.rows.data(), others.rows.size(), any,
+                                                     force_records.data(), laws, of_rows);
   if (images.any()) {
-    add_image_forces<double, TERMS, CONTACT | VISCOSITY | SUMS>(
-        AnyKernel<D>(fix_fsi->kernel, fix_fsi->h), laws, other_images);
+    add_image_forces<double, TERMS, BETWEEN>(any, laws, other_images);
     images.fold<D>(of_rows, 1.0);
   }
 
   double **const f = atom->f;
   for (int i = 0; i < (newton ? nall : atom->nlocal); i++)
     for (int d = 0; d < D; d++) f[i][d] += of_rows[i][d];
-  fix_fsi->tally(FixFSI::STRESS, sums.stress);
-  fix_fsi->tally(FixFSI::GRADIENT, sums.gradient);
-  fix_fsi->tally(FixFSI::ARTIFICIAL, sums.viscosity);
+  ledger->tally(Ledger::STRESS, sums.stress);
+  ledger->tally(Ledger::GRADIENT, sums.gradient);
+  ledger->tally(Ledger::ARTIFICIAL, sums.viscosity);
   if (tally_pairs && vflag_global)
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }

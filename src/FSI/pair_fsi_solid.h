@@ -29,6 +29,7 @@ namespace LAMMPS_NS {
 namespace FSI {
   class Fields;
   class Images;
+  struct PairLaws;
   class RowList;
 }    // namespace FSI
 
@@ -120,6 +121,8 @@ class PairFSISolid : public PairFSI {
 
   template <class F> void with_loops(F) const;
   template <bool PACKED, int TERMS, class K> void pair_forces(const K &);
+  template <bool PACKED, int TERMS, class K>
+  void own_forces(const K &, const FSI::PairLaws &, bool sums);
 };
 
 }    // namespace LAMMPS_NS

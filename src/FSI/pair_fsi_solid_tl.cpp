@@ -44,6 +44,7 @@
 #include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -134,7 +135,7 @@ void PairFSISolidTL::init_style()
 {
   PairFSI::init_style();
   check_contact();
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   if (plane_stress && dim == 3)
     error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
   if (!pairs_of<PairFSISolid>(lmp).empty())
@@ -152,8 +153,8 @@ void PairFSISolidTL::init_style()
   comm_reverse = dim;
 
   contacts.clear();
-  for (const auto &a : fix_fsi->resolution)
-    for (const auto &b : fix_fsi->resolution)
+  for (const auto &a : disc->resolution)
+    for (const auto &b : disc->resolution)
       contacts.emplace_back(dim, spacing_between(a, b), contact_range);
 
   changes_seen = -1;
@@ -170,7 +171,7 @@ void PairFSISolidTL::make_laws()
   if (std::all_of(smoothed.modulus.begin(), smoothed.modulus.end(), none)) smoothed.modulus.clear();
   laws.choose(law);
   laws.make(material, smoothed.modulus, plane_stress);
-  fix_history = FixFSIHistory::keep(lmp, laws.facts().history, laws.columns(fix_fsi->dim));
+  fix_history = FixFSIHistory::keep(lmp, laws.facts().history, laws.columns(disc->dim));
   fix_stress = laws.facts().by_rate ? FixFSIStress::find(lmp) : nullptr;
   if (!laws.facts().by_rate) return;
   if (!fix_stress)
@@ -192,7 +193,7 @@ const double *const *PairFSISolidTL::history() const
 // adds to these, as fix addforce, is right; what sets or projects the whole force is not.
 bool PairFSISolidTL::takes_substeps() const
 {
-  return fix_fsi->substeps > 1 || any_is(fixes_of<Part>(lmp), &Facts::chooses_substeps);
+  return step->substeps > 1 || any_is(fixes_of<Part>(lmp), &Facts::chooses_substeps);
 }
 
 void PairFSISolidTL::refuse_constraints() const
@@ -256,38 +257,43 @@ void PairFSISolidTL::compute(int eflag, int vflag)
   const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
   ev_init(eflag, vflag);
   check_tally();
-  tell_contact();
-  if (fix_fsi->substeps > 1 && !update->setupflag) return;
+  warn_of_contact();
+  if (step->substeps > 1 && !update->setupflag) return;
   internal_forces();
+  add_forces();
+}
+
+void PairFSISolidTL::add_forces()
+{
   double **f = atom->f;
   for (const int i : reference->solids)
-    for (int d = 0; d < fix_fsi->dim; d++) f[i][d] += fsolid[i][d];
+    for (int d = 0; d < disc->dim; d++) f[i][d] += fsolid[i][d];
 }
 
 template <class Call> auto PairFSISolidTL::with_law(Call call) const
 {
   return laws([&](const auto *law_of) {
-    if (fix_fsi->dim == 2) return call(law_of, std::integral_constant<int, 2>());
+    if (disc->dim == 2) return call(law_of, std::integral_constant<int, 2>());
     return call(law_of, std::integral_constant<int, 3>());
   });
 }
 
 void PairFSISolidTL::internal_forces()
 {
-  fix_fsi->dim == 2 ? gather_points<2>() : gather_points<3>();
+  disc->dim == 2 ? gather_points<2>() : gather_points<3>();
   const double volumetric_energy = smoothed.on() ? smooth_strains(false) : 0.0;
   with_law([&](const auto *law_of, auto dimension) {
     bond_forces<std::decay_t<decltype(*law_of)>, decltype(dimension)::value>(law_of);
   });
   strain_energy += volumetric_energy;
-  if (list) fix_fsi->dim == 2 ? contact_forces<2>() : contact_forces<3>();
+  if (list) disc->dim == 2 ? contact_forces<2>() : contact_forces<3>();
   if (reference->images.planes.any() && fsolid) {
     // in sub-steps, which add up to the force of a step
-    const double part = update->setupflag ? 1.0 : 1.0 / fix_fsi->substeps;
-    fix_fsi->dim == 2 ? fold_images<2>(part) : fold_images<3>(part);
+    const double part = update->setupflag ? 1.0 : 1.0 / step->substeps;
+    disc->dim == 2 ? fold_images<2>(part) : fold_images<3>(part);
   }
   if (!reference->self.pairs.empty())
-    fix_fsi->dim == 2 ? self_contact_forces<2>() : self_contact_forces<3>();
+    disc->dim == 2 ? self_contact_forces<2>() : self_contact_forces<3>();
   exchange(fix_fsi->profile, comm, [this]() {
     reference->swaps.reverse<Pair>(this);
   });
@@ -300,10 +306,10 @@ void PairFSISolidTL::find_rows()
   // of partners, too: a border of ranks may part two materials
   one_material = true;
   if (!reference->solids.empty()) {
-    const State &first = fix_fsi->state[type[reference->solids[0]]];
+    const State &first = disc->state[type[reference->solids[0]]];
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) {
-        const State &s = fix_fsi->state[type[i]];
+        const State &s = disc->state[type[i]];
         one_material = one_material && s.rho0 == first.rho0 && s.c == first.c;
       }
   }
@@ -311,13 +317,13 @@ void PairFSISolidTL::find_rows()
   if (images.any()) images.give_types(type, types_with_images);
   rows.clear();
   for (const int i : reference->solids) {
-    const State &s = fix_fsi->state[type[i]];
+    const State &s = disc->state[type[i]];
     if (!reference->bears(i)) continue;    // torn off, crushed
     rows.push_back({i, reference->count(i), reference->partners(i), reference->numbers(i),
                     reference->moments(i), atom->rmass[i] / s.rho0 * reference->weight(i),
-                    zeta * material[type[i]].young, fix_fsi->h_of(type[i])});
+                    zeta * material[type[i]].young, disc->h_of(type[i])});
   }
-  if (fix_fsi->substeps > 1 || (update->setupflag && takes_substeps())) refuse_rigid_parts();
+  if (step->substeps > 1 || (update->setupflag && takes_substeps())) refuse_rigid_parts();
   const auto moves = [&](const BondRow &row) {
     return mask[row.i] & groupbit || std::any_of(row.partner, row.partner + row.n, [&](int j) {
              return mask[images.original(j)] & groupbit;
@@ -335,9 +341,9 @@ template <int D> void PairFSISolidTL::gather_points()
   if (size > nmax) {
     nmax = size;
     memory->destroy(fsolid);
-    memory->create(fsolid, nmax, row_of_forces(fix_fsi->dim), "pair:fsolid");
+    memory->create(fsolid, nmax, row_of_forces(disc->dim), "pair:fsolid");
   }
-  const auto *const x = FixFSI::rows(atom->x), *const v = FixFSI::rows(atom->v);
+  const auto *const x = Scene::rows(atom->x), *const v = Scene::rows(atom->v);
   if (points.size() < (size_t) NP * nmax) points.assign((size_t) NP * nmax, 0.0);
   for (const auto *set : {&reference->solids, &reference->ghosts})
     for (const int i : *set)
@@ -371,7 +377,7 @@ template <int D> void PairFSISolidTL::gather_points()
         return a.young == b.young && a.poisson == b.poisson;
       },
       [&](int t) {
-        return fix_fsi->resolution[t].cut;
+        return disc->resolution[t].cut;
       });
 }
 
@@ -385,13 +391,9 @@ bool PairFSISolidTL::is_smoothed(const Material &m) const
 
 double PairFSISolidTL::smooth_strains(bool of_all)
 {
-  Profile *const profile = fix_fsi->profile;
-  Swaps &swaps = reference->swaps;
-  const int forward = comm_forward, reverse = comm_reverse;
   double energy = 0.0;
   const Images &images = reference->images;
   smoothed.resize(nmax);
-  comm_forward = comm_reverse = 1;
   sends_strains = true;
   with_law([&](const auto *law_of, auto dimension) {
     using L = std::decay_t<decltype(*law_of)>;
@@ -403,8 +405,8 @@ double PairFSISolidTL::smooth_strains(bool of_all)
       energy = smooth_volumetric_strains<decltype(number), L>(rows, of_all, smoothed);
     };
     have_packs() ? run_loop<Pack>(find) : run_loop<double>(find);
-    exchange(profile, comm, [&]() {
-      swaps.forward<Pair>(this);
+    exchange(fix_fsi->profile, comm, [this]() {
+      reference->swaps.forward<Pair>(this, 1);
     });
     for (const auto *set : {&reference->solids, &reference->ghosts})
       for (const int i : *set) smoothed.force[i] = 0.0;
@@ -416,12 +418,10 @@ double PairFSISolidTL::smooth_strains(bool of_all)
     images.for_each([&](int k, int of, const Mirror &, bool) {
       smoothed.force[of] += smoothed.force[k];
     });
-    exchange(profile, comm, [&]() {
-      swaps.reverse<Pair>(this);
+    exchange(fix_fsi->profile, comm, [this]() {
+      reference->swaps.reverse<Pair>(this, 1);
     });
   });
-  comm_forward = forward;
-  comm_reverse = reverse;
   sends_strains = false;
   return energy;
 }
@@ -432,7 +432,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
   using namespace BondFlag;
   constexpr int ALL = HOURGLASS | VISCOSITY | SUMS;
   const int *const type = types();
-  const State *const state = fix_fsi->state.data();
+  const State *const state = disc->state.data();
   const int nrows = only_moving ? nmoving : (int) rows.size();
   BondSums sums;
   const double *const volumetric_forces = smoothed.on() ? smoothed.force.data() : nullptr;
@@ -443,7 +443,7 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
   // coefficients of zero
   const bool packs = have_packs() && (one_material || !has_artificial());
   const int named = (zeta > 0.0 ? HOURGLASS : 0) | (has_artificial() ? VISCOSITY : 0);
-  with_flags<ALL>(fix_fsi->kept || vflag_global || !packs ? ALL : named, [&](auto which) {
+  with_flags<ALL>(ledger->kept || vflag_global || !packs ? ALL : named, [&](auto which) {
     if constexpr (!(which() & SUMS) || which() == ALL) {
       const auto loop = [&](auto number) FSI_INLINE_LAMBDA {
         bond_rows<decltype(number), L, D, which()>(rows.data(), nrows, law_of, in, f);
@@ -455,10 +455,10 @@ template <class L, int D> void PairFSISolidTL::bond_forces(const L *law_of)
   strain_energy = sums.energy;
   // fragments of a body that damage tears have few bonds, whose F may be anything
   if (sums.inverted >= 0 && damage == 0.0) {
-    fix_fsi->inverted = sums.inverted;
-    fix_fsi->inverted_density = state[type[sums.inverted]].rho0 / volume_ratio(sums.inverted);
+    step->inverted = sums.inverted;
+    step->inverted_density = state[type[sums.inverted]].rho0 / volume_ratio(sums.inverted);
   }
-  fix_fsi->tally(FixFSI::ARTIFICIAL, sums.artificial);
+  ledger->tally(Ledger::ARTIFICIAL, sums.artificial);
   if (vflag_global)
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
@@ -479,7 +479,7 @@ template <int D> void PairFSISolidTL::fold_images(double part)
   if (!list) return;
   double **x = atom->x;
   const int *const type = atom->type, *const mask = atom->mask;
-  const double most = contact_range * fix_fsi->largest_cut;
+  const double most = contact_range * disc->largest_cut;
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], near = images.planes.near(x[i], most);
     if (!near || !images.joins(mask, i)) continue;
@@ -504,7 +504,7 @@ void PairFSISolidTL::push_image(int i, int j, const Walls::Reflection &s, double
 {
   const Images &images = reference->images;
   const Contact &contact = contacts[atom->type[i] * (atom->ntypes + 1) + atom->type[j]];
-  const State &si = fix_fsi->state[atom->type[i]], &sj = fix_fsi->state[atom->type[j]];
+  const State &si = disc->state[atom->type[i]], &sj = disc->state[atom->type[j]];
   const double Ki = si.csq * si.rho0, Kj = sj.csq * sj.rho0, f = contact(rsq, Ki, Kj);
   const Mirror mirror(images.planes, s);
   const bool both = force->newton_pair || j < atom->nlocal;    // else the other rank does its own
@@ -520,13 +520,13 @@ void PairFSISolidTL::push_image(int i, int j, const Walls::Reflection &s, double
 }
 
 // Bodies whose faces are rows of balls have touched: what slides is held by them.
-void PairFSISolidTL::tell_contact()
+void PairFSISolidTL::warn_of_contact()
 {
   static constexpr int EVERY = 20;    // steps between two looks
-  if (contact_told || !list || contact_range > SMOOTH || update->ntimestep % EVERY) return;
+  if (contact_warned || !list || contact_range > SMOOTH || update->ntimestep % EVERY) return;
   const auto least = of_least(touch[1] ? double(touch[0]) : HUGE_VAL, touch, world);
-  contact_told = least[1] != 0;
-  if (contact_told && comm->me == 0)
+  contact_warned = least[1] != 0;
+  if (contact_warned && comm->me == 0)
     error->warning(
         FLERR,
         "Pair style fsi/solid/tl: bodies {} and {} touch. With contact {:g} faces are as "
@@ -538,7 +538,7 @@ void PairFSISolidTL::tell_contact()
 // particles of different bodies (fsi_pair_laws.h)
 template <int D> void PairFSISolidTL::contact_forces()
 {
-  const bool looks = !contact_told && contact_range <= SMOOTH;
+  const bool looks = !contact_warned && contact_range <= SMOOTH;
   double **x = atom->x;
   const int *const type = atom->type;
   const tagint *const molecule = atom->molecule;
@@ -588,7 +588,7 @@ template <int D>
 void PairFSISolidTL::push(int i, int j, const double *xij, double rsq, const Contact &contact,
                           double share)
 {
-  const State &si = fix_fsi->state[atom->type[i]], &sj = fix_fsi->state[atom->type[j]];
+  const State &si = disc->state[atom->type[i]], &sj = disc->state[atom->type[j]];
   const double Ki = si.csq * si.rho0, Kj = sj.csq * sj.rho0, part = share > 0.0 ? share : 0.5;
   const double f = contact(rsq, Ki, Kj), of_i = share > 0.0 ? share * f : f;
   for (int d = 0; d < D; d++) {
@@ -606,12 +606,14 @@ void PairFSISolidTL::push(int i, int j, const double *xij, double rsq, const Con
 
 template <int D> void PairFSISolidTL::deformation(int i, double *F) const
 {
-  double **x = reference->images.positions(atom->x);
-  for (int a = 0; a < D * D; a++) F[a] = 0.0;
+  double **x = reference->images.positions(atom->x), u[D];
+  BondRow row = {};
+  row.numbers = reference->numbers(i);
+  std::fill_n(F, D * D, 0.0);
   for (int k = 0; k < reference->count(i); k++) {
-    const double *const xj = x[reference->partners(i)[k]], *const G = reference->bond(i, k);
-    for (int a = 0; a < D; a++)
-      for (int c = 0; c < D; c++) F[a * D + c] += (xj[a] - x[i][a]) * G[c * BOND_BLOCK];
+    const double *const xj = x[reference->partners(i)[k]];
+    for (int a = 0; a < D; a++) u[a] = xj[a] - x[i][a];
+    deform<double, D>(row, k, u, F);
   }
 }
 
@@ -645,7 +647,7 @@ template <class L, int D> void PairFSISolidTL::advance_history(const L *law_of, 
     }
   };
   have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
-  if (fix_fsi->kept) fix_fsi->energy_out[FixFSI::INELASTIC] += dissipated;
+  if (ledger->kept) ledger->energy_out[Ledger::INELASTIC] += dissipated;
 }
 
 // L = F' F^-1 at the time of the velocities, half a step before the positions
@@ -663,10 +665,10 @@ template <int D> void PairFSISolidTL::advance_rates(double dt)
       for (int a = 0; a < D; a++)
         for (int c = 0; c < D; c++)
           for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
-      const State &s = fix_fsi->state[atom->type[i]];
+      const State &s = disc->state[atom->type[i]];
       const double work = fix_stress->advance_stress<D>(i, L, dt, s);
-      if (fix_fsi->kept)
-        fix_fsi->energy_out[FixFSI::INELASTIC] += work * row.volume * determinant<D>(F);
+      if (ledger->kept)
+        ledger->energy_out[Ledger::INELASTIC] += work * row.volume * determinant<D>(F);
     }
   };
   have_packs() ? run_loop<Pack>(loop) : run_loop<double>(loop);
@@ -683,7 +685,7 @@ void PairFSISolidTL::break_bonds()
         return std::max(0.0, stored(i));
       },
       [this](int i) {
-        return fix_fsi->dim == 2 ? spare<2>(i) : spare<3>(i);
+        return disc->dim == 2 ? spare<2>(i) : spare<3>(i);
       });
 }
 
@@ -730,7 +732,7 @@ double PairFSISolidTL::volume_ratio(int i) const
 {
   if (!reference->bears(i)) return 1.0;
   double F[9];
-  if (fix_fsi->dim == 2) {
+  if (disc->dim == 2) {
     deformation<2>(i, F);
     return determinant<2>(F);
   }
@@ -744,7 +746,7 @@ void PairFSISolidTL::begin_stress()
   forward_positions();    // ghosts still stand where they were in the middle of the step
   reference->images.update(atom->x, atom->v);
   if (!smoothed.on()) return;
-  fix_fsi->dim == 2 ? gather_points<2>() : gather_points<3>();
+  disc->dim == 2 ? gather_points<2>() : gather_points<3>();
   smooth_strains(true);
 }
 
@@ -795,7 +797,7 @@ void PairFSISolidTL::forward_positions()
 
 int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_flag, int *pbc)
 {
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   const bool velocities = comm_forward > dim;
   const double shift[3] = {pbc_flag ? pbc[0] * domain->xprd : 0.0,
                            pbc_flag ? pbc[1] * domain->yprd : 0.0,
@@ -811,7 +813,7 @@ int PairFSISolidTL::pack_forward_comm(int n, int *listed, double *buf, int pbc_f
 
 void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
 {
-  const int dim = fix_fsi->dim;
+  const int dim = disc->dim;
   const bool velocities = comm_forward > dim;
   for_solids(n, nullptr, first, [&](int i) {
     if (sends_strains) return void(smoothed.strain[i] = *buf++);
@@ -820,16 +822,12 @@ void PairFSISolidTL::unpack_forward_comm(int n, int first, double *buf)
   });
 }
 
-double *PairFSISolidTL::carried_back(int i)
-{
-  return sends_strains ? &smoothed.force[i] : fsolid[i];
-}
-
 int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 {
   double *const begin = buf;
   for_solids(n, nullptr, first, [&](int i) {
-    buf = std::copy_n(carried_back(i), comm_reverse, buf);
+    if (sends_strains) return void(*buf++ = smoothed.force[i]);
+    buf = std::copy_n(fsolid[i], comm_reverse, buf);
   });
   return buf - begin;
 }
@@ -837,48 +835,98 @@ int PairFSISolidTL::pack_reverse_comm(int n, int first, double *buf)
 void PairFSISolidTL::unpack_reverse_comm(int n, int *listed, double *buf)
 {
   for_solids(n, listed, 0, [&](int i) {
-    for (int d = 0; d < comm_reverse; d++) carried_back(i)[d] += *buf++;
+    if (sends_strains) return void(smoothed.force[i] += *buf++);
+    for (int d = 0; d < comm_reverse; d++) fsolid[i][d] += *buf++;
   });
 }
 
 // Fluid resists a change w of the velocity of solids within the step by -Z w, here implicit. It has
 // the reaction afterwards (theory.rst).
 class PairFSISolidTL::Wet {
-  struct One {
+  struct Particle {
     int i;
     double implicit[3][3], v[3], w[3];    // (1 + t Z/m)^-1, velocity at the start
   };
-  std::vector<One> all;
+  std::vector<Particle> all;
 
  public:
   double taken = 0.0;    // energy
-  Wet(const Scene &scene, const Atom *atom, const std::vector<int> &moving, double t)
+  Wet(const StepState &step, const Atom *atom, const std::vector<int> &moving, double t)
   {
-    if (scene.impedance[0].empty()) return;
+    if (step.impedance[0].empty()) return;
     for (const int i : moving) {
-      One one = {i, {}, {atom->v[i][0], atom->v[i][1], atom->v[i][2]}, {}};
+      Particle p = {i, {}, {atom->v[i][0], atom->v[i][1], atom->v[i][2]}, {}};
       double m[3][3];
       for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
-          m[a][b] = (a == b) + t / atom->rmass[i] * scene.impedance[Sym<3>::id(a, b)][i];
+          m[a][b] = (a == b) + t / atom->rmass[i] * step.impedance[Sym<3>::id(a, b)][i];
       if (m[0][0] + m[1][1] == 2.0) continue;    // dry
-      MathExtra::invert3(m, one.implicit);
-      all.push_back(one);
+      MathExtra::invert3(m, p.implicit);
+      all.push_back(p);
     }
   }
-  void kick(Scene &scene, const Atom *atom)
+  void kick(StepState &step, const Atom *atom)
   {
-    for (One &one : all) {
-      double *const v = atom->v[one.i], free[3], w[3];
-      MathExtra::sub3(v, one.v, free);
-      MathExtra::matvec(one.implicit, free, w);
+    for (Particle &p : all) {
+      double *const v = atom->v[p.i], free[3], w[3];
+      MathExtra::sub3(v, p.v, free);
+      MathExtra::matvec(p.implicit, free, w);
       for (int d = 0; d < 3; d++) {
-        taken += atom->rmass[one.i] * (free[d] - w[d]) * (one.v[d] + 0.5 * (one.w[d] + w[d]));
-        scene.swerve[d][one.i] += w[d] / scene.substeps;
-        one.w[d] = w[d];
-        v[d] = one.v[d] + w[d];
+        taken += atom->rmass[p.i] * (free[d] - w[d]) * (p.v[d] + 0.5 * (p.w[d] + w[d]));
+        step.swerve[d][p.i] += w[d] / step.substeps;
+        p.w[d] = w[d];
+        v[d] = p.v[d] + w[d];
       }
     }
+  }
+};
+
+// Solids in sub-steps: what moves, what is held, and what of this another fix moves, since bodies
+// would be shaken in the rhythm of the steps else.
+class PairFSISolidTL::Moved : protected Pointers {
+  const int dim;
+  Profile *const profile;
+  std::vector<int> held;
+  std::vector<std::pair<int, std::array<double, 3>>> carried;    // where they are in the middle
+
+ public:
+  std::vector<int> moving;
+  Moved(LAMMPS *lmp, const FixFSI &fix_fsi, const std::vector<int> &solids) :
+      Pointers(lmp), dim(fix_fsi.dim), profile(fix_fsi.profile)
+  {
+    double **x = atom->x;
+    for (const int i : solids)
+      if (atom->mask[i] & fix_fsi.groupbit)
+        moving.push_back(i);
+      else if (!fix_fsi.clamps.has(i)) {
+        if (profile) held.push_back(i);
+        if (MathExtra::lensq3(atom->v[i]) > 0.0)
+          carried.push_back({i, {x[i][0], x[i][1], x[i][2]}});
+      }
+  }
+  void drift(double t) const
+  {
+    double **x = atom->x, **v = atom->v;
+    for (const int i : moving)
+      for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
+  }
+  void carry(double t) const
+  {
+    for (const auto &[i, middle] : carried)
+      for (int d = 0; d < dim; d++) atom->x[i][d] = middle[d] + t * atom->v[i][d];
+  }
+  void kick(double dt, const double *const *inside) const
+  {
+    double **v = atom->v, **f = atom->f;
+    for (const int i : moving) {
+      const double dtfm = dt * force->ftm2v / atom->rmass[i];
+      for (int d = 0; d < dim; d++) v[i][d] += dtfm * (f[i][d] + inside[i][d]);
+    }
+  }
+  void hold(double t, const double *const *inside) const
+  {
+    for (const int i : held)
+      for (int d = 0; d < dim; d++) profile->impulse_held[d] += t * inside[i][d];
   }
 };
 
@@ -888,78 +936,45 @@ class PairFSISolidTL::Wet {
 // round-off.
 void PairFSISolidTL::integrate_substeps()
 {
-  Profile *const profile = fix_fsi->profile;
-  const Phase phase(profile, Profile::SOLID_FORCES);
-  const int dim = fix_fsi->dim, substeps = fix_fsi->substeps;
-  double **x = atom->x;
-  double **v = atom->v;
-  double **f = atom->f;
-  double **fs = nullptr;
-  const double *const rmass = atom->rmass;
+  const Phase phase(fix_fsi->profile, Profile::SOLID_FORCES);
+  const int substeps = step->substeps;
   const double dt = update->dt / substeps, dth = 0.5 * dt, back = -0.5 * update->dt;
-  std::vector<int> moving, held;
-  std::vector<std::pair<int, std::array<double, 3>>> carried;    // where they are in the middle
   Clamps &clamps = fix_fsi->clamps;
   const bool clamped = clamps.any_elastic();
   if (clamped) clamps.begin_substeps(solids());
-  for (const int i : solids())
-    if (atom->mask[i] & fix_fsi->groupbit)
-      moving.push_back(i);
-    else if (!clamps.has(i)) {
-      if (profile) held.push_back(i);
-      if (MathExtra::lensq3(v[i]) > 0.0) carried.push_back({i, {x[i][0], x[i][1], x[i][2]}});
-    }
-  const auto hold = [&](double t) {
-    for (const int i : held)
-      for (int d = 0; d < dim; d++) profile->impulse_held[d] += t * fs[i][d];
-  };
-
-  const auto drift = [&](double t) {
-    for (const int i : moving)
-      for (int d = 0; d < dim; d++) x[i][d] += t * v[i][d];
-  };
-  // held particles that another fix moves: else bodies would be shaken in the rhythm of the steps
-  const auto carry = [&](double t) {
-    for (const auto &[i, middle] : carried)
-      for (int d = 0; d < dim; d++) x[i][d] = middle[d] + t * v[i][d];
-  };
-  Wet wet(*fix_fsi, atom, moving, dt * force->ftm2v);
-  fix_fsi->set_tally(dt);
+  const Moved all(lmp, *fix_fsi, solids());
+  Wet wet(*step, atom, all.moving, dt * force->ftm2v);
+  ledger->set_tally(dt);
   fix_fsi->check.before_substeps(solids());
-  only_moving = !fix_fsi->kept;
-  drift(back);
+  only_moving = !ledger->kept;
+  all.drift(back);
   for (int n = 0; n < substeps; n++) {
     if (n + 1 == substeps) only_moving = false;
-    drift(dth);
-    carry(back + n * dt + dth);
+    all.drift(dth);
+    all.carry(back + n * dt + dth);
     if (clamped) clamps.drift(dth);
     forward_positions();
     advance_stress(dt);
     std::fill_n(virial, 6, 0.0);
     internal_forces();
-    fs = fsolid;
-    for (const int i : moving) {
-      const double dtfm = dt * force->ftm2v / rmass[i];
-      for (int d = 0; d < dim; d++) v[i][d] += dtfm * (f[i][d] + fs[i][d]);
-    }
-    wet.kick(*fix_fsi, atom);
-    hold(dt);
-    drift(dth);
+    all.kick(dt, fsolid);
+    wet.kick(*step, atom);
+    all.hold(dt, fsolid);
+    all.drift(dth);
     if (!clamped) continue;
-    clamps.kick(dt, fs);
+    clamps.kick(dt, fsolid);
     clamps.drift(dth);
   }
-  carry(0.0);
+  all.carry(0.0);
   fix_fsi->check.after_substeps();
-  hold(-update->dt);    // that of the last one is in f from here on
-  if (clamped) clamps.average(substeps, fs);
+  all.hold(-update->dt, fsolid);    // that of the last one is in f from here on
+  if (clamped) clamps.average(substeps, fsolid);
   // what is seen from outside: the whole force and its virial, which a hybrid style has summed up
   // already
   if (force->pair != this)
     for (int k = 0; k < 6; k++) force->pair->virial[k] += virial[k];
-  for (const int i : solids())
-    for (int d = 0; d < dim; d++) f[i][d] += fs[i][d];
-  if (fix_fsi->kept) fix_fsi->energy_out[FixFSI::COUPLING] += wet.taken / force->ftm2v;
+  add_forces();
+  if (ledger->kept) ledger->energy_out[Ledger::COUPLING] += wet.taken / force->ftm2v;
   if (clamped) clamps.finish();
 }
 
@@ -967,7 +982,7 @@ void PairFSISolidTL::advance(bool advance)
 {
   if (!advance) return;
   break_bonds();
-  if (fix_fsi->substeps == 1) advance_stress(update->dt);
+  if (step->substeps == 1) advance_stress(update->dt);
 }
 
 Facts PairFSISolidTL::facts() const

@@ -22,6 +22,7 @@ PairStyle(fsi/solid/tl,PairFSISolidTL);
 
 #include "pair_fsi.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -45,6 +46,7 @@ namespace FSI {
 class PairFSISolidTL : public PairFSI {
   struct Members;
   class Wet;
+  class Moved;
   const std::unique_ptr<Members> members;
 
  public:
@@ -108,6 +110,7 @@ class PairFSISolidTL : public PairFSI {
 
   void refuse_constraints() const;
   bool takes_substeps() const;    // or may choose to
+  void add_forces();              // to those of all
   void refuse_rigid_parts() const;
   static constexpr double CRUSHED = 0.1;    // of its volume
   double stored(int i) const;
@@ -126,7 +129,6 @@ class PairFSISolidTL : public PairFSI {
   template <int D> void gather_points();
   FSI::VolumetricStrain &smoothed;
   bool sends_strains;    // what messages carry: these, or positions and forces
-  double *carried_back(int i);
   bool is_smoothed(const FSI::Material &) const;
   double smooth_strains(bool of_all);    // their energy; of_all: theta also where it does not count
   // what call(laws per type, constant with the dimension) returns
@@ -134,8 +136,8 @@ class PairFSISolidTL : public PairFSI {
   template <class L, int D> void bond_forces(const L *law_of);
   std::vector<FSI::Contact> contacts;    // by both types
   std::array<tagint, 2> touch = {};      // bodies that do, on this rank
-  bool contact_told = false;
-  void tell_contact();
+  bool contact_warned = false;
+  void warn_of_contact();
   template <int D> void contact_forces();
   template <int D> void self_contact_forces();
   template <int D> void fold_images(double part);
