@@ -1,6 +1,7 @@
 # The package's sources, compiled once, with the definitions and include folders of target lammps: for liblammps and the plugin.
-set(FSI_SOURCE_DIR "${CMAKE_CURRENT_SOURCE_DIR}/src/FSI")
-file(GLOB FSI_SOURCES CONFIGURE_DEPENDS "${FSI_SOURCE_DIR}/*.cpp")
+set(FSI_SOURCE_DIRS "${CMAKE_CURRENT_SOURCE_DIR}/src/FSI" "${CMAKE_CURRENT_SOURCE_DIR}/src/FSI-CLASSIC")
+list(TRANSFORM FSI_SOURCE_DIRS APPEND "/*.cpp" OUTPUT_VARIABLE _patterns)
+file(GLOB FSI_SOURCES CONFIGURE_DEPENDS ${_patterns})
 add_library(fsi OBJECT ${FSI_SOURCES})
 # include folders of imported targets by -I, as in LAMMPS: then the compiler cache knows the objects of either way to build
 set_target_properties(fsi PROPERTIES POSITION_INDEPENDENT_CODE ON NO_SYSTEM_FROM_IMPORTED ON)
@@ -14,7 +15,8 @@ set_property(SOURCE ${_instrumented} APPEND PROPERTY COMPILE_OPTIONS ${FSI_INSTR
 if(FSI_SANITIZE)
   # all that these loops call is part of them: optimised with all checks they take a quarter of an hour to compile. What the checks left out say
   # of a pointer, AddressSanitizer says where it is used
-  set(_loops "${FSI_SOURCE_DIR}/fsi_fluid_loops_any.cpp" "${FSI_SOURCE_DIR}/fsi_fluid_loops_wendland.cpp" "${FSI_SOURCE_DIR}/pair_fsi_solid.cpp" "${FSI_SOURCE_DIR}/pair_fsi_solid_tl.cpp")
+  set(_loops ${FSI_SOURCES})
+  list(FILTER _loops INCLUDE REGEX "fsi_fluid_loops_(any|wendland)|pair_fsi_solid")
   set_property(SOURCE ${_loops} APPEND PROPERTY COMPILE_OPTIONS -O0 -g0 -fno-sanitize=null,vptr,pointer-overflow,object-size)
 endif()
 if(FSI_FFTW)
@@ -26,11 +28,11 @@ endif()
 # plugin finds LAMMPS' symbols in the process that loads it.
 function(fsi_compile_as_lammps target)
   if(FSI_BUILD_LAMMPS)
-    target_include_directories(${target} PRIVATE "${FSI_SOURCE_DIR}" $<TARGET_PROPERTY:lammps,INCLUDE_DIRECTORIES>)
+    target_include_directories(${target} PRIVATE ${FSI_SOURCE_DIRS} $<TARGET_PROPERTY:lammps,INCLUDE_DIRECTORIES>)
     target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:lammps,COMPILE_DEFINITIONS>)
     target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:lammps,COMPILE_OPTIONS>)
   else()
-    target_include_directories(${target} PRIVATE "${FSI_SOURCE_DIR}")
+    target_include_directories(${target} PRIVATE ${FSI_SOURCE_DIRS})
     target_link_libraries(${target} PRIVATE lammps)    # headers only
   endif()
 endfunction()

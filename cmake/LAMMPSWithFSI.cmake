@@ -1,4 +1,4 @@
-# Adds LAMMPS as a subproject with the styles of src/FSI in its style headers. No patch: LAMMPS' own
+# Adds LAMMPS as a subproject with the styles of src/FSI and src/FSI-CLASSIC in its style headers. No patch: LAMMPS' own
 # RegisterStyles() collects our headers before its CMakeLists writes style_*.h.
 option(FSI_COMPILED_IN "The package is part of LAMMPS (OFF: of the plugin only)" ON)
 
@@ -12,7 +12,9 @@ option(BUILD_TOOLS "Build LAMMPS' tools" OFF)
 
 include("${LAMMPS_SOURCE_DIR}/cmake/Modules/StyleHeaderUtils.cmake")
 if(FSI_COMPILED_IN)
-  RegisterStyles("${FSI_SOURCE_DIR}")
+  foreach(_package ${FSI_SOURCE_DIRS})
+    RegisterStyles("${_package}")
+  endforeach()
 endif()
 
 # Our targets land beside lmp, whatever LAMMPS' own CMakeLists makes of its binary folder
@@ -27,7 +29,7 @@ add_subdirectory("${LAMMPS_SOURCE_DIR}/cmake" lammps)
 fsi_compile_as_lammps(fsi)
 if(FSI_COMPILED_IN)
   target_sources(lammps PRIVATE $<TARGET_OBJECTS:fsi>)
-  target_include_directories(lammps PRIVATE "${FSI_SOURCE_DIR}")
+  target_include_directories(lammps PRIVATE ${FSI_SOURCE_DIRS})
   target_link_libraries(lammps PRIVATE ${FSI_FFTW})
 endif()
 if(FSI_COVERAGE)

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from . import paths, suite
 
-SOURCES = paths.ROOT / "src" / "FSI"
 BOUND = 90.0  # per cent
 
 
@@ -24,7 +23,7 @@ def collect():
         for report in Path(folder).glob("*.gcov.json.gz"):
             for source in json.loads(gzip.decompress(report.read_bytes()))["files"]:
                 path = (paths.BUILD / source["file"]).resolve()  # the compiler cache makes paths relative
-                if path.parent == SOURCES:
+                if path.parent in paths.PACKAGES:
                     for line in source["lines"]:
                         covered[path.name][line["line_number"]] |= line["count"] > 0
     return covered

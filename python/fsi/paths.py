@@ -7,9 +7,15 @@ ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("FSI_BUILD_DIR") or ROOT / "build").resolve()
 EXAMPLES = ROOT / "examples"
 DRIVERS = ROOT / "unittest"  # of tests: scenes that tools/run takes, too, and that nobody copies
+PACKAGES = [ROOT / "src/FSI", ROOT / "src/FSI-CLASSIC"]
 POTENTIALS = ROOT / "potentials"
 RESULTS = ROOT / "results"
 PAGE = ROOT / "doc" / "results"
+
+
+def sources(pattern="*.*"):
+    """Files of the packages, by name."""
+    return {path.name: path for package in PACKAGES for path in sorted(package.glob(pattern))}
 
 
 def examples():

@@ -40,7 +40,6 @@
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
-#include "pair_fsi_solid.h"
 #include "update.h"
 
 #include <algorithm>
@@ -138,7 +137,10 @@ void PairFSISolidTL::init_style()
   const int dim = disc->dim;
   if (plane_stress && dim == 3)
     error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
-  if (!pairs_of<PairFSISolid>(lmp).empty())
+  const auto pairs = pairs_of<PairFSI>(lmp);
+  if (std::any_of(pairs.begin(), pairs.end(), [](const PairFSI *p) {
+        return p->facts().style == Facts::OF_SOLIDS;
+      }))
     error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
   refuse_constraints();
   make_laws();

@@ -11,7 +11,7 @@
    See the README file in the top-level LAMMPS directory.
 ------------------------------------------------------------------------- */
 
-// The FSI package as a plugin: every style of src/FSI, for a LAMMPS that was built without it.
+// The FSI packages as a plugin: every style of src/FSI and src/FSI-CLASSIC, for a LAMMPS without.
 
 #include "lammpsplugin.h"
 

@@ -10,8 +10,8 @@ from fsi import launch, paths
 
 COMMANDS = ("fsi_displace", "fsi_material", "fsi_set")
 PAGES = paths.ROOT / "doc/src"
-SOURCES = paths.ROOT / "src/FSI"
-STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in sorted(SOURCES.glob("*.h"))
+SOURCES = paths.sources()
+STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in paths.sources("*.h").values()
           for kind, name in re.findall(r"^(Pair|Fix|Compute|Command|Atom)Style\(([^,]+),", header.read_text(), re.M)}
 STYLES["atom_style_fsi"] = STYLES.pop("atom_fsi")
 STYLES.pop("command_fsi_set")  # its name of today and that of before
@@ -106,8 +106,8 @@ def test_page_has_every_keyword(page, name):
     text = (PAGES / f"{page}.rst").read_text()
     title = name if page in COMMANDS else f"{page.split('_fsi')[0].replace('pair', 'pair_style')} {name}"
     assert f".. index:: {title}\n" in text and f"\n{title} command\n===" in text
-    source = SOURCES / f"{page}.cpp"
-    if not source.exists():
+    source = SOURCES.get(f"{page}.cpp")
+    if not source:
         return
     code = source.read_text()
     if page in ("fix_fsi", "pair_fsi_fluid"):    # settings of the article's scheme have a page of their own
@@ -118,7 +118,7 @@ def test_page_has_every_keyword(page, name):
     for choice in re.findall(r"(?:choice\([^{};]*|names = |modes = )\{([^}]*)\}", code):
         words |= set(re.findall(r'"([^"]+)"', choice))
     if page == "pair_fsi_solid_tl":
-        words |= {law for file in SOURCES.glob("fsi_*.h") for law in re.findall(r'NAME\[\] = "(\w+)"', file.read_text())}
+        words |= {law for file in paths.sources("fsi_*.h").values() for law in re.findall(r'NAME\[\] = "(\w+)"', file.read_text())}
     words -= {"*", "NULL"}
     missing = sorted(w for w in words if w not in text)
     assert not missing, f"{source.name} knows {missing}, {page}.rst does not"
@@ -127,7 +127,7 @@ def test_page_has_every_keyword(page, name):
 def run_time_messages():
     """[words] of what the sources say about atoms and steps, not arguments; of each message the longest part between its numbers."""
     found = []
-    for source in SOURCES.glob("*.cpp"):
+    for source in paths.sources("*.cpp").values():
         code = source.read_text()
         for text in re.findall(r'(?:FLERR,\s+|fmt::format\(\s*)((?:"[^"]*"\s*)+)', code):
             text = re.sub(r"\{[^}]*\}", "|", re.sub(r'"\s*"', "", text).strip().strip('"')).removeprefix("Fix fsi/dt: ")

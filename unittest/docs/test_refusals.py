@@ -16,7 +16,7 @@ def test_the_page_is_that_of_the_table():
 
 
 def test_every_row_is_used_and_every_use_has_a_row():
-    used = {name for file in (paths.ROOT / "src/FSI").glob("*.cpp") for name in re.findall(r"Refused::([A-Z_0-9]+)", file.read_text())}
+    used = {name for file in paths.sources("*.cpp").values() for name in re.findall(r"Refused::([A-Z_0-9]+)", file.read_text())}
     rows = {name for _, name, *_ in refusals.table()}
     assert len(rows) > 40 and rows - used == BY_LAMMPS and used <= rows
 

@@ -12,11 +12,11 @@
 
 #include "exceptions.h"
 #include "fsi_pair_laws.h"
+#include "fsi_classic_laws.h"
 #include "fsi_drag.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
 #include "fsi_pack.h"
-#include "fsi_stress_artificial.h"
 #include "reference.h"
 
 using namespace LAMMPS_NS::FSI;

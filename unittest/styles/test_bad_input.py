@@ -12,8 +12,6 @@ from scenes import dam_gate, lammps
 
 from fsi import launch, paths
 
-SOURCES = paths.ROOT / "src/FSI"
-
 PLATE = "plate solid rho 1000 young 2e6 poisson 0.4"
 WATER = "water fluid rho 1000"
 HEADER = "# DATE: 2025-01-01 UNITS: si CONTRIBUTOR: test\n"
@@ -513,7 +511,7 @@ def test_numbers(answers, word):
 def test_every_number_is_tried():
     """Rows of the sources' tables with a number or an integer."""
     words = " ".join(row[0] for row in NUMBERS)
-    rows = re.findall(r'\.(?:key|argument)\("([^"]+)"\)\s*\.[^;]*?(?:number|integer)\(', "".join(p.read_text() for p in SOURCES.glob("*.cpp")))
+    rows = re.findall(r'\.(?:key|argument)\("([^"]+)"\)\s*\.[^;]*?(?:number|integer)\(', "".join(p.read_text() for p in paths.sources("*.cpp").values()))
     assert len(rows) > 25 and not [row for row in rows if row not in words]
 
 

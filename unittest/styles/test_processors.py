@@ -13,7 +13,7 @@ sys.path.insert(0, str(paths.ROOT / "bench"))
 import effects  # noqa: E402
 import measure  # noqa: E402
 
-COMPILED_FOR_AVX2 = {name for file in (paths.ROOT / "src/FSI").iterdir()
+COMPILED_FOR_AVX2 = {name for file in paths.sources().values()
                      for name in re.findall(r"\bFSI_TARGET\s+(?:static\s+|inline\s+)?\w+\s+(\w+)\(", file.read_text())}
 DECKS = {"water": {"style": "artificial/visc 0.05 0 laminar/visc density/diffusion 0.1", "walls": "yes"},
          "number density": {"sph": "fluid summation"}, "bare": {}, "watched": {"commands": "fix watch all fsi/watch 1"}}

@@ -6,19 +6,19 @@ import pytest
 
 from fsi import paths
 
-SOURCES = paths.ROOT / "src" / "FSI"
-LAWS = ["drag", "pair_laws", "gradient", "hourglass", "kernel", "pack", "solid_laws", "stress_artificial", "tensor"]
+SOURCES = paths.sources()
+LAWS = ["classic_laws", "drag", "gradient", "kernel", "pack", "pair_laws", "solid_laws", "tensor"]
 
 
 def includes(name):
     """Our own files that NAME.h and NAME.cpp include."""
-    texts = [(SOURCES / f"{name}{end}").read_text() for end in (".h", ".cpp") if (SOURCES / f"{name}{end}").exists()]
+    texts = [SOURCES[f"{name}{end}"].read_text() for end in (".h", ".cpp") if f"{name}{end}" in SOURCES]
     found = {m for text in texts for m in re.findall(r'#include "(\w+)\.h"', text)}
-    return {m for m in found if m != name and (SOURCES / f"{m}.h").exists()}
+    return {m for m in found if m != name and f"{m}.h" in SOURCES}
 
 
 def graph():
-    return {name: includes(name) for name in {p.stem for p in SOURCES.glob("*.*")}}
+    return {name: includes(name) for name in {p.stem for p in SOURCES.values()}}
 
 
 def circle(edges):
@@ -52,7 +52,7 @@ def test_style_headers_are_bare():
     names = {"fix": "Fix", "pair": "Pair", "compute": "Compute", "command": "Command", "atom_vec": "AtomVec", "fsi_part": "FSI::Part", "fsi_scene": "FSI::Scene",
              "pair_fsi": "PairFSI", "fsi_fields": "FSI::FixFields", "fsi_bond_store": "FSI::BondStore"}
     styles, more = 0, {}
-    for file in SOURCES.glob("*.h"):
+    for file in paths.sources("*.h").values():
         text = file.read_text()
         if not re.search(r"^(Fix|Pair|Compute|Atom|Command)Style\(", text, re.M):
             continue
@@ -64,14 +64,21 @@ def test_style_headers_are_bare():
 
 def test_fix_fsi_knows_no_style():
     assert [name for name in includes("fix_fsi") if re.match(r"(fix|pair|compute)_", name)] == []
-    assert len((SOURCES / "fix_fsi.cpp").read_text().splitlines()) < 450
+    assert len(SOURCES["fix_fsi.cpp"].read_text().splitlines()) < 450
+
+
+def test_the_classic_package_is_apart():
+    """FSI is built without it."""
+    classic = {path.stem for path in SOURCES.values() if path.parent.name == "FSI-CLASSIC"}
+    assert "pair_fsi_solid" in classic
+    assert [path.stem for path in SOURCES.values() if path.parent.name == "FSI" and includes(path.stem) & classic] == []
 
 
 def test_styles_are_found_by_what_they_are():
     """A suffix changes the name of a style: fsi_find.h looks at classes."""
     named = re.compile(r'(?:pair_match|get_\w+_by_style)\("[^"]*fsi[^"]*"|strmatch\([^)]*fsi/\w')
     assert named.search('force->pair_match("fsi/fluid", 1)') and named.search('get_fix_by_style("^fsi/dt$")')
-    found = {p.name: named.findall(p.read_text()) for p in SOURCES.glob("*.*")}
+    found = {p.name: named.findall(p.read_text()) for p in SOURCES.values()}
     assert {name: f for name, f in found.items() if f and (name, f) != ("fsi_find.h", ['pair_match("^fsi/"'])} == {}
 
 
@@ -106,7 +113,7 @@ def long_functions(text, most):
 
 
 def sources():
-    return [file for file in sorted(SOURCES.glob("*.*")) if file.suffix in (".h", ".cpp")]
+    return [file for file in SOURCES.values() if file.suffix in (".h", ".cpp")]
 
 
 def test_functions_fit_on_a_page():
@@ -127,4 +134,4 @@ def test_lines_are_not_wide():
 def test_laws_are_without_lammps(law):
     """A law could be compiled for a device: it includes other laws and the C++ library alone."""
     allowed = {f"fsi_{name}.h" for name in LAWS} | {"math_const.h", "math_eigen.h"}  # without the rest of LAMMPS
-    assert set(re.findall(r'#include "([^"]+)"', (SOURCES / f"fsi_{law}.h").read_text())) <= allowed
+    assert set(re.findall(r'#include "([^"]+)"', SOURCES[f"fsi_{law}.h"].read_text())) <= allowed

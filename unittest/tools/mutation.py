@@ -20,13 +20,13 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCES = ROOT / "src" / "FSI"
+SOURCES = {path.name: path for package in ("FSI", "FSI-CLASSIC") for path in (ROOT / "src" / package).iterdir()}
 
 # files with numerics, by pattern (the first that fits): the tests that look at them, test_NAME.py, or ctest
 TESTS = {
     "fsi_kernel.h": "ctest lattice", "fsi_tensor.h": "ctest", "fsi_walls.h": "ctest walls",
     "fsi_gradient.h": "ctest", "fsi_solid_laws.h": "ctest plasticity viscoelastic", "fsi_pack.h": "ctest",
-    "fsi_stress_artificial.h": "ctest solid", "fsi_hourglass.h": "ctest solid_tl",
+    "fsi_classic_laws.h": "ctest solid solid_tl",
     "fsi_pair_laws.h": "ctest viscosity walls density shift contact self_contact", "fsi_material.*": "ctest density solid", "fsi_sight.cpp": "thin",
     "fsi_fluid_*": "density momentum walls surface interface viscosity wall_particles shift spacing",
     "pair_fsi_fluid.cpp": "density integrator dt interface surface wall_particles shift",
@@ -97,8 +97,8 @@ def changes(file, text):
 
 
 def all_changes(files=()):
-    names = files or sorted(p.name for p in SOURCES.iterdir() if tests_of(p.name))
-    return [change for name in names for change in changes(name, (SOURCES / name).read_text())]
+    names = files or sorted(name for name in SOURCES if tests_of(name))
+    return [change for name in names for change in changes(name, SOURCES[name].read_text())]
 
 
 def run(command, folder, environment):
@@ -108,7 +108,7 @@ def run(command, folder, environment):
 
 def verdict(copy, environment, change):
     """Builds the copy with the change and runs its tests, those of the mathematics first."""
-    source = copy / "src" / "FSI" / change.file
+    source = copy / SOURCES[change.file].relative_to(ROOT)
     text = source.read_text()
     source.write_text(change.apply(text))
     try:
@@ -142,7 +142,7 @@ def main(arguments):
         if run(["tools/setup", "--tests"], copy, environment):
             sys.exit("the unchanged copy does not build")
         for change in places:
-            text = (SOURCES / change.file).read_text()
+            text = SOURCES[change.file].read_text()
             line = text.count("\n", 0, change.start) + 1
             verdicts.append(verdict(copy, environment, change))
             print(f"{verdicts[-1]:10s} {change.file}:{line}: {text[change.start:change.end]} -> {change.new or 'nothing'}   {text.splitlines()[line - 1].strip()[:90]}",

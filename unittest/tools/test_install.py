@@ -45,19 +45,20 @@ def test_inside_a_lammps_tree(tmp_path, monkeypatch, form):
 
     options = []
     if form == "package":
-        shutil.copytree(paths.ROOT / "src/FSI", tree / "src/FSI")
-        command("sed", "-i", "s/^set(STANDARD_PACKAGES/& FSI/", tree / "cmake/CMakeLists.txt")
-        options = ["-DPKG_FSI=ON"]
+        for package in paths.PACKAGES:
+            shutil.copytree(package, tree / "src" / package.name)
+        command("sed", "-i", "s/^set(STANDARD_PACKAGES/& FSI FSI-CLASSIC/", tree / "cmake/CMakeLists.txt")
+        options = ["-DPKG_FSI=ON", "-DPKG_FSI-CLASSIC=ON"]
     else:
-        for entry in (paths.ROOT / "src/FSI").iterdir():
+        for entry in (entry for package in paths.PACKAGES for entry in package.iterdir()):
             shutil.copy(entry, tree / "src")
     build = tmp_path / "build"
     monkeypatch.setenv("CCACHE_BASEDIR", str(tmp_path))  # the compiler cache knows the objects in whatever folder the tree is
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     command("cmake", "-S", tree / "cmake", "-B", build, "-G", "Ninja", *launcher, *options)
     headers = "".join(h.read_text() for h in (build / "styles").glob("style_*.h"))
-    for name in ("atom_vec_fsi", "pair_fsi_fluid", "pair_fsi_solid_tl", "fix_fsi", "compute_fsi_atom", "fsi_set"):
-        assert f'"{name}.h"' in headers or f'"FSI/{name}.h"' in headers
+    for name in ("atom_vec_fsi", "pair_fsi_fluid", "pair_fsi_solid", "pair_fsi_solid_tl", "fix_fsi", "compute_fsi_atom", "fsi_set"):
+        assert f'{name}.h"' in headers
     objects = [line.split(":")[0] for line in command("ninja", "-C", build, "-t", "targets", "all").splitlines()
                if any(line.split(":")[0].endswith(f"/{name}.cpp.o") for name in ("atom_vec_fsi", "fsi_set", "fsi_material", "fix_fsi_spectrum"))]  # the last without FFTW
     assert len(objects) == 4

@@ -38,11 +38,13 @@ def left_out():
 
 
 def test_sources_are_all_there(tree):
-    sources = {path.name: path.read_text() for path in (paths.ROOT / "src/FSI").glob("[!.]*")}
-    assert {path.name: path.read_text() for path in (tree / "src/FSI").iterdir()} == sources
-    assert {"README", "fix_fsi.cpp"} <= set(sources)
-    ignored = set((tree / "src/.gitignore").read_text().split())
-    assert {f"/{name}" for name in sources if name != "README"} <= ignored
+    for package, one in (("FSI", "fix_fsi.cpp"), ("FSI-CLASSIC", "pair_fsi_solid.cpp")):
+        sources = {path.name: path.read_text()
+                   for path in (paths.ROOT / "src" / package).glob("[!.]*")}
+        assert {path.name: path.read_text() for path in (tree / "src" / package).iterdir()} == sources
+        assert {"README", one} <= set(sources)
+        ignored = set((tree / "src/.gitignore").read_text().split())
+        assert {f"/{name}" for name in sources if name != "README"} <= ignored
 
 
 @pytest.mark.parametrize("file, line", [
@@ -51,6 +53,10 @@ def test_sources_are_all_there(tree):
     ("cmake/presets/most.cmake", "  FSI"), ("src/Makefile", "\tfsi \\"),
                                         ("doc/src/Build_package.rst", "   * :ref:`FSI <fsi>`"),
     ("doc/src/Build_extras.rst", ".. _fsi:"), (PACKAGES, "   * - :ref:`FSI <PKG-FSI>`"),
+    ("cmake/CMakeLists.txt", "  FSI-CLASSIC"), ("src/Makefile", "\tfsi-classic \\"),
+    ("cmake/CMakeLists.txt", "pkg_depends(FSI-CLASSIC FSI)"),
+    (PACKAGES, "   * - :ref:`FSI-CLASSIC <PKG-FSI-CLASSIC>`"),
+    ("doc/src/Packages_details.rst", ".. _PKG-FSI-CLASSIC:"),
     ("doc/src/Packages_details.rst", ".. _PKG-FSI:"), ("doc/src/Howto.rst", "   Howto_fsi"),
                                         ("doc/src/commands_list.rst", "   fsi_set")])
 def test_lists_name_the_package(tree, file, line):
@@ -104,7 +110,8 @@ def test_pages_are_those_of_lammps_manual(tree):
         for file in re.findall(r"(?:figure|literalinclude):: (\S+)", text):
             assert (tree / "doc/src" / file).exists(), f"{path.name}: {file}"
         if re.match(r"\.\. index:: ", text):
-            assert ".. versionadded:: TBD" in text and "part of the FSI package" in text, path.name
+            package = "FSI-CLASSIC" if path.name == "pair_fsi_solid.rst" else "FSI"
+            assert ".. versionadded:: TBD" in text and f"part of the {package} package" in text
 
 
 def test_words_for_the_spelling_check(tree):

@@ -20,7 +20,7 @@ def test_places():
 
 
 def test_files_with_numerics_have_their_tests():
-    files = [p.name for p in (paths.ROOT / "src/FSI").iterdir() if p.suffix in (".cpp", ".h")]
+    files = [p.name for p in paths.sources().values() if p.suffix in (".cpp", ".h")]
     assert all(any(mutation.fnmatch(file, pattern) for file in files) for pattern in mutation.TESTS)
     names = {name for tests in mutation.TESTS.values() for name in tests.split()} - {"ctest"}
     assert [name for name in names if not list((paths.ROOT / "unittest").glob(f"*/test_{name}.py"))] == []

@@ -137,17 +137,17 @@ def understood(compiler, standard):
     tree = paths.lammps_source() / "src"
 
     def faults(source):
-        done = subprocess.run([compiler, standard, "-fsyntax-only", "-Wall", "-Werror", "-DLAMMPS_SMALLBIG", f"-I{ROOT / 'src/FSI'}",
+        done = subprocess.run([compiler, standard, "-fsyntax-only", "-Wall", "-Werror", "-DLAMMPS_SMALLBIG", *(f"-I{package}" for package in paths.PACKAGES),
                                *(f"-isystem{tree / part}" for part in ("", "RIGID", "STUBS")), str(source)],
                               capture_output=True, text=True, check=False)
         return [line for line in done.stderr.splitlines() if "error" in line][:9] or ["fails"] if done.returncode else []
 
-    return side_by_side(faults, sorted((ROOT / "src/FSI").glob("*.cpp")))
+    return side_by_side(faults, list(paths.sources("*.cpp").values()))
 
 
 def formatted():
     """Are the sources as clang-format writes them?"""
-    sources = [str(p) for ending in ("*.h", "*.cpp") for p in sorted((ROOT / "src/FSI").glob(ending))]
+    sources = [str(p) for ending in ("*.h", "*.cpp") for p in paths.sources(ending).values()]
     return subprocess.run(["clang-format", "--dry-run", "-Werror", *sources], check=False).returncode == 0
 
 

@@ -23,12 +23,11 @@
 #ifndef LMP_FSI_SOLID_ROWS_H
 #define LMP_FSI_SOLID_ROWS_H
 
+#include "fsi_classic_laws.h"
 #include "fsi_gradient.h"
-#include "fsi_hourglass.h"
 #include "fsi_material.h"
 #include "fsi_pair_laws.h"
 #include "fsi_rows.h"
-#include "fsi_stress_artificial.h"
 #include "fsi_tensor.h"
 
 #include <type_traits>
@@ -168,7 +167,7 @@ namespace FSI {
     }
   }
 
-  // Adds the rate of the forces of hourglass control (fsi_hourglass.h); gradients: rows of ROW,
+  // Adds the rate of the forces of hourglass control (fsi_classic_laws.h); gradients: rows of ROW,
   // with L in front
   template <class T, class K, int ROW>
   FSI_INLINE void hourglass_rows(const Row *const rows, const int nrows, const K kernel,

@@ -505,7 +505,7 @@ template <int D> void PairFSISolid::fill_rate_records(double half)
   });
 }
 
-// hourglass control (fsi_hourglass.h)
+// hourglass control (fsi_classic_laws.h)
 void PairFSISolid::advance_hourglass(double dt)
 {
   const int dim = disc->dim;
