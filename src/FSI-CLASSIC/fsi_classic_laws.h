@@ -23,8 +23,8 @@ namespace FSI {
 
   // Artificial stress (Gray, Monaghan and Swift 2001), paper eq. 14: short-range repulsion along
   // tensile principal directions, against the tensile instability of solids.
-  //   R_i = -epsilon V_i^2 sum_k s_k n_k n_k^T over principal stresses s_k > 0,  F_ij += (R_i + R_j)
-  //     (W_ij/W(dx))^q . grad_i W_ij
+  //   R_i = -epsilon V_i^2 sum_k s_k n_k n_k^T over principal stresses s_k > 0,
+  //   F_ij += (R_i + R_j) (W_ij/W(dx))^q . grad_i W_ij
   struct ArtificialStress {
     double epsilon, inv_wdx;
     ArtificialStress(double epsilon_in, double wdx) : epsilon(epsilon_in), inv_wdx(1.0 / wdx) {}
@@ -44,9 +44,9 @@ namespace FSI {
     }
   };
 
-  // Hourglass control of the updated-Lagrangian solid, a penalty on what the linear velocity field of
-  // a particle's neighborhood does not explain (after Zhang, Haidn and Hu 2024, arXiv 2409.11474):
-  // every pair has a spring of rate
+  // Hourglass control of the updated-Lagrangian solid, a penalty on what the linear velocity field
+  // of a particle's neighborhood does not explain (after Zhang, Haidn and Hu 2024, arXiv
+  // 2409.11474): every pair has a spring of rate
   //   d f_i/dt = xi G V_i V_j (-g_ij) [v_ji - (L_i + L_j) x_ji/2],  grad_i W_ij = g_ij x_ij,
   // whose forces are kept summed per particle, in a vector that turns with it. Zero in any uniform
   // gradient; second order in the spacing in a smooth field.
