@@ -24,6 +24,7 @@
 #include "fsi_images.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
+#include "fsi_refusals.h"
 #include "fsi_rows.h"
 #include "fsi_solid_rows.h"
 #include "neigh_list.h"
@@ -81,10 +82,7 @@ void PairFSISolid::init_style()
   PairFSI::init_style();
   check_contact();
   fix_stress = FixFSIStress::find(lmp);
-  if (!fix_stress)
-    error->all(
-        FLERR,
-        "Pair style fsi/solid requires fix fsi/stress: without it a solid has no shear stress");
+  if (!fix_stress) refuse(error, Refused::STRESS);
   comm_forward = has_hourglass() ? disc->dim * disc->dim : 0;
   comm_reverse = has_hourglass() ? disc->dim : 0;
   bodies = several_bodies();
@@ -272,10 +270,7 @@ void PairFSISolid::find_image_rows()
 
 void PairFSISolid::check_planes() const
 {
-  if (self_contact)
-    error->all(FLERR,
-               "Pair style fsi/solid self yes does not go with symmetry yes of fix "
-               "fsi/wall/mirror: a body would not meet its own image");
+  if (self_contact) refuse(error, Refused::SELF_SYMMETRY, style);
   for (int i = 0; i < atom->nlocal; i++) {
     if (material[atom->type[i]].species != SOLID || !images.joins(atom->mask, i)) continue;
     for (const Wall &plane : images.planes.wall)

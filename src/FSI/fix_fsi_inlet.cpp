@@ -23,6 +23,7 @@
 #include "fsi_open_end.h"
 #include "fsi_pair_laws.h"
 #include "fsi_record.h"
+#include "fsi_refusals.h"
 #include "neighbor.h"
 #include "pair_fsi_fluid.h"
 #include "update.h"
@@ -123,15 +124,8 @@ void FixFSIInlet::init()
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", end.label);
   if (disc->density_fluid != Discretization::CONTINUITY)
-    error->all(FLERR,
-               "{} requires density by continuity, as fix fsi scheme standard has it: a sum cannot "
-               "be prescribed",
-               end.label);
-  if (!neighbor->dist_check)
-    error->all(FLERR,
-               "{} requires neigh_modify check yes: particles are made and deleted when lists are "
-               "built, before they have moved far",
-               end.label);
+    refuse(error, Refused::END_DENSITY, end.label);
+  if (!neighbor->dist_check) refuse(error, Refused::END_LISTS, end.label);
   end.init(disc, given_length);
   check_made();
   driven = false;

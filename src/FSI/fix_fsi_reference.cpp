@@ -25,6 +25,7 @@
 #include "fsi_gather.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
+#include "fsi_refusals.h"
 #include "fsi_self_contact.h"
 #include "fsi_swaps.h"
 #include "modify.h"
@@ -73,11 +74,7 @@ void FixFSIReference::init()
     error->all(FLERR,
                "Pair style fsi/solid/tl {}: the bonds of its bodies were made with {}, and stay so",
                as_now(), made);
-  if (self.range > 0.0 && !keeps_places)
-    error->all(
-        FLERR,
-        "Pair style fsi/solid/tl self yes needs positions in the reference, which are kept only if "
-        "it is on when the reference is taken: give it before the first run of the bodies");
+  if (self.range > 0.0 && !keeps_places) refuse(error, Refused::SELF_LATE);
 }
 
 void FixFSIReference::find_planes()
@@ -87,10 +84,7 @@ void FixFSIReference::find_planes()
   for (auto *p : fixes_of<Part>(lmp)) p->add_walls(walls, forces);
   images.find_planes(walls, forces);
   if (!images.planes.any()) return;
-  if (self.range > 0.0)
-    error->all(FLERR,
-               "Pair style fsi/solid/tl self yes does not go with symmetry yes of fix "
-               "fsi/wall/mirror: a body would not meet its own image");
+  if (self.range > 0.0) refuse(error, Refused::SELF_SYMMETRY, "fsi/solid/tl");
   const auto &planes = images.planes.wall;
   const double least = 2.0 * disc->largest_cut;
   for (size_t b = 1; b < planes.size(); b++) {

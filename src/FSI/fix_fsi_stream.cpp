@@ -21,6 +21,7 @@
 #include "fsi_gather.h"
 #include "fsi_keywords.h"
 #include "fsi_record.h"
+#include "fsi_refusals.h"
 #include "fsi_value.h"
 #include "group.h"
 #include "math_const.h"
@@ -81,13 +82,10 @@ void FixFSIStream::init()
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "Fix fsi/stream requires pair_style fsi/fluid: it drives fluids");
   if (density_rate > 0.0 && disc->density_fluid != Discretization::CONTINUITY)
-    error->all(FLERR,
-               "Fix fsi/stream density requires density by continuity, as fix fsi scheme standard "
-               "has it: a sum cannot be damped");
+    refuse(error, Refused::STREAM_DENSITY);
   region = domain->get_region_by_id(region_id);
   if (!region) error->all(FLERR, "Region {} of fix fsi/stream does not exist", region_id);
-  if (region->dynamic_check())
-    error->all(FLERR, "Region {} of fix fsi/stream must not move nor change", region_id);
+  if (region->dynamic_check()) refuse(error, Refused::STREAM_REGION);
   const char name = "xyz"[along];
   if (!region->bboxflag)
     error->all(FLERR,

@@ -21,6 +21,7 @@
 #include "fsi_changes.h"
 #include "fsi_find.h"
 #include "fsi_record.h"
+#include "fsi_refusals.h"
 #include "fsi_solid_laws.h"
 #include "update.h"
 
@@ -43,10 +44,8 @@ FixFSIStress::FixFSIStress(LAMMPS *lmp, int narg, char **arg) :
       .set(plastic, 1)
       .changes("the plastic strain begins with 0, or is forgotten");
   keywords.parse(narg - 3, arg + 3);
-  if (plane_stress && domain->dimension == 3)
-    error->all(FLERR, "Fix fsi/stress plane is for dimension 2 only");
-  if (plastic && plane_stress)
-    error->all(FLERR, "Fix fsi/stress plastic requires plane strain in 2D");
+  if (plane_stress && domain->dimension == 3) refuse(error, Refused::PLANE_STRESS_3D);
+  if (plastic && plane_stress) refuse(error, Refused::PLASTIC_PLANE);
   restart_global = 1;
   comm_forward = domain->dimension;
   choose_fields();
@@ -103,16 +102,28 @@ void FixFSIStress::init()
         "A material has a yield stress, but stays elastic: fix fsi/stress lacks keyword plastic");
 }
 
+// S:S/(4G), with S_zz of plane strain
+template <int D>
+static double shear_energy_density(const Sym<D> &s, double shear, bool plane_stress)
+{
+  double ss = s.squared();
+  if (D == 2 && !plane_stress) ss += (s.c[0] + s.c[1]) * (s.c[0] + s.c[1]);
+  return ss / (4.0 * shear);
+}
+
 template <int D>
 double FixFSIStress::advance_stress(int i, const double *L, double dt, const State &material)
 {
   auto s = Sym<D>::load(stress[i]);
-  double work = 0.0;
+  const double before = shear_energy_density(s, material.shear, plane_stress);
+  double work = 0.0, growth = 0.0;
   jaumann_update<D>(s, L, dt, material.shear, plane_stress);
   if (plastic && material.yield > 0.0)
     work = radial_return<D>(s, strain[i], material.shear, material.yield, material.hardening);
   s.store(stress[i]);
-  return work;
+  for (int d = 0; d < D; d++) growth += dt * L[d * (D + 1)];
+  // of the same stress a larger volume stores more, for which the rate of stress does no work
+  return work - 0.5 * growth * (before + shear_energy_density(s, material.shear, plane_stress));
 }
 
 template double FixFSIStress::advance_stress<2>(int, const double *, double, const State &);
@@ -145,17 +156,12 @@ double FixFSIStress::distance_at_start(int i, int j) const
   return std::sqrt(sum);
 }
 
-// V S:S/(4G), with S_zz of plane strain
 double FixFSIStress::shear_energy(int i, double shear) const
 {
-  const double *s = stress[i];
-  double ss;
-  if (ns == 3) {
-    ss = Sym<2>::load(s).squared();
-    if (!plane_stress) ss += (s[0] + s[1]) * (s[0] + s[1]);
-  } else
-    ss = Sym<3>::load(s).squared();
-  return atom->rmass[i] / atom->rho[i] * ss / (4.0 * shear);
+  const double *const s = stress[i], volume = atom->rmass[i] / atom->rho[i];
+  return volume *
+      (ns == 3 ? shear_energy_density(Sym<2>::load(s), shear, plane_stress)
+               : shear_energy_density(Sym<3>::load(s), shear, plane_stress));
 }
 
 std::vector<FixFSIStress::Effect> FixFSIStress::effects() const

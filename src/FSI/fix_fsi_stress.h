@@ -54,7 +54,8 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
   double distance_at_start(int i, int j) const;
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between
-  // (fsi_solid_laws.h) returns the plastic work per volume
+  // (fsi_solid_laws.h). Returns what of the work per volume the elastic energy has not got: to
+  // plastic strain, and, with a minus, what that gets without work
   template <int D>
   double advance_stress(int i, const double *L, double dt, const FSI::State &material);
 

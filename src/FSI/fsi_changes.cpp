@@ -23,6 +23,7 @@
 #include "fsi_gather.h"
 #include "fsi_lammps_access.h"
 #include "fsi_part.h"
+#include "fsi_refusals.h"
 #include "modify.h"
 #include "pair.h"
 #include "update.h"
@@ -88,19 +89,12 @@ bool Changes::in_first_step(const Update *update)
   return update->ntimestep - 1 == update->firststep;
 }
 
-static void refuse(Error *error)
-{
-  error->all(FLERR,
-             "Run with pre no: fixes, computes, regions or pair styles are others than when the "
-             "last run was set up. Leave out pre no");
-}
-
 void Changes::check_pre_no() const
 {
-  if (in_first_step(update) && there != present()) refuse(error);
+  if (in_first_step(update) && there != present()) refuse(error, Refused::PRE_NO);
 }
 
 void Changes::check_pre_no(LAMMPS *lmp, const Changes *known)
 {
-  if (!known || known->there.empty()) refuse(lmp->error);
+  if (!known || known->there.empty()) refuse(lmp->error, Refused::PRE_NO);
 }

@@ -20,6 +20,7 @@
 #include "fix.h"
 #include "force.h"
 #include "fsi_gather.h"
+#include "fsi_refusals.h"
 #include "fsi_scene.h"
 #include "math_extra.h"
 #include "modify.h"
@@ -59,9 +60,7 @@ void Clamps::find()
     const auto ids = gather(local, world);
     const auto expected = expected_of(*rigid);
     if (in_substeps && !expected.empty())
-      error->all(FLERR,
-                 "Fix {} (style {}) moves particles of elastic bodies with sub-steps: expected {}",
-                 fix->id, fix->style, expected);
+      refuse(error, Refused::RIGID_STYLES, fix->id, fix->style, expected);
     if (ids.empty() || !expected.empty()) continue;
     refuse_new_ids(*rigid);
     elastic = elastic || in_substeps;

@@ -19,6 +19,7 @@
 #include "fix_fsi.h"
 #include "fsi_cells.h"
 #include "fsi_gather.h"
+#include "fsi_refusals.h"
 #include "neighbor.h"
 #include "region.h"
 #include "update.h"
@@ -54,8 +55,7 @@ void OpenEnd::init(const Discretization *discretization, double given_length)
 {
   disc = discretization;
   if (domain->periodicity[axis])
-    error->all(FLERR, "{} is in periodic dimension {}: its boundary must be fixed (f)", name,
-               "xyz"[axis]);
+    refuse(error, Refused::END_PERIODIC, name, std::string(1, "xyz"[axis]));
   find_length(given_length);
   check_plane();
   find_region();
@@ -109,8 +109,7 @@ void OpenEnd::find_region()
   if (region_id.empty()) return;
   region = domain->get_region_by_id(region_id);
   if (!region) error->all(FLERR, "Region {} of {} does not exist", region_id, command);
-  if (region->dynamic_check())
-    error->all(FLERR, "Region {} of {} must not move nor change", region_id, command);
+  if (region->dynamic_check()) refuse(error, Refused::END_REGION, label);
   if (!region->bboxflag) return;
   const double from[] = {region->extent_xlo, region->extent_ylo, region->extent_zlo},
                to[] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};

@@ -46,7 +46,7 @@ namespace FSI {
                      "images in walls are those of an orthogonal one"},
         SUBSTEPS = {REQUIRES, "Fix fsi substeps", "pair_style fsi/solid/tl",
                     "its forces alone are a sum over bonds that sub-steps can take"},
-        SUMS_OF_SOLIDS = {NOT_WITH, "Fix fsi solid summation and ratio", "pair_style fsi/solid/tl",
+        SUMS_OF_SOLIDS = {NOT_WITH, "Fix fsi solid summation or ratio", "pair_style fsi/solid/tl",
                           "its density follows from its strain"},
         SPACING_UPDATED =
             {REQUIRES, "Fix fsi spacing {:g} of type {}", "pair_style fsi/solid/tl",
@@ -102,15 +102,15 @@ namespace FSI {
         SELF_LATE = {REQUIRES, "Pair style fsi/solid/tl self yes",
                      "bodies that had it from their first run on",
                      "positions in the reference are kept only then"},
-        BALANCE = {REQUIRES, "Pair style fsi/solid/tl", "to come before fix balance",
+        BALANCE = {REQUIRES, "Pair style fsi/solid/tl", "a place before fix balance",
                    "bonds find their partners by atom ID; or give atom_modify map yes first"},
         RESET_IDS = {NOT_WITH, "A total-Lagrangian body", "reset_atoms id",
                      "bonds know their partners by atom ID (LAMMPS refuses)"},
         CONSTRAINED = {NOT_WITH, "A solid with sub-steps", "fix {} (style {}) on atom {}",
                        "it does not see forces inside the solid: leave what is held out of the "
                        "group of fix {}"},
-        RIGID_STYLES = {NOT_WITH, "Elastic bodies with sub-steps",
-                        "fix {} (style {}) of their particles", "expected {}"},
+        RIGID_STYLES = {NOT_WITH, "An elastic body with sub-steps",
+                        "fix {} (style {}) of its particles", "expected {}"},
 
         // open ends, streams, levels
         END_DENSITY = {REQUIRES, "{}", STANDARD, "a sum cannot be prescribed"},

@@ -22,6 +22,7 @@
 #include "fsi_gradient.h"
 #include "fsi_kernel.h"
 #include "fsi_profile.h"
+#include "fsi_refusals.h"
 #include "fsi_rows.h"
 #include "memory.h"
 #include "neigh_list.h"
@@ -97,10 +98,7 @@ void PairFSIGrain::init_style()
   fix_fsi = FixFSI::find(lmp, "Pair style fsi/grain");
   disc = fix_fsi;
   ledger = fix_fsi;
-  if (!facts_of_fluids(lmp).style)
-    error->all(FLERR,
-               "Pair style fsi/grain requires pair_style fsi/fluid beside it: use pair_style "
-               "hybrid/overlay");
+  if (!facts_of_fluids(lmp).style) refuse(error, Refused::GRAINS);
   neighbor->add_request(this);
 }
 

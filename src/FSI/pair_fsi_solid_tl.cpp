@@ -32,6 +32,7 @@
 #include "fsi_law_list.h"
 #include "fsi_pair_laws.h"
 #include "fsi_profile.h"
+#include "fsi_refusals.h"
 #include "fsi_self_contact.h"
 #include "fsi_swaps.h"
 #include "fsi_tensor.h"
@@ -82,10 +83,7 @@ PairFSISolidTL::PairFSISolidTL(LAMMPS *lmp) :
   // bonds find their partners by atom ID. Not later than here: fix balance keeps, from when it is
   // defined, whether there is a map to clear
   if (atom->map_style != Atom::MAP_NONE) return;
-  if (!modify->get_fix_by_style("^balance").empty())
-    error->all(
-        FLERR,
-        "Pair style fsi/solid/tl must come before fix balance, or give atom_modify map yes first");
+  if (!modify->get_fix_by_style("^balance").empty()) refuse(error, Refused::BALANCE);
   if (domain->box_exist) {
     atom->map_init();
     atom->map_set();
@@ -110,17 +108,11 @@ void PairFSISolidTL::check_settings()
     std::string known;
     for (const LawFacts &l : SolidLaws::all)
       if (l.plane_stress) known += (known.empty() ? "" : " or ") + std::string(l.name);
-    error->all(FLERR, "Pair style fsi/solid/tl plane stress requires law {}", known);
+    refuse(error, Refused::PLANE_LAW, known);
   }
   if (volumetric != SMOOTHED) return;
-  if (plane_stress)
-    error->all(FLERR,
-               "Pair style fsi/solid/tl volumetric smoothed is not for plane stress, which does "
-               "not lock: expected auto or local");
-  if (damage > 0.0)
-    error->all(FLERR,
-               "Pair style fsi/solid/tl volumetric smoothed does not go with damage, where it "
-               "would make energy: expected auto or local");
+  if (plane_stress) refuse(error, Refused::SMOOTHED_PLANE);
+  if (damage > 0.0) refuse(error, Refused::SMOOTHED_DAMAGE);
 }
 
 State PairFSISolidTL::make_state(const Material &m) const
@@ -135,13 +127,12 @@ void PairFSISolidTL::init_style()
   PairFSI::init_style();
   check_contact();
   const int dim = disc->dim;
-  if (plane_stress && dim == 3)
-    error->all(FLERR, "Pair style fsi/solid/tl plane is for dimension 2 only");
+  if (plane_stress && dim == 3) refuse(error, Refused::PLANE_3D);
   const auto pairs = pairs_of<PairFSI>(lmp);
   if (std::any_of(pairs.begin(), pairs.end(), [](const PairFSI *p) {
         return p->facts().style == Facts::OF_SOLIDS;
       }))
-    error->all(FLERR, "Use either pair_style fsi/solid or fsi/solid/tl, not both");
+    refuse(error, Refused::TWO_SOLIDS);
   refuse_constraints();
   make_laws();
   Fix *fix = modify->get_fix_by_id(FixFSIReference::ID);
@@ -176,14 +167,9 @@ void PairFSISolidTL::make_laws()
   fix_history = FixFSIHistory::keep(lmp, laws.facts().history, laws.columns(disc->dim));
   fix_stress = laws.facts().by_rate ? FixFSIStress::find(lmp) : nullptr;
   if (!laws.facts().by_rate) return;
-  if (!fix_stress)
-    error->all(FLERR, "Pair style fsi/solid/tl law {} requires fix fsi/stress", laws.facts().name);
+  if (!fix_stress) refuse(error, Refused::LAW_STRESS, laws.facts().name);
   if (fix_stress->plane_stress == plane_stress) return;
-  static const char *const planes[] = {"strain", "stress"};
-  error->all(FLERR,
-             "Pair style fsi/solid/tl law {} has plane {} and fix fsi/stress plane {}: expected "
-             "the same in both",
-             laws.facts().name, planes[plane_stress], planes[fix_stress->plane_stress]);
+  refuse(error, Refused::PLANE_OF_STRESS, laws.facts().name, plane_stress ? "stress" : "strain");
 }
 
 const double *const *PairFSISolidTL::history() const
@@ -213,11 +199,7 @@ void PairFSISolidTL::refuse_constraints() const
             atom->mask[i] & fix->groupbit;
       });
       if (held.count)
-        error->all(
-            FLERR,
-            "Fix {} (style {}) constrains atom {} of a solid with sub-steps, which does not see "
-            "forces inside the solid: to hold particles leave them out of the group of fix {}",
-            fix->id, fix->style, held.first, fix_fsi->id);
+        refuse(error, Refused::CONSTRAINED, fix->id, fix->style, held.first, fix_fsi->id);
     }
 }
 

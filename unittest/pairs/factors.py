@@ -113,7 +113,7 @@ REFUSED = {
     **{("surface rule", levels): (r"requires pair_style fsi/fluid (without )?density/surface", {}) for levels in all_of("levels")},
     ("self", "symmetry plane"): (r"self yes does not go with symmetry yes", {}),
     **{(solid, "sub-steps"): (r"substeps requires pair_style fsi/solid/tl", {}) for solid in UPDATED},
-    ("plane stress", "3D"): (r"plane is for dimension 2 only", {}),
+    ("plane stress", "3D"): (r"plane stress requires dimension 2", {}),
     **{("reset_atoms", solid): (r"reset_atoms id", {}) for solid in TOTAL},
     ("reset_atoms", "sub-steps"): (r"reset_atoms id", {"solid": "svk"}),
 }

@@ -52,6 +52,6 @@ def test_map_of_ids_is_made_for_bonds_only(style, mapped):
 
 
 def test_map_must_come_before_fix_balance():
-    with pytest.raises(Exception, match="fsi/solid/tl must come before fix balance"):
+    with pytest.raises(Exception, match="fsi/solid/tl requires a place before fix balance"):
         with scene(id_map=False) as s:
             s.run_lines("fix b all balance 10 1.1 shift xy 5 1.1", "pair_style fsi/solid/tl")

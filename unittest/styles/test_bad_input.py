@@ -261,7 +261,7 @@ CASES = [
      "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi water NULL\n", r"no pair to act on"),
     ("both solid styles", *tl("", more="pair_style hybrid/overlay fsi/fluid sound 10 fsi/solid fsi/solid/tl\n"
      "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid materials.fsi NULL plate\n"
-     "pair_coeff * * fsi/solid/tl materials.fsi NULL plate\n"), r"either pair_style fsi/solid or fsi/solid/tl, not both"),
+     "pair_coeff * * fsi/solid/tl materials.fsi NULL plate\n"), r"fsi/solid does not go with pair_style fsi/solid/tl"),
     ("tl couple full", *tl("", more="pair_style hybrid fsi/fluid sound 10 couple full fsi/solid/tl\n"
      "pair_coeff * * fsi/fluid materials.fsi water plate\npair_coeff * * fsi/solid/tl materials.fsi NULL plate\n"), r"couple wall"),
     ("two materials of a solid", HYBRID, "pair_style hybrid fsi/fluid sound 10 fsi/solid/tl\npair_coeff * * fsi/fluid materials.fsi water plate\n"

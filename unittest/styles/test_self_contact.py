@@ -257,4 +257,4 @@ def test_self_must_be_on_when_the_reference_is_taken(tmp_path):
     run(tmp_path, deck().replace("self yes", "") + "run 1\nwrite_restart r.off")
     text = "read_restart r.off\nfsi/material rubber solid rho 1000 young 1e5 poisson 0.3\npair_style fsi/solid/tl contact 2 self yes\npair_coeff * * NULL rubber\nfix 1 all fsi 0.1 wendland 1.5\ntimestep 1e-3\nrun 1\n"
     done = lammps(tmp_path, text)
-    assert done.status != 0 and re.search("self yes needs positions in the reference, .* before the first run", done.errors[0])
+    assert done.status != 0 and re.search("self yes requires bodies that had it from their first run on", done.errors[0])

@@ -175,7 +175,7 @@ def test_off_up_to_a_bound():
     assert not np.array_equal(forces(0.35), forces(0.35, "volumetric smoothed"))
 
 
-@pytest.mark.parametrize("words, message", [("plane stress", "not for plane stress, which does not lock"), ("damage 0.2", "does not go with damage")])
+@pytest.mark.parametrize("words, message", [("plane stress", "does not go with plane stress: it does not lock"), ("damage 0.2", "does not go with damage")])
 def test_refused(words, message):
     with pytest.raises(Exception, match=message):
         forces(0.49, words + " volumetric smoothed")

@@ -164,7 +164,7 @@ BAD = [
     ("outside the box", {"zone": ZONE.replace("1 3", "3 5")}, r"from 3 to 5 along x, must be inside the box, from 0 to 4"),
     ("no ends", {"zone": ZONE.replace("1 3", "INF 3")}, r"must be inside the box"),
     ("outside of faces", {"zone": ZONE.replace("units", "side out units")}, r"has no ends along x"),
-    ("moves", {"zone": "variable m equal 0.1*step\n" + ZONE + " move v_m NULL NULL"}, r"must not move nor change"),
+    ("moves", {"zone": "variable m equal 0.1*step\n" + ZONE + " move v_m NULL NULL"}, r"requires a region that does not move or change"),
     ("NaN", {"zone": ZONE + "\nvariable u atom 1e200*1e200*(y-0.5)"}, r"velocity -?(inf|nan) along x of atom \d+ is no number, see variable u"),
     ("summation", {}, r"Fix fsi/stream density requires density by continuity, as fix fsi scheme standard has it: a sum cannot be damped"),
     ("a solid", {"start": ATOMS + "region solid block 2 2.3 0.3 0.6 INF INF units box\nset region solid type 2",
