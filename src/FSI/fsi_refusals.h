@@ -109,8 +109,7 @@ namespace FSI {
         CONSTRAINED = {NOT_WITH, "A solid with sub-steps", "fix {} (style {}) on atom {}",
                        "it does not see forces inside the solid: leave what is held out of the "
                        "group of fix {}"},
-        RIGID_STYLES = {NOT_WITH, "An elastic body with sub-steps",
-                        "fix {} (style {}) of its particles", "expected {}"},
+        RIGID_STYLES = {NOT_WITH, "A body with sub-steps", "fix {} (style {})", "expected {}"},
 
         // open ends, streams, levels
         END_DENSITY = {REQUIRES, "{}", STANDARD, "a sum cannot be prescribed"},
