@@ -19,7 +19,6 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_keywords.h"
-#include "fsi_nearest_image.h"
 #include "fsi_part.h"
 #include "neighbor.h"
 #include "update.h"

@@ -22,7 +22,6 @@
 #include "fsi_keywords.h"
 #include "fsi_record.h"
 #include "fsi_refusals.h"
-#include "fsi_value.h"
 #include "group.h"
 #include "math_const.h"
 #include "neighbor.h"

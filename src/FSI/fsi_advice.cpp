@@ -307,15 +307,14 @@ static bool spacing(const Census &c)
     c.warn("{} fluid particles, the first of them atom {}, are inside a body or wall: fsi/displace "
            "takes out the fluid in whose place a body is",
            inside.count, inside.first);
-  else if (c.at_first() && all.r < 0.4 && all.around < 0)
-    c.warn(
-        "atoms {} and {} are {:.2g} spacings apart: do bodies or phases overlap? Put them on one "
-        "lattice, or fsi/displace",
-        all.a, all.b, all.r);
   else if (c.at_first() && all.r < 0.4)
-    c.warn("atoms {} and {} are {:.2g} spacings apart around the periodic box: make it a whole "
-           "number of spacings long in {}",
-           all.a, all.b, all.r, "xyz"[all.around]);
+    c.warn("atoms {} and {} are {:.2g} spacings apart{}", all.a, all.b, all.r,
+           all.around < 0
+               ? std::string(": do bodies or phases overlap? Put them on one lattice, or "
+                             "fsi/displace")
+               : fmt::format(" around the periodic box: make it a whole number of "
+                             "spacings long in {}",
+                             "xyz"[all.around]));
   return true;
 }
 

@@ -19,7 +19,6 @@
 #include "fix_fsi.h"
 #include "force.h"
 #include "fsi_gather.h"
-#include "fsi_nearest_image.h"
 #include "group.h"
 #include "math_extra.h"
 #include "neighbor.h"

@@ -309,6 +309,18 @@ namespace FSI {
     return s;
   }
 
+  // Calls f(level, kernel) for each spacing of fluids with a kernel whose W is multiplied with the
+  // volume of its particles, that of the coarsest being 1: weights of means over fluids around
+  template <class Discretization, class F> void for_levels(const Discretization &disc, F &&f)
+  {
+    for (size_t l = 0; l < disc.levels.size(); l++)
+      with_kernel(disc.kernel, disc.dim, disc.levels[l].h, [&](auto kernel) {
+        const double ratio = disc.levels[l].dx / disc.dx;
+        kernel.norm *= disc.dim == 3 ? ratio * ratio * ratio : ratio * ratio;
+        f(l, kernel);
+      });
+  }
+
 }    // namespace FSI
 }    // namespace LAMMPS_NS
 

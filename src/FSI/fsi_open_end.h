@@ -20,9 +20,9 @@
 
 #include "atom.h"
 #include "fmt/format.h"
+#include "fsi_keywords.h"
 #include "fsi_population.h"
 #include "fsi_scene.h"
-#include "fsi_value.h"
 
 #include <algorithm>
 #include <array>

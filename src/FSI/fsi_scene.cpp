@@ -224,3 +224,10 @@ Facts FSI::facts_of_solids(LAMMPS *lmp)
 {
   return facts_of(lmp, Facts::OF_SOLIDS, Facts::OF_TOTAL_LAGRANGIAN_SOLIDS);
 }
+
+void FSI::to_nearest_image(const Domain &box, double *d)
+{
+  for (int k = 0; k < 3; k++)
+    if (box.periodicity[k] && std::fabs(d[k]) > box.prd_half[k])
+      d[k] = std::remainder(d[k], box.prd[k]);
+}

@@ -27,6 +27,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class Domain;
 class Fix;
 class LAMMPS;
 
@@ -188,6 +189,10 @@ namespace FSI {
    private:
     LAMMPS *const instance;
   };
+
+  // The shortest of a difference's periodic images, as Domain::minimum_image() gives it, whose
+  // arguments differ between releases of LAMMPS; boxes are orthogonal
+  void to_nearest_image(const Domain &, double *d);
 
 }    // namespace FSI
 }    // namespace LAMMPS_NS

@@ -23,7 +23,6 @@
 #include "fsi_gather.h"
 #include "fsi_kernel.h"
 #include "fsi_limits.h"
-#include "fsi_nearest_image.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
 #include "fsi_scene.h"

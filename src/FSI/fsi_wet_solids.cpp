@@ -17,7 +17,7 @@
 #include "compute_fsi_force.h"
 #include "fix_fsi.h"
 #include "force.h"
-#include "fsi_levels.h"
+#include "fsi_kernel.h"
 #include "fsi_pair_sets.h"
 #include "fsi_tensor.h"
 #include "neighbor.h"

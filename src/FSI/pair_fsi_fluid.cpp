@@ -24,7 +24,6 @@
 #include "fsi_find.h"
 #include "fsi_fluid_loops.h"
 #include "fsi_kernel.h"
-#include "fsi_levels.h"
 #include "fsi_pair_laws.h"
 #include "fsi_pair_sets.h"
 #include "fsi_profile.h"

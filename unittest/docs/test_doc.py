@@ -129,12 +129,12 @@ def run_time_messages():
     found = []
     for source in paths.sources("*.cpp").values():
         code = source.read_text()
-        for text in re.findall(r'(?:FLERR,\s+|fmt::format\(\s*)((?:"[^"]*"\s*)+)', code):
+        for text in re.findall(r'(?:FLERR,\s+|fmt::format\(\s*|c\.warn\(\s*)((?:"[^"]*"\s*)+)', code):
             text = re.sub(r"\{[^}]*\}", "|", re.sub(r'"\s*"', "", text).strip().strip('"')).removeprefix("Fix fsi/dt: ")
             if re.match(r"(\w+ )*atoms? (type )?\||on step \|", text, re.I):
                 found.append(max((part.strip(" ,.") for part in text.split(":")[0].split("|")), key=lambda part: len(part.split())))
         if source.stem == "fix_fsi_watch":
-            found += re.findall(r'^    \{"\w+", "([^"]+)"', code, re.M)
+            found += re.findall(r'\{[A-Z]+, "\w+", "([^"]+)"', code)
     return found
 
 
