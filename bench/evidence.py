@@ -247,7 +247,7 @@ def page():
              "An effect that a script does not name is not computed, not stored and not sent:", "",
              "- +0 instructions: the bare scene runs no function of an effect that is not named. Counted by valgrind, to 0.2 %.",
              "- +0 bytes: a particle takes what the bare loops and each named effect need, counted by hand.",
-             "- +0 messages: what two ranks send is counted around the MPI calls and equals what *fix fsi* announces.", "",
+             "- +0 messages: what two ranks send is counted around the MPI calls and equals a count by hand.", "",
              "``unittest/tools/test_pay.py`` proves each of the three in every run of the tests. What each effect adds is on the page of",
              ":doc:`effects <../cost/effects>`."]
     return "\n".join(lines) + "\n"
