@@ -20,6 +20,7 @@
 #include "fix_fsi_stress.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
+#include "fsi_refusals.h"
 #include "fsi_tensor.h"
 #include "memory.h"
 #include "pair_fsi_solid_tl.h"
@@ -61,7 +62,7 @@ void ComputeFSIAtom::init()
   const auto *const stress = FixFSIStress::find(lmp);
   if (std::find(quantity.begin(), quantity.end(), PLASTIC) != quantity.end() &&
       (!stress || !stress->plastic))
-    error->all(FLERR, "Compute fsi/atom plastic/strain requires fix fsi/stress plastic");
+    refuse(error, Refused::PLASTIC_STRAIN);
 }
 
 void ComputeFSIAtom::grow()

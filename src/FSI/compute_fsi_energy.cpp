@@ -18,6 +18,7 @@
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
 #include "force.h"
+#include "fsi_refusals.h"
 #include "pair_fsi_solid_tl.h"
 #include "update.h"
 
@@ -30,7 +31,7 @@ ComputeFSIEnergy::ComputeFSIEnergy(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), fix_fsi(nullptr)
 {
   if (narg != 3) error->all(FLERR, "Compute fsi/energy takes no arguments");
-  if (igroup) error->all(FLERR, "Compute fsi/energy must use group all: pairs have no group");
+  if (igroup) refuse(error, Refused::ENERGY_GROUP);
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
   size_vector = NHAVE + Ledger::NTERM;

@@ -23,6 +23,7 @@
 #include "fsi_keywords.h"
 #include "fsi_limits.h"
 #include "fsi_record.h"
+#include "fsi_refusals.h"
 #include "group.h"
 #include "modify.h"
 #include "output.h"
@@ -64,11 +65,8 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
   if (of_fluid == 0.0) of_fluid = cfl > 0.0 ? cfl : Limits::FLUID_FACTOR;
   if (of_solid == 0.0) of_solid = cfl > 0.0 ? cfl : Limits::SOLID_FACTOR;
   if (low >= high) error->all(FLERR, "Fix fsi/dt min {} must be below max {}", low, high);
-  if (automatic && check)
-    error->all(FLERR,
-               "Fix fsi/dt substeps auto cannot be combined with check: a check changes nothing");
-  if (end < BIG && check)
-    error->all(FLERR, "Fix fsi/dt stop cannot be combined with check: a check changes nothing");
+  if (automatic && check) refuse(error, Refused::CHECK_SUBSTEPS);
+  if (end < BIG && check) refuse(error, Refused::CHECK_STOP);
 
   nevery = end < BIG ? 1 : interval;
   limit.assign(NLIMIT, BIG);
@@ -91,22 +89,15 @@ void FixFSIDt::init()
   if (update->dt <= 0.0 || update->dt >= BIG)
     error->all(FLERR, "Fix fsi/dt: timestep {} must be > 0 and below {:g}", update->dt, BIG);
   if (check) return;
-  if (!modify->get_fix_by_style("^dt/reset$").empty())
-    error->all(FLERR, "Fix fsi/dt and fix dt/reset cannot both set the time step");
+  if (!modify->get_fix_by_style("^dt/reset$").empty()) refuse(error, Refused::RESET_STEP);
   for (auto &fix : modify->get_fix_by_style("^move$"))
-    error->all(FLERR,
-               "Fix fsi/dt: fix {} (style {}) cannot have its time step changed: use fix fsi/move, "
-               "which can",
-               fix->id, fix->style);
+    refuse(error, Refused::MOVE_STEP, fix->id, fix->style);
   // the time step changes when fix fsi begins its step: what moves earlier would still take the old
   // one
   for (auto &fix : modify->get_fix_list()) {
     if (fix == fix_fsi) break;
     if (modify->get_fix_mask(fix) & INITIAL_INTEGRATE)
-      error->all(FLERR,
-                 "Fix fsi/dt: fix {} (style {}) must be defined after fix {}, with which the time "
-                 "step changes",
-                 fix->id, fix->style, fix_fsi->id);
+      refuse(error, Refused::STEP_ORDER, fix->id, fix->style, fix_fsi->id);
   }
   if (restored) {
     // whatever a timestep command between read_restart and here has said

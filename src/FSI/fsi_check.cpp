@@ -23,6 +23,7 @@
 #include "fsi_pack.h"
 #include "fsi_part.h"
 #include "fsi_record.h"
+#include "fsi_refusals.h"
 #include "fsi_scene.h"
 #include "modify.h"
 #include "neighbor.h"
@@ -83,10 +84,7 @@ void Check::before_init()
   const bool fluid = facts_of_fluids(lmp).style;
   if (fluid)
     for (const auto &fix : modify->get_fix_by_style("^deform"))
-      error->all(FLERR,
-                 "Fix {} (style deform) moves particles with the box, and densities of fluids "
-                 "would not follow: move walls instead",
-                 fix->id);
+      refuse(error, Refused::DEFORM, fix->id);
   if (update->dt < 0.0) error->all(FLERR, "Fix fsi: timestep {} must be >= 0", update->dt);
   if (comm->cutghostuser > 0.0 && comm->cutghostuser < disc.largest_cut)
     error->all(FLERR, "Kernel support {} of fix fsi is larger than the comm_modify cutoff {}",
@@ -94,18 +92,15 @@ void Check::before_init()
   if (domain->dimension != disc.dim)
     error->all(FLERR, "Dimension was {} when fix fsi was defined and is {} now", disc.dim,
                domain->dimension);
-  if (domain->triclinic) error->all(FLERR, "Fix fsi does not support triclinic boxes");
+  if (domain->triclinic) refuse(error, Refused::TRICLINIC);
 
   const auto solid = facts_of_solids(lmp).style;
   const bool solid_tl = solid == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   if (!solid && !fluid)
     error->all(FLERR, "Fix fsi requires pair_style fsi/fluid, fsi/solid or fsi/solid/tl");
-  if (step.substeps > 1 && !solid_tl)
-    error->all(FLERR, "Fix fsi substeps requires pair_style fsi/solid/tl");
+  if (step.substeps > 1 && !solid_tl) refuse(error, Refused::SUBSTEPS);
   if (solid_tl && disc.density_solid != Discretization::CONTINUITY)
-    error->all(FLERR,
-               "Fix fsi solid density summation and ratio are for pair_style fsi/solid: that of "
-               "fsi/solid/tl follows from its strain");
+    refuse(error, Refused::SUMS_OF_SOLIDS);
 }
 
 void Check::materials()
@@ -201,16 +196,6 @@ void Check::integrators() const
 // The coarsest fluid's spacing is dx. Bodies and walls meet fluids with the fluid's kernel: they
 // may be coarser as long as its support holds so many of their spacings. With fewer it tells their
 // particles one by one (theory.rst). Which of several fluids they meet is seen at the start.
-static constexpr char STANDARD[] = "density by continuity, as fix fsi scheme standard has it",
-                      COUPLE_WALL[] = "couple wall in pair_style fsi/fluid",
-                      OWN_VOLUMES[] = "a pressure of the body's own is that of its own volumes";
-
-void Check::require(const std::string &what, bool met, const char *setting,
-                    const char *reason) const
-{
-  if (!met) error->all(FLERR, "{} requires {}: {}", what, setting, reason);
-}
-
 void Check::spacings() const
 {
   constexpr double FINEST = 4.0, COARSEST = 2.0, HELD = 1.5, ROUND = 1.0 + 1.0e-6;
@@ -223,17 +208,12 @@ void Check::spacings() const
     if (s.species == FLUID) {
       if (of_type > dx)
         error->all(FLERR, "{}, a fluid: dx, {:g}, is to be that of the coarsest fluid", what, dx);
-      fluid_spacings(what + ", a fluid,");
+      fluid_spacings(of_type, t);
       continue;
     }
-    if (s.form == UPDATED_LAGRANGIAN)
-      error->all(FLERR,
-                 "{}: the sums of pair_style fsi/solid are over whatever is near, with one kernel. "
-                 "Use pair_style fsi/solid/tl, whose "
-                 "bonds are those of one body",
-                 what);
-    require(what, disc.density_solid == Discretization::CONTINUITY, STANDARD,
-            "number densities are those of one spacing");
+    if (s.form == UPDATED_LAGRANGIAN) refuse(error, Refused::SPACING_UPDATED, of_type, t);
+    if (disc.density_solid != Discretization::CONTINUITY)
+      refuse(error, Refused::SPACING_DENSITY, of_type, t);
     if (!fluid.style) continue;
     if (of_type > ROUND * std::min(COARSEST * dx, disc.cut / HELD))
       error->all(FLERR,
@@ -244,20 +224,20 @@ void Check::spacings() const
     if (ROUND * FINEST * of_type < finest)
       error->all(FLERR, "{} is {:.3g} times finer than the fluid's dx {:g}: expected {:g} at most",
                  what, finest / of_type, finest, FINEST);
-    require(what, !fluid.couples_stress, COUPLE_WALL, OWN_VOLUMES);
+    if (fluid.couples_stress) refuse(error, Refused::SPACING_COUPLE, of_type, t);
   }
 }
 
 // what one lattice alone has a number density for
-void Check::fluid_spacings(const std::string &what) const
+void Check::fluid_spacings(double dx, int t) const
 {
   const Facts fluid = facts_of_fluids(lmp);
-  const char *const jump = "number densities are not smooth where two lattices meet";
-  require(what, disc.density_fluid == Discretization::CONTINUITY, STANDARD, jump);
-  require(what, disc.density_solid != Discretization::SUMMATION,
-          "another mode than fix fsi solid summation", jump);
-  require(what, !fluid.density_at_surfaces, "pair_style fsi/fluid density/surface no", jump);
-  require(what, !fluid.couples_stress, COUPLE_WALL, OWN_VOLUMES);
+  if (disc.density_fluid != Discretization::CONTINUITY)
+    refuse(error, Refused::SPACING_FLUIDS, dx, t);
+  if (disc.density_solid == Discretization::SUMMATION)
+    refuse(error, Refused::SPACING_SOLIDS, dx, t);
+  if (fluid.density_at_surfaces) refuse(error, Refused::SPACING_SURFACES, dx, t);
+  if (fluid.couples_stress) refuse(error, Refused::SPACING_FLUIDS_COUPLE, dx, t);
 }
 
 void Check::thin_bodies() const
@@ -267,13 +247,13 @@ void Check::thin_bodies() const
   for (int t = 1; t <= atom->ntypes; t++) {
     const int species = disc.state[t].species;
     if (disc.thin[t] == 0.0 || species == NONE) continue;
-    const auto what = fmt::format("Fix fsi thin {}", t);
     if (species == FLUID)
-      error->all(FLERR, "{}: atom type {} is a fluid, expected a solid or a wall of particles",
-                 what, t);
-    require(what, standard, STANDARD, "number densities would jump where a body comes between");
-    require(what, !facts_of_fluids(lmp).couples_stress, COUPLE_WALL,
-            "each side has its own pressure");
+      error->all(
+          FLERR,
+          "Fix fsi thin {}: atom type {} is a fluid, expected a solid or a wall of particles", t,
+          t);
+    if (!standard) refuse(error, Refused::THIN_DENSITY, t);
+    if (facts_of_fluids(lmp).couples_stress) refuse(error, Refused::THIN_COUPLE, t);
   }
 }
 

@@ -63,9 +63,8 @@ namespace FSI {
     bool warned_dense = false, warned_soft = false;
     Finding found = {};    // the first thing that is not finite, or the worst of this rank
 
-    void require(const std::string &what, bool met, const char *setting, const char *reason) const;
     void spacings() const;
-    void fluid_spacings(const std::string &what) const;
+    void fluid_spacings(double dx, int type) const;
     void compare_densities();
     void held_parts() const;
     void integrators() const;

@@ -12,6 +12,7 @@
 ------------------------------------------------------------------------- */
 
 #include "fsi_set.h"
+#include "fsi_refusals.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -78,7 +79,7 @@ void FSISet::command(int narg, char **arg)
   if (what == HYDROSTATIC && std::none_of(forces.all.begin(), forces.all.end(), [](const auto &f) {
         return f.mask;
       }))
-    error->all(FLERR, "Fsi/set hydrostatic requires fix gravity");
+    refuse(error, Refused::HYDROSTATIC);
 
   std::vector<double> each(atom->nlocal, number);
   if (variable >= 0) input->variable->compute_atom(variable, igroup, each.data(), 1, 0);

@@ -414,20 +414,20 @@ BAD = [
     ("fix dt all fsi/dt 10 cfl/solid -1", r"cfl/solid -1 must be > 0"),
     ("fix dt all fsi/dt 10 stop 0", r"stop 0 must be > 0"),
     ("fix dt all fsi/dt 10 stop never", r"never"),
-    ("fix dt all fsi/dt 10 stop 1 check warn", r"stop cannot be combined with check"),
+    ("fix dt all fsi/dt 10 stop 1 check warn", r"stop does not go with check"),
     ("fix dt all fsi/dt 10 growth 0.9", r"growth 0.9 must be > 1"),
     ("fix dt all fsi/dt 10 min 1 max 0.5", r"min 1 must be below max 0.5"),
     ("fix dt all fsi/dt 10 substeps 3", r"substeps 3: expected keep or auto"),
     ("fix dt all fsi/dt 10 check yes", r"check yes: expected no, warn or error"),
     ("fix dt all fsi/dt 10 color red", r"keyword color"),
-    ("fix dt all fsi/dt 10 substeps auto check warn", r"cannot be combined with check"),
+    ("fix dt all fsi/dt 10 substeps auto check warn", r"does not go with check"),
     ("fix dt all fsi/dt 10\ntimestep 0", r"Fix fsi/dt: timestep 0 must be > 0"),
     ("fix dt all fsi/dt 10\ntimestep -1e-5", r"timestep -1e-05 must be >= 0"),
     ("fix dt all fsi/dt 10\ntimestep 1e308", r"Fix fsi/dt: timestep 1e\+308 must be > 0 and below"),
     ("fix dt all fsi/dt 10\nfix dt2 all fsi/dt 10", r"only one fix fsi/dt"),
-    ("fix dt all fsi/dt 10\nfix reset all dt/reset 1 NULL NULL 0.1", r"fix dt/reset cannot both"),
+    ("fix dt all fsi/dt 10\nfix reset all dt/reset 1 NULL NULL 0.1", r"fix dt/reset: both"),
     ("fix dt all fsi/dt 10 min 1e-3", r"on step 0 the limit .* of (elastic waves|sound|acceleration).* is below the smallest time step 0.001"),
-    ("unfix sph\ngroup one id 1\ngroup rest subtract all one\nfix nve one nve\nfix sph rest fsi 0.01 wendland 1.5\nfix dt all fsi/dt 10", r"fix nve \(style nve\) must be defined after fix sph"),
+    ("unfix sph\ngroup one id 1\ngroup rest subtract all one\nfix nve one nve\nfix sph rest fsi 0.01 wendland 1.5\nfix dt all fsi/dt 10", r"fix nve \(style nve\) after fix sph"),
     ("unfix sph\nfix dt all fsi/dt 10", r"requires fix fsi"),
 ]
 
@@ -444,4 +444,4 @@ def test_fix_move_is_told(tmp_path):
     scene = dam_gate(2)
     text = scene.text().replace("fix sph all", "group water type 1\ngroup plate type 2\nfix sph water")
     done = lammps(tmp_path, text + "fix drive plate move linear -0.1 0 0\nfix dt all fsi/dt 10\nrun 0\n", scene_data=scene.data())
-    assert done.status != 0 and "Fix fsi/dt: fix drive (style move) cannot have its time step changed: use fix fsi/move, which can" in done.errors[0]
+    assert done.status != 0 and "Fix fsi/dt does not go with fix drive (style move): its time step cannot change: use fix fsi/move" in done.errors[0]
