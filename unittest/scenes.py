@@ -6,7 +6,6 @@ Needs the environment of tools/pytest (fsi.launch.environment()): the library pa
 
 import json
 import subprocess
-import tempfile
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -86,6 +85,31 @@ def cloud(n, dx, seed=1, jitter=0.2, origin=0.0, vmax=0.0):
     return x, v
 
 
+def pair_styles(materials, fluid, solid, solid_style):
+    """Materials by name in the order of types, and the pair styles of what they are: a fluid's, a solid's or both."""
+    has = {m.split()[0] for m in materials.values()}
+    lines = [f"fsi/material {name} {m}" for name, m in materials.items()]
+    styles = [("fsi/fluid", fluid, "")] * ("fluid" in has) + [(solid_style, solid, "solid")] * ("solid" in has)
+    lines.append(f"pair_style {'hybrid ' * (len(styles) == 2)}" + " ".join(f"{style} {keywords}" for style, keywords, _ in styles))
+    for style, _, kind in styles:
+        names = " ".join(name if m.startswith(kind) or len(styles) == 1 else "NULL" for name, m in materials.items())
+        lines.append(f"pair_coeff * * {f'{style} ' * (len(styles) == 2)}NULL {names}")
+    return "\n".join(lines) + "\n"
+
+
+def particles(x, kind=1, mol=0, v=None, rho=0.0, *, box, types=0, ids=None):
+    """A data file of particles x (n, 3); types, bodies and densities of each or of all; box: (lo, hi) of each axis. Mass 0 is that of the stress-free
+    lattice."""
+    kind, mol, rho = (np.broadcast_to(of, len(x)).tolist() for of in (np.asarray(kind, int), np.asarray(mol, int), np.asarray(rho, float)))
+    ids, box, x = range(1, len(x) + 1) if ids is None else ids.tolist(), np.asarray(box, float).tolist(), np.asarray(x, float).tolist()
+    row = lambda p: " ".join(map(repr, p))
+    lines = ["particles", "", f"{len(x)} atoms", f"{max(types, *kind)} atom types", "", *(f"{row(ends)} {a}lo {a}hi" for ends, a in zip(box, "xyz")), "",
+             "Atoms # fsi", "", *(f"{i} {m} {k} {r!r} 0 {row(p)}" for i, m, k, r, p in zip(ids, mol, kind, rho, x))]
+    if v is not None:
+        lines += ["", "Velocities", "", *(f"{i} {row(p)}" for i, p in zip(ids, np.asarray(v, float).tolist()))]
+    return "\n".join(lines) + "\n"
+
+
 class Scene:
     """A scene of given particles. Types count from 1 and name `materials`, lines of a material file without the name.
 
@@ -112,41 +136,26 @@ class Scene:
         if dim == 2:
             lo, hi = (*lo[:2], -dx / 2), (*hi[:2], dx / 2)
         self.lmp = Library(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
-        has = {m.split()[0] for m in materials} - {"wall"}
-        styles = {"fluid": f"fsi/fluid sound 10 {fluid}" if "sound" not in fluid else f"fsi/fluid {fluid}",
-                  "solid": f"{solid_style} {solid}"}
-        sub = {"fluid": "fsi/fluid", "solid": solid_style}
-        names = [f"m{k}" for k in range(len(materials))]
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "materials.fsi"
-            file.write_text("# DATE: 2026-01-01 UNITS: si CITATION: none\n"
-                            + "".join(f"{n} {m}\n" for n, m in zip(names, materials)))
-            self.run_lines(f"""units si
-                dimension {dim}
-                boundary {boundary or ('f f p' if dim == 2 else 'f f f')}
-                atom_style {atom_style}
-                atom_modify {'map array ' if id_map else ''}sort 0 0
-                newton on
-                region box block {lo[0]} {hi[0]} {lo[1]} {hi[1]} {lo[2]} {hi[2]}
-                create_box {len(materials)} box""")
-            types = np.broadcast_to(type, self.n).astype(int).tolist()
-            self.lmp.create_atoms(self.n, list(range(1, self.n + 1)), types, x.ravel().tolist(),
-                                  None if v is None else np.asarray(v, float).ravel().tolist())
-            assert self.lmp.get_natoms() == self.n, "particles outside the box"
-            self.put("molecule", np.broadcast_to(mol, self.n))
-            if len(has) == 2:
-                null = {s: " ".join(n if s == "fluid" or m.startswith(s) else "NULL" for n, m in zip(names, materials))
-                        for s in has}
-                self.run_lines(f"pair_style hybrid {styles['fluid']} {styles['solid']}",
-                               *(f"pair_coeff * * {sub[s]} {file} {null[s]}" for s in sorted(has)))
-            else:
-                self.run_lines(f"pair_style {styles[has.copy().pop()]}", f"pair_coeff * * {file} {' '.join(names)}")
+        self.run_lines(f"""units si
+            dimension {dim}
+            boundary {boundary or ('f f p' if dim == 2 else 'f f f')}
+            atom_style {atom_style}
+            atom_modify {'map array ' if id_map else ''}sort 0 0
+            newton on
+            region box block {lo[0]} {hi[0]} {lo[1]} {hi[1]} {lo[2]} {hi[2]}
+            create_box {len(materials)} box""")
+        types = np.broadcast_to(type, self.n).astype(int).tolist()
+        self.lmp.create_atoms(self.n, list(range(1, self.n + 1)), types, x.ravel().tolist(),
+                              None if v is None else np.asarray(v, float).ravel().tolist())
+        assert self.lmp.get_natoms() == self.n, "particles outside the box"
+        self.put("molecule", np.broadcast_to(mol, self.n))
+        self.run_lines(pair_styles({f"m{k}": m for k, m in enumerate(materials)}, fluid if "sound" in fluid else f"sound 10 {fluid}", solid, solid_style))
         if held is not None:
             ids = " ".join(map(str, np.flatnonzero(held) + 1))
             self.run_lines(f"group held id {ids}", "group moving subtract all held")
         self.run_lines(f"fix sph {'all' if held is None else 'moving'} fsi {dx} {kernel} {hdx} {density}", f"timestep {dt}", f"neighbor {skin * dx} bin",
                        "neigh_modify every 1 delay 0 check yes", "thermo_modify lost error norm no")
-        if "solid" in has:
+        if any(m.startswith("solid") for m in materials):
             self.run_lines(f"fix stress all fsi/stress {stress}" if solid_style == "fsi/solid" else "",
                            "compute sigma all fsi/atom p sxx syy szz sxy sxz syz")
         else:
@@ -288,15 +297,8 @@ class Deck:
         return 0.2 * DX / SOUND[2 if self.has_solid else 1]
 
     def data(self):
-        """The particles as a LAMMPS data file; mass 0: that of the stress-free lattice."""
-        lines = ["FSI test scene", "", f"{len(self.x)} atoms", f"{1 + self.has_solid} atom types", ""]
-        lines += [f"{lo!r} {hi!r} {a}lo {a}hi" for (lo, hi), a in zip(self.box.tolist(), "xyz")]
-        lines += ["", "Atoms # fsi", ""]
-        lines += [f"{i} {t - 1} {t} {r!r} 0.0 {p[0]!r} {p[1]!r} {p[2]!r}" for i, t, r, p in
-                  zip(self.ids.tolist(), self.type.tolist(), self.rho.tolist(), self.x.tolist())]
-        lines += ["", "Velocities", ""]
-        lines += [f"{i} {p[0]!r} {p[1]!r} {p[2]!r}" for i, p in zip(self.ids.tolist(), self.v.tolist())]
-        return "\n".join(lines) + "\n"
+        """The particles as a LAMMPS data file."""
+        return particles(self.x, self.type, self.type - 1, self.v, self.rho, box=self.box, types=1 + self.has_solid, ids=self.ids)
 
     def setup(self, processors="* * *"):
         """Input from nothing to the empty box' boundary conditions."""

@@ -4,6 +4,7 @@ import re
 import subprocess
 
 import pytest
+from decks import FIX, GRAVITY, PAIRS, SETUP, STRESS
 from scenes import run
 
 from fsi import launch, paths
@@ -21,29 +22,6 @@ STYLES |= {name: name.replace("_", "/") for name in COMMANDS}
 STYLES.pop("fix_FSI_REFERENCE")  # internal
 STYLES.pop("fix_FSI_HISTORY")
 STYLES.pop("fix_fsi_outlet")  # on the page of fix fsi/inlet
-
-SETUP = """units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.05 0.3 -0.05 0.3 -0.005 0.005
-create_box 2 box
-lattice sq 0.01 origin 0.5 0.5 0
-region water block 0 0.1 0 0.1 INF INF units box
-region plate block 0.1 0.15 0 0.1 INF INF units box
-create_atoms 1 region water
-create_atoms 2 region plate
-group water type 1
-group plate type 2
-set group plate mol 1
-timestep 1e-5
-neighbor 0.003 bin
-"""
-PAIRS = """pair_style hybrid fsi/fluid sound 16 fsi/solid
-pair_coeff * * fsi/fluid materials.fsi water plate
-pair_coeff * * fsi/solid materials.fsi NULL plate
-"""
-FIX, STRESS, GRAVITY = "fix sph all fsi 0.01 wendland 1.5\n", "fix stress all fsi/stress\n", "fix g all gravity 9.81 vector 0 -1 0\n"
 
 
 def lagrangian(text):

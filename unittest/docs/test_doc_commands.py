@@ -13,8 +13,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from decks import FIX, PAIRS, SETUP, STRESS
 from scenes import run
-from test_doc import FIX, PAIRS, SETUP, STRESS
 
 from fsi import gallery, launch, paths, scene
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from decks import box
 from scenes import run, run_scene
 
 from fsi import scene, series
@@ -44,19 +45,7 @@ def test_beam():
 def test_stiffness(tmp_path):
     """Two particles across and in width, in air, under a dead load of half of rho U^2 times its width: an inextensible beam has 2.454 and 0.749 b (scipy's
     solve_bvp). The whole width gave 2.455 and 0.765 b, at the end of 1.2 s."""
-    run(tmp_path, """
-units si
-atom_style fsi
-newton on
-boundary f f f
-variable ds equal 0.001
-region box block -0.05 0.08 -0.02 0.02 -0.004 0.06
-create_box 2 box
-lattice sc 0.001 origin 0.5 0.5 0.5
-region plate block -0.001 0.001 -0.001 0.001 -0.003 0.05 units box
-create_atoms 1 region plate
-set group all mol 1
-region foot block INF INF INF INF INF 0.001001 units box
+    run(tmp_path, box("-0.05 0.08 -0.02 0.02 -0.004 0.06", 0.001, dim=3, types=2, plate="-0.001 0.001 -0.001 0.001 -0.003 0.05") + """region foot block INF INF INF INF INF 0.001001 units box
 set region foot type 2
 group free type 1
 pair_style fsi/solid/tl artificial/visc 0.05 0

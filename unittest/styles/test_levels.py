@@ -5,10 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import DX, RUBBER, WATER, Deck, Kernel, Scene, close, cloud, difference, differing, lammps, lattice, pairs, run, sum_over, watch
-from test_restart import resume
-
-JUMP = 1.4
+from decks import GRIDS, JUMP, levels_gate, near, resume
+from scenes import (RUBBER, WATER, Kernel, Scene, close, cloud, difference, differing, lammps,
+                    lattice, pairs, run, sum_over, watch)
 
 
 def beside(dim, ratio=JUMP, n=6, jitter=0.2, vmax=0.5, dx=0.1):
@@ -22,15 +21,6 @@ def beside(dim, ratio=JUMP, n=6, jitter=0.2, vmax=0.5, dx=0.1):
 
 def levels(ratio=JUMP, dx=0.1, **options):
     return dict(dx=dx, density=f"spacing 2 {dx / ratio!r}", **{"materials": (WATER, WATER), **options})
-
-
-def near(s, x, fine, ratio=JUMP):
-    """Ordered pairs with the kernel of the mean spacing, and the volume of j's lattice over i's"""
-    h = np.where(fine, s.kernel.h / ratio, s.kernel.h)
-    i, j, d, r = pairs(x, s.kernel.cut)
-    kernel = Kernel(s.kernel.name, s.dim, 0.5 * (h[i] + h[j]))
-    omega = (h[j] / h[i])**s.dim
-    return i, j, d, r, kernel, omega
 
 
 def images(s, x, fine, floor, ratio=JUMP):
@@ -129,44 +119,10 @@ def test_ledger_closes():
     assert error[-1] < 5e-3 and error[2] < 0.6 * error[1] < 0.36 * error[0]
 
 
-class Levels(Deck):
-    """Coarse water (type 1), fine water (2) between mirror walls, and a plate of the fine spacing (3)"""
-
-    def data(self):
-        return super().data().replace("2 atom types", "3 atom types")
-
-    def physics(self, coeff=True):
-        return super().physics(coeff).replace("water plate", "water water plate").replace("NULL plate", "NULL NULL plate")
-
-
-def gate(dim, ratio=JUMP, **options):
-    n, dx = (10, 10) if dim == 2 else (5, 5, 5), DX / ratio
-    parts = [lattice(n, DX), lattice([10, *[round(ratio * k) for k in n[1:]]], dx), lattice([4, *[round(ratio * k) for k in n[1:]]], dx)]
-    parts[1][:, 0] += n[0] * DX
-    parts[2][:, 0] += n[0] * DX + 10 * dx
-    x = np.concatenate(parts)
-    type_ = np.repeat([1, 2, 3], [len(p) for p in parts])
-    random = np.random.default_rng(3)
-    shift, v = random.uniform(-0.05, 0.05, x.shape) * dx, random.uniform(-0.1, 0.1, x.shape)
-    if dim == 2:
-        shift[:, 2] = v[:, 2] = 0.0
-    rho = 1000.0 * (1 + random.uniform(-0.005, 0.005, len(x)))
-    box = np.stack([x.min(axis=0) - 2.5 * DX, x.max(axis=0) + 2.5 * DX], axis=1)
-    if dim == 2:
-        box[2] = -0.5 * DX, 0.5 * DX
-    walls = [(0, 1, 0.0, "velocity 0.1 0 0"), (1, 1, 0.0, "slip no"), *([(2, 1, 0.0, ""), (2, -1, n[2] * DX, "")] if dim == 3 else [])]
-    return Levels(dim, x + shift, v, type_, rho, box, walls,
-                  **{"solid_style": "fsi/solid/tl", "solid": "artificial/visc 0.1 0.1 hourglass 0.1", "sph": f"spacing 2 {dx!r} spacing 3 {dx!r} substeps 3",
-                     "fluid": "sound 10 couple wall artificial/visc 0.05 0.1 laminar/visc density/diffusion 0.1 shift 0.2 shift/every 2", **options})
-
-
-GRIDS = [(1, "1 1 1", "off"), (2, "2 1 1", "on"), (2, "1 2 1", "off"), (4, "2 2 1", "on")]
-
-
 @pytest.mark.parametrize("dim", [2, 3])
 def test_ranks_and_newton(tmp_path, dim):
     # Tolerances as in test_spacing.py
-    end, scene = watch(every=30) + "run 30\n", gate(dim)
+    end, scene = watch(every=30) + "run 30\n", levels_gate(dim)
     one = run(tmp_path / "one", scene.text() + end, scene_data=scene.data()).frames()
     for ranks, grid, newton in GRIDS:
         many = run(tmp_path / f"{ranks}{newton}", replace(scene, newton=newton).text(grid) + end, ranks, scene_data=scene.data()).frames()
@@ -177,7 +133,7 @@ def test_ranks_and_newton(tmp_path, dim):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
-    scene = gate(2)
+    scene = levels_gate(2)
     whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks, scene_data=scene.data()).frames()[-1]
     rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n", ranks).frames("rest.dump")[-1]
     assert whole.step == rest.step == 80 and differing(whole, rest) == []
@@ -190,7 +146,7 @@ def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
 ], ids=["summation", "surface", "coarse body"])
 def test_refused(tmp_path, edit, message):
     key, value = edit
-    scene = gate(2, fluid="sound 10 couple wall")
+    scene = levels_gate(2, fluid="sound 10 couple wall")
     scene = replace(scene, **{key: f"{scene.sph} {value}" if key == "sph" else value})
     result = lammps(tmp_path, scene.text() + "run 0\n", scene_data=scene.data())
     assert result.status and any(re.search(message, line) for line in result.errors), result.output[-1000:]
@@ -228,7 +184,7 @@ def test_room_before_a_plane_beside_a_jump():
 
 @pytest.mark.parametrize("ratio, warned", [(1.4, False), (2, True)])
 def test_jump_is_named(tmp_path, ratio, warned):
-    scene = gate(2, ratio)
+    scene = levels_gate(2, ratio)
     result = run(tmp_path, scene.text() + "run 0\n", scene_data=scene.data())
     assert bool(re.search(r"WARNING.*fluid particles, the first of them atom \d+, meet fluid more than 1\.45 times finer: pressure is noisy", result.output)) == warned
 

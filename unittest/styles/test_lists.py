@@ -4,39 +4,18 @@ import re
 
 import numpy as np
 import pytest
-
+from decks import INVISCID, deck
 from scenes import difference, run, watch
 
-DECK = """units si
-dimension 2
-boundary p {y} p
-atom_style fsi
-newton on
-processors {grid}
-region box block 0 1 0 1 -0.025 0.025
-create_box 1 box
-lattice sq 0.05 origin 0.5 0.5 0
-create_atoms 1 box
-{start}
-variable u atom {u}
-velocity all set v_u 0 0 units box
-pair_style fsi/fluid sound 20 tension yes density/diffusion 0.1
-pair_coeff * * water.fsi water
-fix sph all fsi 0.05 wendland 1.5
-{more}
-timestep 1e-3
-neighbor 0.0205 bin
-neigh_modify every 1 delay 0 check {check}
-thermo_modify lost error
-"""
-MATERIALS = "# DATE: 2026-01-01 UNITS: si CITATION: none\nwater fluid rho 1000\n"
-SHAKEN = "reset_atoms id sort yes\ndisplace_atoms all random 0.005 0.005 0 1 units box"
+SHAKEN = "reset_atoms id sort yes\ndisplace_atoms all random 0.005 0.005 0 1 units box\n"
 
 
 def stream(folder, u, steps, ranks=1, grid="* * *", start="", more="", check="yes", y="p"):
     """The run and how many lists it made."""
-    text = DECK.format(u=u, grid=grid, start=start, more=more, check=check, y=y) + watch(every=steps) + f"run {steps}\n"
-    result = run(folder, text, ranks, water_fsi=MATERIALS)
+    text = deck("0 1 0 1", 0.05, INVISCID, more, f"neigh_modify every 1 delay 0 check {check}", "thermo_modify lost error", water="", boundary=f"p {y} p",
+                before=[f"processors {grid}"], made=f"{start}variable u atom {u}\nvelocity all set v_u 0 0 units box", dt=1e-3, skin=0.41,
+                fluid="sound 20 tension yes density/diffusion 0.1")
+    result = run(folder, text + watch(every=steps) + f"run {steps}\n", ranks)
     return result, int(re.search(r"Neighbor list builds = (\d+)", result.output)[1])
 
 

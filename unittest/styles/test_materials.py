@@ -3,22 +3,10 @@
 import re
 
 import pytest
-from scenes import lammps, run
+from decks import box, materials
+from scenes import WATER, lammps, run
 
-SETUP = """units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.05 0.15 -0.05 0.15 -0.005 0.005
-create_box 2 box
-lattice sq 0.01 origin 0.5 0.5 0
-region water block 0 0.05 0 0.08 INF INF units box
-region plate block 0.05 0.08 0 0.08 INF INF units box
-create_atoms 1 region water
-create_atoms 2 region plate
-group plate type 2
-set group plate mol 1
-"""
+SETUP = box("-0.05 0.15 -0.05 0.15", 0.01, water="0 0.05 0 0.08", plate="0.05 0.08 0 0.08")
 PAIRS = """pair_style hybrid fsi/fluid sound 12.5 fsi/solid/tl
 pair_coeff * * fsi/fluid {file} water_inviscid {plate}
 pair_coeff * * fsi/solid/tl {file} NULL {plate}
@@ -33,7 +21,7 @@ variable y equal xcm(plate,y)
 print "END ${f} ${y}"
 """
 RUBBER = "solid rho 1100 young 3e6 poisson 0.45"
-MINE = f"# UNITS: si\nrubber {RUBBER}\nwater_inviscid fluid rho 500\n"
+MINE = materials(rubber=RUBBER, water_inviscid="fluid rho 500")
 
 
 def end(result):
@@ -43,8 +31,8 @@ def end(result):
 @pytest.fixture(scope="module")
 def expected(tmp_path_factory):
     """All in one file."""
-    whole = f"# UNITS: si\nrubber {RUBBER}\nwater_inviscid fluid rho 1000\n"
-    return end(run(tmp_path_factory.mktemp("whole"), SETUP + PAIRS.format(file="whole.fsi", plate="rubber") + REST, whole_fsi=whole))
+    return end(run(tmp_path_factory.mktemp("whole"), SETUP + PAIRS.format(file="whole.fsi", plate="rubber") + REST, 
+                   whole_fsi=materials(rubber=RUBBER, water_inviscid=WATER)))
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -5,7 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from scenes import DX, Scene, dam_gate, differing, lammps, lattice, run, watch
+from decks import start
+from scenes import DX, Scene, dam_gate, differing, lammps, lattice, particles, run, watch
 
 OMEGA = 2 * np.pi / 0.3
 STYLES = {  # arguments; where a particle from x is after t, and how fast
@@ -167,15 +168,7 @@ def test_order_in_time(tmp_path, name, low, high):
     kind = np.where(inside, 1, 2)
     ends = []
     for k in (1, 2, 4, 8):
-        lines = ["shaken", "", f"{len(x)} atoms", "2 atom types", "", "-0.1 0.2 xlo xhi", "-0.1 0.2 ylo yhi", "-0.005 0.005 zlo zhi", "", "Atoms # fsi", ""]
-        lines += [f"{i + 1} 0 {t} 0 0 {p[0]!r} {p[1]!r} 0.0" for i, (t, p) in enumerate(zip(kind.tolist(), x.tolist()))]
-        text = f"""
-units si
-dimension 2
-boundary f f p
-atom_style fsi
-read_data scene.data
-group water type 1
+        text = start("read_data scene.data") + f"""group water type 1
 group wall type 2
 pair_style fsi/fluid sound 10 tension yes
 pair_coeff * * materials.fsi water_inviscid wall
@@ -191,7 +184,7 @@ timestep {2e-4 / k}
 run {40 * k}
 write_dump all custom end.dump id x y modify sort id time yes format float %.17g
 """
-        end, = run(tmp_path / str(k), text, scene_data="\n".join(lines) + "\n").frames("end.dump")
+        end, = run(tmp_path / str(k), text, scene_data=particles(x, kind, box=[(-0.1, 0.2), (-0.1, 0.2), (-0.005, 0.005)])).frames("end.dump")
         ends.append(end.vector("xy")[inside])
     slopes = [np.log2(np.linalg.norm(a - b) / np.linalg.norm(b - c)) for a, b, c in zip(ends, ends[1:], ends[2:])]
     print(f"order in dt of water in a box shaken by {name}: {slopes}")

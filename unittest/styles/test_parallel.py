@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
+from decks import box
 from scenes import dam_gate, difference, fluid_box, run, watch
 
 
@@ -241,11 +241,7 @@ def bytes_on_every_rank(folder, text, ranks=4):
     return int(re.findall(r"bytes on every rank (\d+)", output)[-1])
 
 
-COMMON = """units si
-dimension 2
-atom_style fsi
-atom_modify map array
-{start}
+PHYSICS = """
 fsi/material w fluid rho 1000
 fsi/material b wall rho 1000
 timestep 1e-4
@@ -255,22 +251,12 @@ neighbor 0.015 bin
 
 def test_states_of_clamped_bodies_alone(tmp_path):
     """One wall among 400 grains that fix rigid/small moves: 20 steps take its state alone to all ranks, 144 bytes twice a step, and IDs at the start."""
-    text = COMMON.format(start="""boundary f f p
-region box block 0 4 0 2 -0.05 0.05
-create_box 3 box
-lattice sq 0.1 origin 0.5 0.5 0
-region water block 0 1 0 1 INF INF units box
-region wall block 1 1.2 0 1 INF INF units box
-create_atoms 1 region water
-create_atoms 2 region wall
-lattice sq 0.05 origin 0.5 0.5 0
+    text = box("0 4 0 2", 0.1, "atom_modify map array", types=3, water="0 1 0 1", wall="1 1.2 0 1") + """lattice sq 0.05 origin 0.5 0.5 0
 region grains block 2 4 0 2 INF INF units box
-create_atoms 3 region grains""") + """pair_style hybrid/overlay fsi/fluid sound 10 zero 0.1
+create_atoms 3 region grains""" + PHYSICS + """pair_style hybrid/overlay fsi/fluid sound 10 zero 0.1
 pair_coeff * * zero
 pair_coeff * * fsi/fluid NULL w b NULL
 variable body atom "(type==3)*(2+floor(x*10)+100*floor(y*10))+(type==2)"
-group water type 1
-group wall type 2
 group bodies type 2 3
 set type 3 mass 1
 set group bodies mol v_body
@@ -286,20 +272,15 @@ run 20
 
 def test_places_of_a_body_go_where_they_matter(tmp_path):
     """Levels around a body in half of a long box: 8 events on four ranks take its 160 places to none of them that is not near."""
-    text = COMMON.format(start="""boundary p p p
-region box block 0 8 0 1 -0.05 0.05
-create_box 3 box
-lattice sq 0.05 origin 0.5 0.5 0
-create_atoms 1 box
-region body block 0 4 0.2 0.3 INF INF units box
-set region body type 3""") + """pair_style fsi/fluid sound 10 tension yes
+    text = box("0 8 0 1", 0.05, "atom_modify map array", boundary="p p p", types=3, water="") + """region body block 0 4 0.2 0.3 INF INF units box
+set region body type 3""" + PHYSICS + """pair_style fsi/fluid sound 10 tension yes
 pair_coeff * * NULL w w b
 group body type 3
-group water subtract all body
-fix sph water fsi 0.05 wendland 1.5 spacing 2 $(0.05/sqrt(2))
+group moving subtract all body
+fix sph moving fsi 0.05 wendland 1.5 spacing 2 $(0.05/sqrt(2))
 fix wp body fsi/wall/particle
-fix r water fsi/refine 5 types 1 2 distance body 0.15
-velocity water set 1 0 0
+fix r moving fsi/refine 5 types 1 2 distance body 0.15
+velocity moving set 1 0 0
 run 40
 """
     assert bytes_on_every_rank(tmp_path, text) < 20000

@@ -6,7 +6,9 @@ import re
 
 import numpy as np
 import pytest
-from scenes import WATER, Kernel, Scene, cloud, difference, differing, lammps, lattice, run, watch
+from decks import WALL, atoms, box, deck, materials, start
+from scenes import (WATER, Kernel, Scene, cloud, difference, differing, lammps, lattice, particles,
+                    run, watch)
 
 DX = 0.05
 FINER = {2: 2**-0.5, 3: 2**(-1 / 3)}
@@ -414,21 +416,7 @@ def test_ids_stay_small_and_unique():
             go(s, 50)
 
 
-RENUMBERED = """units si
-dimension 2
-boundary p p p
-atom_style fsi
-region box block 0 0.4 0 0.4 -0.005 0.005
-create_box 2 box
-lattice sq 0.01 origin 0.5 0.5 0
-create_atoms 1 box
-displace_atoms all random 0.0008 0.0008 0 1 units box
-group nobody empty
-fsi/material w fluid rho 1000
-pair_style fsi/fluid sound 10 background 500 tension yes density/diffusion 0.1 shift 0.2
-pair_coeff * * NULL w w
-fix 1 all fsi 0.01 wendland 1.5 spacing 2 0.0070711
-variable a equal ternary(step<20,0.12,0)
+RENUMBERED = deck("0 0.4 0 0.4", 0.01, {"water": WATER, "finer": WATER}, """variable a equal ternary(step<20,0.12,0)
 variable b equal ternary(step<120,0.12,0)
 variable c equal ternary((step>=170)*(step<235),0.12,0)
 region a sphere 0.1 0.1 0 v_a units box
@@ -438,13 +426,12 @@ region zone union 3 a b c
 fix 2 all fsi/refine 5 types 1 2 region zone
 variable u atom 0.5*sin(5*PI*y)
 velocity all set v_u 0 0
-timestep 2e-4
-neighbor 0.003 bin
 run 100
 {command}
 run 150
 write_dump all custom left.dump id type mass modify sort id time yes format float %.17g
-"""
+""", boundary="p p p", water="", made="displace_atoms all random 0.0008 0.0008 0 1 units box\ngroup nobody empty", sph="spacing 2 0.0070711", dt=2e-4,
+                  fluid="sound 10 background 500 tension yes density/diffusion 0.1 shift 0.2")
 
 
 @pytest.mark.parametrize("command", ["reset_atoms id", "delete_atoms group nobody"])
@@ -464,14 +451,7 @@ def test_walls_and_edges():
         assert s.n == 2 * len(x) and y[:, :2].min() > 0.07 * DX and y[:, 1].max() < 1.2 - 0.07 * DX and y[:, 0].max() < 1.2
 
 
-DECK = """units si
-dimension {dim}
-boundary p p p
-atom_style fsi
-newton {newton}
-processors {grid}
-{start}
-pair_style fsi/fluid sound 30 tension yes density/diffusion 0.1 artificial/visc 0.02 0
+PHYSICS = """pair_style fsi/fluid sound 30 tension yes density/diffusion 0.1 artificial/visc 0.02 0
 pair_coeff * * water.fsi water water water
 fix sph all fsi 0.05 wendland 1.5 spacing 2 {fine!r} spacing 3 {finest!r}
 variable place equal 0.1*sin(0.03*step)
@@ -485,7 +465,7 @@ thermo 50
 thermo_style custom step atoms c_e f_ref[*]
 thermo_modify norm no lost error format float %20.15g
 """
-MATERIALS = "# DATE: 2026-01-01 UNITS: si CITATION: none\nwater fluid rho 1000\n"
+MATERIALS = materials(water=WATER)
 
 
 def flow(dim):
@@ -496,15 +476,13 @@ def flow(dim):
     v[:, 0] += 2 + 0.5 * np.sin(2 * np.pi * x[:, 1] / size[1])
     v[:, 1] += 0.7 + 0.5 * np.sin(2 * np.pi * x[:, 0] / size[0])
     low = [0, 0, 0 if dim == 3 else -0.025]
-    lines = ["flow", "", f"{len(x)} atoms", "3 atom types", ""] + [f"{lo!r} {float(lo + s)!r} {a}lo {a}hi" for lo, s, a in zip(low, size, "xyz")]
-    lines += ["", "Atoms # fsi", ""] + [f"{k + 1} 0 1 0 0 {p[0]!r} {p[1]!r} {p[2]!r}" for k, p in enumerate(x.tolist())]
-    lines += ["", "Velocities", ""] + [f"{k + 1} {p[0]!r} {p[1]!r} {p[2]!r}" for k, p in enumerate(v.tolist())]
-    return "\n".join(lines) + "\n"
+    return particles(x, v=v, box=np.transpose([low, low + size]), types=3)
 
 
-def deck(dim, start="read_data flow.data", newton="on", grid="* * *", every=10):
+def layers(dim, begin="read_data flow.data", newton="on", grid="* * *", every=10):
     one, two = ("0.3 1.7 0.2 1.4", "0.75 1.25 0.6 1.0") if dim == 2 else ("0.15 0.95 INF INF", "0.5 0.6 INF INF")
-    return DECK.format(dim=dim, start=start, newton=newton, grid=grid, every=every, one=one, two=two, fine=DX * FINER[dim], finest=DX * FINER[dim]**2)
+    return start(f"newton {newton}", f"processors {grid}", begin, dim=dim, boundary="p p p") + PHYSICS.format(
+        every=every, one=one, two=two, fine=DX * FINER[dim], finest=DX * FINER[dim]**2)
 
 
 def thermo(result, step):
@@ -516,7 +494,7 @@ def test_ranks(tmp_path, dim, steps):
     """The same particles with the same IDs on any number of ranks, with newton off, too, to round-off."""
     runs = {}
     for name, ranks, newton, grid in (("one", 1, "on", "* * *"), ("two", 2, "on", "2 1 1"), ("off", 4, "off", "2 2 1")):
-        text = deck(dim, newton=newton, grid=grid) + watch(every=steps) + f"run {steps}\n"
+        text = layers(dim, newton=newton, grid=grid) + watch(every=steps) + f"run {steps}\n"
         runs[name] = run(tmp_path / name, text, ranks, flow_data=flow(dim), water_fsi=MATERIALS).frames()
     first, last = runs["one"]
     assert set(last["type"]) == {1, 2, 3} and len(last["id"]) > len(first["id"]) > 1000
@@ -539,16 +517,7 @@ def test_corner_without_room():
         assert s.get("x")[:, :2].min() > 0 and s.n == 2 * len(x)
 
 
-SETTLED = """units si
-dimension 2
-boundary p f p
-atom_style fsi
-processors {grid}
-region box block 0 1.2 -0.3 1.2 -0.025 0.025
-create_box 3 box
-lattice sq 0.05 origin 0.5 0.5 0
-region water block INF INF 0 1.15 INF INF units box
-create_atoms 1 region water
+SETTLED = start("processors {grid}", boundary="p f p") + atoms("0 1.2 -0.3 1.2", 0.05, types=3, water="INF INF 0 1.15") + """
 region wall block INF INF -0.25 0 INF INF units box
 create_atoms {below} region wall
 group water type 1
@@ -574,7 +543,7 @@ def test_settling_looks_further_than_ghosts(tmp_path, below, grid, neighbor, bal
     for ranks, of_ranks, line in ((1, "* * *", ""), (2, grid, "balance 1.0 " + balance)):
         walls, kind = ("fix walls wall fsi/wall/particle", 3) if below == "wall" else ("", 1)
         text = SETTLED.format(grid=of_ranks, neighbor=neighbor, balance=line, below=kind, walls=walls, material=below)
-        frames += run(tmp_path / str(ranks), text + watch(every=1) + "run 0\n", ranks, water_fsi=MATERIALS + "wall wall rho 1000\n").frames()
+        frames += run(tmp_path / str(ranks), text + watch(every=1) + "run 0\n", ranks, water_fsi=materials(water=WATER, wall=WALL)).frames()
     one, two = frames
     assert np.array_equal(one["type"], two["type"]) and (one["type"] == 2).sum() == 288
     assert difference(one, two, "x") < 1e-12
@@ -583,10 +552,10 @@ def test_settling_looks_further_than_ghosts(tmp_path, below, grid, neighbor, bal
 @pytest.mark.parametrize("first", ["refine", "balance"])
 def test_balance(tmp_path, first):
     """Ranks that take and give particles in the steps in which these split and merge, by either fix first: the same to round-off."""
-    want = run(tmp_path / "one", deck(2) + watch(every=100) + "run 100\n", flow_data=flow(2), water_fsi=MATERIALS).frames()
+    want = run(tmp_path / "one", layers(2) + watch(every=100) + "run 100\n", flow_data=flow(2), water_fsi=MATERIALS).frames()
     for ranks, grid, balance in ((2, "2 1 1", "shift x 10 1.0"), (4, "2 2 1", "shift xy 10 1.0"), (4, "2 2 1", "rcb")):
         line = ("comm_style tiled\n" if balance == "rcb" else "") + f"fix balance all balance 10 1.0 {balance}\n"
-        text = deck(2, grid=grid)
+        text = layers(2, grid=grid)
         text = text.replace("fix ref ", line + "fix ref ") if first == "balance" else text + line
         got = run(tmp_path / f"{ranks}{balance[:3]}", text + watch(every=100) + "run 100\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
         for a, b in zip(want, got.frames()):
@@ -599,8 +568,8 @@ def test_balance(tmp_path, first):
 def test_restart(tmp_path, ranks, every, at):
     """A run that goes on from a file, written between two events or in a step of one, is the same bit for bit, and so are the sums."""
     end = 2 * at - 10
-    whole = run(tmp_path / "whole", deck(2, every=every) + watch(every=end) + f"restart {at} r.*\nrun {end}\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
-    text = deck(2, every=every)
+    whole = run(tmp_path / "whole", layers(2, every=every) + watch(every=end) + f"restart {at} r.*\nrun {end}\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
+    text = layers(2, every=every)
     again = text.replace("read_data flow.data", f"read_restart ../whole/r.{at}").replace("pair_style", "#").replace("pair_coeff", "#")
     rest = run(tmp_path / "rest", again + watch(every=end) + f"restart {at} r.*\nrun {end - at}\n", ranks, water_fsi=MATERIALS)
     assert thermo(rest, end) and thermo(rest, end) == thermo(whole, end)
@@ -608,16 +577,7 @@ def test_restart(tmp_path, ranks, every, at):
     assert "WARNING: Fix" not in rest.output
 
 
-BODY = ("""units si
-dimension 2
-boundary p p p
-atom_style fsi
-newton {newton}
-processors {grid}
-""", """region box block 0 2 0 1.6 -0.025 0.025
-create_box 4 box
-lattice sq 0.05 origin 0.5 0.5 0
-create_atoms 1 box
+BODY = (atoms("0 2 0 1.6", 0.05, types=4, water="") + """
 region around block 0.79 1.21 {hole} INF INF units box
 delete_atoms region around compress yes
 lattice sq {spacing} origin 0.5 0.5 0
@@ -652,12 +612,12 @@ thermo_modify norm no lost error format float %20.15g
 def test_levels_around_an_elastic_body(tmp_path, strip):
     """A heavy strip with sub-steps against a stream, two levels of water around it by the distance: momentum to round-off, the same on any number of ranks and
     from a restart file. Also where the strip hides the water behind it."""
-    materials = MATERIALS + "rubber solid rho 8000 young 3e6 poisson 0.4\n"
-    runs, begin = {}, BODY[1].format(**strip)
-    for name, ranks, newton, grid, start, steps in (("one", 1, "on", "* * *", begin, 160), ("two", 2, "on", "2 1 1", begin, 160), ("four", 4, "off", "2 2 1", begin, 160),
+    runs, begin = {}, BODY[0].format(**strip)
+    for name, ranks, newton, grid, head, steps in (("one", 1, "on", "* * *", begin, 160), ("two", 2, "on", "2 1 1", begin, 160), ("four", 4, "off", "2 2 1", begin, 160),
                                                     ("rest", 1, "on", "* * *", "read_restart ../one/r.85\n", 75)):
-        text = BODY[0].format(newton=newton, grid=grid) + start + BODY[2].format(**strip)
-        runs[name] = run(tmp_path / name, text + watch(every=160) + f"restart 85 r.*\nrun {steps}\n", ranks, water_fsi=materials)
+        text = start(f"newton {newton}", f"processors {grid}", head, boundary="p p p") + BODY[1].format(**strip)
+        runs[name] = run(tmp_path / name, text + watch(every=160) + f"restart 85 r.*\nrun {steps}\n", ranks,
+                         water_fsi=materials(water=WATER, rubber="solid rho 8000 young 3e6 poisson 0.4"))
     last = {name: result.frames()[-1] for name, result in runs.items()}
     assert set(last["one"]["type"]) == {1, 2, 3, 4}
     first, end = (np.array(thermo(runs["one"], step)[0].split(), float) for step in (0, 160))
@@ -672,8 +632,8 @@ def test_levels_around_an_elastic_body(tmp_path, strip):
 def test_given_again_between_runs(tmp_path):
     """The fix given again, and runs in parts, change nothing."""
     again = "unfix ref\nfix ref all fsi/refine 10 types 1 2 3 region one two\n"
-    whole = run(tmp_path / "whole", deck(2) + watch(every=90) + "run 45\nrun 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
-    parts = run(tmp_path / "parts", deck(2).replace("f_ref[*]", "") + watch(every=90) + f"run 45\n{again}run 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
+    whole = run(tmp_path / "whole", layers(2) + watch(every=90) + "run 45\nrun 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
+    parts = run(tmp_path / "parts", layers(2).replace("f_ref[*]", "") + watch(every=90) + f"run 45\n{again}run 45\n", flow_data=flow(2), water_fsi=MATERIALS).frames()[-1]
     assert not differing(whole, parts)
 
 
@@ -704,16 +664,8 @@ BAD = {
 
 @pytest.mark.parametrize("words", BAD)
 def test_bad_input(tmp_path, words):
-    text = f"""units si
-dimension 2
-boundary f p p
-atom_style fsi
-region box block -0.5 1.8 0 0.8 -0.025 0.025
-create_box 5 box
-lattice sq 0.05 origin 0.5 0.5 0
-region water block 0 1 0 0.8 INF INF units box
+    text = atoms("-0.5 1.8 0 0.8", 0.05, types=5, water="0 1 0 0.8") + f"""
 region wall block 1 1.05 0 0.8 INF INF units box
-create_atoms 1 region water
 create_atoms 5 region wall
 group wall type 5
 group fluid type 1 2 3 4
@@ -731,7 +683,7 @@ region ends block 0.1 0.8 0.2 0.6 INF INF units box
 fix ref fluid fsi/refine {words}
 run 0
 """
-    done = lammps(tmp_path, text, water_fsi=MATERIALS + "oil fluid rho 900\nwall wall rho 1000\n")
+    done = lammps(tmp_path, start(boundary="f p p") + text, water_fsi=materials(water=WATER, oil="fluid rho 900", wall=WALL))
     assert done.status != 0 and any(re.search(BAD[words], line) for line in done.errors), done.output[-600:]
 
 
@@ -747,16 +699,7 @@ def test_types_set_between_runs_leave_masses():
 
 def test_coarse_fluid_at_a_body_is_warned_of(tmp_path):
     """A wall twice as fine as the fluid beside it, unless the zone reaches it."""
-    text = """units si
-dimension 2
-boundary f p p
-atom_style fsi
-region box block -0.2 1.3 0 0.8 -0.025 0.025
-create_box 3 box
-region water block 0 1 0 0.8 INF INF units box
-region wall block 1.0125 1.1 0 0.8 INF INF units box
-lattice sq 0.05 origin 0.5 0.5 0
-create_atoms 1 region water
+    text = box("-0.2 1.3 0 0.8", 0.05, types=3, water="0 1 0 0.8") + """region wall block 1.0125 1.1 0 0.8 INF INF units box
 lattice sq 0.025 origin 0.5 0.5 0
 create_atoms 3 region wall
 group wall type 3
@@ -770,7 +713,7 @@ fix ref fluid fsi/refine 10 types 1 2 region one
 run 0
 """
     for zone, warned in (("0.3 0.6", True), ("0.6 2", False)):
-        done = run(tmp_path / zone, text.format(zone), water_fsi=MATERIALS + "wall wall rho 1000\n")
+        done = run(tmp_path / zone, text.format(zone), water_fsi=materials(water=WATER, wall=WALL))
         assert warned == bool(re.search(r"WARNING: Fix fsi/refine: \d+ fluid particles, the first of them atom \d+, are beside a body or wall of finer spacing", done.output))
 
 

@@ -5,11 +5,10 @@ import re
 import numpy as np
 import pytest
 
+from decks import go_on, open_box, output_of, total_lagrangian
 from scenes import DX, dam_gate, differing, fluid_box, run, watch
 
 from fsi import log
-from test_dt import total_lagrangian
-from test_inlet import go_on, open_box, vector as output_of
 
 PARTS = ("density", "stress", "force_of_fluid", "force_of_solids", "walls", "communication", "neighbor_lists", "output",
          "rest")

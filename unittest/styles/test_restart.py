@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from scenes import dam_gate, difference, differing, fluid_box, lammps, run, watch
+from decks import WALL, atoms, box, materials, resume, start
+from scenes import WATER as INVISCID, dam_gate, difference, differing, fluid_box, lammps, run, watch
 
 # Going on with other neighbor lists or another rank count changes the order of sums only: see TRAJECTORY in test_parallel.py;
 # 40 steps instead of 100.
@@ -32,11 +32,6 @@ def close(a, b, tolerance=ROUND_OFF):
     for quantity in ("x", "v", "rho", "stress"):
         # the stress of a total-Lagrangian solid comes from its positions: 1e-16 of 0.2 m over 0.01 m of 2 MPa, and grows
         assert difference(a, b, quantity) < tolerance * (10 if quantity == "stress" else 1), quantity
-
-
-def resume(scene, file, grid="* * *"):
-    """Input that continues from a restart file; the pair styles come out of it."""
-    return scene.setup(grid) + f"read_restart {file}\n" + scene.physics(coeff=False)
 
 
 @pytest.mark.parametrize("ranks", (1, 2))
@@ -67,20 +62,9 @@ thermo_modify norm no
 @pytest.mark.parametrize("ranks", (1, 2))
 def test_shifting_beside_wall_particles_goes_on_bit_for_bit(tmp_path, ranks):
     """The density of walls, found in setup, too, is another than the running simulation had there."""
-    begin = "units si\ndimension 2\nboundary f f p\natom_style fsi\n"
-    make = begin + """region box block -0.4 1.4 -0.4 1 -0.025 0.025
-create_box 2 box
-lattice sq 0.05 origin 0.5 0.5 0
-region water block 0 1 0 0.6 INF INF units box
-region wall block 0 1 -0.2 0 INF INF units box
-create_atoms 1 region water
-create_atoms 2 region wall
-displace_atoms all random 0.005 0.005 0 7 units box
-group water type 1
-group wall type 2
-""" + WALL_PARTICLES
+    make = box("-0.4 1.4 -0.4 1", 0.05, water="0 1 0 0.6", wall="0 1 -0.2 0") + "displace_atoms all random 0.005 0.005 0 7 units box\n" + WALL_PARTICLES
     whole = run(tmp_path, make + watch(every=120) + "restart 60 mid.*\nrun 120\n", ranks).frames()[-1]
-    rest = run(tmp_path, begin + "read_restart mid.60\n" + WALL_PARTICLES + watch("rest.dump", 120) + "restart 60 other.*\nrun 60\n", ranks).frames("rest.dump")[-1]
+    rest = run(tmp_path, start() + "read_restart mid.60\n" + WALL_PARTICLES + watch("rest.dump", 120) + "restart 60 other.*\nrun 60\n", ranks).frames("rest.dump")[-1]
     assert whole.step == rest.step == 120
     assert differing(whole, rest) == []
 
@@ -211,14 +195,11 @@ def test_clear(tmp_path):
 def test_atom_style_hybrid(tmp_path, order):
     """Other atom properties beside ours change nothing."""
     scene = dam_gate(2)
-    create = ("create_box 2 box\nlattice sq 0.01 origin 0.5 0.5 0\nregion water block 0 0.14 0 0.14 INF INF units box\n"
-              "region plate block 0.14 0.19 0 0.14 INF INF units box\ncreate_atoms 1 region water\n"
-              "create_atoms 2 region plate\nset type 2 mol 1\n")
-    box = "region box block -0.02 0.22 -0.02 0.2 -0.005 0.005 units box\n"
+    particles = atoms("-0.02 0.22 -0.02 0.2", 0.01, water="0 0.14 0 0.14", plate="0.14 0.19 0 0.14")
     frames = []
     for style in ("fsi", f"hybrid {order}"):
         # atom_style sphere makes masses of its own: give them to both
-        text = replace(scene, atom_style=style).setup() + box + create + "set group all mass 0.1\n"
+        text = replace(scene, atom_style=style).setup() + particles + "set group all mass 0.1\n"
         text += scene.physics() + watch(every=40) + "run 40\n"
         frames.append(run(tmp_path / style.replace(" ", "_"), text, 2).frames()[-1])
     close(*frames)
@@ -318,17 +299,7 @@ def test_pair_style_given_again(tmp_path, first, again):
     assert differing(*frames) == []
 
 
-FLUID = """units si
-dimension 2
-boundary f f p
-atom_style fsi
-"""
-WATER = """region box block -0.05 0.65 -0.05 0.5 -0.005 0.005
-create_box 1 box
-lattice sq 0.01 origin 0.5 0.5 0
-region water block 0 0.2 0 0.2 INF INF units box
-create_atoms 1 region water
-pair_style fsi/fluid sound 20 artificial/visc 0.05 0 surface 0.9
+WATER = atoms("-0.05 0.65 -0.05 0.5", 0.01, water="0 0.2 0 0.2") + """pair_style fsi/fluid sound 20 artificial/visc 0.05 0 surface 0.9
 pair_coeff * * water.fsi water
 """
 PHYSICS = """fix 1 all fsi {sph}
@@ -342,7 +313,7 @@ thermo_modify norm no format float %.17g
 thermo 10
 {more}
 """
-MATERIALS = "# DATE: 2026-01-01 UNITS: si CITATION: none\nwater fluid rho 1000\n"
+MATERIALS = materials(water=INVISCID)
 
 
 def rows(output):
@@ -352,12 +323,12 @@ def rows(output):
 
 
 def first_part(folder, sph, more="timestep 1e-4", steps=30):
-    text = FLUID + WATER + PHYSICS.format(sph=sph, more=more) + f"restart {steps} r.*\nrun {steps}\nrun {steps}\n"
+    text = start() + WATER + PHYSICS.format(sph=sph, more=more) + f"restart {steps} r.*\nrun {steps}\nrun {steps}\n"
     return run(folder, text, water_fsi=MATERIALS)
 
 
 def second_part(folder, sph, more="", steps=30, runner=run):
-    return runner(folder, FLUID + f"read_restart r.{steps}\n" + PHYSICS.format(sph=sph, more=more) + f"run {steps}\n", water_fsi=MATERIALS)
+    return runner(folder, start() + f"read_restart r.{steps}\n" + PHYSICS.format(sph=sph, more=more) + f"run {steps}\n", water_fsi=MATERIALS)
 
 
 MODES_OF_FLUID = {"": "", "summation": "fluid summation"}
@@ -389,8 +360,8 @@ def test_other_keywords(tmp_path, before, after):
 def test_sound_of_the_material(tmp_path):
     """The pair style names no speed of sound: its fluid has one."""
     fluid, physics = MATERIALS.replace("rho 1000", "rho 1000 sound 20"), PHYSICS.format(sph="0.01 wendland 1.5", more="timestep 1e-4")
-    whole = run(tmp_path, FLUID + WATER.replace("sound 20 ", "") + physics + "restart 30 r.*\nrun 30\nrun 30\n", water_fsi=fluid)
-    rest = run(tmp_path, FLUID + "read_restart r.30\n" + physics + "run 30\n", water_fsi=fluid)
+    whole = run(tmp_path, start() + WATER.replace("sound 20 ", "") + physics + "restart 30 r.*\nrun 30\nrun 30\n", water_fsi=fluid)
+    rest = run(tmp_path, start() + "read_restart r.30\n" + physics + "run 30\n", water_fsi=fluid)
     assert rows(rest.output)[60] == rows(whole.output)[60]
 
 
@@ -433,12 +404,7 @@ def test_fixes_of_other_names(tmp_path):
     assert "WARNING: Fix others (style fsi/wall/mirror) takes nothing from the restart file, in which it had the ID walls" in done.output
 
 
-STRESS_BOX = FLUID.replace("f f p", "p p p") + """region box block 0 0.2 0 0.2 -0.005 0.005 units box
-create_box 1 box
-lattice sq 0.01 origin 0.5 0.5 0
-create_atoms 1 box
-set group all mol 1
-pair_style fsi/solid artificial/visc 0.1 0 {first}
+STRESS_BOX = box("0 0.2 0 0.2", 0.01, boundary="p p p", metal="") + """pair_style fsi/solid artificial/visc 0.1 0 {first}
 pair_coeff * * metal.fsi metal
 fix sph all fsi 0.01 wendland 1.5
 fix s all fsi/stress {stress}
@@ -461,7 +427,7 @@ thermo_style custom step c_m c_e[12] c_e[4]
 thermo_modify format float %.17g norm no
 run 0
 """
-METAL = "# DATE: 2026-01-01 UNITS: si CITATION: none\nmetal solid rho 1000 young 2e6 poisson 0.3 yield 1e3 hardening 1e6\n"
+METAL = materials(metal="solid rho 1000 young 2e6 poisson 0.3 yield 1e3 hardening 1e6")
 
 
 @pytest.mark.parametrize("before, after, told", [
@@ -520,18 +486,8 @@ def test_file_of_another_version(tmp_path):
         assert done.status != 0 and any("written by another version of the FSI package" in e for e in done.errors)
 
 
-RIGID = """region box block -0.1 0.4 -0.1 0.4 -0.005 0.005 units box
-create_box 2 box
-lattice sq 0.01 origin 0.5 0.5 0
-region water block 0 0.1 0 0.1 INF INF units box
-region body block 0.2 0.25 0.2 0.25 INF INF units box
-create_atoms 1 region water
-create_atoms 2 region body
-set type 2 mol 1
-pair_style fsi/fluid sound 20
+RIGID = box("-0.1 0.4 -0.1 0.4", 0.01, water="0 0.1 0 0.1", body="0.2 0.25 0.2 0.25") + """pair_style fsi/fluid sound 20
 pair_coeff * * water.fsi water tank
-group water type 1
-group body type 2
 velocity body set 1 0 0 units box
 """
 RIGID_FIXES = """fix sph water fsi 0.01 wendland 1.5
@@ -548,8 +504,7 @@ thermo_modify format float %.17g
 
 def test_fixes_that_keep_the_time_step(tmp_path):
     """fix rigid takes the restored step, not that of a timestep command before."""
-    materials = MATERIALS + "tank wall rho 1000\n"
-    whole = run(tmp_path, FLUID + RIGID + RIGID_FIXES + "timestep 5e-5\nrun 50\nwrite_restart mid\nrun 50\n", water_fsi=materials)
+    whole = run(tmp_path, RIGID + RIGID_FIXES + "timestep 5e-5\nrun 50\nwrite_restart mid\nrun 50\n", water_fsi=materials(water=INVISCID, tank=WALL))
     rest = run(tmp_path, "read_restart mid\ngroup water type 1\ngroup body type 2\ntimestep 1e-4\n" + RIGID_FIXES + "run 50\n")
     place = [float(next(w for w in reversed(list(map(str.split, r.output.splitlines()))) if w[:1] == ["100"] and len(w) == 2)[1]) for r in (whole, rest)]
     assert place[0] == pytest.approx(0.225 + 100 * 5e-5, abs=1e-9) and place[1] == pytest.approx(place[0], rel=1e-13)
@@ -565,12 +520,7 @@ def test_ledger_goes_on(tmp_path):
         assert row == pytest.approx(whole[step], rel=1e-12), step
 
 
-WALLS_GONE = FLUID + """region box block -0.03 2.43 -0.03 2.33 -0.005 0.005 units box
-create_box 1 box
-lattice sq 0.01 origin 0.5 0.5 0
-region one block 0 0.05 0 0.05 INF INF units box
-region two block 0.2 0.9 0 0.8 INF INF units box
-create_atoms 1 region one
+WALLS_GONE = box("-0.03 2.43 -0.03 2.33", 0.01, water="0 0.05 0 0.05") + """region two block 0.2 0.9 0 0.8 INF INF units box
 pair_style fsi/fluid sound 20
 pair_coeff * * water.fsi water
 fix sph all fsi 0.01 wendland 1.5
@@ -582,15 +532,7 @@ unfix w
 create_atoms 1 region two
 run 1
 """
-FLUID_GONE = FLUID + """region box block -0.03 0.43 -0.03 0.33 -0.005 0.005 units box
-create_box 2 box
-lattice sq 0.01 origin 0.5 0.5 0
-region one block 0 0.1 0 0.2 INF INF units box
-region three block 0.3 0.4 0 0.1 INF INF units box
-create_atoms 1 region one
-create_atoms 2 region three
-set type 2 mol 1
-pair_style hybrid fsi/fluid sound 20 shift 0.2 fsi/solid artificial/visc 0.1 0
+FLUID_GONE = box("-0.03 0.43 -0.03 0.33", 0.01, water="0 0.1 0 0.2", plate="0.3 0.4 0 0.1") + """pair_style hybrid fsi/fluid sound 20 shift 0.2 fsi/solid artificial/visc 0.1 0
 pair_coeff * * fsi/fluid water.fsi water plate
 pair_coeff * * fsi/solid water.fsi NULL plate
 fix sph all fsi 0.01 wendland 1.5
@@ -598,7 +540,6 @@ fix s all fsi/stress
 timestep 1e-5
 neighbor 0.003 bin
 run 2
-group water type 1
 delete_atoms group water
 pair_style fsi/solid artificial/visc 0.1 0
 pair_coeff * * water.fsi plate plate
@@ -609,11 +550,11 @@ run 2
 @pytest.mark.parametrize("text", (WALLS_GONE, FLUID_GONE), ids=("walls", "fluid"))
 def test_effects_that_are_gone(tmp_path, text):
     """Arrays of walls and fluids are gone with them, whatever the number of atoms becomes."""
-    done = run(tmp_path, text, water_fsi=MATERIALS + "plate solid rho 1000 young 2e6 poisson 0.4\n")
+    done = run(tmp_path, text, water_fsi=materials(water=INVISCID, plate="solid rho 1000 young 2e6 poisson 0.4"))
     assert "Loop time" in done.output
 
 
-BEFORE_A_RUN = FLUID + WATER.replace(" laminar", "") + """fix 1 all fsi 0.01 wendland 1.5
+BEFORE_A_RUN = start() + WATER + """fix 1 all fsi 0.01 wendland 1.5
 fix 2 all gravity 9.81 vector 0 -1 0
 timestep 1e-5
 """

@@ -4,7 +4,8 @@ import re
 
 import numpy as np
 import pytest
-from scenes import Scene, close, lammps, lattice, pairs, run, sum_over
+import decks
+from scenes import RUBBER, Scene, close, lammps, lattice, pairs, run, sum_over
 
 DX, RHO, E, NU = 0.1, 1000.0, 1e5, 0.3
 K = E / (3 * (1 - 2 * NU))
@@ -139,39 +140,20 @@ def test_arms_do_not_pass(style, dim):
         assert gaps["no"][0] < 0.8
 
 
-DECK = """units si
-dimension 2
-boundary {boundary}
-atom_style fsi
-newton {newton}
-processors {processors}
-region box block -0.5 2 -0.5 1.5 -0.05 0.05
-create_box 1 box
-lattice sq 0.1 origin 0.5 0.5 0
-region a block 0 1.2 0 0.3 INF INF units box
-region b block 0 1.2 0.7 1 INF INF units box
-region c block 0 0.3 0 1 INF INF units box
-region u union 3 a b c
-create_atoms 1 region u
+def deck(boundary="f f p", newton="on", processors="* * *", along=0, more="", sub="", dt=1e-3):
+    """A hairpin whose legs meet."""
+    return decks.deck("-0.5 2 -0.5 1.5", DX, {"rubber": RUBBER}, """compute e all fsi/energy
+neigh_modify every 1 delay 0 check yes
+thermo 50
+thermo_style custom step c_e ke press""", boundary=boundary, before=[f"newton {newton}", f"processors {processors}"], root="0 0.3 0 1", made=f"""
+region a block 0.3 1.2 0 0.3 INF INF units box
+region b block 0.3 1.2 0.7 1 INF INF units box
+create_atoms 1 region a
+create_atoms 1 region b
 set group all mol 1
 reset_atoms id sort yes
 variable v atom 3*(x-0.3)*(x>0.3)*((y<0.5)-(y>0.5))
-velocity all set {along} v_v 0 units box
-fsi/material rubber solid rho 1000 young 1e5 poisson 0.3
-pair_style fsi/solid/tl artificial/visc 0.05 0 contact 2 self yes {more}
-pair_coeff * * NULL rubber
-fix 1 all fsi 0.1 wendland 1.5 {sub}
-timestep {dt}
-compute e all fsi/energy
-neighbor 0.04 bin
-neigh_modify every 1 delay 0 check yes
-thermo 50
-thermo_style custom step c_e ke press
-"""
-
-
-def deck(boundary="f f p", newton="on", processors="* * *", along=0, more="", sub="", dt=1e-3):
-    return DECK.format(boundary=boundary, newton=newton, processors=processors, along=along, more=more, sub=sub, dt=dt)
+velocity all set {along} v_v 0 units box""", solid=f"artificial/visc 0.05 0 contact 2 self yes {more}", sph=sub, dt=dt, skin=0.4)
 
 
 LAST = "\nwrite_dump all custom end.dump id x y vx vy modify sort id format float %.17g\n"
@@ -255,6 +237,6 @@ def test_parts_that_pass_are_named(tmp_path):
 def test_self_must_be_on_when_the_reference_is_taken(tmp_path):
     """In the sub-style that keeps its reference over runs: read from a restart file without positions."""
     run(tmp_path, deck().replace("self yes", "") + "run 1\nwrite_restart r.off")
-    text = "read_restart r.off\nfsi/material rubber solid rho 1000 young 1e5 poisson 0.3\npair_style fsi/solid/tl contact 2 self yes\npair_coeff * * NULL rubber\nfix 1 all fsi 0.1 wendland 1.5\ntimestep 1e-3\nrun 1\n"
+    text = "read_restart r.off\nfsi/material rubber solid rho 1000 young 1e5 poisson 0.3\npair_style fsi/solid/tl contact 2 self yes\npair_coeff * * NULL rubber\nfix sph all fsi 0.1 wendland 1.5\ntimestep 1e-3\nrun 1\n"
     done = lammps(tmp_path, text)
     assert done.status != 0 and re.search("self yes requires bodies that had it from their first run on", done.errors[0])

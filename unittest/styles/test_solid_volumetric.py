@@ -3,11 +3,12 @@ finite elements (elements.py) that do not lock."""
 
 import numpy as np
 import pytest
+import solids
 from elements import PlaneStrain, brick
 from scenes import Scene, close, lattice, run, watch
-from test_solid_tl import DIMS, DX, TL, TWO_BODIES, REST, Reference, angular, block, deformed, entry, files, same_state, solid
+from solids import DIMS, DX, Reference, angular, block, deformed, entry, files, same_state, solid
 
-RHO, MU = 1000.0, 1.0e5 / 2.6    # the shear modulus of test_solid_tl
+RHO, MU = 1000.0, 1.0e5 / 2.6    # the shear modulus of solids.py
 
 
 def material(nu, rho=RHO):
@@ -182,10 +183,10 @@ def test_refused(words, message):
 
 
 def test_what_is_said(tmp_path):
-    box, pair, rest = bodies(2)
     for nu, words, said, warned in ((0.49, "", True, False), (0.4, "", False, False), (0.25, "volumetric smoothed", False, True)):
+        box, pair, rest = bodies(2, nu=nu)
         text = box + pair.replace("visc 0.1 0", f"visc 0.1 0 {words}") + rest + "run 0\n"
-        output = run(tmp_path / f"{nu}", text, rubber_fsi=RUBBER.replace("0.49", str(nu)), bodies_data=files(2)["bodies_data"]).output
+        output = run(tmp_path / f"{nu}", text, **files(2)).output
         assert ("smoothed volumetric strain of nearly incompressible solids" in output) == said
         assert ("volumetric smoothed has nothing to act on: no Poisson's ratio is above 0.3" in output) == warned
 
@@ -206,17 +207,13 @@ def test_checkerboards_of_volume_cost_energy():
 
 # ---- ranks and restarts -----------------------------------------------------------------------------------------------------
 
-RUBBER = "# DATE: 2026-01-01 UNITS: si CITATION: none\nrubber solid rho 1000 young 3e5 poisson 0.49\n"
-
-
-def bodies(dim, newton="on", grid="* * *", substeps=1):
-    values = {"dim": dim, "newton": newton, "grid": grid, "substeps": substeps, "keywords": "law neohookean artificial/visc 0.1 0", "dt": 4e-5 * substeps}
-    return TWO_BODIES.format(**values), TL.format(**values), REST.format(**values)
+def bodies(dim, newton="on", grid="* * *", substeps=1, nu=0.49):
+    return solids.bodies(dim, newton, grid, substeps, "law neohookean artificial/visc 0.1 0", 4e-5, f"solid rho 1000 young 3e5 poisson {nu}")
 
 
 def go(tmp_path, dim, ranks, *how):
     text = "".join(bodies(dim, *how)) + watch(every=120) + "run 120\n"
-    return run(tmp_path, text, ranks, rubber_fsi=RUBBER, bodies_data=files(dim)["bodies_data"]).frames()
+    return run(tmp_path, text, ranks, **files(dim)).frames()
 
 
 @pytest.mark.parametrize("dim, substeps", [(2, 1), (2, 3), (3, 1)])
@@ -231,7 +228,7 @@ def test_ranks(tmp_path, dim, substeps):
 def test_restart(tmp_path, ranks, substeps):
     """Bit for bit: weights are made anew from the bonds of the restart file."""
     box, pair, rest = bodies(2, substeps=substeps)
-    whole = run(tmp_path, box + pair + rest + watch(every=60) + "restart 60 mid.*\nrun 120\n", ranks, rubber_fsi=RUBBER, bodies_data=files(2)["bodies_data"])
+    whole = run(tmp_path, box + pair + rest + watch(every=60) + "restart 60 mid.*\nrun 120\n", ranks, **files(2))
     again = run(tmp_path, box.split("processors")[0] + "read_restart mid.60\n" + rest + watch("rest.dump", 60) + "restart 60 other.*\nrun 60\n", ranks)
     a, b = whole.frames()[-1], again.frames("rest.dump")[-1]
     assert a.step == b.step == 120

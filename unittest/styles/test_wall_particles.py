@@ -4,39 +4,22 @@ import re
 
 import numpy as np
 import pytest
-from scenes import Kernel, close, difference, differing, lammps, lattice, run
+from decks import WALL, materials, start
+from scenes import WATER, Kernel, close, difference, differing, lammps, lattice, particles, run
 
 from fsi import dump, paths
 
 DX, C, G = 0.01, 20.0, 9.81
-MATERIALS = """# DATE: 2026-11-21 UNITS: si CITATION: none
-water fluid rho 1000
-oil fluid rho 1000 viscosity 5
-wall wall rho 1000
-buoy wall rho 400
-plate solid rho 1100 young 1e6 poisson 0.4
-"""
+MATERIALS = materials(water=WATER, oil="fluid rho 1000 viscosity 5", wall=WALL, buoy="wall rho 400", plate="solid rho 1100 young 1e6 poisson 0.4")
 
 
 def data(x, kind, v=None, box=((-0.2,) * 3, (0.6,) * 3), rho=0.0):
-    """LAMMPS data file of particles x (n, 3) of types `kind`."""
-    n, kind = len(x), np.broadcast_to(kind, len(x))
-    v, rho = np.zeros((n, 3)) if v is None else v, np.broadcast_to(rho, n)
-    lines = ["particles", "", f"{n} atoms", f"{max(kind)} atom types", ""]
-    lines += [f"{lo!r} {hi!r} {a}lo {a}hi" for lo, hi, a in zip(*box, "xyz")] + ["", "Atoms # fsi", ""]
-    lines += [f"{i} 0 {k} {r!r} 0 {p[0]!r} {p[1]!r} {p[2]!r}" for i, (k, p, r) in enumerate(zip(kind.tolist(), x.tolist(), rho.tolist()), 1)]
-    lines += ["", "Velocities", ""] + [f"{i} {p[0]!r} {p[1]!r} {p[2]!r}" for i, p in enumerate(v.tolist(), 1)]
-    return "\n".join(lines) + "\n"
+    return particles(x, kind, v=v, rho=rho, box=np.transpose(box))
 
 
 def deck(fluid="artificial/visc 0.05 0 density/diffusion 0.1", names="water wall", wall="", more="", dim=2, boundary="f f p", newton="on",
          gravity=G, dt=1e-4, fsi="", coeff=True):
-    return f"""units si
-dimension {dim}
-boundary {boundary}
-atom_style fsi
-newton {newton}
-""" + (f"""read_data scene.data
+    return start(f"newton {newton}", dim=dim, boundary=boundary) + (f"""read_data scene.data
 pair_style fsi/fluid sound {C} {fluid}
 pair_coeff * * scene.fsi {names}
 group water type 1
@@ -58,8 +41,8 @@ def shot(every=1, file="atoms.dump"):
             "dump_modify d sort id time yes format float %.17g colname c_p[1] p colname c_p[2] rho\n")
 
 
-def go(tmp_path, text, particles, ranks=1):
-    return run(tmp_path, text, ranks, scene_data=particles, scene_fsi=MATERIALS)
+def go(tmp_path, text, rows, ranks=1):
+    return run(tmp_path, text, ranks, scene_data=rows, scene_fsi=MATERIALS)
 
 
 def value(result, name):

@@ -5,8 +5,9 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from scenes import DX as FINE, KERNELS, WATER, Scene, close, cloud, dam_gate, fluid_box, lattice, run
-from test_spacing import agree_on_ranks
+from decks import agree_on_ranks
+from scenes import (DX as FINE, KERNELS, WATER, Scene, close, cloud, dam_gate, fluid_box, lattice,
+                    run)
 
 VISCOUS = "fluid rho 1000 viscosity 20"
 C, ALPHA, BETA, DX, H = 10.0, 0.3, 0.5, 0.1, 0.13

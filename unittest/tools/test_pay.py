@@ -7,6 +7,7 @@ import re
 import sys
 
 import pytest
+from decks import box
 
 from fsi import paths
 
@@ -136,17 +137,7 @@ def test_walls_of_particles_send_nothing_where_none_is():
 
 def stream(rows):
     """A stream between open ends that two ranks cut along its middle: rows of particles from side to side, 24 along it."""
-    return effects.write_materials(f"""units si
-dimension 2
-boundary f p p
-atom_style fsi
-processors 1 2 1
-region box block -0.5 1.5 0 {rows / 24!r} -0.005 0.005
-create_box 1 box
-lattice sq {1 / 24!r} origin 0.5 0.5 0
-region body block 0 1 INF INF INF INF units box
-create_atoms 1 region body
-pair_style fsi/fluid sound 10 tension yes background 1000
+    return effects.write_materials(box(f"-0.5 1.5 0 {rows / 24!r}", 1 / 24, "processors 1 2 1", boundary="f p p", water="0 1 INF INF") + f"""pair_style fsi/fluid sound 10 tension yes background 1000
 pair_coeff * * materials.fsi water
 fix sph all fsi {1 / 24!r} wendland 1.5
 fix in all fsi/inlet xlo 0.0 velocity 0.3 0 0
