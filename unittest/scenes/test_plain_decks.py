@@ -78,7 +78,9 @@ def test_who_has_a_study():
     for name in paths.examples():
         expected = name not in STARTERS
         assert (scene.deck(name).parent.name == "study") == expected and scene.deck(name).is_file()
-    for path in paths.EXAMPLES.glob("*/study/*"):
+    studies = list(paths.EXAMPLES.glob("*/study/*"))
+    assert len(studies) == len(set(paths.examples()) - set(STARTERS))
+    for path in studies:
         assert path.name == f"in.{path.parents[1].name}"
 
 

@@ -37,8 +37,10 @@ def test_kept(dim, couple):
         assert np.abs(s.get("v") - v0).max() > 0.1            # things did happen
         # round-off: 1e-16 per step and particle, of both signs; measured 1e-16 to 3e-16
         assert drift < 1e-14
-        # forces along the line between particles keep it; the shear stress of the solid is not of that kind
-        assert spin < 0.1
+        # forces along the line between particles keep it; the shear stress of the solid is not of
+        # that kind: measured 0.002 and 0.003 with corrected gradients, which see a rotation as one,
+        # 0.02 and 0.04 with plain ones. It is 0.04 in all
+        assert spin < (0.005 if couple == "wall" else 0.05)
 
 
 @pytest.mark.parametrize("dim", [2, 3])

@@ -199,44 +199,38 @@ def test_arrays_grow():
 
 
 def test_settling():
-    """Particles around events go down the slope of sum V W in small steps at once: the same in numpy, of all pairs, each time. From a lattice
-    shaken by a fifth of its spacing some move by more than as much."""
-    size, steps = [1.2, 1.2, 0], 30
+    """In a lattice shaken by a fifth of its spacing halves settle: |sum V grad W|, which is what
+    pressure does, falls around events. Who is further from them than the support stays, bit for
+    bit, and nobody's mass or density changes."""
     x, _ = cloud((24, 24), DX, 3, jitter=0.2)
     found = {}
-    for settle in (0, steps):
-        with box_scene(x, zone="block 0.41 0.72 0.41 0.72 INF INF", refine=f"region zone settle {settle}") as s:
+    for settle in (0, 30):
+        with box_scene(x, zone="block 0.41 0.72 0.41 0.72 INF INF",
+                       refine=f"region zone settle {settle}") as s:
             s.put("rho", 1000 + 20 * np.sin(9 * x[:, 0]))
             go(s, 0)
-            found[settle] = [s.get(name) for name in ("id", "type", "x", "rmass", "rho")]
-    (ids, level, at, m, rho), (ids_then, _, then, _, rho_then) = found[0], found[steps]
-    assert list(ids) == list(ids_then) and np.abs(rho - rho_then).max() == 0.0
+            found[settle] = [s.get(name) for name in ("id", "type", "rmass", "rho", "x")]
+    for before, after in zip(found[0][:4], found[30]):
+        assert np.array_equal(before, after)
+    _, level, m, rho, at = found[0]
     dx, V = DX * np.where(level == 2, FINER[2], 1.0), m / rho
-    kernels = {h: Kernel("wendland", 2, 1.5 * h) for h in (DX, 0.5 * DX * (1 + FINER[2]), DX * FINER[2])}
-    mean, cut = 0.5 * (dx[:, None] + dx), 3.0 * dx
-
-    def between(y):
-        d = y[:, None] - y
+    kernel = Kernel("wendland", 2, 0.75 * (dx[:, None] + dx))
+    rest = {}
+    for settle in (0, 30):
+        d = found[settle][4][:, None] - found[settle][4]
         d -= 1.2 * np.round(d / 1.2)
-        return d, np.sqrt((d**2).sum(-1))
-
-    event = between(at)[1][:, level == 2].min(1)
-    mobility = np.where(event < cut, np.minimum(1.0, 2.0 - 2.0 * event / cut), 0.0)
-    y = at.copy()
-    for _ in range(steps):
-        d, r = between(y)
-        g, W = np.zeros_like(r), np.zeros_like(r)
-        for h, kernel in kernels.items():
-            these = np.isclose(mean, h)
-            g[these], W[these] = kernel.g(r[these]), kernel.W(r[these])
-        step = (g * V)[..., None] * d
-        full = np.clip(((W * V).sum(1) - 0.9) / 0.05, 0.0, 1.0)
-        step = -0.15 * (dx**2 * mobility * full)[:, None] * step.sum(1)
-        long = np.linalg.norm(step, axis=1)
-        y += step * np.minimum(1.0, 0.05 * dx / np.maximum(long, 1e-300))[:, None]
-    assert np.linalg.norm(y - at, axis=1).max() > 0.2 * DX
-    d = then - y
-    assert np.abs(d - 1.2 * np.round(d / 1.2)).max() < 1e-11    # 30 steps of sums in another order
+        r = np.linalg.norm(d, axis=2)
+        if settle == 0:
+            event = r[:, level == 2].min(1)
+        g = np.where(r < kernel.cut, kernel.g(np.minimum(r, kernel.cut)), 0.0)
+        rest[settle] = np.linalg.norm(((V * g)[..., None] * d).sum(1), axis=1)
+    moved = np.linalg.norm(found[30][4] - at, axis=1)
+    halves, far = level == 2, event > 3 * dx
+    left = np.sqrt((rest[30][halves]**2).mean() / (rest[0][halves]**2).mean())
+    print(f"settling leaves {left:.4f}, moves by {moved.max() / DX:.2f} spacings")
+    assert far.sum() > 200 and moved[far].max() == 0.0 and moved.max() > 0.2 * DX
+    # measured: 0.079 after these 30 steps, 0.092 after 25, 0.5 after 5
+    assert left < 0.085
 
 
 @pytest.mark.parametrize("dim", [2, 3])

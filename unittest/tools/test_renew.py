@@ -51,7 +51,9 @@ def test_data_name_their_commit_and_date(path):
 
 
 def test_results_name_their_commit_and_date():
-    for name, entry in results.scenes_of(paths.PAGE).items():
+    found = results.scenes_of(paths.PAGE)
+    assert len(found) > 30
+    for name, entry in found.items():
         assert re.fullmatch(r"[0-9a-f]{10}", entry["summary"]["commit"]) and re.fullmatch(r"\d{4}-\d\d-\d\d", entry["summary"]["date"]), name
 
 
