@@ -206,6 +206,12 @@ def test_variables_of_ends_share_a_group(tmp_path):
     assert len(run(tmp_path, text + watch(every=20) + "run 20\n", **FILES).frames()[-1]["x"]) > 390
 
 
+def test_groups_that_are_used_up(tmp_path):
+    """The 33rd, which an end with a variable would make, is an error in words."""
+    text = deck(more="".join(f"group g{k} empty\n" for k in range(30)))
+    assert "Too many groups (max 32)" in lammps(tmp_path, text + "run 0\n", **FILES).errors[0]
+
+
 def test_channel():
     """Poiseuille's flow from end to end, five times through: profile and pressure, nothing lost, no more particles than at first."""
     dx, L, U, mu = 0.1, 3.0, 1.0, 100.0

@@ -1,5 +1,7 @@
 """Planes of symmetry of solids (fix fsi/wall/mirror, keyword symmetry): a half is the whole."""
 
+import ctypes
+
 import numpy as np
 import pytest
 from decks import materials, start
@@ -79,6 +81,23 @@ def test_a_part_is_the_whole(n, axes, case):
         close(part.get("f"), whole.get("f")[:m], 1e-9)
         close(part.sigma, whole.sigma[:m], 1e-9)
         close(part.ledger()[:9], whole.ledger()[:9] / 2**len(axes), 1e-9)
+
+
+@pytest.mark.parametrize("style", ["fsi/solid/tl", "fsi/solid"])
+def test_images_where_arrays_are_full(style):
+    """LAMMPS makes room for 16,384 particles at a time; images of three columns of a body that has
+    nearly as many lie beyond. Who reads them out of LAMMPS' arrays crashes, where these have pages
+    of their own, or gets forces that are not those of the whole."""
+    if hasattr(ctypes.CDLL(None), "mallopt"):
+        ctypes.CDLL(None).mallopt(-3, 65536)    # glibc: M_MMAP_THRESHOLD
+    x, found = lattice([4, 4090], DX), []
+    for whole in (False, True):
+        X = mirrored(x, (0,)) if whole else x
+        with Scene(X, X * [10.0, 0, 0], dx=DX, dt=1e-5, materials=(RUBBER,), solid_style=style,
+                   commands=[] if whole else [PLANE]) as s:
+            assert whole or s.lmp.extract_setting("nmax") == 16384
+            found.append(s.run(3).get("f")[:len(x)])
+    close(*found, 1e-10)
 
 
 @DIMS
