@@ -9,8 +9,8 @@ import random
 import re
 import subprocess
 
+from redefined import MATERIALS, OTHER, SCENES, deck, part
 from scenes import lammps
-from test_redefine import MATERIALS, OTHER, SCENES, deck, part
 
 LIMIT = 60  # seconds for a deck of a second or less, on a busy machine
 # What starts at up to 0.6 m/s under gravity, for a hundred steps of 1e-4 s, at a speed of sound of 10 m/s: a kick of the sound is seen

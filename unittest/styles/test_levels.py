@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from decks import GRIDS, JUMP, levels_gate, near, resume
-from scenes import (RUBBER, WATER, Kernel, Scene, close, cloud, difference, differing, lammps,
-                    lattice, pairs, run, sum_over, watch)
+from decks import JUMP, agree_on_ranks, goes_on_bit_for_bit, levels_gate, near
+from scenes import RUBBER, WATER, Kernel, Scene, close, cloud, lammps, lattice, pairs, run, sum_over
 
 
 def beside(dim, ratio=JUMP, n=6, jitter=0.2, vmax=0.5, dx=0.1):
@@ -121,22 +120,12 @@ def test_ledger_closes():
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_ranks_and_newton(tmp_path, dim):
-    # Tolerances as in test_spacing.py
-    end, scene = watch(every=30) + "run 30\n", levels_gate(dim)
-    one = run(tmp_path / "one", scene.text() + end, scene_data=scene.data()).frames()
-    for ranks, grid, newton in GRIDS:
-        many = run(tmp_path / f"{ranks}{newton}", replace(scene, newton=newton).text(grid) + end, ranks, scene_data=scene.data()).frames()
-        assert difference(one[0], many[0], "f") < 2e-10
-        for quantity in ("x", "v", "rho", "stress"):
-            assert difference(one[-1], many[-1], quantity) < 1e-9, (ranks, grid, newton, quantity)
+    agree_on_ranks(tmp_path, levels_gate(dim))
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_restart_goes_on_bit_for_bit(tmp_path, ranks):
-    scene = levels_gate(2)
-    whole = run(tmp_path, scene.text() + watch(every=80) + "restart 40 mid.*\nrun 80\n", ranks, scene_data=scene.data()).frames()[-1]
-    rest = run(tmp_path, resume(scene, "mid.40") + watch("rest.dump", 80) + "restart 40 other.*\nrun 40\n", ranks).frames("rest.dump")[-1]
-    assert whole.step == rest.step == 80 and differing(whole, rest) == []
+    goes_on_bit_for_bit(tmp_path, levels_gate(2), ranks)
 
 
 @pytest.mark.parametrize("edit, message", [

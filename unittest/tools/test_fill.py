@@ -4,6 +4,7 @@ import struct
 
 import numpy as np
 import pytest
+from decks import start
 from scenes import run
 
 from fsi import cli, fill
@@ -111,11 +112,7 @@ def test_lammps_reads_it(tmp_path):
     fill.main([outline, "0.01", str(tmp_path / "water.data")])
     fill.main([outline, "0.01", str(tmp_path / "bowl.data"), "--shell", "4", "--type", "1"])
     counts = [len(atoms(tmp_path / f"{n}.data")) for n in ("water", "bowl")]
-    result = run(tmp_path, """units si
-dimension 2
-boundary f f p
-atom_style fsi
-read_data water.data extra/atom/types 1 group water
+    result = run(tmp_path, start() + """read_data water.data extra/atom/types 1 group water
 read_data bowl.data add append offset 1 0 0 0 0 group bowl
 pair_style fsi/fluid sound 20
 pair_coeff * * materials.fsi water wall
