@@ -1,5 +1,5 @@
-"""Decks as text: a box with a lattice of water, bodies and walls (box), what acts on them (physics), or both (deck); materials and particles as
-files; and what several tests do with a Deck of scenes.py."""
+"""Decks as text: a box with a lattice of water, bodies and walls (box), what acts on them
+(physics), or both (deck); files of materials; and what several tests do with a Deck or Scene."""
 
 import re
 from dataclasses import replace
@@ -13,26 +13,32 @@ INVISCID = {"water": WATER}
 WALL = "wall rho 1000"
 
 
-def materials(units="si", **lines):
+def materials(**lines):
     """A file of materials by their names."""
-    return f"# DATE: 2026-01-01 UNITS: {units} CITATION: none\n" + "".join(f"{name} {line}\n" for name, line in lines.items())
+    return ("# DATE: 2026-01-01 UNITS: si CITATION: none\n"
+            + "".join(f"{name} {line}\n" for name, line in lines.items()))
 
 
 def start(*lines, dim=2, boundary="f f p", style="fsi"):
     """What comes before there is a box."""
-    return "\n".join(["units si", f"dimension {dim}", f"boundary {boundary}", f"atom_style {style}", *lines, ""])
+    head = "units si", f"dimension {dim}", f"boundary {boundary}", f"atom_style {style}"
+    return "\n".join([*head, *lines, ""])
 
 
 def atoms(size, dx, dim=2, types=0, **blocks):
-    """A box of a size and blocks of its lattice, each as numbers of region block, in 2D of x and y alone, or "" for all of the box. The k-th block is of
-    type k, and of the group and region of its name; water and wall are no bodies, all others are, with molecules 1, 2, ..."""
-    whole = lambda place, z: place + f" {z}" * (dim == 2)
-    lines = [f"region box block {whole(size, f'{-dx / 2:.12g} {dx / 2:.12g}')} units box", f"create_box {max(types, len(blocks))} box",
-             f"lattice {'sq' if dim == 2 else 'sc'} {dx:.12g} origin 0.5 0.5 {0 if dim == 2 else 0.5}"]
+    """A box of a size and blocks of its lattice, each as numbers of region block, in 2D of x and y
+    alone, or "" for all of the box. The k-th block is of type k, and of the group and region of its
+    name; water and wall are no bodies, all others are, with molecules 1, 2, ..."""
+    flat, shape = dim == 2, "sq" if dim == 2 else "sc"
+    lines = [f"region box block {size} {f'{-dx / 2:.12g} {dx / 2:.12g}' * flat} units box",
+             f"create_box {max(types, len(blocks))} box",
+             f"lattice {shape} {dx:.12g} origin 0.5 0.5 {0 if flat else 0.5}"]
     bodies = 0
     for k, (name, place) in enumerate(blocks.items(), 1):
-        lines += [f"region {name} block {whole(place, 'INF INF')} units box"] if place else []
-        lines += [f"create_atoms {k} {f'region {name}' if place else 'box'}", f"group {name} type {k}"]
+        if place:
+            lines.append(f"region {name} block {place} {'INF INF' * flat} units box")
+        lines += [f"create_atoms {k} {f'region {name}' if place else 'box'}",
+                  f"group {name} type {k}"]
         if name not in ("water", "wall"):
             bodies += 1
             lines.append(f"set group {name} mol {bodies}")
@@ -41,28 +47,30 @@ def atoms(size, dx, dim=2, types=0, **blocks):
 
 def box(size, dx, *before, dim=2, boundary=None, style="fsi", **blocks):
     """From nothing to particles."""
-    return start(*before, dim=dim, boundary=boundary or ("f f p" if dim == 2 else "f f f"), style=style) + atoms(size, dx, dim, **blocks)
+    boundary = boundary or ("f f p" if dim == 2 else "f f f")
+    return start(*before, dim=dim, boundary=boundary, style=style) + atoms(size, dx, dim, **blocks)
 
 
-def physics(dx, named, *lines, fluid="sound 10", solid="", solid_style="fsi/solid/tl", stress="", group="all", kernel="wendland 1.5", sph="", dt=1e-4, skin=0.3,
-            coeff=True):
-    """Materials by name in the order of types, pair styles, fix fsi of a group, time step and skin (in spacings), and lines of the test's own. Without coeff:
-    after read_restart."""
+def physics(dx, named, *lines, fluid="sound 10", solid="", solid_style="fsi/solid/tl",
+            group="all", sph="", dt=1e-4, skin=0.3, coeff=True):
+    """Materials by name in the order of types, pair styles, fix fsi of a group, time step and skin
+    (in spacings), and lines of the test's own. Without coeff: after read_restart."""
     text = pair_styles(named, fluid, solid, solid_style) if coeff else ""
-    text += f"fix sph {group} fsi {dx:.12g} {kernel} {sph}\n"
+    text += f"fix sph {group} fsi {dx:.12g} wendland 1.5 {sph}\n"
     if solid_style == "fsi/solid" and any(line.startswith("solid") for line in named.values()):
-        text += f"fix stress all fsi/stress {stress}\n"
+        text += "fix stress all fsi/stress\n"
     return text + "\n".join([f"timestep {dt}", f"neighbor {skin * dx:.12g} bin", *lines, ""])
 
 
-def deck(size, dx, named, *lines, made="", before=(), boundary=None, dim=2, style="fsi", blocks=None, **options):
-    """A whole deck up to the first run; made: lines between particles and physics; options: those of physics, and blocks."""
-    of_physics = {k: options.pop(k) for k in list(options) if k in physics.__kwdefaults__}
-    return (box(size, dx, *before, dim=dim, boundary=boundary, types=len(named), style=style, **(blocks or {}), **options) + made + "\n"
-            + physics(dx, named, *lines, **of_physics))
+def deck(size, dx, named, *lines, made="", before=(), boundary=None, dim=2, **options):
+    """A whole deck up to the first run; made: lines between particles and physics; options: those
+    of physics, and blocks."""
+    blocks = {k: options.pop(k) for k in list(options) if k not in physics.__kwdefaults__}
+    particles = box(size, dx, *before, dim=dim, boundary=boundary, types=len(named), **blocks)
+    return particles + made + "\n" + physics(dx, named, *lines, **options)
 
 
-# ---- for the pages: water and a plate -----------------------------------------------------------------------------------------
+# ---- for the pages: water and a plate -----------------------------------------------------------
 
 SETUP = box("-0.05 0.3 -0.05 0.3", 0.01, water="0 0.1 0 0.1", plate="0.1 0.15 0 0.1") + "timestep 1e-5\nneighbor 0.003 bin\n"
 PAIRS = """pair_style hybrid fsi/fluid sound 16 fsi/solid
@@ -71,7 +79,7 @@ pair_coeff * * fsi/solid materials.fsi NULL plate
 """
 FIX, STRESS, GRAVITY = "fix sph all fsi 0.01 wendland 1.5\n", "fix stress all fsi/stress\n", "fix g all gravity 9.81 vector 0 -1 0\n"
 
-# ---- what several tests do with a Deck ----------------------------------------------------------------------------------------
+# ---- what several tests do with a Deck or Scene --------------------------------------------------
 
 
 def total_lagrangian(text):

@@ -86,27 +86,33 @@ def cloud(n, dx, seed=1, jitter=0.2, origin=0.0, vmax=0.0):
 
 
 def pair_styles(materials, fluid, solid, solid_style):
-    """Materials by name in the order of types, and the pair styles of what they are: a fluid's, a solid's or both."""
+    """Materials by name in the order of types, and the pair styles of what they are: a fluid's, a
+    solid's or both."""
     has = {m.split()[0] for m in materials.values()}
     lines = [f"fsi/material {name} {m}" for name, m in materials.items()]
-    styles = [("fsi/fluid", fluid, "")] * ("fluid" in has) + [(solid_style, solid, "solid")] * ("solid" in has)
-    lines.append(f"pair_style {'hybrid ' * (len(styles) == 2)}" + " ".join(f"{style} {keywords}" for style, keywords, _ in styles))
-    for style, _, kind in styles:
-        names = " ".join(name if m.startswith(kind) or len(styles) == 1 else "NULL" for name, m in materials.items())
-        lines.append(f"pair_coeff * * {f'{style} ' * (len(styles) == 2)}NULL {names}")
+    if not has >= {"fluid", "solid"}:
+        style = f"{solid_style} {solid}" if "solid" in has else f"fsi/fluid {fluid}"
+        lines += [f"pair_style {style}", f"pair_coeff * * NULL {' '.join(materials)}"]
+    else:
+        solids = [name if m.startswith("solid") else "NULL" for name, m in materials.items()]
+        lines += [f"pair_style hybrid fsi/fluid {fluid} {solid_style} {solid}",
+                  f"pair_coeff * * fsi/fluid NULL {' '.join(materials)}",
+                  f"pair_coeff * * {solid_style} NULL {' '.join(solids)}"]
     return "\n".join(lines) + "\n"
 
 
 def particles(x, kind=1, mol=0, v=None, rho=0.0, *, box, types=0, ids=None):
-    """A data file of particles x (n, 3); types, bodies and densities of each or of all; box: (lo, hi) of each axis. Mass 0 is that of the stress-free
-    lattice."""
-    kind, mol, rho = (np.broadcast_to(of, len(x)).tolist() for of in (np.asarray(kind, int), np.asarray(mol, int), np.asarray(rho, float)))
-    ids, box, x = range(1, len(x) + 1) if ids is None else ids.tolist(), np.asarray(box, float).tolist(), np.asarray(x, float).tolist()
-    row = lambda p: " ".join(map(repr, p))
-    lines = ["particles", "", f"{len(x)} atoms", f"{max(types, *kind)} atom types", "", *(f"{row(ends)} {a}lo {a}hi" for ends, a in zip(box, "xyz")), "",
-             "Atoms # fsi", "", *(f"{i} {m} {k} {r!r} 0 {row(p)}" for i, m, k, r, p in zip(ids, mol, kind, rho, x))]
+    """A data file of particles x (n, 3); types, bodies and densities of each or of all; box: (lo,
+    hi) of each axis. Mass 0 is that of the stress-free lattice."""
+    each = lambda of, type_: np.broadcast_to(np.asarray(of, type_), len(x)).tolist()
+    row = lambda p: " ".join(map(repr, np.asarray(p, float).tolist()))
+    ids, kind = range(1, len(x) + 1) if ids is None else ids.tolist(), each(kind, int)
+    lines = ["particles", "", f"{len(x)} atoms", f"{max(types, *kind)} atom types", "",
+             *(f"{row(ends)} {a}lo {a}hi" for ends, a in zip(box, "xyz")), "", "Atoms # fsi", "",
+             *(f"{i} {m} {k} {r!r} 0 {row(p)}"
+               for i, m, k, r, p in zip(ids, each(mol, int), kind, each(rho, float), x))]
     if v is not None:
-        lines += ["", "Velocities", "", *(f"{i} {row(p)}" for i, p in zip(ids, np.asarray(v, float).tolist()))]
+        lines += ["", "Velocities", "", *(f"{i} {row(p)}" for i, p in zip(ids, v))]
     return "\n".join(lines) + "\n"
 
 
@@ -149,7 +155,9 @@ class Scene:
                               None if v is None else np.asarray(v, float).ravel().tolist())
         assert self.lmp.get_natoms() == self.n, "particles outside the box"
         self.put("molecule", np.broadcast_to(mol, self.n))
-        self.run_lines(pair_styles({f"m{k}": m for k, m in enumerate(materials)}, fluid if "sound" in fluid else f"sound 10 {fluid}", solid, solid_style))
+        named = {f"m{k}": m for k, m in enumerate(materials)}
+        fluid = fluid if "sound" in fluid else f"sound 10 {fluid}"
+        self.run_lines(pair_styles(named, fluid, solid, solid_style))
         if held is not None:
             ids = " ".join(map(str, np.flatnonzero(held) + 1))
             self.run_lines(f"group held id {ids}", "group moving subtract all held")
@@ -298,7 +306,8 @@ class Deck:
 
     def data(self):
         """The particles as a LAMMPS data file."""
-        return particles(self.x, self.type, self.type - 1, self.v, self.rho, box=self.box, types=1 + self.has_solid, ids=self.ids)
+        return particles(self.x, self.type, self.type - 1, self.v, self.rho, box=self.box,
+                         types=1 + self.has_solid, ids=self.ids)
 
     def setup(self, processors="* * *"):
         """Input from nothing to the empty box' boundary conditions."""

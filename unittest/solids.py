@@ -138,10 +138,16 @@ def angular(s):
 # ---- two bodies in a periodic box, in processes of their own ------------------------------------------------------------------
 
 
-def bodies(dim, newton="on", grid="* * *", substeps=1, keywords="hourglass 0.1 artificial/visc 0.1 0", dt=1e-4, rubber="solid rho 1000 young 3e5 poisson 0.3"):
+def bodies(dim, newton="on", grid="* * *", substeps=1, dt=1e-4,
+           keywords="hourglass 0.1 artificial/visc 0.1 0",
+           rubber="solid rho 1000 young 3e5 poisson 0.3"):
     """Input up to the particles, pair style, and the rest."""
-    return (start(f"newton {newton}", f"processors {grid}", "read_data bodies.data", dim=dim, boundary="p p p"), pair_styles({"rubber": rubber}, "", keywords, "fsi/solid/tl"),
-            physics(DX, {}, "neigh_modify every 1 delay 0 check yes", "comm_modify cutoff 0.42", "thermo_modify norm no lost error", sph=f"substeps {substeps}", dt=dt * substeps, coeff=False))
+    head = start(f"newton {newton}", f"processors {grid}", "read_data bodies.data", dim=dim,
+                 boundary="p p p")
+    rest = physics(DX, {}, "neigh_modify every 1 delay 0 check yes", "comm_modify cutoff 0.42",
+                   "thermo_modify norm no lost error", sph=f"substeps {substeps}",
+                   dt=dt * substeps, coeff=False)
+    return head, pair_styles({"rubber": rubber}, "", keywords, "fsi/solid/tl"), rest
 
 
 def files(dim, jitter=0.04, offset=0.0):

@@ -10,10 +10,16 @@ from decks import WALL, deck
 from scenes import RUBBER, WATER, Scene, lammps, lattice, run
 
 DX = 0.01
+
+
 def scene(solid="fsi/solid", **named):
     """Water between a wall and a plate."""
-    return deck("-0.1 0.3 -0.1 0.3", DX, named or {"water": WATER + " sound 10", "rubber": RUBBER, "stone": WALL}, fluid="", solid_style=solid, group="moving",
-                dt=1e-5, made="group moving type 1 2", blocks={"water": "0 0.1 0 0.1", "plate": "0.1 0.14 0 0.1", "wall": "-0.04 0 0 0.1"})
+    named = named or {"water": WATER + " sound 10", "rubber": RUBBER, "stone": WALL}
+    return deck("-0.1 0.3 -0.1 0.3", DX, named, made="group moving type 1 2", group="moving",
+                fluid="", solid_style=solid, dt=1e-5, water="0 0.1 0 0.1", plate="0.1 0.14 0 0.1",
+                wall="-0.04 0 0 0.1")
+
+
 FIXES = {
     "fsi": "", "fsi/stress": "", "fsi/dt": "fix 2 all fsi/dt 10", "fsi/watch": "fix 2 all fsi/watch 10",
     "fsi/report": "fix 2 all fsi/report", "fsi/wall/mirror": "fix 2 water fsi/wall/mirror ylo 0", "fsi/wall/particle": "fix 2 wall fsi/wall/particle",

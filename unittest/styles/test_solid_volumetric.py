@@ -208,7 +208,8 @@ def test_checkerboards_of_volume_cost_energy():
 # ---- ranks and restarts -----------------------------------------------------------------------------------------------------
 
 def bodies(dim, newton="on", grid="* * *", substeps=1, nu=0.49):
-    return solids.bodies(dim, newton, grid, substeps, "law neohookean artificial/visc 0.1 0", 4e-5, f"solid rho 1000 young 3e5 poisson {nu}")
+    return solids.bodies(dim, newton, grid, substeps, 4e-5, "law neohookean artificial/visc 0.1 0",
+                         f"solid rho 1000 young 3e5 poisson {nu}")
 
 
 def go(tmp_path, dim, ranks, *how):
