@@ -25,6 +25,7 @@ class Maker:
         self.rng = random.Random(seed)
         self.scene = self.rng.choice(("tank", "tank", "updated", "open", "stream", "levels", "levels"))
         self.now = dict(SCENES[self.scene][0])
+        self.types = int(re.search(r"create_box (\d+)", SCENES[self.scene][1])[1])
         # bodies whose density is that of their neighbors are in tension at faces and holes, and tear
         self.others = {name: {t: r for t, r in texts.items() if "solid summation" not in t and "solid ratio" not in t} for (scene, name), texts in OTHER.items() if scene == self.scene}
         self.gone, self.spots, self.files = [], 0, 0
@@ -115,7 +116,7 @@ class Maker:
         self.lines.append(f"delete_atoms region {self.spot()} compress {self.rng.choice(('yes', 'no'))}")
 
     def create(self):
-        kind = self.rng.choice(range(1, SCENES[self.scene][1]["types"] + 1))
+        kind = self.rng.choice(range(1, self.types + 1))
         spot = self.spot(0.17 if self.rng.random() < 0.7 else 0.0)
         number, seed = self.rng.choice((1, 5, 20)), self.rng.randrange(1, 10000)
         apart = 1.2 if kind == 2 else 0.8    # not squeezed into a body
@@ -129,7 +130,7 @@ class Maker:
                 self.lines.append(f"group made region {spot}\ngroup moves union moves made\ngroup made delete")
 
     def set_type(self):
-        self.lines.append(f"set region {self.spot()} type {self.rng.choice(range(1, SCENES[self.scene][1]['types'] + 1))}")
+        self.lines.append(f"set region {self.spot()} type {self.rng.choice(range(1, self.types + 1))}")
 
     def look(self):
         self.files += 1
