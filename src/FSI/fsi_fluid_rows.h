@@ -125,7 +125,8 @@ namespace FSI {
       if (FLAGS & Flag::UNEQUAL) pi.pv2 = backfill * constant.volume * pi.pv2;
       const bool own = KIND == WITH_SOLID || (KIND == WITH_WALL && constant.thin);
       double down[D];
-      const bool deep = (FLAGS & Flag::IMAGES) && is_below(laws, mirror, in.type[i], down);
+      const bool deep =
+          (FLAGS & Flag::IMAGES) && KIND == WITH_FLUID && is_below(laws, mirror, in.type[i], down);
       T sum[D];
       for (T &s : sum) s = 0.0;
       Taken<T, D> taken((FLAGS & Flag::SUMS) && !(FLAGS & Flag::IMAGES) ? laws.taken : nullptr);
@@ -138,24 +139,14 @@ namespace FSI {
             relate<T, K, KIND, FLAGS>(kernel, in, constant, i, pi, pj, j, weight, m);
             T p = shared_pressure<T, KIND, D>(pi, pj, original.x, constant.extrapolate,
                                               constant.floor, back, own);
-            if ((FLAGS & Flag::IMAGES) && KIND == WITH_FLUID && deep)
-              p += pressure_below<T, FLAGS, D>(down, pi, pj, m, by);
+            if (deep) p += pressure_below<T, FLAGS, D>(down, pi, pj, m, by);
             T force[D], on_j[D], coupling[D], friction[D], coupled;
             push<T, KIND, FLAGS>(artificial, laws, constant, pi, pj, p, m, force, coupling,
                                  friction, coupled, by);
-            if (KIND == WITH_WALL || KIND == WITH_SOLID)
-              keep_out<T, KIND, FLAGS>(laws.guard[type_j], in, constant.bulk, j, m, force, by);
-            if constexpr (KIND == WITH_SOLID_FULL)
-              if (laws.stress)
-                coupled -= CouplePaper::add_stress<(FLAGS & Flag::IMAGES) != 0>(
-                    laws.stress[*j], mirror, pj.vol * pj.vol * m.g, m.x, m.v, force);
-            if (FLAGS & Flag::IMAGES)
-              for (int d = 0; d < D; d++) on_j[d] = -mirror.sign[d] * force[d];
-            if (FLAGS & Flag::LAMINAR)
-              slow<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, m, force,
-                                   on_j, friction, by);
-            if (!(FLAGS & Flag::IMAGES))
-              for (int d = 0; d < D; d++) on_j[d] = -force[d];
+            hold_off<T, KIND, FLAGS>(in, laws, mirror, type_j, constant.bulk, j, pj.vol, m, force,
+                                     coupled, by);
+            react<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, original.v, j, constant, m, force,
+                                  on_j, friction, by);
             if (FLAGS & Flag::SUMS) account<T, KIND, FLAGS>(m, force, pj.v, coupled, by);
             for (int d = 0; d < D; d++) {
               sum[d] += force[d];

@@ -613,6 +613,39 @@ namespace FSI {
       by.laminar += (FLAGS & Flag::IMAGES) ? 0.5 * m.share * loss : m.share * loss;
   }
 
+  // What keeps fluid and bodies apart beyond pressure: the guard, and of couple full the stress of
+  // the solid
+  template <class T, int KIND, int FLAGS, int D>
+  FSI_INLINE void hold_off(const FluidParticles &in, const ForceLaws &laws, const Mirror &mirror,
+                           int type_j, double bulk, const int *j, const T &vol_j,
+                           const Between<T, D> &m, T (&force)[D], T &coupled, Powers<T> &by)
+  {
+    if (KIND == WITH_WALL || KIND == WITH_SOLID)
+      keep_out<T, KIND, FLAGS>(laws.guard[type_j], in, bulk, j, m, force, by);
+    if constexpr (KIND == WITH_SOLID_FULL)
+      if (laws.stress)
+        coupled -= CouplePaper::add_stress<(FLAGS & Flag::IMAGES) != 0>(
+            laws.stress[*j], mirror, vol_j * vol_j * m.g, m.x, m.v, force);
+  }
+
+  // The force on j: the reaction, of an image turned as the wall turns it; laminar viscosity, which
+  // is another one on it
+  template <class T, int KIND, int FLAGS, int D>
+  FSI_INLINE void react(const LaminarViscosity<D> &viscous, const ForceLaws &laws,
+                        const Mirror &mirror, const Particle<T, D> &pi, const Particle<T, D> &pj,
+                        const T (&velocity_of_j)[D], const int *j, const RowConstants &constant,
+                        const Between<T, D> &m, T (&force)[D], T (&on_j)[D], T (&friction)[D],
+                        Powers<T> &by)
+  {
+    if (FLAGS & Flag::IMAGES)
+      for (int d = 0; d < D; d++) on_j[d] = -mirror.sign[d] * force[d];
+    if (FLAGS & Flag::LAMINAR)
+      slow<T, KIND, FLAGS>(viscous, laws, mirror, pi, pj, velocity_of_j, j, constant, m, force,
+                           on_j, friction, by);
+    if (!(FLAGS & Flag::IMAGES))
+      for (int d = 0; d < D; d++) on_j[d] = -force[d];
+  }
+
   // What a pair adds to powers and virial: coupled is the power of coupling; of walls of particles,
   // which are not in the sum of energies, what they are given.
   template <class T, int KIND, int FLAGS, int D>

@@ -117,13 +117,13 @@ def sources():
 
 
 def test_functions_fit_on_a_page():
-    body = "\n" * 82
-    assert long_functions("void f()\n{" + body + "}\n", 80) == [2]
-    assert long_functions("struct A {\n  void f()\n  {" + body + "  }\n};\n", 80) == [3]
-    assert long_functions("auto f = [&](int i) {" + body + "};\n", 80) == [1]
-    assert long_functions("namespace A {" + body + "}\n", 80) == []
-    assert long_functions("void f()\n{\n  // {" + body[:-3] + "}\n", 80) == []
-    assert {file.name for file in sources() if long_functions(file.read_text(), 80)} == set()
+    body = "\n" * 62
+    assert long_functions("void f()\n{" + body + "}\n", 60) == [2]
+    assert long_functions("struct A {\n  void f()\n  {" + body + "  }\n};\n", 60) == [3]
+    assert long_functions("auto f = [&](int i) {" + body + "};\n", 60) == [1]
+    assert long_functions("namespace A {" + body + "}\n", 60) == []
+    assert long_functions("void f()\n{\n  // {" + body[:-3] + "}\n", 60) == []
+    assert {file.name for file in sources() if long_functions(file.read_text(), 60)} == set()
 
 
 def test_lines_are_not_wide():
