@@ -1,5 +1,7 @@
-"""The page of what does not go together, from the table in the sources (src/FSI/fsi_refusals.h)."""
+"""The manual's table of what does not go together, from that in the sources (src/FSI/fsi_refusals.h)."""
 
+import csv
+import io
 import re
 
 from fsi import paths
@@ -7,21 +9,6 @@ from fsi import paths
 TABLE = paths.ROOT / "src/FSI/fsi_refusals.h"
 TEXT = r'"(?:[^"\\]|\\.)*"|\w+'
 ENDS = "Fix fsi/inlet, fix fsi/outlet"    # what {} alone stands for
-HEAD = """What does not go together
-=========================
-
-A refused pair of features stops at its first run. The message has the words of this table.
-
-.. list-table::
-   :header-rows: 1
-   :widths: 36 34 30
-
-   * - what
-     -
-     - because
-"""
-
-
 def table():
     """[(group, name, rule, what, with, why)]"""
     text = TABLE.read_text()
@@ -49,8 +36,11 @@ def shown(text):
 
 
 def page():
-    lines = [HEAD.rstrip("\n")]
+    """The rows of the table as CSV."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["what", "", "because"])
     for _, _, rule, what, other, why in table():
-        lines += [f"   * - {shown(what)}", f"     - {'requires' if rule == 'REQUIRES' else 'does not go with'} {shown(other)}",
-                  f"     - {shown(why)}"]
-    return "\n".join(lines) + "\n"
+        verb = "requires" if rule == "REQUIRES" else "does not go with"
+        writer.writerow([shown(what), f"{verb} {shown(other)}", shown(why)])
+    return out.getvalue()

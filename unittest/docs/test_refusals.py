@@ -12,7 +12,7 @@ BY_LAMMPS = {"RESET_IDS"}  # LAMMPS refuses these itself
 
 
 def test_the_page_is_that_of_the_table():
-    assert (paths.ROOT / "doc/src/refusals.rst").read_text() == refusals.page(), "tools/renew --pages-only writes it"
+    assert (paths.ROOT / "doc/src/refusals.csv").read_text() == refusals.page(), "tools/renew --pages-only writes it"
 
 
 def test_every_row_is_used_and_every_use_has_a_row():

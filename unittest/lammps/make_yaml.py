@@ -20,7 +20,7 @@ from scenes import Kernel, cloud, pairs, sum_over
 TESTS = Path(__file__).resolve().parents[2] / "lammps/unittest/force-styles/tests"
 # a copy of its own: the constants of the material are set below
 _spec = importlib.util.spec_from_file_location(
-    "solid_tl_of_yaml", Path(__file__).resolve().parents[1] / "styles/test_solid_tl.py")
+    "solid_tl_of_yaml", Path(__file__).resolve().parents[1] / "solids.py")
 tl = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(tl)
 DX, DT, C = 0.01, 1e-4, 10.0
@@ -137,7 +137,7 @@ class Grains(Fluid):
 
 
 class Lagrangian:
-    """doc/src/pair_fsi_solid_tl.rst, as unittest/styles/test_solid_tl.py has it"""
+    """doc/src/pair_fsi_solid_tl.rst, as unittest/solids.py has it"""
 
     def __init__(self, reference, law, zeta, artificial, c):
         self.reference, self.name, self.zeta = reference, law, zeta
