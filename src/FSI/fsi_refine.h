@@ -26,6 +26,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -189,6 +190,16 @@ namespace FSI {
   // where they see bodies, segments of mirror walls or a surface.
   class Settling : protected Pointers {
    public:
+    // dx |sum V grad W| of those that are judged, where there is no surface
+    struct Residue {
+      double largest = 0.0, squares = 0.0;
+      bigint n = 0;
+    };
+    // how freely each local particle moves, 0 to 1, and is judged; bound(i): keeps it where it may
+    // be after each move
+    Settling(LAMMPS *, Scene &, const std::vector<double> &mobility,
+             const std::vector<char> &judged, const std::function<void(int)> &bound);
+    const Residue &residue() const { return last; }    // before the last move
     // moves: per local particle, may it be moved? Ghosts are where these are, and follow. Changed:
     // where something did, of this rank
     Settling(LAMMPS *, Scene &, const std::vector<char> &moves,
@@ -201,10 +212,13 @@ namespace FSI {
     const StepState &step;
     Ledger &ledger;
     std::vector<double> mobility, start;    // start: positions that the rows are for
-    std::vector<double> points;             // position and volume of each particle
-    std::vector<Row> rows;                  // particles that are moved, and themselves among others
-    std::vector<Mirror> mirrors;            // none, then those of the walls' reflections
-    std::vector<int> neighbors;             // of the rows
+    std::vector<char> judged;
+    std::function<void(int)> bound;
+    Residue last;
+    std::vector<double> points;     // position and volume of each particle
+    std::vector<Row> rows;          // particles that are moved, and themselves among others
+    std::vector<Mirror> mirrors;    // none, then those of the walls' reflections
+    std::vector<int> neighbors;     // of the rows
     // of each row: sum of V grad W, and behind it that of V W; and rows that see walls, with the
     // bits of these
     std::vector<std::array<double, 4>> sums;

@@ -61,6 +61,14 @@ Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<char> &moves,
   }
 }
 
+Settling::Settling(LAMMPS *lmp, Scene &scene, const std::vector<double> &mobility,
+                   const std::vector<char> &judged, const std::function<void(int)> &bound) :
+    Pointers(lmp),
+    scene(scene), disc(scene), step(scene), ledger(scene), mobility(mobility), judged(judged),
+    bound(bound)
+{
+}
+
 void Settling::find_rows()
 {
   const int nall = atom->nlocal + atom->nghost;
@@ -212,17 +220,25 @@ template <class K> void Settling::add_images_of_segments(const std::vector<K> &o
 template <int D> void Settling::displace()
 {
   double *const *const x = atom->x, *const account = ledger.account(Ledger::LEVELS);
+  last = {};
   for (size_t r = 0; r < rows.size(); r++) {
     const int i = rows[r].i;
     double d[3] = {};
     std::copy_n(sums[r].data(), D, d);
     const double dx = disc.dx_of(atom->type[i]),
                  full = std::clamp((sums[r][D] - SURFACE) / (INSIDE - SURFACE), 0.0, 1.0);
+    if (!judged.empty() && judged[i] && full == 1.0) {
+      const double residue = dx * MathExtra::len3(d);
+      last.largest = std::max(last.largest, residue);
+      last.squares += residue * residue;
+      last.n++;
+    }
     MathExtra::scale3(-STRENGTH * dx * dx * mobility[i] * full, d);
     const double length = MathExtra::len3(d);
     if (length > LONGEST * dx) MathExtra::scale3(LONGEST * dx / length, d);
     if (account) *account += scene.potential(i);
     for (int a = 0; a < D; a++) x[i][a] += d[a];
+    if (bound) bound(i);
     if (account) *account -= scene.potential(i);
   }
 }

@@ -9,7 +9,7 @@ from scenes import run
 
 from fsi import launch, paths
 
-COMMANDS = ("fsi_displace", "fsi_material", "fsi_set")
+COMMANDS = ("fsi_displace", "fsi_material", "fsi_pack", "fsi_set")
 PAGES = paths.ROOT / "doc/src"
 SOURCES = paths.sources()
 STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in paths.sources("*.h").values()
@@ -18,6 +18,7 @@ STYLES["atom_style_fsi"] = STYLES.pop("atom_fsi")
 STYLES.pop("command_fsi_set")  # its name of today and that of before
 STYLES.pop("command_fsi_material")
 STYLES.pop("command_fsi_displace")
+STYLES.pop("command_fsi_pack")
 STYLES |= {name: name.replace("_", "/") for name in COMMANDS}
 STYLES.pop("fix_FSI_REFERENCE")  # internal
 STYLES.pop("fix_FSI_HISTORY")
@@ -33,7 +34,7 @@ def examples(page):
     text = (PAGES / f"{page}.rst").read_text()
     block = re.search(r'^Examples\n"+\n\n\.\. code-block:: LAMMPS\n\n((?:   .*\n|\n)+)', text, re.M)[1]
     paragraphs = [re.sub(r"^ +", "", p.strip("\n"), flags=re.M) for p in re.split(r"\n\s*\n", block) if p.strip()]
-    return paragraphs if page.startswith("pair") or page == "fix_fsi_spectrum" else [line for p in paragraphs for line in p.splitlines()]
+    return paragraphs if page.startswith("pair") or page in ("fix_fsi_spectrum", "fsi_pack") else [line for p in paragraphs for line in p.splitlines()]
 
 
 def deck(page, example):

@@ -247,6 +247,7 @@ ELSEWHERE = {
     "fix_fsi_watch": {"test_watch": "fsi/watch action density distance energy lost off stop warn"},
     "fsi_displace": {"test_displace": "fsi/displace all"},
     "fsi_material": {"test_materials": "sound"},
+    "fsi_pack": {"test_packing": "fsi/pack region stl outline steps"},
     "fsi_set": {"test_density": "pressure hydrostatic volume"},
     "pair_fsi_fluid": {"test_shift": "no"},
     "pair_fsi_solid": {"test_solid": "plain no"},

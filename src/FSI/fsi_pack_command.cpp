@@ -1,0 +1,337 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_pack_command.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "fsi_cells.h"
+#include "fsi_keywords.h"
+#include "fsi_refine.h"
+#include "fsi_surface.h"
+#include "group.h"
+#include "input.h"
+#include "neighbor.h"
+#include "platform.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+// Widths in spacings: of the band in which particles move and of its edge; how near a surface the
+// particles beside it are. Sweeps from one exchange between ranks to the next.
+static constexpr double BAND = 8.0, EDGE = 2.0, BESIDE = 0.5;
+static constexpr int ROUND = 20, ROUND_OF_LOOKS = 100;
+// As much of a body must be on its lattice
+static constexpr double COVERED = 0.98;
+// The residue is at rest if it has not fallen to this in so many sweeps; from one word to the next
+static constexpr double CALM = 0.99, SECONDS = 5.0;
+// a fluid particle nearer than this takes the place of one that fills the outside
+static constexpr double BESIDE_FLUID = 0.75;
+
+FSIPack::FSIPack(LAMMPS *lmp) :
+    Command(lmp), fix_fsi(nullptr), body(0), fluid(0), filler(0), gone_at_once(0), band(0.0)
+{
+}
+
+FSIPack::~FSIPack() = default;
+
+double FSIPack::distance(int i, double *outward) const
+{
+  return surface->distance(atom->x[i], band, outward);
+}
+
+// of a cell, from its own distance, or those of its parts
+double FSIPack::volume_of_cell(const double *middle, double size, double finest) const
+{
+  const int dim = domain->dimension;
+  const double half_diagonal = 0.5 * size * std::sqrt(dim);
+  double outward[3];
+  const double r = surface->distance(middle, 1.01 * half_diagonal, outward),
+               whole = dim == 3 ? size * size * size : size * size;
+  if (r >= half_diagonal) return 0.0;
+  if (r <= -half_diagonal) return whole;
+  if (size <= finest) return whole * std::clamp(0.5 - r / size, 0.0, 1.0);
+  double sum = 0.0;
+  for (int part = 0; part < (1 << dim); part++) {
+    double x[3] = {middle[0], middle[1], middle[2]};
+    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.25 : -0.25) * size;
+    sum += volume_of_cell(x, 0.5 * size, finest);
+  }
+  return sum;
+}
+
+// in the box, from cells that each rank has of its own
+double FSIPack::volume_inside() const
+{
+  const int dim = domain->dimension;
+  const double dx = fix_fsi->levels.back().dx;
+  double sum = 0.0, size[3], x[3] = {0.0, 0.0, 0.5 * (domain->boxlo[2] + domain->boxhi[2])};
+  int n[3] = {1, 1, 1}, from[3] = {}, to[3] = {};
+  // cells are cubes: a box of parts of them ends within the last
+  for (int d = 0; d < dim; d++) {
+    n[d] = std::max(1, (int) std::ceil(domain->prd[d] / (4.0 * dx)));
+    size[d] = domain->prd[d] / n[d];
+    from[d] = (int) std::ceil((domain->sublo[d] - domain->boxlo[d]) / size[d] - 0.5);
+    to[d] = (int) std::ceil((domain->subhi[d] - domain->boxlo[d]) / size[d] - 0.5);
+  }
+  const double largest = *std::max_element(size, size + dim);
+  for (int c = from[2]; c < std::max(to[2], dim == 2 ? 1 : 0); c++)
+    for (int b = from[1]; b < to[1]; b++)
+      for (int a = from[0]; a < to[0]; a++) {
+        const int k[3] = {a, b, c};
+        for (int d = 0; d < dim; d++) x[d] = domain->boxlo[d] + (k[d] + 0.5) * size[d];
+        // a cube of the largest side, scaled to the cell
+        double scale = 1.0;
+        for (int d = 0; d < dim; d++) scale *= size[d] / largest;
+        sum += scale * volume_of_cell(x, largest, 0.25 * dx);
+      }
+  double all;
+  MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+void FSIPack::renew_ghosts()
+{
+  domain->pbc();
+  domain->reset_box();
+  comm->setup();
+  if (neighbor->style) neighbor->setup_bins();
+  comm->exchange();
+  comm->borders();
+}
+
+// of the cell of a particle
+double FSIPack::part_inside(int i) const
+{
+  double outward[3];
+  const double dx = fix_fsi->dx_of(atom->type[i]), r = distance(i, outward);
+  if (std::fabs(r) > dx) return r < 0.0;
+  return volume_of_cell(atom->x[i], dx, 0.125 * dx) / std::pow(dx, domain->dimension);
+}
+
+// The n particles of a group that are deepest inside, of equals by place: the same on any ranks
+std::vector<char> FSIPack::deepest(int bit, double n) const
+{
+  std::vector<double> key(atom->nlocal, 1.0e9);
+  double outward[3];
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & bit)) continue;
+    key[i] = std::floor(1.0e6 * distance(i, outward) / band + 0.5);
+    double digit = 0.5;
+    for (int d = 0; d < domain->dimension; d++, digit *= 1.0e-4)
+      key[i] += digit * (atom->x[i][d] - domain->boxlo[d]) / domain->prd[d];
+  }
+  double low = -2.0e6, high = 2.0e6;
+  for (int k = 0; k < 80; k++) {
+    const double middle = 0.5 * (low + high);
+    const bigint below = std::count_if(key.begin(), key.end(), [middle](double number) {
+      return number <= middle;
+    });
+    bigint all;
+    MPI_Allreduce(&below, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    (all > n ? high : low) = middle;
+  }
+  std::vector<char> chosen(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; i++) chosen[i] = key[i] <= low;
+  return chosen;
+}
+
+// Which particles are the body and which the fluid; others fill the side that has none while both
+// are packed
+void FSIPack::choose(double volume)
+{
+  double here[3] = {}, all[3];    // cells of fluid, of the body that are inside; of one of these
+  double cell = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (atom->mask[i] & fluid) here[0] += part_inside(i);
+    if (!(atom->mask[i] & body)) continue;
+    here[1] += part_inside(i);
+    cell = std::pow(fix_fsi->dx_of(atom->type[i]), domain->dimension);
+  }
+  MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&cell, &all[2], 1, MPI_DOUBLE, MPI_MAX, world);
+  const double wanted = body && all[2] > 0.0 ? std::round(volume / all[2]) : 0.0;
+  if (body && (wanted < 1.0 || all[1] * all[2] < COVERED * volume))
+    error->all(FLERR,
+               "Fsi/pack: {} holds {:g} particles of the body, its lattice has {:.4g} inside: "
+               "expected one that goes on beyond the surface",
+               surface->name(), wanted, all[1]);
+  const std::vector<char> none(atom->nlocal, 0);
+  const auto inside = body ? deepest(body, wanted) : none,
+             displaced = fluid ? deepest(fluid, std::round(all[0])) : none;
+  const double largest = fix_fsi->dx;
+  std::vector<char> stays(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; i++) stays[i] = (atom->mask[i] & fluid) && !displaced[i];
+  // filler: on the outside where there is no fluid, on the inside if there is no body
+  const Cells of_fluid(atom->x, atom->nlocal, domain->dimension, largest, [&](int i) {
+    return stays[i];
+  });
+  double outward[3];
+  for (int i = 0; i < atom->nlocal; i++) {
+    const bool gone = (atom->mask[i] & fluid) && displaced[i],
+               outside = (atom->mask[i] & body) && !inside[i];
+    if (!gone && !outside) continue;
+    // what moves sees no end of it
+    const double reach = band + fix_fsi->largest_cut;
+    bool fills = gone ? !body : surface->distance(atom->x[i], reach, outward) < reach;
+    if (outside && fills)
+      of_fluid.around(atom->x[i], [&](int, double rsq) {
+        const double least = BESIDE_FLUID * fix_fsi->dx_of(atom->type[i]);
+        fills = fills && rsq > least * least;
+      });
+    atom->mask[i] |= fills ? filler : gone_at_once;
+    atom->mask[i] &= ~(body | fluid);
+  }
+}
+
+// a particle stays on its side, half a spacing from the surface, in a corner from both faces
+void FSIPack::keep_off(int i, double side)
+{
+  double outward[3], *const x = atom->x[i];
+  const double least = BESIDE * fix_fsi->dx_of(atom->type[i]);
+  for (int k = 0; k < domain->dimension + 1; k++) {
+    const double r = distance(i, outward);
+    if (side * r >= least || std::fabs(r) >= band) return;
+    for (int d = 0; d < domain->dimension; d++) x[d] += (side * least - r) * outward[d];
+  }
+}
+
+// all of the body have the same mass, together that of its volume
+void FSIPack::set_masses(double volume)
+{
+  const auto in_body = [this](int i) {
+    return (atom->mask[i] & body) != 0;
+  };
+  const bigint n = find_particles(atom, world, in_body).count;
+  if (comm->me == 0)
+    utils::logmesg(lmp, "  fsi/pack: {} encloses {:.8g}, in {} particles of {:.8g} each\n",
+                   surface->name(), volume, n, volume / n);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (in_body(i)) atom->rmass[i] = fix_fsi->state[atom->type[i]].rho0 * volume / n;
+}
+
+void FSIPack::remove(const std::string &name)
+{
+  const int bit = group->bitmask[group->find(name)];
+  if (find_particles(atom, world, [&](int i) {
+        return (atom->mask[i] & bit) != 0;
+      }).count)
+    input->one(fmt::format("delete_atoms group {} compress no", name));
+  input->one(fmt::format("group {} delete", name));
+}
+
+// Sweeps until the residue stays as it is, or as many as are given
+void FSIPack::pack(int steps)
+{
+  double residue[2] = {}, before = 1.0e300;    // the largest, and the root of the mean square
+  bigint n = 0;
+  int done = 0;
+  const double begin = platform::walltime();
+  double told = begin;
+  while (done < steps) {
+    renew_ghosts();
+    fix_fsi->gather_walls();
+    std::vector<double> mobility(atom->nlocal, 0.0), side(atom->nlocal, 0.0);
+    std::vector<char> judged(atom->nlocal, 0);
+    double outward[3];
+    for (int i = 0; i < atom->nlocal; i++) {
+      const int mask = atom->mask[i];
+      if (!(mask & (body | fluid | filler))) continue;
+      const double r = distance(i, outward), dx = fix_fsi->dx_of(atom->type[i]);
+      mobility[i] = std::clamp((band - std::fabs(r)) / (EDGE * dx), 0.0, 1.0);
+      judged[i] = mobility[i] == 1.0 && !(mask & filler);
+      side[i] = mask & body ? -1.0 : mask & fluid ? 1.0 : r < 0.0 ? -1.0 : 1.0;
+    }
+    Settling settling(lmp, *fix_fsi, mobility, judged, [&](int i) {
+      keep_off(i, side[i]);
+    });
+    settling.run(std::min(ROUND, steps - done));
+    done += std::min(ROUND, steps - done);
+    const auto &here = settling.residue();
+    double squares;
+    MPI_Allreduce(&here.largest, &residue[0], 1, MPI_DOUBLE, MPI_MAX, world);
+    MPI_Allreduce(&here.squares, &squares, 1, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(&here.n, &n, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    residue[1] = n ? std::sqrt(squares / n) : 0.0;
+    if (comm->me == 0 && platform::walltime() - told > SECONDS) {
+      told = platform::walltime();
+      utils::logmesg(lmp, "  fsi/pack: {} of {} steps, residue {:.3g}, rms {:.3g}\n", done, steps,
+                     residue[0], residue[1]);
+    }
+    if (done % ROUND_OF_LOOKS) continue;
+    if (residue[1] > CALM * before) break;
+    before = residue[1];
+  }
+  if (comm->me == 0)
+    utils::logmesg(
+        lmp,
+        "  fsi/pack: {} steps; dx |sum V grad W| of {} particles within {:g} spacings of "
+        "the surface: {:.3g} at most, {:.3g} rms\n",
+        done, n, BAND - EDGE, residue[0], residue[1]);
+}
+
+void FSIPack::command(int narg, char **arg)
+{
+  if (domain->box_exist == 0)
+    error->all(FLERR, "Fsi/pack command before simulation box is defined");
+  std::string names[2], region, stl, outline;
+  int steps;
+  Keywords keywords(lmp, "fsi/pack");
+  keywords.argument("body group-ID").word(names[0], "");
+  keywords.argument("fluid group-ID").word(names[1], "");
+  keywords.key("region").word(region, "");
+  keywords.key("stl").word(stl, "");
+  keywords.key("outline").word(outline, "");
+  keywords.key("steps").integer(steps, 1000, 0);
+  keywords.parse(narg, arg);
+  int *const bits[2] = {&body, &fluid};
+  for (int k = 0; k < 2; k++) {
+    if (names[k] == "NULL") continue;
+    const int igroup = group->find(names[k]);
+    if (igroup == -1) error->all(FLERR, "Fsi/pack group-ID {} does not exist", names[k]);
+    *bits[k] = group->bitmask[igroup];
+  }
+  if (!body && !fluid) error->all(FLERR, "Fsi/pack NULL NULL has nothing to pack");
+  if ((region.empty() ? 0 : 1) + (stl.empty() ? 0 : 1) + (outline.empty() ? 0 : 1) != 1)
+    error->all(FLERR, "Fsi/pack takes one of region, stl and outline");
+  surface = !region.empty() ? surface_of_region(lmp, region)
+      : !stl.empty()        ? surface_of_stl(lmp, stl)
+                            : surface_of_outline(lmp, outline);
+  fix_fsi = FixFSI::find(lmp, "Fsi/pack");
+  lmp->init();
+  band = BAND * fix_fsi->dx;
+  renew_ghosts();
+  const std::string fills = "FSI_PACK_FILLER", goes = "FSI_PACK_GONE";
+  filler = group->bitmask[group->find_or_create(fills.c_str())];
+  gone_at_once = group->bitmask[group->find_or_create(goes.c_str())];
+
+  const double sampled = volume_inside(), of_faces = surface->volume();
+  if (of_faces >= 0.0 && std::fabs(of_faces - sampled) > 0.01 * std::max(of_faces, sampled))
+    error->all(FLERR,
+               "Fsi/pack: {} encloses {:g}, but its faces {:g}: expected a surface that does not "
+               "cross itself, inside the box",
+               surface->name(), sampled, of_faces);
+  const double volume = of_faces >= 0.0 ? of_faces : sampled;
+  choose(volume);
+  remove(goes);
+  pack(steps);
+  if (body) set_masses(volume);
+  remove(fills);
+}

@@ -1,0 +1,65 @@
+/* -*- c++ -*- ----------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#ifdef COMMAND_CLASS
+// clang-format off
+CommandStyle(fsi/pack,FSIPack);
+// clang-format on
+#else
+
+#ifndef LMP_FSI_PACK_COMMAND_H
+#define LMP_FSI_PACK_COMMAND_H
+
+#include "command.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixFSI;
+namespace FSI {
+  class Surface;
+}
+
+// fsi/pack body-ID fluid-ID region ID | stl FILE | outline FILE [steps N]: moves the particles of a
+// body and of the fluid around it until both fit the surface between them.
+
+class FSIPack : public Command {
+ public:
+  FSIPack(class LAMMPS *lmp);
+  ~FSIPack() override;
+  void command(int, char **) override;
+
+ private:
+  FixFSI *fix_fsi;
+  std::unique_ptr<FSI::Surface> surface;
+  int body, fluid, filler, gone_at_once;    // bits of groups; 0: there is none
+  double band;                              // from the surface, in which particles move
+  double distance(int i, double *outward) const;
+  double volume_inside() const;
+  double volume_of_cell(const double *middle, double size, double finest) const;
+  void renew_ghosts();
+  double part_inside(int i) const;
+  void choose(double volume);
+  std::vector<char> deepest(int bit, double n) const;
+  void pack(int steps);
+  void keep_off(int i, double side);
+  void set_masses(double volume);
+  void remove(const std::string &group);
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif
