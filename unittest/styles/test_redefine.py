@@ -145,7 +145,7 @@ def test_another_after_some_steps(tmp_path, scene, name, text, refused, way):
 # ---- what else commands between runs change ------------------------------------------------------
 
 AGAIN = {  # scene, what comes between, what is said: an error, or a warning and it goes on
-    "a compute that is gone": ("tank", "uncompute force\nrun 2 pre no", "ERROR: Run with pre no: fixes, computes, regions or pair styles are others"),
+    "a compute that is gone": ("tank", "uncompute force\nrun 2 pre no", "ERROR: Run with pre no does not go with other fixes, computes, regions or pair styles"),
     "another compute of the same ID": ("tank", "uncompute force\ncompute force beam fsi/force\nrun 2 pre no", "ERROR: Run with pre no"),
     "a fix that is new": ("tank", "fix more all fsi/watch 7\nrun 2 pre no", "ERROR: Run with pre no"),
     **{f"another {name} in its place": (scene, f"{part(scene, name)}run 2 pre no", "ERROR: Run with pre no") for scene, name in
