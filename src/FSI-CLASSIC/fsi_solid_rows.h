@@ -257,7 +257,11 @@ namespace FSI {
 
   // what a loop adds up in the type that it goes with: as SolidSums
   template <class T> struct SolidTotals {
-    T stress = 0.0, gradient = 0.0, viscosity = 0.0, virial[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    T stress = 0.0, gradient = 0.0, viscosity = 0.0, virial[6];
+    FSI_INLINE SolidTotals()
+    {
+      for (T &w : virial) w = 0.0;
+    }
   };
 
   // a pair: records of both, i minus j, grad_i W_ij = g x, part of powers that counts here

@@ -51,7 +51,7 @@ class BondMaker : protected Pointers {
   double volume(int i) const;
   void check_planes(const std::vector<int> &bare) const;
   template <int D> void bond_all(const std::vector<int> &bare);
-  template <int D> void report(const bigint *counts) const;
+  template <int D> void report(bigint *counts) const;
   template <int D, class Kernel, class Weights>
   int bond(int i, const Kernel &, const Cells &, const Weights &);
   template <int D, class Kernel> void find_neighbors(int i, const Kernel &, const Cells &);
@@ -138,7 +138,7 @@ template <int D> void BondMaker::bond_all(const std::vector<int> &bare)
   report<D>(counts);
 }
 
-template <int D> void BondMaker::report(const bigint *counts) const
+template <int D> void BondMaker::report(bigint *counts) const
 {
   bigint all[6];
   MPI_Allreduce(counts, all, 6, MPI_LMP_BIGINT, MPI_SUM, world);

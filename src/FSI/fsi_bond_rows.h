@@ -285,7 +285,11 @@ namespace FSI {
 
   // what a loop adds up in the type that it goes with
   template <class T> struct BondTotals {
-    T energy = 0.0, artificial = 0.0, virial[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    T energy = 0.0, artificial = 0.0, virial[6];
+    FSI_INLINE BondTotals()
+    {
+      for (T &w : virial) w = 0.0;
+    }
   };
 
   // The second pass: forces on partners, and the opposite on i. next: what gather_row() kept

@@ -103,7 +103,7 @@ namespace FSI {
     tagint first = MAXTAGINT;
   };
 
-  inline Found total_of(const Found &local, MPI_Comm world)
+  inline Found total_of(Found local, MPI_Comm world)
   {
     Found all;
     MPI_Allreduce(&local.count, &all.count, 1, MPI_LMP_BIGINT, MPI_SUM, world);

@@ -54,8 +54,7 @@ void Others::give_defaults(int i) const
   const int type = atom->type[i];
   const State &s = disc.state[type];
   if (s.species == NONE) return give_density(i);
-  if (atom->rmass[i] == 0.0 || has_mass_of_new_sphere(i))
-    atom->rmass[i] = lattice_mass(disc, type);
+  if (atom->rmass[i] == 0.0 || has_mass_of_new_sphere(i)) atom->rmass[i] = lattice_mass(disc, type);
   if (atom->rho[i] == 0.0) atom->rho[i] = s.rho0;
 }
 
@@ -69,7 +68,7 @@ void Others::give_density(int i) const
 {
   const double r = atom->radius_flag ? atom->radius[i] : 0.0;
   const double volume = r == 0.0 ? 1.0 / disc.psi_bulk
-      : disc.dim == 2           ? MY_PI * r * r
+      : disc.dim == 2            ? MY_PI * r * r
                                  : 4.0 / 3.0 * MY_PI * r * r * r;
   atom->rho[i] = atom->rmass[i] / volume;
 }

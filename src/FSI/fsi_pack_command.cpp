@@ -141,7 +141,7 @@ std::vector<char> FSIPack::deepest(int bit, double n) const
   double low = -2.0e6, high = 2.0e6;
   for (int k = 0; k < 80; k++) {
     const double middle = 0.5 * (low + high);
-    const bigint below = std::count_if(key.begin(), key.end(), [middle](double number) {
+    bigint below = std::count_if(key.begin(), key.end(), [middle](double number) {
       return number <= middle;
     });
     bigint all;
@@ -264,7 +264,7 @@ void FSIPack::pack(int steps)
     });
     settling.run(std::min(ROUND, steps - done));
     done += std::min(ROUND, steps - done);
-    const auto &here = settling.residue();
+    auto here = settling.residue();
     double squares;
     MPI_Allreduce(&here.largest, &residue[0], 1, MPI_DOUBLE, MPI_MAX, world);
     MPI_Allreduce(&here.squares, &squares, 1, MPI_DOUBLE, MPI_SUM, world);

@@ -244,8 +244,7 @@ bool Quadrature::weigh(int i)
 // a lattice of three by three cannot warp
 void Quadrature::warn_of_bars(bigint bars, bigint all) const
 {
-  const bigint of_rank[2] = {all, bars};
-  bigint sum[2];
+  bigint of_rank[2] = {all, bars}, sum[2];
   MPI_Allreduce(of_rank, sum, 2, MPI_LMP_BIGINT, MPI_SUM, world);
   if (2 * sum[1] > sum[0] && comm->me == 0)
     error->warning(FLERR,

@@ -54,6 +54,8 @@ PAIRS = {
     "grains": ("grains", "contact", "plastic", "mirrors"),
 }
 assert all(allowed(levels) for levels in PAIRS.values())
+SOURCES = [path for package in ("FSI", "FSI-CLASSIC") for path in sorted((ROOT / "src" / package).iterdir())
+           if path.suffix in (".h", ".cpp")]
 ROUND_OFF = 1e-11  # 40 steps with sums in another order, as in test_restart.py
 TAIL = """compute energy all fsi/energy
 compute surface all fsi/surface/atom
@@ -147,8 +149,8 @@ def understood(compiler, standard):
 
 def formatted():
     """Are the sources as clang-format writes them?"""
-    sources = [str(p) for ending in ("*.h", "*.cpp") for p in paths.sources(ending).values()]
-    return subprocess.run(["clang-format", "--dry-run", "-Werror", *sources], check=False).returncode == 0
+    return subprocess.run(["clang-format", f"--style=file:{ROOT / 'src/FSI/.clang-format'}", "--dry-run", "-Werror",
+                           *map(str, SOURCES)], check=False).returncode == 0
 
 
 def main(names):
