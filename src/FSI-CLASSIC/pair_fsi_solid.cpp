@@ -425,7 +425,7 @@ template <int D, int TERMS> void PairFSISolid::advance_stress(bool advance)
     double *L = grad[i];
     if constexpr (TERMS > 0) fit_gradient<D, TERMS>(L, 1.0 / disc->h);
     if (!advance) continue;
-    const double work = fix_stress->advance_stress<D>(i, L, dt, s);
+    const double work = fix_stress->advance_stress<D>(i, L, dt, s, ledger->kept);
     if (disc->density_solid == Discretization::CONTINUITY) {
       double div = 0.0;
       for (int a = 0; a < D; a++) div += L[a * D + a];

@@ -112,22 +112,24 @@ static double shear_energy_density(const Sym<D> &s, double shear, bool plane_str
 }
 
 template <int D>
-double FixFSIStress::advance_stress(int i, const double *L, double dt, const State &material)
+double FixFSIStress::advance_stress(int i, const double *L, double dt, const State &material,
+                                    bool account)
 {
   auto s = Sym<D>::load(stress[i]);
-  const double before = shear_energy_density(s, material.shear, plane_stress);
+  // of the same stress a larger volume stores more, for which the rate of stress does no work
   double work = 0.0, growth = 0.0;
+  for (int d = 0; account && d < D; d++) growth += 0.5 * dt * L[d * (D + 1)];
+  if (account) work -= growth * shear_energy_density(s, material.shear, plane_stress);
   jaumann_update<D>(s, L, dt, material.shear, plane_stress);
   if (plastic && material.yield > 0.0)
-    work = radial_return<D>(s, strain[i], material.shear, material.yield, material.hardening);
+    work += radial_return<D>(s, strain[i], material.shear, material.yield, material.hardening);
   s.store(stress[i]);
-  for (int d = 0; d < D; d++) growth += dt * L[d * (D + 1)];
-  // of the same stress a larger volume stores more, for which the rate of stress does no work
-  return work - 0.5 * growth * (before + shear_energy_density(s, material.shear, plane_stress));
+  if (account) work -= growth * shear_energy_density(s, material.shear, plane_stress);
+  return work;
 }
 
-template double FixFSIStress::advance_stress<2>(int, const double *, double, const State &);
-template double FixFSIStress::advance_stress<3>(int, const double *, double, const State &);
+template double FixFSIStress::advance_stress<2>(int, const double *, double, const State &, bool);
+template double FixFSIStress::advance_stress<3>(int, const double *, double, const State &, bool);
 
 // Where solids were when they were first seen, for contact of a body with itself; ghosts are told.
 void FixFSIStress::enter_start(const std::vector<State> &state)

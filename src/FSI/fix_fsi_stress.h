@@ -55,9 +55,10 @@ class FixFSIStress : public FSI::FixFields, public FSI::Part {
 
   // half a step back to half a step ahead, with the velocity gradient L of the time between
   // (fsi_solid_laws.h). Returns what of the work per volume the elastic energy has not got: to
-  // plastic strain, and, with a minus, what that gets without work
+  // plastic strain, and, with a minus and if that is asked for, what that gets without work
   template <int D>
-  double advance_stress(int i, const double *L, double dt, const FSI::State &material);
+  double advance_stress(int i, const double *L, double dt, const FSI::State &material,
+                        bool account);
 
   // equivalent plastic strain of atom i
   double plastic_strain(int i) const { return plastic ? strain[i] : 0.0; }

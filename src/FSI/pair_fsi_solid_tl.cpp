@@ -650,7 +650,7 @@ template <int D> void PairFSISolidTL::advance_rates(double dt)
         for (int c = 0; c < D; c++)
           for (int k = 0; k < D; k++) L[a * D + c] += Fdot[a * D + k] * C[c * D + k] * inv;
       const State &s = disc->state[atom->type[i]];
-      const double work = fix_stress->advance_stress<D>(i, L, dt, s);
+      const double work = fix_stress->advance_stress<D>(i, L, dt, s, ledger->kept);
       if (ledger->kept)
         ledger->energy_out[Ledger::INELASTIC] += work * row.volume * determinant<D>(F);
     }
