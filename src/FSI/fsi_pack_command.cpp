@@ -84,7 +84,7 @@ double FSIPack::volume_inside() const
   const double dx = fix_fsi->levels.back().dx;
   double sum = 0.0, size[3], x[3] = {0.0, 0.0, 0.5 * (domain->boxlo[2] + domain->boxhi[2])};
   int n[3] = {1, 1, 1}, from[3] = {}, to[3] = {};
-  // cells are cubes: a box of parts of them ends within the last
+  // a whole number of cells, some four spacings wide, along each side of the box
   for (int d = 0; d < dim; d++) {
     n[d] = std::max(1, (int) std::ceil(domain->prd[d] / (4.0 * dx)));
     size[d] = domain->prd[d] / n[d];
@@ -141,12 +141,10 @@ std::vector<char> FSIPack::deepest(int bit, double n) const
   double low = -2.0e6, high = 2.0e6;
   for (int k = 0; k < 80; k++) {
     const double middle = 0.5 * (low + high);
-    bigint below = std::count_if(key.begin(), key.end(), [middle](double number) {
+    const bigint below = std::count_if(key.begin(), key.end(), [middle](double number) {
       return number <= middle;
     });
-    bigint all;
-    MPI_Allreduce(&below, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    (all > n ? high : low) = middle;
+    (count_of(below, world) > n ? high : low) = middle;
   }
   std::vector<char> chosen(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++) chosen[i] = key[i] <= low;
@@ -243,8 +241,7 @@ void FSIPack::pack(int steps)
   double residue[2] = {}, before = 1.0e300;    // the largest, and the root of the mean square
   bigint n = 0;
   int done = 0;
-  const double begin = platform::walltime();
-  double told = begin;
+  double told = platform::walltime();
   while (done < steps) {
     renew_ghosts();
     fix_fsi->gather_walls();
@@ -309,7 +306,7 @@ void FSIPack::command(int narg, char **arg)
     *bits[k] = group->bitmask[igroup];
   }
   if (!body && !fluid) error->all(FLERR, "Fsi/pack NULL NULL has nothing to pack");
-  if ((region.empty() ? 0 : 1) + (stl.empty() ? 0 : 1) + (outline.empty() ? 0 : 1) != 1)
+  if (!region.empty() + !stl.empty() + !outline.empty() != 1)
     error->all(FLERR, "Fsi/pack takes one of region, stl and outline");
   surface = !region.empty() ? surface_of_region(lmp, region)
       : !stl.empty()        ? surface_of_stl(lmp, stl)

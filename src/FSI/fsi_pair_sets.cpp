@@ -381,12 +381,9 @@ bool PairSets::sees(int i, int j, const Walls &walls, int reflection, const doub
   const auto xi = position(i), xj = position(j);
   double rsq = 0.0;
   for (int d = 0; d < 3; d++) rsq += (xi[d] - xj[d]) * (xi[d] - xj[d]);
-  bool found = false;
-  walls.images(step->wmask[i] & step->wmask[j], rsq, xi.data(), xj.data(), disc->cut * disc->cut,
-               [&](const Walls::Reflection &s, double, const double *) {
-                 found = found || &s == &walls.reflections[reflection];
-               });
-  return found;
+  double away[3];
+  return walls.sees(walls.reflections[reflection], xi.data(), xj.data(), disc->cut * disc->cut, rsq,
+                    away);
 }
 
 // rows of images, one list per reflection: of local fluid particles themselves, and of the
