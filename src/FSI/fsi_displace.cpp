@@ -34,6 +34,8 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 namespace {
+constexpr double NEVER = 1e9;
+
 // This part of a particle's cell a cell of the body covers, squares or cubes. Cells of a lattice
 // fill space, so the sum over the fluid is the body's volume in it, wherever the two lattices lie.
 double covered(const double *xi, double a, const double *xj, double b, int dim)
@@ -46,15 +48,6 @@ double covered(const double *xi, double a, const double *xj, double b, int dim)
   return part;
 }
 
-// First goes what is covered most and nearest to the body, in spacings, so that none that stays is
-// too near; of the same, as lattices have them, by place: no two have one key.
-double key_of(double part, double nearest, const double *x, const Domain *domain)
-{
-  double key = std::floor((part - nearest + 4.0) * 1e4 + 0.5), digit = 0.5;
-  for (int d = 0; d < domain->dimension; d++, digit *= 1e-4)
-    key -= digit * (x[d] - domain->boxlo[d]) / domain->prd[d];
-  return key;
-}
 }    // namespace
 
 // of all particles, as between runs there are none
@@ -62,40 +55,23 @@ const NeighList *FSIDisplace::neighbors()
 {
   neighbor->add_request(this, "fsi/displace", NeighConst::REQ_FULL);
   lmp->init();    // materials and masses are entered there
-  domain->pbc();
-  domain->reset_box();
-  comm->setup();
-  if (neighbor->style) neighbor->setup_bins();
-  comm->exchange();
-  comm->borders();
+  renew_ghosts(lmp);
   neighbor->build(1);
   auto *const list = neighbor->find_list(this);
   neighbor->build_one(list);
   return list;
 }
 
-// All ranks together: above which limit there are n keys, or as many as may be without being more
-static double limit_of(const std::vector<double> &key, bigint n, MPI_Comm world)
-{
-  double low = -1.0, high = 1e9;
-  for (int k = 0; k < 80; k++) {
-    const double middle = 0.5 * (low + high);
-    const bigint above = std::count_if(key.begin(), key.end(), [middle](double number) {
-      return number > middle;
-    });
-    (count_of(above, world) > n ? low : high) = middle;
-  }
-  return high;
-}
-
-// Of each particle of fluid that a body covers the key, of others -1; sum: how many, and their mass
+// Of each particle of fluid that a body covers the key, of others NEVER; sum: how many, and their
+// mass. First goes what is covered most and nearest to the body, in spacings, so that none that
+// stays is too near; of the same by place.
 template <class IsFluid, class IsBody>
 std::vector<double> FSIDisplace::find_covered(const Discretization &disc, const NeighList &list,
                                               IsFluid is_fluid, IsBody is_body, double *sum) const
 {
   double **const x = atom->x;
   const int *const type = atom->type;
-  std::vector<double> key(atom->nlocal, -1.0);
+  std::vector<double> key(atom->nlocal, NEVER);
   for (int ii = 0; ii < list.inum; ii++) {
     const int i = list.ilist[ii];
     if (!is_fluid(i)) continue;
@@ -111,7 +87,7 @@ std::vector<double> FSIDisplace::find_covered(const Discretization &disc, const 
     if (part == 0.0) continue;
     sum[0] += part;
     sum[1] += part * atom->rmass[i];
-    key[i] = key_of(part, nearest / dx, x[i], domain);
+    key[i] = std::floor((nearest / dx - part) * 1e4 + 0.5) + part_by_place(x[i], domain);
   }
   return key;
 }
@@ -151,12 +127,12 @@ void FSIDisplace::command(int narg, char **arg)
   const auto key = find_covered(fsi, *list, is_fluid, is_body, here);
   MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
 
-  const double limit = limit_of(key, std::llround(all[0]), world);
+  const double limit = limit_of(key, std::llround(all[0]), -NEVER, NEVER, world);
   here[0] = 0.0;
   const std::string gone = "FSI_DISPLACED";
   const int igone = group->find_or_create(gone.c_str());
   for (int i = 0; i < atom->nlocal; i++)
-    if (key[i] > limit) {
+    if (key[i] < limit) {
       atom->mask[i] |= group->bitmask[igone];
       here[0]++;
       here[2] += atom->rmass[i];

@@ -42,11 +42,12 @@ static constexpr int ROUND = 20, ROUND_OF_LOOKS = 100;
 static constexpr double COVERED = 0.98;
 // The residue is at rest if it has not fallen to this in so many sweeps; from one word to the next
 static constexpr double CALM = 0.99, SECONDS = 5.0;
-// a fluid particle nearer than this takes the place of one that fills the outside
-static constexpr double BESIDE_FLUID = 0.75;
+// a particle that stays and is nearer than this takes the place of one that fills a side
+static constexpr double TAKES_PLACE = 0.75;
 
 FSIPack::FSIPack(LAMMPS *lmp) :
-    Command(lmp), fix_fsi(nullptr), body(0), fluid(0), filler(0), gone_at_once(0), band(0.0)
+    Command(lmp), fix_fsi(nullptr), body(0), fluid(0), still(0), filler(0), gone_at_once(0),
+    band(0.0)
 {
 }
 
@@ -102,19 +103,15 @@ double FSIPack::volume_inside() const
         for (int d = 0; d < dim; d++) scale *= size[d] / largest;
         sum += scale * volume_of_cell(x, largest, 0.25 * dx);
       }
-  double all;
-  MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
+  return sum_of(sum, world);
 }
 
-void FSIPack::renew_ghosts()
+double FSIPack::volume_of_still() const
 {
-  domain->pbc();
-  domain->reset_box();
-  comm->setup();
-  if (neighbor->style) neighbor->setup_bins();
-  comm->exchange();
-  comm->borders();
+  double sum = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & still) sum += atom->rmass[i] / fix_fsi->state[atom->type[i]].rho0;
+  return sum_of(sum, world);
 }
 
 // of the cell of a particle
@@ -133,21 +130,12 @@ std::vector<char> FSIPack::deepest(int bit, double n) const
   double outward[3];
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & bit)) continue;
-    key[i] = std::floor(1.0e6 * distance(i, outward) / band + 0.5);
-    double digit = 0.5;
-    for (int d = 0; d < domain->dimension; d++, digit *= 1.0e-4)
-      key[i] += digit * (atom->x[i][d] - domain->boxlo[d]) / domain->prd[d];
+    key[i] =
+        std::floor(1.0e6 * distance(i, outward) / band + 0.5) + part_by_place(atom->x[i], domain);
   }
-  double low = -2.0e6, high = 2.0e6;
-  for (int k = 0; k < 80; k++) {
-    const double middle = 0.5 * (low + high);
-    const bigint below = std::count_if(key.begin(), key.end(), [middle](double number) {
-      return number <= middle;
-    });
-    (count_of(below, world) > n ? high : low) = middle;
-  }
+  const double limit = limit_of(key, n, -2.0e6, 2.0e6, world);
   std::vector<char> chosen(atom->nlocal);
-  for (int i = 0; i < atom->nlocal; i++) chosen[i] = key[i] <= low;
+  for (int i = 0; i < atom->nlocal; i++) chosen[i] = key[i] < limit;
   return chosen;
 }
 
@@ -174,28 +162,28 @@ void FSIPack::choose(double volume)
   const std::vector<char> none(atom->nlocal, 0);
   const auto inside = body ? deepest(body, wanted) : none,
              displaced = fluid ? deepest(fluid, std::round(all[0])) : none;
-  const double largest = fix_fsi->dx;
-  std::vector<char> stays(atom->nlocal);
-  for (int i = 0; i < atom->nlocal; i++) stays[i] = (atom->mask[i] & fluid) && !displaced[i];
-  // filler: on the outside where there is no fluid, on the inside if there is no body
-  const Cells of_fluid(atom->x, atom->nlocal, domain->dimension, largest, [&](int i) {
-    return stays[i];
-  });
+  // filler: on the outside where there is no fluid, on the inside where there is no body
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & fluid && displaced[i])
+      atom->mask[i] ^= fluid | (body ? gone_at_once : filler);
+    else if (atom->mask[i] & body && !inside[i])
+      atom->mask[i] ^= body | filler;
+  renew_ghosts(lmp);
+  const Cells staying(atom->x, atom->nlocal + atom->nghost, domain->dimension, fix_fsi->dx,
+                      [this](int i) {
+                        return (atom->mask[i] & (fluid | still)) != 0;
+                      });
+  const double reach = band + fix_fsi->largest_cut;    // what moves sees no end of it
   double outward[3];
   for (int i = 0; i < atom->nlocal; i++) {
-    const bool gone = (atom->mask[i] & fluid) && displaced[i],
-               outside = (atom->mask[i] & body) && !inside[i];
-    if (!gone && !outside) continue;
-    // what moves sees no end of it
-    const double reach = band + fix_fsi->largest_cut;
-    bool fills = gone ? !body : surface->distance(atom->x[i], reach, outward) < reach;
-    if (outside && fills)
-      of_fluid.around(atom->x[i], [&](int, double rsq) {
-        const double least = BESIDE_FLUID * fix_fsi->dx_of(atom->type[i]);
+    if (!(atom->mask[i] & filler)) continue;
+    bool fills = surface->distance(atom->x[i], reach, outward) < reach;
+    const double least = TAKES_PLACE * fix_fsi->dx_of(atom->type[i]);
+    if (fills)
+      staying.around(atom->x[i], [&](int, double rsq) {
         fills = fills && rsq > least * least;
       });
-    atom->mask[i] |= fills ? filler : gone_at_once;
-    atom->mask[i] &= ~(body | fluid);
+    if (!fills) atom->mask[i] ^= filler | gone_at_once;
   }
 }
 
@@ -243,7 +231,7 @@ void FSIPack::pack(int steps)
   int done = 0;
   double told = platform::walltime();
   while (done < steps) {
-    renew_ghosts();
+    renew_ghosts(lmp);
     fix_fsi->gather_walls();
     std::vector<double> mobility(atom->nlocal, 0.0), side(atom->nlocal, 0.0);
     std::vector<char> judged(atom->nlocal, 0);
@@ -288,7 +276,7 @@ void FSIPack::command(int narg, char **arg)
 {
   if (domain->box_exist == 0)
     error->all(FLERR, "Fsi/pack command before simulation box is defined");
-  std::string names[2], region, stl, outline;
+  std::string names[3], region, stl, outline;
   int steps;
   Keywords keywords(lmp, "fsi/pack");
   keywords.argument("body group-ID").word(names[0], "");
@@ -296,10 +284,11 @@ void FSIPack::command(int narg, char **arg)
   keywords.key("region").word(region, "");
   keywords.key("stl").word(stl, "");
   keywords.key("outline").word(outline, "");
+  keywords.key("still").word(names[2], "NULL");
   keywords.key("steps").integer(steps, 1000, 0);
   keywords.parse(narg, arg);
-  int *const bits[2] = {&body, &fluid};
-  for (int k = 0; k < 2; k++) {
+  int *const bits[3] = {&body, &fluid, &still};
+  for (int k = 0; k < 3; k++) {
     if (names[k] == "NULL") continue;
     const int igroup = group->find(names[k]);
     if (igroup == -1) error->all(FLERR, "Fsi/pack group-ID {} does not exist", names[k]);
@@ -314,7 +303,7 @@ void FSIPack::command(int narg, char **arg)
   fix_fsi = FixFSI::find(lmp, "Fsi/pack");
   lmp->init();
   band = BAND * fix_fsi->dx;
-  renew_ghosts();
+  renew_ghosts(lmp);
   const std::string fills = "FSI_PACK_FILLER", goes = "FSI_PACK_GONE";
   filler = group->bitmask[group->find_or_create(fills.c_str())];
   gone_at_once = group->bitmask[group->find_or_create(goes.c_str())];
@@ -325,7 +314,7 @@ void FSIPack::command(int narg, char **arg)
                "Fsi/pack: {} encloses {:g}, but its faces {:g}: expected a surface that does not "
                "cross itself, inside the box",
                surface->name(), sampled, of_faces);
-  const double volume = of_faces >= 0.0 ? of_faces : sampled;
+  const double volume = (of_faces >= 0.0 ? of_faces : sampled) - volume_of_still();
   choose(volume);
   remove(goes);
   pack(steps);

@@ -32,7 +32,8 @@ namespace FSI {
   class Surface;
 }
 
-// fsi/pack body-ID fluid-ID region ID | stl FILE | outline FILE [steps N]: moves the particles of a
+// fsi/pack body-ID fluid-ID region ID | stl FILE | outline FILE [still group-ID]
+// [steps N]: moves the particles of a
 // body and of the fluid around it until both fit the surface between them.
 
 class FSIPack : public Command {
@@ -44,12 +45,12 @@ class FSIPack : public Command {
  private:
   FixFSI *fix_fsi;
   std::unique_ptr<FSI::Surface> surface;
-  int body, fluid, filler, gone_at_once;    // bits of groups; 0: there is none
-  double band;                              // from the surface, in which particles move
+  // bits of groups, 0: there is none; still: a part of the body that stays as it is
+  int body, fluid, still, filler, gone_at_once;
+  double band;    // from the surface, in which particles move
   double distance(int i, double *outward) const;
-  double volume_inside() const;
+  double volume_inside() const, volume_of_still() const;
   double volume_of_cell(const double *middle, double size, double finest) const;
-  void renew_ghosts();
   double part_inside(int i) const;
   void choose(double volume);
   std::vector<char> deepest(int bit, double n) const;

@@ -122,6 +122,34 @@ def test_sphere(tmp_path):
     assert residue(done.output)[0] < 0.05 and residue(done.output)[1] < 0.005
 
 
+# made along the axes and turned, six spacings wide
+PLATE = """region p block -0.06 0.06 -0.03 0.03 INF INF units box
+create_atoms 2 region p
+group body type 2
+displace_atoms body rotate 0 0 0 0 0 1 {angle} units box
+variable turned equal {angle}*PI/180
+region s block -0.06 0.06 -0.03 0.03 INF INF units box rotate v_turned 0 0 0 0 0 1
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("angle", [5, 22.5, 45])
+def test_water_around_a_turned_body(tmp_path, angle, ranks):
+    """The body stays as it is; as much water goes as it has volume."""
+    text = deck("region s still body", region=PLATE.format(angle=angle)).replace("create_atoms 2 region near\n", "").replace(
+        "fsi/pack body", "fsi/pack NULL")
+    done = lammps(tmp_path, text, ranks)
+    kind, _, x = state(tmp_path)
+    body = kind == 2
+    assert body.sum() == 72 and len(x) == 900
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    own = x[body][:, :2] @ np.array([[c, -s], [s, c]])
+    # each in the middle of its cell, to the digits of a rotation by a quaternion
+    assert abs(own / DX - np.floor(own / DX) - 0.5).max() < 1e-9
+    largest, rms = residue(done.output)
+    assert largest < 0.05 and rms < 0.01
+
+
 def test_alone(tmp_path):
     """Without fluid the body's own lattice completes the sums, and goes: no particle is left outside."""
     done = lammps(tmp_path, deck("region s", region=DISC, fluid="NULL"))
