@@ -18,11 +18,14 @@
 #include "error.h"
 #include "fix_fsi.h"
 #include "fix_fsi_stress.h"
+#include "fsi_find.h"
 #include "fsi_keywords.h"
 #include "fsi_number_density.h"
 #include "fsi_refusals.h"
+#include "fsi_shear.h"
 #include "fsi_tensor.h"
 #include "memory.h"
+#include "pair_fsi_fluid.h"
 #include "pair_fsi_solid_tl.h"
 #include "update.h"
 
@@ -32,12 +35,12 @@ using namespace LAMMPS_NS;
 using namespace FSI;
 
 ComputeFSIAtom::ComputeFSIAtom(LAMMPS *lmp, int narg, char **arg) :
-    Compute(lmp, narg, arg), tensor(false), nmax(0), fix_fsi(nullptr)
+    Compute(lmp, narg, arg), tensor(false), nmax(0), fix_fsi(nullptr), shear(nullptr)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "compute fsi/atom", error);
   static const std::vector<std::string> names = {
-      "p",   "rho", "psi", "volume", "vonmises",       "sxx",  "syy",
-      "szz", "sxy", "sxz", "syz",    "plastic/strain", "bonds"};
+      "p",   "rho", "psi", "volume",         "vonmises", "sxx",        "syy",      "szz",
+      "sxy", "sxz", "syz", "plastic/strain", "bonds",    "shear/rate", "viscosity"};
   for (int iarg = 3; iarg < narg; iarg++) {
     const auto it = std::find(names.begin(), names.end(), arg[iarg]);
     if (it == names.end())
@@ -63,6 +66,9 @@ void ComputeFSIAtom::init()
   if (std::find(quantity.begin(), quantity.end(), PLASTIC) != quantity.end() &&
       (!stress || !stress->plastic))
     refuse(error, Refused::PLASTIC_STRAIN);
+  for (const int q : quantity)
+    if (q >= SHEAR_RATE && !facts_of_fluids(lmp).style)
+      refuse(error, Refused::SHEAR_RATE, q == SHEAR_RATE ? "shear/rate" : "viscosity");
 }
 
 void ComputeFSIAtom::grow()
@@ -90,17 +96,31 @@ void ComputeFSIAtom::compute_peratom()
     comm->forward_comm();    // ghosts still stand where they were in the middle of the step
     fix_fsi->number_density.find(psi.data());
   }
+  find_shear();
   solid_tl = PairFSISolidTL::find(lmp);
   if (solid_tl) solid_tl->begin_stress();
   fix_stress = FixFSIStress::find(lmp);
 
-  Properties of;
   for (int i = 0; i < atom->nlocal; i++) {
     const bool chosen = atom->mask[i] & groupbit;
+    Properties of;
     if (chosen) find(i, of);
     for (int k = 0; k < n; k++)
       (n == 1 ? vector_atom[i] : array_atom[i][k]) = chosen ? value(quantity[k], i, of) : 0.0;
   }
+}
+
+// that of fluids, where something needs it
+void ComputeFSIAtom::find_shear()
+{
+  shear = nullptr;
+  auto *const fluid = first_of(pairs_of<PairFSIFluid>(lmp));
+  const bool wanted = std::any_of(quantity.begin(), quantity.end(), [](int q) {
+    return q >= SHEAR_RATE;
+  });
+  if (!fluid || !(wanted || (tensor && fluid->has_laminar()))) return;
+  comm->forward_comm();    // ghosts still stand where they were in the middle of the step
+  shear = &fluid->find_shear();
 }
 
 double ComputeFSIAtom::value(int what, int i, const Properties &of) const
@@ -118,6 +138,10 @@ double ComputeFSIAtom::value(int what, int i, const Properties &of) const
       return of.mises;
     case PLASTIC:
       return of.has_stress ? fix_stress->plastic_strain(i) : 0.0;
+    case SHEAR_RATE:
+      return of.shear_rate;
+    case VISCOSITY:
+      return of.viscosity;
     case BONDS:
       return solid_tl ? solid_tl->bonds(i) : 0.0;
     default:
@@ -125,7 +149,7 @@ double ComputeFSIAtom::value(int what, int i, const Properties &of) const
   }
 }
 
-// Cauchy stress sigma = -p I + S, tension positive; sigma_zz of plane strain is -p - (S_xx + S_yy),
+// Cauchy stress sigma = -p I + S, tension positive, of fluids S = 2 eta D; sigma_zz of plane strain is -p - (S_xx + S_yy),
 // of plane stress 0
 void ComputeFSIAtom::find(int i, Properties &of) const
 {
@@ -144,6 +168,10 @@ void ComputeFSIAtom::find(int i, Properties &of) const
   of.p = fix_fsi->pressure(i);
   of.rho = atom->rho[i];
   of.volume = atom->rmass[i] / of.rho;
+  if (state.species == FLUID && shear) {
+    of.shear_rate = shear->rate(i);
+    of.viscosity = state.law.varies() ? state.law(of.shear_rate) : state.viscosity;
+  }
   if (!tensor) return;
   std::fill_n(of.sigma, 6, 0.0);
   if (of.has_stress) {
@@ -155,6 +183,7 @@ void ComputeFSIAtom::find(int i, Properties &of) const
       of.sigma[3] = s[2];
     }
   }
+  if (state.species == FLUID && shear) shear->stress(i, of.viscosity, of.sigma);
   of.mises = von_mises(of.sigma);    // a pressure changes nothing
   for (int d = 0; d < 3; d++) of.sigma[d] -= of.p;
 }

@@ -25,6 +25,9 @@ ComputeStyle(fsi/atom,ComputeFSIAtom);
 #include <vector>
 
 namespace LAMMPS_NS {
+namespace FSI {
+  class Shear;
+}
 
 // Per-particle quantities of fluids and solids: pressure, density, number density, stress.
 
@@ -39,7 +42,8 @@ class ComputeFSIAtom : public Compute {
  private:
   // clang-format off
   enum Quantity {
-    PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ, PLASTIC, BONDS
+    PRESSURE, DENSITY, PSI, VOLUME, VONMISES, SXX, SYY, SZZ, SXY, SXZ, SYZ, PLASTIC, BONDS,
+    SHEAR_RATE, VISCOSITY
   };
   // clang-format on
   std::vector<int> quantity;
@@ -50,10 +54,14 @@ class ComputeFSIAtom : public Compute {
   class FixFSIStress *fix_stress;    // null: no solid has one
   class PairFSISolidTL *solid_tl;    // null: there is none
 
+  const FSI::Shear *shear;    // null: nothing needs it
+
   struct Properties {
     double p, rho, volume, mises, sigma[6];
+    double shear_rate = 0.0, viscosity = 0.0;    // of fluids
     bool has_stress;
   };
+  void find_shear();
   void grow();
   void find(int i, Properties &) const;
   double value(int quantity, int i, const Properties &) const;

@@ -47,6 +47,8 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
+static constexpr int MOST_COLUMNS = 16;    // of add_ghosts()
+
 struct FixFSI::Members {
   Keywords keywords;
   Clock clock;
@@ -74,7 +76,8 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     keywords(members->keywords), clock(members->clock), check(members->check),
     changes(members->changes), population(members->population),
     number_density(members->number_density), clamps(members->clamps), forward(lmp, state),
-    back(lmp, state), scalar(lmp, state), carried(nullptr)
+    back(lmp, state), scalar(lmp, state), carried(nullptr), of_rows(lmp, state),
+    carried_rows(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -151,8 +154,8 @@ void FixFSI::set_fields()
   for (auto *p : parts) p->add_messages(forward, back);
   scalar.clear();
   scalar.add(carried, {NONE, FLUID, SOLID, RIGID});
-  comm_forward = std::max(1, forward.size());
-  comm_reverse = std::max(1, back.size());
+  comm_forward = std::max(dim, forward.size());
+  comm_reverse = std::max(MOST_COLUMNS, back.size());
 }
 
 FixFSI *FixFSI::there(LAMMPS *lmp)
@@ -381,6 +384,28 @@ void FixFSI::add_ghosts(double *n)
   carried = n;
   sent = &scalar;
   if (force->newton_pair) reverse_comm(profile, comm, this);
+}
+
+void FixFSI::carry(double *rows, int columns)
+{
+  row_starts.resize(atom->nlocal + atom->nghost);
+  for (size_t i = 0; i < row_starts.size(); i++) row_starts[i] = rows + i * columns;
+  carried_rows = row_starts.data();
+  of_rows.clear();
+  of_rows.add(carried_rows, 0, columns, {NONE, FLUID, SOLID, RIGID});
+  sent = &of_rows;
+}
+
+void FixFSI::add_ghosts(double *rows, int columns)
+{
+  carry(rows, columns);
+  if (force->newton_pair) reverse_comm(profile, comm, this);
+}
+
+void FixFSI::send_to_ghosts(double *rows, int columns)
+{
+  carry(rows, columns);
+  forward_comm(profile, comm, this);
 }
 
 void FixFSI::send_to_ghosts(double *n)

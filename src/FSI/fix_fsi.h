@@ -84,7 +84,9 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::NumberDensity &number_density;
   FSI::Clamps &clamps;           // rigid bodies
   void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
+  void add_ghosts(double *rows, int columns);
   void send_to_ghosts(double *n);
+  void send_to_ghosts(double *rows, int columns);
 
  private:
   void set_fields();
@@ -101,6 +103,10 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::Message forward, back;
   FSI::Message scalar;    // of one array of numbers per atom, both ways
   double *carried;        // that array
+  FSI::Message of_rows;
+  std::vector<double *> row_starts;
+  double **carried_rows;
+  void carry(double *rows, int columns);
   bool fresh_start() const;
   template <int D> void drift();
   template <int D> void kick();

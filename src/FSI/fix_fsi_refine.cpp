@@ -162,6 +162,9 @@ void FixFSIRefine::check_types() const
     differs("viscosity", first.viscosity, s.viscosity);
     differs("background pressure", first.p0, s.p0);
     differs("lowest pressure", first.floor, s.floor);
+    if (!(first.law == s.law))
+      error->all(FLERR, "{}: atom types {} and {} have different laws of viscosity", label,
+                 types[0], types[k]);
     if (first.tait != s.tait)
       error->all(FLERR, "{}: atom types {} and {} have different equations of state", label,
                  types[0], types[k]);

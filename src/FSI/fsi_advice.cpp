@@ -649,7 +649,7 @@ static void time_step(const Census &c)
   } causes[] = {{Limits::SOUND, 2.0}, {Limits::ELASTIC, 1.6}, {Limits::LAMINAR, 2.0}};
   if (!fixes_of<FixFSIDt>(c.lmp).empty()) return;
   Limits limits(c.lmp);
-  limits.find(c.disc, c.mover->groupbit, c.mover->groupbit, c.substeps > 1);
+  limits.find(c.disc, nullptr, c.mover->groupbit, c.mover->groupbit, c.substeps > 1);
   limits.reduce();
   double good = Limits::UNLIMITED, most = good;
   const char *what = "";

@@ -122,6 +122,8 @@ namespace FSI {
     double alpha = 0.0, beta = 0.0;    // artificial viscosity
     int laminar = NO_LAMINAR;
     double central_length_sq = 0.0;    // over h^2; 0: the plain form
+    bool mirrors_own = false;          // beyond no-slip faces: twice their velocity, less one's own
+    const double *viscosity = nullptr;    // per particle; null: that of its state
     // per type: gravity, by which the pressure at a solid is extrapolated to it; null: it is not
     const std::array<double, 3> *extrapolate = nullptr;
     // 1: the ledger holds a compressive energy of solids that couples (density summation), else 0

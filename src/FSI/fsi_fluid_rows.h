@@ -289,7 +289,7 @@ namespace FSI {
     // Images of another spacing are few: their sums may be for nothing. Walls of particles have no
     // images.
     struct ForcesTable {
-      static constexpr int FLAGS = EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY;
+      static constexpr int FLAGS = EFFECTS | SUMS | IMAGES | UNEQUAL | PARTLY | VARIES;
       static constexpr Compiled ROWS[] = {
           {WITH_FLUID, 0, 0, Compiled::PACKS},
           {WITH_FLUID, ARTIFICIAL, 0, Compiled::PACKS},
@@ -297,6 +297,8 @@ namespace FSI {
           {WITH_FLUID, EFFECTS, SUMS | IMAGES},
           {WITH_FLUID, EFFECTS | UNEQUAL | SUMS, IMAGES},
           {WITH_FLUID, EFFECTS | PARTLY | SUMS, IMAGES | UNEQUAL},
+          {WITH_FLUID, EFFECTS | UNEQUAL | SUMS | VARIES, IMAGES},
+          {WITH_FLUID, EFFECTS | UNEQUAL | SUMS | VARIES | PARTLY, IMAGES},
           {WITH_SOLID, 0, 0, Compiled::PACKS},
           {WITH_SOLID, ARTIFICIAL, 0, Compiled::PACKS},
           {WITH_SOLID, LAMINAR, 0, Compiled::PACKS},
@@ -374,9 +376,13 @@ namespace FSI {
     {
       const Mirror mirror = image ? *image : Mirror();
       auto *const f = reinterpret_cast<double(*)[row_of_forces(D)]>(force);
-      const int unequal = kind == WITH_SOLID_FULL ? 0 : unequal_or_cut(kind, in);
+      const bool varies = kind == WITH_FLUID && laws.viscosity;
+      const int unequal = kind == WITH_SOLID_FULL ? 0
+          : varies                                ? Flag::UNEQUAL | Flag::VARIES
+                                                  : unequal_or_cut(kind, in);
       PairSums unused;
-      const bool counted = kind == WITH_SOLID_FULL || (image && unequal) || in.unlike || partly(in);
+      const bool counted = varies || kind == WITH_SOLID_FULL || (image && unequal) || in.unlike ||
+          partly(in);
       if (!sums && counted) sums = &unused;
       run(kind, flags_of_forces(image, unequal, in, laws, sums), rows, "forces",
           Flag::ForcesTable(), [&](auto number, auto kind_is, auto flags) FSI_INLINE_LAMBDA {

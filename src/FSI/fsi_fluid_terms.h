@@ -32,7 +32,7 @@ namespace FSI {
   // what a loop is compiled for: effects; sums of powers; neighbors that are images; results for
   // neighbors, too; neighbors of another spacing; shifting, with what tells surfaces or what it
   // changes of velocities; pairs that thin bodies hide in part; shifting beside fluid of another
-  // spacing
+  // spacing; viscosity that differs from particle to particle
   namespace Flag {
     enum {
       ARTIFICIAL = 1,
@@ -48,7 +48,8 @@ namespace FSI {
       SLOPES = 1024,
       PARTLY = 2048,
       EDGES = 4096,
-      FADES = 8192
+      FADES = 8192,
+      VARIES = 16384
     };
   }
 
@@ -349,12 +350,24 @@ namespace FSI {
     return a == b ? a : 2.0 * a * b / (a + b);
   }
 
+  // the sum of those of i and j; of_i: that of a row, whose i has half of it if they vary
+  template <int KIND, int FLAGS, class T>
+  FSI_INLINE auto both_viscosities(const ForceLaws &laws, double of_i, const int *j)
+  {
+    if constexpr (KIND == WITH_FLUID && (FLAGS & Flag::VARIES)) {
+      const T of_j = Lanes<T>::read(laws.viscosity, j);
+      // no fluid with laminar viscosity has none of it where it varies
+      return 2.0 * of_i * of_j / greater(0.5 * of_i + of_j, T(1.0e-300));
+    } else
+      return of_i;
+  }
+
   // What is constant in a row of forces.
   struct RowConstants {
     double c, bulk, floor;     // speed of sound of viscosity, modulus of the guard, lowest pressure
     double rubs, visc;         // 0 where a wall slips, else 1; sum of both viscosities
     double volume, sharper;    // of neighbors of another spacing
-    bool thin;
+    bool thin, mirrors_own;
     double extrapolate[3];    // solids and thin walls: gravity, if pressures beyond them are
                               // hydrostatic
   };
@@ -374,15 +387,17 @@ namespace FSI {
         : KIND == WITH_WALL               ? !other.noslip
                                           : laws.solids_slip;
     r.rubs = KIND == WITH_WALL && slips ? 0.0 : 1.0;
+    const double own = laws.viscosity ? laws.viscosity[i] : fluid.viscosity;
     r.visc = !laws.laminar || slips
         ? 0.0
-        : 2.0 * (KIND == WITH_FLUID ? between(fluid.viscosity, other.viscosity) : fluid.viscosity);
+        : 2.0 * (KIND == WITH_FLUID && !laws.viscosity ? between(own, other.viscosity) : own);
     if (FLAGS & Flag::UNEQUAL) {
       r.volume = in.ratio[type_j].volume;
       r.sharper = in.ratio[type_j].sharper;
       r.visc *= backfill_weight_of(in, i, type_j);
     }
     r.thin = (FLAGS & Flag::UNEQUAL) && in.ratio[type_j].thin;
+    r.mirrors_own = r.thin || laws.mirrors_own;
     if (KIND == WITH_SOLID || r.thin) {
       const auto *const g = KIND == WITH_WALL ? laws.gravity : laws.extrapolate;
       const double along = r.thin ? in.thin->backfill_weight[i] / in.thin->backfill[i] : 1.0;
@@ -419,10 +434,10 @@ namespace FSI {
                    const T (&v)[D], T (&force)[D], T (&on_j)[D])
   {
     using L = Lanes<T>;
-    const double visc = constant.visc;
+    const auto visc = both_viscosities<KIND, FLAGS, T>(laws, constant.visc, j);
     // what fluid would have in the place of j, of a wall or solid
     const auto beyond_face = [&](int d) FSI_INLINE_LAMBDA {
-      return constant.thin ? 2.0 * velocity_of_j[d] - pi.v[d] : L::make([&](int k) {
+      return constant.mirrors_own ? 2.0 * velocity_of_j[d] - pi.v[d] : L::make([&](int k) {
         return laws.wall_velocity[j[k]][d];
       });
     };

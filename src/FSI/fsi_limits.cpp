@@ -33,11 +33,12 @@ Limits::Limits(LAMMPS *lmp) : Pointers(lmp), culprit{}
 // fastest wave seen from the lattice, and largest squared acceleration, with whose they are
 struct Limits::OfType {
   bool present = false;
-  double fastest = 0.0, asq = 0.0;
+  double fastest = 0.0, asq = 0.0, viscosity = 0.0;
   tagint fast = 0, pushed = 0;
 };
 
-std::vector<Limits::OfType> Limits::look(const Discretization &disc, int groupbit, int moved) const
+std::vector<Limits::OfType> Limits::look(const Discretization &disc, const double *viscosity,
+                                         int groupbit, int moved) const
 {
   const int *const mask = atom->mask, *const type = atom->type;
   double **const v = atom->v, **const f = atom->f;
@@ -48,6 +49,7 @@ std::vector<Limits::OfType> Limits::look(const Discretization &disc, int groupbi
     OfType &t = types[type[i]];
     if (s.species == NONE || s.species == RIGID) continue;
     t.present = true;
+    t.viscosity = std::max(t.viscosity, viscosity ? viscosity[i] : s.viscosity);
     if (s.species == FLUID) {
       double c = s.c;
       if (s.tait) c *= std::max(1.0, std::pow(atom->rho[i] / s.rho0, 3));
@@ -70,10 +72,10 @@ std::vector<Limits::OfType> Limits::look(const Discretization &disc, int groupbi
 
 // fluid: h/4(c+|v|); solid: h/4c_l, c_l^2 = (K+4G/3)/rho0; artificial viscosity: 0.4h/c(1+0.6
 // alpha); laminar: h^2/16nu; acceleration: sqrt(h/|a|)/4
-void Limits::find(const Discretization &disc, int groupbit, int moved, bool substeps,
-                  double of_fluid, double of_solid)
+void Limits::find(const Discretization &disc, const double *viscosity, int groupbit, int moved,
+                  bool substeps, double of_fluid, double of_solid)
 {
-  const auto types = look(disc, groupbit, moved);
+  const auto types = look(disc, viscosity, groupbit, moved);
   const Facts of_fluids = facts_of_fluids(lmp), of_solids = facts_of_solids(lmp);
   for (auto &row : culprit) row[0] = row[1] = 0;
   for (double *row : {step, sub}) std::fill_n(row, NLIMIT, UNLIMITED);
@@ -100,8 +102,8 @@ void Limits::find(const Discretization &disc, int groupbit, int moved, bool subs
     if (!fluid) lower(limit[ELASTIC], factor * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
     if (alpha > 0.0)
       lower(limit[ARTIFICIAL], factor * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
-    if (fluid && s.viscosity > 0.0 && of_fluids.laminar)
-      lower(limit[LAMINAR], factor * safe[LAMINAR] * h * h * s.rho0 / s.viscosity);
+    if (fluid && found.viscosity > 0.0 && of_fluids.laminar && !of_fluids.implicit_viscosity)
+      lower(limit[LAMINAR], factor * safe[LAMINAR] * h * h * s.rho0 / found.viscosity);
   }
 }
 

@@ -58,6 +58,8 @@ namespace {
 
 const char *const SPECIES[] = {"NULL", "fluid", "solid", "wall"};
 const char PRONY[] = "prony";    // of a solid: g tau, as often as wanted
+// of a fluid whose viscosity varies: the least and the largest
+const char LIMITS[] = "viscosity/limits";
 
 // what follows the name and the species
 const struct Property {
@@ -160,10 +162,18 @@ class MaterialReader : protected Pointers {
       for (const auto &p : properties)
         if (has(m.species, p)) known += (known.empty() ? "" : ", ") + std::string(p.name);
       if (m.species == SOLID) known += std::string(", ") + PRONY;
+      if (m.species == FLUID)
+        for (const char *const law : Viscosity::Laws::NAMES) known += std::string(", ") + law;
+      if (m.species == FLUID) known += std::string(", ") + LIMITS;
       std::string key = values.has_next() ? values.next_string() : "";
       while (!key.empty()) {
         if (key == PRONY && m.species == SOLID) {
           key = parse_prony(fmt::format("Material {} {}: {}", name, where, PRONY), values, m);
+          continue;
+        }
+        const std::string what = fmt::format("Material {} {}: {}", name, where, key);
+        if (m.species == FLUID && parse_law(what, key, values, m.law)) {
+          key = values.has_next() ? values.next_string() : "";
           continue;
         }
         const auto p =
@@ -173,8 +183,7 @@ class MaterialReader : protected Pointers {
         if (p == std::end(properties))
           error->one(FLERR, "Unknown keyword {} of {} {} {}: expected {}", key, species, name,
                      where, known);
-        m.*p->value = numeric(lmp, fmt::format("Material {} {}: {}", name, where, key),
-                              values.next_string(), p->range, true);
+        m.*p->value = numeric(lmp, what, values.next_string(), p->range, true);
         given += key + " ";
         key = values.has_next() ? values.next_string() : "";
       }
@@ -182,10 +191,50 @@ class MaterialReader : protected Pointers {
         if (p.needed && has(m.species, p) &&
             given.find(std::string(" ") + p.name + " ") == std::string::npos)
           error->one(FLERR, "Material {} {} needs {} {}", name, where, p.name, p.range.text());
+      if (m.law.varies() || std::isfinite(m.law.most))
+        end_law(fmt::format("Material {} {}", name, where), m);
     } catch (TokenizerException &e) {
       error->one(FLERR, "Cannot read a line of materials {}: {}", where, e.what());
     }
     return m;
+  }
+
+  // is it the key of a law of viscosity, or of its limits?
+  bool parse_law(const std::string &what, const std::string &key, ValueTokenizer &values,
+                 Viscosity &law)
+  {
+    using Laws = Viscosity::Laws;
+    const auto next = [&](const char *of, const Range &range) {
+      return numeric(lmp, what + " " + of, values.has_next() ? values.next_string() : "", range,
+                     true);
+    };
+    if (key == LIMITS) {
+      law.least = next("least", Range::from(0.0));
+      law.most = next("largest", Range::above(law.least));
+      return true;
+    }
+    const int found =
+        std::find(std::begin(Laws::NAMES), std::end(Laws::NAMES), key) - std::begin(Laws::NAMES);
+    if (found == Laws::N) return false;
+    if (law.varies())
+      error->one(FLERR, "{}: expected one law of viscosity, after {}", what, Laws::NAMES[law.law]);
+    law.law = found;
+    for (int k = 0; k < Laws::COUNTS[found]; k++) {
+      const LawParameter &p = Laws::PARAMETERS[found][k];
+      law.parameter[k] = next(p.name, p.positive ? Range::above(0.0) : Range::from(0.0));
+    }
+    return true;
+  }
+
+  void end_law(const std::string &what, Material &m)
+  {
+    if (!m.law.varies()) error->one(FLERR, "{}: {} expected beside a law", what, LIMITS);
+    const char *const name = Viscosity::Laws::NAMES[m.law.law];
+    if (m.viscosity > 0.0) error->one(FLERR, "{}: expected viscosity or {}, not both", what, name);
+    m.viscosity = m.law(0.0);
+    if (!std::isfinite(m.viscosity))
+      error->one(FLERR, "{}: {} has no bound at rest: expected {} least largest", what, name,
+                 LIMITS);
   }
 
   // pairs of numbers up to the next keyword, which it returns; "" at the end
@@ -240,7 +289,15 @@ std::string FSI::describe(const Material &m)
   if (m.species == NONE) return SPECIES[NONE];
   std::string line = fmt::format("{} {}", m.name, SPECIES[m.species]);
   for (const auto &p : properties)
-    if (has(m.species, p)) line += fmt::format(" {} {}", p.name, m.*p.value);
+    if (has(m.species, p) && !(m.law.varies() && p.value == &Material::viscosity))
+      line += fmt::format(" {} {}", p.name, m.*p.value);
+  if (m.law.varies()) {
+    line += std::string(" ") + Viscosity::Laws::NAMES[m.law.law];
+    for (int k = 0; k < Viscosity::Laws::COUNTS[m.law.law]; k++)
+      line += fmt::format(" {}", m.law.parameter[k]);
+    if (std::isfinite(m.law.most))
+      line += fmt::format(" {} {} {}", LIMITS, m.law.least, m.law.most);
+  }
   for (int k = 0; k < m.nprony; k++)
     line +=
         fmt::format("{} {} {}", k ? "" : std::string(" ") + PRONY, m.prony[k].g, m.prony[k].tau);

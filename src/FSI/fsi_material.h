@@ -16,6 +16,8 @@
 #ifndef LMP_FSI_MATERIAL_H
 #define LMP_FSI_MATERIAL_H
 
+#include "fsi_viscosity.h"
+
 #include <map>
 #include <string>
 #include <vector>
@@ -32,7 +34,8 @@ namespace FSI {
     char name[64] = {};
     int species = NONE;        // FLUID, SOLID or RIGID (wall)
     double rho0 = 0.0;         // reference density
-    double viscosity = 0.0;    // fluid: dynamic viscosity
+    double viscosity = 0.0;    // fluid: dynamic viscosity, at rest if a law has it vary
+    Viscosity law;
     double sound = 0.0;        // fluid: numerical speed of sound, 0 = that of its pair style
     double young = 0.0;        // solid: Young's modulus
     double poisson = 0.0;      // solid: Poisson's ratio
@@ -64,9 +67,10 @@ namespace FSI {
     int form = 0;
     int tait = 0;
     double rho0 = 0.0, inv_rho0 = 0.0, c = 0.0, csq = 0.0, inv_csq = 0.0, p0 = 0.0;
-    double floor = -1.0e300;     // lowest pressure; 0 where the material carries no tension
-    double shear = 0.0;          // shear modulus G
-    double viscosity = 0.0;      // dynamic viscosity
+    double floor = -1.0e300;    // lowest pressure; 0 where the material carries no tension
+    double shear = 0.0;         // shear modulus G
+    double viscosity = 0.0;     // dynamic viscosity, at rest if a law has it vary
+    Viscosity law;
     double h = 0.0, w0 = 0.0;    // smoothing length, W(0)
     double yield = 0.0, hardening = 0.0;
     // wall, entered by its fix fsi/wall/particle

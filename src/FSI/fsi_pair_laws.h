@@ -66,9 +66,9 @@ namespace FSI {
     {
     }
     // adds F_ij to f and returns the power it takes; g: grad_i W_ij = g x_ij; visc: eta_i + eta_j;
-    // vv = V_i V_j; T: double or Pack
-    template <class T>
-    FSI_INLINE T operator()(const T &g, double visc, const T &vv, const T *x_ij, const T *v_ij,
+    // vv = V_i V_j; T: double or Pack, C, too
+    template <class T, class C>
+    FSI_INLINE T operator()(const T &g, const C &visc, const T &vv, const T *x_ij, const T *v_ij,
                             T *f) const
     {
       const T k = vv * visc * g;

@@ -43,6 +43,7 @@ namespace FSI {
     Style style = NONE;    // of pairs
     // of fluids
     bool laminar = false;                  // laminar viscosity
+    bool implicit_viscosity = false;       // of a step with no limit from it
     bool couples_stress = false;           // solids act with a pressure or stress of their own
     bool density_at_surfaces = false;      // density/surface
     bool density_follows_shift = false;    // where there are open ends

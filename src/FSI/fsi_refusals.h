@@ -75,6 +75,10 @@ namespace FSI {
         FULL_CORRECTED =
             {REQUIRES, "Pair style fsi/fluid couple full", "pair_style fsi/solid gradient plain",
              "corrected gradients are complete without the fluid's pairs: use couple wall"},
+        IMPLICIT = {REQUIRES, "Pair style fsi/fluid laminar/implicit", "laminar/visc",
+                    "its system is that of the plain form"},
+        GRAINS_VISCOSITY = {REQUIRES, "Pair style fsi/grain", "fluids of constant viscosity",
+                            "the drag of grains is that of Newtonian fluids"},
         GRAINS = {REQUIRES, "Pair style fsi/grain", "pair_style fsi/fluid beside it",
                   "use pair_style hybrid/overlay"},
 
@@ -142,6 +146,8 @@ namespace FSI {
         HYDROSTATIC = {REQUIRES, "Fsi/set hydrostatic", "fix gravity",
                        "the pressure is that of a weight"},
         ENERGY_GROUP = {REQUIRES, "Compute fsi/energy", "group all", "pairs have no group"},
+        SHEAR_RATE = {REQUIRES, "Compute fsi/atom {}", "pair_style fsi/fluid",
+                      "it is that of a fluid"},
         PLASTIC_STRAIN = {REQUIRES, "Compute fsi/atom plastic/strain", "fix fsi/stress plastic",
                           "it has the plastic strain"};
   }    // namespace Refused

@@ -123,6 +123,8 @@ namespace FSI {
     // Of solids with sub-steps: how fluid resists a change of their velocity within the step (xx yy
     // zz xy xz yz; empty: there is none), the mean of this change
     std::vector<double> impedance[6], swerve[3];
+    // of fluids in the last force, local and ghost; null: none depends on the shear rate
+    const double *viscosity = nullptr;
     double *wall_stiffness = nullptr;    // rho dp/drho of wall particles, that of the fluid around
                                          // them; null: it is the same for all fluids, and in the
                                          // wall's state

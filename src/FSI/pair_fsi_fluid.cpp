@@ -23,11 +23,13 @@
 #include "fsi_fields.h"
 #include "fsi_find.h"
 #include "fsi_fluid_loops.h"
+#include "fsi_implicit_viscosity.h"
 #include "fsi_kernel.h"
 #include "fsi_pair_laws.h"
 #include "fsi_pair_sets.h"
 #include "fsi_profile.h"
 #include "fsi_refusals.h"
+#include "fsi_shear.h"
 #include "fsi_sight.h"
 #include "fsi_wet_solids.h"
 #include "neighbor.h"
@@ -55,10 +57,15 @@ struct PairFSIFluid::Members {
   PairSets pairs;
   CutSolids cut_solids;
   LightSolids light_solids;
+  Shear shear;
+  ImplicitViscosity implicit;
   // what loops get the address of
   Thin thin_bodies = {};
   Visible seen_pairs = {};
-  explicit Members(LAMMPS *lmp) : fields(lmp), pairs(lmp), cut_solids(lmp), light_solids(lmp) {}
+  explicit Members(LAMMPS *lmp) :
+      fields(lmp), pairs(lmp), cut_solids(lmp), light_solids(lmp), shear(lmp), implicit(lmp)
+  {
+  }
 };
 
 PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
@@ -72,6 +79,7 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   artificial_row("fluid");
   keywords.key("laminar/visc").set(laminar, PLAIN_LAMINAR).effect("laminar viscosity");
   keywords.key("laminar/visc/central").set(laminar, CENTRAL_LAMINAR);
+  keywords.key("laminar/implicit").logical(implicit, false).effect("laminar viscosity, implicit");
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("solid/guard").number(solids_guard, 0.5, Range::between(0.0, 1.0));
   keywords.key("density/diffusion")
@@ -144,6 +152,7 @@ State PairFSIFluid::make_state(const Material &m) const
   s.p0 = background;
   if (!tension) s.floor = 0.0;
   s.viscosity = m.viscosity;
+  s.law = m.law;
   return s;
 }
 
@@ -165,6 +174,7 @@ void PairFSIFluid::check_effects(const Facts &of_solids) const
   if (surfaces && !continuity) refuse(error, Refused::CONTINUITY, "density/surface");
   if (shifting > 0.0 && !continuity) refuse(error, Refused::CONTINUITY, "shift");
   if (surfaces && (tension || background != 0.0)) refuse(error, Refused::SURFACES);
+  if (implicit && laminar != PLAIN_LAMINAR) refuse(error, Refused::IMPLICIT);
   if (full && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS)
     refuse(error, Refused::FULL_TOTAL);
   // the plain forces of a solid end at its face with half a kernel of neighbors missing, which the
@@ -199,6 +209,9 @@ void PairFSIFluid::init_style()
   pairs.init(*disc, *step, couple != WALL);
   members->cut_solids.init(*disc, has_solids());
   members->light_solids.init(fix_fsi);
+  members->shear.init(fix_fsi);
+  members->implicit.init(fix_fsi);
+  step->viscosity = nullptr;
   find_ratios();
   const bool mirrors = any_is(fixes_of<Part>(lmp), &Facts::mirror_walls);
   take_virial(force->pair != this && mirrors ? force->pair : nullptr);
@@ -235,6 +248,7 @@ Facts PairFSIFluid::facts() const
   Facts facts = PairFSI::facts();
   facts.style = Facts::OF_FLUIDS;
   facts.laminar = laminar;
+  facts.implicit_viscosity = implicit;
   facts.couples_stress = couple != WALL;
   facts.density_at_surfaces = surfaces;
   facts.density_follows_shift = shifting > 0.0 && fills();
@@ -783,7 +797,30 @@ ForceLaws PairFSIFluid::laws_of_forces()
   laws.wall_velocity = FixFSI::rows(step->wall_velocity ? step->wall_velocity : atom->v);
   if (fix_stress) laws.stress = fix_stress->stress;
   if (ledger->kept) laws.taken = taken.data();
+  laws.viscosity = step->viscosity;
+  laws.mirrors_own = implicit;
   return laws;
+}
+
+// where the last gather() was
+void PairFSIFluid::find_viscosities()
+{
+  step->viscosity = nullptr;
+  Shear &shear = members->shear;
+  if (!laminar || !shear.varies()) return;
+  shear.find_viscosities(pairs, particles_of_levels(), laws_of_forces());
+  step->viscosity = shear.viscosities();
+}
+
+const Shear &PairFSIFluid::find_shear()
+{
+  disc->dim == 2 ? gather<2>(0.0,
+                             [](int, Point<2> &) {
+                             })
+                 : gather<3>(0.0, [](int, Point<3> &) {
+                   });
+  members->shear.find_gradients(pairs, particles_of_levels(), laws_of_forces());
+  return members->shear;
 }
 
 // of images: each wall of a reflection has the force along its axis
@@ -817,7 +854,12 @@ template <int D> void PairFSIFluid::compute_forces()
   });
 
   if (ledger->kept) taken.assign((size_t) row_of_points(D) * nall, 0.0);
+  find_viscosities();
   ForceLaws laws = laws_of_forces();
+  if (implicit) {    // by itself, when the other forces are there
+    laws.laminar = NO_LAMINAR;
+    laws.viscosity = nullptr;
+  }
   PairSums sums, *const of_pairs = ledger->kept || tally_pairs ? &sums : nullptr;
   forces.assign((size_t) ROW * nall, 0.0);
   double guarding[PairSet::NKINDS] = {};
@@ -836,7 +878,8 @@ template <int D> void PairFSIFluid::compute_forces()
                      loop(set, set.images[k].rows, set.visible_images[k], mirror, total);
                      add_wall_forces(step->walls.reflections[k], total);
                    });
-  split_forces<D>(particles, laws);
+  if (implicit) add_implicit_viscosity<D>(particles, of_pairs);
+  split_forces<D>(particles);
   pairs.forget_near();    // a second force evaluation at other positions must not use these lists
 
   // LAMMPS sends what ghosts have home even without newton_pair, if newton_bond is on
@@ -853,14 +896,12 @@ template <int D> void PairFSIFluid::compute_forces()
     for (int k = 0; k < 6; k++) virial[k] += sums.virial[k];
 }
 
-// for those who ask for them, forces of viscosity alone on solids and walls: the same loops without
-// pressures, guard and stress
-template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles, ForceLaws laws)
+// Viscous forces alone, of which bodies only those on them if so: the same loops without pressures,
+// guard and stress
+template <int D>
+void PairFSIFluid::add_viscous_forces(const FluidParticles &particles, ForceLaws laws,
+                                      bool on_bodies, PairSums *sums)
 {
-  if (std::none_of(force_computes.begin(), force_computes.end(), [](const auto *measure) {
-        return measure->split;
-      }))
-    return;
   constexpr int ROW = row_of_forces(D);
   const int nall = atom->nlocal + atom->nghost;
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
@@ -871,21 +912,56 @@ template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles
   laws.taken = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
-  for (const auto &m : pairs.sets)
-    if (m.what == PairSet::WALLS || m.what == PairSet::SOLIDS)
-      m.of_forces->forces(m.kind, m.rows.rows, nullptr,
-                          of_rows(particles, m, m.rows.rows, m.visible), laws,
-                          viscous_forces.data(), nullptr, nullptr);
+  const auto loop = [&](const PairSet &m, const std::vector<Row> &rows,
+                        const std::vector<double> &visible, const Mirror *mirror, double *total) {
+    if (on_bodies && m.what != PairSet::SOLIDS && (mirror || m.what != PairSet::WALLS)) return;
+    m.of_forces->forces(m.kind, rows, mirror, of_rows(particles, m, rows, visible), laws,
+                        viscous_forces.data(), total, sums);
+  };
+  for (const auto &m : pairs.sets) loop(m, m.rows.rows, m.visible, nullptr, nullptr);
   pairs.for_images(step->walls, particles.points,
                    [&](const PairSet &m, int k, const Mirror *mirror) {
-                     double unused[D] = {};
-                     if (m.what == PairSet::SOLIDS)
-                       m.of_forces->forces(m.kind, m.images[k].rows, mirror,
-                                           of_rows(particles, m, m.rows.rows, m.visible), laws,
-                                           viscous_forces.data(), unused, nullptr);
+                     double total[D] = {};
+                     loop(m, m.images[k].rows, m.visible_images[k], mirror, total);
+                     if (!on_bodies) add_wall_forces(step->walls.reflections[k], total);
                    });
+}
+
+// for those who ask for them, forces of viscosity on solids and walls
+template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles)
+{
+  if (std::none_of(force_computes.begin(), force_computes.end(), [](const auto *measure) {
+        return measure->split;
+      }))
+    return;
+  add_viscous_forces<D>(particles, laws_of_forces(), true, nullptr);
   for (auto *measure : force_computes)
-    if (measure->split) measure->tally_viscosity(viscous_forces.data(), ROW);
+    if (measure->split) measure->tally_viscosity(viscous_forces.data(), row_of_forces(D));
+}
+
+// those of the velocities that it leaves at the end of the step
+template <int D>
+void PairFSIFluid::add_implicit_viscosity(const FluidParticles &particles, PairSums *sums)
+{
+  constexpr int ROW = row_of_forces(D);
+  std::vector<double> others = forces;
+  fix_fsi->add_ghosts(others.data(), ROW);
+  ForceLaws laws = laws_of_forces();
+  const std::vector<double> &w =
+      members->implicit.solve(pairs, particles_of_levels(), laws, others.data(), ROW);
+  auto *const point = reinterpret_cast<Point<D> *>(points.data());
+  for (size_t i = 0; i < w.size() / D; i++)
+    for (int d = 0; d < D; d++) point[i].v[d] = w[D * i + d];
+  laws.alpha = laws.beta = 0.0;
+  add_viscous_forces<D>(particles, laws, false, sums);
+  double late = 0.0;    // the work is that of the mean velocity of the step
+  for (size_t i = 0; i < w.size() / D; i++)
+    for (int d = 0; d < D; d++) {
+      forces[ROW * i + d] += viscous_forces[ROW * i + d];
+      if (particles.state[particles.type[i]].species == FLUID)
+        late += 0.5 * viscous_forces[ROW * i + d] * (w[D * i + d] - atom->v[i][d]);
+    }
+  ledger->tally(Ledger::LAMINAR, late);
 }
 
 bool PairFSIFluid::has_solids() const
@@ -915,5 +991,6 @@ double PairFSIFluid::memory_usage()
   const size_t numbers = points.capacity() + forces.capacity() + viscous_forces.capacity() +
       pressure_over_density.capacity();
   return fields.memory_usage() + pairs.memory_usage() + members->cut_solids.memory_usage() +
+      members->shear.memory_usage() + members->implicit.memory_usage() +
       (double) numbers * sizeof(double);
 }

@@ -32,8 +32,10 @@ namespace FSI {
   struct FluidParticles;
   struct ForceLaws;
   struct PairSet;
+  struct PairSums;
   class PairSets;
   struct Row;
+  class Shear;
   struct Visible;
 }    // namespace FSI
 
@@ -69,6 +71,8 @@ class PairFSIFluid : public PairFSI {
   void integrate_substeps() override;
   void react() override;
   void go_back() override;
+  // velocity gradients of local fluid particles as they are now
+  const FSI::Shear &find_shear();
   // adds sum_j V_j x_ji.grad_i W_ij of fluid particles (dim inside a fluid, less at its surface)
   void add_position_divergence(double *div);
   void add_gradient_sum(double *) override;
@@ -99,7 +103,7 @@ class PairFSIFluid : public PairFSI {
   double surface_ratio;               // of the free-surface rule
   // distance over the mean spacing from which on solids push fluid off; 0: they do not
   double solids_guard;
-  int tait, laminar, given_couple, couple, extrapolate, tension, solids_slip;
+  int tait, laminar, implicit, given_couple, couple, extrapolate, tension, solids_slip;
   int surfaces;                      // does the density follow surfaces (fsi_number_density.h)?
   class FixFSIStress *fix_stress;    // null: no solid has a stress
   std::vector<class ComputeFSIForce *> force_computes;
@@ -145,6 +149,7 @@ class PairFSIFluid : public PairFSI {
   void add_velocities_at_solids();
   void extrapolate_velocities();
   template <int D> void correct_powers();
+  void find_viscosities();
   template <int D> FSI::FluidParticles gather_for_rates(double dth);
   template <int D> void add_density_rate(double dt);
   void advance_density();
@@ -155,7 +160,11 @@ class PairFSIFluid : public PairFSI {
   FSI::ForceLaws laws_of_forces();
   template <int D> void add_wall_forces(const FSI::Walls::Reflection &, const double (&total)[D]);
   template <int D> void compute_forces();
-  template <int D> void split_forces(const FSI::FluidParticles &, FSI::ForceLaws);
+  template <int D>
+  void add_viscous_forces(const FSI::FluidParticles &, FSI::ForceLaws, bool on_bodies,
+                          FSI::PairSums *);
+  template <int D> void split_forces(const FSI::FluidParticles &);
+  template <int D> void add_implicit_viscosity(const FSI::FluidParticles &, FSI::PairSums *);
   double given_ghosts, raised_ghosts;    // cutoffs: that of the user, as raised for images
   Pair *hybrid;    // the hybrid style that this one makes sum its virial pair by pair; null: none
   int no_fdotr_before;

@@ -113,6 +113,7 @@ double PairFSIGrain::init_one(int i, int j)
                "Pair_coeff of pair style fsi/grain: atom type {} has {} and type {} {}: expected a "
                "fluid and grains, which have none (NULL in pair_style fsi/fluid)",
                i, words[a], j, words[b]);
+  if (state[a == NONE ? j : i].law.varies()) refuse(error, Refused::GRAINS_VISCOSITY);
   check_radii(a == NONE ? i : j);
   return disc->cut;
 }

@@ -19,7 +19,7 @@ HIGH, DEEP = {2: 12, 3: 7}, 7   # its height and, in 3D, its depth
 STEPS = (16, 12, 12)        # before what is done between runs, after it, and after a restart file
 DT = 2e-4
 SLOTS = {  # what a level may have: how several are joined, what there is if none has it
-    "dim": None, "kernel": None, "full": False, "settings": {}, "body": "", "gravity": "", "ground": None, "sides": None, "floor": None, "ends": "", "refine": "", "stress": "",
+    "dim": None, "kernel": None, "full": False, "settings": {}, "body": "", "gravity": "", "ground": None, "sides": None, "floor": None, "ends": "", "refine": "", "stress": "", "water": "",
     "fluid": " ", "solid": " ", "fsi": " ", "mirror": " ", "material": " ", "lines": "\n", "regions": "\n", "between": "\n"}
 WATER, BODY, FLOOR, BUOY, FINE, GRAIN = range(1, 7)
 
@@ -270,7 +270,7 @@ group spot intersect spot water
     @property
     def coeff(self):
         names = f"water {'body' if self.has['body'] else 'water'} wall buoy water {'NULL' if self.setting('grains') else 'water'}"
-        lines = ["fsi/material water fluid rho 1000 viscosity 1", "fsi/material wall wall rho 1000", "fsi/material buoy wall rho 600",
+        lines = [f"fsi/material water fluid rho 1000 {self.has['water'] or 'viscosity 1'}", "fsi/material wall wall rho 1000", "fsi/material buoy wall rho 600",
                  f"fsi/material body solid rho 1100 young 5e4 {'' if 'poisson' in self.has['material'] else 'poisson 0.3'} {self.has['material']}"]
         hybrid = "hybrid" in self.pair
         lines.append(f"pair_coeff * * {'fsi/fluid ' if hybrid else ''}NULL {names}")

@@ -1,0 +1,213 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_implicit_viscosity.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fix_fsi.h"
+#include "force.h"
+#include "fsi_fluid_terms.h"
+#include "fsi_gather.h"
+#include "fsi_pair_sets.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+// What is left of the forces that viscosity has to balance, and of its own at the start
+static constexpr double LEFT = 1.0e-4;
+static constexpr int MOST = 2000;    // iterations
+
+void ImplicitViscosity::init(FixFSI *fix_fsi_in)
+{
+  fix_fsi = fix_fsi_in;
+  disc = fix_fsi;
+  step = fix_fsi;
+}
+
+const std::vector<double> &ImplicitViscosity::solve(PairSets &pairs,
+                                                    const std::vector<FluidParticles> &of_level,
+                                                    const ForceLaws &laws, const double *f,
+                                                    int columns)
+{
+  disc->dim == 2 ? solve<2>(pairs, of_level, laws, f, columns)
+                 : solve<3>(pairs, of_level, laws, f, columns);
+  return w;
+}
+
+// A row of the system for what fix fsi moves: inertia; what does not move keeps its velocity
+template <int D> void ImplicitViscosity::begin(const double *f, int columns)
+{
+  const size_t n = (size_t) D * (atom->nlocal + atom->nghost);
+  blocks.clear();
+  k.clear();
+  diagonal.assign(n, 0.0);
+  given.assign(n, 0.0);
+  driving.assign(n, 0.0);
+  w.resize(n);
+  for (size_t i = 0; i < n / D; i++)
+    for (int d = 0; d < D; d++) w[D * i + d] = atom->v[i][d];
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < D; d++)
+      given[D * i + d] = driving[D * i + d] =
+          f[columns * i + d] + atom->rmass[i] * fix_fsi->body_forces.of_type[atom->type[i]][d];
+}
+
+template <int D>
+void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &rows,
+                                  const std::vector<double> &visible, const Mirror *mirror,
+                                  const FluidParticles &in, const ForceLaws &laws)
+{
+  if (rows.empty() || (set.kind != WITH_FLUID && set.what == PairSet::SOLIDS && laws.solids_slip))
+    return;
+  const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+  const Mirror image = mirror ? *mirror : Mirror();
+  const auto viscosity = [&](int i) {
+    return laws.viscosity ? laws.viscosity[i] : in.state[in.type[i]].viscosity;
+  };
+  const bool fluids = set.kind == WITH_FLUID, hidden = set.what == PairSet::HIDDEN;
+  if (fluids) {
+    Block block = {&rows, {1.0, 1.0, 1.0}, k.size()};
+    for (int d = 0; mirror && d < D; d++) block.sign[d] = image.rubbing_sign[d];
+    blocks.push_back(block);
+  }
+  with_kernel(disc->kernel, D, set.h, [&](const auto &kernel) {
+    for (const Row &row : rows)
+      for (const int *j = row.j; j < row.j + row.n; j++) {
+        const Point<D> &pi = point[row.i], &pj = point[*j];
+        double x[D];
+        for (int d = 0; d < D; d++)
+          x[d] = pi.x[d] - (mirror ? image.x[d] + image.sign[d] * pj.x[d] : pj.x[d]);
+        double g = -kernel.gradient(std::sqrt(FSI::product(x, x))) * pi.vol * pj.vol;
+        if (mirror && *j == row.i) g *= 0.5;    // it is seen from both sides of the pair
+        if (hidden) g *= visible[j - rows[0].j];
+        if (fluids) {
+          const double both = 2.0 * g * between(viscosity(row.i), viscosity(*j));
+          k.push_back(both);
+          for (int d = 0; d < D; d++) {
+            const double u = mirror ? both * image.rubbing_v[d] : 0.0;
+            for (const int a : {row.i, *j}) {
+              diagonal[D * a + d] += both;
+              given[D * a + d] += u;
+            }
+          }
+          continue;
+        }
+        const State &other = in.state[in.type[*j]];
+        if (other.species == RIGID && !other.noslip) continue;
+        const double of_face =
+            2.0 * g * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
+        for (int d = 0; d < D; d++) {
+          const double sign = mirror ? image.rubbing_sign[d] : 1.0;
+          diagonal[D * row.i + d] += of_face * (1.0 + sign);
+          given[D * row.i + d] +=
+              of_face * (2.0 * sign * atom->v[*j][d] + (mirror ? image.rubbing_v[d] : 0.0));
+        }
+      }
+  });
+}
+
+// y = A x of local particles; x gets its ghosts
+template <int D> void ImplicitViscosity::multiply(std::vector<double> &x, std::vector<double> &y)
+{
+  fix_fsi->send_to_ghosts(x.data(), D);
+  std::fill(y.begin(), y.end(), 0.0);
+  for (const Block &block : blocks) {
+    const double *of_pair = k.data() + block.first;
+    for (const Row &row : *block.rows) {
+      const double *const xi = &x[D * row.i];
+      double sum[D] = {};
+      for (const int *j = row.j; j < row.j + row.n; j++) {
+        const double kij = *of_pair++, *const xj = &x[D * *j];
+        double *const yj = &y[D * *j];
+        for (int d = 0; d < D; d++) {
+          sum[d] -= kij * block.sign[d] * xj[d];
+          yj[d] -= kij * block.sign[d] * xi[d];
+        }
+      }
+      for (int d = 0; d < D; d++) y[D * row.i + d] += sum[d];
+    }
+  }
+  fix_fsi->add_ghosts(y.data(), D);
+  for (size_t i = 0; i < (size_t) D * atom->nlocal; i++) y[i] += diagonal[i] * x[i];
+}
+
+template <int D>
+void ImplicitViscosity::solve(PairSets &pairs, const std::vector<FluidParticles> &of_level,
+                              const ForceLaws &laws, const double *f, int columns)
+{
+  const int nlocal = atom->nlocal, *const type = atom->type;
+  begin<D>(f, columns);
+  for (const auto &set : pairs.sets)
+    add_pairs<D>(set, set.rows.rows, set.visible, nullptr, of_level[set.level], laws);
+  pairs.for_images(step->walls, of_level[0].points,
+                   [&](const PairSet &set, int n, const Mirror *mirror) {
+                     add_pairs<D>(set, set.images[n].rows, set.visible_images[n], mirror,
+                                  of_level[set.level], laws);
+                   });
+  fix_fsi->add_ghosts(diagonal.data(), D);
+  fix_fsi->add_ghosts(given.data(), D);
+  const size_t n = w.size();
+  std::vector<double> z(n, 0.0), free(n, 0.0);
+  for (auto *of : {&r, &p, &Ap}) of->assign(n, 0.0);
+  const double per_dt = 1.0 / (update->dt * force->ftm2v);
+  multiply<D>(w, Ap);
+  double scale = 0.0;
+  for (int i = 0; i < nlocal; i++) {
+    const double inertia = atom->rmass[i] * per_dt;
+    const bool moves = disc->state[type[i]].species == FLUID && (atom->mask[i] & fix_fsi->groupbit);
+    for (size_t a = D * i; moves && a < (size_t) D * (i + 1); a++) {
+      free[a] = 1.0;
+      r[a] = given[a] - Ap[a];
+      const double viscous = r[a] - driving[a];
+      scale += (driving[a] * driving[a] + viscous * viscous) / inertia;
+      diagonal[a] += inertia;
+    }
+  }
+  const double enough = LEFT * LEFT * sum_of(scale, world);
+  double rz = 0.0;
+  for (niterations = 0;; niterations++) {
+    double sums[2] = {}, all[2];
+    for (size_t a = 0; a < (size_t) D * nlocal; a++) {
+      if (free[a] == 0.0) continue;
+      z[a] = r[a] / diagonal[a];
+      sums[0] += r[a] * z[a];
+      sums[1] += r[a] * r[a] / (atom->rmass[a / D] * per_dt);
+    }
+    MPI_Allreduce(sums, all, 2, MPI_DOUBLE, MPI_SUM, world);
+    if (!(all[1] > enough)) break;    // what is not a number others find
+    if (niterations == MOST)
+      error->all(FLERR, "Pair style fsi/fluid laminar/implicit: not solved in {} iterations", MOST);
+    const double beta = niterations ? all[0] / rz : 0.0;
+    rz = all[0];
+    for (size_t a = 0; a < (size_t) D * nlocal; a++) p[a] = z[a] + beta * p[a];
+    multiply<D>(p, Ap);
+    double pAp = 0.0;
+    for (size_t a = 0; a < (size_t) D * nlocal; a++) pAp += p[a] * Ap[a];
+    const double alpha = rz / sum_of(pAp, world);
+    for (size_t a = 0; a < (size_t) D * nlocal; a++) {
+      w[a] += alpha * p[a];
+      r[a] -= free[a] * alpha * Ap[a];
+    }
+  }
+  fix_fsi->send_to_ghosts(w.data(), D);
+}
+
+double ImplicitViscosity::memory_usage() const
+{
+  return (double) (k.capacity() + 7 * w.capacity()) * sizeof(double);
+}

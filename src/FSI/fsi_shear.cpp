@@ -1,0 +1,203 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/, Sandia National Laboratories
+   LAMMPS development team: developers@lammps.org
+
+   Copyright (2003) Sandia Corporation.  Under the terms of Contract
+   DE-AC04-94AL85000 with Sandia Corporation, the U.S. Government retains
+   certain rights in this software.  This software is distributed under
+   the GNU General Public License.
+
+   See the README file in the top-level LAMMPS directory.
+------------------------------------------------------------------------- */
+
+#include "fsi_shear.h"
+
+#include "atom.h"
+#include "fix_fsi.h"
+#include "fsi_fluid_terms.h"
+#include "fsi_pair_sets.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace FSI;
+
+// The determinant of sum_j V_j x_ji (x) grad_i W_ij is 1 inside a fluid, some 0.5 in the first row
+// of a plane surface; below this a gradient says nothing
+static constexpr double FEW = 0.1;
+
+namespace {
+// Of a particle: sum of V x (x) g by its components, then that of V v (x) g. Times V_i what a pair
+// is in them is the same for both.
+template <int D> struct Sums {
+  static constexpr int N = Sym<D>::N + D * D, ROW = (N + 3) / 4 * 4;
+
+  template <class T>
+  FSI_INLINE static void of_pair(const T &g, const T (&x)[D], const T (&v)[D], T (&part)[ROW])
+  {
+    for (T &p : part) p = 0.0;
+    for (int a = 0; a < D; a++) {
+      const T gx = g * x[a], gv = g * v[a];
+      for (int b = a; b < D; b++) part[Sym<D>::id(a, b)] = gx * x[b];
+      for (int b = 0; b < D; b++) part[Sym<D>::N + a * D + b] = gv * x[b];
+    }
+  }
+};
+}    // namespace
+
+// OF_FLUIDS: the neighbors take part, too
+template <class T, class K, bool IMAGES, bool OF_FLUIDS>
+static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K &kernel,
+                     const FluidParticles &in, const ForceLaws &laws, double *sums)
+{
+  constexpr int D = K::DIM, ROW = Sums<D>::ROW;
+  const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
+  auto *const sum = reinterpret_cast<double(*)[ROW]>(sums);
+  run_loop<T>([&](auto number) FSI_INLINE_LAMBDA {
+    using Number = decltype(number);
+    for (const Row &row : rows) {
+      if (row.n == 0) continue;
+      const int type_j = in.type[row.j[0]];
+      const State &other = in.state[type_j];
+      if (other.species == RIGID && !other.noslip) continue;    // there is no fluid beyond it
+      const bool thin = in.ratio[type_j].thin;
+      const double backfill = backfill_of(in, row.i, type_j);
+      const Particle<Number, D> pi(point[row.i]);
+      Number of_i[ROW];
+      for (Number &s : of_i) s = 0.0;
+      for_neighbors<Number, IMAGES>(row, [&](const int *j, const Number &weight) FSI_INLINE_LAMBDA {
+        const Particle<Number, D> pj(point, j);
+        Number x[D], v[D], part[ROW];
+        for (int d = 0; d < D; d++) {
+          const Number u = OF_FLUIDS ? pj.v[d]
+              : thin                 ? 2.0 * pj.v[d] - pi.v[d]
+                                     : Lanes<Number>::make([&](int k) {
+                         return laws.wall_velocity[j[k]][d];
+                       });
+          x[d] = pi.x[d] - (IMAGES ? mirror.x[d] + mirror.sign[d] * pj.x[d] : pj.x[d]);
+          v[d] = pi.v[d] - (IMAGES ? mirror.rubbing_v[d] + mirror.rubbing_sign[d] * u : u);
+        }
+        Number g = kernel.gradient(root(product(x, x))) * (backfill * pi.vol) * pj.vol;
+        if (IMAGES) g = weight * g;
+        if constexpr (std::is_same_v<Number, double>)
+          if (in.visible) g = as_visible(in, j, g);
+        Sums<D>::of_pair(g, x, v, part);
+        for (int k = 0; k < ROW; k++) of_i[k] += part[k];
+        if (!OF_FLUIDS) return;
+        if (IMAGES) {
+          for (int d = 0; d < D; d++) {
+            x[d] = -mirror.sign[d] * x[d];
+            v[d] = pj.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * pi.v[d]);
+          }
+          Sums<D>::of_pair(g, x, v, part);
+        }
+        Lanes<Number>::add_rows(part, sum, j);
+      });
+      for (int k = 0; k < ROW; k++) sum[row.i][k] += Lanes<Number>::sum(of_i[k]);
+    }
+  });
+}
+
+void Shear::init(FixFSI *fix_fsi_in)
+{
+  fix_fsi = fix_fsi_in;
+  disc = fix_fsi;
+  step = fix_fsi;
+}
+
+bool Shear::varies() const
+{
+  return std::any_of(disc->state.begin(), disc->state.end(), [](const State &s) {
+    return s.law.varies();
+  });
+}
+
+void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &of_level,
+                           const ForceLaws &laws)
+{
+  disc->dim == 2 ? find_gradients<2>(pairs, of_level, laws)
+                 : find_gradients<3>(pairs, of_level, laws);
+}
+
+template <int D>
+void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &of_level,
+                           const ForceLaws &laws)
+{
+  constexpr int ROW = Sums<D>::ROW, N = Sym<D>::N;
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, *const type = atom->type;
+  sums.assign((size_t) ROW * nall, 0.0);
+  gradients.assign((size_t) D * D * nlocal, 0.0);
+  const auto add = [&](const PairSet &set, const std::vector<Row> &rows,
+                       const std::vector<double> &visible, const Mirror *mirror) {
+    if (rows.empty()) return;
+    if (set.what == PairSet::SOLIDS && laws.solids_slip) return;    // no fluid beyond it, either
+    FluidParticles in = of_level[set.level];
+    const Visible seen = {visible.data(), rows[0].j};
+    if (set.what == PairSet::HIDDEN) in.visible = &seen;
+    const bool packs = have_packs() && !in.visible;
+    with_kernel(disc->kernel, D, set.h, [&](const auto &kernel) {
+      using K = std::decay_t<decltype(kernel)>;
+      if constexpr (K::DIM == D) {
+        const auto with = [&](auto number) {
+          using T = decltype(number);
+          const bool fluid = set.kind == WITH_FLUID;
+          if (mirror)
+            fluid ? add_rows<T, K, true, true>(rows, *mirror, kernel, in, laws, sums.data())
+                  : add_rows<T, K, true, false>(rows, *mirror, kernel, in, laws, sums.data());
+          else
+            fluid ? add_rows<T, K, false, true>(rows, Mirror(), kernel, in, laws, sums.data())
+                  : add_rows<T, K, false, false>(rows, Mirror(), kernel, in, laws, sums.data());
+        };
+        packs ? with(Pack()) : with(0.0);
+      }
+    });
+  };
+  for (const auto &set : pairs.sets) add(set, set.rows.rows, set.visible, nullptr);
+  pairs.for_images(step->walls, of_level[0].points,
+                   [&](const PairSet &set, int k, const Mirror *mirror) {
+                     add(set, set.images[k].rows, set.visible_images[k], mirror);
+                   });
+  fix_fsi->add_ghosts(sums.data(), ROW);
+  for (int i = 0; i < nlocal; i++) {
+    if (disc->state[type[i]].species != FLUID) continue;
+    const double *const s = &sums[(size_t) ROW * i];
+    double B[D * D], C[D * D], *const L = &gradients[(size_t) D * D * i];
+    for (int a = 0; a < D; a++)
+      for (int b = 0; b < D; b++) B[a * D + b] = s[Sym<D>::id(a, b)];
+    const double det = determinant<D>(B), vol = atom->rmass[i] / atom->rho[i];
+    if (std::fabs(det) < FEW * std::pow(vol, D)) continue;
+    cofactor<D>(B, C);    // B is symmetric
+    for (int a = 0; a < D; a++)
+      for (int b = 0; b < D; b++)
+        for (int c = 0; c < D; c++) L[a * D + b] += s[N + a * D + c] * C[c * D + b] / det;
+  }
+}
+
+double Shear::rate(int i) const
+{
+  return std::sqrt(
+      2.0 *
+      (disc->dim == 2 ? symmetric<2>(gradient(i)).squared() : symmetric<3>(gradient(i)).squared()));
+}
+
+void Shear::stress(int i, double eta, double *sigma) const
+{
+  const int D = disc->dim;
+  const double *const L = gradient(i);
+  for (int a = 0; a < D; a++)
+    for (int b = a; b < D; b++) sigma[Sym<3>::id(a, b)] = eta * (L[a * D + b] + L[b * D + a]);
+}
+
+void Shear::find_viscosities(PairSets &pairs, const std::vector<FluidParticles> &of_level,
+                             const ForceLaws &laws)
+{
+  find_gradients(pairs, of_level, laws);
+  viscosity.resize(atom->nlocal + atom->nghost);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const State &s = disc->state[atom->type[i]];
+    viscosity[i] = s.law.varies() ? s.law(rate(i)) : s.viscosity;
+  }
+  fix_fsi->send_to_ghosts(viscosity.data());
+}
