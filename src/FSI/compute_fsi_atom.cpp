@@ -149,8 +149,8 @@ double ComputeFSIAtom::value(int what, int i, const Properties &of) const
   }
 }
 
-// Cauchy stress sigma = -p I + S, tension positive, of fluids S = 2 eta D; sigma_zz of plane strain is -p - (S_xx + S_yy),
-// of plane stress 0
+// Cauchy stress sigma = -p I + S, tension positive, of fluids S = 2 eta D; sigma_zz of plane strain
+// is -p - (S_xx + S_yy), of plane stress 0
 void ComputeFSIAtom::find(int i, Properties &of) const
 {
   const State &state = fix_fsi->state[atom->type[i]];

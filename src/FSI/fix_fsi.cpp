@@ -47,8 +47,6 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
-static constexpr int MOST_COLUMNS = 16;    // of add_ghosts()
-
 struct FixFSI::Members {
   Keywords keywords;
   Clock clock;
@@ -76,8 +74,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     keywords(members->keywords), clock(members->clock), check(members->check),
     changes(members->changes), population(members->population),
     number_density(members->number_density), clamps(members->clamps), forward(lmp, state),
-    back(lmp, state), scalar(lmp, state), carried(nullptr), of_rows(lmp, state),
-    carried_rows(nullptr)
+    back(lmp, state), one_array(lmp, state), carried(nullptr)
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
@@ -152,9 +149,7 @@ void FixFSI::set_fields()
   number_density.add_messages(forward);
   back.clear();
   for (auto *p : parts) p->add_messages(forward, back);
-  scalar.clear();
-  scalar.add(carried, {NONE, FLUID, SOLID, RIGID});
-  comm_forward = std::max(dim, forward.size());
+  comm_forward = std::max(MOST_COLUMNS, forward.size());
   comm_reverse = std::max(MOST_COLUMNS, back.size());
 }
 
@@ -379,40 +374,24 @@ void FixFSI::update_state(bool advance)
   for (auto *p : parts) p->end_state(advance);
 }
 
-void FixFSI::add_ghosts(double *n)
+void FixFSI::carry(double *array, int columns)
 {
-  carried = n;
-  sent = &scalar;
-  if (force->newton_pair) reverse_comm(profile, comm, this);
+  carried = array;
+  one_array.clear();
+  one_array.add(carried, {NONE, FLUID, SOLID, RIGID}, nullptr, columns);
+  sent = &one_array;
 }
 
-void FixFSI::carry(double *rows, int columns)
+void FixFSI::add_ghosts(double *array, int columns)
 {
-  row_starts.resize(atom->nlocal + atom->nghost);
-  for (size_t i = 0; i < row_starts.size(); i++) row_starts[i] = rows + i * columns;
-  carried_rows = row_starts.data();
-  of_rows.clear();
-  of_rows.add(carried_rows, 0, columns, {NONE, FLUID, SOLID, RIGID});
-  sent = &of_rows;
+  carry(array, columns);
+  if (force->newton_pair) reverse_comm(profile, comm, this, columns);
 }
 
-void FixFSI::add_ghosts(double *rows, int columns)
+void FixFSI::send_to_ghosts(double *array, int columns)
 {
-  carry(rows, columns);
-  if (force->newton_pair) reverse_comm(profile, comm, this);
-}
-
-void FixFSI::send_to_ghosts(double *rows, int columns)
-{
-  carry(rows, columns);
-  forward_comm(profile, comm, this);
-}
-
-void FixFSI::send_to_ghosts(double *n)
-{
-  carried = n;
-  sent = &scalar;
-  forward_comm(profile, comm, this);
+  carry(array, columns);
+  forward_comm(profile, comm, this, columns);
 }
 
 void FixFSI::set_arrays(int i)

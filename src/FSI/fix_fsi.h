@@ -83,10 +83,10 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::Population &population;
   FSI::NumberDensity &number_density;
   FSI::Clamps &clamps;           // rigid bodies
-  void add_ghosts(double *n);    // to local atoms what pairs left on their ghosts
-  void add_ghosts(double *rows, int columns);
-  void send_to_ghosts(double *n);
-  void send_to_ghosts(double *rows, int columns);
+  // to local atoms what pairs left on their ghosts, in rows of so many numbers
+  static constexpr int MOST_COLUMNS = 16;
+  void add_ghosts(double *rows, int columns = 1);
+  void send_to_ghosts(double *rows, int columns = 1);
 
  private:
   void set_fields();
@@ -101,12 +101,9 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   // ghosts get density, number density where in use, what parts of the step add; back come the
   // sums that pairs left on them
   FSI::Message forward, back;
-  FSI::Message scalar;    // of one array of numbers per atom, both ways
-  double *carried;        // that array
-  FSI::Message of_rows;
-  std::vector<double *> row_starts;
-  double **carried_rows;
-  void carry(double *rows, int columns);
+  FSI::Message one_array;    // both ways
+  double *carried;           // that array
+  void carry(double *array, int columns);
   bool fresh_start() const;
   template <int D> void drift();
   template <int D> void kick();

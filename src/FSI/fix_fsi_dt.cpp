@@ -238,7 +238,8 @@ void FixFSIDt::find_limits()
 {
   const bool may = facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
   const bool substeps = may && (automatic || step->substeps > 1);
-  limits->find(*disc, fix_fsi->viscosity, groupbit, fix_fsi->groupbit, substeps, of_fluid, of_solid);
+  limits->find(*disc, fix_fsi->viscosity, groupbit, fix_fsi->groupbit, substeps, of_fluid,
+               of_solid);
   limits->reduce();
 }
 

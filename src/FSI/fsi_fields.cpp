@@ -289,9 +289,9 @@ static int mask_of(std::initializer_list<int> species)
   return mask;
 }
 
-void Message::add(double *&array, std::initializer_list<int> species, const bool *when)
+void Message::add(double *&array, std::initializer_list<int> species, const bool *when, int n)
 {
-  columns.push_back({&array, nullptr, 0, 1, mask_of(species), when});
+  columns.push_back({&array, nullptr, 0, n, mask_of(species), when});
 }
 
 void Message::add(double **&array, int first, int n, std::initializer_list<int> species,

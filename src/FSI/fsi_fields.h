@@ -99,8 +99,9 @@ namespace FSI {
     Message(const Message &) = delete;    // holds addresses of its owner
     void clear() { columns.clear(); }
     int group = 0;    // bit of the group whose particles it is about; 0: all
-    // when: null, or whether it is carried now
-    void add(double *&array, std::initializer_list<int> species, const bool *when = nullptr);
+    // when: null, or whether it is carried now; n: numbers of an atom, side by side
+    void add(double *&array, std::initializer_list<int> species, const bool *when = nullptr,
+             int n = 1);
     void add(double **&array, int first, int n, std::initializer_list<int> species,
              const bool *when = nullptr);
     int size() const;    // at most, of an atom
@@ -116,7 +117,7 @@ namespace FSI {
       double **one = nullptr, ***many = nullptr;
       int first = 0, n = 0, species = 0;
       const bool *when = nullptr;
-      double *at(int i) const { return one ? *one + i : (*many)[i] + first; }
+      double *at(int i) const { return one ? *one + i * n : (*many)[i] + first; }
     };
     std::vector<Column> columns;
     const std::vector<State> &state;

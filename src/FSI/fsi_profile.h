@@ -89,16 +89,16 @@ namespace FSI {
     const Phase phase(known ? profile : nullptr, Profile::MESSAGES);
     send();
   }
-  template <class T> void forward_comm(Profile *profile, Comm *comm, T *style)
+  template <class T> void forward_comm(Profile *profile, Comm *comm, T *style, int size = 0)
   {
     exchange(profile, comm, [&]() {
-      comm->forward_comm(style);
+      comm->forward_comm(style, size);
     });
   }
-  template <class T> void reverse_comm(Profile *profile, Comm *comm, T *style)
+  template <class T> void reverse_comm(Profile *profile, Comm *comm, T *style, int size = 0)
   {
     exchange(profile, comm, [&]() {
-      comm->reverse_comm(style);
+      comm->reverse_comm(style, size);
     });
   }
 

@@ -24,9 +24,9 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-// The determinant of sum_j V_j x_ji (x) grad_i W_ij is 1 inside a fluid, some 0.5 in the first row
-// of a plane surface; below this a gradient says nothing
-static constexpr double FEW = 0.1;
+// The determinant of sum_j V_j x_ji (x) grad_i W_ij is 1 inside a fluid, some 1e-3 in its corners;
+// below this a gradient says nothing
+static constexpr double FEW = 1.0e-4;
 
 namespace {
 // Of a particle: sum of V x (x) g by its components, then that of V v (x) g. Times V_i what a pair

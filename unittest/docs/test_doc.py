@@ -133,7 +133,7 @@ def test_every_command_is_on_the_page_of_commands():
 
 def test_every_bundled_material_is_on_its_page():
     names = re.findall(r"^(\w+) +(?:fluid|solid|wall) ", (paths.POTENTIALS / "materials.fsi").read_text(), re.M)
-    text = (PAGES / "materials.rst").read_text()
+    text = (PAGES / "materials.csv").read_text()
     assert len(names) > 10 and not [name for name in names if f"*{name}*" not in text]
 
 

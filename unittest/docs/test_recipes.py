@@ -53,7 +53,7 @@ def test_deck_is_short(deck):
     assert len([line for line in (RECIPES / deck).read_text().splitlines() if line.strip()]) <= 45
 
 
-@pytest.mark.parametrize("name", ["in.float", "in.loose", "in.flap", "in.mooring", "in.turned", "in.tear", "in.channel", "in.inflow", "in.fine", "in.viscoelastic"])
+@pytest.mark.parametrize("name", ["in.float", "in.loose", "in.flap", "in.mooring", "in.turned", "in.tear", "in.channel", "in.inflow", "in.fine", "in.viscoelastic", "in.yield"])
 def test_deck(tmp_path, name):
     found = go(tmp_path, name, n=20)
     assert found.finished[-1].steps == 20 and not found.warnings

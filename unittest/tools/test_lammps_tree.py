@@ -107,7 +107,7 @@ def test_pages_are_those_of_lammps_manual(tree):
             assert target in pages, f"{path.name}: {target}"
         for label in re.findall(r":ref:`[^<`]+<([^>`]+)>`", text):
             assert label in labels, f"{path.name}: {label}"
-        for file in re.findall(r"(?:figure|literalinclude):: (\S+)", text):
+        for file in re.findall(r"(?:figure::|literalinclude::|:file:) (\S+)", text):
             assert (tree / "doc/src" / file).exists(), f"{path.name}: {file}"
         if re.match(r"\.\. index:: ", text):
             package = "FSI-CLASSIC" if path.name == "pair_fsi_solid.rst" else "FSI"
@@ -118,7 +118,7 @@ def test_words_for_the_spelling_check(tree):
     """LAMMPS' list has them once, and each is on a page."""
     words = re.search('WORDS = """(.*?)"""', TOOL_TEXT, re.S)[1].split()
     listed = (tree / "doc/utils/sphinx-config/false_positives.txt").read_text().split()
-    pages = "".join(path.read_text() for path in (tree / "doc/src").glob("*fsi*.rst"))
+    pages = "".join(path.read_text() for path in (tree / "doc/src").glob("*fsi*.[rc]s[tv]"))
     for word in words:
         assert listed.count(word) == 1 and re.search(rf"\b{word}\b", pages, re.I), word
 
