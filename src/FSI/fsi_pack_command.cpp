@@ -59,49 +59,64 @@ double FSIPack::distance(int i, double *outward) const
 }
 
 // of a cell, from its own distance, or those of its parts
-double FSIPack::volume_of_cell(const double *middle, double size, double finest) const
+double FSIPack::volume_of_cell(const double *middle, const double *sides, double finest) const
 {
   const int dim = domain->dimension;
-  const double half_diagonal = 0.5 * size * std::sqrt(dim);
-  double outward[3];
-  const double r = surface->distance(middle, 1.01 * half_diagonal, outward),
-               whole = dim == 3 ? size * size * size : size * size;
+  double whole = 1.0, square = 0.0, outward[3];
+  for (int d = 0; d < dim; d++) {
+    whole *= sides[d];
+    square += sides[d] * sides[d];
+  }
+  const double half_diagonal = 0.5 * std::sqrt(square),
+               r = surface->distance(middle, 1.01 * half_diagonal, outward);
   if (r >= half_diagonal) return 0.0;
   if (r <= -half_diagonal) return whole;
-  if (size <= finest) return whole * std::clamp(0.5 - r / size, 0.0, 1.0);
+  if (*std::max_element(sides, sides + dim) <= finest) {
+    double along = 1.0e-9 * finest;    // the normal
+    for (int d = 0; d < dim; d++) along += outward[d] * outward[d] * sides[d];
+    return whole * std::clamp(0.5 - r / along, 0.0, 1.0);
+  }
+  const double half[3] = {0.5 * sides[0], 0.5 * sides[1], 0.5 * sides[2]};
   double sum = 0.0;
   for (int part = 0; part < (1 << dim); part++) {
     double x[3] = {middle[0], middle[1], middle[2]};
-    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.25 : -0.25) * size;
-    sum += volume_of_cell(x, 0.5 * size, finest);
+    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.25 : -0.25) * sides[d];
+    sum += volume_of_cell(x, half, finest);
   }
   return sum;
 }
 
-// in the box, from cells that each rank has of its own
+// in the box and before planes without end, from cells that each rank has of its own
 double FSIPack::volume_inside() const
 {
   const int dim = domain->dimension;
   const double dx = fix_fsi->levels.back().dx;
-  double sum = 0.0, size[3], x[3] = {0.0, 0.0, 0.5 * (domain->boxlo[2] + domain->boxhi[2])};
-  int n[3] = {1, 1, 1}, from[3] = {}, to[3] = {};
-  // a whole number of cells, some four spacings wide, along each side of the box
-  for (int d = 0; d < dim; d++) {
-    n[d] = std::max(1, (int) std::ceil(domain->prd[d] / (4.0 * dx)));
-    size[d] = domain->prd[d] / n[d];
-    from[d] = (int) std::ceil((domain->sublo[d] - domain->boxlo[d]) / size[d] - 0.5);
-    to[d] = (int) std::ceil((domain->subhi[d] - domain->boxlo[d]) / size[d] - 0.5);
+  double lo[3], hi[3], sides[3] = {}, x[3], sum = 0.0;
+  std::copy_n(domain->boxlo, 3, lo);
+  std::copy_n(domain->boxhi, 3, hi);
+  for (const auto &w : fix_fsi->walls.wall) {
+    if (w.finite) continue;
+    double &end = w.side > 0.0 ? lo[w.axis] : hi[w.axis];
+    end = w.side > 0.0 ? std::max(end, w.position) : std::min(end, w.position);
   }
-  const double largest = *std::max_element(size, size + dim);
-  for (int c = from[2]; c < std::max(to[2], dim == 2 ? 1 : 0); c++)
+  x[2] = 0.5 * (lo[2] + hi[2]);
+  int from[3] = {}, to[3] = {1, 1, 1};
+  // a whole number of cells, some four spacings wide, along each side
+  for (int d = 0; d < dim; d++) {
+    const int n = std::max(1, (int) std::ceil((hi[d] - lo[d]) / (4.0 * dx)));
+    sides[d] = (hi[d] - lo[d]) / n;
+    const auto first = [&](double place) {
+      return std::clamp((int) std::ceil((place - lo[d]) / sides[d] - 0.5), 0, n);
+    };
+    from[d] = first(domain->sublo[d]);
+    to[d] = first(domain->subhi[d]);
+  }
+  for (int c = from[2]; c < to[2]; c++)
     for (int b = from[1]; b < to[1]; b++)
       for (int a = from[0]; a < to[0]; a++) {
         const int k[3] = {a, b, c};
-        for (int d = 0; d < dim; d++) x[d] = domain->boxlo[d] + (k[d] + 0.5) * size[d];
-        // a cube of the largest side, scaled to the cell
-        double scale = 1.0;
-        for (int d = 0; d < dim; d++) scale *= size[d] / largest;
-        sum += scale * volume_of_cell(x, largest, 0.25 * dx);
+        for (int d = 0; d < dim; d++) x[d] = lo[d] + (k[d] + 0.5) * sides[d];
+        sum += volume_of_cell(x, sides, 0.25 * dx);
       }
   return sum_of(sum, world);
 }
@@ -117,10 +132,8 @@ double FSIPack::volume_of_still() const
 // of the cell of a particle
 double FSIPack::part_inside(int i) const
 {
-  double outward[3];
-  const double dx = fix_fsi->dx_of(atom->type[i]), r = distance(i, outward);
-  if (std::fabs(r) > dx) return r < 0.0;
-  return volume_of_cell(atom->x[i], dx, 0.125 * dx) / std::pow(dx, domain->dimension);
+  const double dx = fix_fsi->dx_of(atom->type[i]), sides[3] = {dx, dx, dx};
+  return volume_of_cell(atom->x[i], sides, 0.125 * dx) / std::pow(dx, domain->dimension);
 }
 
 // The n particles of a group that are deepest inside, of equals by place: the same on any ranks
@@ -304,6 +317,7 @@ void FSIPack::command(int narg, char **arg)
   lmp->init();
   band = BAND * fix_fsi->dx;
   renew_ghosts(lmp);
+  fix_fsi->gather_walls();
   const std::string fills = "FSI_PACK_FILLER", goes = "FSI_PACK_GONE";
   filler = group->bitmask[group->find_or_create(fills.c_str())];
   gone_at_once = group->bitmask[group->find_or_create(goes.c_str())];

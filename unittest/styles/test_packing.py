@@ -159,6 +159,32 @@ def test_alone(tmp_path):
     assert residue(done.output)[0] < 0.05
 
 
+@pytest.mark.parametrize("low", [-0.03, -0.055, -0.15])
+@pytest.mark.parametrize("of", ["s", "both"])
+def test_half_before_a_plane(tmp_path, low, of):
+    """Of a body that a mirror wall halves, what is before it counts, wherever the box ends; the region may end there, too."""
+    text = deck(f"region {of}", region=f"{DISC}\nregion front block INF INF 0 INF INF INF units box\nregion both intersect 2 s front")
+    text = text.replace("boundary p p p", "boundary p f p").replace("block -0.15 0.15 -0.15", f"block -0.15 0.15 {low}")
+    text = text.replace("create_atoms 1 box", "region channel block INF INF 0 0.15 INF INF units box\ncreate_atoms 1 region channel")
+    text = text.replace("-0.145 0.145 INF INF units", "0 0.145 INF INF units").replace("fix 2 body", "fix 3 water fsi/wall/mirror ylo 0 yhi 0.15\nfix 2 body")
+    done = lammps(tmp_path, text)
+    kind, mass, x = state(tmp_path)
+    assert mass[kind == 2].sum() == pytest.approx(750 * math.pi * R**2, rel=5e-4)
+    assert (kind == 2).sum() == round(math.pi * R**2 / 2 / DX**2) and x[:, 1].min() > 0.2 * DX
+    assert residue(done.output)[0] < 0.05
+
+
+def test_volume_of_several_regions(tmp_path):
+    """A disc with a strip: LAMMPS has no distance from the two corners between them."""
+    width = 0.03
+    text = deck("region both", region=f"{DISC}\nregion strip block -0.1 0 {-width / 2} {width / 2} INF INF units box\nregion both union 2 s strip")
+    lammps(tmp_path, text)
+    kind, mass, _ = state(tmp_path)
+    half = math.asin(width / 2 / R)
+    inside = R**2 * half + width / 2 * R * math.cos(half)   # of the strip in the disc
+    assert mass[kind == 2].sum() == pytest.approx(1500 * (math.pi * R**2 + 0.1 * width - inside), rel=1e-3)
+
+
 def outline(points):
     return "".join(f"{x!r},{y!r}\n" for x, y in points)
 
