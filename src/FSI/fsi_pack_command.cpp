@@ -44,6 +44,8 @@ static constexpr double COVERED = 0.98;
 static constexpr double CALM = 0.99, SECONDS = 5.0;
 // a particle that stays and is nearer than this takes the place of one that fills a side
 static constexpr double TAKES_PLACE = 0.75;
+// two that are nearer go apart to this: kernels do not see to it, their gradient is 0 at 0
+static constexpr double APART = 0.6;
 
 FSIPack::FSIPack(LAMMPS *lmp) :
     Command(lmp), fix_fsi(nullptr), body(0), fluid(0), still(0), filler(0), gone_at_once(0),
@@ -236,6 +238,32 @@ void FSIPack::remove(const std::string &name)
   input->one(fmt::format("group {} delete", name));
 }
 
+void FSIPack::part(const std::vector<double> &mobility, const std::vector<double> &side)
+{
+  const int *const type = atom->type;
+  const Cells all(atom->x, atom->nlocal + atom->nghost, domain->dimension, fix_fsi->dx);
+  std::vector<std::array<double, 3>> shift(atom->nlocal, {0.0, 0.0, 0.0});
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (mobility[i] <= 0.0) continue;
+    all.around(atom->x[i], [&](int j, double rsq) {
+      const double least = 0.5 * APART * (fix_fsi->dx_of(type[i]) + fix_fsi->dx_of(type[j]));
+      if (i == j || rsq >= least * least) return;
+      // those at one place along an axis
+      const double r = std::sqrt(rsq), before = atom->tag[i] < atom->tag[j] ? -1.0 : 1.0;
+      const bool same = r < 1.0e-6 * least;
+      for (int d = 0; d < domain->dimension; d++)
+        shift[i][d] += 0.5 * (least - r) *
+            (same ? (d == 0 ? before : 0.0) : (atom->x[i][d] - atom->x[j][d]) / r);
+    });
+  }
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (mobility[i] <= 0.0) continue;
+    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += shift[i][d];
+    keep_off(i, side[i]);
+  }
+  comm->forward_comm();
+}
+
 // Sweeps until the residue stays as it is, or as many as are given
 void FSIPack::pack(int steps)
 {
@@ -257,6 +285,7 @@ void FSIPack::pack(int steps)
       judged[i] = mobility[i] == 1.0 && !(mask & filler);
       side[i] = mask & body ? -1.0 : mask & fluid ? 1.0 : r < 0.0 ? -1.0 : 1.0;
     }
+    part(mobility, side);
     Settling settling(lmp, *fix_fsi, mobility, judged, [&](int i) {
       keep_off(i, side[i]);
     });
@@ -315,7 +344,12 @@ void FSIPack::command(int narg, char **arg)
                             : surface_of_outline(lmp, outline);
   fix_fsi = FixFSI::find(lmp, "Fsi/pack");
   lmp->init();
-  band = BAND * fix_fsi->dx;
+  double finest = INFINITY;    // where levels meet only their events move what is there
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & (fluid ? fluid : body))
+      finest = std::min(finest, fix_fsi->dx_of(atom->type[i]));
+  MPI_Allreduce(MPI_IN_PLACE, &finest, 1, MPI_DOUBLE, MPI_MIN, world);
+  band = BAND * std::min(finest, fix_fsi->dx);
   renew_ghosts(lmp);
   fix_fsi->gather_walls();
   const std::string fills = "FSI_PACK_FILLER", goes = "FSI_PACK_GONE";

@@ -54,6 +54,7 @@ class FSIPack : public Command {
   void choose(double volume);
   std::vector<char> deepest(int bit, double n) const;
   void pack(int steps);
+  void part(const std::vector<double> &mobility, const std::vector<double> &side);
   void keep_off(int i, double side);
   void set_masses(double volume);
   void remove(const std::string &group);

@@ -110,6 +110,15 @@ def test_ranks(tmp_path, ranks):
         assert max(np.linalg.norm(b - x, axis=1).min() for x in a) < 1e-9 * DX
 
 
+def test_water_created_twice_goes_apart(tmp_path):
+    """The kernel's gradient leaves two at one place there."""
+    text = deck("region s", region=DISC).replace("group water", "create_atoms 1 single 0.075 0.025 0 units box\ngroup water")
+    lammps(tmp_path, text)
+    _, _, x = state(tmp_path)
+    apart = np.linalg.norm(x[:, None] - x, axis=2) + np.eye(len(x))
+    assert len(x) == 901 and apart.min() > 0.6 * DX
+
+
 SPHERE = "region s sphere 0 0 0 0.1 units box"
 
 
