@@ -138,13 +138,21 @@ double FSIPack::part_inside(int i) const
   return volume_of_cell(atom->x[i], sides, 0.125 * dx) / std::pow(dx, domain->dimension);
 }
 
+// what is behind a plane without end is not there to the fluid
+bool FSIPack::is_before_planes(int i) const
+{
+  for (const auto &w : fix_fsi->walls.wall)
+    if (!w.finite && w.distance(atom->x[i]) < 0.0) return false;
+  return true;
+}
+
 // The n particles of a group that are deepest inside, of equals by place: the same on any ranks
 std::vector<char> FSIPack::deepest(int bit, double n) const
 {
   std::vector<double> key(atom->nlocal, 1.0e9);
   double outward[3];
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & bit)) continue;
+    if (!(atom->mask[i] & bit) || !is_before_planes(i)) continue;
     key[i] =
         std::floor(1.0e6 * distance(i, outward) / band + 0.5) + part_by_place(atom->x[i], domain);
   }
@@ -163,7 +171,7 @@ void FSIPack::choose(double volume)
   for (int i = 0; i < atom->nlocal; i++) {
     if (atom->mask[i] & fluid) here[0] += part_inside(i);
     if (!(atom->mask[i] & body)) continue;
-    here[1] += part_inside(i);
+    if (is_before_planes(i)) here[1] += part_inside(i);
     cell = std::pow(fix_fsi->dx_of(atom->type[i]), domain->dimension);
   }
   MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
@@ -181,7 +189,9 @@ void FSIPack::choose(double volume)
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & fluid && displaced[i])
       atom->mask[i] ^= fluid | (body ? gone_at_once : filler);
-    else if (atom->mask[i] & body && !inside[i])
+    else if (atom->mask[i] & body && !is_before_planes(i)) {
+      if (part_inside(i) < 0.5) atom->mask[i] ^= body | gone_at_once;
+    } else if (atom->mask[i] & body && !inside[i])
       atom->mask[i] ^= body | filler;
   renew_ghosts(lmp);
   const Cells staying(atom->x, atom->nlocal + atom->nghost, domain->dimension, fix_fsi->dx,
@@ -220,7 +230,9 @@ void FSIPack::set_masses(double volume)
   const auto in_body = [this](int i) {
     return (atom->mask[i] & body) != 0;
   };
-  const bigint n = find_particles(atom, world, in_body).count;
+  const bigint n = find_particles(atom, world, [&](int i) {
+                     return in_body(i) && is_before_planes(i);
+                   }).count;
   if (comm->me == 0)
     utils::logmesg(lmp, "  fsi/pack: {} encloses {:.8g}, in {} particles of {:.8g} each\n",
                    surface->name(), volume, n, volume / n);
@@ -279,7 +291,7 @@ void FSIPack::pack(int steps)
     double outward[3];
     for (int i = 0; i < atom->nlocal; i++) {
       const int mask = atom->mask[i];
-      if (!(mask & (body | fluid | filler))) continue;
+      if (!(mask & (body | fluid | filler)) || !is_before_planes(i)) continue;
       const double r = distance(i, outward), dx = fix_fsi->dx_of(atom->type[i]);
       mobility[i] = std::clamp((band - std::fabs(r)) / (EDGE * dx), 0.0, 1.0);
       judged[i] = mobility[i] == 1.0 && !(mask & filler);

@@ -168,19 +168,25 @@ def test_alone(tmp_path):
     assert residue(done.output)[0] < 0.05
 
 
-@pytest.mark.parametrize("low", [-0.03, -0.055, -0.15])
-@pytest.mark.parametrize("of", ["s", "both"])
-def test_half_before_a_plane(tmp_path, low, of):
-    """Of a body that a mirror wall halves, what is before it counts, wherever the box ends; the region may end there, too."""
+@pytest.mark.parametrize("low", [-0.075, -0.15])
+@pytest.mark.parametrize("of, ends", [("s", True), ("s", False), ("both", True)])
+def test_half_before_a_plane(tmp_path, low, of, ends):
+    """Of a body that a mirror wall halves, what is before it is packed, wherever the box ends. What is behind is left of its lattice; the body
+    may end at the wall, and so may the region."""
     text = deck(f"region {of}", region=f"{DISC}\nregion front block INF INF 0 INF INF INF units box\nregion both intersect 2 s front")
     text = text.replace("boundary p p p", "boundary p f p").replace("block -0.15 0.15 -0.15", f"block -0.15 0.15 {low}")
     text = text.replace("create_atoms 1 box", "region channel block INF INF 0 0.15 INF INF units box\ncreate_atoms 1 region channel")
-    text = text.replace("-0.145 0.145 INF INF units", "0 0.145 INF INF units").replace("fix 2 body", "fix 3 water fsi/wall/mirror ylo 0 yhi 0.15\nfix 2 body")
-    done = lammps(tmp_path, text)
+    text = text.replace("-0.145 0.145 INF INF units", f"{0 if ends else -0.075} 0.145 INF INF units")
+    done = lammps(tmp_path, text.replace("fix 2 body", "fix 3 water fsi/wall/mirror ylo 0 yhi 0.15\nfix 2 body"))
     kind, mass, x = state(tmp_path)
-    assert mass[kind == 2].sum() == pytest.approx(750 * math.pi * R**2, rel=5e-4)
-    assert (kind == 2).sum() == round(math.pi * R**2 / 2 / DX**2) and x[:, 1].min() > 0.2 * DX
+    before = x[:, 1] > 0
+    body = kind == 2
+    assert mass[body & before].sum() == pytest.approx(750 * math.pi * R**2, rel=5e-4)
+    assert (body & before).sum() == round(math.pi * R**2 / 2 / DX**2) and x[before, 1].min() > 0.2 * DX
     assert residue(done.output)[0] < 0.05
+    side = (np.arange(-10, 10) + 0.5) * DX
+    assert (body & ~before).sum() == (0 if ends else (np.hypot(side, side[:10, None]) < R).sum())
+    assert (body | before).all() and np.hypot(x[~before, 0], x[~before, 1]).max(initial=0) < R + 0.25 * DX
 
 
 def test_volume_of_several_regions(tmp_path):
