@@ -2,8 +2,8 @@
 
 SURFACE is an STL file (ASCII or binary), or a text file of an outline: one point "x y" per line, closed of itself, a blank line between
 outlines. Where outlines or surfaces nest, every second one is a hole. OUT.data is a LAMMPS data file of atom style fsi, for read_data, with
-particles on the cubic (2D: square) lattice of spacing DX whose cell faces go through the origin; with --rings, in 2D, in layers along the
-outline, half a spacing from it and then a spacing apart: a round or slanted body without the steps of a lattice.
+particles on the cubic (2D: square) lattice of spacing DX whose cell faces go through the origin. For a round or slanted body without the
+steps of a lattice see the LAMMPS command fsi/pack, which takes the same surfaces.
 """
 
 import argparse
@@ -138,43 +138,6 @@ def fill(simplices, dx, layers=0):
     return np.stack([axis[i] for axis, i in zip(axes, np.nonzero(mask))], axis=-1)
 
 
-def signed_distance(segments, dx, margin):
-    """Lattice of spacing `dx` that covers an outline and `margin` points around it: (x, y, distance to the outline, positive inside)."""
-    (x, y), mask = inside(segments, dx, margin)
-    start, along = segments[:, 0], segments[:, 1] - segments[:, 0]
-    length = np.maximum((along**2).sum(1), 1e-300)
-    distance = np.empty(mask.shape)
-    for k, each in enumerate(x):
-        offset = np.stack([each - start[:, 0, None] + 0.0 * y, y - start[:, 1, None]], -1)  # (segments, ny, 2)
-        along_it = np.clip((offset * along[:, None]).sum(-1) / length[:, None], 0.0, 1.0)
-        distance[k] = np.sqrt(((offset - along_it[..., None] * along[:, None]) ** 2).sum(-1).min(0))
-    return x, y, np.where(mask, distance, -distance)
-
-
-def rings(segments, dx, layers=0):
-    """Particles (n, 2) in layers along closed outlines, as many as the inside holds, or so many outside of it.
-
-    Each layer is a curve of one distance from the outline, its particles evenly along it. Where curves meet in the middle of a body
-    what is nearer than 0.7 spacings to another is left out.
-    """
-    from contourpy import contour_generator  # comes with matplotlib
-
-    x, y, distance = signed_distance(segments, dx / 8, 8 * layers + 8)
-    curves = contour_generator(x, y, distance.T)
-    count, sign = (layers, -1.0) if layers else (int(distance.max() / dx + 0.57), 1.0)
-    found = np.empty((0, 2))
-    # the second look is for middles that lie between the lattice's points
-    for depth in [sign * (k + 0.5 - nearer) * dx for k in range(count) for nearer in (0.0, 0.07)]:
-        for line in curves.lines(depth):
-            place = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
-            n = max(1, round(place[-1] / dx))
-            even = (np.arange(n) + 0.5) * place[-1] / n
-            for point in np.column_stack([np.interp(even, place, line[:, d]) for d in (0, 1)]):
-                if not len(found) or ((found - point) ** 2).sum(1).min() > (0.7 * dx) ** 2:
-                    found = np.vstack([found, point])
-    return found
-
-
 def write(path, points, dx, kind=1, mol=0, box=4.0):
     """A LAMMPS data file of atom style fsi; mass and density 0 are those of the material's lattice."""
     dim = points.shape[1]
@@ -210,8 +173,7 @@ def main(arguments=None):
     """The command line of `fsi fill`."""
     parser = argparse.ArgumentParser(
         prog="fsi fill", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="fsi fill tank.stl 0.01 tank.data --scale 0.001 --shell 4 --type 2       the walls of a tank that was drawn in millimeters\n"
-               "fsi fill cylinder.csv 0.005 cylinder.data --rings --type 2               a round body in a stream")
+        epilog="fsi fill tank.stl 0.01 tank.data --scale 0.001 --shell 4 --type 2       the walls of a tank that was drawn in millimeters")
     parser.add_argument("surface", metavar="SURFACE", help="STL file (NAME.stl) or text file of an outline")
     parser.add_argument("dx", metavar="DX", type=float, help="spacing of the particles, that of fix fsi")
     parser.add_argument("out", metavar="OUT.data", help="data file to write")
@@ -221,7 +183,6 @@ def main(arguments=None):
                         help="turns the surface about the origin before it is moved: one angle in 2D, angles about x, y and z, in this order, in 3D")
     parser.add_argument("--shell", metavar="N", type=int, default=0,
                         help="instead of what is inside N layers around it: the wall particles of a vessel of this shape")
-    parser.add_argument("--rings", action="store_true", help="2D: layers along the outline instead of a lattice, inside, or with --shell outside")
     parser.add_argument("--type", metavar="T", type=int, default=1, help="atom type (default 1)")
     parser.add_argument("--mol", metavar="M", type=int, default=0, help="molecule ID: that of the body (default 0: none, as for fluids and walls)")
     parser.add_argument("--box", metavar="N", type=float, default=4.0, help="the simulation box ends N spacings beyond the particles (default 4)")
@@ -240,9 +201,7 @@ def main(arguments=None):
     if given.origin:
         simplices = simplices + given.origin
     size, across = measure(simplices, given.dx, given)
-    if given.rings and dim == 3:
-        parser.error(f"--rings is for outlines: {given.surface} is a surface in 3D")
-    points = (rings if given.rings else fill)(simplices, given.dx, given.shell)
+    points = fill(simplices, given.dx, given.shell)
     if not len(points):
         raise SystemExit(f"{given.surface} is {size}: no particle fits")
     write(given.out, points, given.dx, given.type, given.mol, given.box)

@@ -36,11 +36,10 @@ def date(version):
 
 
 def scrubbed(text):
-    """A log without the places of this machine, and of a loop that makes single particles the first alone; a / after a number, a variable
-    or a bracket divides."""
+    """A log without the places of this machine, and what is said of progress every few seconds; a / after a number, a variable or a bracket
+    divides."""
     text = text.replace(f"{paths.ROOT}/", "").replace(str(paths.ROOT), ".")
-    single = r"(?:create_atoms +\d+ single .*\n)+Created 1 atoms\n(?:  .*\n)+next .*\njump .*\n"
-    text = re.sub(rf"({single})((?:{single})+)", lambda m: f"{m[1]}# {m[2].count('Created 1 atoms')} more\n", text)
+    text = re.sub(r"  fsi/pack: \d+ of .*\n", "", text)
     return re.sub(r"(?<![\w.)}\]])/(?:[\w.+-]+/)+", "", text)
 
 

@@ -44,6 +44,8 @@ static constexpr double COVERED = 0.98;
 static constexpr double CALM = 0.99, SECONDS = 5.0;
 // a particle that stays and is nearer than this takes the place of one that fills a side
 static constexpr double TAKES_PLACE = 0.75;
+// two that are nearer go apart to this: kernels do not see to it, their gradient is 0 at 0
+static constexpr double APART = 0.6;
 
 FSIPack::FSIPack(LAMMPS *lmp) :
     Command(lmp), fix_fsi(nullptr), body(0), fluid(0), still(0), filler(0), gone_at_once(0),
@@ -59,49 +61,64 @@ double FSIPack::distance(int i, double *outward) const
 }
 
 // of a cell, from its own distance, or those of its parts
-double FSIPack::volume_of_cell(const double *middle, double size, double finest) const
+double FSIPack::volume_of_cell(const double *middle, const double *sides, double finest) const
 {
   const int dim = domain->dimension;
-  const double half_diagonal = 0.5 * size * std::sqrt(dim);
-  double outward[3];
-  const double r = surface->distance(middle, 1.01 * half_diagonal, outward),
-               whole = dim == 3 ? size * size * size : size * size;
+  double whole = 1.0, square = 0.0, outward[3];
+  for (int d = 0; d < dim; d++) {
+    whole *= sides[d];
+    square += sides[d] * sides[d];
+  }
+  const double half_diagonal = 0.5 * std::sqrt(square),
+               r = surface->distance(middle, 1.01 * half_diagonal, outward);
   if (r >= half_diagonal) return 0.0;
   if (r <= -half_diagonal) return whole;
-  if (size <= finest) return whole * std::clamp(0.5 - r / size, 0.0, 1.0);
+  if (*std::max_element(sides, sides + dim) <= finest) {
+    double along = 1.0e-9 * finest;    // the normal
+    for (int d = 0; d < dim; d++) along += outward[d] * outward[d] * sides[d];
+    return whole * std::clamp(0.5 - r / along, 0.0, 1.0);
+  }
+  const double half[3] = {0.5 * sides[0], 0.5 * sides[1], 0.5 * sides[2]};
   double sum = 0.0;
   for (int part = 0; part < (1 << dim); part++) {
     double x[3] = {middle[0], middle[1], middle[2]};
-    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.25 : -0.25) * size;
-    sum += volume_of_cell(x, 0.5 * size, finest);
+    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.25 : -0.25) * sides[d];
+    sum += volume_of_cell(x, half, finest);
   }
   return sum;
 }
 
-// in the box, from cells that each rank has of its own
+// in the box and before planes without end, from cells that each rank has of its own
 double FSIPack::volume_inside() const
 {
   const int dim = domain->dimension;
   const double dx = fix_fsi->levels.back().dx;
-  double sum = 0.0, size[3], x[3] = {0.0, 0.0, 0.5 * (domain->boxlo[2] + domain->boxhi[2])};
-  int n[3] = {1, 1, 1}, from[3] = {}, to[3] = {};
-  // a whole number of cells, some four spacings wide, along each side of the box
-  for (int d = 0; d < dim; d++) {
-    n[d] = std::max(1, (int) std::ceil(domain->prd[d] / (4.0 * dx)));
-    size[d] = domain->prd[d] / n[d];
-    from[d] = (int) std::ceil((domain->sublo[d] - domain->boxlo[d]) / size[d] - 0.5);
-    to[d] = (int) std::ceil((domain->subhi[d] - domain->boxlo[d]) / size[d] - 0.5);
+  double lo[3], hi[3], sides[3] = {}, x[3], sum = 0.0;
+  std::copy_n(domain->boxlo, 3, lo);
+  std::copy_n(domain->boxhi, 3, hi);
+  for (const auto &w : fix_fsi->walls.wall) {
+    if (w.finite) continue;
+    double &end = w.side > 0.0 ? lo[w.axis] : hi[w.axis];
+    end = w.side > 0.0 ? std::max(end, w.position) : std::min(end, w.position);
   }
-  const double largest = *std::max_element(size, size + dim);
-  for (int c = from[2]; c < std::max(to[2], dim == 2 ? 1 : 0); c++)
+  x[2] = 0.5 * (lo[2] + hi[2]);
+  int from[3] = {}, to[3] = {1, 1, 1};
+  // a whole number of cells, some four spacings wide, along each side
+  for (int d = 0; d < dim; d++) {
+    const int n = std::max(1, (int) std::ceil((hi[d] - lo[d]) / (4.0 * dx)));
+    sides[d] = (hi[d] - lo[d]) / n;
+    const auto first = [&](double place) {
+      return std::clamp((int) std::ceil((place - lo[d]) / sides[d] - 0.5), 0, n);
+    };
+    from[d] = first(domain->sublo[d]);
+    to[d] = first(domain->subhi[d]);
+  }
+  for (int c = from[2]; c < to[2]; c++)
     for (int b = from[1]; b < to[1]; b++)
       for (int a = from[0]; a < to[0]; a++) {
         const int k[3] = {a, b, c};
-        for (int d = 0; d < dim; d++) x[d] = domain->boxlo[d] + (k[d] + 0.5) * size[d];
-        // a cube of the largest side, scaled to the cell
-        double scale = 1.0;
-        for (int d = 0; d < dim; d++) scale *= size[d] / largest;
-        sum += scale * volume_of_cell(x, largest, 0.25 * dx);
+        for (int d = 0; d < dim; d++) x[d] = lo[d] + (k[d] + 0.5) * sides[d];
+        sum += volume_of_cell(x, sides, 0.25 * dx);
       }
   return sum_of(sum, world);
 }
@@ -117,10 +134,16 @@ double FSIPack::volume_of_still() const
 // of the cell of a particle
 double FSIPack::part_inside(int i) const
 {
-  double outward[3];
-  const double dx = fix_fsi->dx_of(atom->type[i]), r = distance(i, outward);
-  if (std::fabs(r) > dx) return r < 0.0;
-  return volume_of_cell(atom->x[i], dx, 0.125 * dx) / std::pow(dx, domain->dimension);
+  const double dx = fix_fsi->dx_of(atom->type[i]), sides[3] = {dx, dx, dx};
+  return volume_of_cell(atom->x[i], sides, 0.125 * dx) / std::pow(dx, domain->dimension);
+}
+
+// what is behind a plane without end is not there to the fluid
+bool FSIPack::is_before_planes(int i) const
+{
+  for (const auto &w : fix_fsi->walls.wall)
+    if (!w.finite && w.distance(atom->x[i]) < 0.0) return false;
+  return true;
 }
 
 // The n particles of a group that are deepest inside, of equals by place: the same on any ranks
@@ -129,7 +152,7 @@ std::vector<char> FSIPack::deepest(int bit, double n) const
   std::vector<double> key(atom->nlocal, 1.0e9);
   double outward[3];
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & bit)) continue;
+    if (!(atom->mask[i] & bit) || !is_before_planes(i)) continue;
     key[i] =
         std::floor(1.0e6 * distance(i, outward) / band + 0.5) + part_by_place(atom->x[i], domain);
   }
@@ -148,7 +171,7 @@ void FSIPack::choose(double volume)
   for (int i = 0; i < atom->nlocal; i++) {
     if (atom->mask[i] & fluid) here[0] += part_inside(i);
     if (!(atom->mask[i] & body)) continue;
-    here[1] += part_inside(i);
+    if (is_before_planes(i)) here[1] += part_inside(i);
     cell = std::pow(fix_fsi->dx_of(atom->type[i]), domain->dimension);
   }
   MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
@@ -166,7 +189,9 @@ void FSIPack::choose(double volume)
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & fluid && displaced[i])
       atom->mask[i] ^= fluid | (body ? gone_at_once : filler);
-    else if (atom->mask[i] & body && !inside[i])
+    else if (atom->mask[i] & body && !is_before_planes(i)) {
+      if (part_inside(i) < 0.5) atom->mask[i] ^= body | gone_at_once;
+    } else if (atom->mask[i] & body && !inside[i])
       atom->mask[i] ^= body | filler;
   renew_ghosts(lmp);
   const Cells staying(atom->x, atom->nlocal + atom->nghost, domain->dimension, fix_fsi->dx,
@@ -205,7 +230,9 @@ void FSIPack::set_masses(double volume)
   const auto in_body = [this](int i) {
     return (atom->mask[i] & body) != 0;
   };
-  const bigint n = find_particles(atom, world, in_body).count;
+  const bigint n = find_particles(atom, world, [&](int i) {
+                     return in_body(i) && is_before_planes(i);
+                   }).count;
   if (comm->me == 0)
     utils::logmesg(lmp, "  fsi/pack: {} encloses {:.8g}, in {} particles of {:.8g} each\n",
                    surface->name(), volume, n, volume / n);
@@ -223,6 +250,32 @@ void FSIPack::remove(const std::string &name)
   input->one(fmt::format("group {} delete", name));
 }
 
+void FSIPack::part(const std::vector<double> &mobility, const std::vector<double> &side)
+{
+  const int *const type = atom->type;
+  const Cells all(atom->x, atom->nlocal + atom->nghost, domain->dimension, fix_fsi->dx);
+  std::vector<std::array<double, 3>> shift(atom->nlocal, {0.0, 0.0, 0.0});
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (mobility[i] <= 0.0) continue;
+    all.around(atom->x[i], [&](int j, double rsq) {
+      const double least = 0.5 * APART * (fix_fsi->dx_of(type[i]) + fix_fsi->dx_of(type[j]));
+      if (i == j || rsq >= least * least) return;
+      // those at one place along an axis
+      const double r = std::sqrt(rsq), before = atom->tag[i] < atom->tag[j] ? -1.0 : 1.0;
+      const bool same = r < 1.0e-6 * least;
+      for (int d = 0; d < domain->dimension; d++)
+        shift[i][d] += 0.5 * (least - r) *
+            (same ? (d == 0 ? before : 0.0) : (atom->x[i][d] - atom->x[j][d]) / r);
+    });
+  }
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (mobility[i] <= 0.0) continue;
+    for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += shift[i][d];
+    keep_off(i, side[i]);
+  }
+  comm->forward_comm();
+}
+
 // Sweeps until the residue stays as it is, or as many as are given
 void FSIPack::pack(int steps)
 {
@@ -238,12 +291,13 @@ void FSIPack::pack(int steps)
     double outward[3];
     for (int i = 0; i < atom->nlocal; i++) {
       const int mask = atom->mask[i];
-      if (!(mask & (body | fluid | filler))) continue;
+      if (!(mask & (body | fluid | filler)) || !is_before_planes(i)) continue;
       const double r = distance(i, outward), dx = fix_fsi->dx_of(atom->type[i]);
       mobility[i] = std::clamp((band - std::fabs(r)) / (EDGE * dx), 0.0, 1.0);
       judged[i] = mobility[i] == 1.0 && !(mask & filler);
       side[i] = mask & body ? -1.0 : mask & fluid ? 1.0 : r < 0.0 ? -1.0 : 1.0;
     }
+    part(mobility, side);
     Settling settling(lmp, *fix_fsi, mobility, judged, [&](int i) {
       keep_off(i, side[i]);
     });
@@ -302,8 +356,14 @@ void FSIPack::command(int narg, char **arg)
                             : surface_of_outline(lmp, outline);
   fix_fsi = FixFSI::find(lmp, "Fsi/pack");
   lmp->init();
-  band = BAND * fix_fsi->dx;
+  double finest = INFINITY;    // where levels meet only their events move what is there
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & (fluid ? fluid : body))
+      finest = std::min(finest, fix_fsi->dx_of(atom->type[i]));
+  MPI_Allreduce(MPI_IN_PLACE, &finest, 1, MPI_DOUBLE, MPI_MIN, world);
+  band = BAND * std::min(finest, fix_fsi->dx);
   renew_ghosts(lmp);
+  fix_fsi->gather_walls();
   const std::string fills = "FSI_PACK_FILLER", goes = "FSI_PACK_GONE";
   filler = group->bitmask[group->find_or_create(fills.c_str())];
   gone_at_once = group->bitmask[group->find_or_create(goes.c_str())];

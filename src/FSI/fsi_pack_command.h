@@ -32,9 +32,8 @@ namespace FSI {
   class Surface;
 }
 
-// fsi/pack body-ID fluid-ID region ID | stl FILE | outline FILE [still group-ID]
-// [steps N]: moves the particles of a
-// body and of the fluid around it until both fit the surface between them.
+// fsi/pack body-ID fluid-ID region ID | stl FILE | outline FILE [still group-ID] [steps N]: moves
+// the particles of a body and of the fluid around it until both fit the surface between them.
 
 class FSIPack : public Command {
  public:
@@ -50,11 +49,13 @@ class FSIPack : public Command {
   double band;    // from the surface, in which particles move
   double distance(int i, double *outward) const;
   double volume_inside() const, volume_of_still() const;
-  double volume_of_cell(const double *middle, double size, double finest) const;
+  double volume_of_cell(const double *middle, const double *sides, double finest) const;
   double part_inside(int i) const;
+  bool is_before_planes(int i) const;
   void choose(double volume);
   std::vector<char> deepest(int bit, double n) const;
   void pack(int steps);
+  void part(const std::vector<double> &mobility, const std::vector<double> &side);
   void keep_off(int i, double side);
   void set_masses(double volume);
   void remove(const std::string &group);

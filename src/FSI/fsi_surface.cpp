@@ -63,6 +63,9 @@ Vector cross(const Vector &a, const Vector &b)
 
 // ---- a region ----
 
+// Of a union the distance from the part that is nearest, of an intersection from that which is
+// furthest: LAMMPS' own contacts have no edges between parts, and those of a union from outside are
+// what is inside another part (RegUnion::surface_exterior). Only parts move and rotate.
 class OfRegion : public Surface {
   Region *const region;
   const bool flat;
@@ -70,14 +73,42 @@ class OfRegion : public Surface {
  public:
   OfRegion(LAMMPS *lmp, Region *region) : region(region), flat(lmp->domain->dimension == 2)
   {
-    if (region->openflag)
-      lmp->error->all(FLERR, "Region {} of fsi/pack must be closed: it has open faces", region->id);
+    refuse_open(lmp, region);
     region->init();
     region->prematch();
   }
   std::string name() const override { return fmt::format("region {}", region->id); }
-  // the contacts of LAMMPS' granular walls, from the side on which the place is
   double distance(const double *x, double band, double *outward) const override
+  {
+    return of(region, x, band, outward);
+  }
+
+ private:
+  static void refuse_open(LAMMPS *lmp, const Region *region)
+  {
+    if (region->openflag)
+      lmp->error->all(FLERR, "Region {} of fsi/pack must be closed: it has open faces", region->id);
+    for (int k = 0; region->reglist && k < region->nregion; k++)
+      refuse_open(lmp, region->reglist[k]);
+  }
+
+  double of(Region *region, const double *x, double band, double *outward) const
+  {
+    if (!region->reglist) return of_contacts(region, x, band, outward);
+    const double unites = std::strcmp(region->style, "union") == 0 ? 1.0 : -1.0,
+                 side = region->interior ? 1.0 : -1.0;
+    double best = INFINITY, there[3] = {};
+    for (int k = 0; k < region->nregion; k++) {
+      const double r = unites * of(region->reglist[k], x, band, there);
+      if (r >= best) continue;
+      best = r;
+      for (int d = 0; d < 3; d++) outward[d] = side * there[d];
+    }
+    return side * unites * best;
+  }
+
+  // the contacts of LAMMPS' granular walls, from the side on which the place is
+  double of_contacts(Region *region, const double *x, double band, double *outward) const
   {
     const bool matches = region->match(x[0], x[1], x[2]);
     const int interior = region->interior;

@@ -14,11 +14,12 @@ STARTERS = ("beam", "column", "droplet", "grains")  # one deck each, which tools
 DECKS = {path.name.removeprefix("in."): path for path in sorted(paths.EXAMPLES.glob("*/in.*"))}
 STUDIED = [name for name in DECKS if name not in STARTERS]
 LINES, COLUMNS = 45, 132
+LONGER = {"sphere": 51, "turek_hron_fsi": 52}    # four levels; a cylinder and its flag
 # no if, jump, label, next, print, quit, shell
 PLAIN_COMMANDS = {
     "atom_style", "boundary", "comm_modify", "compute", "create_atoms", "create_box",
     "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/material",
-    "fsi/displace",     "fsi/set", "group", "include", "lattice", "neigh_modify", "neighbor", "pair_coeff",
+    "fsi/displace", "fsi/pack", "fsi/set", "group", "include", "lattice", "neigh_modify", "neighbor", "pair_coeff",
     "pair_style", "region", "run", "set", "thermo", "thermo_modify", "thermo_style", "timestep",
     "unfix", "units", "variable", "velocity"}
 DEFAULTS = ("newton on", "comm_modify mode single", "neigh_modify every 1 delay 0 check yes")
@@ -54,7 +55,7 @@ def commands(name):
 @pytest.mark.parametrize("name", DECKS)
 def test_form(name):
     lines, found = DECKS[name].read_text().splitlines(), commands(name)
-    assert len(lines) <= LINES
+    assert len(lines) <= LONGER.get(name, LINES)
     wide = [line for path in (DECKS[name], *DECKS[name].parent.glob("*.in"))
             for line in path.read_text().splitlines() if len(line) > COLUMNS]
     assert not wide or name in STARTERS
@@ -65,7 +66,7 @@ def test_form(name):
     styles = {command.split()[2] for command in found if command.startswith("variable ")}
     assert styles <= {"index", "equal", "atom"}
     assert not set(DEFAULTS) & set(found)
-    places = [next(k for k, command in enumerate(found) if command.startswith(start))
+    places = [next(k for k, command in enumerate(found) if command.startswith(start) and command != "run 0")
               for start in ORDER]
     assert places == sorted(places)
     dumps = sum(command.startswith("dump ") for command in found)
@@ -85,8 +86,8 @@ def test_who_has_a_study():
 
 
 def begun(text, steps):
-    """A deck that ends after some steps of its first run, and leaves its first and last state."""
-    head, whole = re.split(r"^run +(\S+).*", text, maxsplit=1, flags=re.M)[:2]
+    """A deck that ends after some steps of its first run of any, and leaves its first and last state."""
+    head, whole = re.split(r"^run +(?!0 )(\S+).*", text, maxsplit=1, flags=re.M)[:2]
     return (f'{head}print "WHOLE {whole} $(dt)"\nwrite_dump all custom first {STATE}\n'
             f"run {steps}\nwrite_dump all custom last {STATE}\n")
 

@@ -1,5 +1,7 @@
 """Short form of the cylinder in a channel."""
 
+import math
+import re
 import subprocess
 
 import pytest
@@ -16,9 +18,10 @@ def test_cylinder_in_a_channel(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["cylinder_channel", "open_channel"])
-def test_a_coarse_cylinder_has_the_rings_that_fit(tmp_path, name):
-    # four across: of radius 1.5 and 0.5 spacings, round(2 pi r) particles each
+def test_a_coarse_cylinder_has_its_area(tmp_path, name):
+    # four across a channel of 16 rows of 0.41/16 m
     command = launch.lammps(scene.deck(name), 0, {"across": 4, "length": 0.5, "tend": 0.002})
     done = subprocess.run(command, cwd=tmp_path, env=launch.environment(), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout[-500:]
-    assert f"{9 + 3} atoms in group cylinder" in done.stdout
+    found = re.search(r"region cylinder encloses (\S+), in (\d+) particles", done.stdout)
+    assert float(found[1]) == pytest.approx(math.pi * 0.05**2, rel=2e-3) and int(found[2]) == round(math.pi * 0.05**2 / (0.41 / 16) ** 2)

@@ -110,6 +110,15 @@ def test_ranks(tmp_path, ranks):
         assert max(np.linalg.norm(b - x, axis=1).min() for x in a) < 1e-9 * DX
 
 
+def test_water_created_twice_goes_apart(tmp_path):
+    """The kernel's gradient leaves two at one place there."""
+    text = deck("region s", region=DISC).replace("group water", "create_atoms 1 single 0.075 0.025 0 units box\ngroup water")
+    lammps(tmp_path, text)
+    _, _, x = state(tmp_path)
+    apart = np.linalg.norm(x[:, None] - x, axis=2) + np.eye(len(x))
+    assert len(x) == 901 and apart.min() > 0.6 * DX
+
+
 SPHERE = "region s sphere 0 0 0 0.1 units box"
 
 
@@ -157,6 +166,38 @@ def test_alone(tmp_path):
     assert set(kind) == {2} and np.hypot(x[:, 0], x[:, 1]).max() < R - 0.499 * DX
     assert mass.sum() == pytest.approx(1500 * math.pi * R**2, rel=2e-4)
     assert residue(done.output)[0] < 0.05
+
+
+@pytest.mark.parametrize("low", [-0.075, -0.15])
+@pytest.mark.parametrize("of, ends", [("s", True), ("s", False), ("both", True)])
+def test_half_before_a_plane(tmp_path, low, of, ends):
+    """Of a body that a mirror wall halves, what is before it is packed, wherever the box ends. What is behind is left of its lattice; the body
+    may end at the wall, and so may the region."""
+    text = deck(f"region {of}", region=f"{DISC}\nregion front block INF INF 0 INF INF INF units box\nregion both intersect 2 s front")
+    text = text.replace("boundary p p p", "boundary p f p").replace("block -0.15 0.15 -0.15", f"block -0.15 0.15 {low}")
+    text = text.replace("create_atoms 1 box", "region channel block INF INF 0 0.15 INF INF units box\ncreate_atoms 1 region channel")
+    text = text.replace("-0.145 0.145 INF INF units", f"{0 if ends else -0.075} 0.145 INF INF units")
+    done = lammps(tmp_path, text.replace("fix 2 body", "fix 3 water fsi/wall/mirror ylo 0 yhi 0.15\nfix 2 body"))
+    kind, mass, x = state(tmp_path)
+    before = x[:, 1] > 0
+    body = kind == 2
+    assert mass[body & before].sum() == pytest.approx(750 * math.pi * R**2, rel=5e-4)
+    assert (body & before).sum() == round(math.pi * R**2 / 2 / DX**2) and x[before, 1].min() > 0.2 * DX
+    assert residue(done.output)[0] < 0.05
+    side = (np.arange(-10, 10) + 0.5) * DX
+    assert (body & ~before).sum() == (0 if ends else (np.hypot(side, side[:10, None]) < R).sum())
+    assert (body | before).all() and np.hypot(x[~before, 0], x[~before, 1]).max(initial=0) < R + 0.25 * DX
+
+
+def test_volume_of_several_regions(tmp_path):
+    """A disc with a strip: LAMMPS has no distance from the two corners between them."""
+    width = 0.03
+    text = deck("region both", region=f"{DISC}\nregion strip block -0.1 0 {-width / 2} {width / 2} INF INF units box\nregion both union 2 s strip")
+    lammps(tmp_path, text)
+    kind, mass, _ = state(tmp_path)
+    half = math.asin(width / 2 / R)
+    inside = R**2 * half + width / 2 * R * math.cos(half)   # of the strip in the disc
+    assert mass[kind == 2].sum() == pytest.approx(1500 * (math.pi * R**2 + 0.1 * width - inside), rel=1e-3)
 
 
 def outline(points):

@@ -126,49 +126,6 @@ print "WATER $(count(water)) BOWL $(count(bowl))"
     assert f"WATER {counts[0]} BOWL {counts[1]}" in result.output
 
 
-@pytest.mark.parametrize("across", (9, 10))
-def test_rings_of_a_cylinder(tmp_path, across):
-    """Every particle is half a spacing, one and a half ... inside of the circle, evenly on its ring, and none is missing: the area of
-    each is dx^2 but for what rounding each ring to whole particles does."""
-    outline = write_outline(tmp_path / "c.csv", circle(0.5, center=(0.3, 0.1)))
-    dx = 1.0 / across
-    cli.main(["fill", outline, str(dx), str(tmp_path / "c.data"), "--rings"])
-    x = atoms(tmp_path / "c.data")[:, 5:7] - (0.3, 0.1)
-    depth = 0.5 - np.hypot(*x.T)
-    ring = np.round(depth / dx - 0.5)
-    # polygons of 400 sides are 3e-5 flat, contours of a lattice of dx/8 (dx/8)^2/8r = 2e-3 dx^2/r
-    outer = ring < across // 2 - 1
-    assert np.abs(depth / dx - 0.5 - ring)[outer].max() < 0.004
-    for k in range(across // 2 - 1):
-        angle = np.sort(np.arctan2(x[ring == k, 1], x[ring == k, 0]))
-        assert len(angle) == round(2 * np.pi * (0.5 / dx - k - 0.5))
-        np.testing.assert_allclose(np.diff(angle), 2 * np.pi / len(angle), rtol=0.01)
-    assert len(x) * dx**2 == pytest.approx(np.pi / 4, rel=0.02)
-
-
-def test_rings_of_a_slanted_plate(tmp_path):
-    """Three particles across a plate at 30 degrees: three rows, the one in the middle once; and a shell of two layers around it."""
-    outline = write_outline(tmp_path / "p.csv", np.array([(-1, -0.15), (1, -0.15), (1, 0.15), (-1, 0.15)], float))
-    turned = fill.rotation([30])
-    for name, more in (("in", []), ("out", ["--shell", "2"])):
-        fill.main([outline, "0.1", str(tmp_path / name), "--rings", "--turn", "30", *more])
-    x = atoms(tmp_path / "in")[:, 5:7] @ turned
-    middle = np.abs(x[:, 0]) < 0.8
-    assert np.abs(np.abs(x[middle, 1]) - 0.1 * np.round(np.abs(x[middle, 1]) / 0.1)).max() < 0.008  # of the second look: 0.07 dx
-    assert [round(1.6 / 0.1) - 1 <= (np.round(x[middle, 1] / 0.1) == k).sum() <= round(1.6 / 0.1) + 1 for k in (-1, 0, 1)] == [True] * 3
-    assert len(x) == pytest.approx(60, abs=2)
-    x = atoms(tmp_path / "out")[:, 5:7] @ turned
-    beyond = np.hypot(*np.maximum(np.abs(x) - (1.0, 0.15), 0).T)
-    assert np.minimum(np.abs(beyond - 0.05), np.abs(beyond - 0.15)).max() < 0.008
-
-
-def test_rings_are_of_outlines(tmp_path, capsys):
-    surface = write_stl(tmp_path / "box.stl", box((0, 0, 0), (1, 1, 1)))
-    with pytest.raises(SystemExit):
-        fill.main([surface, "0.1", str(tmp_path / "out.data"), "--rings"])
-    assert "--rings is for outlines" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize("scale, dx, says", [
     (100.0, "0.05", "100 x 100 x 100, in spacings 2000 x 2000 x 2000: too many particles. If it is in millimeters: --scale 0.001"),
     (1e-4, "0.01", "0.0001 x 0.0001 x 0.0001, in spacings 0.01 x 0.01 x 0.01: no particle fits. If it is in meters, DX in millimeters: --scale 1000"),

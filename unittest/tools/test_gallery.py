@@ -93,12 +93,6 @@ def test_every_deck_shows_the_time_that_remains():
         assert re.search(r"thermo_style.*cpuremain", scene.deck(name).read_text().replace("&\n", "")), name
 
 
-def test_log_of_a_loop_has_its_first_round():
-    def made(k):
-        return f"create_atoms 2 single $(v_i) 0 0\ncreate_atoms    2 single {k} 0 0\nCreated 1 atoms\n  using box\n  CPU = 0\nnext i\njump SELF a\n"
-    assert gallery.scrubbed(f"loop\n{made(1)}{made(2)}{made(3)}group a\n{made(4)}end\n") == f"loop\n{made(1)}# 2 more\ngroup a\n{made(4)}end\n"
-
-
 def test_scrubbed():
     text = f"read {paths.ROOT}/examples/a/in.a (/opt/lmp/src/fix.cpp:3) 1.5/2 f_3[1]/f_4 a/b ${{t}}/dt/${{n}} (a)/2/b\n"
     assert gallery.scrubbed(text) == "read examples/a/in.a (fix.cpp:3) 1.5/2 f_3[1]/f_4 a/b ${t}/dt/${n} (a)/2/b\n"
