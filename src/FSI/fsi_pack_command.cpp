@@ -58,6 +58,27 @@ double FSIPack::distance(int i, double *outward) const
   return surface->distance(atom->x[i], band, outward);
 }
 
+// part of a cell of side 1 that is inside a plane, whose distance from the cell's middle is r
+static double part_behind(double r, const double *normal, int dim)
+{
+  double n[3], product = 1.0, half = 0.0, sum = 0.0;
+  for (int d = 0; d < dim; d++) {
+    n[d] = std::max(std::fabs(normal[d]), 1.0e-3);    // the sum divides by all of them
+    product *= (d + 1) * n[d];
+    half += 0.5 * n[d];
+  }
+  for (int corner = 0; corner < (1 << dim); corner++) {
+    double inside = half - r, sign = 1.0;
+    for (int d = 0; d < dim; d++)
+      if (corner >> d & 1) {
+        inside -= n[d];
+        sign = -sign;
+      }
+    sum += sign * std::pow(std::max(inside, 0.0), dim);
+  }
+  return std::clamp(sum / product, 0.0, 1.0);
+}
+
 // of a cell, from its own distance, or those of its parts
 double FSIPack::volume_of_cell(const double *middle, double size, double finest) const
 {
@@ -68,7 +89,7 @@ double FSIPack::volume_of_cell(const double *middle, double size, double finest)
                whole = dim == 3 ? size * size * size : size * size;
   if (r >= half_diagonal) return 0.0;
   if (r <= -half_diagonal) return whole;
-  if (size <= finest) return whole * std::clamp(0.5 - r / size, 0.0, 1.0);
+  if (size <= finest) return whole * part_behind(r / size, outward, dim);
   double sum = 0.0;
   for (int part = 0; part < (1 << dim); part++) {
     double x[3] = {middle[0], middle[1], middle[2]};

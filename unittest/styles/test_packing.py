@@ -159,6 +159,14 @@ def test_alone(tmp_path):
     assert residue(done.output)[0] < 0.05
 
 
+@pytest.mark.parametrize("angle", [10, 26.565, 45])
+def test_volume_of_a_turned_block(tmp_path, angle):
+    """Cells are cut by their plane: at 45 degrees, where rows of them lie along a face, half a cell would be missing otherwise (0.5 %)."""
+    region = f"variable turned equal {angle}*PI/180\nregion s block -0.08 0.08 -0.02 0.02 INF INF units box rotate v_turned 0 0 0 0 0 1"
+    lammps(tmp_path, deck("region s", region=region, fluid="NULL", steps="steps 0"))
+    assert state(tmp_path)[1].sum() == pytest.approx(1500 * 0.16 * 0.04, rel=1e-3)   # at the four corners two planes cut a cell
+
+
 def outline(points):
     return "".join(f"{x!r},{y!r}\n" for x, y in points)
 
