@@ -58,12 +58,12 @@ double FSIPack::distance(int i, double *outward) const
   return surface->distance(atom->x[i], band, outward);
 }
 
-// part of a cell of side 1 that is inside a plane, whose distance from the cell's middle is r
-static double part_behind(double r, const double *normal, int dim)
+// part of a cell that is inside a plane, whose distance from the cell's middle is r
+static double part_behind(double r, const double *normal, const double *size, int dim)
 {
   double n[3], product = 1.0, half = 0.0, sum = 0.0;
   for (int d = 0; d < dim; d++) {
-    n[d] = std::max(std::fabs(normal[d]), 1.0e-3);    // the sum divides by all of them
+    n[d] = std::max(std::fabs(normal[d]), 1.0e-3) * size[d];    // the sum divides by all of them
     product *= (d + 1) * n[d];
     half += 0.5 * n[d];
   }
@@ -80,21 +80,25 @@ static double part_behind(double r, const double *normal, int dim)
 }
 
 // of a cell, from its own distance, or those of its parts
-double FSIPack::volume_of_cell(const double *middle, double size, double finest) const
+double FSIPack::volume_of_cell(const double *middle, const double *size, double finest) const
 {
   const int dim = domain->dimension;
-  const double half_diagonal = 0.5 * size * std::sqrt(dim);
-  double outward[3];
-  const double r = surface->distance(middle, 1.01 * half_diagonal, outward),
-               whole = dim == 3 ? size * size * size : size * size;
+  double outward[3], square = 0.0, whole = 1.0;
+  for (int d = 0; d < dim; d++) {
+    square += size[d] * size[d];
+    whole *= size[d];
+  }
+  const double half_diagonal = 0.5 * std::sqrt(square),
+               r = surface->distance(middle, 1.01 * half_diagonal, outward);
   if (r >= half_diagonal) return 0.0;
   if (r <= -half_diagonal) return whole;
-  if (size <= finest) return whole * part_behind(r / size, outward, dim);
+  if (half_diagonal <= finest) return whole * part_behind(r, outward, size, dim);
+  const double half[3] = {0.5 * size[0], 0.5 * size[1], 0.5 * size[2]};
   double sum = 0.0;
   for (int part = 0; part < (1 << dim); part++) {
     double x[3] = {middle[0], middle[1], middle[2]};
-    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.25 : -0.25) * size;
-    sum += volume_of_cell(x, 0.5 * size, finest);
+    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.5 : -0.5) * half[d];
+    sum += volume_of_cell(x, half, finest);
   }
   return sum;
 }
@@ -104,7 +108,7 @@ double FSIPack::volume_inside() const
 {
   const int dim = domain->dimension;
   const double dx = fix_fsi->levels.back().dx;
-  double sum = 0.0, size[3], x[3] = {0.0, 0.0, 0.5 * (domain->boxlo[2] + domain->boxhi[2])};
+  double sum = 0.0, size[3] = {}, x[3] = {0.0, 0.0, 0.5 * (domain->boxlo[2] + domain->boxhi[2])};
   int n[3] = {1, 1, 1}, from[3] = {}, to[3] = {};
   // a whole number of cells, some four spacings wide, along each side of the box
   for (int d = 0; d < dim; d++) {
@@ -113,16 +117,12 @@ double FSIPack::volume_inside() const
     from[d] = (int) std::ceil((domain->sublo[d] - domain->boxlo[d]) / size[d] - 0.5);
     to[d] = (int) std::ceil((domain->subhi[d] - domain->boxlo[d]) / size[d] - 0.5);
   }
-  const double largest = *std::max_element(size, size + dim);
   for (int c = from[2]; c < std::max(to[2], dim == 2 ? 1 : 0); c++)
     for (int b = from[1]; b < to[1]; b++)
       for (int a = from[0]; a < to[0]; a++) {
         const int k[3] = {a, b, c};
         for (int d = 0; d < dim; d++) x[d] = domain->boxlo[d] + (k[d] + 0.5) * size[d];
-        // a cube of the largest side, scaled to the cell
-        double scale = 1.0;
-        for (int d = 0; d < dim; d++) scale *= size[d] / largest;
-        sum += scale * volume_of_cell(x, largest, 0.25 * dx);
+        sum += volume_of_cell(x, size, 0.25 * dx);
       }
   return sum_of(sum, world);
 }
@@ -141,7 +141,8 @@ double FSIPack::part_inside(int i) const
   double outward[3];
   const double dx = fix_fsi->dx_of(atom->type[i]), r = distance(i, outward);
   if (std::fabs(r) > dx) return r < 0.0;
-  return volume_of_cell(atom->x[i], dx, 0.125 * dx) / std::pow(dx, domain->dimension);
+  const double size[3] = {dx, dx, dx};
+  return volume_of_cell(atom->x[i], size, 0.125 * dx) / std::pow(dx, domain->dimension);
 }
 
 // The n particles of a group that are deepest inside, of equals by place: the same on any ranks

@@ -50,7 +50,7 @@ class FSIPack : public Command {
   double band;    // from the surface, in which particles move
   double distance(int i, double *outward) const;
   double volume_inside() const, volume_of_still() const;
-  double volume_of_cell(const double *middle, double size, double finest) const;
+  double volume_of_cell(const double *middle, const double *size, double finest) const;
   double part_inside(int i) const;
   void choose(double volume);
   std::vector<char> deepest(int bit, double n) const;

@@ -160,10 +160,13 @@ def test_alone(tmp_path):
 
 
 @pytest.mark.parametrize("angle", [10, 26.565, 45])
-def test_volume_of_a_turned_block(tmp_path, angle):
-    """Cells are cut by their plane: at 45 degrees, where rows of them lie along a face, half a cell would be missing otherwise (0.5 %)."""
+@pytest.mark.parametrize("box", ["-0.15 0.15 -0.15 0.15", "-0.15 0.155 -0.18 0.15"])
+def test_volume_of_a_turned_block(tmp_path, angle, box):
+    """Cells are cut by their plane: at 45 degrees, where rows of them lie along a face, half a cell would be missing otherwise (0.5 %). Also
+    where no whole number of spacings goes into the box, so that cells are no squares."""
     region = f"variable turned equal {angle}*PI/180\nregion s block -0.08 0.08 -0.02 0.02 INF INF units box rotate v_turned 0 0 0 0 0 1"
-    lammps(tmp_path, deck("region s", region=region, fluid="NULL", steps="steps 0"))
+    text = deck("region s", region=region, fluid="NULL", steps="steps 0").replace("region box block -0.15 0.15 -0.15 0.15", f"region box block {box}")
+    lammps(tmp_path, text)
     assert state(tmp_path)[1].sum() == pytest.approx(1500 * 0.16 * 0.04, rel=1e-3)   # at the four corners two planes cut a cell
 
 
