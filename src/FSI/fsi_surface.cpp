@@ -76,17 +76,35 @@ class OfRegion : public Surface {
     region->prematch();
   }
   std::string name() const override { return fmt::format("region {}", region->id); }
-  // the contacts of LAMMPS' granular walls, from the side on which the place is
   double distance(const double *x, double band, double *outward) const override
   {
-    const bool matches = region->match(x[0], x[1], x[2]);
-    const int interior = region->interior;
-    region->interior = matches == (interior != 0);
-    const int n = region->surface(x[0], x[1], x[2], band);
+    return distance_from(region, x, band, outward);
+  }
+
+ private:
+  // from the contacts of LAMMPS' granular walls, on the side on which the place is
+  double distance_from(Region *of, const double *x, double band, double *outward) const
+  {
+    const bool matches = of->match(x[0], x[1], x[2]), within = matches == (of->interior != 0);
     const double sign = matches ? -1.0 : 1.0;
     double nearest = band;
+    // outside a union LAMMPS (4 Feb 2025) leaves out contacts that are outside its other parts
+    if (!within && std::strcmp(of->style, "union") == 0) {
+      for (int k = 0; k < of->nregion; k++) {
+        double away[3];
+        const double r = distance_from(of->reglist[k], x, band, away);
+        if (r >= nearest) continue;
+        nearest = r;
+        for (int d = 0; d < 3; d++) outward[d] = sign * away[d];
+      }
+      return sign * nearest;
+    }
+    const int interior = of->interior;
+    of->interior = within;
+    const int n = of->surface(x[0], x[1], x[2], band);
+    of->interior = interior;
     for (int k = 0; k < n; k++) {
-      const auto &c = region->contact[k];
+      const auto &c = of->contact[k];
       // in 2D ends along z are no surface
       if (flat && std::fabs(c.delz) > 1.0e-6 * c.r) continue;
       if (c.r >= nearest) continue;
@@ -97,7 +115,6 @@ class OfRegion : public Surface {
       outward[1] = inv * c.dely;
       outward[2] = flat ? 0.0 : inv * c.delz;
     }
-    region->interior = interior;
     return sign * nearest;
   }
 };

@@ -159,6 +159,26 @@ def test_alone(tmp_path):
     assert residue(done.output)[0] < 0.05
 
 
+UNION = """region a cylinder z -0.07 0 0.04 INF INF units box
+region b cylinder z 0.06 0 0.05 INF INF units box
+region s union 2 a b"""
+
+
+@pytest.mark.parametrize("side", ["in", "out"])
+def test_union(tmp_path, side):
+    """Two discs, and the water around them; body and water exchanged if it is side out."""
+    text = deck("region s", region=UNION.replace("2 a b", f"2 a b side {side} units box"))
+    if side == "out":
+        text = text.replace("fsi/pack body water", "fsi/pack water body")
+    done = lammps(tmp_path, text)
+    kind, _, x = state(tmp_path)
+    off = np.minimum(np.hypot(x[:, 0] + 0.07, x[:, 1]) - 0.04, np.hypot(x[:, 0] - 0.06, x[:, 1]) - 0.05)
+    body = kind == 2
+    assert body.sum() == pytest.approx(math.pi * (0.04**2 + 0.05**2) / DX**2, abs=1)
+    assert off[body].max() < -0.499 * DX and off[~body].min() > 0.499 * DX
+    assert residue(done.output)[0] < 0.05 and residue(done.output)[1] < 0.01
+
+
 @pytest.mark.parametrize("angle", [10, 26.565, 45])
 @pytest.mark.parametrize("box", ["-0.15 0.15 -0.15 0.15", "-0.15 0.155 -0.18 0.15"])
 def test_volume_of_a_turned_block(tmp_path, angle, box):
