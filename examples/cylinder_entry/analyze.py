@@ -27,15 +27,15 @@ def depth(folder):
     return s.time * np.sqrt(G / DIAMETER), -s["low"] / DIAMETER
 
 
-def add(summary, folder, suffix=""):
+def add(summary, folder, suffix="", target=0.05):
     """The figures of one run: at the last instants of the experiment, and the largest distance from the code"""
     time, found = depth(folder)
     measured, code = series.read(HERE / "experiment.csv"), series.read(HERE / "code.csv")
     for at, of in zip(measured.time[-2:], measured["depth"][-2:]):
         if at < time[-1]:
-            summary.add(f"depth_at_{at:.2f}{suffix}", float(np.interp(at, time, found)), "D", float(of), EXPERIMENT, 0.05)
+            summary.add(f"depth_at_{at:.2f}{suffix}", float(np.interp(at, time, found)), "D", float(of), EXPERIMENT, target)
     seen = measured.time < time[-1]
-    summary.add("apart_from_experiment" + suffix, float(np.abs(np.interp(measured.time, time, found) - measured["depth"])[seen].max()), "D", target=0.05)
+    summary.add("apart_from_experiment" + suffix, float(np.abs(np.interp(measured.time, time, found) - measured["depth"])[seen].max()), "D", target=target)
     seen = code.time < time[-1]
     summary.add("apart_from_code" + suffix, float(np.abs(np.interp(code.time, time, found) - code["depth"])[seen].max()), "D")
 
@@ -65,10 +65,10 @@ def main(folder):
 
 
 def study(folder, cases):
-    """Figures of all cases, the picture of the finest."""
+    """Figures of all cases; the finest is judged and shown."""
     summary = Summary(folder)
     for name, path in cases.items():
-        add(summary, path, f"_{name}")
+        add(summary, path, f"_{name}", 0.05 if name == list(cases)[-1] else None)
     draw(folder, cases)
     picture(Path(folder) / "snapshots.png", list(cases.values())[-1])
     return summary.write()

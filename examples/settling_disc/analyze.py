@@ -27,12 +27,12 @@ def even_speed(s):
     return -s.at("v", times).mean()
 
 
-def add(summary, folder, suffix=""):
+def add(summary, folder, suffix="", target=0.05):
     """The figures of one run"""
     s, code = series.read(Path(folder) / "disc.csv"), series.read(HERE / "code.csv")
     if s.time[-1] > EVEN[1]:
-        summary.add("terminal_speed" + suffix, 1e3 * even_speed(s), "mm/s", 1e3 * even_speed(code), SOURCE, 0.05)
-    summary.add("speed_at_0.1_s" + suffix, -1e3 * float(s.at("v", 0.1)), "mm/s", -1e3 * float(code.at("v", 0.1)), SOURCE, 0.05)
+        summary.add("terminal_speed" + suffix, 1e3 * even_speed(s), "mm/s", 1e3 * even_speed(code), SOURCE, target)
+    summary.add("speed_at_0.1_s" + suffix, -1e3 * float(s.at("v", 0.1)), "mm/s", -1e3 * float(code.at("v", 0.1)), SOURCE, target)
 
 
 def draw(folder, cases):
@@ -61,10 +61,10 @@ def main(folder):
 
 
 def study(folder, cases):
-    """Figures of all cases, the picture of the finest."""
+    """Figures of all cases; the finest is judged and shown."""
     summary = Summary(folder)
     for name, path in cases.items():
-        add(summary, path, f"_{name}")
+        add(summary, path, f"_{name}", 0.05 if name == list(cases)[-1] else None)
     draw(folder, cases)
     picture(Path(folder) / "snapshots.png", list(cases.values())[-1])
     return summary.write()
