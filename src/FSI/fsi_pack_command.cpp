@@ -60,29 +60,46 @@ double FSIPack::distance(int i, double *outward) const
   return surface->distance(atom->x[i], band, outward);
 }
 
+// part of a cell that is inside a plane, whose distance from the cell's middle is r
+static double part_behind(double r, const double *normal, const double *size, int dim)
+{
+  double n[3], product = 1.0, half = 0.0, sum = 0.0;
+  for (int d = 0; d < dim; d++) {
+    n[d] = std::max(std::fabs(normal[d]), 1.0e-3) * size[d];    // the sum divides by all of them
+    product *= (d + 1) * n[d];
+    half += 0.5 * n[d];
+  }
+  for (int corner = 0; corner < (1 << dim); corner++) {
+    double inside = half - r, sign = 1.0;
+    for (int d = 0; d < dim; d++)
+      if (corner >> d & 1) {
+        inside -= n[d];
+        sign = -sign;
+      }
+    sum += sign * std::pow(std::max(inside, 0.0), dim);
+  }
+  return std::clamp(sum / product, 0.0, 1.0);
+}
+
 // of a cell, from its own distance, or those of its parts
 double FSIPack::volume_of_cell(const double *middle, const double *sides, double finest) const
 {
   const int dim = domain->dimension;
-  double whole = 1.0, square = 0.0, outward[3];
+  double outward[3], square = 0.0, whole = 1.0;
   for (int d = 0; d < dim; d++) {
-    whole *= sides[d];
     square += sides[d] * sides[d];
+    whole *= sides[d];
   }
   const double half_diagonal = 0.5 * std::sqrt(square),
                r = surface->distance(middle, 1.01 * half_diagonal, outward);
   if (r >= half_diagonal) return 0.0;
   if (r <= -half_diagonal) return whole;
-  if (*std::max_element(sides, sides + dim) <= finest) {
-    double along = 1.0e-9 * finest;    // the normal
-    for (int d = 0; d < dim; d++) along += outward[d] * outward[d] * sides[d];
-    return whole * std::clamp(0.5 - r / along, 0.0, 1.0);
-  }
+  if (half_diagonal <= finest) return whole * part_behind(r, outward, sides, dim);
   const double half[3] = {0.5 * sides[0], 0.5 * sides[1], 0.5 * sides[2]};
   double sum = 0.0;
   for (int part = 0; part < (1 << dim); part++) {
     double x[3] = {middle[0], middle[1], middle[2]};
-    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.25 : -0.25) * sides[d];
+    for (int d = 0; d < dim; d++) x[d] += (part >> d & 1 ? 0.5 : -0.5) * half[d];
     sum += volume_of_cell(x, half, finest);
   }
   return sum;

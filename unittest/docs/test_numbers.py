@@ -159,7 +159,7 @@ QUOTED = [
     ("README.md", "drag is {} % and lift {} % off", lambda: figures("cylinder_free", "drag_re_200", "lift_re_200")),
     ("doc/src/Howto_peers.rst", "here {} to {} % off", lambda: figures("turek_hron_fsi", "uy_amplitude_fsi3_2_to_8", "uy_amplitude_fsi3_4")),
     ("unittest/hard/README.md", "obstacle is {} % off", lambda: hard("obstacle")[-1:]),
-    ("examples/oscillating_plate/README.md", "without it too soft by {} % with 5 particles", lambda: run_of("oscillating_plate", "hourglass control, TL = 0")),
+    ("examples/oscillating_plate/README.md", "Without it, it is too soft by {} % with 5 particles", lambda: run_of("oscillating_plate", "hourglass control, TL = 0")),
 ]
 
 
@@ -218,13 +218,10 @@ SCENES = [
         lambda scene, *names: sizes(scene, *names[:2]) + mixed(scene, names[2]), [f"peak_pressure_{beta}_{n}" for n in (16, 25, 50)]))
       for beta, reference in ((30, "6.927"), (40, "3.266"))),
     ("wedge_entry", "standard deviation) | {} % | {} % | {} %", figures, [f"force_scatter_30_{n}" for n in (16, 25, 50)]),
-    ("wedge_entry", "everywhere 161,300 | -{} % | {} %", figures, ["force_30_25_to_50", "force_scatter_30_25_to_50"]),
     ("wedge_entry", "water's lattice | +{} % | {} %", figures, ["force_30_25_lattice", "force_scatter_30_25_lattice"]),
     ("wedge_entry", "the default | -{} % | {} %", figures, ["force_30_25_guard_0.9", "force_scatter_30_25_guard_0.9"]),
-    ("wedge_entry", "viscosity 0.02 | -{} % | {} %", figures, ["force_30_25_alpha_0.02", "force_scatter_30_25_alpha_0.02"]),
     ("wedge_entry", "through the plate: {}, {}, {} mm. Reference: {} mm", lambda scene, *names: sizes(scene, *names) + [9.92503],
      [f"deflection_elastic_{n}" for n in (4, 8, 16)]),
-    ("wedge_entry", "Largest deviation until 2 ms: {}, {}, {} %", figures, [f"deflection_apart_elastic_{n}" for n in (4, 8, 16)]),
     ("wedge_entry", "120 particles over half of the width | {} % | {} %", figures, ["velocity_error_experiment_free_120", "velocity_error_code_free_120"]),
 ]
 QUOTED += [(f"examples/{scene}/README.md", words, partial(kind, scene, *names)) for scene, words, kind, names in SCENES]
@@ -261,7 +258,7 @@ def test_rings_remain_symmetric():
 NOT_COMPARED = {
     "beam": "1.7", "cylinder_free": "8 9", "dam_break": "0.267", "elastic_gate": "0.5", "floating_flap": "1.4", "gate_static": "0.8",
     "hydrostatic_plate": "0.3", "lid_driven_cavity": "0.9063", "plate_crossflow": "14.3", "plate_damping": "0.04", "ring_annulus": "1.5 0.1", "rolling_tank": "1.3 0.8 1.5",
-    "standing_wave": "3.6 7", "submerged_plate": "1.4 5.5 0.8", "turek_hron_csm": "1.0948 0.005 1.094", "twisting_column": "4",
+    "settling_disc": "2", "standing_wave": "3.6 7", "submerged_plate": "1.4 5.5 0.8", "turek_hron_csm": "1.0948 0.005 1.094", "twisting_column": "4",
     "valve": "3 0.5", "wedge_entry": "1.97 8.96"}
 RAN = json.loads((ROOT / "doc/results/results.json").read_text(encoding="utf-8"))["scenes"]
 PAGES = sorted(path.parent.name for path in ROOT.glob("examples/*/README.md") if path.parent.name in RAN)  # one that is new waits for its run

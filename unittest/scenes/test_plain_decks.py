@@ -11,8 +11,9 @@ import pytest
 from fsi import launch, paths, scene
 
 STARTERS = ("beam", "column", "droplet", "grains")  # one deck each, which tools/run takes, too
+ALONE = (*STARTERS, "cylinder_entry", "settling_disc", "sinking_square")  # so have these, without pictures of their own
 DECKS = {path.name.removeprefix("in."): path for path in sorted(paths.EXAMPLES.glob("*/in.*"))}
-STUDIED = [name for name in DECKS if name not in STARTERS]
+STUDIED = [name for name in DECKS if name not in ALONE]
 LINES, COLUMNS = 45, 132
 LONGER = {"sphere": 51, "turek_hron_fsi": 52}    # four levels; a cylinder and its flag
 # no if, jump, label, next, print, quit, shell
@@ -62,7 +63,7 @@ def test_form(name):
     assert lines[0].startswith("# ")
     assert {command.split()[0] for command in found} <= PLAIN_COMMANDS
     options = [command.split()[1] for command in found if re.match(r"variable \w+ index ", command)]
-    assert len(options) == 1 or (name in STARTERS and options[1:] == ["tend"])
+    assert len(options) == 1 or (name in ALONE and options[1:] == ["tend"])
     styles = {command.split()[2] for command in found if command.startswith("variable ")}
     assert styles <= {"index", "equal", "atom"}
     assert not set(DEFAULTS) & set(found)
@@ -77,10 +78,10 @@ def test_form(name):
 def test_who_has_a_study():
     """What sweeps and tests take is the study's deck where there is one, and else the plain one."""
     for name in paths.examples():
-        expected = name not in STARTERS
+        expected = name not in ALONE
         assert (scene.deck(name).parent.name == "study") == expected and scene.deck(name).is_file()
     studies = list(paths.EXAMPLES.glob("*/study/*"))
-    assert len(studies) == len(set(paths.examples()) - set(STARTERS))
+    assert len(studies) == len(set(paths.examples()) - set(ALONE))
     for path in studies:
         assert path.name == f"in.{path.parents[1].name}"
 

@@ -200,6 +200,37 @@ def test_volume_of_several_regions(tmp_path):
     assert mass[kind == 2].sum() == pytest.approx(1500 * (math.pi * R**2 + 0.1 * width - inside), rel=1e-3)
 
 
+UNION = """region a cylinder z -0.07 0 0.04 INF INF units box
+region b cylinder z 0.06 0 0.05 INF INF units box
+region s union 2 a b"""
+
+
+@pytest.mark.parametrize("side", ["in", "out"])
+def test_union(tmp_path, side):
+    """Two discs, and the water around them; body and water exchanged if it is side out."""
+    text = deck("region s", region=UNION.replace("2 a b", f"2 a b side {side} units box"))
+    if side == "out":
+        text = text.replace("fsi/pack body water", "fsi/pack water body")
+    done = lammps(tmp_path, text)
+    kind, _, x = state(tmp_path)
+    off = np.minimum(np.hypot(x[:, 0] + 0.07, x[:, 1]) - 0.04, np.hypot(x[:, 0] - 0.06, x[:, 1]) - 0.05)
+    body = kind == 2
+    assert body.sum() == pytest.approx(math.pi * (0.04**2 + 0.05**2) / DX**2, abs=1)
+    assert off[body].max() < -0.499 * DX and off[~body].min() > 0.499 * DX
+    assert residue(done.output)[0] < 0.05 and residue(done.output)[1] < 0.01
+
+
+@pytest.mark.parametrize("angle", [10, 26.565, 45])
+@pytest.mark.parametrize("box", ["-0.15 0.15 -0.15 0.15", "-0.15 0.155 -0.18 0.15"])
+def test_volume_of_a_turned_block(tmp_path, angle, box):
+    """Cells are cut by their plane: at 45 degrees, where rows of them lie along a face, half a cell would be missing otherwise (0.5 %). Also
+    where no whole number of spacings goes into the box, so that cells are no squares."""
+    region = f"variable turned equal {angle}*PI/180\nregion s block -0.08 0.08 -0.02 0.02 INF INF units box rotate v_turned 0 0 0 0 0 1"
+    text = deck("region s", region=region, fluid="NULL", steps="steps 0").replace("region box block -0.15 0.15 -0.15 0.15", f"region box block {box}")
+    lammps(tmp_path, text)
+    assert state(tmp_path)[1].sum() == pytest.approx(1500 * 0.16 * 0.04, rel=1e-3)   # at the four corners two planes cut a cell
+
+
 def outline(points):
     return "".join(f"{x!r},{y!r}\n" for x, y in points)
 
