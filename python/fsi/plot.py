@@ -18,7 +18,7 @@ from . import paint, series
 BLUE, ORANGE, GREY, GREEN, RED = "#1b5e96", "#d1611a", "#555555", "#3a923a", "#c23b3b"
 FLUID_COLOURS, SOLID_COLOURS, WALL_COLOUR = "viridis", "inferno", "#a8a8a8"
 LABELS = ("x [m]", "y [m]")
-LARGEST = 140_000  # bytes of a picture
+LARGEST = 85_000  # bytes of a picture
 FLAT, ROUND = 0.8, 0.62  # radius over spacing: discs leave no gaps where particles are a little apart; spheres have others behind them
 # on a dark ground: dark at rest, light where it is fast or strained
 NIGHT, INK = "#0c1424", "#f2f5fa"
