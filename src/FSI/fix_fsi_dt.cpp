@@ -197,7 +197,7 @@ void FixFSIDt::approach_end()
     return;    // output will see to it
   output->next_thermo = update->laststep;
   output->next = std::min(output->next, output->next_thermo);
-  modify->addstep_compute(output->next_thermo);
+  modify->addstep_compute_all(output->next_thermo);    // also those that this step did not invoke
 }
 
 // another run may follow

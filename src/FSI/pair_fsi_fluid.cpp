@@ -169,30 +169,42 @@ double PairFSIFluid::sound_of(const Material &m) const
 
 void PairFSIFluid::check_effects(const Facts &of_solids) const
 {
-  const bool continuity = disc->density_fluid == Discretization::CONTINUITY, full = couple != WALL;
-  if (delta > 0.0 && !continuity) refuse(error, Refused::CONTINUITY, "density/diffusion");
-  if (surfaces && !continuity) refuse(error, Refused::CONTINUITY, "density/surface");
-  if (shifting > 0.0 && !continuity) refuse(error, Refused::CONTINUITY, "shift");
-  if (surfaces && (tension || background != 0.0)) refuse(error, Refused::SURFACES);
-  if (implicit && laminar != PLAIN_LAMINAR) refuse(error, Refused::IMPLICIT);
-  if (full && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS)
-    refuse(error, Refused::FULL_TOTAL);
-  // the plain forces of a solid end at its face with half a kernel of neighbors missing, which the
-  // fluid's pairs supply
-  if (full && of_solids.corrected_gradients) refuse(error, Refused::FULL_CORRECTED);
+  const bool rates = disc->density_fluid == Discretization::CONTINUITY, full = couple != WALL;
+  const struct {
+    bool so;
+    const Refusal &why;
+    const char *what;
+  } refused[] = {
+      {delta > 0.0 && !rates, Refused::CONTINUITY, "density/diffusion"},
+      {surfaces && !rates, Refused::CONTINUITY, "density/surface"},
+      {shifting > 0.0 && !rates, Refused::CONTINUITY, "shift"},
+      {surfaces && (tension || background != 0.0), Refused::SURFACES, ""},
+      {implicit && laminar != PLAIN_LAMINAR, Refused::IMPLICIT, ""},
+      {full && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS, Refused::FULL_TOTAL, ""},
+      // the plain forces of a solid end at its face with half a kernel of neighbors missing, which
+      // the fluid's pairs supply
+      {full && of_solids.corrected_gradients, Refused::FULL_CORRECTED, ""},
+  };
+  for (const auto &r : refused)
+    if (r.so) refuse(error, r.why, r.what);
 
-  if (comm->me) return;
   const bool viscous = std::any_of(material.begin(), material.end(), [](const Material &m) {
     return m.viscosity > 0.0;
   });
-  const auto idle = [this](const char *what, const char *why) {
-    error->warning(FLERR, "Pair style fsi/fluid {} has nothing to act on: {}", what, why);
+  const bool solids = has_solids();
+  const struct {
+    bool so;
+    const char *what, *why;
+  } idle[] = {
+      {laminar && !viscous, "laminar/visc", "no fluid has a viscosity"},
+      {extrapolate && !solids, "extrapolate", "there is no solid"},
+      {extrapolate && solids && full, "extrapolate", "it is for couple wall"},
+      {solids_slip && !solids, "solid/slip", "there is no solid"},
+      {solids_slip && solids && !laminar, "solid/slip", "there is no laminar/visc"},
   };
-  if (laminar && !viscous) idle("laminar/visc", "no fluid has a viscosity");
-  if (extrapolate && !has_solids()) idle("extrapolate", "there is no solid");
-  if (extrapolate && has_solids() && full) idle("extrapolate", "it is for couple wall");
-  if (solids_slip && !has_solids()) idle("solid/slip", "there is no solid");
-  if (solids_slip && has_solids() && !laminar) idle("solid/slip", "there is no laminar/visc");
+  for (const auto &r : idle)
+    if (r.so && comm->me == 0)
+      error->warning(FLERR, "Pair style fsi/fluid {} has nothing to act on: {}", r.what, r.why);
 }
 
 // chooses the loops for kernel, dimension and the effects that the script names

@@ -337,6 +337,12 @@ def test_stops_at_a_time(tmp_path, ranks, stop):
     assert times[0] == 0.0 and times[-1] == pytest.approx(stop, rel=1e-12)
 
 
+def test_stops_with_the_usual_thermo(tmp_path):
+    """Computes of energy and pressure, which no earlier step asked for, run in the last one."""
+    text = re.sub("timestep .*", "", fluid_box(2).text()) + "fix dt all fsi/dt 10 stop 0.01\nthermo_style one\nthermo 100000\nrun 100000\n"
+    run(tmp_path, text, scene_data=fluid_box(2).data())
+
+
 def test_output_goes_on_beyond_the_first_guess_of_the_end(tmp_path):
     """Falling water needs shorter and shorter steps, 9 % more than the first one lets expect: all is written until the end."""
     text = re.sub("timestep .*", "", fluid_box(2).text()) + "fix fall all gravity 100 vector 0 -1 0\nfix dt all fsi/dt 10 stop 0.1\n" \

@@ -89,7 +89,8 @@ def test_scene_is_worth_comparing(reference, name, dim):
     assert np.abs(start.vector(("fx", "fy", "fz"))).max() > 2.0 * weight
     assert difference(start, end, "x", size=1.0) > 1e-4
     if scene.has_solid:
-        assert np.abs(end.of_types(2)["sxy"]).max() > 100.0 and not np.abs(end.of_types(1)["sxy"]).any()
+        viscous = np.abs(end.of_types(1)["sxy"]).max()    # of laminar viscosity
+        assert np.abs(end.of_types(2)["sxy"]).max() > 100.0 and viscous < 0.1
 
 
 @pytest.mark.parametrize("name, dim, ranks, grid, newton", CASES)
