@@ -82,7 +82,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   FSI::Changes &changes;    // since the last run
   FSI::Population &population;
   FSI::NumberDensity &number_density;
-  FSI::Clamps &clamps;           // rigid bodies
+  FSI::Clamps &clamps;    // rigid bodies
   // to local atoms what pairs left on their ghosts, in rows of so many numbers
   static constexpr int MOST_COLUMNS = 16;
   void add_ghosts(double *rows, int columns = 1);
