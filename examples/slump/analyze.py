@@ -81,17 +81,19 @@ def profile(frame):
 
 
 def add(summary, folder, suffix="", judged=True):
-    """The figures of one run"""
+    """The figures of one run, each with the size of its error, which has the target"""
     _, K, tend = settings(folder)
     s, frame = series.read(Path(folder) / "slump.csv"), dump.read(Path(folder) / "particles.dump")[-1]
-    target = 0.05 if judged else None
-    summary.add("front" + suffix, s["front"][-1], "m", FRONT, ARREST, target)
-    summary.add("spread" + suffix, 2.5 * s["middle"][-1], "m", FRONT, ARREST, target)
+    found = [("front", s["front"][-1], FRONT, ARREST), ("height_at_wall", s["height"][-1], float(arrested(0.0)), ARREST),
+             ("spread", 2.5 * s["middle"][-1], FRONT, ARREST)]
     for time in (2.0, tend):
-        summary.add(f"spread_{time:g}_s{suffix}", 2.5 * float(s.at("middle", min(time, s.time[-1]))), "m", lubrication(K, time), CREEP, target if time == tend else None)
-    summary.add("height_at_wall" + suffix, s["height"][-1], "m", float(arrested(0.0)), ARREST, target)
+        found.append((f"spread_{time:g}_s", 2.5 * float(s.at("middle", min(time, s.time[-1]))), lubrication(K, time), CREEP))
+    for name, value, reference, source in found:
+        summary.add(name + suffix, value, "m", reference, source)
+        summary.add(f"error_of_{name}{suffix}", abs(value / reference - 1), "", None, None, 0.05 if judged and name == "front" else None)
     x, h = profile(frame)
-    summary.add("profile_error" + suffix, np.mean(np.abs(h - arrested(x))[x < FRONT]) / arrested(0.0), "of the height at the wall", None, None, target)
+    error = np.mean(np.abs(h - arrested(x))[x < FRONT]) / arrested(0.0)
+    summary.add("profile_error" + suffix, error, "of the height at the wall", None, None, 0.05 if judged else None)
 
 
 def draw(folder, run):

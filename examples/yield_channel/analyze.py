@@ -82,6 +82,12 @@ def tridiagonal(lower, diagonal, upper, right):
     return r
 
 
+def judge(summary, name, value, unit, reference, source, target):
+    """A figure, and the size of its error, which has the target"""
+    summary.add(name, value, unit, reference, source)
+    summary.add(f"error_of_{name}", abs(value / reference - 1), "", None, None, target)
+
+
 def add(summary, folder, suffix="", judged=True):
     """The figures of one run"""
     name, p, _, tend = settings(folder)
@@ -91,17 +97,16 @@ def add(summary, folder, suffix="", judged=True):
     error = np.sqrt(np.mean((v - exact)**2) / np.mean(exact**2))
     summary.add("velocity_error" + suffix, error, "", None, None, target if name == "power" else None)
     if name == "power":
-        summary.add("mean_over_largest" + suffix, v.mean() / v.max(), "", (p[1] + 1) / (2 * p[1] + 1), SOURCE, target)
+        judge(summary, "mean_over_largest" + suffix, v.mean() / v.max(), "", (p[1] + 1) / (2 * p[1] + 1), SOURCE, target)
         return
     tau, K, n, m = p
     if n == 1:
-        summary.add("center_velocity" + suffix, v.max(), "m/s", (1 - tau)**2 / (2 * K) + tau / m, CENTER, target)
+        judge(summary, "center_velocity" + suffix, v.max(), "m/s", (1 - tau)**2 / (2 * K) + tau / m, CENTER, target)
     after = flow.time >= tend
     t, part = flow.time[after] - tend, flow["mean"][after]
     for limit, time in zip(PARTS, stopping(p)):
         if part[-1] < limit * part[0]:
-            summary.add(f"stops_{limit:g}{suffix}", np.interp(-limit, -part / part[0], t), "s", time, STOPS,
-                        0.03 if judged and tau == 0.5 else None)
+            judge(summary, f"stops_{limit:g}{suffix}", np.interp(-limit, -part / part[0], t), "s", time, STOPS, 0.03 if judged else None)
 
 
 def draw(folder, cases):
@@ -112,7 +117,7 @@ def draw(folder, cases):
         frame, y = dump.read(Path(path) / "particles.dump")[1], np.linspace(-1, 1, 401)
         curves.append((y, steady(y, law, p), f"{name}, theory", color))
         rows, first = np.unique(np.round(frame["y"], 6), return_index=True)
-        points.append((rows, frame["vx"][first], "SPH", color))
+        points.append((rows[::2], frame["vx"][first][::2], "SPH", color))
     plot.lines(Path(folder) / "velocity.png", "y [m]", "velocity [m/s]", curves, points)
 
 
