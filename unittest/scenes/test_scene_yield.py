@@ -18,3 +18,14 @@ def test_yield_stress_in_a_channel(tmp_path):
     assert figures["center_velocity"] == pytest.approx(0.13, rel=0.03)
     assert figures["stops_0.1"] == pytest.approx(0.133, rel=0.03)
     assert figures["stops_0.01"] == pytest.approx(0.160, rel=0.03)
+
+
+def test_slump(tmp_path):
+    # 10 rows. Spread: -0.2 % of the closed form of a shallow layer at arrest, -2.3 % of the same layer with the law's own creep by finite
+    # differences; these two differ by 2 %, and neither has more than the first order of the slope. The foremost particle is 1 of 100: a
+    # spacing is 4 % of the front
+    figures = run_scene(tmp_path, "slump", dx=0.01)
+    assert figures["spread"] == pytest.approx(0.2805, rel=0.04)
+    assert figures["front"] == pytest.approx(0.2805, rel=0.1)
+    assert figures["height_at_wall"] == pytest.approx(0.0535, rel=0.1)
+    assert figures["profile_error"] < 0.08
