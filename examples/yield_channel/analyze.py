@@ -117,7 +117,7 @@ def draw(folder, cases):
         frame, y = dump.read(Path(path) / "particles.dump")[1], np.linspace(-1, 1, 401)
         curves.append((y, steady(y, law, p), f"{name}, theory", color))
         rows, first = np.unique(np.round(frame["y"], 6), return_index=True)
-        points.append((rows[::4], frame["vx"][first][::4], "SPH", color))
+        points.append((rows[::4], frame["vx"][first][::4], "" if points else "SPH", color))
     plot.lines(Path(folder) / "velocity.png", "y [m]", "velocity [m/s]", curves, points)
 
 
