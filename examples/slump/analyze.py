@@ -103,15 +103,15 @@ def draw(folder, run):
     frame = dump.read(Path(run) / "particles.dump")[-1]
     colors = plot.matplotlib.colormaps["viridis"]
     share = (np.log10(frame["viscosity"]) - 2.5) / 1.3
-    with plot.picture(Path(folder) / "slump.png", 5.0, 1.6) as figure:
-        axes = figure.add_axes((0.11, 0.28, 0.72, 0.7))
+    with plot.picture(Path(folder) / "slump.png", 5.2, 1.7) as figure:
+        axes = figure.add_axes((0.14, 0.27, 0.68, 0.71))
         plot.field(axes, frame["x"], frame["y"], dx, colors(np.clip(share, 0, 1)), ((0.0, 0.3), (0.0, 0.07)))
         x = np.linspace(0, FRONT, 300)
         axes.plot(x, arrested(x), color=plot.RED, label="theory, at arrest")
         axes.legend()
         axes.set(xlabel="x [m]", ylabel="y [m]")
         bar = plot.ScalarMappable(plot.Normalize(2.5, 3.8), colors)
-        figure.colorbar(bar, cax=figure.add_axes((0.86, 0.28, 0.02, 0.66)), label="log10 viscosity [Pa s]")
+        figure.colorbar(bar, cax=figure.add_axes((0.86, 0.27, 0.02, 0.66)), label="log10 eta [Pa s]")
 
 
 def main(folder):
