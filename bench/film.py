@@ -18,7 +18,7 @@ from fsi.progress import Progress
 
 TARGET = paths.ROOT / "doc" / "film.webp"
 SIZE, HEADER, MARGIN = (800, 450), 60, 18  # [pixel]
-RATE, LARGEST = 15, 1_500_000  # [1/s], [byte]
+RATE, LARGEST = 15, 1_200_000  # [1/s], [byte]
 DIM, FLOOR, WALL = "#7d8ba3", "#16223b", "#9aa5b8"
 
 

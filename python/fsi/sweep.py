@@ -28,7 +28,7 @@ def deck_variables(path):
     """Names and defaults of what -var can set in a deck: its index-style variables."""
     found = {}
     for line in Path(path).read_text().splitlines():
-        match = re.match(r"\s*variable\s+(\w+)\s+index\s+(\S+)", line)
+        match = re.match(r"\s*variable\s+(\w+)\s+index\s+(\"[^\"]*\"|'[^']*'|\S+)", line)
         if match:
             found.setdefault(match[1], match[2].strip("\"'"))
     return found
