@@ -170,7 +170,7 @@ void ComputeFSIAtom::find(int i, Properties &of) const
   of.volume = atom->rmass[i] / of.rho;
   if (state.species == FLUID && shear) {
     of.shear_rate = shear->rate(i);
-    of.viscosity = state.law.varies() ? state.law(of.shear_rate) : state.viscosity;
+    of.viscosity = shear->viscosity_of(i);
   }
   if (!tensor) return;
   std::fill_n(of.sigma, 6, 0.0);

@@ -100,8 +100,9 @@ static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K
   });
 }
 
-void Shear::init(FixFSI *fix_fsi_in)
+void Shear::init(FixFSI *fix_fsi_in, double eddies_in)
 {
+  eddies = eddies_in;
   fix_fsi = fix_fsi_in;
   disc = fix_fsi;
   step = fix_fsi;
@@ -109,9 +110,9 @@ void Shear::init(FixFSI *fix_fsi_in)
 
 bool Shear::varies() const
 {
-  return std::any_of(disc->state.begin(), disc->state.end(), [](const State &s) {
-    return s.law.varies();
-  });
+  return eddies > 0.0 || std::any_of(disc->state.begin(), disc->state.end(), [](const State &s) {
+           return s.law.varies();
+         });
 }
 
 void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &of_level,
@@ -182,6 +183,13 @@ double Shear::rate(int i) const
       (disc->dim == 2 ? symmetric<2>(gradient(i)).squared() : symmetric<3>(gradient(i)).squared()));
 }
 
+double Shear::viscosity_of(int i) const
+{
+  const State &s = disc->state[atom->type[i]];
+  const double rate_i = rate(i), length = eddies * disc->dx_of(atom->type[i]);
+  return (s.law.varies() ? s.law(rate_i) : s.viscosity) + s.rho0 * length * length * rate_i;
+}
+
 void Shear::stress(int i, double eta, double *sigma) const
 {
   const int D = disc->dim;
@@ -197,7 +205,7 @@ void Shear::find_viscosities(PairSets &pairs, const std::vector<FluidParticles> 
   viscosity.resize(atom->nlocal + atom->nghost);
   for (int i = 0; i < atom->nlocal; i++) {
     const State &s = disc->state[atom->type[i]];
-    viscosity[i] = s.law.varies() ? s.law(rate(i)) : s.viscosity;
+    viscosity[i] = s.species == FLUID ? viscosity_of(i) : s.viscosity;
   }
   fix_fsi->send_to_ghosts(viscosity.data());
 }

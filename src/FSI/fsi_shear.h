@@ -32,8 +32,9 @@ namespace FSI {
   class Shear : protected Pointers {
    public:
     explicit Shear(LAMMPS *lmp) : Pointers(lmp) {}
-    void init(FixFSI *);
-    bool varies() const;    // has any fluid such a law?
+    // eddies: C_s of Smagorinsky 1963, which adds rho (C_s dx)^2 times the shear rate; 0: none
+    void init(FixFSI *, double eddies);
+    bool varies() const;    // has any fluid such a law, or eddies?
 
     // dv_a/dx_b of local fluid particles, where pairs and points are now: of neighbors, images and
     // what no-slip walls and solids have beyond their face, exact for linear fields,
@@ -45,6 +46,7 @@ namespace FSI {
     double rate(int i) const;                               // sqrt(2 D:D)
     void stress(int i, double eta, double *sigma) const;    // 2 eta D, as xx yy zz xy xz yz
 
+    double viscosity_of(int i) const;    // at rate(i)
     // of local and ghost particles; those of fluids without such a law are constant
     void find_viscosities(PairSets &, const std::vector<FluidParticles> &, const ForceLaws &);
     const double *viscosities() const { return viscosity.data(); }
@@ -58,6 +60,7 @@ namespace FSI {
     FixFSI *fix_fsi = nullptr;
     const Discretization *disc = nullptr;
     StepState *step = nullptr;
+    double eddies = 0.0;
     std::vector<double> sums, gradients, viscosity;
     template <int D>
     void find_gradients(PairSets &, const std::vector<FluidParticles> &, const ForceLaws &);

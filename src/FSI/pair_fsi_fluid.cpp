@@ -80,6 +80,9 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
   keywords.key("laminar/visc").set(laminar, PLAIN_LAMINAR).effect("laminar viscosity");
   keywords.key("laminar/visc/central").set(laminar, CENTRAL_LAMINAR);
   keywords.key("laminar/implicit").logical(implicit, false).effect("laminar viscosity, implicit");
+  keywords.key("smagorinsky")
+      .number(eddies, 0.0, Range::between(0.0, 1.0))
+      .effect("eddy viscosity, C_s {}");
   keywords.key("solid/slip").logical(solids_slip, false);
   keywords.key("solid/guard").number(solids_guard, 0.5, Range::between(0.0, 1.0));
   keywords.key("density/diffusion")
@@ -196,9 +199,10 @@ void PairFSIFluid::check_effects(const Facts &of_solids) const
     bool so;
     const char *what, *why;
   } idle[] = {
-      {laminar && !viscous, "laminar/visc", "no fluid has a viscosity"},
+      {laminar && !viscous && eddies == 0.0, "laminar/visc", "no fluid has a viscosity"},
       {extrapolate && !solids, "extrapolate", "there is no solid"},
       {extrapolate && solids && full, "extrapolate", "it is for couple wall"},
+      {eddies > 0.0 && !laminar, "smagorinsky", "there is no laminar/visc"},
       {solids_slip && !solids, "solid/slip", "there is no solid"},
       {solids_slip && solids && !laminar, "solid/slip", "there is no laminar/visc"},
   };
@@ -221,7 +225,7 @@ void PairFSIFluid::init_style()
   pairs.init(*disc, *step, couple != WALL);
   members->cut_solids.init(*disc, has_solids());
   members->light_solids.init(fix_fsi);
-  members->shear.init(fix_fsi);
+  members->shear.init(fix_fsi, eddies);
   members->implicit.init(fix_fsi);
   step->viscosity = nullptr;
   find_ratios();

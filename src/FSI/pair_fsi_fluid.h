@@ -96,6 +96,7 @@ class PairFSIFluid : public PairFSI {
 
  private:
   // settings
+  double eddies;                      // C_s of Smagorinsky; 0: none
   double sound, background, delta;    // sound: of fluids whose material has none; 0: there is no
                                       // default
   double shifting;                    // coefficient C of particle shifting; 0 = off

@@ -19,6 +19,7 @@ FACTORS = {
     "viscosity": {"inviscid": {}, "artificial": {"fluid": "artificial/visc 0.1 0.1"}, "laminar": {"fluid": "laminar/visc"},
                   "central": {"fluid": "laminar/visc/central"}, "solid slip": {"fluid": "laminar/visc solid/slip yes"},
                   "shear thinning": {"fluid": "laminar/visc", "water": "power 0.5 0.6 viscosity/limits 0.05 20"},
+                  "eddies": {"fluid": "laminar/visc smagorinsky 0.15"},
                   "yield stress": {"fluid": "laminar/visc laminar/implicit yes", "water": "herschel/bulkley 1 0.5 1 20"}},
     "diffusion": {"undiffused": {}, "diffused": {"fluid": "density/diffusion 0.1"}},
     "shifting": {"unshifted": {}, "shift": {"fluid": "shift 0.2"}, "shift every 3": {"fluid": "shift 0.2 shift/every 3"}},

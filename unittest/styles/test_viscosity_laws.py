@@ -20,7 +20,7 @@ boundary {walls}
 atom_style fsi
 read_data cloud.data
 fsi/material gel fluid rho 1000 {law}
-pair_style fsi/fluid sound 10 laminar/visc
+pair_style fsi/fluid sound 10 laminar/visc {more}
 pair_coeff * * NULL gel
 fix 1 all fsi 0.01 wendland 1.5
 {wall}
@@ -43,11 +43,11 @@ def table(path):
     return np.array([line.split() for line in lines[first + 1:]], float)
 
 
-def state(folder, law, dim, L, wall="", ranks=1, n=6):
+def state(folder, law, dim, L, wall="", ranks=1, n=6, more=""):
     """Columns of the dump of a shaken block with the velocity L.x."""
     x, _ = cloud([n] * dim, 0.01)
     axes = [" + ".join(f"({L[a][b]!r})*{'xyz'[b]}" for b in range(3)) for a in range(3)]
-    text = FIELD.format(dim=dim, law=law, wall=wall, vx=axes[0], vy=axes[1], vz=axes[2] if dim == 3 else "0", velocity="v_vz" if dim == 3 else "NULL",
+    text = FIELD.format(dim=dim, law=law, wall=wall, more=more, vx=axes[0], vy=axes[1], vz=axes[2] if dim == 3 else "0", velocity="v_vz" if dim == 3 else "NULL",
                         walls="f f f" if dim == 3 else "f f p")
     run(folder, text, ranks, cloud_data=particles(x, box=[(-0.05, 0.15)] * dim + [(-0.005, 0.005)] * (3 - dim)))
     return table(folder / "end.dump")
@@ -69,6 +69,12 @@ def test_linear_flow(tmp_path, law, dim, ranks):
     stress = found[:, 6:12] + found[:, 12:13] * [1, 1, 1, 0, 0, 0]
     expected = 2 * eta * np.array([D[0, 0], D[1, 1], D[2, 2], D[0, 1], D[0, 2], D[1, 2]])
     np.testing.assert_allclose(stress, np.tile(expected, (len(found), 1)), atol=1e-7 * eta * rate)
+
+
+def test_eddies(tmp_path):
+    """Smagorinsky's viscosity, rho (C_s dx)^2 times the rate, is added to the fluid's."""
+    found = state(tmp_path, "viscosity 0.7", 2, [[0, 3.0, 0], [0, 0, 0], [0, 0, 0]], more="smagorinsky 0.15")
+    np.testing.assert_allclose(found[:, 5], 0.7 + 1000 * (0.15 * 0.01)**2 * 3.0, rtol=1e-8)
 
 
 def test_shear_at_a_wall(tmp_path):
