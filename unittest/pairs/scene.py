@@ -195,6 +195,7 @@ class PairScene:
         name, hdx = self.has["kernel"].split()
         psi = {s: Kernel(name, self.dim, float(hdx) * s).lattice_sum(s, self.dim) for s in np.unique(size)}
         mass = rho0 / np.array([psi[s] for s in size[:, 0]])
+        mass[kind == GRAIN] = 2000 * np.pi * 0.002**2 * (1 if self.dim == 2 else 4 / 3 * 0.002)    # discs and spheres
         rho = np.where(kind == WATER, rho0 * (1 + random.uniform(-1e-3, 1e-3, len(x))), rho0)
         return {"x": x, "v": v * flat, "type": kind, "mol": mol, "rho": rho, "mass": mass}
 

@@ -106,7 +106,7 @@ def finite(r):
 
 
 def keeps_mass(scene):
-    return not given(scene, "fsi/set", "grains")
+    return not given(scene, "fsi/set")
 
 
 def mass(r):
