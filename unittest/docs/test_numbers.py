@@ -173,7 +173,7 @@ SCENES = [
     *((("cylinder_channel", f"| {n} | {{}} (+{{}} %) | {{}} (+{{}} %) | {{}} (-{{}} %) | {{}} min",
         lambda scene, *names: mixed(scene, *names[:3]) + minutes(scene, names[3]),
         [f"drag_max_re_100_{n}", f"lift_max_re_100_{n}", f"strouhal_re_100_{n}", f"re_100_{n}"])) for n in (14, 20, 28)),
-    ("cylinder_channel", "| 14, 40 around the cylinder | {} (+{} %) | {} (+{} %) | {} (-{} %) |", mixed,
+    ("cylinder_channel", "| 14, 40 around the cylinder | {} (+{} %) | {} (-{} %) | {} (-{} %) |", mixed,
      [f"{name}_re_100_14_to_40" for name in ("drag_max", "lift_max", "strouhal")]),
     ("cylinder_free", "28 around the cylinder | mean drag, lift, Strouhal number | {}, {}, {} |", sizes, [f"{name}_7_to_28" for name in ("drag", "lift", "strouhal")]),
     ("cylinder_free", "lift remains {} to {} % and the Strouhal number {} to {} % too small", figures,

@@ -371,7 +371,7 @@ NUMBERS = [
     *[(word, SPH, f"{SPH} {word} {{}}") for word in ("mach",)],
     *[(word, *fluid("", f"sound {keyword} ".replace("sound sound", "sound"))) for word, keyword in (
         ("sound", "sound {}"), ("background", "10 background {}"), ("artificial/visc alpha", "10 artificial/visc {} 0"),
-        ("artificial/visc beta", "10 artificial/visc 0 {}"), ("density/diffusion", "10 density/diffusion {}"), ("shift", "10 shift {}"),
+        ("artificial/visc beta", "10 artificial/visc 0 {}"), ("density/diffusion", "10 density/diffusion {}"), ("smagorinsky", "10 smagorinsky {}"), ("shift", "10 shift {}"),
         ("shift/every", "10 shift 0.1 shift/every {}"), ("solid/guard", "10 solid/guard {}"), ("surface", "10 surface {}"))],
     *[(word, "artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected", keyword) for word, keyword in (
         ("artificial/visc alpha", "artificial/visc {} 0"), ("artificial/visc beta", "artificial/visc 0 {}"),
