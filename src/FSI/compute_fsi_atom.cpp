@@ -91,12 +91,14 @@ void ComputeFSIAtom::compute_peratom()
   fix_fsi = FixFSI::ready(lmp, "Compute fsi/atom");
   const int n = quantity.size();
   grow();
-  if (std::find(quantity.begin(), quantity.end(), PSI) != quantity.end()) {
+  const bool sums = std::find(quantity.begin(), quantity.end(), PSI) != quantity.end();
+  auto *const fluid = needs_shear();
+  if (sums || fluid) comm->forward_comm();    // ghosts stand where they were in mid-step
+  if (sums) {
     psi.resize(atom->nmax);
-    comm->forward_comm();    // ghosts still stand where they were in the middle of the step
     fix_fsi->number_density.find(psi.data());
   }
-  find_shear();
+  shear = fluid ? &fluid->find_shear() : nullptr;
   solid_tl = PairFSISolidTL::find(lmp);
   if (solid_tl) solid_tl->begin_stress();
   fix_stress = FixFSIStress::find(lmp);
@@ -110,17 +112,14 @@ void ComputeFSIAtom::compute_peratom()
   }
 }
 
-// that of fluids, where something needs it
-void ComputeFSIAtom::find_shear()
+// the style whose velocity gradients something needs; or null
+PairFSIFluid *ComputeFSIAtom::needs_shear() const
 {
-  shear = nullptr;
   auto *const fluid = first_of(pairs_of<PairFSIFluid>(lmp));
   const bool wanted = std::any_of(quantity.begin(), quantity.end(), [](int q) {
     return q >= SHEAR_RATE;
   });
-  if (!fluid || !(wanted || (tensor && fluid->has_laminar()))) return;
-  comm->forward_comm();    // ghosts still stand where they were in the middle of the step
-  shear = &fluid->find_shear();
+  return fluid && (wanted || (tensor && fluid->has_laminar())) ? fluid : nullptr;
 }
 
 double ComputeFSIAtom::value(int what, int i, const Properties &of) const

@@ -61,7 +61,7 @@ class ComputeFSIAtom : public Compute {
     double shear_rate = 0.0, viscosity = 0.0;    // of fluids
     bool has_stress;
   };
-  void find_shear();
+  class PairFSIFluid *needs_shear() const;
   void grow();
   void find(int i, Properties &) const;
   double value(int quantity, int i, const Properties &) const;

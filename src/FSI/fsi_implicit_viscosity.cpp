@@ -152,13 +152,11 @@ void ImplicitViscosity::solve(PairSets &pairs, const std::vector<FluidParticles>
 {
   const int nlocal = atom->nlocal, *const type = atom->type;
   begin<D>(f, columns);
-  for (const auto &set : pairs.sets)
-    add_pairs<D>(set, set.rows.rows, set.visible, nullptr, of_level[set.level], laws);
-  pairs.for_images(step->walls, of_level[0].points,
-                   [&](const PairSet &set, int n, const Mirror *mirror) {
-                     add_pairs<D>(set, set.images[n].rows, set.visible_images[n], mirror,
-                                  of_level[set.level], laws);
-                   });
+  pairs.for_all(step->walls, of_level[0].points,
+                [&](const PairSet &set, const std::vector<Row> &rows,
+                    const std::vector<double> &visible, const Mirror *mirror, int) {
+                  add_pairs<D>(set, rows, visible, mirror, of_level[set.level], laws);
+                });
   fix_fsi->add_ghosts(diagonal.data(), D);
   fix_fsi->add_ghosts(given.data(), D);
   const size_t n = w.size();

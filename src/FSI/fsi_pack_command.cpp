@@ -155,21 +155,13 @@ double FSIPack::part_inside(int i) const
   return volume_of_cell(atom->x[i], sides, 0.125 * dx) / std::pow(dx, domain->dimension);
 }
 
-// what is behind a plane without end is not there to the fluid
-bool FSIPack::is_before_planes(int i) const
-{
-  for (const auto &w : fix_fsi->walls.wall)
-    if (!w.finite && w.distance(atom->x[i]) < 0.0) return false;
-  return true;
-}
-
 // The n particles of a group that are deepest inside, of equals by place: the same on any ranks
 std::vector<char> FSIPack::deepest(int bit, double n) const
 {
   std::vector<double> key(atom->nlocal, 1.0e9);
   double outward[3];
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & bit) || !is_before_planes(i)) continue;
+    if (!(atom->mask[i] & bit) || !fix_fsi->walls.is_before_planes(atom->x[i])) continue;
     key[i] =
         std::floor(1.0e6 * distance(i, outward) / band + 0.5) + part_by_place(atom->x[i], domain);
   }
@@ -188,7 +180,7 @@ void FSIPack::choose(double volume)
   for (int i = 0; i < atom->nlocal; i++) {
     if (atom->mask[i] & fluid) here[0] += part_inside(i);
     if (!(atom->mask[i] & body)) continue;
-    if (is_before_planes(i)) here[1] += part_inside(i);
+    if (fix_fsi->walls.is_before_planes(atom->x[i])) here[1] += part_inside(i);
     cell = std::pow(fix_fsi->dx_of(atom->type[i]), domain->dimension);
   }
   MPI_Allreduce(here, all, 2, MPI_DOUBLE, MPI_SUM, world);
@@ -206,7 +198,7 @@ void FSIPack::choose(double volume)
   for (int i = 0; i < atom->nlocal; i++)
     if (atom->mask[i] & fluid && displaced[i])
       atom->mask[i] ^= fluid | (body ? gone_at_once : filler);
-    else if (atom->mask[i] & body && !is_before_planes(i)) {
+    else if (atom->mask[i] & body && !fix_fsi->walls.is_before_planes(atom->x[i])) {
       if (part_inside(i) < 0.5) atom->mask[i] ^= body | gone_at_once;
     } else if (atom->mask[i] & body && !inside[i])
       atom->mask[i] ^= body | filler;
@@ -248,7 +240,7 @@ void FSIPack::set_masses(double volume)
     return (atom->mask[i] & body) != 0;
   };
   const bigint n = find_particles(atom, world, [&](int i) {
-                     return in_body(i) && is_before_planes(i);
+                     return in_body(i) && fix_fsi->walls.is_before_planes(atom->x[i]);
                    }).count;
   if (comm->me == 0)
     utils::logmesg(lmp, "  fsi/pack: {} encloses {:.8g}, in {} particles of {:.8g} each\n",
@@ -308,7 +300,8 @@ void FSIPack::pack(int steps)
     double outward[3];
     for (int i = 0; i < atom->nlocal; i++) {
       const int mask = atom->mask[i];
-      if (!(mask & (body | fluid | filler)) || !is_before_planes(i)) continue;
+      if (!(mask & (body | fluid | filler)) || !fix_fsi->walls.is_before_planes(atom->x[i]))
+        continue;
       const double r = distance(i, outward), dx = fix_fsi->dx_of(atom->type[i]);
       mobility[i] = std::clamp((band - std::fabs(r)) / (EDGE * dx), 0.0, 1.0);
       judged[i] = mobility[i] == 1.0 && !(mask & filler);

@@ -51,7 +51,6 @@ class FSIPack : public Command {
   double volume_inside() const, volume_of_still() const;
   double volume_of_cell(const double *middle, const double *sides, double finest) const;
   double part_inside(int i) const;
-  bool is_before_planes(int i) const;
   void choose(double volume);
   std::vector<char> deepest(int bit, double n) const;
   void pack(int steps);

@@ -88,6 +88,9 @@ namespace FSI {
     // Calls loop(set, number of reflection, mirror) for all rows of images. places: where particles
     // are, null: at atom->x
     template <class Loop> void for_images(const Walls &, const double *places, Loop);
+    // Calls loop(set, rows, visible, mirror, k) for all rows, mirror null, and for those of images,
+    // k the number of the reflection.
+    template <class Loop> void for_all(const Walls &, const double *places, Loop);
 
    private:
     const Discretization *disc = nullptr;
@@ -141,6 +144,15 @@ namespace FSI {
       for (auto &set : sets)
         if (set.what != PairSet::WALLS && !set.images[k].rows.empty()) loop(set, k, &mirror);
     }
+  }
+
+  template <class Loop> void PairSets::for_all(const Walls &walls, const double *places, Loop loop)
+  {
+    const Mirror *const none = nullptr;
+    for (const auto &set : sets) loop(set, set.rows.rows, set.visible, none, 0);
+    for_images(walls, places, [&](const PairSet &set, int k, const Mirror *mirror) {
+      loop(set, set.images[k].rows, set.visible_images[k], mirror, k);
+    });
   }
 
   template <class Loop>

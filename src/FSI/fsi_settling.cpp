@@ -116,10 +116,8 @@ void Settling::run(int sweeps)
   const int nall = atom->nlocal + atom->nghost;
   points.resize(POINT * nall);
   for (int j = 0; j < nall; j++) {
-    points[POINT * j + 3] = atom->rmass[j] / atom->rho[j];
-    // what is behind a plane without end is in the images of what is before it
-    for (const auto &w : step.walls.wall)
-      if (!w.finite && w.distance(atom->x[j]) < 0.0) points[POINT * j + 3] = 0.0;
+    const bool counts = step.walls.is_before_planes(atom->x[j]);
+    points[POINT * j + 3] = counts ? atom->rmass[j] / atom->rho[j] : 0.0;
   }
   mirrors.assign(1, Mirror(step.walls, {}));
   for (const auto &s : step.walls.reflections) mirrors.emplace_back(step.walls, s);

@@ -131,7 +131,7 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
   sums.assign((size_t) ROW * nall, 0.0);
   gradients.assign((size_t) D * D * nlocal, 0.0);
   const auto add = [&](const PairSet &set, const std::vector<Row> &rows,
-                       const std::vector<double> &visible, const Mirror *mirror) {
+                       const std::vector<double> &visible, const Mirror *mirror, int) {
     if (rows.empty()) return;
     if (set.what == PairSet::SOLIDS && laws.solids_slip) return;    // no fluid beyond it, either
     FluidParticles in = of_level[set.level];
@@ -155,11 +155,7 @@ void Shear::find_gradients(PairSets &pairs, const std::vector<FluidParticles> &o
       }
     });
   };
-  for (const auto &set : pairs.sets) add(set, set.rows.rows, set.visible, nullptr);
-  pairs.for_images(step->walls, of_level[0].points,
-                   [&](const PairSet &set, int k, const Mirror *mirror) {
-                     add(set, set.images[k].rows, set.visible_images[k], mirror);
-                   });
+  pairs.for_all(step->walls, of_level[0].points, add);
   fix_fsi->add_ghosts(sums.data(), ROW);
   for (int i = 0; i < nlocal; i++) {
     if (disc->state[type[i]].species != FLUID) continue;

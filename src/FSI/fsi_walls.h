@@ -100,6 +100,13 @@ namespace FSI {
       return false;
     }
 
+    // what is behind a wall without end is in the images of what is before it
+    bool is_before_planes(const double *x) const
+    {
+      for (const auto &w : wall)
+        if (!w.finite && w.distance(x) < 0.0) return false;
+      return true;
+    }
     bool finite(const Reflection &s) const
     {
       for (int k = 0; k < s.n; k++)

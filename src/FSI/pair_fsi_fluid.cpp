@@ -697,15 +697,12 @@ template <int D, bool FILLS> void PairFSIFluid::displacements(double dt)
 template <class Sum>
 void PairFSIFluid::distance_sums(bool others_too, const FluidParticles &particles, Sum sum)
 {
-  const auto one = [&](const PairSet &m, const RowList &which, const std::vector<double> &parts_of,
-                       const Mirror *mirror) {
-    const bool both = m.kind == WITH_FLUID || others_too;
-    sum(m, which.rows, both, mirror, of_rows(particles, m, which.rows, parts_of));
-  };
-  for (const auto &m : pairs.sets) one(m, m.rows, m.visible, nullptr);
-  pairs.for_images(step->walls, nullptr, [&](const PairSet &m, int k, const Mirror *mirror) {
-    one(m, m.images[k], m.visible_images[k], mirror);
-  });
+  pairs.for_all(step->walls, nullptr,
+                [&](const PairSet &m, const std::vector<Row> &rows,
+                    const std::vector<double> &visible, const Mirror *mirror, int) {
+                  const bool both = m.kind == WITH_FLUID || others_too;
+                  sum(m, rows, both, mirror, of_rows(particles, m, rows, visible));
+                });
 }
 
 void PairFSIFluid::add_number_density(double *psi, bool solids_too)
@@ -928,19 +925,16 @@ void PairFSIFluid::add_viscous_forces(const FluidParticles &particles, ForceLaws
   laws.taken = nullptr;
   laws.stress = nullptr;
   viscous_forces.assign((size_t) ROW * nall, 0.0);
-  const auto loop = [&](const PairSet &m, const std::vector<Row> &rows,
-                        const std::vector<double> &visible, const Mirror *mirror, double *total) {
-    if (on_bodies && m.what != PairSet::SOLIDS && (mirror || m.what != PairSet::WALLS)) return;
-    m.of_forces->forces(m.kind, rows, mirror, of_rows(particles, m, rows, visible), laws,
-                        viscous_forces.data(), total, sums);
-  };
-  for (const auto &m : pairs.sets) loop(m, m.rows.rows, m.visible, nullptr, nullptr);
-  pairs.for_images(step->walls, particles.points,
-                   [&](const PairSet &m, int k, const Mirror *mirror) {
-                     double total[D] = {};
-                     loop(m, m.images[k].rows, m.visible_images[k], mirror, total);
-                     if (!on_bodies) add_wall_forces(step->walls.reflections[k], total);
-                   });
+  pairs.for_all(step->walls, particles.points,
+                [&](const PairSet &m, const std::vector<Row> &rows,
+                    const std::vector<double> &visible, const Mirror *mirror, int k) {
+                  const bool of_fluids = m.what != PairSet::SOLIDS && m.what != PairSet::WALLS;
+                  if (on_bodies && of_fluids) return;
+                  double total[D] = {};
+                  m.of_forces->forces(m.kind, rows, mirror, of_rows(particles, m, rows, visible),
+                                      laws, viscous_forces.data(), total, sums);
+                  if (mirror && !on_bodies) add_wall_forces(step->walls.reflections[k], total);
+                });
 }
 
 // for those who ask for them, forces of viscosity on solids and walls
