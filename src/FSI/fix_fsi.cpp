@@ -95,13 +95,16 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("spacing").per_type(given_spacing, positive).kept(kept);
   keywords.key("thin").types(thin);
   keywords.key("mach").number(mach, 1.0, positive).or_word("off", Check::OFF);
-  keywords.parse(narg - 3, arg + 3);
+  std::vector<std::string> words(arg + 3, arg + narg);
+  choose_kernel(lmp, keywords, words);
+  keywords.parse(words);
   substeps = given_substeps;
   if (article && density_fluid == CONTINUITY) density_fluid = SUMMATION;
   if (article && density_solid == CONTINUITY) density_solid = RATIO;
 
   dim = domain->dimension;
   resolve(hdx, given_spacing);
+  choose_skin(lmp, dx);
   const auto &before = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;
   if (before && changes.any_mass()) goes_on(*before, "in the last run");
   if (std::count(thin.begin(), thin.end(), 1.0))

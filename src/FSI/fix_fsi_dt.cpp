@@ -80,6 +80,13 @@ FixFSIDt::FixFSIDt(LAMMPS *lmp, int narg, char **arg) :
 
 FixFSIDt::~FixFSIDt() = default;
 
+void FixFSIDt::stop_at(double time)
+{
+  if (check) refuse(error, Refused::CHECK_STOP);
+  end = time;
+  nevery = 1;
+}
+
 void FixFSIDt::init()
 {
   fix_fsi = FixFSI::find(lmp, "Fix fsi/dt");

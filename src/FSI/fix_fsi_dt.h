@@ -50,6 +50,8 @@ class FixFSIDt : public Fix, public FSI::Part {
   void write_restart(FILE *) override;
   void restart(char *) override;
 
+  void stop_at(double time);    // the next run
+
   void start_step() override;
   FSI::Facts facts() const override;
   void find_idle(const Census &, const Idle &) const override;

@@ -295,8 +295,16 @@ void Keywords::begin() const
     for (const auto &v : row.values) v.begin();
 }
 
-void Keywords::parse(int narg, char **arg)
+bool Keywords::knows(const std::string &keyword) const
 {
+  return std::any_of(rows.begin(), rows.end(), [&](const Row &r) {
+    return r.keyword && r.name == keyword;
+  });
+}
+
+void Keywords::parse(const std::vector<std::string> &arg)
+{
+  const int narg = arg.size();
   std::vector<std::string> known;
   for (const auto &row : rows)
     if (row.keyword) known.push_back(row.name);
@@ -325,7 +333,7 @@ void Keywords::parse(int narg, char **arg)
       utils::missing_cmd_args(FLERR, keyword ? command + " " + it->name : command, error);
     for (const auto &v : it->values) {
       std::string text;
-      for (int k = 0; k < v.count(); k++) text += (k ? " " : "") + std::string(arg[iarg + k]);
+      for (int k = 0; k < v.count(); k++) text += (k ? " " : "") + arg[iarg + k];
       take(*it, v, text);
       iarg += v.count();
     }

@@ -137,7 +137,10 @@ namespace FSI {
     // or may as a matter of course, without a warning
     Keywords &of_a_run() { return with(&Row::may_change, true); }
 
-    void parse(int narg, char **arg);    // what is not named gets what it has at the start
+    // what is not named gets what it has at the start
+    void parse(const std::vector<std::string> &words);
+    void parse(int narg, char **arg) { parse({arg, arg + narg}); }
+    bool knows(const std::string &keyword) const;
 
     void write(Record &) const;
     void read(const Record &);

@@ -47,7 +47,8 @@ void Others::init()
   spins = anywhere(local, world) && atom->radius_flag && atom->omega_flag && atom->torque_flag;
 }
 
-// an atom that was never given a mass or a density gets those of the stress-free lattice
+// an atom that was never given a mass or a density gets those of the stress-free lattice: of a
+// body that keeps its reference the cell's, which is exact; else 1/psi, whose sum is
 void Others::give_defaults(int i) const
 {
   if (scene.parts.empty()) return;    // before the first run
@@ -60,7 +61,10 @@ void Others::give_defaults(int i) const
 
 double Others::lattice_mass(const Discretization &disc, int type)
 {
-  return disc.state[type].rho0 / disc.resolution[type].psi_bulk;
+  const State &s = disc.state[type];
+  const Resolution &r = disc.resolution[type];
+  if (s.form != TOTAL_LAGRANGIAN) return s.rho0 / r.psi_bulk;
+  return s.rho0 * (disc.dim == 2 ? r.dx * r.dx : r.dx * r.dx * r.dx);
 }
 
 // one number for the checks of all densities: mass over volume

@@ -35,6 +35,7 @@ namespace FSI {
   class Scene;
   struct Discretization;
   struct Ledger;
+  struct Preset;
   struct StepState;
 
   // What others need to know of a style. A style that there is not has none of it.
@@ -42,6 +43,7 @@ namespace FSI {
     enum Style { NONE, OF_FLUIDS, OF_SOLIDS, OF_TOTAL_LAGRANGIAN_SOLIDS, OF_GRAINS };
     Style style = NONE;    // of pairs
     // of fluids
+    const Preset *preset = nullptr;
     bool laminar = false;                  // laminar viscosity
     bool implicit_viscosity = false;       // of a step with no limit from it
     bool couples_stress = false;           // solids act with a pressure or stress of their own

@@ -14,18 +14,24 @@
 #include "fsi_scene.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "fsi_find.h"
 #include "fsi_kernel.h"
+#include "fsi_keywords.h"
 #include "fsi_part.h"
+#include "fsi_preset.h"
 #include "lammps.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "pair.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 using namespace LAMMPS_NS;
 using namespace FSI;
@@ -62,6 +68,31 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
     resolution.push_back(own > 0.0 ? resolution_of(own) : fluid);
     largest_cut = std::max(largest_cut, resolution.back().cut);
   }
+}
+
+void Discretization::choose_kernel(LAMMPS *lmp, const Keywords &keywords,
+                                   std::vector<std::string> &words)
+{
+  kernel_named = words.size() > 1 && !keywords.knows(words[1]);
+  if (kernel_named || words.empty()) return;
+  const KernelChoice chosen = kernel_of(facts_of_fluids(lmp).preset, lmp->domain->dimension);
+  words.insert(words.begin() + 1,
+               {chosen.kernel == QUINTIC ? "quintic" : "wendland", fmt::format("{}", chosen.hdx)});
+}
+
+void FSI::choose_skin(LAMMPS *lmp, double dx)
+{
+  static const std::map<std::string, double> unset = {
+      {"lj", 0.3},  {"real", 2.0},     {"metal", 2.0}, {"si", 0.001},
+      {"cgs", 0.1}, {"electron", 2.0}, {"micro", 0.1}, {"nano", 0.1}};    // Update::set_units()
+  double &skin = lmp->neighbor->skin;
+  const auto it = unset.find(lmp->update->unit_style);
+  if (it == unset.end() || skin != it->second) return;
+  skin = 0.5 * dx;
+  if (lmp->comm->me == 0)
+    utils::logmesg(lmp,
+                   "Fix fsi: neighbor skin {:g}, half the spacing; command neighbor sets another\n",
+                   skin);
 }
 
 void Scene::enter_state(int type, const State &s)

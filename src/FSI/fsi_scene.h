@@ -32,6 +32,7 @@ class Fix;
 class LAMMPS;
 
 namespace FSI {
+  class Keywords;
   class Part;
   class Profile;
   class Sight;
@@ -77,6 +78,9 @@ namespace FSI {
       const double ratio = dx_of(type) / spacing, per_h = dx / h;
       return (1.0 - ratio * ratio) / 24.0 * per_h * per_h;
     }
+    // into the words of fix fsi, if they have none: those of the fluid's preset
+    void choose_kernel(LAMMPS *, const Keywords &, std::vector<std::string> &);
+    bool kernel_named;
     // h over dx; spacings that differ from dx, by type, or 0
     void resolve(double hdx, const std::vector<double> &spacing);
 
@@ -92,6 +96,9 @@ namespace FSI {
     double surface_ratio = 0.0;
     bool need_psi = false;    // for any mode or rule
   };
+
+  // a skin of half a spacing, in place of the one that LAMMPS has before any command neighbor
+  void choose_skin(LAMMPS *, double dx);
 
   // Of one step.
   struct StepState {

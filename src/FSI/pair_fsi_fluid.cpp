@@ -27,6 +27,7 @@
 #include "fsi_kernel.h"
 #include "fsi_pair_laws.h"
 #include "fsi_pair_sets.h"
+#include "fsi_preset.h"
 #include "fsi_profile.h"
 #include "fsi_refusals.h"
 #include "fsi_shear.h"
@@ -74,6 +75,11 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
     rate(nullptr), beyond(nullptr), given_ghosts(0.0), raised_ghosts(-1.0), hybrid(nullptr),
     no_fdotr_before(0)
 {
+  std::vector<std::string> presets = {"none"};
+  for (const Preset &s : PRESETS) presets.push_back(s.name);
+  keywords.key("preset")
+      .choice(preset, 0, presets, "name")
+      .number(speed, 0.0, Range::above(0.0), "speed");
   keywords.key("sound").number(sound, 0.0, Range::above(0.0));
   keywords.key("eos").choice(tait, 0, {"linear", "tait"});
   artificial_row("fluid");
@@ -98,6 +104,9 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
       .effect("free surface where psi is below {}");
   keywords.key("tension").logical(tension, false).effect("tension in the fluid");
   keywords.key("background").number(background, 0.0).effect("background pressure {}");
+  keywords.key("background/speed")
+      .number(background_speed, 0.0, Range::above(0.0))
+      .effect("background pressure rho U^2, U {}");
   keywords.key("couple").choice(given_couple, WALL, coupling_names);
   keywords.key("extrapolate").logical(extrapolate, false);
 }
@@ -105,6 +114,46 @@ PairFSIFluid::PairFSIFluid(LAMMPS *lmp) :
 PairFSIFluid::~PairFSIFluid()
 {
   take_virial(nullptr);
+}
+
+// with those of the preset that the script does not name itself
+void PairFSIFluid::settings(int narg, char **arg)
+{
+  PairFSI::settings(narg, arg);
+  if (preset == 0) return;
+  const Preset &s = PRESETS[preset - 1];
+  const auto named = [=](const std::string &word) {
+    return std::find(arg, arg + narg, word) != arg + narg;
+  };
+  std::string text = fmt::format("sound {} ", SOUND_OVER_SPEED * speed);
+  if (s.background && !named("background")) text += fmt::format("background/speed {} ", speed);
+  std::vector<std::string> all;
+  bool open = false;
+  for (const auto &word : utils::split_words(text + s.keywords)) {
+    if (keywords.knows(word)) open = !named(word);
+    if (open) all.push_back(word);
+  }
+  if (comm->me == 0)
+    utils::logmesg(lmp, "  preset {} {:g}: {}\n", s.name, speed, utils::join_words(all, " "));
+  all.insert(all.end(), arg, arg + narg);
+  keywords.parse(all);
+}
+
+void PairFSIFluid::check_settings()
+{
+  if (background != 0.0 && background_speed > 0.0)
+    error->all(FLERR,
+               "Pair style fsi/fluid background and background/speed both say the pressure: "
+               "expected one of them");
+}
+
+// of the densest fluid, one for all
+double PairFSIFluid::background_pressure() const
+{
+  double rho = 0.0;
+  for (const Material &m : material)
+    if (m.species == FLUID) rho = std::max(rho, m.rho0);
+  return background + rho * background_speed * background_speed;
 }
 
 // A hybrid style would take the virial of images, too, with that of pairs: pairs have to count
@@ -152,7 +201,7 @@ State PairFSIFluid::make_state(const Material &m) const
     s.tait = tait;
   }
   s.inv_csq = 1.0 / s.csq;
-  s.p0 = background;
+  s.p0 = background_pressure();
   if (!tension) s.floor = 0.0;
   s.viscosity = m.viscosity;
   s.law = m.law;
@@ -181,7 +230,7 @@ void PairFSIFluid::check_effects(const Facts &of_solids) const
       {delta > 0.0 && !rates, Refused::CONTINUITY, "density/diffusion"},
       {surfaces && !rates, Refused::CONTINUITY, "density/surface"},
       {shifting > 0.0 && !rates, Refused::CONTINUITY, "shift"},
-      {surfaces && (tension || background != 0.0), Refused::SURFACES, ""},
+      {surfaces && (tension || background_pressure() != 0.0), Refused::SURFACES, ""},
       {implicit && laminar != PLAIN_LAMINAR, Refused::IMPLICIT, ""},
       {full && of_solids.style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS, Refused::FULL_TOTAL, ""},
       // the plain forces of a solid end at its face with half a kernel of neighbors missing, which
@@ -221,6 +270,12 @@ void PairFSIFluid::init_style()
   const Facts of_solids = facts_of_solids(lmp);
   couple = disc->article && of_solids.style == Facts::OF_SOLIDS ? FULL : given_couple;
   check_effects(of_solids);
+  const KernelChoice advised = kernel_of(facts().preset, disc->dim);
+  if (preset && !disc->kernel_named && advised.kernel != disc->kernel)
+    error->all(FLERR,
+               "Fix fsi without a kernel takes the one of preset {}: expected the pair style "
+               "before the fix, or the kernel named there",
+               PRESETS[preset - 1].name);
   fix_fsi->find_levels();
   pairs.init(*disc, *step, couple != WALL);
   members->cut_solids.init(*disc, has_solids());
@@ -263,6 +318,7 @@ Facts PairFSIFluid::facts() const
 {
   Facts facts = PairFSI::facts();
   facts.style = Facts::OF_FLUIDS;
+  facts.preset = preset ? &PRESETS[preset - 1] : nullptr;
   facts.laminar = laminar;
   facts.implicit_viscosity = implicit;
   facts.couples_stress = couple != WALL;

@@ -58,6 +58,7 @@ class PairFSIFluid : public PairFSI {
   std::vector<Effect> effects() const override;
   void find_idle(const Census &, const Idle &) const override;
   double memory_usage() override;
+  void settings(int, char **) override;
   bool has_laminar() const { return laminar; }
   bool sticks_to_solids() const { return laminar && !solids_slip && has_solids(); }
   double sound_of(const FSI::Material &) const;
@@ -96,12 +97,17 @@ class PairFSIFluid : public PairFSI {
 
  private:
   // settings
-  double eddies;                      // C_s of Smagorinsky; 0: none
-  double sound, background, delta;    // sound: of fluids whose material has none; 0: there is no
-                                      // default
-  double shifting;                    // coefficient C of particle shifting; 0 = off
-  int shift_every;                    // steps from one displacement to the next
-  double surface_ratio;               // of the free-surface rule
+  int preset;                             // fsi_preset.h, from 1 on; 0: none
+  double speed;                           // of the flow, for it
+  double eddies;                          // C_s of Smagorinsky; 0: none
+  double background, background_speed;    // one of them
+  double background_pressure() const;
+  void check_settings() override;
+  double sound, delta;     // sound: of fluids whose material has none; 0: there is no
+                           // default
+  double shifting;         // coefficient C of particle shifting; 0 = off
+  int shift_every;         // steps from one displacement to the next
+  double surface_ratio;    // of the free-surface rule
   // distance over the mean spacing from which on solids push fluid off; 0: they do not
   double solids_guard;
   int tait, laminar, implicit, given_couple, couple, extrapolate, tension, solids_slip;
@@ -141,7 +147,7 @@ class PairFSIFluid : public PairFSI {
   int nshift() const, shift_sums() const;
   bool fills() const
   {    // no free surfaces: with a background pressure they would blow up
-    return background > 0.0;
+    return background > 0.0 || background_speed > 0.0;
   }
   bool open_ends;
   double *const *velocity_of_shifting() const;
