@@ -88,10 +88,10 @@ void FSI::choose_skin(LAMMPS *lmp, double dx)
   double &skin = lmp->neighbor->skin;
   const auto it = unset.find(lmp->update->unit_style);
   if (it == unset.end() || skin != it->second) return;
-  skin = 0.5 * dx;
+  skin = 0.4 * dx;
   if (lmp->comm->me == 0)
     utils::logmesg(lmp,
-                   "Fix fsi: neighbor skin {:g}, half the spacing; command neighbor sets another\n",
+                   "Fix fsi: neighbor skin {:g}, 0.4 spacings; command neighbor sets another\n",
                    skin);
 }
 

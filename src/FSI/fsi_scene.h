@@ -97,7 +97,7 @@ namespace FSI {
     bool need_psi = false;    // for any mode or rule
   };
 
-  // a skin of half a spacing, in place of the one that LAMMPS has before any command neighbor
+  // a skin of 0.4 spacings, in place of the one that LAMMPS has before any command neighbor
   void choose_skin(LAMMPS *, double dx);
 
   // Of one step.
