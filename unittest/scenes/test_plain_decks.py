@@ -89,6 +89,10 @@ def test_who_has_a_study():
 
 def begun(text, steps):
     """A deck that ends after some steps of its first run of any, and leaves its first and last state."""
+    stop = re.search(r"^fsi/run +(\S+)", text, re.M)
+    if stop and re.search("^fix .* fsi/dt ", text, re.M):    # a fix that is there stops at that time
+        text = re.sub("(^fix .* fsi/dt 10)", rf"\g<1> stop {stop[1]}", text, flags=re.M)
+        text = re.sub("^fsi/run .*", "run 1000000000", text, flags=re.M)
     text = re.sub(r"^fsi/run +(\S+)(.*)", r"fix fsi_dt all fsi/dt 10 stop \1\2\nrun 1000000000", text, flags=re.M)
     head, whole = re.split(r"^run +(?!0 )(\S+).*", text, maxsplit=1, flags=re.M)[:2]
     return (f'{head}print "WHOLE {whole} $(dt)"\nwrite_dump all custom first {STATE}\n'
