@@ -13,6 +13,7 @@ import evidence
 import hard_pages
 import largest
 import peers
+import presets
 import refusals
 import robustness
 import scaling
@@ -147,7 +148,8 @@ def texts():
               PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"], [largest.line(read_csv(PAGE / "largest.csv"))]),
               evidence.HARD / "README.md": hard_pages.hard_page(), evidence.HARD / "robustness.md": hard_pages.robustness_page(),
               paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page(),
-              paths.ROOT / "doc/src/refusals.csv": refusals.page()}
+              paths.ROOT / "doc/src/refusals.csv": refusals.page(),
+              paths.ROOT / "doc/src/presets.csv": presets.page()}
     readme = paths.ROOT / "README.md"
     ran = {paths.EXAMPLES / name / "README.md": found["scenes"].get(name, {}).get("summary") for name in paths.examples()}
     pages |= {path: results.run_times(path.read_text(), path.parent.name, summary) for path, summary in ran.items() if summary}

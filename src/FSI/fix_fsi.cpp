@@ -95,14 +95,11 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
   keywords.key("spacing").per_type(given_spacing, positive).kept(kept);
   keywords.key("thin").types(thin);
   keywords.key("mach").number(mach, 1.0, positive).or_word("off", Check::OFF);
-  std::vector<std::string> words(arg + 3, arg + narg);
-  choose_kernel(lmp, keywords, words);
-  keywords.parse(words);
+  keywords.parse(begin(lmp, keywords, {arg + 3, arg + narg}));
   substeps = given_substeps;
   if (article && density_fluid == CONTINUITY) density_fluid = SUMMATION;
   if (article && density_solid == CONTINUITY) density_solid = RATIO;
 
-  dim = domain->dimension;
   resolve(hdx, given_spacing);
   choose_skin(lmp, dx);
   const auto &before = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"))->of_fix_fsi;

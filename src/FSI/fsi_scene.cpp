@@ -70,14 +70,16 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
   }
 }
 
-void Discretization::choose_kernel(LAMMPS *lmp, const Keywords &keywords,
-                                   std::vector<std::string> &words)
+std::vector<std::string> Discretization::begin(LAMMPS *lmp, const Keywords &keywords,
+                                               std::vector<std::string> words)
 {
+  dim = lmp->domain->dimension;
   kernel_named = words.size() > 1 && !keywords.knows(words[1]);
-  if (kernel_named || words.empty()) return;
-  const KernelChoice chosen = kernel_of(facts_of_fluids(lmp).preset, lmp->domain->dimension);
+  if (kernel_named || words.empty()) return words;
+  const KernelChoice chosen = kernel_of(facts_of_fluids(lmp).preset, dim);
   words.insert(words.begin() + 1,
                {chosen.kernel == QUINTIC ? "quintic" : "wendland", fmt::format("{}", chosen.hdx)});
+  return words;
 }
 
 void FSI::choose_skin(LAMMPS *lmp, double dx)
@@ -90,9 +92,8 @@ void FSI::choose_skin(LAMMPS *lmp, double dx)
   if (it == unset.end() || skin != it->second) return;
   skin = 0.4 * dx;
   if (lmp->comm->me == 0)
-    utils::logmesg(lmp,
-                   "Fix fsi: neighbor skin {:g}, 0.4 spacings; command neighbor sets another\n",
-                   skin);
+    utils::logmesg(
+        lmp, "Fix fsi: neighbor skin {:g}, 0.4 spacings; command neighbor sets another\n", skin);
 }
 
 void Scene::enter_state(int type, const State &s)

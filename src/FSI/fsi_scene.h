@@ -78,8 +78,8 @@ namespace FSI {
       const double ratio = dx_of(type) / spacing, per_h = dx / h;
       return (1.0 - ratio * ratio) / 24.0 * per_h * per_h;
     }
-    // into the words of fix fsi, if they have none: those of the fluid's preset
-    void choose_kernel(LAMMPS *, const Keywords &, std::vector<std::string> &);
+    // with its dimension; the words of fix fsi, with the kernel of the fluid's preset if none is named
+    std::vector<std::string> begin(LAMMPS *, const Keywords &, std::vector<std::string> words);
     bool kernel_named;
     // h over dx; spacings that differ from dx, by type, or 0
     void resolve(double hdx, const std::vector<double> &spacing);

@@ -9,16 +9,14 @@ from scenes import run
 
 from fsi import launch, paths
 
-COMMANDS = ("fsi_displace", "fsi_material", "fsi_pack", "fsi_set")
+COMMANDS = ("fsi_displace", "fsi_dump", "fsi_material", "fsi_pack", "fsi_run", "fsi_set")
 PAGES = paths.ROOT / "doc/src"
 SOURCES = paths.sources()
 STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in paths.sources("*.h").values()
           for kind, name in re.findall(r"^(Pair|Fix|Compute|Command|Atom)Style\(([^,]+),", header.read_text(), re.M)}
 STYLES["atom_style_fsi"] = STYLES.pop("atom_fsi")
-STYLES.pop("command_fsi_set")  # its name of today and that of before
-STYLES.pop("command_fsi_material")
-STYLES.pop("command_fsi_displace")
-STYLES.pop("command_fsi_pack")
+for name in COMMANDS:
+    STYLES.pop(f"command_{name}")
 STYLES |= {name: name.replace("_", "/") for name in COMMANDS}
 STYLES.pop("fix_FSI_REFERENCE")  # internal
 STYLES.pop("fix_FSI_HISTORY")

@@ -6,6 +6,7 @@ import sys
 from fsi import paths
 
 sys.path.insert(0, str(paths.ROOT / "bench"))
+import presets  # noqa: E402
 import refusals  # noqa: E402
 
 BY_LAMMPS = {"RESET_IDS"}  # LAMMPS refuses these itself
@@ -13,6 +14,11 @@ BY_LAMMPS = {"RESET_IDS"}  # LAMMPS refuses these itself
 
 def test_the_page_is_that_of_the_table():
     assert (paths.ROOT / "doc/src/refusals.csv").read_text() == refusals.page(), "tools/renew --pages-only writes it"
+
+
+def test_the_page_of_presets_is_that_of_the_table():
+    assert len(presets.table()) == presets.TABLE.read_text().count("},") + 0
+    assert (paths.ROOT / "doc/src/presets.csv").read_text() == presets.page(), "tools/renew --pages-only writes it"
 
 
 def test_every_row_is_used_and_every_use_has_a_row():

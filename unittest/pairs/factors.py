@@ -251,9 +251,11 @@ ELSEWHERE = {
     "fix_fsi_watch": {"test_watch": "fsi/watch action density distance energy lost off stop warn"},
     "fsi_displace": {"test_displace": "fsi/displace all"},
     "fsi_material": {"test_materials": "sound"},
+    "fsi_dump": {"test_presets": "fsi/dump file"},
+    "fsi_run": {"test_presets": "fsi/run"},
     "fsi_pack": {"test_packing": "fsi/pack region stl outline still steps"},
     "fsi_set": {"test_density": "pressure hydrostatic volume"},
-    "pair_fsi_fluid": {"test_shift": "no"},
+    "pair_fsi_fluid": {"test_shift": "no", "test_presets": "preset none splash stream closed waves background/speed"},
     "pair_fsi_solid": {"test_solid": "plain no"},
     "pair_fsi_solid_tl": {"test_solid_tl": "svk strain quadratic corrected auto no"},
 }

@@ -372,7 +372,8 @@ NUMBERS = [
     *[(word, *fluid("", f"sound {keyword} ".replace("sound sound", "sound"))) for word, keyword in (
         ("sound", "sound {}"), ("background", "10 background {}"), ("artificial/visc alpha", "10 artificial/visc {} 0"),
         ("artificial/visc beta", "10 artificial/visc 0 {}"), ("density/diffusion", "10 density/diffusion {}"), ("smagorinsky", "10 smagorinsky {}"), ("shift", "10 shift {}"),
-        ("shift/every", "10 shift 0.1 shift/every {}"), ("solid/guard", "10 solid/guard {}"), ("surface", "10 surface {}"))],
+        ("shift/every", "10 shift 0.1 shift/every {}"), ("solid/guard", "10 solid/guard {}"), ("surface", "10 surface {}"),
+        ("preset speed", "10 preset closed {}"), ("background/speed", "10 background/speed {}"))],
     *[(word, "artificial/visc 0.1 0.1 artificial/stress 0.3 gradient corrected", keyword) for word, keyword in (
         ("artificial/visc alpha", "artificial/visc {} 0"), ("artificial/visc beta", "artificial/visc 0 {}"),
         ("artificial/stress", "artificial/stress {}"), ("hourglass", "hourglass {}"), ("contact", "contact {}"))],
