@@ -17,7 +17,7 @@ def test_the_page_is_that_of_the_table():
 
 
 def test_the_page_of_presets_is_that_of_the_table():
-    assert len(presets.table()) == presets.TABLE.read_text().count("},") + 0
+    assert len(presets.table()) == presets.TABLE.read_text().count("},")
     assert (paths.ROOT / "doc/src/presets.csv").read_text() == presets.page(), "tools/renew --pages-only writes it"
 
 
