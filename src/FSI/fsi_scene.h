@@ -78,7 +78,8 @@ namespace FSI {
       const double ratio = dx_of(type) / spacing, per_h = dx / h;
       return (1.0 - ratio * ratio) / 24.0 * per_h * per_h;
     }
-    // with its dimension; the words of fix fsi, with the kernel of the fluid's preset if none is named
+    // its dimension; returns the words of fix fsi, with the kernel of the fluid's preset if they
+    // name none
     std::vector<std::string> begin(LAMMPS *, const Keywords &, std::vector<std::string> words);
     bool kernel_named;
     // h over dx; spacings that differ from dx, by type, or 0
