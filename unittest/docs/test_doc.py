@@ -9,7 +9,7 @@ from scenes import run
 
 from fsi import launch, paths
 
-COMMANDS = ("fsi_displace", "fsi_dump", "fsi_material", "fsi_pack", "fsi_run", "fsi_set")
+COMMANDS = ("fsi_clamp", "fsi_displace", "fsi_dump", "fsi_material", "fsi_pack", "fsi_run", "fsi_set")
 PAGES = paths.ROOT / "doc/src"
 SOURCES = paths.sources()
 STYLES = {re.sub(r"\W", "_", f"{kind.lower()}_{name}"): name for header in paths.sources("*.h").values()

@@ -251,6 +251,7 @@ ELSEWHERE = {
     "fix_fsi_watch": {"test_watch": "fsi/watch action density distance energy lost off stop warn"},
     "fsi_displace": {"test_displace": "fsi/displace all"},
     "fsi_material": {"test_materials": "sound"},
+    "fsi_clamp": {"test_clamp_command": "fsi/clamp"},
     "fsi_dump": {"test_presets": "fsi/dump file"},
     "fsi_run": {"test_presets": "fsi/run"},
     "fsi_pack": {"test_packing": "fsi/pack region stl outline still steps"},

@@ -21,7 +21,7 @@ LONGER = {"sphere": 51, "turek_hron_fsi": 52}    # four levels; a cylinder and i
 PLAIN_COMMANDS = {
     "atom_style", "boundary", "comm_modify", "compute", "create_atoms", "create_box",
     "delete_atoms", "dimension", "displace_atoms", "dump", "dump_modify", "fix", "fsi/material",
-    "fsi/displace", "fsi/dump", "fsi/pack", "fsi/run", "fsi/set", "group", "include", "lattice", "neigh_modify", "neighbor", "pair_coeff",
+    "fsi/clamp", "fsi/displace", "fsi/dump", "fsi/pack", "fsi/run", "fsi/set", "group", "include", "lattice", "neigh_modify", "neighbor", "pair_coeff",
     "pair_style", "region", "run", "set", "thermo", "thermo_modify", "thermo_style", "timestep",
     "unfix", "units", "variable", "velocity"}
 DEFAULTS = ("newton on", "comm_modify mode single", "neigh_modify every 1 delay 0 check yes")
