@@ -15,6 +15,7 @@
 
 #include "atom.h"
 #include "atom_vec_fsi.h"
+#include "citeme.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -47,6 +48,13 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace FSI;
 
+static const char cite_fsi[] = "FSI package: fluid-structure interaction by SPH\n\n"
+                               "@Misc{FSI,\n"
+                               " author = {{The authors of the FSI package for LAMMPS}},\n"
+                               " title = {FSI package for LAMMPS},\n"
+                               " note = {Version 0.9}\n"
+                               "}\n\n";
+
 struct FixFSI::Members {
   Keywords keywords;
   Clock clock;
@@ -76,6 +84,7 @@ FixFSI::FixFSI(LAMMPS *lmp, int narg, char **arg) :
     number_density(members->number_density), clamps(members->clamps), forward(lmp, state),
     back(lmp, state), one_array(lmp, state), carried(nullptr)
 {
+  if (lmp->citeme) lmp->citeme->add(cite_fsi);
   if (!atom->style_match("fsi")) error->all(FLERR, "Fix fsi requires atom_style fsi");
 
   static const std::vector<std::string> names = {"cubic", "quintic", "wendland"};
