@@ -157,7 +157,8 @@ QUOTED = [
         100 * (a / reference("turek_hron_fsi", "uy_amplitude_fsi2_2") - 1.0) for a in sound("turek_hron_fsi", "uy_amplitude")[::-1]]),
     ("doc/src/fix_fsi_wall_particle.rst", "scatters by {} % instead of {} %", lambda: figures("wedge_entry", "force_scatter_30_25", "force_scatter_30_25_lattice")),
     ("README.md", "drag is {} % and lift {} % off", lambda: figures("cylinder_free", "drag_re_200", "lift_re_200")),
-    ("doc/src/Howto_peers.rst", "here {} to {} % off", lambda: figures("turek_hron_fsi", "uy_amplitude_fsi3_2_to_8", "uy_amplitude_fsi3_4")),
+    ("doc/src/Howto_peers.rst", "here {} % with 40 particles per diameter at the flag, {} % with 20, and {} % with 10",
+     lambda: figures("turek_hron_fsi", *(f"uy_amplitude_fsi3_{n}" for n in ("2_to_8", "4", "2")))),
     ("unittest/hard/README.md", "obstacle is {} % off", lambda: hard("obstacle")[-1:]),
     ("examples/oscillating_plate/README.md", "Without it, it is too soft by {} % with 5 particles", lambda: run_of("oscillating_plate", "hourglass control, TL = 0")),
 ]
