@@ -169,7 +169,7 @@ def test_page_of_a_command_has_the_form_of_lammps():
 
 
 def test_every_file_of_tests_says_what_it_tests():
-    """In its first line, which doc/testing.md lists."""
+    """In its first line, which a command of the contributor guide lists."""
     files = sorted((paths.ROOT / "unittest").glob("*/test_*.py"))
     assert len(files) > 50 and not [path.name for path in files if not re.match(r'r?"""\w.{20}', path.read_text())]
 
