@@ -137,7 +137,7 @@ def test_every_bundled_material_is_on_its_page():
 
 def test_citation():
     """Fix fsi and doc/roadmap.md name authors, title and version as CITATION.cff does."""
-    entry = re.search(r"```bibtex\n(.*?)```", (paths.ROOT / "doc/roadmap.md").read_text(), re.S)[1]
+    entry = re.search(r"```text\n(.*?)```", (paths.ROOT / "doc/roadmap.md").read_text(), re.S)[1]
     code = re.search(r"cite_fsi\[\] =(.*?);", SOURCES["fix_fsi.cpp"].read_text(), re.S)[1]
     said = "".join(re.findall(r'"(.*?)"', code)).replace("\\n", "\n")
     assert said.partition("\n\n")[2].strip() == entry.strip()
