@@ -116,9 +116,9 @@ def mass_error(log, first, last, outflow):
 
 def rms(tip, name, experiment, column):
     """Distance [mm] to the experiment's points, those after the series' end left out; None if that leaves none."""
-    there = np.isfinite(tip[name])
-    tip = series.Series({key: tip[key][there] for key in ("time", name)})
-    distance = series.rms_distance(tip, name, experiment, column)
+    def there(found, key):
+        return series.Series({k: found[k][np.isfinite(found[key])] for k in ("time", key)})
+    distance = series.rms_distance(there(tip, name), name, there(experiment, column), column)
     return None if distance is None else 1e3 * distance
 
 
