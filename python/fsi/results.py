@@ -167,7 +167,7 @@ def _table(scenes, up):
     rows = []
     for name, entry in scenes.items():
         for k, f in enumerate(listed(entry)):
-            rows.append([f"[{title(name)}]({_page(name, up)})" if k == 0 else "", f"`{f['name']}`", _value(f), "" if f["reference"] is None else number(f["reference"]),
+            rows.append([f"[{title(name)}]({_page(name, up)})" if k == 0 else "", f"`{f['name']}`", value(f), "" if f["reference"] is None else number(f["reference"]),
                          kind(f["source"]) or "none", _whole(deviation(f)), bound(f), "yes" if f["met"] else "**no**",
                          f"{core_seconds(entry['summary']):,.0f}" if k == 0 else ""])
     return _markdown(["scene", "quantity", "computed", "reference", "kind", "error", "target", "met", "CPU s"], rows)
@@ -230,7 +230,7 @@ def _headline(row, figure, seconds, entry):
     others = [f for f in entry["summary"]["figures"] if re.fullmatch(row.get("of", ".*"), f["name"]) and f["relative_error"] is not None and f is not figure]
     known = [f for f in judged(entry) if re.fullmatch(row.get("of", ".*"), f["name"])]
     worst = max([f for f in others if f["target"] is not None] or others, key=lambda f: abs(f["relative_error"]))
-    return [f"{row['words']} {_value(figure)}", f"{number(figure['reference'])} ({kind(figure['source'])})", _whole(deviation(figure)),
+    return [f"{row['words']} {value(figure)}", f"{number(figure['reference'])} ({kind(figure['source'])})", _whole(deviation(figure)),
             f"{words(worst['name'])} {_whole(deviation(worst))}", _whole(share(known)) if known else "none set", _whole(duration(seconds))]
 
 
@@ -262,7 +262,8 @@ def _markdown(head, rows):
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
 
 
-def _value(figure):
+def value(figure):
+    """A figure with its unit."""
     unit = figure["unit"]
     return f"{number(figure['value'])}{' ' if ' ' in unit else WHOLE}{unit}" if unit else number(figure["value"])
 
