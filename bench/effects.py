@@ -93,6 +93,9 @@ def gate(n, _, without=(), water="", rubber="", commands=""):
 STEP = "fix dt all fsi/dt 10"
 WATCH = "fix watch all fsi/watch 10 distance off density off energy off"
 LEDGER = "compute ledger all fsi/energy\nthermo_style custom step c_ledger[1]"
+DEFAULTS = ("*hourglass 0.05*, *gradient quadratic* and *volumetric auto* of `fsi/solid/tl`, *solid/guard 0.5* of `fsi/fluid`, "
+            "*mach 1* of `fix fsi`")  # what is on without being named; their pages have it
+
 SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
     "fluid": ("Water", fluid, {
         "artificial viscosity": {"style": "artificial/visc 0.05 0"},
@@ -205,7 +208,8 @@ def draw(path, rows):
 def page(rows, variants):
     """The page's text; variants: rows of tools/cost solids, of which the same in three dimensions; none while those are not there."""
     lines = ["# What each effect costs", "",
-             "An effect that a script does not name is not computed, stored or sent. This is what naming it adds to a step.", "",
+             "Besides the defaults an effect that a script does not name is not computed, stored or sent.", f"On by default: {DEFAULTS}.",
+             "This is what naming an effect adds to a step.", "",
              "![Instructions that each effect adds](effects.png)", "",
              "- Instructions of the time loop are counted by valgrind. They do not depend on the machine's load. Bars are cut at 100 %.",
              "- Time: CPU time with the effect over that without, in turns in one process: median ± half the range.",

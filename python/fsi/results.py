@@ -229,9 +229,9 @@ def _headline(row, figure, seconds, entry):
     """Cells: the main quantity, and of the others that have a target the one with the largest error; of all if none has."""
     others = [f for f in entry["summary"]["figures"] if re.fullmatch(row.get("of", ".*"), f["name"]) and f["relative_error"] is not None and f is not figure]
     known = [f for f in judged(entry) if re.fullmatch(row.get("of", ".*"), f["name"])]
-    worst = max([f for f in others if f["target"] is not None] or others, key=lambda f: abs(f["relative_error"]))
+    worst = max([f for f in others if f["target"] is not None] or others, key=lambda f: abs(f["relative_error"]), default=None)
     return [f"{row['words']} {value(figure)}", f"{number(figure['reference'])} ({kind(figure['source'])})", _whole(deviation(figure)),
-            f"{words(worst['name'])} {_whole(deviation(worst))}", _whole(share(known)) if known else "none set", _whole(duration(seconds))]
+            f"{words(worst['name'])} {_whole(deviation(worst))}" if worst else "none", _whole(share(known)) if known else "none set", _whole(duration(seconds))]
 
 
 def rule(found):
