@@ -99,7 +99,7 @@ def _plain(text, markup):
         text = re.sub(r"<!--.*?-->|<[^>\n]+>", " ", text, flags=re.S)
         text = re.sub(r"`[^`]+`", "X", text)
         return re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
-    text = re.sub(r"^( *)\.\. (?:code-block|math|parsed-literal|raw|index|image|toctree)::.*\n(?:\1 .*\n|[ \t]*\n)*", "", text, flags=re.M)
+    text = re.sub(r"^( *)\.\. (?:code-block|math|parsed-literal|raw|index|image|toctree|csv-table)::.*\n(?:\1 .*\n|[ \t]*\n)*", "", text, flags=re.M)
     text = re.sub(r"``[^`]+``|:math:`[^`]+`", "X", text)
     text = re.sub(r":[\w-]+:`(?:([^`<]*?)\s*<[^`]*>|([^`]*))`", lambda m: m[1] or "X", text)
     return re.sub(r"`([^`<]+)(?:\s*<[^`]*>)?`_+", r"\1", text).replace("\\ ", "").replace("\\", "")

@@ -41,10 +41,12 @@ def test_page_of_a_command_is_short():
 
 
 def test_user_pages_can_be_read():
-    """In three hours: what grows on one page goes from another, into data, or into the notes."""
-    total = sum(lengths(PAGES).values())
-    print(f"{total} words on {len(PAGES)} user pages")
-    assert total <= 45000
+    """In three hours: what grows on one page goes from another, into data, or into the notes. The gallery repeats the first sentence of each
+    scene's page, and the results are a table of data."""
+    counted = [page for page in PAGES if page not in (ROOT / "doc/src/gallery.rst", ROOT / "doc/results/README.md")]
+    total = sum(lengths(counted).values())
+    print(f"{total} words on {len(counted)} user pages")
+    assert total <= 43000
 
 
 def test_notes_are_short():
