@@ -99,7 +99,7 @@ def page():
     found = results.ran({"scenes": results.scenes_of(paths.PAGE)})
     lines = [".. github display off", "", ".. Written by tools/renew; edits are lost.", "", "Gallery", "=======", "",
              "Each scene runs with ``tools/run NAME``, with the name in brackets.",
-             "Errors are those of the scene's main quantity, with the kind of its reference; times are on one core.", ""]
+             "Each card gives the error of the main quantity, the kind of its reference, and the time on one core.", ""]
     names = []
     for group, scenes in results.main_figures().items():
         lines += [f"{group[0].upper()}{group[1:]}", "-" * len(group), "", ".. container:: cards", ""]

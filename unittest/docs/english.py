@@ -32,7 +32,7 @@ COMPRESSED = (
     (r"%\)? off\b", "an error of ... %"),
     (r"\bstruck\b|\bstrikes?\b", "hit"),
     (r"\b(?:merging|splitting|shifting|damping|spacing|tool|scene|script) takes\b", "a verb of what happens"),
-    (r"\bdecks?\b", "input script"),
+    (r"(?<!\.\.[ ])\bdecks?\b", "input script"),
     (r"\bthe article's scheme\b", "the original scheme"),
     (r"\bWhat (?:naming|is not named|goes)\b", "each optional effect; cannot be combined"),
 )
