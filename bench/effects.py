@@ -93,6 +93,9 @@ def gate(n, _, without=(), water="", rubber="", commands=""):
 STEP = "fix dt all fsi/dt 10"
 WATCH = "fix watch all fsi/watch 10 distance off density off energy off"
 LEDGER = "compute ledger all fsi/energy\nthermo_style custom step c_ledger[1]"
+DEFAULTS = ("*hourglass 0.05*, *gradient quadratic* and *volumetric auto* of `fsi/solid/tl`, *solid/guard 0.5* of `fsi/fluid`, "
+            "*mach 1* of `fix fsi`")  # what is on without being named; their pages have it
+
 SCENES = {  # scene: title, deck, {effect: settings with it, or (without, with)}
     "fluid": ("Water", fluid, {
         "artificial viscosity": {"style": "artificial/visc 0.05 0"},
@@ -202,14 +205,20 @@ def draw(path, rows):
         figure.tight_layout()
 
 
+def _added(value, form):
+    """A number, empty where it is none."""
+    return format(value, form) if value else ""
+
+
 def page(rows, variants):
     """The page's text; variants: rows of tools/cost solids, of which the same in three dimensions; none while those are not there."""
     lines = ["# What each effect costs", "",
-             "An effect that a script does not name is not computed, stored or sent. This is what naming it adds to a step.", "",
+             "Besides the defaults an effect that a script does not name is not computed, stored or sent.", f"On by default: {DEFAULTS}.",
+             "This is what naming an effect adds to a step.", "",
              "![Instructions that each effect adds](effects.png)", "",
              "- Instructions of the time loop are counted by valgrind. They do not depend on the machine's load. Bars are cut at 100 %.",
              "- Time: CPU time with the effect over that without, in turns in one process: median ± half the range.",
-             "- Memory: bytes of each particle. Messages and bytes: what one of two ranks sends in a step, bytes for each ghost particle.",
+             "- Memory: bytes of each particle. Messages and bytes: what one of two ranks sends in a step, bytes for each ghost particle. Empty: nothing.",
              "- The scenes are small: 1,000 particles. Walls are near many of them, and cost less in larger scenes.",
              "- The gate is the bundled one, solids included. There an effect of the water is a smaller share.", "",
              "| scene | effect | instructions | in 3D | time | memory [B] | messages | bytes | collective calls |", "|---|---|---:|---:|---:|---:|---:|---:|---:|"]
@@ -217,7 +226,7 @@ def page(rows, variants):
         for r in (r for r in rows if r["scene"] == name):
             three = solid_variants.added(variants, 3, name, r["effect"])
             lines.append(f"| {title} | {r['effect']} | {r['instructions']:+.1%} | {'' if three is None else f'{three:+.1%}'} | {r['time']:+.0%} ± {r['spread']:.0%} | "
-                         f"{r['memory']:+.0f} | {r['messages']:+.2g} | {r['bytes']:+.1f} | {r['collectives']:+.2g} |")
+                         f"{_added(r['memory'], '+.0f')} | {_added(r['messages'], '+.2g')} | {_added(r['bytes'], '+.1f')} | {_added(r['collectives'], '+.2g')} |")
     for what, (variant, over) in solid_variants.FORMS.items() if variants else ():
         two, three = (solid_variants.ratio(variants, dim, variant, over) - 1.0 for dim in (2, 3))
         lines.append(f"| Solid | {what} | {two:+.1%} | {three:+.1%} | | | | | |")

@@ -2,7 +2,9 @@
 
 import json
 import re
+import textwrap
 
+import effects
 import numpy as np
 from cost_report import cheapest, curves_of, few_labels, one_curve, seconds
 from tool import PAGE, read_csv
@@ -34,6 +36,7 @@ EFFECTS = {
     "viscosity of the solid": (r"artificial viscosity of the solid", {"total": "artificial viscosity", "gate": "viscosity of the rubber"}),
     "solid sub-steps": (r"solid sub-steps", {"gate": "sub-steps"}),
     "plasticity": (r"plasticity", {"total": "plasticity (hypoelastic)"})}
+ON = ("hourglass control",)  # without being named
 SELDOM = (r"shifted every 4", "particle shifting", "shifting, every 4 steps")  # announcement, effect, its row then
 TYPES = {  # type of scene: a bundled one, scenes of tools/cost effects by which its effects are measured
     "water at rest, waves": ("still_water", ("fluid",)), "dam break": ("dam_break", ("fluid",)), "vortices without walls": ("taylor_green", ("fluid",)),
@@ -194,12 +197,12 @@ def draw_named(path):
         axes.set(xlim=(-0.6, len(EFFECTS) - 0.4), ylim=(len(rows) - 0.4, -0.7))
         axes.set_yticks(range(len(rows)), [kind for kind, *_ in rows], fontsize=8.5)
         axes.xaxis.tick_top()
-        axes.set_xticks(range(len(EFFECTS)), EFFECTS, rotation=50, ha="left", fontsize=8)
+        axes.set_xticks(range(len(EFFECTS)), [f"{name} (default)" if name in ON else name for name in EFFECTS], rotation=50, ha="left", fontsize=8)
         axes.tick_params(length=0)
         for spine in axes.spines.values():
             spine.set_visible(False)
         axes.text(len(EFFECTS) - 0.2, -0.9, "instructions, in all", fontsize=8, ha="left", weight="bold")
-        figure.text(0.5, 0.045, "not named:   +0 instructions   +0 bytes   +0 messages", ha="center", fontsize=11, weight="bold", color="white",
+        figure.text(0.5, 0.045, "not named, besides the defaults:   +0 instructions   +0 bytes   +0 messages", ha="center", fontsize=11, weight="bold", color="white",
                     bbox={"facecolor": plot.GREEN, "edgecolor": "none", "boxstyle": "round,pad=0.5"})
 
 
@@ -228,7 +231,7 @@ def page():
     classic = [e["paper"]["pass"] for e in hard if "paper" in e]
     lines = [".. Written by tools/renew; edits are lost.", "", "Evidence: three questions", "=========================", "",
              "What does accuracy cost? Do hard cases stay stable? Do I pay for effects that I do not use?",
-             "Each answer is one picture of measured data. ``tools/renew`` makes them from runs of one version.", "",
+             "Each answer is one picture of measured data. ``tools/renew`` makes them; each data file names its commit.", "",
              "What accuracy costs", "-------------------", "", ".. image:: ../cost/cost.png", "   :alt: Error over CPU time in seven scenes",
              "   :target: ../cost/README.html", "",
              "Blue is the recommended method, orange what is usual in SPH. The green band marks errors below 1 %.", "",
@@ -238,16 +241,15 @@ def page():
              "Which hard cases stay stable", "----------------------------", "", ".. image:: ../hard/hard.png",
              "   :alt: Hard cases, here and with classic SPH", "   :target: ../hard/README.html", "",
              f"Of {len(here)} cases on which SPH codes commonly fail, {sum(here)} pass here. With classic SPH {sum(classic)} of {len(classic)} pass.",
-             "The :doc:`page of hard cases <../hard/README>` has the bounds and the measured values.", "", "What is *not* stable or not accurate:", "",
-             *(f"- {text}" for text in unstable()), "",
+             "The :doc:`page of hard cases <../hard/README>` has the bounds, the measured values and what is *not* stable.", "",
              "What effects cost", "-----------------", "", ".. image:: ../cost/named.png", "   :alt: Types of scenes and the effects that they name",
              "   :target: ../cost/effects.html", "",
              "A dot stands where the bundled scene of a type names an effect, as *fix fsi* prints it at the start of a run.",
              "The numbers are instructions that the effect adds to a step, in per cent of the bare scene. Open dots were not measured on their own.", "",
-             "An effect that a script does not name is not computed, not stored and not sent:", "",
-             "- +0 instructions: the bare scene runs no function of an effect that is not named. Counted by valgrind, to 0.2 %.",
+             *textwrap.wrap(f"Besides the defaults an effect that a script does not name is not computed, not stored and not sent. On by default: {effects.DEFAULTS}.".replace("`", "``"), 140), "",
+             "- +0 instructions: the bare scene runs no function of an effect that is neither named nor a default. Counted by valgrind, to 0.2 %.",
              "- +0 bytes: a particle takes what the bare loops and each named effect need, counted by hand.",
              "- +0 messages: what two ranks send is counted around the MPI calls and equals a count by hand.", "",
-             "``unittest/tools/test_pay.py`` proves each of the three in every run of the tests. What each effect adds is on the page of",
+             "``unittest/tools/test_pay.py`` tests each of the three. What each effect adds is on the page of",
              ":doc:`effects <../cost/effects>`."]
     return "\n".join(lines) + "\n"

@@ -22,7 +22,7 @@ import sound
 import typed_numbers
 from tool import PAGE, read_csv, say
 
-from fsi import gallery, paths, results, scene
+from fsi import gallery, paths, quoted, results, scene
 from fsi.command import Refusal, start
 
 TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling, "sound": sound}  # of tools/cost, with a table in doc/cost
@@ -150,6 +150,7 @@ def texts():
               paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page(),
               paths.ROOT / "doc/src/refusals.csv": refusals.page(),
               paths.ROOT / "doc/src/presets.csv": presets.page()}
+    pages |= quoted.pages()
     readme = paths.ROOT / "README.md"
     ran = {paths.EXAMPLES / name / "README.md": found["scenes"].get(name, {}).get("summary") for name in paths.examples()}
     pages |= {path: results.run_times(path.read_text(), path.parent.name, summary) for path, summary in ran.items() if summary}

@@ -34,8 +34,8 @@ vortex_Re1000    fluid rho 1000.0 viscosity 1.0
 # Channel of Schaefer and Turek, and of Turek and Hron: nu = 1e-3 m^2/s
 channel_water    fluid rho 1000.0 viscosity 1.0
 
-# Rubber gate of Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879: 12 MPa as the
-# stiffness used there, 10 MPa as in later papers on the same experiment
+# Rubber gate of Antoci, Gallati and Sibilla, Computers and Structures 85 (2007) 879: 12 MPa as it
+# is quoted for the experiment, 10 MPa as in later computations of it
 gate_12MPa       solid rho 1100.0 young 12.0e6 poisson 0.4
 gate_10MPa       solid rho 1100.0 young 10.0e6 poisson 0.4
 

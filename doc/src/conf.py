@@ -4,11 +4,14 @@ The source folder is the repository itself: the pages of doc/src, in the form of
 they are, so that a link between any two of them leads to the same page here and where the repository is browsed.
 """
 
+import posixpath
 import shutil
 from pathlib import Path
 
+from docutils import nodes
 from pygments.lexer import RegexLexer, bygroups
 from pygments.token import Comment, Keyword, Name, String, Text
+from sphinx.util import logging
 
 project = "FSI package for LAMMPS"
 author = copyright = "the FSI package"
@@ -46,6 +49,18 @@ def copy_mathjax(app, error):
                 shutil.copyfile(source, target)
 
 
+def link_pages(app, doctree, docname):
+    """A plain link to the source of a page, which a git host follows, leads to the page here."""
+    for node in doctree.findall(nodes.reference):
+        path, mark, place = node.get("refuri", "").partition("#")
+        if path.endswith((".rst", ".md")) and "://" not in path:
+            page = posixpath.normpath(posixpath.join(posixpath.dirname(docname), path.rpartition(".")[0]))
+            if page in app.env.found_docs:
+                node["refuri"] = app.builder.get_relative_uri(docname, page) + mark + place
+            else:
+                logging.getLogger(__name__).warning("no page %s", path, location=node)
+
+
 class LAMMPSLexer(RegexLexer):
     """What LAMMPS' manual calls code-block:: LAMMPS, so that pages can move there as they are."""
 
@@ -57,4 +72,5 @@ class LAMMPSLexer(RegexLexer):
 
 def setup(app):
     app.connect("build-finished", copy_mathjax)
+    app.connect("doctree-resolved", link_pages)
     app.add_lexer("LAMMPS", LAMMPSLexer)

@@ -12,12 +12,12 @@ import re
 import subprocess
 import sys
 import tempfile
+import textwrap
 from datetime import datetime
 from pathlib import Path
 
-from . import launch, log, paths, scene
+from . import launch, log, paths, results, scene
 from .command import Refusal, start
-from .results import title
 
 SHORT = "short.json"
 RANKS = (1, 2)
@@ -72,19 +72,40 @@ def pictures(name):
     return re.findall(r"!\[([^\]]*)\]\(([^)\s/]+)\)", (paths.EXAMPLES / name / "README.md").read_text())
 
 
+def figure_of(name, found):
+    """What a card says of accuracy and time: the main quantity of the scene, or of the first of several."""
+    row = next((row for rows in results.main_figures().values() for row in rows.get(name, [])), None)
+    of = row and name in found and results.main_of(row, found[name])
+    if not of:
+        return ""
+    figure = of[0]
+    error = f"{row['words']} " + (f"{results.deviation(figure)} ({results.kind(figure['source'])})" if figure["reference"] else results.value(figure))
+    return f"{error[0].upper()}{error[1:]}, {results.duration(max(1.0, of[1]))}."
+
+
+def card(name, found):
+    """Lines of a scene's card: picture, link, sentence, error and time."""
+    page = f"../../examples/{name}/README.md"
+    lines = ["   .. container:: card", ""]
+    if shown := [one for one in pictures(name) if (paths.EXAMPLES / name / one[1]).exists()]:
+        lines += [f"      .. image:: ../../examples/{name}/{shown[0][1]}", f"         :alt: {shown[0][0]}", f"         :target: {page}", ""]
+    lines += [f"      `{results.title(name)} <{page}>`__ (``{name}``)", ""]
+    text = f"{description(name).replace('`', '``')} {figure_of(name, found)}"
+    return [*lines, *textwrap.wrap(text, 140, initial_indent=" " * 6, subsequent_indent=" " * 6, break_on_hyphens=False), ""]
+
+
 def page():
-    """The text of doc/src/gallery.rst, from READMEs and pictures; starters first."""
-    lines = [".. Written by tools/renew; edits are lost.", "", "Gallery", "=======", "",
-             "Each scene runs with ``tools/run NAME``, with the name in brackets. Its page says what to expect.", "",
-             ".. container:: cards", ""]
-    names = sorted(paths.examples(), key=lambda name: ("starter" not in description(name), name))
-    for name in names:
-        lines += ["   .. container:: card", ""]
-        shown = [found for found in pictures(name) if (paths.EXAMPLES / name / found[1]).exists()]
-        if shown:
-            lines += [f"      .. image:: ../../examples/{name}/{shown[0][1]}", f"         :alt: {shown[0][0]}",
-                      f"         :target: ../../examples/{name}/README.html", ""]
-        lines += [f"      :doc:`{title(name)} <../../examples/{name}/README>` (``{name}``)", ""]
+    """The text of doc/src/gallery.rst, from READMEs, pictures and results, in the order of examples/main.json."""
+    found = results.ran({"scenes": results.scenes_of(paths.PAGE)})
+    lines = [".. github display off", "", ".. Written by tools/renew; edits are lost.", "", "Gallery", "=======", "",
+             "Each scene runs with ``tools/run NAME``, with the name in brackets.",
+             "Each card gives the error of the main quantity, the kind of its reference, and the time on one core.", ""]
+    names = []
+    for group, scenes in results.main_figures().items():
+        lines += [f"{group[0].upper()}{group[1:]}", "-" * len(group), "", ".. container:: cards", ""]
+        for name in scenes:
+            lines += card(name, found)
+        names += scenes
     return "\n".join([*lines, ".. toctree::", "   :hidden:", "", *(f"   ../../examples/{name}/README" for name in names)]) + "\n"
 
 

@@ -13,25 +13,23 @@ from .command import Refusal
 from .summary import bound, deviation, number
 
 COST = ("cpu_seconds", "particle_steps_per_second", "bytes_per_particle")  # every summary has them; no figures of a scene
-COLUMNS = ("scene", "figure", "value", "unit", "reference", "source", "error", "target", "met")
+COLUMNS = ("scene", "figure", "value", "unit", "reference", "kind", "source", "error_percent", "target", "met")
 WHOLE = "\u00a0"  # a blank that a narrow column does not break
 MARKS = ("<!-- results: written by tools/renew -->\n", "<!-- end of results -->\n")  # where the README has its table
-# The README's table: what, scene, its figures as a regular expression, the case whose time stands beside. The worst judged figure is shown
-HEADLINES = (
-    ("Elastic flag behind a cylinder, steady (FSI1)", "turek_hron_fsi", r".*_fsi1_4", "fsi1_4"),
-    ("The same, swinging widely (FSI2)", "turek_hron_fsi", r".*_fsi2_2_to_8", "fsi2_2_to_8"),
-    ("The same, swinging fast (FSI3)", "turek_hron_fsi", r".*_fsi3_2_to_8", "fsi3_2_to_8"),
-    ("Elastic gate that lets water out", "elastic_gate", r"12MPa_.*", "12MPa_5_across"),
-    ("Plate under 2 m of water", "hydrostatic_plate", r".*", "11_across"),
-    ("Dam break on an elastic plate, 3D", "dam_break_elastic", r".*", "plate"),
-    ("Elastic plate alone", "oscillating_plate", r".*", "tl_10"),
-    ("Rigid cylinder in a channel, Re = 20 and 100", "cylinder_channel", r".*", "re_100_14_to_40"))
+OWN = "own run"
+KINDS = (  # of references, by how a source begins; the first that fits
+    (OWN, r"our |the recommended scheme|2 ranks against|finest water|4 particles|with the gate"),
+    ("experiment", r"experiment|Clift"),
+    ("finite elements", r"(?:code[,:] )?(?:converged |2D )?finite elements|Turek & Hron"),
+    ("code", r"codes?\b|Schaefer|Johnson"),
+    ("theory", r"(?:beam |linear )?theory|exact|Archimedes|no damping|Timoshenko|elastic ring|Fourier|finite differences"),
+    (None, r"mean over|root mean"))  # no reference, a remark
 WORDS = (  # of names of figures, for readers who do not know them; the first that fits
-    (r"(ux|uy)_fsi1", "displacement of the tip"), (r"uy_amplitude", "amplitude of the tip"), (r"drag_amplitude", "amplitude of the drag"),
-    (r"lift_amplitude", "amplitude of the lift"), (r"drag", "drag"), (r"lift", "lift"), (r"strouhal", "Strouhal number"), (r"frequency", "frequency"),
-    (r"tip_x_peak_time", "time of the peak"), (r"tip_y_peak", "rise of the tip at the peak"), (r"tip_x_peak", "deflection at the peak"),
-    (r"tip_x_rest", "deflection at rest"), (r"deflection", "deflection at the middle"), (r"a100_a1.*_ul", "amplitude after 100 swings, updated Lagrangian"),
-    (r"a100_a1", "amplitude after 100 swings"), (r"period.*_ul", "period, updated Lagrangian"), (r"period", "period"))
+    (r"drag_amplitude", "amplitude of the drag"), (r"lift_amplitude", "amplitude of the lift"), (r"drag", "drag"), (r"tip_x_peak_time", "time of the peak"),
+    (r"tip_y_peak", "rise of the tip"), (r"deflection_5", "the same, 5 particles"), (r"ratio_1400_6", "the same, 6 particles"),
+    (r"frequency_3", "the same, 3 particles"), (r"end_87.5", "deflection at 0.5 s"), (r"dz_levels", "deflection downward"),
+    (r"uz_twice_6", "deflection across the stream"), (r"pitch_box_20", "pitch of the float"), (r"draft_0.25", "draft at a quarter of the density"),
+    (r"forward_2", "volume of the second pulse"))
 
 
 def collect(results):
@@ -76,9 +74,47 @@ def judged(entry):
 
 
 def listed(entry):
-    """Those that the page lists: what is compared with a reference, and what is missed; of a scene without either the first."""
-    figures = judged(entry)
-    return [f for f in figures if f["reference"] is not None or not f["met"]] or figures[:1]
+    """Those that the first table lists: what is compared with a reference, and what is missed."""
+    return [f for f in judged(entry) if kind(f["source"]) or f["reference"] is not None or not f["met"]]
+
+
+def kind(source):
+    """What a figure is compared with, one of KINDS; None without a reference."""
+    if source is None:
+        return None
+    for name, start in KINDS:
+        if re.match(start, source):
+            return name
+    raise Refusal(f"the source '{source}' begins with none of the kinds of references (python/fsi/results.py, KINDS)")
+
+
+def _named(entry):
+    """A copy of a scene's entry in which a source that is "the same" as the one above is written out, and errors are positive where sizes are too large."""
+    above, figures = None, []
+    for f in entry["summary"]["figures"]:
+        if f["reference"] and f["value"] is not None:
+            f = f | {"relative_error": f["value"] / f["reference"] - 1.0}
+        if f["source"] and f["source"].startswith("the same"):
+            f = f | {"source": re.split(", test case|: ", above)[0] + f["source"].removeprefix("the same")}
+        else:
+            above = f["source"] or above
+        figures.append(f)
+    return entry | {"summary": entry["summary"] | {"figures": figures}}
+
+
+def outside(figures):
+    """Those with a reference from outside."""
+    return [f for f in figures if kind(f["source"]) not in (None, OWN)]
+
+
+def ran(found):
+    """{scene: entry} of those that have results."""
+    return {name: _named(entry) for name, entry in found["scenes"].items() if entry["summary"]}
+
+
+def share(figures):
+    """How many of these are met: 3 of 4"""
+    return f"{sum(f['met'] for f in figures)} of {len(figures)}"
 
 
 def table(found):
@@ -86,47 +122,75 @@ def table(found):
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow((*COLUMNS, "commit", "date"))
-    for name, entry in found["scenes"].items():
-        if summary := entry["summary"]:
-            rows.writerows((name, f["name"], f["value"], f["unit"], f["reference"], f["source"], f["relative_error"], f["target"], f["met"],
-                            summary["commit"], summary.get("date")) for f in summary["figures"] if f["name"] not in COST)
+    for name, entry in ran(found).items():
+        summary = entry["summary"]
+        rows.writerows((name, f["name"], _short(f["value"]), f["unit"], _short(f["reference"]), kind(f["source"]), f["source"],
+                        _short(None if f["relative_error"] is None else 100 * f["relative_error"], 3), f["target"], f["met"],
+                        summary["commit"], summary.get("date")) for f in summary["figures"] if f["name"] not in COST)
     return text.getvalue()
+
+
+def _short(value, digits=6):
+    return f"{value:.{digits}g}" if isinstance(value, float) else value
 
 
 def render(found, up="../../"):
     """The page as Markdown; `up` leads from it to the root."""
-    scenes = {name: entry for name, entry in found["scenes"].items() if entry["summary"]}
+    scenes = ran(found)
     every = [f for entry in scenes.values() for f in judged(entry)]
+    figures = sum(f["name"] not in COST for entry in scenes.values() for f in entry["summary"]["figures"])
     hours = sum(core_seconds(entry["summary"]) for entry in scenes.values()) / 3600
+    own = [f for f in every if kind(f["source"]) == OWN]
+    checks = [f for f in every if not kind(f["source"])]
     lines = ["# Results", "",
-             "What the scenes compute, next to experiments, theory and finite elements.",
-             f"**{sum(f['met'] for f in every)} of {len(every)} targets are met.**",
+             "What the scenes compute, next to experiments, theory, finite elements and other codes.",
+             f"**Of the judged figures with a reference from outside, {share(outside(every))} are met.**",
+             f"Of those judged by a run of this package {share(own)} are met, of self-checks without a reference {share(checks)}.",
              f"All {len(scenes)} scenes together take {hours:.1f} hours on one core.", "",
              "![Size of each figure's error over its target](results.png)", "",
              "Each dot is a figure that has a target. Right of the line the target is missed.", "",
              "- The error is relative to the reference. Where there is none, the target bounds the value itself.",
-             "- References are experiments and theory unless they say otherwise. *Code* is another program. Without a source it is the one above.",
+             "- *Experiment* is a measurement or a fit to measurements. *Theory* is a closed form or a reduced equation that is solved numerically.",
+             "- *Finite elements* and *code* are other programs. *Own run* is this package with another setting, which is no independent reference.",
              "- CPU seconds are those of all runs of a scene on one core.",
-             f"- {len(every) - sum(len(listed(entry)) for entry in scenes.values())} further bounds without a reference are kept. They are in "
-             "[results.csv](results.csv), with all figures that have no target.", ""]
+             f"- All {figures} figures are in [results.csv](results.csv), with the {len(every) - sum(len(listed(e)) for e in scenes.values())} "
+             "self-checks that are met.", ""]
     missing = [name for name, entry in found["scenes"].items() if not entry["summary"] or entry["summary"].get("failed_cases")]
     if missing:
         lines += [f"**Failed, in part or as a whole: {', '.join(missing)}.**", ""]
-    return "\n".join(lines) + "\n" + _table(scenes, up) + "\n"
+    lines += ["## With a target", "", _table(scenes, up), "", "## With a reference and no target", "",
+              "Coarse and comparison runs are here. The largest error can be large because the reference is close to zero.", "", _others(scenes, up)]
+    return "\n".join(lines) + "\n"
 
 
 def _table(scenes, up):
     rows = []
     for name, entry in scenes.items():
-        above = None  # the source of the last reference
         for k, f in enumerate(listed(entry)):
-            reference = "" if f["reference"] is None else number(f["reference"])
-            if f["source"] and (f["source"] != above or not reference):
-                reference = f"{reference} ({f['source']})" if reference else f["source"]
-            above = f["source"] or above
-            rows.append([f"[{title(name)}]({_page(name, up)})" if k == 0 else "", f"`{f['name']}`", _value(f), reference, _whole(deviation(f)), bound(f),
-                         "yes" if f["met"] else "**no**", f"{core_seconds(entry['summary']):,.0f}" if k == 0 else ""])
-    return _markdown(["scene", "quantity", "computed", "reference", "error", "target", "met", "CPU s"], rows)
+            rows.append([f"[{title(name)}]({_page(name, up)})" if k == 0 else "", f"`{f['name']}`", value(f), "" if f["reference"] is None else number(f["reference"]),
+                         kind(f["source"]) or "none", _whole(deviation(f)), bound(f), "yes" if f["met"] else "**no**",
+                         f"{core_seconds(entry['summary']):,.0f}" if k == 0 else ""])
+    return _markdown(["scene", "quantity", "computed", "reference", "kind", "error", "target", "met", "CPU s"], rows)
+
+
+def _others(scenes, up):
+    """Of what has a reference and no target a line for each source, with the largest error; a line for what has neither."""
+    rows = []
+    for name, entry in scenes.items():
+        start = f"[{title(name)}]({_page(name, up)})"
+        groups = {}
+        for f in entry["summary"]["figures"]:
+            if f["target"] is None and f["reference"] is not None:
+                groups.setdefault(f["source"], []).append(f)
+        for source, figures in groups.items():
+            size = sorted((f for f in figures if f["relative_error"] is not None), key=lambda f: abs(f["relative_error"]))
+            middle = f"{100 * abs(size[len(size) // 2]['relative_error']):.1f} %" if size else ""
+            rows.append([start, source if kind(source) != OWN else f"{OWN}: {source.removeprefix('our ')}", str(len(figures)), _whole(middle),
+                         f"{deviation(size[-1])} (`{size[-1]['name']}`)" if size else ""])
+            start = ""
+        if start and not judged(entry):
+            rows.append([start, "none", str(sum(f["name"] not in COST for f in entry["summary"]["figures"])), "", ""])
+    return _markdown(["scene", "reference", "figures", "median error", "largest error"], rows)
 
 
 def core_seconds(ran):
@@ -135,32 +199,55 @@ def core_seconds(ran):
     return sum((case["cpu_seconds"] or 0) * (case["ranks"] or 1) for case in cases)
 
 
-def headlines(scenes, up):
-    """The README's table: of each line the judged figure that is off by most, of those with a reference from outside."""
-    rows = []
-    for what, name, figures, case in HEADLINES:
-        entry = scenes.get(name)
-        known = [f for f in judged(entry) if re.fullmatch(figures, f["name"])] if entry and entry["summary"] else []
-        outside = [f for f in known if f["relative_error"] is not None and not f["source"].startswith("our ")]
-        what = f"[{what}]({_page(name, up)})"
-        if not outside or case not in entry["summary"].get("cases", {}):
-            rows.append([what, "no result", *[""] * 5])
-            continue
-        worst = max(outside, key=lambda f: abs(f["relative_error"]))
-        rows.append([what, words(worst["name"]), _value(worst), f"{number(worst['reference'])} ({_whose(worst, entry['summary']['figures'])})", _whole(deviation(worst)),
-                     _whole(f"{sum(f['met'] for f in known)} of {len(known)}"), _whole(duration(core_seconds(entry["summary"]["cases"][case])))])
-    return _markdown(["scene", "its worst figure", "computed", "reference", "error", "targets met", "time on one core"], rows)
+def main_figures():
+    """{group: {scene: [{"figure", "words", "case", "title", "of"}]}}: what each scene is about, examples/main.json."""
+    return json.loads((paths.EXAMPLES / "main.json").read_text())
+
+
+def main_of(row, entry):
+    """(figure, seconds of the run that gave it) of a row of examples/main.json; None without a result."""
+    figure = next((f for f in entry["summary"]["figures"] if f["name"] == row["figure"]), None)
+    of = entry["summary"].get("cases", {}).get(row["case"]) if "case" in row else entry["summary"]
+    return None if figure is None or of is None else (figure, core_seconds(of))
+
+
+def headlines(found, up):
+    """The README's table: every scene of the first group whose main quantity has a reference."""
+    rows, scenes = [], ran(found)
+    for name, several in next(iter(main_figures().values())).items():
+        for row in several:
+            of = scenes.get(name) and main_of(row, scenes[name])
+            what = f"[{row.get('title', title(name))}]({_page(name, up)})"
+            if not of:
+                rows.append([what, "no result", *[""] * 5])
+            elif of[0]["reference"]:
+                rows.append([what, *_headline(row, *of, scenes[name])])
+    return _markdown(["scene", "main quantity", "reference", "error", "worst other", "targets met", "time"], rows)
+
+
+def _headline(row, figure, seconds, entry):
+    """Cells: the main quantity, and of the others that have a target the one with the largest error; of all if none has."""
+    others = [f for f in entry["summary"]["figures"] if re.fullmatch(row.get("of", ".*"), f["name"]) and f["relative_error"] is not None and f is not figure]
+    known = [f for f in judged(entry) if re.fullmatch(row.get("of", ".*"), f["name"])]
+    worst = max([f for f in others if f["target"] is not None] or others, key=lambda f: abs(f["relative_error"]), default=None)
+    return [f"{row['words']} {value(figure)}", f"{number(figure['reference'])} ({kind(figure['source'])})", _whole(deviation(figure)),
+            f"{words(worst['name'])} {_whole(deviation(worst))}" if worst else "none", _whole(share(known)) if known else "none set", _whole(duration(seconds))]
+
+
+def rule(found):
+    """What the README says of its table."""
+    scenes = ran(found)
+    first = next(iter(main_figures().values()))
+    shown = [name for name, rows in first.items() if any((of := name in scenes and main_of(row, scenes[name])) and of[0]["reference"] for row in rows)]
+    every = [f for entry in scenes.values() for f in judged(entry)]
+    return [f"The table has the {len(shown)} of {len(paths.examples())} scenes in which a fluid moves an elastic body and the main quantity has a reference.",
+            "*Worst other* is the further judged figure with the largest error. Times are those of the main run on one core.",
+            f"Over all scenes {share(outside(every))} judged figures with a reference from outside are met: [results](doc/results/README.md)."]
 
 
 def _whole(text):
     """Text that a narrow column does not break."""
     return text.replace(" ", WHOLE)
-
-
-def _whose(figure, figures):
-    """The source of a figure in short: up to a comma or colon, that of an earlier one where it is the same."""
-    sources = [f["source"] for f in figures[:figures.index(figure) + 1] if f["source"] and not f["source"].startswith("the same")]
-    return re.split("[,:]", (sources or ["?"])[-1])[0]
 
 
 def words(figure):
@@ -170,12 +257,13 @@ def words(figure):
 
 def _markdown(head, rows):
     """A table; columns of numbers at the right."""
-    left = ("scene", "quantity", "reference", "met", "its worst figure")
+    left = ("scene", "quantity", "kind", "met", "main quantity", "worst other")
     lines = [head, ["---" if name in left else "---:" for name in head], *rows]
     return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines)
 
 
-def _value(figure):
+def value(figure):
+    """A figure with its unit."""
     unit = figure["unit"]
     return f"{number(figure['value'])}{' ' if ' ' in unit else WHOLE}{unit}" if unit else number(figure["value"])
 
@@ -224,4 +312,5 @@ def draw(found, path):
 def readme(text, found, up=""):
     """The repository's README with its table made anew."""
     before, rest = text.split(MARKS[0])
-    return before + MARKS[0] + "\n" + headlines(found["scenes"], up) + "\n\n" + MARKS[1] + rest.split(MARKS[1])[1]
+    made = "\n".join(rule(found)) + "\n\n" + headlines(found, up)
+    return before + MARKS[0] + "\n" + made + "\n\n" + MARKS[1] + rest.split(MARKS[1])[1]

@@ -32,7 +32,9 @@ class Summary:
                 raise FileNotFoundError(f"{self.folder} has neither {LOG_FILE} nor folders with a summary.json")
 
     def add(self, name, value, unit="", reference=None, source=None, target=None):
-        """Adds a figure; `reference` is the published value in the same unit, `source` says whose.
+        """Adds a figure; `reference` is the published value in the same unit, `source` says whose, its kind first (results.KINDS).
+
+        The relative error is positive where the size of the value is too large.
 
         `target` is what was set out for: the largest allowed size of the relative error, or, without a reference or
         with 0 for it, of the value itself.
@@ -40,7 +42,7 @@ class Summary:
         value = _finite(value)
         error = None
         if reference and value is not None:
-            error = (value - reference) / abs(reference)
+            error = value / reference - 1.0
         met = None
         if target is not None:
             size = error if reference else value

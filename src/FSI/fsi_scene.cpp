@@ -14,6 +14,7 @@
 #include "fsi_scene.h"
 
 #include "atom.h"
+#include "citeme.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -36,8 +37,16 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
+static const char cite_fsi[] = "FSI package: fluid-structure interaction by SPH\n\n"
+                               "@Misc{FSI,\n"
+                               " author = {{The authors of the FSI package for LAMMPS}},\n"
+                               " title = {FSI package for LAMMPS},\n"
+                               " note = {Version 0.9}\n"
+                               "}\n\n";
+
 Scene::Scene(LAMMPS *lmp, const Fix *fix_fsi) : mover(fix_fsi), body_forces(lmp), instance(lmp)
 {
+  if (lmp->citeme) lmp->citeme->add(cite_fsi);
   state.resize(lmp->atom->ntypes + 1);
 }
 

@@ -20,6 +20,22 @@ HOUSE = (
     (r"\bthe (?:source )?paper\b", "its name"),
     (r"\bone run each\b|\bother work\b|\buntil today\b|\b(?:older|earlier) commits?\b", "nothing: a user page has no history"),
 )
+# Words that save the writer a noun, a verb or a reason, and cost the reader a second look
+COMPRESSED = (
+    (r"\b(?:that|those) of\b", "name the thing again, or a genitive"),
+    (r", too\b(?! (?:high|low|few|many|much|far|fast|slow|large|small|soft|stiff|thin|thick|short|long|late|early)\b)", "also"),
+    (r"\banew\b", "again"),
+    (r"\bgo(?:es)? with(?:out)?\b(?! fix F)", "can, cannot be combined with"),
+    (r"\bcomes? around\b", "re-enters"),
+    (r"\bof (?:its|their) own\b(?! body)", "separate, or nothing"),
+    (r"\bsome \d", "about"),
+    (r"%\)? off\b", "an error of ... %"),
+    (r"\bstruck\b|\bstrikes?\b", "hit"),
+    (r"\b(?:merging|splitting|shifting|damping|spacing|tool|scene|script) takes\b", "a verb of what happens"),
+    (r"(?<!\.\.[ ])\bdecks?\b", "input script"),
+    (r"\bthe article's scheme\b", "the original scheme"),
+    (r"\bWhat (?:naming|is not named|goes)\b", "each optional effect; cannot be combined"),
+)
 _ISE = ("organ real recogn normal initial minim maxim optim summar vector digit stabil discret parametr visual parallel linear standard penal symmetr "
         "general special emphas util categor synchron local central neutral equal polar crystal fluid character").split()
 _BRITISH = (
@@ -34,7 +50,7 @@ _SHORT = r"\b(?:e\.g|i\.e|et al|vs|cf|approx|resp|Fig|Figs|Eq|Eqs|No|Sec|Mr|Dr|a
 _SILENT = "code-block|math|parsed-literal|index|list-table|table|csv-table|image|figure|toctree|raw|literalinclude|include|role|meta|only"
 
 
-def faults(text, markup="md"):
+def faults(text, markup="md", house=HOUSE + COMPRESSED):
     """[what is wrong]: markup is md or rst."""
     found = []
     plain = _plain(text, markup)
@@ -43,7 +59,7 @@ def faults(text, markup="md"):
             found.append(f"line {number} has {len(line)} characters")
     found += [f"a commit's hash: {word}" for word in re.findall(HASH, text)]
     found += [f"the mark {mark}" for mark in re.findall(r"\(\\?\*\)", text)]
-    for pattern, instead in HOUSE:
+    for pattern, instead in house:
         found += [f"'{_space(match[0])}': {instead}" for match in re.finditer(pattern.replace(" ", r"\s+"), plain, re.I)]
     found += [f"'{match[0]}': American spelling" for match in re.finditer(rf"\b(?:{_BRITISH})\b", plain, re.I)]
     lengths = [(len(words(s)), s) for s in sentences(text, markup)]
@@ -83,7 +99,7 @@ def _plain(text, markup):
         text = re.sub(r"<!--.*?-->|<[^>\n]+>", " ", text, flags=re.S)
         text = re.sub(r"`[^`]+`", "X", text)
         return re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
-    text = re.sub(r"^( *)\.\. (?:code-block|math|parsed-literal|raw|index|image|toctree)::.*\n(?:\1 .*\n|[ \t]*\n)*", "", text, flags=re.M)
+    text = re.sub(r"^( *)\.\. (?:code-block|math|parsed-literal|raw|index|image|toctree|csv-table)::.*\n(?:\1 .*\n|[ \t]*\n)*", "", text, flags=re.M)
     text = re.sub(r"``[^`]+``|:math:`[^`]+`", "X", text)
     text = re.sub(r":[\w-]+:`(?:([^`<]*?)\s*<[^`]*>|([^`]*))`", lambda m: m[1] or "X", text)
     return re.sub(r"`([^`<]+)(?:\s*<[^`]*>)?`_+", r"\1", text).replace("\\ ", "").replace("\\", "")

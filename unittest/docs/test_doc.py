@@ -87,8 +87,6 @@ def test_page_has_every_keyword(page, name):
     if not source:
         return
     code = source.read_text()
-    if page in ("fix_fsi", "pair_fsi_fluid"):    # settings of the article's scheme have a page of their own
-        text += (PAGES / "scheme_article.rst").read_text()
     words = set(re.findall(r'strcmp\(arg\[[^\]]*\](?:, | \+ \d\], )"([^"]+)"\)', code)) | set(re.findall(r'key == "([^"]+)"', code))
     words |= set(re.findall(r'^    \{"(\w+)", "', code, re.M))  # fix fsi/watch
     words |= set(re.findall(r'(?:\.key|or_word)\("([^"]+)"', code))
@@ -99,6 +97,9 @@ def test_page_has_every_keyword(page, name):
     words -= {"*", "NULL"}
     missing = sorted(w for w in words if w not in text)
     assert not missing, f"{source.name} knows {missing}, {page}.rst does not"
+    syntax = text.partition("\nExamples\n")[0]
+    missing = sorted(key for key in re.findall(r'\.key\("([^"]+)"', code) if f"*{key}*" not in syntax and f"{name} {key} " not in syntax)
+    assert not missing, f"Syntax of {page}.rst lacks {missing}"
 
 
 def run_time_messages():
@@ -126,7 +127,7 @@ def test_run_time_messages_are_among_the_symptoms():
 def test_every_command_is_on_the_page_of_commands():
     """That no page is left out of the contents is Sphinx' own warning."""
     text = (PAGES / "Commands_fsi.rst").read_text()
-    assert not [page for page in STYLES if not re.search(rf":doc:`(?:[^`<]*<)?{page}>?`", text)]
+    assert not [page for page in STYLES if f" <{page}.rst>`__" not in text]
 
 
 def test_every_bundled_material_is_on_its_page():
@@ -135,8 +136,41 @@ def test_every_bundled_material_is_on_its_page():
     assert len(names) > 10 and not [name for name in names if f"*{name}*" not in text]
 
 
+def test_citation():
+    """Fix fsi and doc/roadmap.md name authors, title and version as CITATION.cff does."""
+    entry = re.search(r"```text\n(.*?)```", (paths.ROOT / "doc/roadmap.md").read_text(), re.S)[1]
+    code = re.search(r"cite_fsi\[\] =(.*?);", SOURCES["fsi_scene.cpp"].read_text(), re.S)[1]
+    said = "".join(re.findall(r'"(.*?)"', code)).replace("\\n", "\n")
+    assert said.partition("\n\n")[2].strip() == entry.strip()
+    cff = (paths.ROOT / "CITATION.cff").read_text().partition("\nreferences:")[0]
+    names = re.findall(r"^  - name: (.*)", cff, re.M)
+    assert f" author = {{{' and '.join(f'{{{name}}}' for name in names)}}},\n" in entry
+    assert f" title = {{{re.search('^title: (.*)', cff, re.M)[1]}}},\n" in entry
+    assert f" note = {{Version {re.search('^version: (.*)', cff, re.M)[1].strip(chr(34))}}}\n" in entry
+
+
+def test_page_of_a_command_has_the_form_of_lammps():
+    """Sections in LAMMPS' order, what it asks of each page, and the version since which the command is there."""
+    sections = ["Syntax", "Examples", "Description", "Restrictions", "Related commands", "Default"]
+    version = re.search(r'^version: "(.*)"', (paths.ROOT / "CITATION.cff").read_text(), re.M)[1]
+    for page in STYLES:
+        text = (PAGES / f"{page}.rst").read_text()
+        words = " ".join(text.split())
+        heads = [head for head in re.findall(r'^(.+)\n"{3,}$', text, re.M) if head in sections]
+        assert heads == sections, page
+        assert re.search(r"with that package (?:\(:doc:`Build_fsi`\)|\. See)", words), page
+        since = re.search(r"\.\. versionadded:: (\S+)", text)
+        assert since and since[1] <= version, page
+        if page.startswith("pair"):
+            assert "Mixing, shift, table, tail correction, restart, rRESPA info\n" in text, page
+            assert page == "pair_fsi_solid" or ":lammps:`pair_modify` shift, table, and tail options" in words, page
+        elif page.startswith("fix"):
+            assert "Restart, fix_modify, output, run start/stop, minimize info\n" in text, page
+            assert "the *start/stop* keywords of the :lammps:`run` command" in words and ":lammps:`fix_modify` options" in words, page
+
+
 def test_every_file_of_tests_says_what_it_tests():
-    """In its first line, which doc/testing.md lists."""
+    """In its first line, which a command of the contributor guide lists."""
     files = sorted((paths.ROOT / "unittest").glob("*/test_*.py"))
     assert len(files) > 50 and not [path.name for path in files if not re.match(r'r?"""\w.{20}', path.read_text())]
 

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from english import faults, length, sentences, words
+from english import HOUSE, faults, length, sentences, words
 
 from fsi import paths
 
@@ -18,9 +18,15 @@ COMMANDS = [page for page in PAGES if page.parent.name == "src"
 NOTES = sorted((ROOT / "doc/notes").glob("*.md"))
 
 
+# Pages that programs write, and a few others, still have words of COMPRESSED: take a page out of here when it has none
+WAITING = {"README.md", "doc/choosing.md", "doc/src/evidence.rst", "doc/src/fix_fsi_refine.rst", "doc/src/Howto_yield.rst", "unittest/hard/README.md",
+           *(name for name in NAMES if name.startswith(("doc/cost/", "doc/hard/", "doc/results/")))}
+
+
 @pytest.mark.parametrize("name", sorted(NAMES))
 def test_page(name):
-    assert not faults(NAMES[name].read_text(encoding="utf-8"), NAMES[name].suffix[1:])
+    text, markup = NAMES[name].read_text(encoding="utf-8"), NAMES[name].suffix[1:]
+    assert not (faults(text, markup, HOUSE) if name in WAITING else faults(text, markup))
 
 
 # ---- how much there is to read ----
@@ -35,10 +41,12 @@ def test_page_of_a_command_is_short():
 
 
 def test_user_pages_can_be_read():
-    """In three hours: what grows on one page goes from another, into data, or into the notes."""
-    total = sum(lengths(PAGES).values())
-    print(f"{total} words on {len(PAGES)} user pages")
-    assert total <= 45000
+    """In three hours: what grows on one page goes from another, into data, or into the notes. The gallery repeats the first sentence of each
+    scene's page, and the results are a table of data."""
+    counted = [page for page in PAGES if page not in (ROOT / "doc/src/gallery.rst", ROOT / "doc/results/README.md")]
+    total = sum(lengths(counted).values())
+    print(f"{total} words on {len(counted)} user pages")
+    assert total <= 43000
 
 
 def test_notes_are_short():
@@ -92,7 +100,7 @@ def test_good_page_passes():
     assert not faults("# Beam\n\nA beam swings. Its period is within 0.9 % of finite elements.\n\n| thickness | error |\n|---|---|\n| 3 | 0.9 % |\n\n"
                       "```\ntools/run beam   # some seconds\n```\n\n## References\nGray, J. P., Comput. Methods Appl. Mech. Engrg. 190 (2001) 6641.\n")
     assert not faults("Beam\n====\n\n.. index:: beam\n\nA beam swings with :math:`\\omega` (:doc:`theory <theory>`, ``color``).\n\n"
-                      ".. code-block:: LAMMPS\n\n   fix 1 all fsi/watch 10\n\nThe force across the interface is that of the fluid.\n", "rst")
+                      ".. code-block:: LAMMPS\n\n   fix 1 all fsi/watch 10\n\nThe fluid's force acts across the interface.\n", "rst")
 
 
 @pytest.mark.parametrize("text, said", [
@@ -102,7 +110,12 @@ def test_good_page_passes():
     ("A watch stops it.", "monitor"), ("The source paper says so.", "its name"), ("Measured, one run each.", "history"),
     ("Neighbours have a colour.", "American"), ("Modelled in metres.", "American"), ("## Behaviour", "American"), ("It is normalised.", "American"),
     ("A word " + "and a word " * 15 + "ends.", "a sentence of 48"), ("One two " + "and three four " * 7 + "end.", "a mean sentence of 24.0"),
-    ("- An item " + "and a word " * 15 + "goes on\n  and on.", "a sentence of")])
+    ("- An item " + "and a word " * 15 + "goes on\n  and on.", "a sentence of"),
+    ("The kernel is that\nof fix fsi.", "genitive"), ("Its faces and those of walls.", "genitive"), ("Solids have images, too.", "also"),
+    ("The file is written anew.", "again"), ("*shift* does not go with *spacing*.", "combined"), ("Oil that comes around is slowed.", "re-enters"),
+    ("It has a lattice of its own.", "separate"), ("In some 140 sub-steps.", "about"), ("The drag is 10 % off.", "an error of"),
+    ("The gate is struck.", "hit"), ("Merging takes energy.", "what happens"), ("Read the deck.", "input script"),
+    ("The article's scheme is older.", "original"), ("What is not named adds nothing.", "optional")])
 def test_bad_page_fails(text, said):
     assert any(said in fault for fault in faults(text))
     if not text.startswith(("|", "##")):
@@ -112,6 +125,7 @@ def test_bad_page_fails(text, said):
 def test_numbers_and_code_are_no_faults():
     assert not faults("It is 1e-10, 20240101 and 0.00083333; `5_across` and `beside` are names. See [a page](beside.md).")
     assert not faults("Use *fix fsi/watch* or fix fsi/watch, besides others.", "rst")
+    assert not faults("So that often happens; too many hit it. It has neighbors of its own body. Some cases take long, and some do not.")
     assert not faults(".. list-table::\n\n   * - " + "x" * 200 + "\n", "rst")
     assert not faults("=====  =====\na      " + "b " * 90 + "\n=====  =====\n", "rst")
 

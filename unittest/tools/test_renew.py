@@ -34,7 +34,7 @@ def test_page_has_one_picture_and_one_table(page):
     text = PAGES[page]
     pictures = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text)
     assert len(pictures) == 1 and all((page.parent / name).is_file() for name in pictures)
-    assert len(re.findall(r"^\|(?: ?---?-?:? ?\|)+$|^\|[-: |]+\|$", text, re.M)) == 1
+    assert len(re.findall(r"^\|(?: ?---?-?:? ?\|)+$|^\|[-: |]+\|$", text, re.M)) == (2 if page.parent.name == "results" else 1)
     assert len(text.splitlines()) <= (250 if page.parent.name == "results" else 80)
 
 
@@ -270,5 +270,5 @@ def test_what_is_not_accurate_has_the_numbers_of_the_data():
 
 def test_evidence_answers_each_question_once():
     text = evidence.page()
-    assert text.count(".. image::") == 3 and text.count("\n---") == 3 and text.count("\n- ") == 4 + 3
+    assert text.count(".. image::") == 3 and text.count("\n---") == 3 and text.count("\n- ") == 3
     assert "unittest/tools/test_pay.py" in text and (paths.ROOT / "unittest/tools/test_pay.py").exists()

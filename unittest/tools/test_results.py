@@ -51,53 +51,87 @@ def found(tree):
 
 def test_head_says_what_is_met_and_what_failed(found):
     head = results.render(found).split("| scene |")[0]
-    assert "**4 of 5 targets are met.**" in head
+    assert "with a reference from outside, 2 of 3 are met.**" in head  # speed, time, slope
+    assert "by a run of this package 1 of 1 are met, of self-checks without a reference 1 of 1." in head
     assert "**Failed, in part or as a whole: lost, study.**" in head
     assert "All 2 scenes together take 0.2 hours on one core." in head  # 2 * 12.34 + 1 + 3 * 200 s
+    assert "All 7 figures are in [results.csv](results.csv), with the 1 self-checks that are met." in head
     assert head.count("![") == 1
 
 
 def test_table(found):
     page = results.render(found)
-    assert ("| [Falling stone](../../examples/stone/README.md) | `speed` | 11\u00a0m/s | 10 (experiment, A \\| B 1999) | +10.0\u00a0% | 5 % | **no** | 25 |"
-            in page)
-    assert "|  | `time` | 1.01\u00a0s | 1 (theory) | +1.0\u00a0% | 5 % | yes |  |" in page
-    assert "`lost`" not in page and "- 1 further bounds without a reference are kept." in page
+    assert "| [Falling stone](../../examples/stone/README.md) | `speed` | 11\u00a0m/s | 10 | experiment | +10.0\u00a0% | 5 % | **no** | 25 |" in page
+    assert "|  | `time` | 1.01\u00a0s | 1 | theory | +1.0\u00a0% | 5 % | yes |  |" in page
+    assert "|  | `height` | 1.2\u00a0m | 1 | own run | +20.0\u00a0% | 50 % | yes |  |" in page and "`lost`" not in page
     missed = copy.deepcopy(found)
     missed["scenes"]["stone"]["summary"]["figures"][2] |= {"value": 1, "met": False}
-    assert "|  | `lost` | 1 |  |  | 0 | **no** |  |" in results.render(missed)
-    assert "| [Study \\| stones](../../examples/study/README.md) | `slope` | 1.9 | 2 (the same) | -5.0\u00a0% | 10 % | yes | 601 |" in page
-    # no target: in the table of all figures; what a run costs: in neither
-    assert "`colour`" not in page and "`order`" not in page and "`cpu_seconds`" not in page
+    assert "|  | `lost` | 1 |  | none |  | 0 | **no** |  |" in results.render(missed)
+    assert "| [Study \\| stones](../../examples/study/README.md) | `slope` | 1.9 | 2 | theory | -5.0\u00a0% | 10 % | yes | 601 |" in page
+    # no target: a line for each source; neither: in the table of all figures; what a run costs: in neither
+    assert "| [Study \\| stones](../../examples/study/README.md) | theory: a line | 1 | 1.0\u00a0% | -1.0 % (`order`) |" in page
+    assert "`colour`" not in page and "`cpu_seconds`" not in page
     rows = list(csv.DictReader(io.StringIO(results.table(found))))
     assert [row["figure"] for row in rows] == ["speed", "time", "lost", "height", "colour", "order", "slope"]
-    assert rows[0] == {"scene": "stone", "figure": "speed", "value": "11.0", "unit": "m/s", "reference": "10.0", "source": "experiment, A | B 1999",
-                       "error": "0.1", "target": "0.05", "met": "False", "commit": "abcdef0123", "date": "2026-11-24"}
+    assert [row["kind"] for row in rows] == ["experiment", "theory", "", "own run", "", "theory", "theory"]
+    assert rows[0] == {"scene": "stone", "figure": "speed", "value": "11", "unit": "m/s", "reference": "10", "kind": "experiment", "source": "experiment, A | B 1999",
+                       "error_percent": "10", "target": "0.05", "met": "False", "commit": "abcdef0123", "date": "2026-11-24"}
+
+
+def test_a_scene_without_references_and_targets_has_a_line(found):
+    found["scenes"]["stone"]["summary"]["figures"] = [figure("a", 1.0), figure("b", 2.0), figure("cpu_seconds", 3.0)]
+    assert "| [Falling stone](../../examples/stone/README.md) | none | 2 |  |  |" in results.render(found)
+
+
+def test_kinds():
+    """The kind stands first; what has none is refused, not counted as one from outside."""
+    assert [results.kind(source) for source in (None, "code, finite elements, X", "2D finite elements", "our own 2D run", "codes: middle", "beam theory: y",
+                                                "finite differences", "mean over the last 0.5 s")] == \
+        [None, "finite elements", "finite elements", "own run", "code", "theory", "theory", None]
+    with pytest.raises(Refusal, match="'somebody' begins with none of the kinds"):
+        results.kind("somebody")
+
+
+def test_every_source_of_the_results_has_a_kind():
+    """Of each figure with a reference, and of each with a target and a source."""
+    for entry in results.ran({"scenes": results.scenes_of(paths.PAGE)}).values():
+        assert not [f["name"] for f in entry["summary"]["figures"] if (f["reference"] is not None or f["target"] is not None and f["source"]) and not results.kind(f["source"])]
+
+
+def test_errors_are_positive_where_sizes_are_too_large(found):
+    found["scenes"]["stone"]["summary"]["figures"][0] |= {"value": -11.0, "reference": -10.0, "relative_error": -0.1}
+    assert "| -10 | experiment | +10.0\u00a0% |" in results.render(found)
+
+
+MAIN = {"both": {"stone": [{"figure": "speed", "words": "how fast"}], "study": [{"title": "How steep", "figure": "slope", "words": "slope", "of": "slope", "case": "large"},
+                                                                               {"figure": "gone", "words": "x"}]},
+        "other": {"lost": [{"figure": "x", "words": "y"}]}}
 
 
 def test_headlines(found, monkeypatch):
-    """The README's table: the judged figure that is off by most, not by a run of our own; what is no longer there; else the README stays as it is."""
-    monkeypatch.setattr(results, "HEADLINES", (("How fast", "study", r"slope|order", "large"), ("Gone", "study", "gone", "large"),
-                                               ("No case", "study", "slope", "wide"), ("Not run", "lost", "x", None)))
-    monkeypatch.setattr(results, "WORDS", ((r"slo", "slope of it"),))
-    rows = ["| [How fast](examples/study/README.md) | slope of it | 1.9 | 2 (theory) | -5.0\u00a0% | 1\u00a0of\u00a01 | 10\u00a0min |",
-            "| [Gone](examples/study/README.md) | no result |  |  |  |  |  |"]
+    """The README's table: the declared quantity, and of the other judged ones that with the largest error, a run of our own included."""
+    monkeypatch.setattr(results, "main_figures", lambda: MAIN)
+    with_other = copy.deepcopy(MAIN)
     text = results.readme(f"# Title\n{results.MARKS[0]}old\n{results.MARKS[1]}## Rest\n", found)
     assert text.startswith("# Title\n") and text.endswith("## Rest\n") and "old" not in text
-    assert text.splitlines()[5:7] == rows and text.count("no result") == 3
-    found["scenes"]["stone"]["summary"]["cases"] = {"one": {"cpu_seconds": 3.0, "ranks": 1}}
-    monkeypatch.setattr(results, "HEADLINES", (("Worst", "stone", ".*", "one"),))
-    assert "| speed | 11\u00a0m/s | 10 (experiment) | +10.0\u00a0% | 3\u00a0of\u00a04 | 3\u00a0s |" in results.readme(text, found)  # not the height, off by 20 % of our own run
+    assert ("| [Falling stone](examples/stone/README.md) | how fast 11\u00a0m/s | 10 (experiment) | +10.0\u00a0% | height +20.0\u00a0% | 3\u00a0of\u00a04 | 25\u00a0s |"
+            in text)
+    assert "| [Study \\| stones](examples/study/README.md) | no result |  |  |  |  |  |" in text and text.count("no result") == 1
+    assert "has the 2 of 3 scenes in which" in text and "Over all scenes 2 of 3 judged figures with a reference from outside are met" in text
+    with_other["both"]["study"] = [{**MAIN["both"]["study"][0], "of": ".*"}]
+    monkeypatch.setattr(results, "main_figures", lambda: with_other)
+    assert "| slope 1.9 | 2 (theory) | -5.0\u00a0% | order -1.0\u00a0% | 1\u00a0of\u00a01 | 10\u00a0min |" in results.readme(text, found)  # the other has no target
 
 
-def test_headlines_are_of_the_bundled_scenes():
-    """Interaction first; each has a truth in the results as they are committed, and so in the README; each name of a figure is in words."""
-    found = results.scenes_of(paths.PAGE)
-    table = results.headlines(found, "")
-    assert len(table.splitlines()) == 2 + len(results.HEADLINES) == 10 and "no result" not in table and " None " not in table
-    assert all("FSI" in line for line in table.splitlines()[2:5])
-    assert not [line for line in table.splitlines() if "_" in line.split("|")[2]]
-    assert table in (paths.ROOT / "README.md").read_text()
+def test_main_figures_are_of_the_bundled_scenes():
+    """Every scene has a group; what is declared is in the results as they are committed, with the run that gave it, and in the README in words."""
+    declared, found = results.main_figures(), results.ran({"scenes": results.scenes_of(paths.PAGE)})
+    assert sorted(name for scenes in declared.values() for name in scenes) == paths.examples()
+    missing = [(name, row["figure"]) for scenes in declared.values() for name, rows in scenes.items() for row in rows if not results.main_of(row, found[name])]
+    assert not missing
+    table = results.headlines({"scenes": found}, "")
+    assert len(table.splitlines()) >= 12 and "no result" not in table and " None " not in table and table in (paths.ROOT / "README.md").read_text()
+    assert not [line for line in table.splitlines() if "_" in line.split("|")[2] + line.split("|")[5]]
 
 
 def test_results_of_several_commits_or_with_changes_are_refused(tree):

@@ -44,13 +44,13 @@ def test_pages_hold_their_rows():
     counts = {name: 100.0 for name in solid_variants.VARIANTS} | {"+ artificial stress": 150.0}
     variants = [{"dimension": dim, "variant": name, "instructions": n} for dim in (2, 3) for name, n in counts.items()]
     text = effects.page([row, solid], variants)
-    assert "| Water | shifting | +25.0% |  | +50% ± 1% | +40 | +0 | +8.0 | +0 |" in text and "{" not in text
+    assert "| Water | shifting | +25.0% |  | +50% ± 1% | +40 |  | +8.0 |  |" in text and "{" not in text
     assert "| artificial stress | +25.0% |  |" in effects.page([row, solid], [])  # what tools/cost effects shows alone
     assert "| artificial stress | +25.0% | +50.0% |" in text and text.count("| Solid | ") == len(solid_variants.FORMS)
     text = scaling.page([{"what": "compute", "value": 1e-6, "unit": "s"}, {"what": "bytes", "value": 98.0, "unit": "B"}], [PEER, ALONE, {**ALONE, "ratio": None}])
     shared = [{"what": f"{label}, {ranks} ranks: ghosts over particles", "value": 0.1 * ranks, "unit": ""} for label in ("gate", "dam, 3D") for ranks in (2, 4)]
     ranks = scaling.page([row for n in shared for row in (n, {"what": "messages", "value": 8, "unit": ""}, {"what": "bytes sent", "value": 17920.0, "unit": "B"})], [])
-    assert "| gate, 2, 4 ranks | 0.2, 8, 17,920 B; 0.4, 8, 17,920 B |\n| dam, 3D, 2, 4 ranks | 0.2, 8," in ranks
+    assert "| gate" not in ranks and "| dam" not in ranks  # these are in the table
     assert "| compute | 1 us |" in text and "| bytes | 98 B |" in text and text.count("2 ranks over 1, water, by the clock | 1.70 ± 0.10 |") == 1
 
 
