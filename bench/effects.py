@@ -223,9 +223,9 @@ def page(rows, variants):
              "- The gate is the bundled one, solids included. There an effect of the water is a smaller share.", "",
              "| scene | effect | instructions | in 3D | time | memory [B] | messages | bytes | collective calls |", "|---|---|---:|---:|---:|---:|---:|---:|---:|"]
     for name, (title, *_) in SCENES.items():
-        for r in (r for r in rows if r["scene"] == name):
+        for k, r in enumerate(r for r in rows if r["scene"] == name):
             three = solid_variants.added(variants, 3, name, r["effect"])
-            lines.append(f"| {title} | {r['effect']} | {r['instructions']:+.1%} | {'' if three is None else f'{three:+.1%}'} | {r['time']:+.0%} ± {r['spread']:.0%} | "
+            lines.append(f"| {'' if k else title} | {r['effect']} | {r['instructions']:+.1%} | {'' if three is None else f'{three:+.1%}'} | {r['time']:+.0%} ± {r['spread']:.0%} | "
                          f"{_added(r['memory'], '+.0f')} | {_added(r['messages'], '+.2g')} | {_added(r['bytes'], '+.1f')} | {_added(r['collectives'], '+.2g')} |")
     for what, (variant, over) in solid_variants.FORMS.items() if variants else ():
         two, three = (solid_variants.ratio(variants, dim, variant, over) - 1.0 for dim in (2, 3))

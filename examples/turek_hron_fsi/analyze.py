@@ -114,7 +114,7 @@ def picture_tip(path, runs):
             axes.plot(time, mean + amplitude * np.sin(2.0 * np.pi * rate * time), color=plot.ORANGE, linewidth=4.5, alpha=0.55,
                       label="Featflow: mean, amplitude\nand frequency as a sine")
             axes.plot(time, s.at("uy", start + time), color=plot.BLUE, label=f"here, {label}")
-            axes.set(xlabel="time [s]", title=case.upper(), xlim=(0.0, time[-1]), ylim=(mean - 1.25 * amplitude, mean + 2.05 * amplitude))
+            axes.set(xlabel="time [s]", title=case.upper(), xlim=(0.0, time[-1]), ylim=(mean - 1.25 * amplitude, mean + 2.3 * amplitude))
             axes.legend(loc="upper left", fontsize=9.5, borderaxespad=0.2)
         figure.axes[0].set_ylabel("tip of the flag [mm]")
         figure.tight_layout()
@@ -143,6 +143,12 @@ def picture_speed(path, frame, case, spacing):
         figure.colorbar(plot.ScalarMappable(speeds, plot.FLUID_COLOURS), cax=bar, label="speed [m/s]", extend="max")
 
 
+def label(name, values, ran):
+    """Resolution and time of a case."""
+    finer, near = (4, " near the flag") if "_to_" in name else (1, "")
+    return f"{round(0.1 * finer / values['dx'])} per diameter{near},\n{results.duration(results.core_seconds(ran))} on one core"
+
+
 def main(folder):
     """Analyses the run in `folder`; returns the summary."""
     folder = Path(folder)
@@ -163,7 +169,7 @@ def study(folder, cases):
     finest = {read(path)[0]: name for name, path in cases.items()}  # they are in the order of resolution
     for name, path in cases.items():
         add(summary, path, f"_{name}", name in finest.values())
-    shown = {case: (read(cases[finest[case]])[2], f"{results.duration(results.core_seconds(summary.cases[finest[case]]))} on one core")
+    shown = {case: (read(cases[finest[case]])[2], label(finest[case], read(cases[finest[case]])[1], summary.cases[finest[case]]))
              for case in ("fsi2", "fsi3") if case in finest}
     if shown:
         picture_tip(folder / "tip.png", shown)
