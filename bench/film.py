@@ -60,19 +60,16 @@ def deck(name):
     """The bundled deck of a scene with a dump of its own in place of the deck's: from the first time on."""
     first, last, step = SCENES[name].times
     lines = scene_lines(name)
-    clock = next((line for line in lines if re.match(r"fix\s.*\bfsi/dt\b", line)), "")
-    go = "run 1000000000"
-    if not re.search(r"\bstop\s", clock):
-        raise Refusal(f"{name}: its deck has no fix fsi/dt with a stop")
-
-    def until(time):
-        return re.sub(r"\bstop\s+\S+", f"stop {time}", clock)
-
+    go = next((line.split("#")[0].split() for line in lines if line.startswith("fsi/run ")), None)
+    if not go:
+        raise Refusal(f"{name}: its deck has no fsi/run")
+    keywords = " ".join(["", *go[2:]])
     axes = "xy" if any(re.match(r"dimension\s+2", line) for line in lines) else "xyz"
-    kept = [until(first or last) if line is clock else line for line in lines if not re.match(r"(dump|dump_modify|run)\s", line)]
+    kept = [line for line in lines if not re.match(r"(fsi/dump|fsi/run)\s", line)]
     columns = " ".join(["id type", *axes, *(f"v{axis}" for axis in axes), "c_film"])
-    return "\n".join([*kept, *([go, until(last)] if first else []), "compute film all fsi/atom vonmises", f"dump film all custom 1 film.dump {columns}",
-                      f"dump_modify film every/time {step} sort id time yes colname c_film vonmises", go]) + "\n"
+    return "\n".join([*kept, *([f"fsi/run {first}{keywords}"] if first else []), "compute film all fsi/atom vonmises",
+                      f"dump film all custom 1 film.dump {columns}", f"dump_modify film every/time {step} sort id time yes colname c_film vonmises",
+                      f"fsi/run {last}" + ("" if first else keywords)]) + "\n"
 
 
 def scene_lines(name):

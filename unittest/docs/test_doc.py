@@ -60,6 +60,9 @@ def deck(page, example):
         pairs = PAIRS.replace("water plate", "water plate water").replace("NULL plate", "NULL plate NULL")
         levels = FIX.replace("1.5", "1.5 spacing 3 0.0070711")
         return SETUP.replace("create_box 2", "create_box 3") + pairs + levels + STRESS + f"{lines}\n{example if example.startswith('fix') else ''}\nrun 1\n"
+    if page == "fsi_clamp":
+        parts = "region foot block INF 0.12 INF INF INF INF units box\ngroup plates type 2\ngroup foot region foot\ngroup wall intersect plates foot\ngroup moving subtract all wall\n"
+        return SETUP + parts + lagrangian(PAIRS) + FIX.replace("all", "moving") + example + "\nrun 1\n"
     if page == "fix_fsi_move":
         moves = FIX.replace("all", "water") + "group wall type 2\ngroup blades type 2\n"
         lines = examples(page)  # variables stand before the fix that has them
@@ -178,8 +181,8 @@ def test_every_file_of_tests_says_what_it_tests():
 def test_howto_deck(tmp_path):
     """The deck of the Howto, shortened to the first contact."""
     text = (PAGES / "in.howto").read_text()
-    assert "stop 0.2\n" in text
-    log = run(tmp_path, text.replace("stop 0.2\n", "stop 0.11\n")).output
+    assert "fsi/run       0.2 " in text
+    log = run(tmp_path, text.replace("fsi/run       0.2 ", "fsi/run 0.11 ")).output
     energy = [float(line.split()[-1]) for line in log.splitlines() if re.match(r"\s+\d+ +[\d.e-]+ +[\d.e-]+ +\d", line)]
     assert len(energy) >= 2 and abs(energy[-1] / energy[0] - 1.0) < 1e-3
 

@@ -348,10 +348,6 @@ def test_python(home, monkeypatch, tmp_path, path):
 
 def test_decks_that_are_no_page_of_a_command(tmp_path):
     """The README's commands and those of the page on output, in a scene of water and plate."""
-    readme, = (block for language, block in fenced(paths.ROOT / "README.md", (paths.ROOT / "README.md").read_text()) if language == "LAMMPS")
-    style, rest = readme.split("\n", 1)
-    scene_of_water = SETUP.replace("atom_style fsi", style).replace("lattice sq 0.01", "lattice sq 0.001") + "group mobile union water plate\n"
-    run(tmp_path, scene_of_water + rest + "run 1\n")
     page = paths.ROOT / "doc/src/output.rst"
     output = "".join(block for language, block in fenced(page, page.read_text()) if language == "LAMMPS")
     run(tmp_path, SETUP + PAIRS + FIX + STRESS + output + "run 1\n")

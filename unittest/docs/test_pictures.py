@@ -99,9 +99,9 @@ def test_decks_of_the_film(name):
     text, wanted = film.deck(name), film.SCENES[name]
     first, last, step = wanted.times
     scene.check(name, wanted.variables)
-    assert re.findall(r"\bstop (\S+)", text) == ([str(first), str(last)] if first else [str(last)])
-    assert text.count("\nrun ") == (2 if first else 1) and len(re.findall(r"^dump ", text, re.M)) == 1
-    assert f"every/time {step} " in text and text.rindex("dump film") > text.rfind(f"stop {first}")
+    assert re.findall(r"\nfsi/run (\S+)", text) == ([str(first), str(last)] if first else [str(last)])
+    assert "\nrun " not in text and len(re.findall(r"^(?:dump|fsi/dump) ", text, re.M)) == 1
+    assert f"every/time {step} " in text and text.rindex("dump film") > text.rfind(f"fsi/run {first}")
     plain = film.scene_lines(name)
     assert sum(line in text.splitlines() for line in plain) > len(plain) - 5
 
