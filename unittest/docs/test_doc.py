@@ -59,9 +59,10 @@ def deck(page, example):
         return room + PAIRS + FIX + STRESS + "\n".join(line for line in lines if not line.startswith("fix") and line != example) + f"\n{example}\nrun 1\n"
     if page == "fix_fsi_refine":
         lines = "\n".join(line for line in examples(page) if not line.startswith("fix"))    # region and variable stand before the fix that has them
-        pairs = PAIRS.replace("water plate", "water plate water").replace("NULL plate", "NULL plate NULL")
-        levels = FIX.replace("1.5", "1.5 spacing 3 0.0070711")
-        return SETUP.replace("create_box 2", "create_box 3") + pairs + levels + STRESS + f"{lines}\n{example if example.startswith('fix') else ''}\nrun 1\n"
+        finest = "finest" in example
+        pairs = PAIRS.replace("water plate", "water plate levels" if finest else "water plate water").replace("NULL plate", "NULL plate levels" if finest else "NULL plate NULL")
+        levels = FIX if finest else FIX.replace("1.5", "1.5 spacing 3 0.0070711")
+        return SETUP.replace("create_box 2", "create_box 6" if finest else "create_box 3") + pairs + levels + STRESS + f"{lines}\n{example if example.startswith('fix') else ''}\nrun 1\n"
     if page == "fix_fsi_move":
         moves = FIX.replace("all", "water") + "group wall type 2\ngroup blades type 2\n"
         lines = examples(page)  # variables stand before the fix that has them

@@ -66,7 +66,7 @@ def test_flap_in_a_stream(tmp_path):
     assert 1e-3 < float((tmp_path / "short/tip.csv").read_text().splitlines()[-1].split(",")[1]) < 1e-2 and 10 < last["c_load[1]"][-1] < 100
 
 
-@pytest.mark.parametrize("name", ["in.float", "in.loose", "in.flap", "in.mooring", "in.turned", "in.tear", "in.channel", "in.inflow", "in.fine", "in.viscoelastic", "in.yield"])
+@pytest.mark.parametrize("name", ["in.float", "in.loose", "in.flap", "in.mooring", "in.turned", "in.tear", "in.inflow", "in.fine", "in.viscoelastic", "in.yield"])
 def test_deck(tmp_path, name):
     found = go(tmp_path, name, n=20)
     assert found.finished[-1].steps == 20 and not found.warnings
