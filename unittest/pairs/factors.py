@@ -254,7 +254,7 @@ ELSEWHERE = {
     "fsi_material": {"test_materials": "sound"},
     "fsi_pack": {"test_packing": "fsi/pack region stl outline still steps"},
     "fsi_set": {"test_density": "pressure hydrostatic volume"},
-    "pair_fsi_fluid": {"test_shift": "no"},
+    "pair_fsi_fluid": {"test_refine": "levels", "test_shift": "no"},
     "pair_fsi_solid": {"test_solid": "plain no"},
     "pair_fsi_solid_tl": {"test_solid_tl": "svk strain quadratic corrected auto no"},
 }
