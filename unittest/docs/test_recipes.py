@@ -62,7 +62,7 @@ def test_flap_in_a_stream(tmp_path):
     run(tmp_path / "short", text.replace("stop 1.5", "stop 0.25"))
     found = log.read(tmp_path / "short/log.lammps")
     last = found.finished[-1].thermo
-    assert not found.warnings and last["Time"][-1] == pytest.approx(0.25) and last["Atoms"][-1] > 2 * last["Atoms"][0] * 0.5
+    assert not found.warnings and last["Time"][-1] == pytest.approx(0.25) and last["Atoms"][-1] > 1800    # 1188 are made
     assert 1e-3 < float((tmp_path / "short/tip.csv").read_text().splitlines()[-1].split(",")[1]) < 1e-2 and 10 < last["c_load[1]"][-1] < 100
 
 
