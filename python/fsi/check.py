@@ -1,5 +1,7 @@
-"""What the package says about a deck, without computing a step: every `run N` becomes `run 0`, in a copy of the deck and of the files that it names."""
+"""What the package says about a deck, in a copy of it and of the files that it names: every `run N` becomes `run 0`. Then a few steps of each run for an
+estimate of time and memory."""
 
+import math
 import os
 import re
 import shutil
@@ -13,6 +15,7 @@ from .sweep import deck_variables
 
 WRITES = ("dump", "restart", "write_data", "write_dump", "write_restart", "write_coeff", "log", "print", "shell")  # commands whose words are no input
 RUN = re.compile(r"^([ \t]*)run[ \t]+(\S+)(?:[^\n]*&[ \t]*\n)*[^\n]*$", re.M)
+SAMPLE = 40  # steps of each run, of which the estimate is made
 CONDITIONAL_RUN = re.compile(r"""(["'])run[ \t][^"'\n]*(?=\1)""")
 
 
@@ -53,14 +56,15 @@ def inputs(deck, variables, folder):
     return found, decks
 
 
-def without_steps(text):
-    """A deck's text in which every run sets up and computes nothing; how long it would have been is printed."""
-    text = CONDITIONAL_RUN.sub(r"\1run 0", text)
-    return RUN.sub(lambda m: f'{m[1]}print "FSI steps {m[2]}"\n{m[1]}run 0', text)
+def shortened(text, steps=0):
+    """A deck's text in which every run computes so few steps; how long it would have been is printed, and the time step at its end."""
+    text = CONDITIONAL_RUN.sub(rf"\1run {steps}", text)
+    after = '\n{0}print "FSI dt $(dt)"' if steps else ""
+    return RUN.sub(lambda m: f'{m[1]}print "FSI steps {m[2]}"\n{m[1]}run {"0" if m[2] == "0" else steps}' + after.format(m[1]), text)
 
 
-def run(deck, variables):
-    """(LAMMPS' exit status, what it printed, its log as read) of a deck without its steps."""
+def run(deck, variables, steps=0):
+    """(LAMMPS' exit status, what it printed, its log as read, the log's text) of a deck whose runs have so many steps."""
     deck, folder = Path(deck).resolve(), Path.cwd()
     if not deck.is_file():
         raise Refusal(f"{deck} is not a file")
@@ -74,7 +78,7 @@ def run(deck, variables):
             target = place / (file.relative_to(folder) if folder in file.parents else file.name)
             target.parent.mkdir(parents=True, exist_ok=True)
             if file in decks:
-                target.write_text(without_steps(file.read_text(errors="replace")))
+                target.write_text(shortened(file.read_text(errors="replace"), steps))
             else:
                 shutil.copyfile(file, target)
         command = [lammps(), "-in", str(deck.relative_to(folder) if folder in deck.parents else deck.name), "-log", "log.lammps", "-nocite"]
@@ -86,7 +90,7 @@ def run(deck, variables):
         done = subprocess.run(command, cwd=place, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True, errors="replace", check=False)
         path = place / "log.lammps"
-        return done.returncode, done.stdout, log.read(path) if path.exists() else None
+        return done.returncode, done.stdout, *((log.read(path), path.read_text(errors="replace")) if path.exists() else (None, ""))
 
 
 def length(lines, found):
@@ -98,9 +102,42 @@ def length(lines, found):
     return f", to t = {found.stop:g}" + (f" in {found.stop / float(limits[-1]):.2g} steps or more" if limits else "")
 
 
+def estimate(found, text):
+    """CPU seconds on one rank of a deck whose runs were shortened: those of a step of each, times the steps that it would have had. None: not known."""
+    seconds, time, stop, steps, runs = 0.0, 0.0, None, None, iter(found.finished)
+    for line in text.splitlines():
+        if match := log.STOP.match(line):
+            stop = float(match[1])
+        elif match := re.fullmatch(r"FSI steps ([\d.e+]+)", line):
+            steps = float(match[1])
+        elif line.startswith("Loop time of"):
+            run = next(runs, None)
+        elif (match := re.fullmatch(r"FSI dt (\S+)", line)) and run and run.steps:
+            if stop is not None:
+                steps = min((stop - time) / float(match[1]), steps or math.inf)
+                time = stop
+            if steps is None:
+                return None
+            seconds += run.cpu_seconds / run.steps * steps
+            steps = None
+    return seconds or None
+
+
+def cost(deck, variables):
+    """The estimate in words"""
+    status, _, found, text = run(deck, variables, SAMPLE)
+    seconds = estimate(found, text) if status == 0 and found else None
+    if seconds is None:
+        return "fsi check: no estimate of time: the deck does not run in parts\n"
+    in_words = f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.0f} h"
+    memory = max(r.bytes_per_rank or 0.0 for r in found.finished) / 1e6  # as LAMMPS counts it
+    return (f"fsi check: about {in_words} of CPU time on one rank, by {SAMPLE} steps of each run: within a factor of 2 if the number of particles and the time "
+            f"step stay; arrays of {memory:.0f} MB\n")
+
+
 def main(deck, variables):
     """Prints what there is to say; 0 if the deck runs and there is no advice of the package; LAMMPS has warnings that are of no concern here."""
-    status, output, found = run(deck, variables)
+    status, output, found, _ = run(deck, variables)
     lines = output.splitlines()
     for start, line in enumerate(lines):
         if line.startswith("FSI: "):  # the effects: up to where LAMMPS goes on
@@ -121,6 +158,7 @@ def main(deck, variables):
     if not ran:
         print(f"fsi check: {deck} has no run")
         return 1
+    print(cost(deck, variables), end="")
     print(f"fsi check: {ran[0].atoms} particles{length(lines, found)}; "
           + (f"{len(advice)} warning{'s' * (len(advice) > 1)}" if advice else "nothing to warn of")
           + (f" (and {len(warnings) - len(advice)} of LAMMPS' own)" if len(warnings) > len(advice) else ""))

@@ -173,8 +173,8 @@ def make_report(files, options):
 def make_check(files, options):
     """fsi check DECK [NAME=VALUE ...]
 
-    Reads the whole deck and sets every run up, but computes no step: prints the effects that are on and the advice of the package. NAME=VALUE
-    as for lmp -var. Nothing in the folder is overwritten: the deck runs in a copy of what it names. Status 1 if there is advice or an error.
+    Reads the whole deck and sets every run up without a step: prints the effects that are on and the advice of the package. Then estimates CPU
+    time and memory by some steps of each run. NAME=VALUE as for lmp -var. Nothing in the folder is overwritten: the deck runs in a copy of what it names. Status 1 if there is advice or an error.
     """
     sys.exit(check.main(files[0], options))
 

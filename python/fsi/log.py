@@ -16,7 +16,7 @@ _NEIGHBOURS = re.compile(r"(Neighs|FullNghs):\s+(\S+) ave")
 _BONDS = re.compile(r"\s*fsi/solid/tl: reference of (\d+) particles taken, (\S+) bonds each")
 _SUBSTEPS = re.compile(r"fix\s+\S+\s+\S+\s+fsi\s.*\ssubsteps\s+(\d+)")
 _CHOSEN = re.compile(r"fix\s+(\S+)\s+\S+\s+fsi/dt\s.*\ssubsteps\s+auto")  # their number is in thermo output where that has it
-_STOP = re.compile(r"fix\s+\S+\s+\S+\s+fsi/dt\s.*\sstop\s+([-+.\deE]+)")
+STOP = re.compile(r"fix\s+\S+\s+\S+\s+fsi/dt\s.*\sstop\s+([-+.\deE]+)")
 _BUILDS = re.compile(r"Neighbor list builds = (\d+)")
 _VERSION = re.compile(r"^LAMMPS \(([^)]+)\)")
 _REPORT = re.compile(r"^FSI report (\w+) (.+)$")  # of fix fsi/report
@@ -137,7 +137,7 @@ def read(path):
         elif match := _SUBSTEPS.match(line):
             log.substeps = int(match[1])
         elif line.startswith("fix") and "fsi/dt" in line:
-            if match := _STOP.match(line):
+            if match := STOP.match(line):
                 log.stop = float(match[1])
             if match := _CHOSEN.match(line):
                 log.chosen = f"f_{match[1]}[7]"

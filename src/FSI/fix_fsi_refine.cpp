@@ -57,7 +57,7 @@ static constexpr double SAME = 1.0e-12;      // what comes from one material
 static constexpr double TOO_COARSE = 1.5;    // spacing of a fluid over that of a body it meets
 
 FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), label("Fix fsi/refine"), every(0), settle_steps(30),
+    Fix(lmp, narg, arg), label("Fix fsi/refine"), every(0), settle_steps(30), finest_dx(0.0),
     zones(new Zones(lmp, label)), total{}, last_event(-1), warned(false), message(nullptr), local{}
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "{} requires atom_style fsi", label);
@@ -68,7 +68,8 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
     const std::string key = arg[k++];
     std::vector<std::string> values;
     const auto is_key = [](const std::string &word) {
-      return word == "types" || word == "region" || word == "distance" || word == "settle";
+      return word == "types" || word == "region" || word == "distance" || word == "settle" ||
+          word == "finest";
     };
     while (k < narg && !is_key(arg[k])) values.emplace_back(arg[k++]);
     if (key == "types")
@@ -80,13 +81,19 @@ FixFSIRefine::FixFSIRefine(LAMMPS *lmp, int narg, char **arg) :
     else if (key == "settle") {
       if (values.size() != 1) utils::missing_cmd_args(FLERR, "fix fsi/refine settle", error);
       settle_steps = integer(lmp, label + " settle", values[0], 0, 1000);
+    } else if (key == "finest") {
+      if (values.size() != 1) utils::missing_cmd_args(FLERR, "fix fsi/refine finest", error);
+      finest_dx = numeric(lmp, label + " finest", values[0], Range::above(0.0));
     } else
-      error->all(FLERR,
-                 "Unknown fix fsi/refine keyword {}: expected types, region, distance or settle",
-                 key);
+      error->all(
+          FLERR,
+          "Unknown fix fsi/refine keyword {}: expected types, finest, region, distance or settle",
+          key);
   }
-  if (types.size() < 2)
-    error->all(FLERR, "{} requires keyword types with two atom types or more, the coarsest first",
+  if (finest_dx > 0.0 ? !types.empty() : types.size() < 2)
+    error->all(FLERR,
+               "{} requires keyword types with two atom types or more, the coarsest first, or "
+               "keyword finest",
                label);
   zones->check_number(types.size());
   directions = split_directions(domain->dimension);
@@ -115,6 +122,31 @@ void FixFSIRefine::read_types(const std::vector<std::string> &words)
                MAX_LEVELS);
 }
 
+// those that pair_coeff keeps, as many as there are levels down to the spacing
+void FixFSIRefine::find_types()
+{
+  const auto &kept = disc->types_of_levels;
+  const int dim = disc->dim, given = (int) kept.size() - 1;
+  if (given < 0) error->all(FLERR, "{} finest requires a fluid", label);
+  const double coarse = disc->dx_of(kept[0]);
+  const int number =
+      (int) std::clamp(std::lround(dim * std::log2(coarse / finest_dx)), 1L, (long) MAX_LEVELS - 1);
+  const double nearest = coarse * std::pow(2.0, -(double) number / dim);
+  if (std::fabs(finest_dx / nearest - 1.0) > RATIO_ERROR)
+    error->all(FLERR,
+               "{} finest: {:g} is not the spacing of a finer level, {:g} times 2^(-k/{}): the "
+               "nearest is {:g}",
+               label, finest_dx, coarse, dim, nearest);
+  if (given < number)
+    error->all(FLERR,
+               "{} finest: from {:g} to {:g} there are {} levels, for which pair_coeff keeps {} "
+               "atom types: expected create_box {} and, as the last word of pair_coeff, levels",
+               label, coarse, finest_dx, number, given, atom->ntypes + number - given);
+  types.assign(kept.begin(), kept.begin() + number + 1);
+  level_of.assign(atom->ntypes + 1, -1);
+  for (int k = 0; k <= number; k++) level_of[types[k]] = k;
+}
+
 int FixFSIRefine::setmask()
 {
   return PRE_EXCHANGE;
@@ -129,6 +161,7 @@ void FixFSIRefine::init()
   population = &fix_fsi->population;
   if (!facts_of_fluids(lmp).style)
     error->all(FLERR, "{} requires pair_style fsi/fluid: it is for fluids", label);
+  if (finest_dx > 0.0) find_types();
   check_types();
   check_others();
   zones->init(*disc, types);

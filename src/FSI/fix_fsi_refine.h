@@ -73,6 +73,7 @@ class FixFSIRefine : public Fix {
 
   const std::string label;
   int every, settle_steps;
+  double finest_dx;                           // from which types follow; 0: they are given
   std::vector<int> types, level_of;           // from the coarsest on; per type, -1: none of them
   const std::unique_ptr<FSI::Zones> zones;    // where the levels from 1 on are
   class FixFSI *fix_fsi = nullptr;
@@ -97,6 +98,7 @@ class FixFSIRefine : public Fix {
   void check_mass(int i) const;
   int level(int i) const;
   void read_types(const std::vector<std::string> &);
+  void find_types();
   void check_types() const;
   void check_others() const;
 

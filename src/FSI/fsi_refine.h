@@ -160,7 +160,7 @@ namespace FSI {
     Zones(LAMMPS *, const std::string &label);
     void read_regions(const std::vector<std::string> &words);
     void read_distances(const std::vector<std::string> &words);
-    void check_number(size_t types) const;
+    void check_number(size_t types);    // 0: one zone, the others follow from it
 
     void init(const Discretization &, const std::vector<int> &types);
     bool moving() const { return can_move; }
@@ -172,14 +172,16 @@ namespace FSI {
 
    private:
     void find_body();
+    void find_wider(const Discretization &, const std::vector<int> &types);
     const std::string label;
     std::vector<std::string> region_ids;
     std::vector<Region *> regions;
     std::string body_id;
     int body_bit;
     std::vector<double> distances, away;    // of zones; per local particle, from the body
-    bool can_move;
-    double ahead;                                     // of positions, time
+    std::vector<double> wider;              // of zones than the finest, the only one that is given
+    bool nested, can_move;                  // nested: see wider
+    double ahead;                           // of positions, time
     std::vector<std::array<double, 3>> directions;    // in which a region grows
   };
 

@@ -88,6 +88,7 @@ namespace FSI {
     // per atom type; pair styles enter theirs in init_style()
     std::vector<State> state;
     bool several_stiffnesses() const;    // do fluids differ in rho0 c^2?
+    std::vector<int> types_of_levels;    // the first fluid, and those left to fix fsi/refine
     std::vector<double> thin;        // per atom type, 1: fluids do not see each other through it
     std::shared_ptr<Sight> sight;    // past those; null: there are none
     bool noslip_walls = false;

@@ -38,7 +38,7 @@ using namespace FSI;
 PairFSI::PairFSI(LAMMPS *lmp, const char *style_in) :
     Pair(lmp), style(style_in), keywords(lmp, "pair_style " + style), fix_fsi(nullptr),
     disc(nullptr), step(nullptr), ledger(nullptr), alpha(0.0), beta(0.0), contact_range(1.0),
-    self_contact(0)
+    self_contact(0), first_level(0)
 {
   restartinfo = 1;
   one_coeff = 1;
@@ -71,19 +71,36 @@ void PairFSI::settings(int narg, char **arg)
   fix_fsi = nullptr;
 }
 
-// pair_coeff * * file name_1 ... name_ntypes
+// pair_coeff * * file name_1 ... name_ntypes, or the last ones left to levels of fix fsi/refine
 void PairFSI::coeff(int narg, char **arg)
 {
+  const bool keeps = narg > 4 && strcmp(arg[narg - 1], "levels") == 0;
+  if (keeps) narg--;
+  first_level = keeps ? narg - 2 : 0;
   check_pair_coeff(narg, arg);
   if (!allocated) allocate();
   auto *const avec = dynamic_cast<AtomVecFSI *>(atom->style_match("fsi"));
   const std::vector<std::string> names(arg + 3, arg + narg);
   auto found = read_materials(lmp, arg[2], names,
                               avec ? avec->materials : std::map<std::string, std::string>());
-  for (int t = 1; t <= atom->ntypes; t++) material[t] = found[t - 1];
+  std::copy(found.begin(), found.end(), material.begin() + 1);
+  if (keeps) keep_levels();
   fix_fsi = nullptr;
   set_flags();
   check_species();
+}
+
+// they are of the first fluid, which other styles leave alone
+void PairFSI::keep_levels()
+{
+  const auto kept = material.begin() + first_level;
+  const auto fluid = std::find_if(material.begin() + 1, kept, [](const Material &m) {
+    return m.species == FLUID;
+  });
+  if (fluid == kept && handles(FLUID, FLUID))
+    error->all(FLERR, "Pair_coeff of pair style {} has levels, expected a fluid before it", style);
+  const Material of_levels = fluid == kept ? Material{} : *fluid;
+  std::fill(kept, material.end(), of_levels);
 }
 
 void PairFSI::check_pair_coeff(int narg, char **arg) const
@@ -93,7 +110,7 @@ void PairFSI::check_pair_coeff(int narg, char **arg) const
                "Pair style {} needs pair_coeff * * followed by a material file and one material "
                "per atom type",
                style);
-  if (narg != 3 + atom->ntypes)
+  if (first_level ? narg > 3 + atom->ntypes : narg != 3 + atom->ntypes)
     error->all(
         FLERR,
         "Pair_coeff of pair style {} has {} materials, expected one for each of {} atom types",
@@ -147,6 +164,17 @@ void PairFSI::set_flags()
                style, handles(FLUID, FLUID) ? "fluid" : "solid");
 }
 
+// from the coarsest on: the first fluid, and the types that pair_coeff keeps for finer ones
+std::vector<int> PairFSI::types_of_levels() const
+{
+  std::vector<int> types;
+  for (int t = 1; t <= atom->ntypes; t++) {
+    const bool kept = first_level && t >= first_level;
+    if (material[t].species == FLUID && (types.empty() || kept)) types.push_back(t);
+  }
+  return types;
+}
+
 void PairFSI::init_style()
 {
   if (!atom->style_match("fsi")) error->all(FLERR, "Pair style {} requires atom_style fsi", style);
@@ -169,6 +197,7 @@ void PairFSI::init_style()
             : "");
   check_same_materials();
   drop_reference();
+  if (handles(FLUID, FLUID)) fix_fsi->space_levels(types_of_levels());
   for (int t = 1; t <= atom->ntypes; t++)
     if (defines(material[t].species)) fix_fsi->enter_state(t, make_state(material[t]));
   if (needs_neighbors())
@@ -329,6 +358,7 @@ void PairFSI::write_restart(FILE *fp)
   write_restart_settings(fp);
   Record record(lmp, "pair_coeff " + style);
   for (int t = 1; t <= atom->ntypes; t++) record.add(std::to_string(t), describe(material[t]));
+  record.add("levels from", std::to_string(first_level));
   record.write(fp);
 }
 
@@ -339,5 +369,6 @@ void PairFSI::read_restart(FILE *fp)
   const auto record = Record::read(lmp, "pair_coeff " + style, fp);
   for (int t = 1; t <= atom->ntypes; t++)
     material[t] = read_material(lmp, "in the restart file", record.value(std::to_string(t)));
+  first_level = record.has("levels from") ? std::stoi(record.value("levels from")) : 0;
   set_flags();
 }

@@ -59,6 +59,7 @@ class PairFSI : public Pair, public FSI::Part {
   double alpha, beta;                     // artificial/visc (fsi_pair_laws.h)
   double contact_range;                   // of solids, over dx (fsi_pair_laws.h)
   int self_contact;                       // of a body with itself
+  int first_level;                        // types from here on: pair_coeff keeps them; 0: none
 
   // does this style handle pairs of these species?
   virtual bool handles(int, int) const = 0;
@@ -72,6 +73,8 @@ class PairFSI : public Pair, public FSI::Part {
   virtual bool needs_neighbors() { return true; }
 
   void check_pair_coeff(int, char **) const;
+  void keep_levels();
+  std::vector<int> types_of_levels() const;
   FSI::State solid_state(const FSI::Material &, bool plane_stress) const;
   bool several_bodies() const;
   bool any_relaxes() const;           // has a material a Prony series?

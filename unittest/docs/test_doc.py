@@ -57,9 +57,10 @@ def deck(page, example):
         return room + PAIRS + FIX + STRESS + "\n".join(line for line in lines if not line.startswith("fix") and line != example) + f"\n{example}\nrun 1\n"
     if page == "fix_fsi_refine":
         lines = "\n".join(line for line in examples(page) if not line.startswith("fix"))    # region and variable stand before the fix that has them
-        pairs = PAIRS.replace("water plate", "water plate water").replace("NULL plate", "NULL plate NULL")
-        levels = FIX.replace("1.5", "1.5 spacing 3 0.0070711")
-        return SETUP.replace("create_box 2", "create_box 3") + pairs + levels + STRESS + f"{lines}\n{example if example.startswith('fix') else ''}\nrun 1\n"
+        finest = "finest" in example
+        pairs = PAIRS.replace("water plate", "water plate levels" if finest else "water plate water").replace("NULL plate", "NULL plate levels" if finest else "NULL plate NULL")
+        levels = FIX if finest else FIX.replace("1.5", "1.5 spacing 3 0.0070711")
+        return SETUP.replace("create_box 2", "create_box 6" if finest else "create_box 3") + pairs + levels + STRESS + f"{lines}\n{example if example.startswith('fix') else ''}\nrun 1\n"
     if page == "fsi_clamp":
         parts = "region foot block INF 0.12 INF INF INF INF units box\ngroup plates type 2\ngroup foot region foot\ngroup wall intersect plates foot\ngroup moving subtract all wall\n"
         return SETUP + parts + lagrangian(PAIRS) + FIX.replace("all", "moving") + example + "\nrun 1\n"

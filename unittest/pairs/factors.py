@@ -242,6 +242,7 @@ ELSEWHERE = {
     "fix_fsi_dt": {"test_dt": "cfl/solid min max growth keep stop no error"},
     "fix_fsi_inlet": {"test_inlet": "region ylo yhi zlo zhi"},
     "fix_fsi_move": {"test_move": "linear rotate transrot lattice"},
+    "fix_fsi_refine": {"test_refine": "finest"},
     "fix_fsi_report": {"test_report": "fsi/report file all"},
     "fix_fsi_spectrum": {"test_spectrum": "fsi/spectrum every window none hann hann2 detrend mean linear peaks file"},
     "fix_fsi_stream": {"test_stream": "along x y z"},
@@ -256,7 +257,7 @@ ELSEWHERE = {
     "fsi_run": {"test_presets": "fsi/run"},
     "fsi_pack": {"test_packing": "fsi/pack region stl outline still steps"},
     "fsi_set": {"test_density": "pressure hydrostatic volume"},
-    "pair_fsi_fluid": {"test_shift": "no", "test_presets": "preset none splash stream closed waves background/speed"},
+    "pair_fsi_fluid": {"test_refine": "levels", "test_shift": "no", "test_presets": "preset none splash stream closed waves background/speed"},
     "pair_fsi_solid": {"test_solid": "plain no"},
     "pair_fsi_solid_tl": {"test_solid_tl": "svk strain quadratic corrected auto no"},
 }

@@ -16,7 +16,7 @@ DECKS = {path.name.removeprefix("in."): path for path in sorted(paths.EXAMPLES.g
 STUDIED = [name for name in DECKS if name not in ALONE]
 LINES, COLUMNS = 45, 132
 MORE = {"slump": ["K", "shift", "tend"], "yield_channel": ["rows", "tend"]}   # options beside the first; else tend
-LONGER = {"sphere": 51, "turek_hron_fsi": 52}    # four levels; a cylinder and its flag
+LONGER = {"flag_levels": 54, "turek_hron_fsi": 52}    # a cylinder and its flag
 # no if, jump, label, next, print, quit, shell
 PLAIN_COMMANDS = {
     "atom_style", "boundary", "comm_modify", "compute", "create_atoms", "create_box",
@@ -35,6 +35,7 @@ GIVEN = {
     "poiseuille": {"flow": "poiseuille"},
     "rolling_tank": {"dx": 0.004 / 3},
     "section": {"dim": 2},
+    "flag_levels": {"benchmark": "fsi2", "length": 1.5, "levels": 4, "coarse": 6.5, "mach": 20, "shift": 0.125},
     "turek_hron_csm": {"across": 10},
     "turek_hron_fsi": {"benchmark": "fsi2", "length": 1.5, "finer": 2},
 }
@@ -43,7 +44,7 @@ STEPS = {"cylinder_channel": 50, "cylinder_free": 10, "dam_break": 30, "dam_brea
          "dam_break_elastic": 3, "elastic_gate": 30, "flexible_plate": 3, "hydrostatic_plate": 10,
          "open_channel": 50, "plate_crossflow": 3, "ring_annulus": 10, "rolling_tank": 10, "sphere": 3, "taylor_bar": 30, "turek_hron_fsi": 50}
 # what fix fsi warns of, in these decks alone
-ADVICE = {"ring_annulus": "speed of sound 20", "submerged_plate": "on the other side of a body",
+ADVICE = {"ring_annulus": "speed of sound 20", "flag_levels": "spacings apart", "submerged_plate": "on the other side of a body",
           "floating_flap": "on the other side of a body"}
 STATE = "id xu yu zu vx vy vz modify format float %.17g"
 

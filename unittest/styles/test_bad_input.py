@@ -122,6 +122,8 @@ CASES = [
     ("line with a name only", *coeff("name.fsi water plate"), r"name\.fsi"),
     ("materials too few", *coeff("materials.fsi water"), r"has 1 materials, expected one for each of 2 atom types"),
     ("materials too many", *coeff("materials.fsi water plate plate"), r"has 3 materials, expected .* 2 atom types"),
+    ("levels without a fluid", *coeff("materials.fsi plate levels"), r"has levels, expected a fluid before it"),
+    ("levels and too many", *coeff("materials.fsi water plate plate levels"), r"has 3 materials, expected .* 2 atom types"),
     ("materials all NULL", *coeff("materials.fsi NULL NULL"), r"no pair to act on"),
     ("coefficients of some types", "* * fsi/fluid materials.fsi", "1 1 fsi/fluid materials.fsi", r"pair_coeff \* \*"),
     ("solid pairs left out", "pair_coeff * * fsi/solid", "# pair_coeff", r"All pair coeffs are not set"),

@@ -558,12 +558,14 @@ def test_balance(tmp_path, first):
                 assert difference(a, b, quantity) < 1e-11, (ranks, balance, quantity)
 
 
-@pytest.mark.parametrize("ranks, every, at", [(1, 10, 85), (2, 10, 80), (2, 1, 50)])
-def test_restart(tmp_path, ranks, every, at):
-    """A run that goes on from a file, written between two events or in a step of one, is the same bit for bit, and so are the sums."""
-    end = 2 * at - 10
-    whole = run(tmp_path / "whole", layers(2, every=every) + watch(every=end) + f"restart {at} r.*\nrun {end}\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
-    text = layers(2, every=every)
+@pytest.mark.parametrize("ranks, every, at, follow", [(1, 10, 85, False), (2, 10, 80, False), (2, 1, 50, False), (2, 10, 85, True)])
+def test_restart(tmp_path, ranks, every, at, follow):
+    """A run that goes on from a file, written between two events or in a step of one, is the same bit for bit, and so are the sums. The file has which types
+    pair_coeff keeps for levels, too."""
+    end, text = 2 * at - 10, layers(2, every=every)
+    if follow:
+        text = re.sub("spacing 2 .*", "", text.replace("water water water", "water levels").replace("types 1 2 3 region one two", "region two finest 0.025"))
+    whole = run(tmp_path / "whole", text + watch(every=end) + f"restart {at} r.*\nrun {end}\n", ranks, flow_data=flow(2), water_fsi=MATERIALS)
     again = text.replace("read_data flow.data", f"read_restart ../whole/r.{at}").replace("pair_style", "#").replace("pair_coeff", "#")
     rest = run(tmp_path / "rest", again + watch(every=end) + f"restart {at} r.*\nrun {end - at}\n", ranks, water_fsi=MATERIALS)
     assert thermo(rest, end) and thermo(rest, end) == thermo(whole, end)
@@ -623,6 +625,63 @@ def test_levels_around_an_elastic_body(tmp_path, strip):
     assert thermo(runs["rest"], 160) == thermo(runs["one"], 160) and not differing(last["one"], last["rest"])
 
 
+# the same with the body's type second, behind which levels come; types, spacings and distances given, and left to the package
+def found_levels(given):
+    levels = [DX * 2.0**(-k / 2) for k in (1, 2)]
+    widest = 0.25 + (2 * 1.5 * DX + levels[0])
+    begin = BODY[0].format(hole="0.74 0.86", faces="0.75 0.85", spacing=0.025).replace("create_atoms 4", "create_atoms 2").replace("body type 4", "body type 2")
+    physics = BODY[1].format(spacing=0.025, thin="")
+    for old, new in (("water water water rubber", "water rubber water water" if given else "water rubber levels"),
+                     ("NULL NULL NULL rubber", "NULL rubber NULL NULL" if given else "NULL rubber levels"),
+                     ("spacing 2 0.0353553390593 spacing 3 0.025 spacing 4 0.025", "spacing 2 0.025" + f" spacing 3 {levels[0]!r} spacing 4 {levels[1]!r}" * given),
+                     ("types 1 2 3 distance body 0.5 0.25", f"types 1 3 4 distance body {widest!r} 0.25" if given else "distance body 0.25 finest 0.025")):
+        assert old in physics
+        physics = physics.replace(old, new)
+    return begin, physics
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 4])
+def test_types_spacings_and_distances_follow(tmp_path, ranks):
+    """From the distance and spacing of the finest level around a moving body: bit for bit what they are where all are given, and from a restart file."""
+    last = {}
+    for name, given, steps in (("given", True, 160), ("found", False, 160), ("rest", False, 75)):
+        begin, physics = found_levels(given)
+        if name == "rest":
+            begin = "read_restart ../found/r.85\n"
+        text = start(begin, boundary="p p p") + physics + watch(every=160) + f"restart 85 r.*\nrun {steps}\n"
+        result = run(tmp_path / name, text, ranks, water_fsi=materials(water=WATER, rubber="solid rho 8000 young 3e6 poisson 0.4"))
+        last[name] = result.frames()[-1]
+        assert float(thermo(result, 160)[0].split()[3]) > 600    # splits
+    assert set(last["given"]["type"]) == {1, 2, 3, 4}
+    assert not differing(last["given"], last["found"]) and not differing(last["found"], last["rest"])
+
+
+@pytest.mark.parametrize("dim, zone", [(2, "two blocks"), (2, "moving"), (3, "sphere")])
+def test_zones_around_a_region(dim, zone):
+    """Before the first step each particle is of the level of its distance from the region, by the kernel's support of the coarser level and a spacing from
+    one level to the next; and what leaves merges again."""
+    n, levels = ((40, 40), 3) if dim == 2 else ((22, 22, 22), 2)
+    x, size = lattice(n, DX), [k * DX for k in n] + [0] * (3 - dim)
+    spacing = DX * 2.0**(-np.arange(levels + 1) / dim)
+    wider = np.append(np.cumsum((3 * spacing[:-2] + spacing[1:-1])[::-1])[::-1], 0.0)
+    blocks = {"two blocks": [((0.9, 0.95), (1.0, 1.1)), ((1.0, 1.0), (1.2, 1.05))], "moving": [((0.95, 0.95), (1.05, 1.1))], "sphere": []}[zone]
+    regions = {"two blocks": ["region one block 0.9 1.0 0.95 1.1 INF INF units box", "region two block 1.0 1.2 1.0 1.05 INF INF units box", "region zone union 2 one two"],
+               "moving": ["variable place equal 0.5*(step<5)", "region zone block 0.45 0.55 0.95 1.1 INF INF units box move v_place NULL NULL"],
+               "sphere": ["region zone sphere 0.55 0.55 0.55 0.08 units box"]}[zone]
+    with Scene(x, dim=dim, dx=DX, box=([0, 0, 0], size), boundary="p p p", materials=(WATER,) * (levels + 1), fluid="sound 15 tension yes", dt=1e-6,
+               commands=("pair_coeff * * NULL m0 levels", *regions, f"fix ref all fsi/refine 10 region zone finest {spacing[-1]!r} settle 0")) as s:
+        go(s, 0)
+        at = s.get("x")[:, :dim]
+        outside = [np.linalg.norm(np.maximum(0, np.maximum(np.subtract(low, at), np.subtract(at, high))), axis=1) for low, high in blocks] or [np.linalg.norm(at - 0.55, axis=1) - 0.08]
+        r, half = np.min(outside, axis=0), 0.25 * dim**0.5 * spacing[0]    # as far halves go from where the old one was
+        level = s.get("type") - 1
+        for k in range(1, levels + 1):
+            assert not np.any(level[r < wider[k - 1] - 2 * half] < k) and not np.any(level[r > wider[k - 1] + 2 * half] >= k)
+        assert set(level) == set(range(levels + 1))
+        go(s, 20)
+        assert (outputs(s)[MERGES] > 50) == (zone == "moving")
+
+
 def test_given_again_between_runs(tmp_path):
     """The fix given again, and runs in parts, change nothing."""
     again = "unfix ref\nfix ref all fsi/refine 10 types 1 2 3 region one two\n"
@@ -653,6 +712,15 @@ BAD = {
     "10 types 1 2 3 region one two": r"is not in the zone of type 2, but only 0.\d+ from atom \d+, which is in that of type 3 \(one and two\)",
     "10 types 1 2 region one\nfix more wet fsi/refine 20 types 2 3 region two": r"fix ref and fix more both have levels of 240 particles, the first of them atom 6: expected one fix",
     "10 types 1 2 region ends": r"is in the buffer of fix out, and in the zone of a finer level: keep open ends in the coarsest level",
+    "10 region one finest 0.0353553": r"finest: from 0.05 to 0.0353553 there are 1 levels, for which pair_coeff keeps 0 atom types: expected create_box 6 and",
+    "10 region one finest 0.03": r"finest: 0.03 is not the spacing of a finer level, 0.05 times 2\^\(-k/2\): the nearest is 0.0353553",
+    "10 region one finest 0": r"Fix fsi/refine finest 0 must be > 0",
+    "10 region one finest": r"Illegal fix fsi/refine finest command: missing argument",
+    "10 region one two finest 0.025": r"finest has 2 regions: expected one",
+    "10 distance wall 0.3 0.1 finest 0.025": r"finest has 2 distances: expected one",
+    "10 region cut finest 0.025": r"finest: region cut is of style intersect: expected one shape or a union",
+    "10 finest 0.025": r"finest has 0 regions: expected one",
+    "10 types 1 2 region one finest 0.0353553": r"the coarsest first, or keyword finest",
 }
 
 
@@ -673,6 +741,7 @@ fix walls wall fsi/wall/particle
 fix out fluid fsi/outlet xlo 0.2
 region one block 0.5 0.8 0.2 0.6 INF INF units box
 region two block 0.6 0.78 0.25 0.55 INF INF units box
+region cut intersect 2 one two
 region ends block 0.1 0.8 0.2 0.6 INF INF units box
 fix ref fluid fsi/refine {words}
 run 0

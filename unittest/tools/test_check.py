@@ -1,8 +1,11 @@
 """fsi check: advice without a step, in a copy that leaves the user's files alone."""
 
+import re
+import subprocess
+
 import pytest
 
-from fsi import check, cli
+from fsi import check, cli, launch, log, paths
 from fsi.command import Refusal
 
 DECK = """variable dx index 0.01
@@ -79,8 +82,42 @@ def test_warnings_of_lammps_are_told_but_are_no_advice(folder, capsys):
 
 
 def test_no_step_is_computed(folder):
-    status, output, _ = check.run("in.deck", {})
+    status, output, *_ = check.run("in.deck", {})
     assert status == 0 and "steps done: 0" in output
+
+
+@pytest.mark.parametrize("name, given", [("droplet", "tend=0.1"), ("column", "tend=0.08")])
+def test_estimate(tmp_path, monkeypatch, capsys, name, given):
+    """CPU time within a factor of 2 of that of the whole run, and LAMMPS' own count of memory."""
+    deck = paths.EXAMPLES / name / f"in.{name}"
+    (tmp_path / "in.deck").write_text(deck.read_text())
+    monkeypatch.chdir(tmp_path)
+    _, text = says(capsys, given)
+    guess, unit, memory = re.search(r"about (\d+) (s|min) of CPU time on one rank.*; arrays of (\d+) MB", text).groups()
+    key, value = given.split("=")
+    subprocess.run(launch.lammps("in.deck", 0, {key: value}), env=launch.environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, timeout=500, check=True)
+    runs = log.read("log.lammps").finished
+    seconds = sum(run.cpu_seconds for run in runs)
+    print(name, guess, unit, seconds)
+    assert 0.5 * seconds - 0.5 < float(guess) * (60 if unit == "min" else 1) < 2 * seconds + 0.5
+    assert float(memory) == pytest.approx(max(run.bytes_per_rank for run in runs) / 1e6, abs=2)
+
+
+def test_several_runs():
+    """Of each the CPU time of a step times its steps; where the time ends a run, those up to it."""
+    text = """fix dt all fsi/dt 1 stop 0.3
+FSI steps 1000000
+Loop time of 2
+FSI dt 1e-3
+fix dt all fsi/dt 1 stop 0.4
+FSI steps 1000000
+Loop time of 4
+FSI dt 2e-3
+"""
+    found = log.Log(runs=[log.Run(loop_seconds=2.0, cpu_use=0.5, steps=10), log.Run(loop_seconds=4.0, cpu_use=0.5, steps=10)], values={}, warnings=[], errors=[])
+    assert check.estimate(found, text) == pytest.approx(0.1 * 300 + 0.2 * 50)
+    assert check.estimate(found, text.replace("stop", "max")) == pytest.approx(0.1 * 1e6 + 0.2 * 1e6)
+    assert check.estimate(found, text.replace("stop", "max").replace("FSI steps", "none")) is None
 
 
 def test_deck_that_does_not_run(folder, capsys):
