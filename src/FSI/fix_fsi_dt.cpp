@@ -296,7 +296,9 @@ void FixFSIDt::choose(double most)
       error->all(FLERR,
                  "Fix fsi/dt: on step {} the solid needs {:.0f} sub-steps of {:.4g}, more than {}",
                  update->ntimestep, count, shortest, MAXSUBSTEPS);
-    n = next_substeps = std::max(1, static_cast<int>(count));
+    // implicit viscosity asks for sub-steps
+    n = next_substeps =
+        std::max(facts_of_fluids(lmp).implicit_viscosity ? 2 : 1, static_cast<int>(count));
     combine();
   }
 }

@@ -105,6 +105,21 @@ namespace FSI {
     }
   };
 
+  // Of a particle less its neighbor, or less the neighbor's image: places, and velocities as
+  // viscosity has them
+  template <bool IMAGE, class T, int D>
+  FSI_INLINE void places_apart(const Mirror &mirror, const T (&xi)[D], const T (&xj)[D], T (&x)[D])
+  {
+    for (int d = 0; d < D; d++)
+      x[d] = xi[d] - (IMAGE ? mirror.x[d] + mirror.sign[d] * xj[d] : xj[d]);
+  }
+  template <bool IMAGE, class T, int D>
+  FSI_INLINE void rubbing_apart(const Mirror &mirror, const T (&vi)[D], const T (&vj)[D], T (&v)[D])
+  {
+    for (int d = 0; d < D; d++)
+      v[d] = vi[d] - (IMAGE ? mirror.rubbing_v[d] + mirror.rubbing_sign[d] * vj[d] : vj[d]);
+  }
+
   // How much more neighbors of this type count at i: in forces of pressure; in sums of W and along
   // the face
   FSI_INLINE double backfill_of(const FluidParticles &in, int i, int type_j)

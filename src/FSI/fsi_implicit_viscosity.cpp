@@ -82,7 +82,7 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
   const bool fluids = set.kind == WITH_FLUID, hidden = set.what == PairSet::HIDDEN;
   if (fluids) {
     Block block = {&rows, {1.0, 1.0, 1.0}, k.size()};
-    for (int d = 0; mirror && d < D; d++) block.sign[d] = image.rubbing_sign[d];
+    for (int d = 0; d < D; d++) block.sign[d] = image.rubbing_sign[d];
     blocks.push_back(block);
   }
   with_kernel(disc->kernel, D, set.h, [&](const auto &kernel) {
@@ -90,8 +90,7 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
       for (const int *j = row.j; j < row.j + row.n; j++) {
         const Point<D> &pi = point[row.i], &pj = point[*j];
         double x[D];
-        for (int d = 0; d < D; d++)
-          x[d] = pi.x[d] - (mirror ? image.x[d] + image.sign[d] * pj.x[d] : pj.x[d]);
+        places_apart<true>(image, pi.x, pj.x, x);
         double g = -kernel.gradient(std::sqrt(FSI::product(x, x))) * pi.vol * pj.vol;
         if (mirror && *j == row.i) g *= 0.5;    // it is seen from both sides of the pair
         if (hidden) g *= visible[j - rows[0].j];
@@ -99,7 +98,7 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
           const double both = 2.0 * g * between(viscosity(row.i), viscosity(*j));
           k.push_back(both);
           for (int d = 0; d < D; d++) {
-            const double u = mirror ? both * image.rubbing_v[d] : 0.0;
+            const double u = both * image.rubbing_v[d];
             for (const int a : {row.i, *j}) {
               diagonal[D * a + d] += both;
               given[D * a + d] += u;
@@ -112,10 +111,9 @@ void ImplicitViscosity::add_pairs(const PairSet &set, const std::vector<Row> &ro
         const double of_face =
             2.0 * g * viscosity(row.i) * backfill_weight_of(in, row.i, in.type[*j]);
         for (int d = 0; d < D; d++) {
-          const double sign = mirror ? image.rubbing_sign[d] : 1.0;
+          const double sign = image.rubbing_sign[d];
           diagonal[D * row.i + d] += of_face * (1.0 + sign);
-          given[D * row.i + d] +=
-              of_face * (2.0 * sign * atom->v[*j][d] + (mirror ? image.rubbing_v[d] : 0.0));
+          given[D * row.i + d] += of_face * (2.0 * sign * atom->v[*j][d] + image.rubbing_v[d]);
         }
       }
   });

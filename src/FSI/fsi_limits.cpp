@@ -77,6 +77,9 @@ void Limits::find(const Discretization &disc, const double *viscosity, int group
 {
   const auto types = look(disc, viscosity, groupbit, moved);
   const Facts of_fluids = facts_of_fluids(lmp), of_solids = facts_of_solids(lmp);
+  // elastic solids without sub-steps feel viscous forces of the start of the step
+  const bool implicit =
+      of_fluids.implicit_viscosity && (substeps || of_solids.style == Facts::NONE);
   for (auto &row : culprit) row[0] = row[1] = 0;
   for (double *row : {step, sub}) std::fill_n(row, NLIMIT, UNLIMITED);
   const auto lower = [](double &limit, double value, tagint *particle = nullptr, tagint tag = 0) {
@@ -102,7 +105,7 @@ void Limits::find(const Discretization &disc, const double *viscosity, int group
     if (!fluid) lower(limit[ELASTIC], factor * safe[ELASTIC] * h / std::sqrt(s.wave_speed_sq()));
     if (alpha > 0.0)
       lower(limit[ARTIFICIAL], factor * safe[ARTIFICIAL] * h / (s.c * (1.0 + 0.6 * alpha)));
-    if (fluid && found.viscosity > 0.0 && of_fluids.laminar && !of_fluids.implicit_viscosity)
+    if (fluid && found.viscosity > 0.0 && of_fluids.laminar && !implicit)
       lower(limit[LAMINAR], factor * safe[LAMINAR] * h * h * s.rho0 / found.viscosity);
   }
 }

@@ -69,16 +69,15 @@ static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K
       for (Number &s : of_i) s = 0.0;
       for_neighbors<Number, IMAGES>(row, [&](const int *j, const Number &weight) FSI_INLINE_LAMBDA {
         const Particle<Number, D> pj(point, j);
-        Number x[D], v[D], part[ROW];
-        for (int d = 0; d < D; d++) {
-          const Number u = OF_FLUIDS ? pj.v[d]
-              : thin                 ? 2.0 * pj.v[d] - pi.v[d]
-                                     : Lanes<Number>::make([&](int k) {
+        Number x[D], v[D], u[D], part[ROW];
+        for (int d = 0; d < D; d++)
+          u[d] = OF_FLUIDS ? pj.v[d]
+              : thin       ? 2.0 * pj.v[d] - pi.v[d]
+                           : Lanes<Number>::make([&](int k) {
                          return laws.wall_velocity[j[k]][d];
                        });
-          x[d] = pi.x[d] - (IMAGES ? mirror.x[d] + mirror.sign[d] * pj.x[d] : pj.x[d]);
-          v[d] = pi.v[d] - (IMAGES ? mirror.rubbing_v[d] + mirror.rubbing_sign[d] * u : u);
-        }
+        places_apart<IMAGES>(mirror, pi.x, pj.x, x);
+        rubbing_apart<IMAGES>(mirror, pi.v, u, v);
         Number g = kernel.gradient(root(product(x, x))) * (backfill * pi.vol) * pj.vol;
         if (IMAGES) g = weight * g;
         if constexpr (std::is_same_v<Number, double>)
@@ -87,10 +86,8 @@ static void add_rows(const std::vector<Row> &rows, const Mirror &mirror, const K
         for (int k = 0; k < ROW; k++) of_i[k] += part[k];
         if (!OF_FLUIDS) return;
         if (IMAGES) {
-          for (int d = 0; d < D; d++) {
-            x[d] = -mirror.sign[d] * x[d];
-            v[d] = pj.v[d] - (mirror.rubbing_v[d] + mirror.rubbing_sign[d] * pi.v[d]);
-          }
+          for (int d = 0; d < D; d++) x[d] = -mirror.sign[d] * x[d];
+          rubbing_apart<IMAGES>(mirror, pj.v, pi.v, v);
           Sums<D>::of_pair(g, x, v, part);
         }
         Lanes<Number>::add_rows(part, sum, j);

@@ -240,15 +240,12 @@ namespace FSI {
   // Where no-slip walls of different velocity meet, the corner's flow is singular: the image
   // depends on the order of the walls, which is that of the script.
   struct Mirror {
-    double sign[3], x[3], v[3], rubbing_sign[3], rubbing_v[3];
-    double deeper[3];    // 1 along axes of hydrostatic walls
+    double sign[3] = {1.0, 1.0, 1.0}, x[3] = {}, v[3] = {};
+    double rubbing_sign[3] = {1.0, 1.0, 1.0}, rubbing_v[3] = {};
+    double deeper[3] = {};    // 1 along axes of hydrostatic walls
     Mirror() = default;
     Mirror(const Walls &walls, const Walls::Reflection &s)
     {
-      for (int d = 0; d < 3; d++) {
-        sign[d] = rubbing_sign[d] = 1.0;
-        x[d] = v[d] = rubbing_v[d] = deeper[d] = 0.0;
-      }
       for (int k = 0; k < s.n; k++) {
         const Wall &w = walls.wall[s.w[k]];
         sign[w.axis] = -1.0;

@@ -17,6 +17,7 @@
 #include "compute_fsi_force.h"
 #include "fix_fsi.h"
 #include "force.h"
+#include "fsi_fluid_terms.h"
 #include "fsi_kernel.h"
 #include "fsi_pair_sets.h"
 #include "fsi_tensor.h"
@@ -103,8 +104,9 @@ double CutSolids::memory_usage() const
   return (double) (parts.capacity() + part_rates.capacity()) * sizeof(double);
 }
 
-void LightSolids::init(FixFSI *fix_fsi_in)
+void LightSolids::init(FixFSI *fix_fsi_in, bool viscous_in)
 {
+  viscous = viscous_in;
   fix_fsi = fix_fsi_in;
   disc = fix_fsi;
   step = fix_fsi;
@@ -126,6 +128,11 @@ std::vector<char> LightSolids::types() const
   return light;
 }
 
+bool LightSolids::resisted() const
+{
+  return step->substeps > 1 && (viscous || any());
+}
+
 bool LightSolids::any() const
 {
   if (step->substeps <= 1) return false;
@@ -133,8 +140,8 @@ bool LightSolids::any() const
   return std::find(light.begin(), light.end(), 1) != light.end();
 }
 
-// use(i, j, x_ij, k) for pairs of a fluid and a solid, whose change of velocity w within the step
-// changes the force on the fluid by k x_ij (x_ij.w)
+// use(i, j, x_ij, k, eta) for pairs of a fluid and a solid, whose change of velocity w within the
+// step changes the force on the fluid by k x_ij (x_ij.w), if it is light, + eta w
 template <int D, class Use> void LightSolids::for_wet_pairs(const Fluid &fluid, Use use) const
 {
   static constexpr double HALF = 0.3;    // of the stiffness of a wet area, over rho c^2/dx
@@ -145,16 +152,20 @@ template <int D, class Use> void LightSolids::for_wet_pairs(const Fluid &fluid, 
     const auto *const point = reinterpret_cast<const Point<D> *>(in.points);
     for (const Row &row : fluid.sets.of(level, PairSet::SOLIDS).rows.rows) {
       const int i = row.i, t = type[row.j[0]];
-      if (!light[t]) continue;
+      if (!light[t] && !viscous) continue;
       const State &s = disc->state[type[i]];
-      const double more = in.ratio[t].thin ? in.thin->backfill[i] : 1.0,
-                   z = HALF * s.rho0 * s.csq / disc->levels[level].dx * update->dt * more;
+      const double z = light[t] * HALF * s.rho0 * s.csq / disc->levels[level].dx * update->dt *
+          backfill_of(in, i, t);
+      const double eta = !viscous
+          ? 0.0
+          : backfill_weight_of(in, i, t) * (step->viscosity ? step->viscosity[i] : s.viscosity);
       for (const int *j = row.j; j < row.j + row.n; j++) {
         double x[D];
         difference(point[i].x, point[*j].x, x);
         const double rsq = product(x, x), r = std::sqrt(rsq);
-        if (rsq < kernel.cutsq && r > 0.0 && (atom->mask[*j] & fix_fsi->groupbit))
-          use(i, *j, x, -2.0 * z * point[i].vol * point[*j].vol * kernel.gradient(r) / r);
+        if (rsq >= kernel.cutsq || r == 0.0 || !(atom->mask[*j] & fix_fsi->groupbit)) continue;
+        const double v = point[i].vol * point[*j].vol * kernel.gradient(r);
+        use(i, *j, x, -2.0 * z * v / r, -4.0 * eta * v);
       }
     }
   });
@@ -170,9 +181,9 @@ template <int D> void LightSolids::find_impedances(const Fluid &fluid)
   auto *const z = step->impedance, *const w = step->swerve;
   for (auto *rows : {z, z + 3, w})
     for (int d = 0; d < 3; d++) rows[d].assign(atom->nlocal + atom->nghost, 0.0);
-  for_wet_pairs<D>(fluid, [&](int, int j, const double(&x)[D], double k) {
+  for_wet_pairs<D>(fluid, [&](int, int j, const double(&x)[D], double k, double eta) {
     for (int a = 0; a < D; a++)
-      for (int b = a; b < D; b++) z[Sym<3>::id(a, b)][j] += k * x[a] * x[b];
+      for (int b = a; b < D; b++) z[Sym<3>::id(a, b)][j] += k * x[a] * x[b] + (a == b) * eta;
   });
   for (int a = 0; a < D; a++)
     for (int b = a; b < D; b++) fix_fsi->add_ghosts(z[Sym<3>::id(a, b)].data());
@@ -192,7 +203,7 @@ void LightSolids::react(const Fluid &fluid, const std::vector<ComputeFSIForce *>
     fix_fsi->send_to_ghosts(w[d].data());
     more[d].assign(w[d].size(), 0.0);
   }
-  for_wet_pairs<D>(fluid, [&](int i, int j, const double(&x)[D], double k) {
+  for_wet_pairs<D>(fluid, [&](int i, int j, const double(&x)[D], double k, double) {
     for (int a = 0; a < D; a++)
       for (int b = 0; b < D; b++) {
         more[a][i] += k * x[a] * x[b] * w[b][j];

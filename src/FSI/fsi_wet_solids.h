@@ -51,17 +51,19 @@ namespace FSI {
   };
 
   // Solids whose layers weigh less than half of one of the fluid: their sub-steps feel how the
-  // fluid's force changes within the step (theory.rst)
+  // fluid's force changes within the step (theory.rst). Under implicit viscosity all feel it of
+  // viscous forces; of that fluids have no reaction, which would shake their layer beside solids.
   class LightSolids : protected Pointers {
    public:
     explicit LightSolids(LAMMPS *lmp) : Pointers(lmp) {}
-    void init(FixFSI *);    // whose group and messages
+    void init(FixFSI *, bool viscous);    // whose group and messages
     // what its pairs are, and the fluid particles by level as the loop of forces has them
     struct Fluid {
       const PairSets &sets;
       const std::vector<FluidParticles> &of_level;
     };
     bool any() const;
+    bool resisted() const;
     void find_impedances(const Fluid &);
     // the reaction: what solids have not got of the impulse, fluids have not given
     void react(const Fluid &, const std::vector<ComputeFSIForce *> &measures);
@@ -70,6 +72,7 @@ namespace FSI {
     FixFSI *fix_fsi = nullptr;
     const Discretization *disc = nullptr;
     StepState *step = nullptr;
+    bool viscous = false;
     std::vector<char> types() const;
     template <int D, class Use> void for_wet_pairs(const Fluid &, Use) const;
     template <int D> void find_impedances(const Fluid &);

@@ -279,7 +279,7 @@ void PairFSIFluid::init_style()
   fix_fsi->find_levels();
   pairs.init(*disc, *step, couple != WALL);
   members->cut_solids.init(*disc, has_solids());
-  members->light_solids.init(fix_fsi);
+  members->light_solids.init(fix_fsi, implicit && sticks_to_solids());
   members->shear.init(fix_fsi, eddies);
   members->implicit.init(fix_fsi);
   step->viscosity = nullptr;
@@ -538,7 +538,7 @@ std::vector<FluidParticles> PairFSIFluid::particles_of_levels()
 
 void PairFSIFluid::integrate_substeps()
 {
-  if (members->light_solids.any())
+  if (members->light_solids.resisted())
     members->light_solids.find_impedances({pairs, particles_of_levels()});
 }
 
@@ -872,13 +872,12 @@ ForceLaws PairFSIFluid::laws_of_forces()
 }
 
 // where the last gather() was
-void PairFSIFluid::find_viscosities()
+void PairFSIFluid::find_viscosities(const std::vector<FluidParticles> &of_level, ForceLaws &laws)
 {
-  step->viscosity = nullptr;
   Shear &shear = members->shear;
-  if (!laminar || !shear.varies()) return;
-  shear.find_viscosities(pairs, particles_of_levels(), laws_of_forces());
-  step->viscosity = shear.viscosities();
+  const bool found = laminar && shear.varies();
+  if (found) shear.find_viscosities(pairs, of_level, laws);
+  step->viscosity = laws.viscosity = found ? shear.viscosities() : nullptr;
 }
 
 const Shear &PairFSIFluid::find_shear()
@@ -923,8 +922,10 @@ template <int D> void PairFSIFluid::compute_forces()
   });
 
   if (ledger->kept) taken.assign((size_t) row_of_points(D) * nall, 0.0);
-  find_viscosities();
-  ForceLaws laws = laws_of_forces();
+  const std::vector<FluidParticles> of_level = particles_of_levels();
+  ForceLaws viscous = laws_of_forces();
+  find_viscosities(of_level, viscous);
+  ForceLaws laws = viscous;
   if (implicit) {    // by itself, when the other forces are there
     laws.laminar = NO_LAMINAR;
     laws.viscosity = nullptr;
@@ -947,8 +948,8 @@ template <int D> void PairFSIFluid::compute_forces()
                      loop(set, set.images[k].rows, set.visible_images[k], mirror, total);
                      add_wall_forces(step->walls.reflections[k], total);
                    });
-  if (implicit) add_implicit_viscosity<D>(particles, of_pairs);
-  split_forces<D>(particles);
+  if (implicit) add_implicit_viscosity<D>(of_level, viscous, of_pairs);
+  split_forces<D>(particles, viscous);
   pairs.forget_near();    // a second force evaluation at other positions must not use these lists
 
   // LAMMPS sends what ghosts have home even without newton_pair, if newton_bond is on
@@ -994,27 +995,28 @@ void PairFSIFluid::add_viscous_forces(const FluidParticles &particles, ForceLaws
 }
 
 // for those who ask for them, forces of viscosity on solids and walls
-template <int D> void PairFSIFluid::split_forces(const FluidParticles &particles)
+template <int D>
+void PairFSIFluid::split_forces(const FluidParticles &particles, const ForceLaws &laws)
 {
   if (std::none_of(force_computes.begin(), force_computes.end(), [](const auto *measure) {
         return measure->split;
       }))
     return;
-  add_viscous_forces<D>(particles, laws_of_forces(), true, nullptr);
+  add_viscous_forces<D>(particles, laws, true, nullptr);
   for (auto *measure : force_computes)
     if (measure->split) measure->tally_viscosity(viscous_forces.data(), row_of_forces(D));
 }
 
 // those of the velocities that it leaves at the end of the step
 template <int D>
-void PairFSIFluid::add_implicit_viscosity(const FluidParticles &particles, PairSums *sums)
+void PairFSIFluid::add_implicit_viscosity(const std::vector<FluidParticles> &of_level,
+                                          ForceLaws laws, PairSums *sums)
 {
+  const FluidParticles &particles = of_level[0];
   constexpr int ROW = row_of_forces(D);
   std::vector<double> others = forces;
   fix_fsi->add_ghosts(others.data(), ROW);
-  ForceLaws laws = laws_of_forces();
-  const std::vector<double> &w =
-      members->implicit.solve(pairs, particles_of_levels(), laws, others.data(), ROW);
+  const std::vector<double> &w = members->implicit.solve(pairs, of_level, laws, others.data(), ROW);
   auto *const point = reinterpret_cast<Point<D> *>(points.data());
   for (size_t i = 0; i < w.size() / D; i++)
     for (int d = 0; d < D; d++) point[i].v[d] = w[D * i + d];

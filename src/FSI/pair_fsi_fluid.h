@@ -156,7 +156,7 @@ class PairFSIFluid : public PairFSI {
   void add_velocities_at_solids();
   void extrapolate_velocities();
   template <int D> void correct_powers();
-  void find_viscosities();
+  void find_viscosities(const std::vector<FSI::FluidParticles> &of_level, FSI::ForceLaws &);
   template <int D> FSI::FluidParticles gather_for_rates(double dth);
   template <int D> void add_density_rate(double dt);
   void advance_density();
@@ -170,8 +170,10 @@ class PairFSIFluid : public PairFSI {
   template <int D>
   void add_viscous_forces(const FSI::FluidParticles &, FSI::ForceLaws, bool on_bodies,
                           FSI::PairSums *);
-  template <int D> void split_forces(const FSI::FluidParticles &);
-  template <int D> void add_implicit_viscosity(const FSI::FluidParticles &, FSI::PairSums *);
+  template <int D> void split_forces(const FSI::FluidParticles &, const FSI::ForceLaws &);
+  template <int D>
+  void add_implicit_viscosity(const std::vector<FSI::FluidParticles> &of_level, FSI::ForceLaws,
+                              FSI::PairSums *);
   double given_ghosts, raised_ghosts;    // cutoffs: that of the user, as raised for images
   Pair *hybrid;    // the hybrid style that this one makes sum its virial pair by pair; null: none
   int no_fdotr_before;

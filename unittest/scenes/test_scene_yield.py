@@ -1,10 +1,15 @@
-"""Short forms of the scenes of fluids with a yield stress or a power law: yield_channel, slump. A disc that is pushed through such a fluid."""
+"""Short forms of the scenes of fluids with a yield stress or a power law: yield_channel, slump, yield_flap. A disc that is pushed through such a fluid
+or let go in it.
+"""
 
 import math
+import re
 
 import numpy as np
 import pytest
 from scenes import run, run_scene
+
+from fsi import paths
 
 # 10 particles per diameter, tau_y D/(K U) = 1000, m U/D = 100: nearly a rigid, perfectly plastic soil
 DISC = """units si
@@ -65,6 +70,23 @@ def test_slump(tmp_path):
     assert figures["height_at_wall"] == pytest.approx(0.0535, rel=0.1)
 
 
+def test_flap_in_mud(tmp_path):
+    # 3 particles across. Mud and flap creep to their rest with a time of 0.9 s. Force on the flap over that of finite differences: +6 % at 3 s, -2.4 %
+    # at rest. Deflection for that force, finite elements: -2.2 %, of which the flap of 6 particles by itself has -0.7 %. Balance at rest: 1e-6
+    figures = run_scene(tmp_path, "yield_flap", dx=0.0033333333333, tend=4)
+    assert figures["balance"] == pytest.approx(4.35, rel=0.002)
+    assert figures["force"] == pytest.approx(4.27, rel=0.03)
+    assert figures["deflection"] == pytest.approx(figures["force"] / 4.27 * 1.255e-3, rel=0.03)
+
+
+def test_solids_without_sub_steps_keep_the_viscous_limit(tmp_path):
+    deck = (paths.EXAMPLES / "yield_flap" / "in.yield_flap").read_text()
+    deck = re.sub(r"run +1000000000.*", "run 8", deck.replace(" substeps auto", "").replace("thermo        1000", "thermo 1"))
+    steps = re.findall(r"^ +8 +\S+ +(\S+)", run(tmp_path, deck).output, re.M)
+    limit = (1.5 * 0.0025)**2 * 1000 / (8 * (10 + 50 * 20))  # h^2/8nu, nothing yields yet
+    assert float(steps[0]) == pytest.approx(limit, rel=1e-6)
+
+
 def test_disc_that_is_pushed(tmp_path):
     """The limit load of a rough disc is (4 sqrt(2) + 2 pi) tau_y D, of a smooth one (6 + pi) tau_y D (Randolph and Houlsby, Geotechnique 34
     (1984) 613): below it a disc stays where it is. Mean over two periods of the box's sound: -2 % with 10 particles per diameter, -8 % with 16.
@@ -75,3 +97,26 @@ def test_disc_that_is_pushed(tmp_path):
     found = -force[t > 0.1].mean() / 1000
     assert found == pytest.approx(4 * math.sqrt(2) + 2 * math.pi, rel=0.1)
     assert found > 1.1 * (6 + math.pi)
+
+
+@pytest.mark.parametrize("part", (0.8, 1.25))
+def test_disc_that_is_let_go(tmp_path, part):
+    """Its weight W is this part of the limit load W_c of a rough disc, its mass M, its velocity V, A the area of the box.
+
+    Below the limit it creeps. The law with m takes at least the power tau_y rate - tau_y/(e m), and rates alone W_c V/tau_y, so
+    V <= tau_y A/(e m (W_c - W)). It takes at most that of a Newtonian fluid of K + tau_y m, whose drag is less than in a circle within the box.
+    Above the limit it falls: energy M V^2/2 <= (W - W_c) x + tau_y A t/(e m). Velocities: 0.42 and 4.3 m/s.
+    """
+    limit, K, m, radii = (4 * math.sqrt(2) + 2 * math.pi) * 1000, 10, 5, 6
+    weight, creep = part * limit, 1000 * (36 - math.pi / 4) / (math.e * m)
+    deck = DISC.replace("1000 1 1 100", f"1000 {K} 1 {m}").replace("$(c_f[1])", "$(xcm(disc,x)) $(vcm(disc,x))").replace(
+        "fix 5 disc fsi/move linear 1 0 0 units box", f"fix 8 disc gravity $({weight}/mass(disc)) vector 1 0 0\nfix 5 disc rigid single")
+    run(tmp_path, deck)
+    t, x, v = np.loadtxt(tmp_path / "force.txt", skiprows=1).T
+    if part < 1:
+        newtonian = weight / (K + 1000 * m) * (math.log(radii) - (radii**2 - 1) / (radii**2 + 1)) / (4 * math.pi)
+        assert newtonian < v[t > 0.1].min() and v[t > 0.1].max() < creep / (limit - weight)
+        assert v[-1] == pytest.approx(v[t > 0.2].mean(), rel=0.05)
+    else:
+        assert v[-1] > 2 * creep / (weight - limit)
+        assert 0.5 * 100 * math.pi / 4 * v[-1]**2 < (weight - limit) * x[-1] + creep * t[-1]
