@@ -17,7 +17,7 @@ COLUMNS = [
     "- Delta-SPH: what SPHinXsys, TrixiParticles and DualSPHysics do today, with this package's keywords. It is not a run of those codes.",
     "  Water: as the preset *splash*, but with negative pressure. That is the Wendland kernel with h = 1.5 dx, *density/diffusion* 0.1,",
     "  *artificial/visc* 0.02, and no shifting. Solids: total Lagrangian, *gradient linear*, *hourglass* 0.1 (the penalty force of TrixiParticles),",
-    "  plain volumes, sub-steps as in SPHinXsys.",
+    "  plain volumes, sub-steps.",
     "- Classic SPH: cubic spline with h = 1.3 dx, continuity, *artificial/visc* 0.1, negative pressure (Monaghan 1994). Solids: updated Lagrangian,",
     "  plain gradients, *artificial/stress* 0.3 (Gray et al. 2001), whose whole stress acts on the water (Antoci et al. 2007)."]
 
@@ -30,7 +30,7 @@ def value(entry, recipe, figure):
     if found["stopped"] and not found["pass"]:
         return f"stopped {MARK[False]}"
     worst = found["worst"].get(figure)
-    return "-" if worst is None else f"{quantity(figure, worst)} {MARK[found['kept'][figure]]}"
+    return "-" if worst is None else f"{quantity(figure, worst, '')} {MARK[found['kept'][figure]]}"
 
 
 def scheme(entry):
@@ -49,7 +49,7 @@ def lines_of(entry, *columns):
 def hard_page():
     """doc/hard/README.md."""
     found, rows, software, _ = compared()
-    lines = ["# Hard cases", "", f"**{scores()}** {alone()}", "", "![Hard cases: here, with delta-SPH, with classic SPH](hard.png)", "", *COLUMNS,
+    lines = ["# Hard cases", "", f"**{scores()}**", alone(), "", "![Hard cases: here, with delta-SPH, with classic SPH](hard.png)", "", *COLUMNS,
              "- All three have the same particles, start, settings and length of run. They are coarse: 1 to 37,000 particles.",
              f"- `tools/run hard` runs them all ({found['runs']} runs, {found['cpu_seconds'] / 60:.0f} minutes on one core).",
              "- Set-ups are in [unittest/hard](../../unittest/hard/README.md), all values and messages in [hard.csv](hard.csv).",
@@ -57,8 +57,8 @@ def hard_page():
              "What is *not* stable or not accurate:", "", *(f"- {text}" for text in unstable()), "",
              f"| case | scheme | bound | {' | '.join(RECIPES.values())} |", "|---|---|---|---|---|---|"]
     lines += [line for e in rows for line in lines_of(e, scheme)]
-    lines += ["", "The values are the worst of all runs of a case.", "", "## Tests of the software", "",
-              "These cases test the program, not the scheme.", "", "| case | bound | here |", "|---|---|---|"]
+    lines += ["", "The values are the worst of all runs of a case, in the unit of the bound.", "", "## Tests of the software", "",
+               "| case | bound | here |", "|---|---|---|"]
     return "\n".join(lines + [line for e in software for line in lines_of(e)]) + "\n"
 
 

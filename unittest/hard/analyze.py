@@ -349,11 +349,12 @@ def label(figure):
     return LABELS.get(figure, (figure.replace("_", " "), ""))[0]
 
 
-def quantity(figure, value):
-    """A value of a figure with its unit."""
-    unit = LABELS.get(figure, ("", ""))[1]
-    text = number(100 * value if unit == "%" else value) if isinstance(value, int) or abs(value) >= 1e4 else f"{100 * value if unit == '%' else value:.3g}"
-    return f"{text} {unit}".rstrip()
+def quantity(figure, value, unit=None):
+    """A value of a figure with its unit, or with another word behind it."""
+    own = LABELS.get(figure, ("", ""))[1]
+    value = 100 * value if own == "%" else value
+    text = number(value) if isinstance(value, int) or abs(value) >= 1e4 else f"{value:.3g}"
+    return f"{text} {own if unit is None else unit}".rstrip()
 
 
 def bound_text(figure, relation, bound):
