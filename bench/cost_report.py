@@ -12,7 +12,7 @@ from fsi import plot, scene, sweep
 from fsi.precision import crossings, extrapolate, order, pareto, reach
 
 BOUNDS = (10.0, 5.0, 2.0, 1.0)  # per cent
-COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, "#7b4fa3", plot.RED, "#8c6d31", "#2ba3b4", "#444444")
+COLOURS = (plot.BLUE, plot.ORANGE, plot.GREEN, "#7b4fa3", plot.RED, "#8c6d31", "#2ba3b4", "#444444", "#b5b535", "#e377c2")
 NOISE = 0.2  # times that differ by less count as equal
 MOVING = "still moving"  # among a run's figures: series.still_moving() of what is measured
 BESIDE = "to_outside"  # column: relative difference to a figure from outside that does not judge the discretisation
@@ -58,14 +58,6 @@ def moving(summary):
     runs = ", ".join(f"{label} ({100 * share:.2g} %)" for label, share in summary["moving"].items())
     return (f"{summary['figure']} has not yet swung in {runs}: by so much of its range it still went on in the last tenth of the run. "
             "Let the deck run longer")
-
-
-def cheapest(summary, bound):
-    """(method, its entry) that keeps an error bound [%] by its runs at the least cost; of those within a quarter of it the most accurate; or None."""
-    found = [(name, m["bounds"][bound]) for name, m in summary["methods"].items()
-             if bound in m["bounds"] and m["bounds"][bound]["kind"] != "extrapolated"]
-    least = min((entry["cpu_seconds"] for _, entry in found), default=None)
-    return min((f for f in found if f[1]["cpu_seconds"] <= 1.25 * least), key=lambda f: abs(f[1]["error"]), default=None)
 
 
 # ---- from points to figures ----

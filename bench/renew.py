@@ -163,11 +163,13 @@ def draw():
     for name in sweeps():
         cost_report.draw(PAGE / f"{name}.png", json.loads((PAGE / f"{name}.json").read_text()), read_csv(PAGE / f"{name}.csv"))
     evidence.draw_cost(PAGE / "cost.png")
+    evidence.draw_readme(PAGE / "cost_readme.png")
     evidence.draw_named(PAGE / "named.png")
     effects.draw(PAGE / "effects.png", read_csv(PAGE / "effects.csv"))
     peers.draw(PAGE / "peers.png", read_csv(PAGE / "peers.csv"))
     scaling.draw(PAGE / "scaling.png", read_csv(PAGE / "scaling.csv"))
     hard_pages.draw_hard(evidence.HARD / "hard.png")
+    hard_pages.draw_readme(evidence.HARD / "hard_readme.png")
     hard_pages.draw_robustness(evidence.HARD / "robustness.png")
 
 

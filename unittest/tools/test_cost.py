@@ -212,12 +212,7 @@ def entry(seconds, error, kind="run"):
     return {"at": 3, "error": error, "cpu_seconds": seconds, "kind": kind}
 
 
-def test_cheapest_method():
-    """The least time; of those within a quarter of it the most accurate; nothing extrapolated; none where no run keeps the bound."""
-    methods = {"a": {"bounds": {"2": entry(1.0, 0.019)}}, "b": {"bounds": {"2": entry(1.2, -0.01)}}, "c": {"bounds": {"2": entry(1.3, 0.001)}},
-               "d": {"bounds": {"2": entry(0.1, 0.01, "extrapolated"), "1": entry(5.0, 0.01, "extrapolated")}}}
-    assert cost_report.cheapest({"methods": methods}, "2")[0] == "b"
-    assert cost_report.cheapest({"methods": methods}, "1") is None
+def test_cells_of_bounds():
     assert [cost_report.cell(entry(0.123, 0.01, kind)) for kind in ("run", "coarsest run", "extrapolated")] == ["0.12 s (3)", "< 0.12 s (3)", "*0.12 s (3)*"]
     assert cost_report.cell(None) == "-"
 
