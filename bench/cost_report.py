@@ -315,11 +315,9 @@ def page(summary, picture, table):
         lines.append("TL and UL: total and updated Lagrangian.")
     lines += ["", *([f"**Warning**: {moving(summary)}.", ""] if summary["moving"] else []),
               f"![Error against resolution and against CPU time]({picture})", "",
-              "- Green band: errors below 1 %. Open symbols: the error changes its sign there, so its size says nothing.",
-              "- Time: CPU seconds of the time loop on one core, "
-              + ("each point is one run." if summary["spread"] is None else f"median of up to three runs. They differ by {100 * summary['spread']:.0f} % (median)."),
-              f"- All {summary['points']} runs, with settings changed one at a time, are in [{table}]({table}). {summary['failed']} of them stopped or do not count."]
-    if summary.get("thinnest"):
+              "- Time: " + ("each point is one run." if summary["spread"] is None else f"median of up to three runs, which differ by {100 * summary['spread']:.0f} %."),
+              f"- All {summary['points']} runs: [{table}]({table}). {summary['failed']} stopped or do not count."]
+    if summary.get("thinnest") and any(f"{size:g}" != x for x, size in summary["thinnest"].items()):
         lines.append(f"- The thinnest body has, at {summary['variable']} = "
                      + ", ".join(f"{x}: {size:g}" for x, size in summary["thinnest"].items()) + " particles through its thickness.")
     lines += ["", f"CPU seconds that keep an error bound. In brackets the resolution: `{summary['variable']}`"
@@ -329,6 +327,5 @@ def page(summary, picture, table):
         cells = [cell(found["bounds"].get(f"{b:g}")) for b in BOUNDS]
         counted = (found["instructions"] or {}).get("per_particle_step")
         lines.append(f"| {method} | {_order(found)} | " + " | ".join(cells) + f" | {f'{counted:.0f}' if counted else '-'} |")
-    lines += ["", "All finer runs keep the bound, too. `<`: the coarsest run does. *Slanted*: extrapolated. -: no run does, or the reference is not as certain.",
-              "Order: of convergence, by least squares with its 95 % interval. None: the interval holds 0."]
+    lines += ["", "[How to read this page](README.md#how-to-read-the-pages)."]
     return "\n".join(lines) + "\n"

@@ -175,7 +175,12 @@ def cost_page():
     lines += ["", "CPU seconds on one core that keep an error bound; in brackets the resolution. So do all finer runs.",
               "`<`: the coarsest run keeps it. None: no run does, or the reference is not as certain.", "",
               "What [each effect](effects.md) adds to a step. [LAMMPS' own styles](peers.md) in comparison. [Several ranks](scaling.md).",
-              "[How to choose](../choosing.md) resolution and effects."]
+              "[How to choose](../choosing.md) resolution and effects.", "",
+              "## How to read the pages", "",
+              "- Green band: errors below 1 %. Open symbols: the error changes its sign there, so its size says nothing.",
+              "- Time: CPU seconds of the time loop on one core. Settings are changed one at a time.",
+              "- Bounds: all finer runs satisfy the bound as well. `<`: the coarsest run does. *Slanted*: extrapolated. -: no run does, or the reference is not as certain.",
+              "- Order: of convergence, by least squares with its 95 % interval. None: the interval contains 0."]
     return "\n".join(lines) + "\n"
 
 

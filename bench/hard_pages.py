@@ -3,7 +3,7 @@
 import json
 
 import matplotlib
-import numpy as np
+import matplotlib.image
 from evidence import HARD, RECIPES, alone, compared, passed, scores, unstable
 from tool import read_csv
 
@@ -53,7 +53,7 @@ def hard_page():
              "- All three have the same particles, start, settings and length of run. They are coarse: 1 to 37,000 particles.",
              f"- `tools/run hard` runs them all ({found['runs']} runs, {found['cpu_seconds'] / 60:.0f} minutes on one core).",
              "- Set-ups are in [unittest/hard](../../unittest/hard/README.md), all values and messages in [hard.csv](hard.csv).",
-             "- Materials and spacings that a user changes first are on the page of [robustness](robustness.md).", "",
+             f"- {robust()}", "",
              "What is *not* stable or not accurate:", "", *(f"- {text}" for text in unstable()), "",
              f"| case | scheme | bound | {' | '.join(RECIPES.values())} |", "|---|---|---|---|---|---|"]
     lines += [line for e in rows for line in lines_of(e, scheme)]
@@ -117,47 +117,10 @@ def _pictures(figure, found, groups, place, size):
 
 # ---- what a user changes first ----
 
-def robustness_page():
-    """doc/hard/robustness.md."""
+def robust():
+    """A sentence on doc/hard/robustness.csv."""
     rows = read_csv(HARD / "robustness.csv")
-    stopped = [r for r in rows if r["verdict"] != "sound"]
-    named = [r for r in stopped if r["verdict"] == "stopped"]
-    lines = ["# Robustness", "", f"**{len(rows) - len(stopped)} of {len(rows)} runs are sound. {len(named)} are stopped with an error that names the cause.**"]
-    if len(named) < len(stopped):
-        lines += [f"{len(stopped) - len(named)} fail without one."]
-    lines += ["", "![Scenes and changes: sound or stopped](robustness.png)", "",
-              "- Each scene runs coarsely for some 400 steps: as it is, with other materials and with other spacings.",
-              "- Sound: the run ends with finite values and speeds below that of sound, and no particle is lost.",
-              "- 400 steps show that a run starts well. They do not show that it is accurate, nor that it stays stable for long.",
-              "- All runs are in [robustness.csv](robustness.csv); `tools/cost robustness` makes them.", "",
-              "| scene | change | cause of the stop |", "|---|---|---|"]
-    lines += [f"| {r['scene']} | {r['change']} | {r['cause'].partition('. ')[0].replace('|', '/')} |" for r in stopped]
-    return "\n".join(lines) + "\n"
-
-
-def draw_robustness(path):
-    """A field for each scene and change: green sound, yellow stopped, red failed, gray where there is no solid to change."""
-    rows = read_csv(HARD / "robustness.csv")
-    scenes, changes = (list(dict.fromkeys(r[key] for r in rows)) for key in ("scene", "change"))
-    level = {"sound": 1, "stopped": 2}
-    field = np.zeros((len(scenes), len(changes)))
-    for r in rows:
-        field[scenes.index(r["scene"]), changes.index(r["change"])] = level.get(r["verdict"], 3)
-    with plot.picture(path, 6.4, 0.2 * len(scenes) + 1.3) as figure:
-        axes = figure.add_subplot()
-        axes.imshow(field, cmap=matplotlib.colors.ListedColormap(["#f2f2f2", GOOD, "#f0ad4e", BAD]), vmin=0, vmax=3, aspect="auto")
-        axes.set_xticks(range(len(changes)), [change.replace("Poisson's ratio", "Poisson's\nratio").replace("spacing ", "spacing\n").replace("times ", "times\n")
-                                              for change in changes], fontsize=8)
-        axes.xaxis.tick_top()
-        axes.set_yticks(range(len(scenes)), scenes, fontsize=7.5)
-        axes.set_xticks(np.arange(len(changes) + 1) - 0.5, minor=True)
-        axes.set_yticks(np.arange(len(scenes) + 1) - 0.5, minor=True)
-        axes.grid(False)
-        axes.grid(which="minor", color="white", linewidth=1.5)
-        axes.tick_params(which="both", length=0)
-        for spine in axes.spines.values():
-            spine.set_visible(False)
-        names = [matplotlib.patches.Patch(color=colour, label=text) for colour, text in
-                 ((GOOD, "sound"), ("#f0ad4e", "stopped, cause named"), (BAD, "failed"), ("#f2f2f2", "no solid to change"))]
-        axes.legend(handles=names, loc="upper center", bbox_to_anchor=(0.4, -0.01), ncols=4, fontsize=8)
-        figure.tight_layout()
+    verdicts = [r["verdict"] for r in rows]
+    failed = len(rows) - verdicts.count("sound") - verdicts.count("stopped")
+    return (f"With other materials and spacings {verdicts.count('sound')} of {len(rows)} scenes start soundly (400 steps), {verdicts.count('stopped')} stop with "
+            f"their cause{f', {failed} fail without one' if failed else ''}: [robustness.csv](robustness.csv).")

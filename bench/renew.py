@@ -146,7 +146,7 @@ def texts():
     tables = {name: read_csv(PAGE / f"{name}.csv") for name in TOOLS}
     pages |= {PAGE / "effects.md": effects.page(tables["effects"], tables["solids"]), PAGE / "peers.md": peers.page(tables["peers"]),
               PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"], [largest.line(read_csv(PAGE / "largest.csv"))]),
-              evidence.HARD / "README.md": hard_pages.hard_page(), evidence.HARD / "robustness.md": hard_pages.robustness_page(),
+              evidence.HARD / "README.md": hard_pages.hard_page(),
               paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page(),
               paths.ROOT / "doc/src/refusals.csv": refusals.page(),
               paths.ROOT / "doc/src/presets.csv": presets.page()}
@@ -170,7 +170,6 @@ def draw():
     scaling.draw(PAGE / "scaling.png", read_csv(PAGE / "scaling.csv"))
     hard_pages.draw_hard(evidence.HARD / "hard.png")
     hard_pages.draw_readme(evidence.HARD / "hard_readme.png")
-    hard_pages.draw_robustness(evidence.HARD / "robustness.png")
 
 
 def main(arguments):
