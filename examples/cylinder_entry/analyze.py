@@ -12,9 +12,7 @@ sys.path.insert(0, str(HERE.parents[1] / "python"))
 
 import numpy as np  # noqa: E402
 
-from fsi import dump, plot, series  # noqa: E402
-from fsi.animate import spacing  # noqa: E402
-from fsi.summary import Summary  # noqa: E402
+from fsi import plot, series  # noqa: E402
 
 EXPERIMENT, CODE = "experiment, Greenhow & Lin 1983", "code, boundary elements in Sun et al. 2018"
 DIAMETER, G = 0.11, 9.81
@@ -27,7 +25,7 @@ def depth(folder):
     return s.time * np.sqrt(G / DIAMETER), -s["low"] / DIAMETER
 
 
-def add(summary, folder, suffix="", target=0.05):
+def add(summary, folder, suffix, target):
     """The figures of one run: at the last instants of the experiment, and the largest distance from the code"""
     time, found = depth(folder)
     measured, code = series.read(HERE / "experiment.csv"), series.read(HERE / "code.csv")
@@ -47,31 +45,14 @@ def draw(folder, cases):
                [(measured.time, measured["depth"], EXPERIMENT, plot.GREY), (code.time, code["depth"], CODE, plot.GREEN)])
 
 
-def picture(path, folder):
-    """Speed of the water at four instants; the body is gray."""
-    frames = dump.read(Path(folder) / "particles.dump")
-    for frame in frames:
-        frame.columns["speed"] = np.hypot(frame["vx"], frame["vy"])
-    plot.snapshots(path, frames[1::1], spacing(frames[0]), limits=((-0.5, 0.5), (-0.3, 0.3)), colour="speed", wall=(2,), columns=2, panel_width=2.6, labels=None)
+def study(folder, cases):
+    """Figures of all cases; the finest is judged and shown."""
+    return plot.bodies(folder, cases, add, draw, every=1, limits=((-0.5, 0.5), (-0.3, 0.3)), panel_width=2.6)
 
 
 def main(folder):
-    """Analyses the run in `folder`; returns the summary."""
-    summary = Summary(folder)
-    add(summary, folder)
-    draw(folder, {"SPH": folder})
-    picture(Path(folder) / "snapshots.png", folder)
-    return summary.write()
-
-
-def study(folder, cases):
-    """Figures of all cases; the finest is judged and shown."""
-    summary = Summary(folder)
-    for name, path in cases.items():
-        add(summary, path, f"_{name}", 0.05 if name == list(cases)[-1] else None)
-    draw(folder, cases)
-    picture(Path(folder) / "snapshots.png", list(cases.values())[-1])
-    return summary.write()
+    """Analyzes the run in `folder`; returns the summary."""
+    return study(folder, {"SPH": folder})
 
 
 if __name__ == "__main__":

@@ -12,9 +12,7 @@ sys.path.insert(0, str(HERE.parents[1] / "python"))
 
 import numpy as np  # noqa: E402
 
-from fsi import dump, plot, series  # noqa: E402
-from fsi.animate import spacing  # noqa: E402
-from fsi.summary import Summary  # noqa: E402
+from fsi import plot, series  # noqa: E402
 
 SOURCE = "code, finite elements, Glowinski et al. 2001"
 EVEN = 0.35, 0.62  # [s] from when the speed is even to before the floor brakes
@@ -27,7 +25,7 @@ def even_speed(s):
     return -s.at("v", times).mean()
 
 
-def add(summary, folder, suffix="", target=0.05):
+def add(summary, folder, suffix, target):
     """The figures of one run"""
     s, code = series.read(Path(folder) / "disc.csv"), series.read(HERE / "code.csv")
     if s.time[-1] > EVEN[1]:
@@ -43,31 +41,14 @@ def draw(folder, cases):
                [(code.time, -1e3 * code["v"], "code, finite elements", plot.GREY)])
 
 
-def picture(path, folder):
-    """Speed of the water at two instants; the body is gray."""
-    frames = dump.read(Path(folder) / "particles.dump")
-    for frame in frames:
-        frame.columns["speed"] = np.hypot(frame["vx"], frame["vy"])
-    plot.snapshots(path, frames[1::2], spacing(frames[0]), limits=((0.0, 0.02), (0.0, 0.06)), colour="speed", wall=(2,), columns=2, panel_width=1.3, labels=None)
+def study(folder, cases):
+    """Figures of all cases; the finest is judged and shown."""
+    return plot.bodies(folder, cases, add, draw, limits=((0.0, 0.02), (0.0, 0.06)), panel_width=1.3)
 
 
 def main(folder):
-    """Analyses the run in `folder`; returns the summary."""
-    summary = Summary(folder)
-    add(summary, folder)
-    draw(folder, {"SPH": folder})
-    picture(Path(folder) / "snapshots.png", folder)
-    return summary.write()
-
-
-def study(folder, cases):
-    """Figures of all cases; the finest is judged and shown."""
-    summary = Summary(folder)
-    for name, path in cases.items():
-        add(summary, path, f"_{name}", 0.05 if name == list(cases)[-1] else None)
-    draw(folder, cases)
-    picture(Path(folder) / "snapshots.png", list(cases.values())[-1])
-    return summary.write()
+    """Analyzes the run in `folder`; returns the summary."""
+    return study(folder, {"SPH": folder})
 
 
 if __name__ == "__main__":

@@ -12,9 +12,7 @@ sys.path.insert(0, str(HERE.parents[1] / "python"))
 
 import numpy as np  # noqa: E402
 
-from fsi import dump, plot, series  # noqa: E402
-from fsi.animate import spacing  # noqa: E402
-from fsi.summary import Summary  # noqa: E402
+from fsi import plot, series  # noqa: E402
 
 SOURCE = "experiment, Qiu, Liu & Han 2017"
 HEIGHTS = 0.12, 0.04  # [m] of the center: submerged, and before the floor brakes
@@ -26,7 +24,7 @@ def passed(s, height):
     return float(np.interp(-height, -s["y"], s.time))
 
 
-def add(summary, folder, suffix="", target=0.05):
+def add(summary, folder, suffix, target):
     """The figures of one run: the way through the water, and all of it, from the release on"""
     s, measured = series.read(Path(folder) / "square.csv"), series.read(HERE / "experiment.csv")
     high, low = HEIGHTS
@@ -43,31 +41,14 @@ def draw(folder, cases):
                [(measured.time, 1e3 * measured["y"], SOURCE, plot.GREY)])
 
 
-def picture(path, folder):
-    """Speed of the water at two instants; the body is gray."""
-    frames = dump.read(Path(folder) / "particles.dump")
-    for frame in frames:
-        frame.columns["speed"] = np.hypot(frame["vx"], frame["vy"])
-    plot.snapshots(path, frames[1::2], spacing(frames[0]), limits=((0.0, 0.15), (0.0, 0.2)), colour="speed", wall=(2,), columns=2, panel_width=1.9, labels=None)
+def study(folder, cases):
+    """Figures of all cases; the finest is judged and shown."""
+    return plot.bodies(folder, cases, add, draw, limits=((0.0, 0.15), (0.0, 0.2)), panel_width=1.9)
 
 
 def main(folder):
-    """Analyses the run in `folder`; returns the summary."""
-    summary = Summary(folder)
-    add(summary, folder)
-    draw(folder, {"SPH": folder})
-    picture(Path(folder) / "snapshots.png", folder)
-    return summary.write()
-
-
-def study(folder, cases):
-    """Figures of all cases; the finest is judged and shown."""
-    summary = Summary(folder)
-    for name, path in cases.items():
-        add(summary, path, f"_{name}", 0.05 if name == list(cases)[-1] else None)
-    draw(folder, cases)
-    picture(Path(folder) / "snapshots.png", list(cases.values())[-1])
-    return summary.write()
+    """Analyzes the run in `folder`; returns the summary."""
+    return study(folder, {"SPH": folder})
 
 
 if __name__ == "__main__":

@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
-from . import paint, series
+from . import dump, paint, series
+from .summary import Summary
 
 BLUE, ORANGE, GREY, GREEN, RED = "#1b5e96", "#d1611a", "#555555", "#3a923a", "#c23b3b"
 FLUID_COLOURS, SOLID_COLOURS, WALL_COLOUR = "viridis", "inferno", "#a8a8a8"
@@ -194,6 +195,24 @@ def snapshots(path, frames, spacing, fluid=(1,), solid=(), limits=None, columns=
                 axes.set_xlabel(labels[0])
         for k, scale in enumerate(scales):
             _bar(figure, scale, left + columns * (panel_width + gap) + 0.1 + bar_distance * k, bottom, height - bottom - title - gap)
+
+
+def bodies(folder, cases, add, draw, every=2, **shown):
+    """Figures and pictures of a study of bodies in water, whose last case is judged, or of one run, the case "SPH"; returns the summary.
+
+    add(summary, folder, suffix, target) adds the figures of a case, draw(folder, cases) draws their curves. Each `every`th picture of the last
+    shows the speed of the water; bodies, type 2, are grey. shown: as for snapshots().
+    """
+    summary = Summary(folder)
+    *_, last = cases
+    for name, path in cases.items():
+        add(summary, path, "" if name == "SPH" else f"_{name}", 0.05 if name == last else None)
+    draw(folder, cases)
+    frames = dump.read(Path(cases[last]) / "particles.dump")
+    for frame in frames:
+        frame.columns["speed"] = np.hypot(frame["vx"], frame["vy"])
+    snapshots(Path(folder) / "snapshots.png", frames[1::every], dump.spacing(frames[0]), colour="speed", wall=(2,), columns=2, labels=None, **shown)
+    return summary.write()
 
 
 def movie(folder, frames, spacing, fluid=(1,), solid=(), width=8.0, colour=None, labels=LABELS, progress=None, wall=()):

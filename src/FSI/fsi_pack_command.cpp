@@ -49,7 +49,7 @@ static constexpr double APART = 0.6;
 
 FSIPack::FSIPack(LAMMPS *lmp) :
     Command(lmp), fix_fsi(nullptr), body(0), fluid(0), still(0), filler(0), gone_at_once(0),
-    band(0.0)
+    distant(0), band(0.0)
 {
 }
 
@@ -221,16 +221,18 @@ void FSIPack::choose(double volume)
   }
 }
 
-// a particle stays on its side, half a spacing from the surface, in a corner from both faces
-void FSIPack::keep_off(int i, double side)
+// A particle stays on its side, half a spacing from the surface, in a corner from both faces;
+// returns how far off it is, 0 if it had to be moved
+double FSIPack::keep_off(int i, double side)
 {
   double outward[3], *const x = atom->x[i];
   const double least = BESIDE * fix_fsi->dx_of(atom->type[i]);
   for (int k = 0; k < domain->dimension + 1; k++) {
     const double r = distance(i, outward);
-    if (side * r >= least || std::fabs(r) >= band) return;
+    if (side * r >= least || std::fabs(r) >= band) return k == 0 ? std::fabs(r) : 0.0;
     for (int d = 0; d < domain->dimension; d++) x[d] += (side * least - r) * outward[d];
   }
+  return 0.0;
 }
 
 // all of the body have the same mass, together that of its volume
@@ -259,7 +261,9 @@ void FSIPack::remove(const std::string &name)
   input->one(fmt::format("group {} delete", name));
 }
 
-void FSIPack::part(const std::vector<double> &mobility, const std::vector<double> &side)
+// Also finds how far off the surface all that move are
+std::vector<double> FSIPack::part(const std::vector<double> &mobility,
+                                  const std::vector<double> &side)
 {
   const int *const type = atom->type;
   const Cells all(atom->x, atom->nlocal + atom->nghost, domain->dimension, fix_fsi->dx);
@@ -277,12 +281,14 @@ void FSIPack::part(const std::vector<double> &mobility, const std::vector<double
             (same ? (d == 0 ? before : 0.0) : (atom->x[i][d] - atom->x[j][d]) / r);
     });
   }
+  std::vector<double> off(atom->nlocal, 0.0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (mobility[i] <= 0.0) continue;
     for (int d = 0; d < domain->dimension; d++) atom->x[i][d] += shift[i][d];
-    keep_off(i, side[i]);
+    off[i] = keep_off(i, side[i]);
   }
   comm->forward_comm();
+  return off;
 }
 
 // Sweeps until the residue stays as it is, or as many as are given
@@ -299,17 +305,20 @@ void FSIPack::pack(int steps)
     std::vector<char> judged(atom->nlocal, 0);
     double outward[3];
     for (int i = 0; i < atom->nlocal; i++) {
-      const int mask = atom->mask[i];
-      if (!(mask & (body | fluid | filler)) || !fix_fsi->walls.is_before_planes(atom->x[i]))
+      int &mask = atom->mask[i];
+      if (!(mask & (body | fluid | filler)) || mask & distant ||
+          !fix_fsi->walls.is_before_planes(atom->x[i]))
         continue;
       const double r = distance(i, outward), dx = fix_fsi->dx_of(atom->type[i]);
+      if (std::fabs(r) >= band) mask |= distant;    // and stays where it is
       mobility[i] = std::clamp((band - std::fabs(r)) / (EDGE * dx), 0.0, 1.0);
       judged[i] = mobility[i] == 1.0 && !(mask & filler);
       side[i] = mask & body ? -1.0 : mask & fluid ? 1.0 : r < 0.0 ? -1.0 : 1.0;
     }
-    part(mobility, side);
+    const auto off = part(mobility, side);
+    constexpr double NEVER = BESIDE + ROUND * Settling::LONGEST;    // there in a round
     Settling settling(lmp, *fix_fsi, mobility, judged, [&](int i) {
-      keep_off(i, side[i]);
+      if (off[i] <= NEVER * fix_fsi->dx_of(atom->type[i])) keep_off(i, side[i]);
     });
     settling.run(std::min(ROUND, steps - done));
     done += std::min(ROUND, steps - done);
@@ -387,7 +396,10 @@ void FSIPack::command(int narg, char **arg)
   const double volume = (of_faces >= 0.0 ? of_faces : sampled) - volume_of_still();
   choose(volume);
   remove(goes);
+  const std::string away = "FSI_PACK_FAR";
+  distant = group->bitmask[group->find_or_create(away.c_str())];
   pack(steps);
+  input->one(fmt::format("group {} delete", away));
   if (body) set_masses(volume);
   remove(fills);
 }

@@ -45,7 +45,7 @@ class FSIPack : public Command {
   FixFSI *fix_fsi;
   std::unique_ptr<FSI::Surface> surface;
   // bits of groups, 0: there is none; still: a part of the body that stays as it is
-  int body, fluid, still, filler, gone_at_once;
+  int body, fluid, still, filler, gone_at_once, distant;
   double band;    // from the surface, in which particles move
   double distance(int i, double *outward) const;
   double volume_inside() const, volume_of_still() const;
@@ -54,8 +54,8 @@ class FSIPack : public Command {
   void choose(double volume);
   std::vector<char> deepest(int bit, double n) const;
   void pack(int steps);
-  void part(const std::vector<double> &mobility, const std::vector<double> &side);
-  void keep_off(int i, double side);
+  std::vector<double> part(const std::vector<double> &mobility, const std::vector<double> &side);
+  double keep_off(int i, double side);
   void set_masses(double volume);
   void remove(const std::string &group);
 };

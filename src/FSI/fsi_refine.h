@@ -197,6 +197,7 @@ namespace FSI {
       double largest = 0.0, squares = 0.0;
       bigint n = 0;
     };
+    static constexpr double LONGEST = 0.05;    // step of a sweep over dx
     // how freely each local particle moves, 0 to 1, and is judged; bound(i): keeps it where it may
     // be after each move
     Settling(LAMMPS *, Scene &, const std::vector<double> &mobility,

@@ -27,8 +27,8 @@
 using namespace LAMMPS_NS;
 using namespace FSI;
 
-// A step over the sum of V grad W dx^2, and the longest over dx
-static constexpr double STRENGTH = 0.15, LONGEST = 0.05;
+// A step over the sum of V grad W dx^2
+static constexpr double STRENGTH = 0.15;
 // Sums of V W: particles with the first are at a surface and stay, with the second move as others
 static constexpr double SURFACE = 0.9, INSIDE = 0.95;
 static constexpr int POINT = 4;        // of points: position and volume

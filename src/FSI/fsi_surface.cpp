@@ -145,6 +145,7 @@ class OfSimplices : public Surface {
   std::vector<Vector> points;
   std::vector<std::array<int, 3>> faces;    // of the points; in 2D of two
   std::vector<Vector> normals, of_points;
+  std::vector<double> radii;    // of faces around their first points
   std::map<std::pair<int, int>, Vector> of_edges;
   mutable double size = 0.0;    // of the cells
   mutable std::array<double, 3> low = {};
@@ -189,27 +190,22 @@ class OfSimplices : public Surface {
   {
     if (size < band) sort(band);
     const Vector x = {place[0], place[1], dim == 3 ? place[2] : 0.0};
-    double least = band * band;
+    double least = size * size;
     Vector nearest = {}, normal = {};
     std::array<int, 3> c;
-    bool in_grid = true;
     for (int d = 0; d < 3; d++) {
       c[d] = d < dim ? (int) std::floor((x[d] - low[d]) / size) : 0;
-      in_grid = in_grid && c[d] >= 0 && c[d] < count[d];
+      if (c[d] < 0 || c[d] >= count[d]) return band;    // what it holds is in the grid
     }
-    if (in_grid)
-      for (const int k : cells[(c[2] * count[1] + c[1]) * count[0] + c[0]]) {
-        Vector at, n;
-        const double rsq = nearest_of(k, x, at, n);
-        if (rsq < least) {
-          least = rsq;
-          nearest = at;
-          normal = n;
-        }
-      }
-    if (least >= band * band) return is_inside(x) ? -band : band;
+    for (const int k : cells[(c[2] * count[1] + c[1]) * count[0] + c[0]]) {
+      const double reach = std::sqrt(least) + radii[k];
+      if ((x - points[faces[k][0]]) * (x - points[faces[k][0]]) < reach * reach)
+        take_nearer(k, x, least, nearest, normal);
+    }
+    if (least >= size * size) return is_inside(x) ? -band : band;
     const Vector away = x - nearest;
     const double r = std::sqrt(least), sign = away * normal < 0.0 ? -1.0 : 1.0;
+    if (r >= band) return sign * band;
     const Vector out = r > 0.0 ? sign / r * away : 1.0 / std::sqrt(normal * normal) * normal;
     std::copy(out.begin(), out.end(), outward);
     return sign * r;
@@ -241,6 +237,7 @@ class OfSimplices : public Surface {
   void find_normals()
   {
     normals.clear();
+    radii.clear();
     of_edges.clear();
     of_points.assign(points.size(), {0.0, 0.0, 0.0});
     for (const auto &f : faces) {
@@ -249,6 +246,10 @@ class OfSimplices : public Surface {
       const double length = std::sqrt(n * n);
       if (length > 0.0) n = 1.0 / length * n;
       normals.push_back(n);
+      double farthest = 0.0;
+      for (int k = 1; k < dim; k++)
+        farthest = std::max(farthest, (points[f[k]] - a) * (points[f[k]] - a));
+      radii.push_back(1.000001 * std::sqrt(farthest));
       for (int k = 0; k < dim; k++) {
         const Vector &p = points[f[k]];
         double angle = 1.0;
@@ -269,43 +270,37 @@ class OfSimplices : public Surface {
     find_normals();
   }
 
-  // squared distance; the nearest point of a face and the normal there
-  double nearest_of(int k, const Vector &x, Vector &at, Vector &normal) const
+  // the nearest point of a face and the normal there, if its squared distance is less
+  void take_nearer(int k, const Vector &x, double &least, Vector &at, Vector &normal) const
   {
     const auto &f = faces[k];
     const Vector &a = points[f[0]], &b = points[f[1]];
-    const auto on_edge = [&](int p, int q) {
+    const auto take = [&](const Vector &there) {
+      const double rsq = (x - there) * (x - there);
+      if (rsq >= least) return false;
+      least = rsq;
+      at = there;
+      return true;
+    };
+    const auto take_of_edge = [&](int p, int q) {
       const Vector along = points[q] - points[p];
       const double t = std::clamp((x - points[p]) * along / (along * along), 0.0, 1.0);
-      const Vector there = points[p] + t * along;
-      const double rsq = (x - there) * (x - there);
-      const Vector n = t == 0.0 ? of_points[p]
-          : t == 1.0            ? of_points[q]
-          : dim == 2            ? normals[k]
-                                : of_edges.at(std::minmax(p, q));
-      return std::make_tuple(rsq, there, n);
+      if (!take(points[p] + t * along)) return;
+      normal = t == 0.0 ? of_points[p]
+          : t == 1.0    ? of_points[q]
+          : dim == 2    ? normals[k]
+                        : of_edges.at(std::minmax(p, q));
     };
-    if (dim == 2) {
-      double rsq;
-      std::tie(rsq, at, normal) = on_edge(f[0], f[1]);
-      return rsq;
-    }
+    if (dim == 2) return take_of_edge(f[0], f[1]);
     const Vector u = b - a, v = points[f[2]] - a, w = x - a;
     const double uu = u * u, uv = u * v, vv = v * v, wu = w * u, wv = w * v,
                  det = uu * vv - uv * uv, s = (wu * vv - wv * uv) / det,
                  t = (wv * uu - wu * uv) / det;
     if (det > 0.0 && s >= 0.0 && t >= 0.0 && s + t <= 1.0) {
-      at = a + (s * u + t * v);
-      normal = normals[k];
-      return (x - at) * (x - at);
+      if (take(a + (s * u + t * v))) normal = normals[k];
+      return;
     }
-    double least = -1.0;
-    for (int e = 0; e < 3; e++) {
-      const auto found = on_edge(f[e], f[(e + 1) % 3]);
-      if (least >= 0.0 && std::get<0>(found) >= least) continue;
-      std::tie(least, at, normal) = found;
-    }
-    return least;
+    for (int e = 0; e < 3; e++) take_of_edge(f[e], f[(e + 1) % 3]);
   }
 
   // cells as wide as the band, and in each the faces that are as near

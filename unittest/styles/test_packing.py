@@ -271,6 +271,37 @@ def test_stl(tmp_path):
     assert abs(x[body]).max() < 0.06 + 1e-9 and away.min() > 0.01 - 1e-4
 
 
+def turned_angle():
+    """An L of triangles, 11 by 11 by 8 spacings, its legs 5 wide, in no direction of the lattice: (STL, corners' own axes)"""
+    plan = np.array([(0, 0), (11, 0), (11, 5), (5, 5), (5, 11), (0, 11)]) - 4.5
+    c, s, d, t = (f(a) for a in np.radians((20, 15)) for f in (np.cos, np.sin))
+    axes = np.array([(1, 0, 0), (0, d, -t), (0, t, d)]) @ np.array([(c, -s, 0), (s, c, 0), (0, 0, 1)])
+    corners = DX * np.array([(x, y, z) for z in (-4, 4) for x, y in plan]) @ axes.T
+    ends = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)]
+    faces = [f[::-1] for f in ends] + [tuple(k + 6 for k in f) for f in ends]
+    for a in range(6):
+        b = (a + 1) % 6
+        faces += [(a, b, b + 6), (a, b + 6, a + 6)]
+    lines = ["facet normal 0 0 0\nouter loop\n" + "".join("vertex %.12g %.12g %.12g\n" % tuple(corners[k]) for k in f) + "endloop\nendfacet\n" for f in faces]
+    return "solid angle\n" + "".join(lines) + "endsolid\n", axes
+
+
+def test_turned_stl(tmp_path):
+    """Edges in no direction of the lattice, one of them reentrant: sums of a tenth of those of a lattice that is cut, and each on its side."""
+    text, axes = turned_angle()
+    done = lammps(tmp_path, deck("stl angle.stl steps 200", dim=3), angle_stl=text)
+    kind, mass, x = state(tmp_path)
+    own = x @ axes / DX
+    legs = [abs(own - middle) - half for middle, half in (((1, -2, 0), (5.5, 2.5, 4)), ((-2, 1, 0), (2.5, 5.5, 4)))]
+    outside = np.min([np.linalg.norm(np.maximum(leg, 0), axis=1) for leg in legs], axis=0)
+    hull = (abs(own - (1, 1, 0)) - (5.5, 5.5, 4)).max(1)
+    body = kind == 2
+    assert mass[body].sum() == pytest.approx(1500 * 85 * 8 * DX**3, rel=1e-9) and body.sum() == 680
+    assert hull[body].max() < -0.499 and own[body, :2].min(1).max() < 0.5 - 0.499 and outside[~body].min() > 0.499
+    largest, rms = residue(done.output)
+    assert largest < 0.05 and rms < 0.005
+
+
 @pytest.mark.parametrize("words, files, message", [
     ("stl cube.stl", {"cube_stl": stl(FACES[1:])}, "file cube.stl is not closed"),
     ("stl cube.stl", {"cube_stl": "solid cube\nendsolid"}, "file cube.stl is no STL file"),
