@@ -10,6 +10,7 @@ from tool import read_csv
 from fsi import plot, scene
 
 quantity = scene.analysis("hard").quantity
+ROBUST = HARD / "robustness.csv"
 GOOD, BAD, NONE = "#4caf50", "#d9534f", "#e4e4e4"
 MARK = {True: "✓", False: "✗", None: ""}
 COLUMNS = [
@@ -119,7 +120,7 @@ def _pictures(figure, found, groups, place, size):
 
 def robust():
     """A sentence on doc/hard/robustness.csv."""
-    rows = read_csv(HARD / "robustness.csv")
+    rows = read_csv(ROBUST)
     verdicts = [r["verdict"] for r in rows]
     failed = len(rows) - verdicts.count("sound") - verdicts.count("stopped")
     return (f"With other materials and spacings {verdicts.count('sound')} of {len(rows)} scenes start soundly (400 steps), {verdicts.count('stopped')} stop with "
