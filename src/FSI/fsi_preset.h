@@ -44,7 +44,7 @@ namespace FSI {
        "density/diffusion 0.1 laminar/visc tension yes shift 0.25 shift/every 4"},
       {"closed", "vortices in a full box", true, false,
        "density/diffusion 0.1 laminar/visc tension yes shift 0.5"},
-      {"waves", "small waves and water at rest", true, false,
+      {"waves", "small waves", true, false,
        "density/diffusion 0.1 laminar/visc/central"},
   };
 
