@@ -56,8 +56,22 @@ def inputs(deck, variables, folder):
     return found, decks
 
 
+def spelled_out(text):
+    """A deck's text with the commands that fsi/run stands for."""
+    clock, lines = None, []
+    for line in text.splitlines():
+        if found := re.match(r"[ \t]*(fix[ \t]+\S+[ \t]+\S+[ \t]+fsi/dt[ \t][^#&]*)", line):
+            clock = re.sub(r"\bstop[ \t]+\S+", "", found[1]).rstrip()
+        found = re.match(r"[ \t]*fsi/run[ \t]+(\S+)([^#]*)", line)
+        if found:
+            clock = clock or f"fix fsi_dt all fsi/dt 10 {found[2]}".rstrip()
+        lines += [f"{clock} stop {found[1]}", "run 1000000000"] if found else [line]
+    return "\n".join(lines) + "\n"
+
+
 def shortened(text, steps=0):
     """A deck's text in which every run computes so few steps; how long it would have been is printed, and the time step at its end."""
+    text = spelled_out(text)
     text = CONDITIONAL_RUN.sub(rf"\1run {steps}", text)
     after = '\n{0}print "FSI dt $(dt)"' if steps else ""
     return RUN.sub(lambda m: f'{m[1]}print "FSI steps {m[2]}"\n{m[1]}run {"0" if m[2] == "0" else steps}' + after.format(m[1]), text)

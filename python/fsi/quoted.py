@@ -13,7 +13,7 @@ from . import paths
 from .command import Refusal
 
 MARK = re.compile(r"^(\.\. deck (\S+): (.+?)(?: to (.+))?\n\n)(?:\.\. code-block:: LAMMPS\n\n(?:   .*\n|\n(?=   |\n))*\n?)?", re.M)
-PAGES = ("Howto_fsi", "tutorial_gate", "tutorial_own_body")
+PAGES = ("Howto_fsi", "tutorial_flap", "tutorial_gate", "tutorial_own_body")
 
 
 def part(deck, start, end=None):

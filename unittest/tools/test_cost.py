@@ -111,7 +111,7 @@ def test_plate_unstable_run_is_a_point_too(plate):
     failed = rows["Courant number = 2.0"]  # eight times the rule of the time step: explicit schemes are not that stable
     assert failed["status"] == "failed" and failed["why"] and not failed["error"]
     assert summary["failed"] == 1
-    assert "1 of them stopped or do not count" in (folder / "page.md").read_text()
+    assert "1 stopped or do not count" in (folder / "page.md").read_text()
 
 
 def test_plate_leaves_picture_and_page(plate):
@@ -301,7 +301,7 @@ def test_deck_of_ones_own_that_has_not_swung(tmp_path, monkeypatch, capsys):
     assert "cost: warning: tip has not yet swung in deck, across = 2 (" in capsys.readouterr().out
     page = (tmp_path / "short" / "page.md").read_text()
     assert "**Warning**: tip has not yet swung" in page
-    assert "The thinnest body has, at across = 2: 2, 3: 3 particles through its thickness." in page
+    assert "The thinnest body has" not in page
     assert accuracy_cost.main([*words, "tend=0.18", f"out={tmp_path / 'long'}"]) == 0
     assert "warning" not in capsys.readouterr().out and "Warning" not in (tmp_path / "long" / "page.md").read_text()
 
