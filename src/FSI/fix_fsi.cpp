@@ -41,7 +41,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 using namespace LAMMPS_NS;
@@ -186,16 +185,6 @@ void FixFSI::check_pre_no(LAMMPS *lmp, const FixFSI *known)
 {
   if (!Changes::in_first_step(lmp->update)) return;
   Changes::check_pre_no(lmp, known && known == there(lmp) ? &known->changes : nullptr);
-}
-
-void FixFSI::space_levels(const std::vector<int> &types)
-{
-  types_of_levels = types;
-  auto spacing = given_spacing;
-  for (size_t k = 1; k < types.size(); k++)
-    if (spacing[types[k]] == 0.0)
-      spacing[types[k]] = dx_of(types[0]) * std::pow(2.0, -(double) k / dim);
-  if (types.size() > 1) resolve(hdx, spacing);
 }
 
 int FixFSI::setmask()

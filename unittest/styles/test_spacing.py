@@ -39,7 +39,7 @@ def test_pair_law(dim, ratio, fluid):
                **finer(ratio), commands=["fix g all gravity 9.81 vector 0.6 -0.8 0", "compute psi all fsi/atom psi"]) as s:
         s.run()
         m = s.get("rmass")
-        assert np.allclose(m[solid] * ratio**dim, m[0], rtol=1e-12)
+        assert np.allclose(m[solid], 1000 * (0.1 / ratio)**dim, rtol=1e-12)    # of the cell
         rho = np.where(solid, 1000, np.random.default_rng(9).uniform(1000, 1050, len(x)))
         s.put("rho", rho)
         s.run()
