@@ -44,8 +44,7 @@ namespace FSI {
        "density/diffusion 0.1 laminar/visc tension yes shift 0.25 shift/every 4"},
       {"closed", "vortices in a full box", true, false,
        "density/diffusion 0.1 laminar/visc tension yes shift 0.5"},
-      {"waves", "small waves", true, false,
-       "density/diffusion 0.1 laminar/visc/central"},
+      {"waves", "small waves", true, false, "density/diffusion 0.1 laminar/visc/central"},
   };
 
   // without a preset it is that of bodies and of splashes
