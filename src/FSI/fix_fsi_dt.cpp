@@ -297,8 +297,9 @@ void FixFSIDt::choose(double most)
                  "Fix fsi/dt: on step {} the solid needs {:.0f} sub-steps of {:.4g}, more than {}",
                  update->ntimestep, count, shortest, MAXSUBSTEPS);
     // implicit viscosity asks for sub-steps
-    n = next_substeps =
-        std::max(facts_of_fluids(lmp).implicit_viscosity ? 2 : 1, static_cast<int>(count));
+    const bool two = facts_of_fluids(lmp).implicit_viscosity &&
+        facts_of_solids(lmp).style == Facts::OF_TOTAL_LAGRANGIAN_SOLIDS;
+    n = next_substeps = std::max(two ? 2 : 1, static_cast<int>(count));
     combine();
   }
 }
