@@ -238,7 +238,7 @@ ELSEWHERE = {
     "compute_fsi_force": {"test_force": "fsi/force split yes no"},
     "compute_fsi_probe": {"test_probe": "fsi/probe point patch line level wet extrapolate fill p rho vx vy vz yes no"},
     "compute_fsi_surface_atom": {"test_surface": "fsi/surface/atom divergence number/density"},
-    "fix_fsi": {"test_parallel": "scheme article mach off", "test_bad_input": "standard"},
+    "fix_fsi": {"test_density": "fluid solid continuity summation ratio", "test_parallel": "scheme article mach off", "test_bad_input": "standard"},
     "fix_fsi_dt": {"test_dt": "cfl/solid min max growth keep stop no error"},
     "fix_fsi_inlet": {"test_inlet": "region ylo yhi zlo zhi"},
     "fix_fsi_move": {"test_move": "linear rotate transrot lattice"},
@@ -257,7 +257,7 @@ ELSEWHERE = {
     "fsi_run": {"test_presets": "fsi/run"},
     "fsi_pack": {"test_packing": "fsi/pack region stl outline still steps"},
     "fsi_set": {"test_density": "pressure hydrostatic volume"},
-    "pair_fsi_fluid": {"test_refine": "levels", "test_shift": "no", "test_presets": "preset none splash stream closed waves background/speed"},
+    "pair_fsi_fluid": {"test_density": "couple full surface", "test_refine": "levels", "test_shift": "no", "test_presets": "preset none splash stream closed waves background/speed"},
     "pair_fsi_solid": {"test_solid": "plain no"},
     "pair_fsi_solid_tl": {"test_solid_tl": "svk strain quadratic corrected auto no"},
 }
