@@ -166,7 +166,7 @@ def test_pressure_linear(tmp_path):
     assert found.max() < 0.2 and found.mean() < 0.05
     assert of_means.max() > 1.0
     page = " ".join((paths.ROOT / "doc/src/fix_fsi_wall_particle.rst").read_text().split())
-    assert f"the mean error is {found.mean():.2f} of the gradient times dx, with *mean* {of_means.mean():.2f}" in page
+    assert f"the mean error over the gradient times dx is {found.mean():.2f}, with *mean* {of_means.mean():.2f}" in page
 
 
 def test_no_guard_where_water_has_tension(tmp_path):
