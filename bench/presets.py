@@ -1,8 +1,8 @@
 """The manual's table of presets, from that in the sources (src/FSI/fsi_preset.h)."""
 
-import csv
-import io
 import re
+
+from tool import as_csv
 
 from fsi import paths
 
@@ -18,10 +18,7 @@ def table():
 
 def page():
     """The rows of the table as CSV."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["preset", "for", "kernel, h/dx (2D; 3D)", "keywords"])
-    for name, scenes, quintic, background, keywords in table():
-        kernel = "quintic 1; Wendland 1.5" if quintic else "Wendland 1.5"
-        writer.writerow([name, scenes, kernel, "sound 10 U" + " background/speed U" * background + f" {keywords}"])
-    return out.getvalue()
+    rows = [[name, scenes, "quintic 1; Wendland 1.5" if quintic else "Wendland 1.5",
+             "sound 10 U" + " background/speed U" * background + f" {keywords}"]
+            for name, scenes, quintic, background, keywords in table()]
+    return as_csv([["preset", "for", "kernel, h/dx (2D; 3D)", "keywords"], *rows])

@@ -1,8 +1,8 @@
 """The manual's table of what does not go together, from that in the sources (src/FSI/fsi_refusals.h)."""
 
-import csv
-import io
 import re
+
+from tool import as_csv
 
 from fsi import paths
 
@@ -37,10 +37,6 @@ def shown(text):
 
 def page():
     """The rows of the table as CSV."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["what", "", "because"])
-    for _, _, rule, what, other, why in table():
-        verb = "requires" if rule == "REQUIRES" else "does not go with"
-        writer.writerow([shown(what), f"{verb} {shown(other)}", shown(why)])
-    return out.getvalue()
+    verbs = {"REQUIRES": "requires", "NOT_WITH": "does not go with"}
+    rows = [[shown(what), f"{verbs[rule]} {shown(other)}", shown(why)] for _, _, rule, what, other, why in table()]
+    return as_csv([["what", "", "because"], *rows])

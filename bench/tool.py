@@ -3,6 +3,7 @@
 import contextlib
 import csv
 import hashlib
+import io
 import json
 import sys
 from datetime import date
@@ -57,6 +58,13 @@ def write_csv(path, command, columns, rows, digits=None):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
         writer.writerows([f"{v:.{digits}g}" if digits and isinstance(v, float) else v for v in map(row.get, columns)] for row in rows)
+
+
+def as_csv(rows):
+    """Rows as the text of a table of the manual."""
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows(rows)
+    return out.getvalue()
 
 
 def read_csv(path):

@@ -87,8 +87,7 @@ class FixFSI : public FSI::FixFields, public FSI::Scene {
   static constexpr int MOST_COLUMNS = 16;
   void add_ghosts(double *rows, int columns = 1);
   void send_to_ghosts(double *rows, int columns = 1);
-  // from the coarsest on: those that keyword spacing does not name are as levels are
-  void space_levels(const std::vector<int> &types);
+  void space_levels(const std::vector<int> &types) { resolve_levels(hdx, given_spacing, types); }
 
  private:
   void set_fields();

@@ -802,14 +802,3 @@ double FixFSIRefine::memory_usage()
   return (double) (carried.capacity() + partner.capacity()) * sizeof(tagint) +
       (double) chosen.capacity() * sizeof(int);
 }
-
-// of the fluid's levels, where fix fsi gives them none
-void FixFSI::space_levels(const std::vector<int> &types)
-{
-  types_of_levels = types;
-  auto spacing = given_spacing;
-  for (size_t k = 1; k < types.size(); k++)
-    if (spacing[types[k]] == 0.0)
-      spacing[types[k]] = dx_of(types[0]) * std::pow(2.0, -(double) k / dim);
-  if (types.size() > 1) resolve(hdx, spacing);
-}

@@ -43,8 +43,7 @@ void FSIClamp::command(int narg, char **arg)
   keywords.parse(narg, arg);
   int bit[2];
   for (int k = 0; k < 2; k++) {
-    const int igroup = group->find(names[k]);
-    if (igroup == -1) error->all(FLERR, "Fsi/clamp group-ID {} does not exist", names[k]);
+    const int igroup = group_of(lmp, "Fsi/clamp", names[k]);
     if (igroup == 0) error->all(FLERR, "Fsi/clamp group-ID all: expected a group of a part");
     bit[k] = group->bitmask[igroup];
   }

@@ -102,11 +102,7 @@ void FSIDisplace::command(int narg, char **arg)
   keywords.argument("body group-ID").word(names[1], "");
   keywords.parse(narg, arg);
   int bit[2];
-  for (int k = 0; k < 2; k++) {
-    const int igroup = group->find(names[k]);
-    if (igroup == -1) error->all(FLERR, "Fsi/displace group-ID {} does not exist", names[k]);
-    bit[k] = group->bitmask[igroup];
-  }
+  for (int k = 0; k < 2; k++) bit[k] = group->bitmask[group_of(lmp, "Fsi/displace", names[k])];
   const FixFSI &fsi = *FixFSI::find(lmp, "Fsi/displace");
   const NeighList *const list = neighbors();
   const int *const type = atom->type, *const mask = atom->mask;

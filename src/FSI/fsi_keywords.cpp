@@ -76,6 +76,13 @@ int FSI::integer(LAMMPS *lmp, const std::string &what, const std::string &value,
   return static_cast<int>(x);
 }
 
+int FSI::group_of(LAMMPS *lmp, const std::string &command, const std::string &name)
+{
+  const int igroup = lmp->group->find(name);
+  if (igroup == -1) lmp->error->all(FLERR, "{} group-ID {} does not exist", command, name);
+  return igroup;
+}
+
 std::string FSI::list_of(const std::vector<std::string> &words)
 {
   std::string text;

@@ -58,6 +58,9 @@ namespace FSI {
   int integer(LAMMPS *, const std::string &what, const std::string &value, int least,
               int most = MAXSMALLINT);
 
+  // its number; an error that names the command, as in a message, if there is none
+  int group_of(LAMMPS *, const std::string &command, const std::string &name);
+
   // one, two or three
   std::string list_of(const std::vector<std::string> &words);
 

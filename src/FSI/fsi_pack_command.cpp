@@ -361,12 +361,8 @@ void FSIPack::command(int narg, char **arg)
   keywords.key("steps").integer(steps, 1000, 0);
   keywords.parse(narg, arg);
   int *const bits[3] = {&body, &fluid, &still};
-  for (int k = 0; k < 3; k++) {
-    if (names[k] == "NULL") continue;
-    const int igroup = group->find(names[k]);
-    if (igroup == -1) error->all(FLERR, "Fsi/pack group-ID {} does not exist", names[k]);
-    *bits[k] = group->bitmask[igroup];
-  }
+  for (int k = 0; k < 3; k++)
+    if (names[k] != "NULL") *bits[k] = group->bitmask[group_of(lmp, "Fsi/pack", names[k])];
   if (!body && !fluid) error->all(FLERR, "Fsi/pack NULL NULL has nothing to pack");
   if (!region.empty() + !stl.empty() + !outline.empty() != 1)
     error->all(FLERR, "Fsi/pack takes one of region, stl and outline");

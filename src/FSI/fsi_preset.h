@@ -26,7 +26,6 @@ namespace FSI {
   struct KernelChoice {
     int kernel;
     double hdx;
-    bool operator!=(const KernelChoice &o) const { return kernel != o.kernel || hdx != o.hdx; }
   };
 
   struct Preset {

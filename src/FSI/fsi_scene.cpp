@@ -79,6 +79,16 @@ void Discretization::resolve(double hdx, const std::vector<double> &spacing)
   }
 }
 
+void Discretization::resolve_levels(double hdx, std::vector<double> spacing,
+                                    const std::vector<int> &types)
+{
+  types_of_levels = types;
+  for (size_t k = 1; k < types.size(); k++)
+    if (spacing[types[k]] == 0.0)
+      spacing[types[k]] = dx_of(types[0]) * std::pow(2.0, -(double) k / dim);
+  if (types.size() > 1) resolve(hdx, spacing);
+}
+
 std::vector<std::string> Discretization::begin(LAMMPS *lmp, const Keywords &keywords,
                                                std::vector<std::string> words)
 {

@@ -84,6 +84,8 @@ namespace FSI {
     bool kernel_named;
     // h over dx; spacings that differ from dx, by type, or 0
     void resolve(double hdx, const std::vector<double> &spacing);
+    // the same with these types of the fluid's levels, from the coarsest on, where none is given
+    void resolve_levels(double hdx, std::vector<double> spacing, const std::vector<int> &types);
 
     // per atom type; pair styles enter theirs in init_style()
     std::vector<State> state;

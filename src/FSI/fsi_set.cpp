@@ -57,8 +57,7 @@ void FSISet::command(int narg, char **arg)
   keywords.argument("keyword").choice(what, DENSITY, names);
   keywords.argument("value").word(given, "");
   keywords.parse(narg, arg);
-  const int igroup = group->find(group_name);
-  if (igroup == -1) error->all(FLERR, "Fsi/set group-ID {} does not exist", group_name);
+  const int igroup = group_of(lmp, "Fsi/set", group_name);
   int variable = -1;
   if (utils::strmatch(given, "^v_") && what != HYDROSTATIC) {
     variable = input->variable->find(given.c_str() + 2);

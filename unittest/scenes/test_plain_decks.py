@@ -8,7 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from fsi import launch, paths, scene
+from fsi import check, launch, paths, scene
 
 STARTERS = ("beam", "column", "droplet", "grains")  # one deck each, which tools/run takes, too
 ALONE = (*STARTERS, "cylinder_entry", "settling_disc", "sinking_square", "slump", "yield_channel", "yield_flap")  # so have these, without pictures of their own
@@ -90,11 +90,7 @@ def test_who_has_a_study():
 
 def begun(text, steps):
     """A deck that ends after some steps of its first run of any, and leaves its first and last state."""
-    stop = re.search(r"^fsi/run +(\S+)", text, re.M)
-    if stop and re.search("^fix .* fsi/dt ", text, re.M):    # a fix that is there stops at that time
-        text = re.sub("(^fix .* fsi/dt 10)", rf"\g<1> stop {stop[1]}", text, flags=re.M)
-        text = re.sub("^fsi/run .*", "run 1000000000", text, flags=re.M)
-    text = re.sub(r"^fsi/run +(\S+)(.*)", r"fix fsi_dt all fsi/dt 10 stop \1\2\nrun 1000000000", text, flags=re.M)
+    text = check.spelled_out(text)
     head, whole = re.split(r"^run +(?!0 )(\S+).*", text, maxsplit=1, flags=re.M)[:2]
     return (f'{head}print "WHOLE {whole} $(dt)"\nwrite_dump all custom first {STATE}\n'
             f"run {steps}\nwrite_dump all custom last {STATE}\n")
