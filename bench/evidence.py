@@ -164,7 +164,7 @@ def sentences():
         "In the elastic gate the preset's water is twice as coarse as the gate. "
         f"The reference is an own run, uncertain by {100 * gate['uncertainty'] / abs(gate['value']):.1g} %.",
         *flag(),
-        "Your own input script gets the same: `tools/cost my_deck.in --vary dx=0.1,0.05,0.025 --measure NAME`."]
+        "Your own input script gets the same: `tools/cost my_script.in --vary dx=0.1,0.05,0.025 --measure NAME`."]
 
 
 def cost_page():

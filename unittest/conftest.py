@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import tempfile
 
 import pytest
@@ -25,6 +26,22 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: not in tools/test --quick")
+
+
+LONGEST = 1200  # seconds; no test takes a tenth of it
+
+
+def hangs(*_):
+    raise TimeoutError(f"no end after {LONGEST} s: does a program wait for what does not come?")
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_protocol():
+    """A test that hangs, as LAMMPS does on two ranks whose input script is missing, fails instead of all tests."""
+    signal.signal(signal.SIGALRM, hangs)
+    signal.alarm(LONGEST)
+    yield
+    signal.alarm(0)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -100,7 +100,7 @@ def home(tmp_path_factory):
             (folder / entry.name).symlink_to(entry)
     (folder / "build").symlink_to(paths.BUILD)
     deck = (paths.ROOT / "doc/src/in.howto").read_text()
-    (folder / "my_deck.in").write_text("variable kernel index wendland\n" + deck)
+    (folder / "my_script.in").write_text("variable kernel index wendland\n" + deck)
     (folder / "bin").mkdir()
     for name, module in {"python": "", "python3": "", "fsi": "-m fsi"}.items():
         (folder / "bin" / name).write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} {module} "$@"\n')
