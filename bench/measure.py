@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import resource
 import shutil
 import statistics
 import subprocess
@@ -150,7 +151,8 @@ def instructions(texts):
 
 
 def messages(texts, ranks=2, join=None):
-    """What a rank sends per step in each of some inputs without run command: [{"messages", "empty", "bytes", "collectives", "reduced", "ghosts", "particles"}].
+    """What a rank sends per step in each of some inputs without run command: [{"messages", "empty", "bytes", "collectives", "reduced", "ghosts", "particles",
+    "memory" (bytes at the peak)}].
 
     Means over the ranks, or what `join` makes of the list of them; no run may rebuild its lists but at its start.
     """
@@ -188,7 +190,8 @@ def _count(number):
             before = [cell.value for cell in cells]
             lmp.command(f"run {steps}")
             counts.append([cell.value - b for cell, b in zip(cells, before)])
-        found.append({name: (b - a) / (LONG - SHORT) for name, a, b in zip(names, *counts)} | {"ghosts": lmp.extract_global("nghost"), "particles": lmp.extract_global("nlocal")})
+        found.append({name: (b - a) / (LONG - SHORT) for name, a, b in zip(names, *counts)} | {"ghosts": lmp.extract_global("nghost"), "particles": lmp.extract_global("nlocal"),
+                      "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024})
     Path(f"rank{lmp.extract_setting('world_rank')}.json").write_text(json.dumps(found))
     lmp.finalize()
 

@@ -14,6 +14,7 @@ import hard_pages
 import largest
 import peers
 import presets
+import ranks
 import refusals
 import robustness
 import scaling
@@ -25,7 +26,7 @@ from tool import PAGE, read_csv, say
 from fsi import gallery, paths, quoted, results, scene
 from fsi.command import Refusal, start
 
-TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling, "sound": sound}  # of tools/cost, with a table in doc/cost
+TOOLS = {"effects": effects, "solids": solid_variants, "peers": peers, "scaling": scaling, "ranks": ranks, "sound": sound}  # of tools/cost, with a table in doc/cost
 WORDS = ("--no-runs", "--pages-only")
 
 
@@ -146,6 +147,7 @@ def texts():
     tables = {name: read_csv(PAGE / f"{name}.csv") for name in TOOLS}
     pages |= {PAGE / "effects.md": effects.page(tables["effects"], tables["solids"]), PAGE / "peers.md": peers.page(tables["peers"]),
               PAGE / "scaling.md": scaling.page(tables["scaling"], tables["peers"], [largest.line(read_csv(PAGE / "largest.csv"))]),
+              PAGE / "ranks.md": ranks.page(tables["ranks"]),
               evidence.HARD / "README.md": hard_pages.hard_page(),
               paths.ROOT / "doc/src/evidence.rst": evidence.page(), paths.ROOT / "doc/src/gallery.rst": gallery.page(),
               paths.ROOT / "doc/src/refusals.csv": refusals.page(),

@@ -23,6 +23,7 @@ import accuracy_cost  # noqa: E402
 import effects  # noqa: E402
 import open_ends  # noqa: E402
 import peers  # noqa: E402
+import ranks  # noqa: E402
 import renew  # noqa: E402
 import robustness  # noqa: E402
 import largest  # noqa: E402
@@ -36,7 +37,7 @@ PAGES = [paths.ROOT / "README.md", *(page for page in (paths.ROOT / "doc").rglob
 PROGRAMS = r"tools/\w+|build/lmp|mpirun |fsi |python3? -m |pip install |cmake -|export |cp |git |apt(?:-get)? "
 PLACEHOLDERS = {"NAME": "elastic_gate", "SCENE": "elastic_gate", "CASE": "10MPa_3_across", "FILE": "unittest/styles/test_dt.py", "R": "2.5", "FOLDER": "results/beam",
                 "COMMAND": "log", "0.8": "0.1"}    # the last: a time of the beam's
-COST = {"solids": solid_variants, "effects": effects, "peers": peers, "scaling": scaling, "largest": largest, "robustness": robustness,
+COST = {"solids": solid_variants, "effects": effects, "peers": peers, "scaling": scaling, "ranks": ranks, "largest": largest, "robustness": robustness,
         "open_ends": open_ends, "sound": sound}  # as tools/cost chooses
 
 

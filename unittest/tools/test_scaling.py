@@ -12,11 +12,12 @@ sys.path.insert(0, str(paths.ROOT / "bench"))
 import effects  # noqa: E402
 import largest  # noqa: E402
 import peers  # noqa: E402
+import ranks  # noqa: E402
 import scaling  # noqa: E402
 import solid_variants  # noqa: E402
 
 @pytest.mark.parametrize("word", ["nonsense", "turns=0", "out="])
-@pytest.mark.parametrize("program", [effects, peers, scaling, solid_variants])
+@pytest.mark.parametrize("program", [effects, peers, ranks, scaling, solid_variants])
 def test_nonsense_is_refused(program, word, monkeypatch):
     monkeypatch.setattr(scene, "build", lambda: pytest.fail("built"))
     with pytest.raises(Refusal, match=word):
